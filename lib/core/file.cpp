@@ -1,0 +1,369 @@
+#include "core/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+namespace krok {
+
+namespace {
+
+Error file_error(const char* code, const std::string& path, std::string message,
+                 std::string hint = {}) {
+  return Error(code, std::move(message), std::move(hint)).in_file(path);
+}
+
+std::string system_text(int error_number) { return std::strerror(error_number); }
+
+// Temporary files that a signal must remove. A fixed table, because a signal handler may not
+// allocate or lock: a slot is claimed, filled, then marked ready.
+struct TemporarySlot {
+  std::atomic<int> state{0};  // 0 free, 1 being filled or emptied, 2 ready
+  char path[PATH_MAX];
+};
+std::array<TemporarySlot, 256> temporary_slots;
+
+int remember_temporary(const std::string& path) {
+  if (path.size() >= PATH_MAX) return -1;
+  for (std::size_t i = 0; i < temporary_slots.size(); ++i) {
+    int free = 0;
+    if (!temporary_slots[i].state.compare_exchange_strong(free, 1)) continue;
+    std::memcpy(temporary_slots[i].path, path.c_str(), path.size() + 1);
+    temporary_slots[i].state.store(2);
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void forget_temporary(int slot) {
+  if (slot >= 0) temporary_slots[static_cast<std::size_t>(slot)].state.store(0);
+}
+
+extern "C" void remove_temporaries_and_end(int signal_number) {
+  for (auto& slot : temporary_slots) {
+    if (slot.state.load() == 2) unlink(slot.path);
+  }
+  signal(signal_number, SIG_DFL);
+  raise(signal_number);
+}
+
+}  // namespace
+
+struct InputFile::Content {
+  void* mapped = nullptr;
+  std::size_t mapped_size = 0;
+  std::vector<std::byte> owned;
+
+  ~Content() {
+    if (mapped != nullptr) munmap(mapped, mapped_size);
+  }
+};
+
+InputFile::InputFile(std::string path, std::unique_ptr<Content> content)
+    : path_(std::move(path)), content_(std::move(content)) {}
+InputFile::InputFile(InputFile&&) noexcept = default;
+InputFile& InputFile::operator=(InputFile&&) noexcept = default;
+InputFile::~InputFile() = default;
+
+std::span<const std::byte> InputFile::bytes() const {
+  if (content_->mapped != nullptr) {
+    return {static_cast<const std::byte*>(content_->mapped), content_->mapped_size};
+  }
+  return content_->owned;
+}
+
+std::string_view InputFile::text() const {
+  const auto all = bytes();
+  return {reinterpret_cast<const char*>(all.data()), all.size()};
+}
+
+Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) {
+  const bool standard_input = path == "-";
+  const int descriptor = standard_input ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    if (errno == ENOENT || errno == ENOTDIR) {
+      return file_error("file-missing", path, "no such file", "check the path");
+    }
+    return file_error("file-unreadable", path,
+                      fmt::format("cannot be opened: {}", system_text(errno)));
+  }
+  struct Closer {
+    int descriptor;
+    ~Closer() {
+      if (descriptor > STDERR_FILENO) ::close(descriptor);
+    }
+  } closer{descriptor};
+
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) {
+    return file_error("file-unreadable", path,
+                      fmt::format("cannot be examined: {}", system_text(errno)));
+  }
+  if (S_ISDIR(status.st_mode)) {
+    return file_error("file-directory", path, "is a folder, not a file",
+                      "name a file inside it");
+  }
+  const auto too_large = [&] {
+    return file_error("file-too-large", path, fmt::format("is larger than {} bytes", limit));
+  };
+  auto content = std::make_unique<Content>();
+  if (S_ISREG(status.st_mode) && status.st_size > 0) {
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    if (size > limit) return too_large();
+    void* mapped = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+    if (mapped != MAP_FAILED) {
+      content->mapped = mapped;
+      content->mapped_size = size;
+      return InputFile(path, std::move(content));
+    }
+  }
+  std::array<std::byte, 1 << 16> buffer;
+  for (;;) {
+    const ssize_t count = ::read(descriptor, buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) {
+      return file_error("file-unreadable", path,
+                        fmt::format("cannot be read: {}", system_text(errno)));
+    }
+    if (count == 0) break;
+    content->owned.insert(content->owned.end(), buffer.begin(), buffer.begin() + count);
+    if (content->owned.size() > limit) return too_large();
+  }
+  return InputFile(path, std::move(content));
+}
+
+struct OutputFile::State {
+  std::string path;
+  std::string temporary;  // empty where bytes go to `path` directly
+  int descriptor = -1;
+  int slot = -1;
+  bool no_clobber = false;
+  std::uint64_t written = 0;
+  std::vector<std::byte> pending;
+  Status failure;
+
+  ~State() { discard(); }
+
+  void close() {
+    if (descriptor > STDERR_FILENO) ::close(descriptor);
+    descriptor = -1;
+  }
+
+  void discard() {
+    close();
+    if (!temporary.empty()) {
+      unlink(temporary.c_str());
+      forget_temporary(slot);
+      temporary.clear();
+    }
+  }
+
+  Status fail(int error_number, const char* what) {
+    failure = file_error("file-unwritable", path,
+                         fmt::format("{}: {}", what, system_text(error_number)),
+                         error_number == ENOSPC ? "free some space, nothing was changed" : "");
+    return failure;
+  }
+
+  Status write_now(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) return fail(errno, "cannot be written");
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+    }
+    return {};
+  }
+
+  Status flush_pending() {
+    const Status done = write_now(pending);
+    pending.clear();
+    return done;
+  }
+};
+
+OutputFile::OutputFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+OutputFile::OutputFile(OutputFile&&) noexcept = default;
+OutputFile& OutputFile::operator=(OutputFile&&) noexcept = default;
+OutputFile::~OutputFile() = default;
+
+Result<OutputFile> OutputFile::create(const std::string& path, Options options) {
+  auto state = std::make_unique<State>();
+  state->path = path;
+  state->no_clobber = options.no_clobber;
+  if (path == "-") {
+    state->descriptor = STDOUT_FILENO;
+    return OutputFile(std::move(state));
+  }
+  if (path.empty()) return Error("file-unwritable", "the output has no name");
+  struct stat status {};
+  const bool exists = stat(path.c_str(), &status) == 0;
+  if (exists && S_ISDIR(status.st_mode)) {
+    return file_error("file-directory", path, "is a folder, not a file",
+                      "give the output a file name");
+  }
+  if (exists && !S_ISREG(status.st_mode)) {
+    state->descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (state->descriptor < 0) {
+      return file_error("file-unwritable", path,
+                        fmt::format("cannot be opened: {}", system_text(errno)));
+    }
+    return OutputFile(std::move(state));
+  }
+  if (exists && options.no_clobber) {
+    return file_error("file-exists", path, "exists already and --no-clobber was given",
+                      "choose another name or leave --no-clobber out");
+  }
+  if (exists && access(path.c_str(), W_OK) != 0) {
+    return file_error("file-unwritable", path,
+                      fmt::format("cannot be replaced: {}", system_text(errno)));
+  }
+  // Through a link, the file that it points to is replaced, not the link.
+  std::error_code ignored;
+  const std::filesystem::path target =
+      exists ? std::filesystem::canonical(path, ignored) : std::filesystem::path(path);
+  state->path = ignored ? path : target.string();
+  std::string folder = std::filesystem::path(state->path).parent_path().string();
+  if (folder.empty()) folder = ".";
+  std::string name = folder + "/.krok-XXXXXX";
+  state->descriptor = mkostemp(name.data(), O_CLOEXEC);
+  if (state->descriptor < 0) {
+    if (errno == ENOENT || errno == ENOTDIR) {
+      return file_error("file-unwritable", path, fmt::format("there is no folder {}", folder),
+                        "create the folder first");
+    }
+    return file_error("file-unwritable", path,
+                      fmt::format("cannot be created: {}", system_text(errno)));
+  }
+  state->temporary = name;
+  state->slot = remember_temporary(name);
+  // mkostemp makes files private; the result gets the mode it would have had, or had before.
+  const mode_t mask = umask(0);
+  umask(mask);
+  (void)fchmod(state->descriptor, exists ? (status.st_mode & 07777) : (0666 & ~mask));
+  return OutputFile(std::move(state));
+}
+
+Status OutputFile::write(std::span<const std::byte> bytes) {
+  if (!state_->failure) return state_->failure;
+  state_->written += bytes.size();
+  constexpr std::size_t kBuffer = std::size_t{1} << 18;
+  if (state_->pending.size() + bytes.size() < kBuffer) {
+    state_->pending.insert(state_->pending.end(), bytes.begin(), bytes.end());
+    return {};
+  }
+  if (Status flushed = state_->flush_pending(); !flushed) return flushed;
+  if (bytes.size() >= kBuffer) return state_->write_now(bytes);
+  state_->pending.assign(bytes.begin(), bytes.end());
+  return {};
+}
+
+Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
+  if (!state_->failure) return state_->failure;
+  if (state_->temporary.empty()) {
+    return file_error("file-unwritable", state_->path, "is a stream and cannot be rewritten");
+  }
+  if (Status flushed = state_->flush_pending(); !flushed) return flushed;
+  while (!bytes.empty()) {
+    const ssize_t count =
+        pwrite(state_->descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return state_->fail(errno, "cannot be written");
+    offset += static_cast<std::uint64_t>(count);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return {};
+}
+
+std::uint64_t OutputFile::size() const { return state_->written; }
+
+Status OutputFile::commit() {
+  State& state = *state_;
+  if (state.failure) {
+    if (Status flushed = state.flush_pending(); !flushed) return flushed;
+  }
+  if (!state.failure) {
+    const Status failure = state.failure;
+    state.discard();
+    return failure;
+  }
+  if (state.temporary.empty()) {
+    if (state.descriptor > STDERR_FILENO && ::close(state.descriptor) != 0) {
+      state.descriptor = -1;
+      return state.fail(errno, "cannot be written");
+    }
+    state.descriptor = -1;
+    return {};
+  }
+  if (fsync(state.descriptor) != 0) {
+    const Status failure = state.fail(errno, "cannot be written");
+    state.discard();
+    return failure;
+  }
+  if (::close(state.descriptor) != 0) {
+    state.descriptor = -1;
+    const Status failure = state.fail(errno, "cannot be written");
+    state.discard();
+    return failure;
+  }
+  state.descriptor = -1;
+  // link() refuses an existing name, so that two programs with --no-clobber cannot both win.
+  const int renamed = state.no_clobber ? link(state.temporary.c_str(), state.path.c_str())
+                                       : rename(state.temporary.c_str(), state.path.c_str());
+  if (renamed != 0) {
+    const Status failure = state.fail(errno, "cannot be put in place");
+    state.discard();
+    return failure;
+  }
+  if (state.no_clobber) unlink(state.temporary.c_str());
+  forget_temporary(state.slot);
+  state.temporary.clear();
+  return {};
+}
+
+Status write_file(const std::string& path, std::span<const std::byte> bytes,
+                  OutputFile::Options options) {
+  auto file = OutputFile::create(path, options);
+  if (!file) return file.error();
+  if (Status written = file->write(bytes); !written) return written;
+  return file->commit();
+}
+
+Status write_file(const std::string& path, std::string_view text, OutputFile::Options options) {
+  return write_file(path, std::as_bytes(std::span(text)), options);
+}
+
+void remove_temporaries_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = remove_temporaries_and_end;
+  sigemptyset(&action.sa_mask);
+  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+    sigaction(signal_number, &action, nullptr);
+  }
+}
+
+std::string base_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+std::string extension(const std::string& path) {
+  std::string text = std::filesystem::path(path).extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+}  // namespace krok

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+// Whole files in, atomic files out. Codes: file-missing, file-directory, file-unreadable,
+// file-too-large, file-unwritable, file-exists.
+
+namespace krok {
+
+// The bytes of a file, memory-mapped where the system can (a regular file), read into memory
+// otherwise (a pipe, standard input). The view lives as long as this object.
+class InputFile {
+ public:
+  // "-" is standard input. A file of more than `limit` bytes is refused (code file-too-large).
+  // An empty file is no error here.
+  static Result<InputFile> open(const std::string& path,
+                                std::uint64_t limit = std::uint64_t{64} << 30);
+
+  InputFile(InputFile&&) noexcept;
+  InputFile& operator=(InputFile&&) noexcept;
+  ~InputFile();
+
+  std::span<const std::byte> bytes() const;
+  std::string_view text() const;
+  const std::string& path() const { return path_; }
+
+ private:
+  struct Content;
+  InputFile(std::string path, std::unique_ptr<Content> content);
+  std::string path_;
+  std::unique_ptr<Content> content_;
+};
+
+// A file that appears whole or not at all. Bytes go to a temporary file in the folder of `path`;
+// commit() flushes, checks and renames it. If the object dies before commit(), or the program ends
+// by SIGINT, SIGTERM or SIGHUP (see remove_temporaries_on_signals), the temporary file is removed
+// and what stood at `path` still stands. "-" is standard output; a path that exists and is no
+// regular file (a device, a pipe) is written directly, for a rename would replace the device.
+class OutputFile {
+ public:
+  struct Options {
+    bool no_clobber = false;  // refuse a path that exists (code file-exists)
+  };
+
+  static Result<OutputFile> create(const std::string& path, Options options);
+  static Result<OutputFile> create(const std::string& path) { return create(path, Options()); }
+
+  OutputFile(OutputFile&&) noexcept;
+  OutputFile& operator=(OutputFile&&) noexcept;
+  ~OutputFile();
+
+  // Appends. The first failure is kept and returned by commit() too.
+  Status write(std::span<const std::byte> bytes);
+  Status write(std::string_view text) { return write(std::as_bytes(std::span(text))); }
+
+  // Overwrites bytes already written, to fill in a header last. Not for standard output, devices
+  // or pipes (code file-unwritable).
+  Status overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
+
+  std::uint64_t size() const;
+
+  Status commit();
+
+ private:
+  struct State;
+  explicit OutputFile(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// Writes all of `bytes` to `path` by an OutputFile.
+Status write_file(const std::string& path, std::span<const std::byte> bytes,
+                  OutputFile::Options options = {});
+Status write_file(const std::string& path, std::string_view text, OutputFile::Options options = {});
+
+// Installs handlers for SIGINT, SIGTERM, SIGHUP and SIGPIPE's default that remove the temporary
+// files of all living OutputFiles and end the program by the same signal. For programs, called once
+// at their start.
+void remove_temporaries_on_signals();
+
+// `path` without its folder; the base name that provenance records.
+std::string base_name(const std::string& path);
+
+// The extension of `path` in lower case with its dot, ".bvh"; empty if it has none.
+std::string extension(const std::string& path);
+
+}  // namespace krok

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+// Numbers as text, independent of the locale.
+
+namespace krok {
+
+// The whole of `text` as a finite number in decimal or exponent form, with an optional sign ('+'
+// too); nothing for an empty text, trailing characters, NaN, infinity or a value out of range.
+std::optional<double> parse_finite(std::string_view text);
+
+// The whole of `text` as a decimal integer with an optional sign; nothing otherwise.
+std::optional<long long> parse_integer(std::string_view text);
+
+// The shortest text that reads back as the same number.
+std::string shortest(double value);
+std::string shortest(float value);
+
+// A number for people: `digits` significant digits, no exponent between 1e-4 and 1e9, no trailing
+// zeros.
+std::string readable(double value, int digits = 6);
+
+}  // namespace krok

@@ -1,0 +1,73 @@
+#include "core/quantity.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <numbers>
+#include <span>
+
+#include "core/numbers.h"
+
+namespace krok {
+
+namespace {
+
+struct NamedUnit {
+  std::string_view name;
+  double size;
+};
+
+struct Split {
+  double number;
+  std::string_view unit;
+};
+
+// The number is the longest prefix that is followed by no more than letters.
+Result<Split> split(std::string_view text) {
+  std::size_t end = text.size();
+  while (end > 0 && ((text[end - 1] >= 'a' && text[end - 1] <= 'z') ||
+                     (text[end - 1] >= 'A' && text[end - 1] <= 'Z'))) {
+    --end;
+  }
+  std::string_view number = text.substr(0, end);
+  while (!number.empty() && number.back() == ' ') number.remove_suffix(1);
+  const auto value = parse_finite(number);
+  if (!value) return Error("quantity-number", fmt::format("'{}' is not a number", text));
+  return Split{*value, text.substr(end)};
+}
+
+Result<double> parse_with(std::string_view text, std::span<const NamedUnit> units, double bare) {
+  const auto parts = split(text);
+  if (!parts) return parts.error();
+  if (parts->unit.empty()) return parts->number * bare;
+  std::string known;
+  for (const NamedUnit& unit : units) {
+    if (unit.name == parts->unit) return parts->number * unit.size;
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", unit.name);
+  }
+  return Error("quantity-unit", fmt::format("'{}' in '{}' is no unit that fits here", parts->unit, text),
+               fmt::format("use one of {}", known));
+}
+
+constexpr std::array kLengths = {NamedUnit{"m", 1.0},      NamedUnit{"dm", 0.1},
+                                 NamedUnit{"cm", 0.01},    NamedUnit{"mm", 0.001},
+                                 NamedUnit{"um", 1e-6},    NamedUnit{"in", 0.0254},
+                                 NamedUnit{"ft", 0.3048}};
+constexpr std::array kAngles = {NamedUnit{"deg", std::numbers::pi / 180.0}, NamedUnit{"rad", 1.0}};
+constexpr std::array kTimes = {NamedUnit{"s", 1.0}, NamedUnit{"ms", 0.001}, NamedUnit{"f", 1.0}};
+
+}  // namespace
+
+Result<double> parse_length(std::string_view text) { return parse_with(text, kLengths, 1.0); }
+
+Result<double> parse_angle(std::string_view text) {
+  return parse_with(text, kAngles, std::numbers::pi / 180.0);
+}
+
+Result<ClipTime> parse_clip_time(std::string_view text) {
+  const auto value = parse_with(text, kTimes, 1.0);
+  if (!value) return value.error();
+  return ClipTime{*value, text.ends_with('f')};
+}
+
+}  // namespace krok

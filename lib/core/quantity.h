@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string_view>
+
+#include "core/result.h"
+
+// Numbers with units, as people write them on a command line. The whole text must parse; codes
+// quantity-number, quantity-unit.
+
+namespace krok {
+
+// Metres from "0.1mm", "5 cm", "1.7m", "3in", "1ft"; a bare number is metres.
+Result<double> parse_length(std::string_view text);
+
+// Radians from "15deg", "0.26rad"; a bare number is degrees.
+Result<double> parse_angle(std::string_view text);
+
+// A moment in a clip: "1.5s", "250ms" or a bare number are seconds, "120f" is a frame.
+struct ClipTime {
+  double value = 0;
+  bool in_frames = false;
+  double seconds(double rate) const { return in_frames ? value / rate : value; }
+};
+Result<ClipTime> parse_clip_time(std::string_view text);
+
+}  // namespace krok

@@ -1,0 +1,84 @@
+#include "scene/clip.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "math/quaternion.h"
+
+namespace krok {
+
+namespace {
+
+template <typename Vector>
+auto frame_of(Vector& values, int joints, int frame) {
+  const auto count = static_cast<std::size_t>(joints);
+  return std::span(values).subspan(static_cast<std::size_t>(frame) * count, count);
+}
+
+}  // namespace
+
+void Clip::resize(int frames) {
+  const std::size_t count = static_cast<std::size_t>(frames) * skeleton.names.size();
+  positions.resize(count, Vec3f::Zero());
+  orientations.resize(count, Quatf::Identity());
+}
+
+std::span<const Vec3f> Clip::frame_positions(int frame) const {
+  return frame_of(positions, joint_count(), frame);
+}
+std::span<Vec3f> Clip::frame_positions(int frame) {
+  return frame_of(positions, joint_count(), frame);
+}
+std::span<const Quatf> Clip::frame_orientations(int frame) const {
+  return frame_of(orientations, joint_count(), frame);
+}
+std::span<Quatf> Clip::frame_orientations(int frame) {
+  return frame_of(orientations, joint_count(), frame);
+}
+
+void Clip::get_pose(int frame, std::span<Transform> joint_to_world) const {
+  const auto p = frame_positions(frame);
+  const auto q = frame_orientations(frame);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    joint_to_world[i] = {p[i].cast<double>(), normalized_or_identity(q[i].cast<double>())};
+  }
+}
+
+void Clip::set_pose(int frame, std::span<const Transform> joint_to_world) {
+  const auto p = frame_positions(frame);
+  const auto q = frame_orientations(frame);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p[i] = joint_to_world[i].position.cast<float>();
+    q[i] = joint_to_world[i].orientation.cast<float>();
+  }
+}
+
+Status check(const Clip& clip) {
+  if (Status skeleton = check(clip.skeleton); !skeleton) return skeleton;
+  if (clip.positions.size() != clip.orientations.size() ||
+      clip.positions.size() % clip.skeleton.names.size() != 0) {
+    return Error("clip-shape",
+                 fmt::format("{} positions and {} orientations do not make whole frames of {} joints",
+                             clip.positions.size(), clip.orientations.size(), clip.joint_count()));
+  }
+  if (!std::isfinite(clip.rate) || clip.rate <= 0) {
+    return Error("clip-rate", fmt::format("the frame rate is {}, expected a positive number",
+                                          clip.rate));
+  }
+  for (std::size_t i = 0; i < clip.positions.size(); ++i) {
+    if (clip.positions[i].allFinite() && clip.orientations[i].coeffs().allFinite() &&
+        std::abs(clip.orientations[i].norm() - 1.0f) <= 1e-3f) {
+      continue;
+    }
+    const std::size_t joints = clip.skeleton.names.size();
+    Error error("clip-value", fmt::format("joint {} in frame {} is not finite or not a rotation",
+                                          clip.skeleton.names[i % joints], i / joints));
+    error.joint = clip.skeleton.names[i % joints];
+    error.frame = static_cast<std::int64_t>(i / joints);
+    return error;
+  }
+  return {};
+}
+
+}  // namespace krok

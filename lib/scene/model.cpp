@@ -1,0 +1,94 @@
+#include "scene/model.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace krok {
+
+namespace {
+
+Status check_influences(const Model& model) {
+  const auto per_vertex = static_cast<std::size_t>(model.influences_per_vertex);
+  for (std::size_t v = 0; v < model.positions.size(); ++v) {
+    double sum = 0;
+    for (std::size_t k = v * per_vertex; k < (v + 1) * per_vertex; ++k) {
+      const float weight = model.influence_weights[k];
+      if (!(weight >= 0) || !std::isfinite(weight)) {
+        return Error("model-weight", fmt::format("vertex {} has a weight of {}", v, weight));
+      }
+      if (model.influence_joints[k] >= model.skeleton.names.size()) {
+        return Error("model-index", fmt::format("vertex {} is bound to joint {}, of {}", v,
+                                                model.influence_joints[k],
+                                                model.skeleton.joint_count()));
+      }
+      sum += static_cast<double>(weight);
+    }
+    if (std::abs(sum - 1.0) > 1e-4) {
+      return Error("model-weight",
+                   fmt::format("the weights of vertex {} sum to {}, expected 1", v, sum));
+    }
+  }
+  return {};
+}
+
+Status check_triangles(const Model& model) {
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    for (const std::uint32_t index : model.triangles[t]) {
+      if (index >= model.positions.size()) {
+        return Error("model-index", fmt::format("triangle {} names vertex {}, of {}", t, index,
+                                                model.positions.size()));
+      }
+    }
+  }
+  std::uint64_t next = 0;
+  for (const Model::Part& part : model.parts) {
+    if (part.first_triangle != next) {
+      return Error("model-shape",
+                   fmt::format("part {} begins at triangle {}, expected {}", part.name,
+                               part.first_triangle, next));
+    }
+    next += part.triangle_count;
+  }
+  if (next != model.triangles.size()) {
+    return Error("model-shape", fmt::format("the parts cover {} triangles of {}", next,
+                                            model.triangles.size()));
+  }
+  return {};
+}
+
+template <typename Vector>
+bool all_finite(const std::vector<Vector>& values) {
+  for (const Vector& value : values) {
+    if (!value.allFinite()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Status check(const Model& model) {
+  if (Status skeleton = check(model.skeleton); !skeleton) return skeleton;
+  const std::size_t count = model.positions.size();
+  const auto fits = [count](std::size_t size) { return size == 0 || size == count; };
+  if (!fits(model.normals.size()) || !fits(model.texture_coordinates.size()) ||
+      !fits(model.tangents.size())) {
+    return Error("model-shape", "normals, texture coordinates or tangents do not match the vertices");
+  }
+  if (model.influences_per_vertex < 1 || model.influences_per_vertex > Model::kMaxInfluences) {
+    return Error("model-shape", fmt::format("{} influences a vertex, expected 1 to {}",
+                                            model.influences_per_vertex, Model::kMaxInfluences));
+  }
+  const std::size_t influences = count * static_cast<std::size_t>(model.influences_per_vertex);
+  if (model.influence_joints.size() != influences || model.influence_weights.size() != influences) {
+    return Error("model-shape", "joint indices or weights do not match the vertices");
+  }
+  if (!all_finite(model.positions) || !all_finite(model.normals) ||
+      !all_finite(model.texture_coordinates) || !all_finite(model.tangents)) {
+    return Error("model-value", "a vertex is not finite");
+  }
+  if (Status influences_hold = check_influences(model); !influences_hold) return influences_hold;
+  return check_triangles(model);
+}
+
+}  // namespace krok

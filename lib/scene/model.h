@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/provenance.h"
+#include "scene/skeleton.h"
+
+namespace krok {
+
+// A triangle mesh bound to a skeleton. Vertices are given in the model's reference pose, which is
+// the skeleton's: with C_j the reference joint_to_world of joint j and M_j the animated one, linear
+// blend skinning moves a vertex to sum_j w_j M_j C_j^-1 v.
+//
+// Per-vertex arrays have [vertices] elements, or none where the file has no such data (normals,
+// texture_coordinates, tangents). Influences have [vertices x influences_per_vertex] elements,
+// vertex by vertex, weights in falling order, unused ones with weight 0 and joint 0.
+struct Model {
+  static constexpr int kMaxInfluences = 8;
+
+  Skeleton skeleton;
+
+  std::vector<Vec3f> positions;            // metres
+  std::vector<Vec3f> normals;              // unit, pointing out
+  std::vector<Vec2f> texture_coordinates;  // u to the right, v down (glTF's)
+  std::vector<Vec4f> tangents;             // unit xyz; w is +1 or -1, glTF's handedness
+
+  int influences_per_vertex = 4;  // 1 .. kMaxInfluences
+  std::vector<std::uint16_t> influence_joints;
+  std::vector<float> influence_weights;  // >= 0, sum to 1 for each vertex
+
+  // Counter-clockwise seen from outside.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  // A run of triangles with one material. Parts cover all triangles in order; a model without
+  // materials has one part with an empty material.
+  struct Part {
+    std::string name;
+    std::string material;
+    std::uint32_t first_triangle = 0;
+    std::uint32_t triangle_count = 0;
+  };
+  std::vector<Part> parts;
+
+  Provenance provenance;
+
+  int vertex_count() const { return static_cast<int>(positions.size()); }
+};
+
+// Whether what the comments above promise holds (weights sum to 1 within 1e-4, indices in range,
+// finite values, parts cover the triangles). Codes: those of check(Skeleton), model-shape,
+// model-index, model-weight, model-value.
+Status check(const Model& model);
+
+}  // namespace krok

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace krok {
+
+// Where data came from and what was done to it. Written into Krok's own files, so it holds nothing
+// that differs between two runs on the same input: base names only, no times of day.
+struct Provenance {
+  std::string tool;     // "krok-import"
+  std::string version;  // "0.1.0"
+  struct Source {
+    std::string name;  // base name of the file
+    std::string xxh3;  // sixteen hexadecimal digits
+  };
+  std::vector<Source> sources;
+  std::vector<std::pair<std::string, std::string>> options;  // as given, in a fixed order
+  std::vector<std::string> conversions;  // "unit: centimetres to metres (detected, certain)"
+  std::vector<std::string> warnings;     // the messages, with their codes
+};
+
+}  // namespace krok

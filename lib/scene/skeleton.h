@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+#include "math/transform.h"
+
+namespace krok {
+
+// A tree of joints with a reference pose, in Krok's frame: metres, right-handed, +Y up, the figure
+// facing +Z (so its left is +X).
+//
+// A struct of arrays, all of the same length joint_count(). Parents stand before their children;
+// exactly one joint, the first, has no parent.
+struct Skeleton {
+  static constexpr int kNoParent = -1;
+
+  std::vector<std::string> names;        // unique, not empty, UTF-8
+  std::vector<int> parents;              // index of the parent, kNoParent for the root
+  std::vector<std::uint8_t> end_sites;   // 1: a leaf that only marks where the last bone ends
+  std::vector<Transform> reference;      // joint_to_world in the reference pose
+
+  int joint_count() const { return static_cast<int>(names.size()); }
+  bool empty() const { return names.empty(); }
+
+  // Appends a joint; returns its index.
+  int add(std::string name, int parent, const Transform& joint_to_world, bool end_site = false);
+
+  // The index of a joint by its exact name, or -1.
+  int find(std::string_view name) const;
+
+  // joint_to_parent in the reference pose (joint_to_world for the root).
+  Transform reference_local(int joint) const;
+
+  // For each joint the indices of its children, in order.
+  std::vector<std::vector<int>> children() const;
+};
+
+// Whether everything that the comments above promise holds: equal lengths, unique non-empty names,
+// parents before children, one root, finite positions, unit orientations (within 1e-4). Codes:
+// skeleton-shape, skeleton-name, skeleton-parent, skeleton-value.
+Status check(const Skeleton& skeleton);
+
+// joint_to_world of all joints from joint_to_parent of all joints. Both spans have [joints]
+// elements; they may be the same.
+void local_to_world(std::span<const int> parents, std::span<const Transform> joint_to_parent,
+                    std::span<Transform> joint_to_world);
+
+// The inverse of local_to_world. The spans must not overlap.
+void world_to_local(std::span<const int> parents, std::span<const Transform> joint_to_world,
+                    std::span<Transform> joint_to_parent);
+
+// Largest extent (metres) of the reference pose over the three axes; 0 for one joint.
+double reference_extent(const Skeleton& skeleton);
+
+// What differs between two skeletons in names, order or parents, in words for people; empty if
+// nothing does. Reference poses are not compared.
+std::string difference_in_structure(const Skeleton& a, const Skeleton& b);
+
+}  // namespace krok

@@ -1,0 +1,106 @@
+#include "tools/common/console_progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+namespace krok {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class ConsoleProgress : public Progress {
+ public:
+  explicit ConsoleProgress(ProgressStyle style)
+      : style_(style), color_(std::getenv("NO_COLOR") == nullptr && isatty(STDERR_FILENO) == 1) {}
+
+  ~ConsoleProgress() override { ConsoleProgress::end(); }
+
+  void begin(std::string_view what, std::uint64_t total) override {
+    const std::lock_guard lock(mutex_);
+    what_ = what;
+    total_ = total;
+    done_ = 0;
+    tenth_ = 0;
+    active_ = true;
+    start_ = last_ = Clock::now();
+    if (style_ != ProgressStyle::bar) show();
+  }
+
+  void advance(std::uint64_t steps) override {
+    const std::lock_guard lock(mutex_);
+    done_ += steps;
+    if (!active_) return;
+    if (style_ == ProgressStyle::bar) {
+      const auto now = Clock::now();
+      if (now - start_ < std::chrono::milliseconds(500)) return;
+      if (now - last_ < std::chrono::milliseconds(100)) return;
+      last_ = now;
+      show();
+      return;
+    }
+    const std::uint64_t tenth = total_ > 0 ? done_ * 10 / total_ : 0;
+    if (tenth > tenth_) {
+      tenth_ = tenth;
+      show();
+    }
+  }
+
+  void end() override {
+    const std::lock_guard lock(mutex_);
+    if (active_ && drawn_) std::fputs("\r\033[K", stderr);
+    active_ = false;
+    drawn_ = false;
+  }
+
+ private:
+  void show() {
+    if (style_ == ProgressStyle::json) {
+      const nlohmann::ordered_json line = {
+          {"progress", {{"what", what_}, {"done", done_}, {"total", total_}}}};
+      fmt::print(stderr, "{}\n", line.dump());
+    } else if (style_ == ProgressStyle::plain) {
+      fmt::print(stderr, "{}: {}\n", what_, amount());
+    } else {
+      constexpr std::uint64_t kWidth = 30;
+      const std::uint64_t filled =
+          total_ > 0 ? std::min(kWidth, done_ * kWidth / total_) : std::uint64_t{0};
+      fmt::print(stderr, "\r\033[K{} {}{:#<{}}{}{:.<{}} {}", what_, color_ ? "\033[32m" : "", "",
+                 filled, color_ ? "\033[0m" : "", "", kWidth - filled, amount());
+      drawn_ = true;
+    }
+    std::fflush(stderr);
+  }
+
+  std::string amount() const {
+    if (total_ == 0) return fmt::format("{}", done_);
+    return fmt::format("{}/{} ({} %)", done_, total_, done_ * 100 / total_);
+  }
+
+  const ProgressStyle style_;
+  const bool color_;
+  std::mutex mutex_;
+  std::string what_;
+  std::uint64_t total_ = 0, done_ = 0, tenth_ = 0;
+  bool active_ = false, drawn_ = false;
+  Clock::time_point start_, last_;
+};
+
+}  // namespace
+
+std::unique_ptr<Progress> console_progress(ProgressStyle style) {
+  if (style == ProgressStyle::automatic) {
+    style = isatty(STDERR_FILENO) == 1 ? ProgressStyle::bar : ProgressStyle::none;
+  }
+  if (style == ProgressStyle::none) return std::make_unique<Progress>();
+  return std::make_unique<ConsoleProgress>(style);
+}
+
+}  // namespace krok

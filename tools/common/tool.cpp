@@ -1,0 +1,266 @@
+#include "tools/common/tool.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <span>
+
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "tools/common/console_progress.h"
+
+namespace krok {
+
+namespace {
+
+// Options that say where results go or how the tool talks, not what the result is.
+const char* const kSilentOptions[] = {"help",  "version", "output",   "quiet",     "verbose",
+                                      "json",  "jobs",    "progress", "no-clobber"};
+
+bool is_silent(const std::string& name) {
+  for (const char* silent : kSilentOptions) {
+    if (name == silent) return true;
+  }
+  return false;
+}
+
+// "--json" alone means standard output; CLI11 would take the next argument for its value.
+std::vector<std::string> arguments_of(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  bool options_end = false;
+  for (int i = 1; i < argc; ++i) {
+    std::string argument = argv[i];
+    if (argument == "--") options_end = true;
+    if (argument == "--json" && !options_end) argument = "--json=-";
+    arguments.push_back(std::move(argument));
+  }
+  return arguments;
+}
+
+std::string help_footer(const ToolSpec& spec) {
+  std::string text = "\nExamples:\n";
+  for (const auto& example : spec.examples) {
+    text += fmt::format("  {}\n      {}\n", example.command, example.does);
+  }
+  text += "\nExit codes:\n  0  done\n";
+  if (!spec.exit_no.empty()) text += fmt::format("  1  {}\n", spec.exit_no);
+  text += "  2  trouble: usage, input or output; nothing is left half-written\n";
+  return text;
+}
+
+class HelpFormatter : public CLI::Formatter {
+ public:
+  explicit HelpFormatter(std::string usage) : usage_(std::move(usage)) {
+    column_width(34);
+    label("REQUIRED", "(required)");
+  }
+  std::string make_usage(const CLI::App*, std::string) const override {
+    return fmt::format("Usage: {}\n", usage_);
+  }
+  std::string make_description(const CLI::App* app) const override {
+    return app->get_description() + "\n\n";
+  }
+  std::string make_footer(const CLI::App* app) const override { return app->get_footer(); }
+  // Only the value's name, and the default where it has one; types and "REQUIRED" would be noise.
+  std::string make_option_opts(const CLI::Option* option) const override {
+    std::string text;
+    if (option->get_type_size() != 0) {
+      if (!option->get_type_name().empty()) text += " " + option->get_type_name();
+      if (!option->get_default_str().empty()) text += " [" + option->get_default_str() + "]";
+    }
+    return text;
+  }
+
+ private:
+  std::string usage_;
+};
+
+Json given_options(const CLI::App& app) {
+  Json options = Json::object();
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0 || option->get_positional()) continue;
+    const std::string name = option->get_single_name();
+    if (is_silent(name)) continue;
+    if (option->get_type_size() == 0) {
+      options[name] = true;
+    } else if (option->count() == 1) {
+      options[name] = option->results().front();
+    } else {
+      options[name] = option->results();
+    }
+  }
+  return options;
+}
+
+int finish(ToolContext& context, const std::string& json_path, int exit_code) {
+  if (json_path.empty()) return exit_code;
+  const std::string text =
+      context.report.to_json().dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (const Status written = write_file(json_path, text); !written) {
+    fmt::print(stderr, "{}\n", to_text(written.error()));
+    return kExitTrouble;
+  }
+  return exit_code;
+}
+
+int fail(ToolContext& context, const std::string& json_path, const Error& error) {
+  fmt::print(stderr, "{}{}\n", error.where.file.empty() ? context.report.tool + ": " : "",
+             to_text(error));
+  context.report.issues.push_back(error);
+  return finish(context, json_path, kExitTrouble);
+}
+
+}  // namespace
+
+std::string version() { return KROK_VERSION; }
+
+void ToolContext::tell(Diagnostic diagnostic) {
+  const bool shown = !quiet && (verbose || diagnostic.severity != Severity::note);
+  if (shown) fmt::print(stderr, "{}\n", to_text(diagnostic));
+  report.issues.push_back(std::move(diagnostic));
+}
+
+void ToolContext::tell(const Diagnostics& diagnostics) {
+  for (const Diagnostic& diagnostic : diagnostics) tell(diagnostic);
+}
+
+void ToolContext::warn(std::string code, std::string message, std::string hint) {
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = std::move(code);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  tell(std::move(diagnostic));
+}
+
+void ToolContext::say(const std::string& line) {
+  if (!quiet && !report_on_standard_output) fmt::print(stderr, "{}\n", line);
+}
+
+void ToolContext::print(const std::string& text) {
+  if (report_on_standard_output) return;
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+Result<InputFile> ToolContext::open_input(const std::string& path) {
+  auto file = InputFile::open(path);
+  if (file) report.inputs.push_back({path, hex(xxh3(file->bytes()))});
+  return file;
+}
+
+void ToolContext::wrote(const std::string& path) { report.outputs.push_back(path); }
+
+Provenance ToolContext::provenance() const {
+  Provenance provenance;
+  provenance.tool = report.tool;
+  provenance.version = report.version;
+  for (const auto& input : report.inputs) {
+    provenance.sources.push_back({base_name(input.path), input.xxh3});
+  }
+  for (const auto& [name, value] : report.options.items()) {
+    provenance.options.emplace_back(name, value.is_string() ? value.get<std::string>()
+                                                            : value.dump());
+  }
+  for (const Diagnostic& issue : report.issues) {
+    if (issue.severity == Severity::warning) {
+      provenance.warnings.push_back(fmt::format("{} [{}]", issue.message, issue.code));
+    }
+  }
+  return provenance;
+}
+
+int run_tool(const ToolSpec& spec, int argc, char** argv) {
+  remove_temporaries_on_signals();
+
+  ToolContext context;
+  context.report.tool = spec.name;
+  context.report.version = version();
+  std::string json_path;
+  ProgressStyle style = ProgressStyle::automatic;
+
+  CLI::App app(spec.summary, spec.name);
+  app.footer(help_footer(spec));
+  app.formatter(std::make_shared<HelpFormatter>(fmt::format(
+      "{} [options] {}{}", spec.name, spec.inputs,
+      spec.has_output ? (spec.needs_output ? " -o OUTPUT" : " [-o OUTPUT]") : "")));
+  app.set_help_flag("-h,--help", "This text")->group("Common options");
+  app.set_version_flag("--version", fmt::format("{} {}", spec.name, version()), "The version")
+      ->group("Common options");
+  spec.declare(app);
+  if (spec.has_output) {
+    auto* option = app.add_option("-o,--output", context.output, "Where the result goes")
+                       ->type_name("OUTPUT")
+                       ->group("Common options");
+    if (spec.needs_output) option->required();
+    app.add_flag("--no-clobber", context.no_clobber, "Refuse to replace a file that exists")
+        ->group("Common options");
+  }
+  app.add_flag("-q,--quiet", context.quiet, "Errors only")->group("Common options");
+  app.add_flag("-v,--verbose", context.verbose, "Notes too")->group("Common options");
+  app.add_option("--json", json_path,
+                 "A report in JSON on standard output, or with --json=FILE in a file")
+      ->type_name("[=FILE]")
+      ->group("Common options");
+  app.add_option("--progress", style, "Progress: auto, bar, plain, json or none")
+      ->type_name("STYLE")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
+                                               {"bar", ProgressStyle::bar},
+                                               {"plain", ProgressStyle::plain},
+                                               {"json", ProgressStyle::json},
+                                               {"none", ProgressStyle::none}})
+                      .description(""))
+      ->default_str("auto")
+      ->group("Common options");
+  app.add_option("-j,--jobs", context.jobs, "Threads; 0 is one a core")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->default_str("0")
+      ->group("Common options");
+
+  try {
+    std::vector<std::string> arguments = arguments_of(argc, argv);
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(arguments);
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", app.help());
+    return kExitDone;
+  } catch (const CLI::CallForVersion&) {
+    fmt::print("{} {}\n", spec.name, version());
+    return kExitDone;
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "{}: error: {} [usage]\n  hint: see {} --help\n", spec.name, error.what(),
+               spec.name);
+    return kExitTrouble;
+  }
+
+  context.report_on_standard_output = json_path == "-";
+  context.report.options = given_options(app);
+  if (context.quiet && style == ProgressStyle::automatic) style = ProgressStyle::none;
+  const auto progress = console_progress(style);
+  context.progress = progress.get();
+
+  try {
+    const Result<int> done = spec.run(context);
+    progress->end();
+    if (!done) return fail(context, json_path, done.error());
+    if (std::fflush(stdout) != 0) {
+      return fail(context, json_path,
+                  Error("file-unwritable", "standard output cannot be written"));
+    }
+    return finish(context, json_path, *done);
+  } catch (const std::bad_alloc&) {
+    progress->end();
+    return fail(context, json_path, Error("out-of-memory", "there is not enough memory"));
+  } catch (const std::exception& error) {
+    progress->end();
+    return fail(context, json_path,
+                Error("internal", fmt::format("a bug in {}: {}", spec.name, error.what()),
+                      "please report it with the input that caused it"));
+  }
+}
+
+}  // namespace krok

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/file.h"
+#include "core/progress.h"
+#include "core/result.h"
+#include "scene/provenance.h"
+#include "tools/common/report.h"
+
+// The frame that all tools share: options, help, messages, exit codes, the report. A tool declares
+// its own options in a function and does its work in another; its main is one call of run_tool.
+
+namespace krok {
+
+inline constexpr int kExitDone = 0;     // done, or "the same"
+inline constexpr int kExitNo = 1;       // the answer is no: a difference, a failed check
+inline constexpr int kExitTrouble = 2;  // usage, input, output
+inline constexpr int kExitPartly = 3;   // a batch ended with some files failed
+
+// What a tool's work is given: the common options, and the places for what it has to say.
+class ToolContext {
+ public:
+  int jobs = 0;               // -j; 0 is one thread a core
+  bool no_clobber = false;    // --no-clobber
+  bool quiet = false;         // -q
+  bool verbose = false;       // -v
+  std::string output;         // -o, empty where none was given
+  Progress* progress = nullptr;
+  Report report;
+
+  // Prints a warning or note in the common form on standard error (notes with -v only, nothing with
+  // -q) and keeps it in the report.
+  void tell(Diagnostic diagnostic);
+  void tell(const Diagnostics& diagnostics);
+  void warn(std::string code, std::string message, std::string hint = {});
+
+  // A line for people about what was done, on standard error, not with -q or with --json to
+  // standard output.
+  void say(const std::string& line);
+
+  // Data for people or pipes on standard output; suppressed where the report goes there.
+  void print(const std::string& text);
+
+  // Opens an input and records its path and checksum in the report.
+  Result<InputFile> open_input(const std::string& path);
+
+  // The options for writing a file, and a note of it in the report; call before writing.
+  OutputFile::Options output_options() const { return {.no_clobber = no_clobber}; }
+  void wrote(const std::string& path);
+
+  // Provenance of a result: this tool, its version, the inputs opened so far by base name, the
+  // options given that change the result, the warnings told so far.
+  Provenance provenance() const;
+
+  bool report_on_standard_output = false;
+};
+
+struct ToolSpec {
+  struct Example {
+    std::string command;
+    std::string does;
+  };
+  std::string name;     // "krok-import"
+  std::string summary;  // a sentence without a full stop
+  std::string inputs;   // for the usage line: "IN.bvh"
+  std::vector<Example> examples;  // at least two
+  std::string exit_no;  // what exit code 1 means here; empty where it does not happen
+  bool has_output = true;         // takes -o
+  bool needs_output = true;       // -o must be given
+
+  // Adds the tool's own options and positionals.
+  std::function<void(CLI::App&)> declare;
+  // Does the work; the value is an exit code, an Error becomes a message and kExitTrouble.
+  std::function<Result<int>(ToolContext&)> run;
+};
+
+// Parses, runs, reports. Catches everything that is thrown (memory exhausted, a bug) and turns it
+// into a message and kExitTrouble.
+int run_tool(const ToolSpec& spec, int argc, char** argv);
+
+// The version of the project, "0.1.0".
+std::string version();
+
+}  // namespace krok
