@@ -1,0 +1,101 @@
+"""Holds the house in order: who may include whom, what stands at the top, what public headers show.
+
+Usage: layers.py SOURCE_FOLDER. Prints what is wrong, exit code 1 if anything is.
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+# folder -> folders whose headers it may include, besides its own. Transitive use is spelt out,
+# so that this table is the whole truth.
+BASE = {"lib/core", "lib/math", "lib/scene"}
+ALLOWED = {
+    "lib/core": set(),
+    "lib/math": {"lib/core"},
+    "lib/scene": {"lib/core", "lib/math"},
+    "lib/motion": BASE,
+    "lib/ik": BASE,
+    "lib/skin": BASE,
+    "lib/body": BASE,
+    "lib/compare": BASE,
+    "formats/container": BASE,
+    "formats/bvh": BASE,
+    "formats/anim": BASE | {"formats/container"},
+    "formats/model": BASE | {"formats/container"},
+    "formats/cam": BASE | {"formats/container"},
+    "formats/gltf": BASE,
+    "formats/csv": BASE,
+    "formats/registry": BASE,
+}
+TOP = {
+    "CMakeLists.txt", "CMakePresets.json", "Makefile", "README.md", "LICENSE", "CHANGELOG.md",
+    "tools", "lib", "formats", "tests", "samples",
+}
+# What a header of the library may show its user. Everything else stays in .cpp files.
+PUBLIC_THIRD_PARTY = ("Eigen/",)
+THIRD_PARTY = re.compile(
+    r"^(ceres|bullet|btBullet|tiny_gltf|OpenEXR|Imf|Imath|assimp|hwy|fmt|CLI|nlohmann|fast_float|"
+    r"xxhash)")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+
+
+def room_of(include):
+    """The folder of an include as the project writes them: "scene/clip.h", "formats/bvh/x.h"."""
+    parts = include.split("/")
+    if parts[0] in ("formats", "tools", "samples", "tests"):
+        return "/".join(parts[:2])
+    return "lib/" + parts[0] if len(parts) > 1 else None
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    tracked = subprocess.run(
+        ["git", "-C", str(root), "ls-files", "--cached", "--others", "--exclude-standard"],
+        capture_output=True, text=True, check=True).stdout.split("\n")
+    tracked = [name for name in tracked if name and (root / name).exists()]
+    faults = []
+
+    for name in sorted({name.split("/")[0] for name in tracked}):
+        if name not in TOP and not name.startswith("."):
+            faults.append(f"{name}: does not belong at the top level")
+
+    checked = 0
+    for name in tracked:
+        path = root / name
+        if path.suffix not in (".h", ".cpp") or not name.startswith(("lib/", "formats/", "tools/")):
+            continue
+        room = "/".join(name.split("/")[:2])
+        text = path.read_text(encoding="utf-8")
+        if path.suffix == ".h" and not text.startswith("#pragma once\n"):
+            faults.append(f"{name}: does not begin with #pragma once")
+        for kind, include in INCLUDE.findall(text):
+            checked += 1
+            if kind == "<":
+                in_library = name.startswith(("lib/", "formats/"))
+                if (path.suffix == ".h" and in_library and THIRD_PARTY.match(include)
+                        and not include.startswith(PUBLIC_THIRD_PARTY)
+                        and "internal" not in path.stem):
+                    faults.append(f"{name}: a public header shows <{include}>")
+                continue
+            target = room_of(include)
+            if target is None or target == room:
+                continue
+            if name.startswith("tools/"):
+                if target.startswith("tools/") and target != "tools/common":
+                    faults.append(f"{name}: includes {include}; a tool uses no other tool")
+                continue
+            if room not in ALLOWED:
+                faults.append(f"{name}: folder {room} is not in the table of layers.py")
+            elif target not in ALLOWED[room]:
+                faults.append(f"{name}: {room} may not include {include}")
+
+    for fault in faults:
+        print(fault)
+    print(f"{checked} includes checked, {len(faults)} faults")
+    return 1 if faults or checked < 100 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Installs the build into a fresh folder, builds the program of the folder `program` against it and
+# runs it. Usage: install_and_build.sh BUILD_FOLDER PROGRAM_FOLDER SCRATCH_FOLDER
+set -euo pipefail
+build=$1 program=$2 scratch=$3
+rm -rf "$scratch"
+cmake --install "$build" --prefix "$scratch/prefix" > /dev/null
+cmake -S "$program" -B "$scratch/build" -G Ninja -DCMAKE_PREFIX_PATH="$scratch/prefix" > /dev/null
+cmake --build "$scratch/build"
+"$scratch/build/consumer"
+for tool in "$scratch"/prefix/bin/krok*; do
+  "$tool" --version
+done
