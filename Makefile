@@ -8,7 +8,7 @@ CMAKE_FLAGS ?=
 
 # Debian packages: to build, and on top of that to test.
 BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev libfast-float-dev \
-  nlohmann-json3-dev libxxhash-dev libhwy-dev libtinygltf-dev libcli11-dev
+  nlohmann-json3-dev libxxhash-dev libhwy-dev libtinygltf-dev libcli11-dev help2man
 TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3
 LINT_PACKAGES := clang-tidy
 

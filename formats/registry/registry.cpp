@@ -1,0 +1,143 @@
+#include "formats/registry/registry.h"
+
+#include <algorithm>
+
+#include "core/file.h"
+
+namespace krok::registry {
+
+namespace {
+
+std::string_view text_of(std::span<const std::byte> content) {
+  return {reinterpret_cast<const char*>(content.data()), content.size()};
+}
+
+std::string_view view(const Magic& magic) { return {magic.data(), magic.size()}; }
+
+// The text without a byte-order mark and leading white space.
+std::string_view first_word(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  return start == std::string_view::npos ? std::string_view() : text.substr(start);
+}
+
+bool starts_with_word(std::string_view text, std::string_view upper_case_word) {
+  if (text.size() < upper_case_word.size()) return false;
+  for (std::size_t i = 0; i < upper_case_word.size(); ++i) {
+    const char letter = text[i];
+    const char upper = letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 32) : letter;
+    if (upper != upper_case_word[i]) return false;
+  }
+  return true;
+}
+
+bool is_gltf_json(std::string_view text) {
+  if (!first_word(text).starts_with('{')) return false;
+  constexpr std::size_t kWindow = std::size_t{64} << 10;
+  const std::string_view head = text.substr(0, kWindow);
+  const std::string_view tail = text.substr(text.size() - std::min(text.size(), kWindow));
+  return head.find("\"asset\"") != std::string_view::npos ||
+         tail.find("\"asset\"") != std::string_view::npos;
+}
+
+bool is_text(std::string_view text) {
+  const std::string_view head = text.substr(0, 512);
+  return std::none_of(head.begin(), head.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\r' && c != '\n' && c != '\f';
+  });
+}
+
+}  // namespace
+
+std::string_view kind_name(Kind kind) {
+  switch (kind) {
+    case Kind::anim:
+      return "anim";
+    case Kind::model:
+      return "model";
+    case Kind::cam:
+      return "cam";
+    case Kind::bvh:
+      return "bvh";
+    case Kind::glb:
+      return "glb";
+    case Kind::gltf:
+      return "gltf";
+    case Kind::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+Kind kind_of_content(std::span<const std::byte> content) {
+  const std::string_view text = text_of(content);
+  if (text.starts_with(view(kAnimMagic))) return Kind::anim;
+  if (text.starts_with(view(kModelMagic))) return Kind::model;
+  if (text.starts_with(view(kCamMagic))) return Kind::cam;
+  if (text.starts_with("glTF")) return Kind::glb;
+  if (starts_with_word(first_word(text), "HIERARCHY")) return Kind::bvh;
+  if (is_gltf_json(text)) return Kind::gltf;
+  return Kind::unknown;
+}
+
+Kind kind_of_name(const std::string& path) {
+  const std::string ending = extension(path);
+  for (const Kind kind :
+       {Kind::anim, Kind::model, Kind::cam, Kind::bvh, Kind::glb, Kind::gltf}) {
+    if (ending.size() > 1 && std::string_view(ending).substr(1) == kind_name(kind)) return kind;
+  }
+  return Kind::unknown;
+}
+
+Kind identify(const std::string& path, std::span<const std::byte> content) {
+  const Kind kind = kind_of_content(content);
+  return kind != Kind::unknown ? kind : kind_of_name(path);
+}
+
+std::string_view describe_content(std::span<const std::byte> content) {
+  if (content.empty()) return "an empty file";
+  switch (kind_of_content(content)) {
+    case Kind::anim:
+      return "a Krok motion (.anim)";
+    case Kind::model:
+      return "a Krok model (.model)";
+    case Kind::cam:
+      return "a Krok camera (.cam)";
+    case Kind::bvh:
+      return "a BVH text file";
+    case Kind::glb:
+      return "a binary glTF file (.glb)";
+    case Kind::gltf:
+      return "a glTF file (.gltf)";
+    case Kind::unknown:
+      break;
+  }
+  const std::string_view text = text_of(content);
+  if (text.starts_with("Kaydara FBX Binary") || first_word(text).starts_with("; FBX")) {
+    return "an FBX file";
+  }
+  if (text.starts_with("\x89PNG")) return "a PNG picture";
+  if (text.starts_with("PK\x03\x04")) return "a ZIP archive";
+  if (text.starts_with("\x1F\x8B")) return "a gzip archive";
+  if (text.starts_with("\x76\x2F\x31\x01")) return "an OpenEXR picture";
+  if (first_word(text).starts_with('<')) return "an XML text file";
+  return is_text(text) ? "a text file of unknown kind" : "a binary file of unknown kind";
+}
+
+std::string advice(Kind found, Kind wanted) {
+  if (found == wanted) return {};
+  switch (found) {
+    case Kind::bvh:
+      return "import it with krok-import";
+    case Kind::anim:
+      return "a motion goes where a .anim file is expected";
+    case Kind::model:
+      return "a model goes where a .model file is expected";
+    case Kind::cam:
+      return "a camera goes where a .cam file is expected";
+    default:
+      return {};
+  }
+}
+
+}  // namespace krok::registry

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+// Which of the formats a file is in, from its first bytes and its name. Opens and parses nothing.
+
+namespace krok::registry {
+
+enum class Kind : unsigned char { unknown, anim, model, cam, bvh, glb, gltf };
+
+// The first bytes of Krok's own binary formats; what follows them is in formats/container.
+using Magic = std::array<char, 8>;
+inline constexpr Magic kAnimMagic = {'K', 'R', 'O', 'K', 'A', 'N', 'I', 'M'};
+inline constexpr Magic kModelMagic = {'K', 'R', 'O', 'K', 'M', 'O', 'D', 'L'};
+inline constexpr Magic kCamMagic = {'K', 'R', 'O', 'K', 'C', 'A', 'M', '1'};
+
+// "anim", "model", "cam", "bvh", "glb", "gltf" or "unknown".
+std::string_view kind_name(Kind kind);
+
+// What the bytes show, whatever the file is called. glTF's JSON is recognised by an "asset" key in
+// the first or last 64 KiB of a text that begins with a brace.
+Kind kind_of_content(std::span<const std::byte> content);
+
+// What the name promises, by its extension in any case.
+Kind kind_of_name(const std::string& path);
+
+// The content's kind, or the name's where the content shows none.
+Kind identify(const std::string& path, std::span<const std::byte> content);
+
+// What a file seems to be, for a message: "a BVH text file", "an empty file", "a PNG picture",
+// "a file of unknown kind". Knows some kinds that Krok does not read.
+std::string_view describe_content(std::span<const std::byte> content);
+
+// What to do with a file of this kind that was given where a file of kind `wanted` is expected:
+// "import it with krok-import". Empty where nothing is known.
+std::string advice(Kind found, Kind wanted);
+
+}  // namespace krok::registry
