@@ -31,9 +31,9 @@ constexpr std::array<Step, kSide * kSide> make_steps() {
 }
 constexpr auto kSteps = make_steps();
 
-// Good enough to stop: about what rounding the four components to floats costs anyway. Squared
-// distance of quaternions; the angle is twice the distance.
-constexpr double kGoodEnough = 3e-8 * 3e-8;
+// Good enough to stop searching: 2e-7 rad, a few times what rounding four components costs anyway.
+// Squared distance of quaternions; the angle is twice the distance.
+constexpr double kGoodEnough = 1e-7 * 1e-7;
 
 double rebuilt_w(double x, double y, double z) {
   const double square = 1 - x * x - y * y - z * z;
@@ -45,7 +45,9 @@ double spacing(float value) {
   return static_cast<double>(std::nextafter(size, 2.0f)) - static_cast<double>(size);
 }
 
-float rounded(double value) { return static_cast<float>(value) + 0.0f; }  // no -0
+float rounded(double value) {
+  return static_cast<float>(value) + 0.0f;
+}  // no -0
 
 // `target` is a unit quaternion x, y, z, w with w <= 0.
 std::array<float, 3> search(const Vec4& target) {
@@ -53,9 +55,14 @@ std::array<float, 3> search(const Vec4& target) {
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return std::abs(target[a]) > std::abs(target[b]); });
   const double a = target[order[0]], b = target[order[1]], c = target[order[2]], w = target[3];
-  const float nearest_a = rounded(a), nearest_b = rounded(b);
-  const double spacing_a = spacing(nearest_a), spacing_b = spacing(nearest_b);
-  const double rest = std::sqrt(c * c + w * w);
+  const float nearest_a = rounded(a);
+  const double spacing_a = spacing(nearest_a);
+  const double rest_of_a = std::sqrt(b * b + c * c + w * w);
+  const double rest_of_b = std::sqrt(c * c + w * w);
+  // By how much the other components grow to make up for what rounding took from one.
+  const auto scale = [](double square_left, double rest) {
+    return square_left > 0 && rest > 0 ? std::sqrt(square_left) / rest : 0.0;
+  };
 
   std::array<float, 3> best{};
   double best_distance = std::numeric_limits<double>::infinity();
@@ -71,15 +78,17 @@ std::array<float, 3> search(const Vec4& target) {
     best[static_cast<std::size_t>(order[2])] = try_c;
   };
 
-  consider(nearest_a, nearest_b, rounded(c));
+  consider(nearest_a, rounded(b), rounded(c));
   for (const Step& step : kSteps) {
     if (best_distance <= kGoodEnough) break;
+    // What is given to a leaves a sphere for b, c and w, then b a circle for c and w; the closest
+    // points on them.
     const float try_a = rounded(double{nearest_a} + step.first * spacing_a);
-    const float try_b = rounded(double{nearest_b} + step.second * spacing_b);
-    // What a and b leave for c and w: the closest point to (c, w) on that circle.
-    const double left = 1 - double{try_a} * double{try_a} - double{try_b} * double{try_b};
-    const double scale = left > 0 && rest > 0 ? std::sqrt(left) / rest : 0.0;
-    consider(try_a, try_b, rounded(c * scale));
+    const double left_by_a = 1 - double{try_a} * double{try_a};
+    const float nearest_b = rounded(b * scale(left_by_a, rest_of_a));
+    const float try_b = rounded(double{nearest_b} + step.second * spacing(nearest_b));
+    const double left_by_b = left_by_a - double{try_b} * double{try_b};
+    consider(try_a, try_b, rounded(c * scale(left_by_b, rest_of_b)));
   }
   return best;
 }

@@ -5,8 +5,8 @@
 #include "math/types.h"
 
 // Orientations as Krok's binary formats store them. Three floats x, y, z are enough for a unit
-// quaternion, because q and -q are the same rotation: the one with w <= 0 is stored, and w comes back
-// as -sqrt(1 - x*x - y*y - z*z), or 0 where rounding has made that negative.
+// quaternion, because q and -q are the same rotation: the one with w <= 0 is stored, and w comes
+// back as -sqrt(1 - x*x - y*y - z*z), or 0 where rounding has made that negative.
 
 namespace krok {
 

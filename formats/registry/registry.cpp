@@ -12,7 +12,9 @@ std::string_view text_of(std::span<const std::byte> content) {
   return {reinterpret_cast<const char*>(content.data()), content.size()};
 }
 
-std::string_view view(const Magic& magic) { return {magic.data(), magic.size()}; }
+std::string_view view(const Magic& magic) {
+  return {magic.data(), magic.size()};
+}
 
 // The text without a byte-order mark and leading white space.
 std::string_view first_word(std::string_view text) {
@@ -82,8 +84,7 @@ Kind kind_of_content(std::span<const std::byte> content) {
 
 Kind kind_of_name(const std::string& path) {
   const std::string ending = extension(path);
-  for (const Kind kind :
-       {Kind::anim, Kind::model, Kind::cam, Kind::bvh, Kind::glb, Kind::gltf}) {
+  for (const Kind kind : {Kind::anim, Kind::model, Kind::cam, Kind::bvh, Kind::glb, Kind::gltf}) {
     if (ending.size() > 1 && std::string_view(ending).substr(1) == kind_name(kind)) return kind;
   }
   return Kind::unknown;
@@ -126,18 +127,11 @@ std::string_view describe_content(std::span<const std::byte> content) {
 
 std::string advice(Kind found, Kind wanted) {
   if (found == wanted) return {};
-  switch (found) {
-    case Kind::bvh:
-      return "import it with krok-import";
-    case Kind::anim:
-      return "a motion goes where a .anim file is expected";
-    case Kind::model:
-      return "a model goes where a .model file is expected";
-    case Kind::cam:
-      return "a camera goes where a .cam file is expected";
-    default:
-      return {};
-  }
+  if (found == Kind::bvh) return "import it with krok-import";
+  if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";
+  const bool own = found == Kind::anim || found == Kind::model || found == Kind::cam;
+  if (own) return "perhaps two arguments are in the wrong order";
+  return {};
 }
 
 }  // namespace krok::registry

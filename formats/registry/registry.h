@@ -16,7 +16,7 @@ enum class Kind : unsigned char { unknown, anim, model, cam, bvh, glb, gltf };
 using Magic = std::array<char, 8>;
 inline constexpr Magic kAnimMagic = {'K', 'R', 'O', 'K', 'A', 'N', 'I', 'M'};
 inline constexpr Magic kModelMagic = {'K', 'R', 'O', 'K', 'M', 'O', 'D', 'L'};
-inline constexpr Magic kCamMagic = {'K', 'R', 'O', 'K', 'C', 'A', 'M', '1'};
+inline constexpr Magic kCamMagic = {'K', 'R', 'O', 'K', 'C', 'A', 'M', 'R'};
 
 // "anim", "model", "cam", "bvh", "glb", "gltf" or "unknown".
 std::string_view kind_name(Kind kind);

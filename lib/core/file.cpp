@@ -271,6 +271,8 @@ Status OutputFile::write(std::span<const std::byte> bytes) {
   return {};
 }
 
+bool OutputFile::can_overwrite() const { return !state_->temporary.empty(); }
+
 Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (!state_->failure) return state_->failure;
   if (state_->temporary.empty()) {

@@ -61,6 +61,9 @@ class OutputFile {
   Status write(std::span<const std::byte> bytes);
   Status write(std::string_view text) { return write(std::as_bytes(std::span(text))); }
 
+  // Whether overwrite() works here: not for standard output, devices or pipes.
+  bool can_overwrite() const;
+
   // Overwrites bytes already written, to fill in a header last. Not for standard output, devices
   // or pipes (code file-unwritable).
   Status overwrite(std::uint64_t offset, std::span<const std::byte> bytes);

@@ -22,8 +22,9 @@ Status check(const CameraTrack& camera) {
       return Error("camera-value", fmt::format("frame {} is not finite or not a rotation", i));
     }
     if (!(view > 0) || !(view < static_cast<float>(kPi))) {
-      return Error("camera-value",
-                   fmt::format("the field of view in frame {} is {} rad, expected 0 to pi", i, view));
+      return Error(
+          "camera-value",
+          fmt::format("the field of view in frame {} is {} rad, expected 0 to pi", i, view));
     }
   }
   return {};

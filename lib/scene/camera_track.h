@@ -12,9 +12,9 @@ namespace krok {
 // Arrays have [frames] elements; frame i is at time i / rate.
 struct CameraTrack {
   double rate = 30.0;
-  std::vector<Vec3f> positions;        // metres
-  std::vector<Quatf> orientations;     // camera_to_world, unit
-  std::vector<float> fields_of_view;   // vertical, radians, in (0, pi)
+  std::vector<Vec3f> positions;       // metres
+  std::vector<Quatf> orientations;    // camera_to_world, unit
+  std::vector<float> fields_of_view;  // vertical, radians, in (0, pi)
   Provenance provenance;
 
   int frame_count() const { return static_cast<int>(positions.size()); }

@@ -58,13 +58,14 @@ Status check(const Clip& clip) {
   if (Status skeleton = check(clip.skeleton); !skeleton) return skeleton;
   if (clip.positions.size() != clip.orientations.size() ||
       clip.positions.size() % clip.skeleton.names.size() != 0) {
-    return Error("clip-shape",
-                 fmt::format("{} positions and {} orientations do not make whole frames of {} joints",
-                             clip.positions.size(), clip.orientations.size(), clip.joint_count()));
+    return Error(
+        "clip-shape",
+        fmt::format("{} positions and {} orientations do not make whole frames of {} joints",
+                    clip.positions.size(), clip.orientations.size(), clip.joint_count()));
   }
   if (!std::isfinite(clip.rate) || clip.rate <= 0) {
-    return Error("clip-rate", fmt::format("the frame rate is {}, expected a positive number",
-                                          clip.rate));
+    return Error("clip-rate",
+                 fmt::format("the frame rate is {}, expected a positive number", clip.rate));
   }
   for (std::size_t i = 0; i < clip.positions.size(); ++i) {
     if (clip.positions[i].allFinite() && clip.orientations[i].coeffs().allFinite() &&

@@ -45,8 +45,8 @@ struct Clip {
 };
 
 // Whether what the comments above promise holds: check(skeleton), equal lengths, a whole number of
-// frames, a positive finite rate, finite values, unit orientations (within 1e-3). A clip may have no
-// frames. Codes: those of check(Skeleton), clip-shape, clip-rate, clip-value.
+// frames, a positive finite rate, finite values, unit orientations (within 1e-3). A clip may have
+// no frames. Codes: those of check(Skeleton), clip-shape, clip-rate, clip-value.
 Status check(const Clip& clip);
 
 }  // namespace krok

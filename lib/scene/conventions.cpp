@@ -49,9 +49,12 @@ Vec3 direction_vector(Direction direction) {
 
 std::string_view confidence_name(Confidence confidence) {
   switch (confidence) {
-    case Confidence::guess: return "guess";
-    case Confidence::likely: return "likely";
-    case Confidence::certain: return "certain";
+    case Confidence::guess:
+      return "guess";
+    case Confidence::likely:
+      return "likely";
+    case Confidence::certain:
+      return "certain";
   }
   return "guess";
 }
@@ -66,10 +69,6 @@ Result<Unit> parse_unit(std::string_view text) {
   if (length.ok() && has_unit && *length > 0) return Unit{*length, std::string(text)};
   return Error("unit-unknown", fmt::format("'{}' is not a unit of length", text),
                "write m, dm, cm, mm, in, ft, cmu, or a length such as 5.64cm");
-}
-
-Conventions detect_conventions(const Skeleton&, const RoleMap&, std::span<const Vec3>) {
-  return {};
 }
 
 Result<Quat> rotation_to_krok(Direction up, Direction forward) {

@@ -32,14 +32,22 @@ struct Unit {
   std::string name = "m";
 };
 
-// m, dm, cm, mm, in, ft, and "cmu" (the unit of the CMU collection's Acclaim files and most BVH made
-// from them, 0.0254 / 0.45 m); or a length such as 5.64cm. An Error (code unit-unknown) otherwise.
+// m, dm, cm, mm, in, ft, and "cmu" (the unit of the CMU collection's Acclaim files and most BVH
+// made from them, 0.0254 / 0.45 m); or a length such as 5.64cm. An Error (code unit-unknown)
+// otherwise.
 Result<Unit> parse_unit(std::string_view text);
 
 struct Conventions {
   Unit unit;
   Direction up = Direction::plus_y;
   Direction forward = Direction::plus_z;
+  // The axes of the reference pose where its bones show that they are others than the motion's (a
+  // figure stored y-up whose root turns it upright in a z-up world in every frame); otherwise equal
+  // to `up` and `forward`. The reference pose is brought to Krok's frame by
+  // rotation_to_krok(reference_up, reference_forward), so that it stands upright and faces +Z too;
+  // a reader whose user named the axes sets them alike.
+  Direction reference_up = Direction::plus_y;
+  Direction reference_forward = Direction::plus_z;
   Confidence unit_confidence = Confidence::guess;
   Confidence up_confidence = Confidence::guess;
   Confidence forward_confidence = Confidence::guess;
@@ -49,7 +57,15 @@ struct Conventions {
 
 // Works the conventions out from the skeleton as the file has it (reference pose in the file's unit
 // and axes) and up to a few hundred sample frames of joint_to_world positions, shape
-// [samples x joints], possibly empty.
+// [samples x joints], possibly empty. Never fails: values that are not finite are passed over, and
+// what the figure does not show is a default with confidence `guess`.
+//
+// Up: where the head is above the feet in most samples, or in the reference pose for want of
+// samples; a motion that is upside down does not turn over an upright reference pose. Forward: to
+// the left of the right side (left x up) in the reference pose, held against the toes; in the first
+// sample where the reference pose does not stand as the motion does. Unit: the one that makes the
+// figure, from the lengths of its legs and spine, most like an adult of 1.5 to 2.0 m.
+// For figures that are not humanoid +Y up, +Z forward and a unit that gives a size below 10 m.
 Conventions detect_conventions(const Skeleton& skeleton, const RoleMap& roles,
                                std::span<const Vec3> sample_positions);
 

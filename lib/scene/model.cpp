@@ -18,9 +18,9 @@ Status check_influences(const Model& model) {
         return Error("model-weight", fmt::format("vertex {} has a weight of {}", v, weight));
       }
       if (model.influence_joints[k] >= model.skeleton.names.size()) {
-        return Error("model-index", fmt::format("vertex {} is bound to joint {}, of {}", v,
-                                                model.influence_joints[k],
-                                                model.skeleton.joint_count()));
+        return Error("model-index",
+                     fmt::format("vertex {} is bound to joint {}, of {}", v,
+                                 model.influence_joints[k], model.skeleton.joint_count()));
       }
       sum += static_cast<double>(weight);
     }
@@ -44,15 +44,14 @@ Status check_triangles(const Model& model) {
   std::uint64_t next = 0;
   for (const Model::Part& part : model.parts) {
     if (part.first_triangle != next) {
-      return Error("model-shape",
-                   fmt::format("part {} begins at triangle {}, expected {}", part.name,
-                               part.first_triangle, next));
+      return Error("model-shape", fmt::format("part {} begins at triangle {}, expected {}",
+                                              part.name, part.first_triangle, next));
     }
     next += part.triangle_count;
   }
   if (next != model.triangles.size()) {
-    return Error("model-shape", fmt::format("the parts cover {} triangles of {}", next,
-                                            model.triangles.size()));
+    return Error("model-shape",
+                 fmt::format("the parts cover {} triangles of {}", next, model.triangles.size()));
   }
   return {};
 }
@@ -73,7 +72,8 @@ Status check(const Model& model) {
   const auto fits = [count](std::size_t size) { return size == 0 || size == count; };
   if (!fits(model.normals.size()) || !fits(model.texture_coordinates.size()) ||
       !fits(model.tangents.size())) {
-    return Error("model-shape", "normals, texture coordinates or tangents do not match the vertices");
+    return Error("model-shape",
+                 "normals, texture coordinates or tangents do not match the vertices");
   }
   if (model.influences_per_vertex < 1 || model.influences_per_vertex > Model::kMaxInfluences) {
     return Error("model-shape", fmt::format("{} influences a vertex, expected 1 to {}",

@@ -1,24 +1,403 @@
 #include "scene/roles.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "scene/body_shape.h"
+#include "scene/joint_names.h"
 
 namespace krok {
 
 namespace {
 
-constexpr std::array<std::string_view, 27> kRoleNames = {
-    "none",           "root",           "hips",            "spine",
-    "chest",          "neck",           "head",            "left_collar",
-    "left_upper_arm", "left_lower_arm", "left_hand",       "left_fingers",
-    "right_collar",   "right_upper_arm", "right_lower_arm", "right_hand",
-    "right_fingers",  "left_upper_leg", "left_lower_leg",  "left_foot",
-    "left_toes",      "right_upper_leg", "right_lower_leg", "right_foot",
-    "right_toes",     "end",            "helper"};
+constexpr std::array<std::string_view, 27> kRoleNames = {"none",
+                                                         "root",
+                                                         "hips",
+                                                         "spine",
+                                                         "chest",
+                                                         "neck",
+                                                         "head",
+                                                         "left_collar",
+                                                         "left_upper_arm",
+                                                         "left_lower_arm",
+                                                         "left_hand",
+                                                         "left_fingers",
+                                                         "right_collar",
+                                                         "right_upper_arm",
+                                                         "right_lower_arm",
+                                                         "right_hand",
+                                                         "right_fingers",
+                                                         "left_upper_leg",
+                                                         "left_lower_leg",
+                                                         "left_foot",
+                                                         "left_toes",
+                                                         "right_upper_leg",
+                                                         "right_lower_leg",
+                                                         "right_foot",
+                                                         "right_toes",
+                                                         "end",
+                                                         "helper"};
 static_assert(kRoleNames.size() == static_cast<std::size_t>(Role::helper) + 1);
+
+struct ArmRoles {
+  Role collar, upper, lower, hand, fingers;
+};
+struct LegRoles {
+  Role upper, lower, foot, toes;
+};
+constexpr ArmRoles kLeftArm = {Role::left_collar, Role::left_upper_arm, Role::left_lower_arm,
+                               Role::left_hand, Role::left_fingers};
+constexpr ArmRoles kRightArm = {Role::right_collar, Role::right_upper_arm, Role::right_lower_arm,
+                                Role::right_hand, Role::right_fingers};
+constexpr LegRoles kLeftLeg = {Role::left_upper_leg, Role::left_lower_leg, Role::left_foot,
+                               Role::left_toes};
+constexpr LegRoles kRightLeg = {Role::right_upper_leg, Role::right_lower_leg, Role::right_foot,
+                                Role::right_toes};
+
+// Holds the names against the tree: finds the ends of the limbs by name, takes what lies between
+// them and the trunk as the limb, and the trunk as what the limbs have in common.
+class RoleFinder {
+ public:
+  RoleFinder(const Skeleton& skeleton, std::vector<JointName> names)
+      : skeleton_(skeleton), names_(std::move(names)), children_(skeleton.children()) {
+    const std::size_t count = skeleton.names.size();
+    map_.roles.assign(count, Role::none);
+    depths_.assign(count, 0);
+    counts_below_.assign(count, 1);
+    for (std::size_t j = 1; j < count; ++j) depths_[j] = depths_[at(skeleton.parents[j])] + 1;
+    for (std::size_t j = count; j-- > 1;) {
+      counts_below_[at(skeleton.parents[j])] += counts_below_[j];
+    }
+  }
+
+  RoleMap find() {
+    find_tips();
+    mark_trunk();
+    for (const Side side : {Side::left, Side::right}) {
+      assign_arm(side);
+      assign_leg(side);
+    }
+    if (limbs_ > 0) {
+      assign_trunk();
+      assign_rest();
+    } else {
+      std::fill(map_.roles.begin(), map_.roles.end(), Role::none);
+    }
+    for (std::size_t j = 0; j < map_.roles.size(); ++j) {
+      if (skeleton_.end_sites[j] != 0) map_.roles[j] = Role::end;
+    }
+    map_.humanoid = is_humanoid(map_);
+    return std::move(map_);
+  }
+
+ private:
+  static std::size_t at(int joint) { return static_cast<std::size_t>(joint); }
+  int parent(int joint) const { return skeleton_.parents[at(joint)]; }
+  Part part(int joint) const { return names_[at(joint)].part; }
+  Role& role(int joint) { return map_.roles[at(joint)]; }
+  bool is_end(int joint) const { return skeleton_.end_sites[at(joint)] != 0; }
+  bool is_helper(int joint) const { return part(joint) == Part::helper; }
+  bool placed(int joint) const { return joint >= 0 && map_.roles[at(joint)] != Role::none; }
+
+  bool descends(int joint, int ancestor) const {
+    while (joint >= 0 && depths_[at(joint)] > depths_[at(ancestor)]) joint = parent(joint);
+    return joint == ancestor;
+  }
+
+  // The joint furthest from the root that both descend from (themselves included); -1 for -1.
+  int common_ancestor(int a, int b) const {
+    if (a < 0 || b < 0) return std::max(a, b);
+    while (a != b) {
+      if (depths_[at(a)] >= depths_[at(b)]) {
+        a = parent(a);
+      } else {
+        b = parent(b);
+      }
+    }
+    return a;
+  }
+
+  double distance(int a, int b) const {
+    return (skeleton_.reference[at(a)].position - skeleton_.reference[at(b)].position).norm();
+  }
+
+  // The joint nearest the root for which `wanted` holds; of equally near ones the first.
+  template <typename Condition>
+  int nearest(const Condition& wanted) const {
+    int best = -1;
+    for (int j = 0; j < skeleton_.joint_count(); ++j) {
+      if (!is_end(j) && wanted(j) && (best < 0 || depths_[at(j)] < depths_[at(best)])) best = j;
+    }
+    return best;
+  }
+
+  // Whether a joint above `joint` on the same side is named as one of `parts`.
+  bool hangs_under(int joint, Side side, std::span<const Part> parts) const {
+    for (int j = parent(joint); j >= 0; j = parent(j)) {
+      if (names_[at(j)].side == side &&
+          std::find(parts.begin(), parts.end(), part(j)) != parts.end()) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // The joint that ends a limb: by name under a joint of that limb, by name alone, or the next
+  // joint below the limb's last named one.
+  int find_tip(Side side, Part tip, std::span<const Part> limb) const {
+    const auto named = [&](int j) { return part(j) == tip && names_[at(j)].side == side; };
+    int found = nearest([&](int j) { return named(j) && hangs_under(j, side, limb); });
+    if (found >= 0) return found;
+    const int last =
+        nearest([&](int j) { return part(j) == limb.back() && names_[at(j)].side == side; });
+    if (last >= 0) return main_child(last);
+    return nearest(named);
+  }
+
+  // The child that leads on: no helper, no end site, the most joints below. -1 if there is none.
+  int main_child(int joint) const {
+    int best = -1;
+    for (const int child : children_[at(joint)]) {
+      if (is_end(child) || is_helper(child)) continue;
+      if (best < 0 || counts_below_[at(child)] > counts_below_[at(best)]) best = child;
+    }
+    return best;
+  }
+
+  void find_tips() {
+    constexpr std::array kArm = {Part::collar, Part::shoulder, Part::upper_arm, Part::arm,
+                                 Part::lower_arm};
+    constexpr std::array kLeg = {Part::hip, Part::upper_leg, Part::leg, Part::lower_leg};
+    hands_ = {find_tip(Side::left, Part::hand, kArm), find_tip(Side::right, Part::hand, kArm)};
+    feet_ = {find_tip(Side::left, Part::foot, kLeg), find_tip(Side::right, Part::foot, kLeg)};
+    head_ = nearest([&](int j) { return part(j) == Part::head; });
+    neck_ = nearest([&](int j) { return part(j) == Part::neck; });
+    if (head_ < 0 && neck_ >= 0) {
+      int last = neck_;
+      while (main_child(last) >= 0 && part(main_child(last)) == Part::neck) last = main_child(last);
+      head_ = main_child(last);
+    }
+  }
+
+  // A joint that two limbs, or a limb and the head, descend from belongs to the trunk.
+  void mark_trunk() {
+    const std::array tips = {hands_[0], hands_[1], feet_[0], feet_[1], head_ >= 0 ? head_ : neck_};
+    std::vector<int> tips_below(skeleton_.names.size(), 0);
+    for (const int tip : tips) {
+      for (int j = tip < 0 ? -1 : parent(tip); j >= 0; j = parent(j)) ++tips_below[at(j)];
+    }
+    trunk_.assign(skeleton_.names.size(), 0);
+    for (std::size_t j = 0; j < trunk_.size(); ++j) trunk_[j] = tips_below[j] >= 2 ? 1 : 0;
+  }
+
+  // The joints from the trunk (exclusive) to `tip` (exclusive), helpers left out.
+  std::vector<int> limb_above(int tip) const {
+    std::vector<int> chain;
+    for (int j = parent(tip); j >= 0 && trunk_[at(j)] == 0; j = parent(j)) {
+      if (!is_helper(j) && !is_middle(j)) chain.push_back(j);
+    }
+    std::reverse(chain.begin(), chain.end());
+    return chain;
+  }
+
+  // Named as a part of the trunk, as in a figure with one limb only.
+  bool is_middle(int joint) const {
+    const Part p = part(joint);
+    return p == Part::hips || p == Part::spine || p == Part::neck || p == Part::head;
+  }
+
+  // Index in `chain` of the first joint named `wanted` at or after `from`, or -1.
+  int position(const std::vector<int>& chain, Part wanted, int from = 0) const {
+    for (int i = from; i < static_cast<int>(chain.size()); ++i) {
+      if (part(chain[at(i)]) == wanted) return i;
+    }
+    return -1;
+  }
+
+  void assign_arm(Side side) {
+    const int hand = hands_[side == Side::left ? 0 : 1];
+    if (hand < 0) return;
+    const ArmRoles& roles = side == Side::left ? kLeftArm : kRightArm;
+    const std::vector<int> chain = limb_above(hand);
+    const int count = static_cast<int>(chain.size());
+    int lower = position(chain, Part::lower_arm);
+    int upper = position(chain, Part::upper_arm);
+    if (upper < 0) upper = position(chain, Part::arm);
+    if (upper >= 0 && part(chain[at(upper)]) == Part::arm && lower < 0 &&
+        position(chain, Part::collar) < 0 && upper == count - 1 &&
+        position(chain, Part::shoulder) >= 0) {
+      lower = upper;  // shoulder, arm, hand
+      upper = -1;
+    }
+    if (upper < 0) upper = position(chain, Part::shoulder);
+    if (lower < 0 && upper >= 0) lower = position(chain, Part::arm, upper + 1);
+    if (lower < 0 && count > 0 && upper != count - 1) lower = count - 1;
+    if (upper < 0 && lower > 0 && part(chain[at(lower - 1)]) != Part::collar) upper = lower - 1;
+    if (upper < 0 || lower < 0 || lower <= upper) {
+      role(hand) = upper >= 0 ? roles.hand : Role::none;
+      if (upper >= 0) role(chain[at(upper)]) = roles.upper;
+      return;
+    }
+    upper = repaired_upper_arm(chain, upper, lower, hand);
+    int collar = -1;
+    for (int i = 0; i < upper && collar < 0; ++i) {
+      if (part(chain[at(i)]) == Part::collar) collar = i;
+    }
+    if (collar < 0) collar = position(chain, Part::shoulder);
+    if (collar < 0 || collar >= upper) collar = upper - 1;
+    for (const int j : chain) role(j) = Role::helper;
+    if (collar >= 0) role(chain[at(collar)]) = roles.collar;
+    role(chain[at(upper)]) = roles.upper;
+    role(chain[at(lower)]) = roles.lower;
+    role(hand) = roles.hand;
+    ++limbs_;
+  }
+
+  // Where a joint in the middle of the upper arm bears its name (MakeHuman's upperarm02 under
+  // shoulder02 under clavicle), the one before it, if that makes the upper arm as long as the
+  // lower.
+  int repaired_upper_arm(const std::vector<int>& chain, int upper, int lower, int hand) const {
+    const int collar = position(chain, Part::collar);
+    if (collar < 0 || upper - 1 <= collar) return upper;
+    const double lower_length = distance(chain[at(lower)], hand);
+    const double named = distance(chain[at(upper)], chain[at(lower)]);
+    const double before = distance(chain[at(upper - 1)], chain[at(lower)]);
+    const bool too_short = named < 0.8 * lower_length;
+    const bool fits = before > 0.9 * lower_length && before < 1.3 * lower_length;
+    return too_short && fits ? upper - 1 : upper;
+  }
+
+  void assign_leg(Side side) {
+    const int foot = feet_[side == Side::left ? 0 : 1];
+    if (foot < 0) return;
+    const LegRoles& roles = side == Side::left ? kLeftLeg : kRightLeg;
+    const std::vector<int> chain = limb_above(foot);
+    const int count = static_cast<int>(chain.size());
+    int lower = position(chain, Part::lower_leg);
+    int upper = position(chain, Part::upper_leg);
+    if (upper < 0) upper = position(chain, Part::hip);
+    if (upper < 0 && lower > 0) upper = position(chain, Part::leg);
+    if (lower < 0) lower = position(chain, Part::leg, upper + 1);
+    if (lower < 0 && count > 0 && upper != count - 1) lower = count - 1;
+    if (upper < 0 && lower > 0) upper = lower - 1;
+    if (upper < 0 || lower <= upper) return;
+    for (const int j : chain) role(j) = Role::helper;
+    role(chain[at(upper)]) = roles.upper;
+    role(chain[at(lower)]) = roles.lower;
+    role(foot) = roles.foot;
+    ++limbs_;
+  }
+
+  int find_hips(int legs, int top) const {
+    const int meeting = common_ancestor(legs, top);
+    // A joint named so at or above the meeting point; in figures without legs wherever it stands.
+    for (int j = meeting; j >= 0; j = parent(j)) {
+      if (part(j) == Part::hips) return j;
+    }
+    return legs >= 0 ? meeting : nearest([&](int j) { return part(j) == Part::hips; });
+  }
+
+  void assign_trunk() {
+    const int top = head_ >= 0 ? head_ : neck_;
+    const auto above = [&](Role wanted) {
+      const int joint = map_.joint(wanted);
+      return joint < 0 ? -1 : parent(joint);
+    };
+    const int arms = common_ancestor(above(Role::left_upper_arm), above(Role::right_upper_arm));
+    const int legs = common_ancestor(above(Role::left_upper_leg), above(Role::right_upper_leg));
+    int chest = common_ancestor(arms, top >= 0 ? parent(top) : -1);
+    while (chest >= 0 && placed(chest)) chest = parent(chest);  // one arm only: the collar
+    const int hips = find_hips(legs, chest >= 0 ? chest : top);
+    if (hips >= 0) {
+      role(hips) = Role::hips;
+      for (int j = parent(hips); j >= 0; j = parent(j)) role(j) = Role::root;
+    }
+    if (chest >= 0 && chest != hips && arms >= 0 && (hips < 0 || descends(chest, hips))) {
+      role(chest) = Role::chest;
+      for (int j = parent(chest); j >= 0 && !placed(j); j = parent(j)) {
+        role(j) = is_helper(j) ? Role::helper : Role::spine;
+      }
+    }
+    if (head_ >= 0) role(head_) = Role::head;
+    int upward = head_ >= 0 ? parent(head_) : neck_;
+    for (; upward >= 0 && !placed(upward); upward = parent(upward)) {
+      const bool spine = part(upward) == Part::spine || (arms < 0 && part(upward) != Part::neck);
+      role(upward) = is_helper(upward) ? Role::helper : spine ? Role::spine : Role::neck;
+    }
+  }
+
+  void assign_rest() {
+    // Parents come first, so a joint inherits from what its parent became.
+    for (int j = 0; j < skeleton_.joint_count(); ++j) {
+      if (placed(j)) continue;
+      const int above = parent(j);
+      const Role from = above >= 0 ? role(above) : Role::none;
+      const Role inherited = beyond(from);
+      if (is_helper(j) || part(j) == Part::hips) {
+        role(j) = Role::helper;
+      } else if (inherited != Role::none) {
+        role(j) = inherited;
+      }
+    }
+  }
+
+  // What an unnamed joint below one with this role is.
+  static Role beyond(Role role) {
+    switch (role) {
+      case Role::left_hand:
+      case Role::left_fingers:
+        return Role::left_fingers;
+      case Role::right_hand:
+      case Role::right_fingers:
+        return Role::right_fingers;
+      case Role::left_foot:
+      case Role::left_toes:
+        return Role::left_toes;
+      case Role::right_foot:
+      case Role::right_toes:
+        return Role::right_toes;
+      case Role::none:
+      case Role::root:
+      case Role::hips:
+      case Role::spine:
+      case Role::chest:
+        return Role::none;
+      default:
+        return Role::helper;
+    }
+  }
+
+  static bool is_humanoid(const RoleMap& map) {
+    const auto has = [&](Role role) { return map.joint(role) >= 0; };
+    for (const Role role :
+         {Role::hips, Role::left_upper_leg, Role::right_upper_leg, Role::left_lower_leg,
+          Role::right_lower_leg, Role::left_foot, Role::right_foot, Role::left_upper_arm,
+          Role::right_upper_arm, Role::left_hand, Role::right_hand}) {
+      if (!has(role)) return false;
+    }
+    return has(Role::head) || has(Role::neck);
+  }
+
+  const Skeleton& skeleton_;
+  std::vector<JointName> names_;
+  std::vector<std::vector<int>> children_;
+  std::vector<int> depths_;                // [joints], 0 for the root
+  std::vector<std::size_t> counts_below_;  // [joints], the joint included
+  RoleMap map_;
+  std::array<int, 2> hands_ = {-1, -1};  // left, right
+  std::array<int, 2> feet_ = {-1, -1};
+  int head_ = -1;
+  int neck_ = -1;
+  std::vector<char> trunk_;  // [joints]
+  int limbs_ = 0;
+};
 
 }  // namespace
 
-std::string_view role_name(Role role) { return kRoleNames[static_cast<std::size_t>(role)]; }
+std::string_view role_name(Role role) {
+  return kRoleNames[static_cast<std::size_t>(role)];
+}
 
 int RoleMap::joint(Role role) const {
   for (std::size_t i = 0; i < roles.size(); ++i) {
@@ -28,9 +407,15 @@ int RoleMap::joint(Role role) const {
 }
 
 RoleMap find_roles(const Skeleton& skeleton) {
-  RoleMap map;
-  map.roles.assign(skeleton.names.size(), Role::none);
-  return map;
+  RoleMap map = RoleFinder(skeleton, read_joint_names(skeleton)).find();
+  const bool nothing_found = std::all_of(map.roles.begin(), map.roles.end(), [](Role role) {
+    return role == Role::none || role == Role::end;
+  });
+  if (!nothing_found) return map;
+  auto names = names_from_shape(skeleton);
+  if (!names) return map;
+  RoleMap by_shape = RoleFinder(skeleton, std::move(*names)).find();
+  return by_shape.humanoid ? by_shape : map;
 }
 
 }  // namespace krok

@@ -22,7 +22,7 @@ enum class Role : unsigned char {
   left_upper_arm,
   left_lower_arm,
   left_hand,
-  left_fingers,  // any joint beyond the wrist
+  left_fingers,  // every joint beyond the wrist
   right_collar,
   right_upper_arm,
   right_lower_arm,
@@ -31,7 +31,7 @@ enum class Role : unsigned char {
   left_upper_leg,
   left_lower_leg,
   left_foot,
-  left_toes,
+  left_toes,  // every joint beyond the ankle, the heel apart
   right_upper_leg,
   right_lower_leg,
   right_foot,
@@ -50,14 +50,18 @@ struct RoleMap {
   // hands were found: a figure that limb-wise operations can rely on.
   bool humanoid = false;
 
-  // The first joint with a role, or -1. For roles that many joints have, the one nearest the root.
+  // The first joint with a role, or -1. For roles that many joints have (spine, neck, fingers), no
+  // other of them stands above it.
   int joint(Role role) const;
 };
 
 // The roles of a skeleton's joints, from names (of iPi, CMU, MotionBuilder, Mixamo, Xsens, Rokoko,
-// OptiTrack, Perception Neuron, iClone, Biovision, Poser and Second Life, MakeHuman; prefixes and
-// name spaces are ignored) checked against the structure: a hand must hang under an arm, an arm
-// under the trunk. Joints that it cannot place get Role::none. Never fails.
+// OptiTrack, Perception Neuron, iClone, Daz, Biovision, Poser and Second Life, MakeHuman, Biped,
+// Unreal; prefixes and name spaces are ignored) checked against the structure: a hand must hang
+// under an arm, an arm under the trunk; hips are what legs and spine meet in, unless a joint above
+// is named so. Where no name is known, from the shape of the reference pose, if that is safe.
+// Joints that it cannot place get Role::none, as all do (end sites apart) where no limb was found.
+// Never fails. The skeleton must pass check(), except that its unit and axes do not matter.
 RoleMap find_roles(const Skeleton& skeleton);
 
 }  // namespace krok

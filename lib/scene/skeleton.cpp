@@ -54,14 +54,16 @@ Status check(const Skeleton& skeleton) {
     }
     const int parent = skeleton.parents[i];
     if (i == 0 ? parent != Skeleton::kNoParent : (parent < 0 || parent >= static_cast<int>(i))) {
-      return Error("skeleton-parent", fmt::format("joint {} ({}) has parent {}, expected {}", i, name,
-                                                  parent, i == 0 ? "none" : "an earlier joint"));
+      return Error("skeleton-parent",
+                   fmt::format("joint {} ({}) has parent {}, expected {}", i, name, parent,
+                               i == 0 ? "none" : "an earlier joint"));
     }
     const Transform& transform = skeleton.reference[i];
     if (!transform.position.allFinite() || !transform.orientation.coeffs().allFinite() ||
         std::abs(transform.orientation.norm() - 1.0) > 1e-4) {
-      return Error("skeleton-value",
-                   fmt::format("the reference pose of joint {} is not finite or not a rotation", name));
+      return Error(
+          "skeleton-value",
+          fmt::format("the reference pose of joint {} is not finite or not a rotation", name));
     }
   }
   return {};

@@ -19,10 +19,10 @@ namespace krok {
 struct Skeleton {
   static constexpr int kNoParent = -1;
 
-  std::vector<std::string> names;        // unique, not empty, UTF-8
-  std::vector<int> parents;              // index of the parent, kNoParent for the root
-  std::vector<std::uint8_t> end_sites;   // 1: a leaf that only marks where the last bone ends
-  std::vector<Transform> reference;      // joint_to_world in the reference pose
+  std::vector<std::string> names;       // unique, not empty, UTF-8
+  std::vector<int> parents;             // index of the parent, kNoParent for the root
+  std::vector<std::uint8_t> end_sites;  // 1: a leaf that only marks where the last bone ends
+  std::vector<Transform> reference;     // joint_to_world in the reference pose
 
   int joint_count() const { return static_cast<int>(names.size()); }
   bool empty() const { return names.empty(); }

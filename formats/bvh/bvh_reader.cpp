@@ -1,0 +1,382 @@
+#include "formats/bvh/bvh_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "formats/bvh/frame_rate.h"
+#include "formats/bvh/hierarchy.h"
+#include "formats/bvh/kinematics.h"
+#include "formats/bvh/motion_rows.h"
+#include "formats/bvh/position_choice.h"
+#include "formats/bvh/rest_frame.h"
+#include "formats/bvh/text_cursor.h"
+#include "math/quaternion.h"
+
+namespace krok::bvh {
+
+namespace {
+
+constexpr std::size_t kMostSamples = 200;
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& file_name, const ReadOptions& options)
+      : text_(text), file_name_(file_name), options_(options) {}
+
+  Result<Capture> read() {
+    auto hierarchy = parse_hierarchy(text_, file_name_, options_, capture_.diagnostics);
+    if (!hierarchy) return std::move(hierarchy).error();
+    hierarchy_ = std::move(*hierarchy);
+    auto header = parse_motion_header(text_, hierarchy_.end, file_name_, options_,
+                                      capture_.diagnostics);
+    if (!header) return std::move(header).error();
+    header_ = *header;
+    capture_.frames_announced = header_.frames;
+    capture_.frame_time = header_.frame_time;
+
+    // Nearly every file has a row a line and nothing odd; the rows are taken as such, and only if
+    // one of them turns out otherwise does the careful search for the rows begin.
+    rows_ = index_lines(text_, header_.end);
+    const bool plain = !hierarchy_.channels.empty() &&
+                       static_cast<long long>(rows_.size()) == header_.frames;
+    if (!plain || !rows_are_whole_lines()) {
+      auto index = index_rows_with_care(text_, header_, hierarchy_, file_name_, options_,
+                                        capture_.diagnostics);
+      if (!index) return std::move(index).error();
+      rows_ = std::move(index->begins);
+      capture_.repairs = std::move(index->repairs);
+    }
+    choose_rate();
+    if (Status chosen = choose_conventions(); !chosen) return chosen.error();
+    if (Status filled = fill_clip(); !filled) return filled.error();
+    report_rest_pose();
+    return std::move(capture_);
+  }
+
+ private:
+  void tell(Severity severity, std::string code, std::string message, std::string hint = {},
+            Location where = {}) {
+    Diagnostic told;
+    told.severity = severity;
+    told.code = std::move(code);
+    told.message = std::move(message);
+    told.hint = std::move(hint);
+    told.where = std::move(where);
+    if (told.where.file.empty()) told.where.file = file_name_;
+    capture_.diagnostics.push_back(std::move(told));
+  }
+
+  // Whether each row of the plain index holds as many whole numbers as there are channels, and
+  // nothing else on its line.
+  bool rows_are_whole_lines() const {
+    std::atomic<bool> whole = true;
+    parallel_for(rows_.size(), kRowsAtOnce, options_.jobs, [&](std::size_t begin, std::size_t end) {
+      std::vector<double> values(hierarchy_.channels.size());
+      for (std::size_t row = begin; row < end && whole; ++row) {
+        const std::size_t line_end = std::min(text_.find('\n', rows_[row]), text_.size());
+        std::size_t after = parse_row(text_.substr(0, line_end), rows_[row], values);
+        while (after < line_end && is_space(text_[after])) ++after;
+        if (after != line_end) whole = false;
+      }
+    });
+    return whole;
+  }
+
+  void choose_rate() {
+    double& rate = capture_.clip.rate;
+    if (options_.rate) {
+      rate = *options_.rate;
+      capture_.rate = {readable(rate), "as given", Confidence::certain};
+      return;
+    }
+    const PrintedRate printed = rate_of_frame_time(header_.frame_time_text, header_.frame_time);
+    rate = printed.rate;
+    capture_.rate = {readable(rate), printed.reason,
+                     printed.few_digits ? Confidence::guess : Confidence::certain};
+    const bool doubtful = printed.few_digits;
+    tell(doubtful ? Severity::warning : Severity::note, "bvh-rate",
+         fmt::format("{} frames a second: {}", readable(rate), printed.reason),
+         doubtful ? "say the rate with --fps N if it is another" : "",
+         doubtful ? locate(text_, header_.frame_time_offset, file_name_) : Location());
+  }
+
+  // Up to kMostSamples whole rows, evenly over the file.
+  SampleRows sample_rows() const {
+    SampleRows samples;
+    samples.channels = hierarchy_.channels.size();
+    const std::size_t count = std::min(rows_.size(), kMostSamples);
+    std::vector<double> values(samples.channels);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t row = count < 2 ? 0 : i * (rows_.size() - 1) / (count - 1);
+      if (rows_[row] == RowIndex::kFaulty) continue;
+      if (parse_row(text_, rows_[row], values) == RowIndex::kFaulty) continue;
+      samples.values.insert(samples.values.end(), values.begin(), values.end());
+    }
+    return samples;
+  }
+
+  Status choose_conventions() {
+    const SampleRows samples = sample_rows();
+    PositionChoice positions;
+    if (options_.positions == Positions::automatic) {
+      positions = choose_positions(hierarchy_, samples, options_.up);
+    } else {
+      positions.positions = options_.positions;
+      positions.choice.choice =
+          options_.positions == Positions::absolute ? "absolute" : "additive";
+      positions.choice.reason = "as given";
+      positions.choice.confidence = Confidence::certain;
+    }
+    if (Status detected = detect(samples, positions.positions); !detected) return detected;
+    if (options_.positions == Positions::automatic && samples.count() > 0) {
+      positions = choose_positions(hierarchy_, samples, capture_.conventions.up);
+    }
+    positions_ = positions.positions;
+    capture_.positions = positions.choice;
+    if (options_.positions == Positions::automatic && has_position_channels()) {
+      const bool guess = positions.choice.confidence == Confidence::guess;
+      tell(guess ? Severity::warning : Severity::note, "bvh-positions",
+           fmt::format("position channels are {} ({}): {}", positions.choice.choice,
+                       confidence_name(positions.choice.confidence), positions.choice.reason),
+           guess ? "say --positions absolute or additive if it is otherwise" : "");
+    }
+    return make_conversion();
+  }
+
+  bool has_position_channels() const {
+    return std::any_of(hierarchy_.channels.begin(), hierarchy_.channels.end(),
+                       [](const Channel& c) { return c.kind == ChannelKind::position; });
+  }
+
+  Skeleton skeleton_of(const Kinematics& kinematics) const {
+    Skeleton skeleton;
+    const std::vector<Transform> reference = kinematics.reference();
+    for (std::size_t j = 0; j < hierarchy_.joints.size(); ++j) {
+      const Hierarchy::Joint& joint = hierarchy_.joints[j];
+      skeleton.add(joint.name, joint.parent, reference[j], joint.end_site);
+    }
+    return skeleton;
+  }
+
+  // Unit and axes, from the options and, where they say nothing, from the data.
+  Status detect(const SampleRows& samples, Positions positions) {
+    Conventions& conventions = capture_.conventions;
+    if (!options_.unit || !options_.up || !options_.forward) {
+      const Kinematics in_file(hierarchy_, positions, {});
+      const Skeleton skeleton = skeleton_of(in_file);
+      std::vector<Vec3> sample_positions;
+      std::vector<Transform> pose(in_file.joint_count());
+      for (std::size_t i = 0; i < samples.count(); ++i) {
+        in_file.pose(samples.row(i), pose);
+        for (const Transform& joint : pose) sample_positions.push_back(joint.position);
+      }
+      conventions = detect_conventions(skeleton, find_roles(skeleton), sample_positions);
+    }
+    if (options_.unit) {
+      conventions.unit = *options_.unit;
+      conventions.unit_confidence = Confidence::certain;
+      conventions.unit_reason = "as given";
+    }
+    if (options_.up) {
+      conventions.up = *options_.up;
+      conventions.up_confidence = Confidence::certain;
+      conventions.up_reason = "as given";
+    }
+    if (options_.forward) {
+      conventions.forward = *options_.forward;
+      conventions.forward_confidence = Confidence::certain;
+      conventions.forward_reason = "as given";
+    }
+    settle_parallel_axes();
+    return {};
+  }
+
+  // An axis that was given may lie along one that was worked out.
+  void settle_parallel_axes() {
+    Conventions& conventions = capture_.conventions;
+    const Vec3 up = direction_vector(conventions.up);
+    const Vec3 forward = direction_vector(conventions.forward);
+    if (up.dot(forward) == 0) return;
+    if (!options_.forward) {
+      conventions.forward = std::abs(up.z()) > 0.5 ? Direction::minus_y : Direction::plus_z;
+      conventions.forward_confidence = Confidence::guess;
+      conventions.forward_reason = "what the data show lies along the axis given as up";
+    } else if (!options_.up) {
+      conventions.up = std::abs(forward.y()) > 0.5 ? Direction::plus_z : Direction::plus_y;
+      conventions.up_confidence = Confidence::guess;
+      conventions.up_reason = "what the data show lies along the axis given as forward";
+    }
+  }
+
+  Status make_conversion() {
+    const Conventions& conventions = capture_.conventions;
+    const auto rotation = rotation_to_krok(conventions.up, conventions.forward);
+    if (!rotation) return Error(rotation.error()).in_file(file_name_);
+    conversion_.metres = conventions.unit.metres;
+    conversion_.to_krok = rotation->toRotationMatrix().array().round().matrix();
+    report_conventions();
+    return {};
+  }
+
+  void report_conventions() {
+    const Conventions& c = capture_.conventions;
+    const auto report = [&](bool given, const char* code, const std::string& what,
+                            Confidence confidence, const std::string& reason, const char* option) {
+      if (given) return;
+      const bool guess = confidence == Confidence::guess;
+      tell(guess ? Severity::warning : Severity::note, code,
+           fmt::format("{} ({}): {}", what, confidence_name(confidence), reason),
+           guess ? fmt::format("say it with {} if it is otherwise", option) : "");
+    };
+    report(options_.unit.has_value(), "bvh-unit", fmt::format("the unit is {}", c.unit.name),
+           c.unit_confidence, c.unit_reason, "--unit");
+    report(options_.up.has_value(), "bvh-up", fmt::format("up is {}", direction_name(c.up)),
+           c.up_confidence, c.up_reason, "--up");
+    report(options_.forward.has_value(), "bvh-forward",
+           fmt::format("forward is {}", direction_name(c.forward)), c.forward_confidence,
+           c.forward_reason, "--forward");
+
+    auto& conversions = capture_.clip.provenance.conversions;
+    const auto how = [](bool given, Confidence confidence) {
+      return given ? std::string("given") : fmt::format("detected, {}", confidence_name(confidence));
+    };
+    if (c.unit.metres != 1.0) {
+      conversions.push_back(fmt::format("unit: {} ({} m) to metres ({})", c.unit.name,
+                                        readable(c.unit.metres),
+                                        how(options_.unit.has_value(), c.unit_confidence)));
+    }
+    if (c.up != Direction::plus_y || c.forward != Direction::plus_z) {
+      conversions.push_back(fmt::format("axes: up {} ({}), forward {} ({}) to up y, forward z",
+                                        direction_name(c.up),
+                                        how(options_.up.has_value(), c.up_confidence),
+                                        direction_name(c.forward),
+                                        how(options_.forward.has_value(), c.forward_confidence)));
+    }
+  }
+
+  Status fill_clip() {
+    const Kinematics kinematics(hierarchy_, positions_, conversion_);
+    Clip& clip = capture_.clip;
+    clip.skeleton = skeleton_of(kinematics);
+    const double transforms =
+        static_cast<double>(rows_.size()) * static_cast<double>(clip.skeleton.names.size());
+    const double bytes = transforms * (sizeof(Vec3f) + sizeof(Quatf));
+    constexpr double kSmall = 1 << 26;
+    if (bytes > kSmall + options_.max_expansion * static_cast<double>(text_.size()) ||
+        rows_.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+      return Error("bvh-limit",
+                   fmt::format("{} frames of {} joints are out of proportion to the size of the "
+                               "file",
+                               rows_.size(), clip.skeleton.names.size()))
+          .in_file(file_name_);
+    }
+    clip.resize(static_cast<int>(rows_.size()));
+    if (options_.progress != nullptr) options_.progress->begin("reading frames", rows_.size());
+    std::atomic<bool> finite = true;
+    parallel_for(rows_.size(), kRowsAtOnce, options_.jobs, [&](std::size_t begin, std::size_t end) {
+      std::vector<double> values(hierarchy_.channels.size());
+      std::vector<Transform> pose(kinematics.joint_count());
+      for (std::size_t row = begin; row < end; ++row) {
+        if (rows_[row] == RowIndex::kFaulty) continue;
+        parse_row(text_, rows_[row], values);
+        kinematics.pose(values, pose);
+        for (const Transform& joint : pose) {
+          if (!joint.position.cast<float>().allFinite() ||
+              !joint.orientation.coeffs().allFinite()) {
+            finite = false;
+          }
+        }
+        clip.set_pose(static_cast<int>(row), pose);
+      }
+      if (options_.progress != nullptr) options_.progress->advance(end - begin);
+    });
+    if (!finite) {
+      return Error("bvh-number", "the numbers are so large that positions overflow").in_file(
+          file_name_);
+    }
+    if (options_.progress != nullptr) options_.progress->end();
+    fill_faulty_frames();
+    return {};
+  }
+
+  // Interpolates the frames without a row, which stand between whole ones, relative to parents.
+  void fill_faulty_frames() {
+    Clip& clip = capture_.clip;
+    const std::size_t joints = clip.skeleton.names.size();
+    std::vector<Transform> world(joints), before(joints), after(joints), local(joints);
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      if (rows_[row] != RowIndex::kFaulty) continue;
+      const std::size_t first = row - 1;
+      std::size_t next = row;
+      while (rows_[next] == RowIndex::kFaulty) ++next;
+      clip.get_pose(static_cast<int>(first), world);
+      world_to_local(clip.skeleton.parents, world, before);
+      clip.get_pose(static_cast<int>(next), world);
+      world_to_local(clip.skeleton.parents, world, after);
+      for (; row < next; ++row) {
+        const double t = static_cast<double>(row - first) / static_cast<double>(next - first);
+        for (std::size_t j = 0; j < joints; ++j) {
+          local[j].position = before[j].position + t * (after[j].position - before[j].position);
+          local[j].orientation = slerp(before[j].orientation, after[j].orientation, t);
+        }
+        local_to_world(clip.skeleton.parents, local, world);
+        clip.set_pose(static_cast<int>(row), world);
+      }
+    }
+  }
+
+  void report_rest_pose() {
+    const RestPose rest = find_rest_pose(capture_.clip);
+    tell(Severity::note, "bvh-reference", rest.reference);
+    capture_.rest_frame_found = rest.first_frame_is_rest;
+    const bool drop =
+        capture_.clip.frame_count() > 0 &&
+        (options_.rest_frame == RestFrame::drop ||
+         (options_.rest_frame == RestFrame::automatic && rest.first_frame_is_rest));
+    if (drop) {
+      Clip& clip = capture_.clip;
+      const auto joints = static_cast<std::ptrdiff_t>(clip.joint_count());
+      clip.positions.erase(clip.positions.begin(), clip.positions.begin() + joints);
+      clip.orientations.erase(clip.orientations.begin(), clip.orientations.begin() + joints);
+      clip.provenance.conversions.emplace_back("the first frame, a rest pose, was left out");
+      capture_.rest_frame_dropped = true;
+    }
+    if (rest.first_frame_is_rest) {
+      tell(drop ? Severity::note : Severity::warning, "bvh-rest-frame",
+           fmt::format("{}; it {}", rest.reason, drop ? "was left out" : "was kept"),
+           drop ? "" : "--skip-rest-frame auto leaves it out");
+    } else if (drop) {
+      tell(Severity::note, "bvh-rest-frame", "the first frame was left out, as asked");
+    }
+  }
+
+  static constexpr std::size_t kRowsAtOnce = 64;
+
+  std::string_view text_;
+  const std::string& file_name_;
+  const ReadOptions& options_;
+  Hierarchy hierarchy_;
+  MotionHeader header_;
+  std::vector<std::size_t> rows_;
+  Positions positions_ = Positions::absolute;
+  Conversion conversion_;
+  Capture capture_;
+};
+
+}  // namespace
+
+Result<Capture> read(std::string_view text, const std::string& file_name,
+                     const ReadOptions& options) {
+  if (options.rate && !(*options.rate > 0 && std::isfinite(*options.rate))) {
+    return Error("bvh-frame-time", fmt::format("a rate of {} frames a second is not positive",
+                                               *options.rate));
+  }
+  return Reader(text, file_name, options).read();
+}
+
+}  // namespace krok::bvh

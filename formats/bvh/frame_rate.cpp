@@ -1,0 +1,84 @@
+#include "formats/bvh/frame_rate.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/numbers.h"
+
+namespace krok::bvh {
+
+namespace {
+
+constexpr std::array kCommonRates = {24.0,         25.0,         30.0,          48.0,
+                                     50.0,         60.0,         90.0,          100.0,
+                                     120.0,        240.0,        24.0 / 1.001,  30.0 / 1.001,
+                                     48.0 / 1.001, 60.0 / 1.001, 120.0 / 1.001, 240.0 / 1.001};
+
+// A change of the rate beyond which the printed digits leave room for other rates.
+constexpr double kFewDigits = 0.005;
+
+// The value of the last printed digit that is not a zero: 1e-7 for 0.0333333000.
+double last_digit(std::string_view text) {
+  int exponent = 0;
+  const std::size_t mark = text.find_first_of("eE");
+  if (mark != std::string_view::npos) {
+    exponent = static_cast<int>(parse_integer(text.substr(mark + 1)).value_or(0));
+    text = text.substr(0, mark);
+  }
+  const std::size_t point = text.find('.');
+  if (point == std::string_view::npos) return std::pow(10.0, exponent);
+  while (text.back() == '0') text.remove_suffix(1);
+  return std::pow(10.0, exponent - static_cast<int>(text.size() - point - 1));
+}
+
+}  // namespace
+
+PrintedRate rate_of_frame_time(std::string_view text, double frame_time) {
+  PrintedRate result;
+  result.rate = 1.0 / frame_time;
+  // Half a unit of the last digit, or a whole one where digits were cut off instead of rounded.
+  const double tolerance = last_digit(text) * (1.0 + 1e-9);
+  const auto distance = [&](double rate) { return std::abs(1.0 / rate - frame_time); };
+  const auto agrees = [&](double rate) {
+    return distance(rate) <= 0.5 * tolerance ||
+           (1.0 / rate > frame_time && distance(rate) < tolerance);
+  };
+  double best = 0;
+  for (const double rate : kCommonRates) {
+    if (agrees(rate) && (best == 0 || distance(rate) < distance(best))) best = rate;
+  }
+  if (best == 0) {
+    // Whole rates are spaced by frame_time squared; more than one may agree.
+    const double whole = std::round(result.rate);
+    if (whole >= 1 && whole <= 1000 && agrees(whole) && !agrees(whole + 1) &&
+        (whole == 1 || !agrees(whole - 1))) {
+      best = whole;
+    }
+  }
+  if (best == 0) {
+    result.reason = fmt::format("1 / {} s, the Frame Time", text);
+    return result;
+  }
+  const double change = std::abs(best * frame_time - 1.0);
+  // 0.004 is 1 / 250 exactly, and only with its one digit also 1 / 240.
+  const double as_printed = std::round(result.rate);
+  if (change > kFewDigits && std::abs(as_printed * frame_time - 1.0) < 1e-9) {
+    result.rate = as_printed;
+    result.few_digits = true;
+    result.reason = fmt::format("1 / {} s exactly, though with so few digits it may be {}", text,
+                                readable(best));
+    return result;
+  }
+  result.snapped = change > 1e-12;
+  result.few_digits = change > kFewDigits;
+  result.rate = best;
+  result.reason = result.snapped
+                      ? fmt::format("the Frame Time {} s is 1 / {} to the digits that are printed",
+                                    text, readable(best))
+                      : fmt::format("1 / {} s, the Frame Time", text);
+  return result;
+}
+
+}  // namespace krok::bvh

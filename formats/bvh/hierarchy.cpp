@@ -1,0 +1,336 @@
+#include "formats/bvh/hierarchy.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "core/numbers.h"
+#include "formats/bvh/file_kind.h"
+#include "formats/bvh/names.h"
+#include "formats/bvh/text_cursor.h"
+
+namespace krok::bvh {
+
+namespace {
+
+struct ChannelName {
+  std::string_view name;
+  ChannelKind kind;
+  Axis axis;
+};
+
+constexpr std::array kChannelNames = {
+    ChannelName{"Xposition", ChannelKind::position, Axis::x},
+    ChannelName{"Yposition", ChannelKind::position, Axis::y},
+    ChannelName{"Zposition", ChannelKind::position, Axis::z},
+    ChannelName{"Xrotation", ChannelKind::rotation, Axis::x},
+    ChannelName{"Yrotation", ChannelKind::rotation, Axis::y},
+    ChannelName{"Zrotation", ChannelKind::rotation, Axis::z}};
+
+class HierarchyParser {
+ public:
+  HierarchyParser(std::string_view text, const std::string& file_name, const ReadOptions& options,
+                  Diagnostics& diagnostics)
+      : text_(text),
+        file_name_(file_name),
+        options_(options),
+        diagnostics_(diagnostics),
+        cursor_(text) {}
+
+  Result<Hierarchy> parse() {
+    if (Status begun = parse_start(); !begun) return begun.error();
+    for (;;) {
+      const std::string_view word = cursor_.word();
+      if (word.empty()) return end_of_file();
+      if (same_word(word, "MOTION")) {
+        if (!open_.empty()) {
+          return fail("bvh-syntax",
+                      fmt::format("MOTION, but {} is not closed: a '}}' is missing",
+                                  open_name()));
+        }
+        break;
+      }
+      if (Status done = parse_item(word); !done) return done.error();
+    }
+    result_.end = cursor_.position();
+    if (result_.joints.empty()) {
+      return fail("bvh-syntax", "the hierarchy has no ROOT", "the file holds no skeleton");
+    }
+    if (Status joined = join_roots(); !joined) return joined.error();
+    name_joints();
+    count_zero_bones();
+    return std::move(result_);
+  }
+
+ private:
+  Error fail_at(std::size_t offset, std::string code, std::string message, std::string hint = {}) {
+    Error error(std::move(code), std::move(message), std::move(hint));
+    error.where = locate(text_, offset, file_name_);
+    return error;
+  }
+  // At the word read last.
+  Error fail(std::string code, std::string message, std::string hint = {}) {
+    return fail_at(cursor_.word_begin(), std::move(code), std::move(message), std::move(hint));
+  }
+
+  // A fault that strict refuses.
+  Status warn_at(std::size_t offset, std::string code, std::string message, std::string joint) {
+    Error warning = fail_at(offset, std::move(code), std::move(message));
+    warning.joint = std::move(joint);
+    if (options_.strictness == Strictness::strict) return warning;
+    warning.severity = Severity::warning;
+    diagnostics_.push_back(std::move(warning));
+    return {};
+  }
+
+  Status parse_start() {
+    if (text_.starts_with("\xEF\xBB\xBF")) cursor_.seek(3);
+    if (Status kind = check_file_kind(text_, file_name_); !kind) return kind;
+    if (!same_word(cursor_.word(), "HIERARCHY")) {
+      return fail("bvh-kind", "does not begin with HIERARCHY, as a BVH file does",
+                  "give a BVH capture");
+    }
+    return {};
+  }
+
+  std::string open_name() const {
+    const auto& joint = result_.joints[static_cast<std::size_t>(open_.back())];
+    return joint.end_site ? "an End Site" : readable_name(joint.name);
+  }
+
+  Error end_of_file() {
+    if (!open_.empty()) {
+      return fail("bvh-syntax",
+                  fmt::format("the file ends in the middle of the hierarchy, {} is not closed",
+                              open_name()),
+                  "the file is cut short; export or copy it again");
+    }
+    return fail("bvh-no-motion", "the file ends without a MOTION section",
+                "the file is cut short; export or copy it again");
+  }
+
+  Status parse_item(std::string_view word) {
+    if (same_word(word, "ROOT")) {
+      if (!open_.empty()) return fail("bvh-syntax", "ROOT inside of another joint");
+      return open_joint(false);
+    }
+    if (same_word(word, "JOINT")) {
+      if (open_.empty()) return fail("bvh-syntax", "JOINT outside of any ROOT");
+      return open_joint(false);
+    }
+    if (same_word(word, "End")) {
+      if (open_.empty()) return fail("bvh-syntax", "End Site outside of any ROOT");
+      return open_joint(true);
+    }
+    if (open_.empty()) {
+      return fail("bvh-syntax", fmt::format("'{}' where ROOT or MOTION is expected", shown(word)));
+    }
+    if (same_word(word, "OFFSET")) return parse_offset();
+    if (same_word(word, "CHANNELS")) return parse_channels();
+    if (word == "}") {
+      return close_joint();
+    }
+    return fail("bvh-syntax",
+                fmt::format("'{}' where OFFSET, CHANNELS, JOINT, End Site or '}}' is expected",
+                            shown(word)));
+  }
+
+  Status open_joint(bool end_site) {
+    if (!open_.empty() && result_.joints[static_cast<std::size_t>(open_.back())].end_site) {
+      return fail("bvh-syntax", "a joint inside of an End Site");
+    }
+    if (static_cast<int>(result_.joints.size()) >= options_.max_joints) {
+      return fail("bvh-limit", fmt::format("more than {} joints", options_.max_joints));
+    }
+    const std::size_t keyword = cursor_.word_begin();
+    const std::string_view name = cursor_.name();
+    Hierarchy::Joint joint;
+    joint.parent = open_.empty() ? -1 : open_.back();
+    joint.end_site = end_site;
+    name_places_.push_back(cursor_.word_begin());
+    if (!end_site) {
+      joint.name = std::string(name);
+      if (name.empty()) {
+        if (Status told = warn_at(keyword, "bvh-name", "a joint without a name", {}); !told) {
+          return told;
+        }
+      }
+    }
+    if (cursor_.word() != "{") {
+      return fail("bvh-syntax", fmt::format("a '{{' is expected after {}",
+                                            end_site ? "End Site" : readable_name(joint.name)));
+    }
+    open_.push_back(static_cast<int>(result_.joints.size()));
+    result_.joints.push_back(std::move(joint));
+    has_offset_.push_back(false);
+    has_channels_.push_back(false);
+    return {};
+  }
+
+  Status close_joint() {
+    const auto index = static_cast<std::size_t>(open_.back());
+    const bool has_offset = has_offset_[index];
+    const std::string name = open_name();
+    open_.pop_back();
+    if (has_offset) return {};
+    return warn_at(cursor_.word_begin(), "bvh-offset",
+                   fmt::format("{} has no OFFSET, taken as 0 0 0", name), name);
+  }
+
+  Status parse_offset() {
+    const auto index = static_cast<std::size_t>(open_.back());
+    if (has_offset_[index]) return fail("bvh-syntax", "a second OFFSET for one joint");
+    has_offset_[index] = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view word = cursor_.word();
+      const auto value = parse_finite(word);
+      if (!value) {
+        return fail("bvh-number", fmt::format("'{}' in the OFFSET of {} is not a finite number",
+                                              shown(word), open_name()),
+                    "OFFSET takes three numbers");
+      }
+      result_.joints[index].offset[axis] = *value;
+    }
+    return {};
+  }
+
+  Status parse_channels() {
+    const auto index = static_cast<std::size_t>(open_.back());
+    if (has_channels_[index]) return fail("bvh-syntax", "a second CHANNELS for one joint");
+    has_channels_[index] = true;
+    const std::string_view count_word = cursor_.word();
+    const auto count = parse_integer(count_word);
+    if (!count || *count < 0) {
+      return fail("bvh-channels",
+                  fmt::format("'{}' is not a number of channels", shown(count_word)));
+    }
+    const std::size_t count_place = cursor_.word_begin();
+    result_.joints[index].first_channel = result_.channels.size();
+    std::array<bool, 3> has_position{};
+    for (long long i = 0; i < *count; ++i) {
+      const std::string_view word = cursor_.peek();
+      if (word.empty() || word == "{" || word == "}" || same_word(word, "JOINT") ||
+          same_word(word, "End") || same_word(word, "OFFSET")) {
+        return fail_at(count_place, "bvh-channels",
+                       fmt::format("{} announces {} channels and names {}", open_name(), *count,
+                                   i));
+      }
+      cursor_.word();
+      if (Status added = add_channel(word, index, has_position); !added) return added;
+    }
+    result_.joints[index].channel_count =
+        result_.channels.size() - result_.joints[index].first_channel;
+    return {};
+  }
+
+  Status add_channel(std::string_view word, std::size_t joint, std::array<bool, 3>& has_position) {
+    Channel channel;
+    channel.joint = static_cast<int>(joint);
+    bool known = false;
+    for (const ChannelName& candidate : kChannelNames) {
+      if (!same_word(word, candidate.name)) continue;
+      channel.kind = candidate.kind;
+      channel.axis = candidate.axis;
+      known = true;
+    }
+    if (!known) {
+      if (Status told = warn_at(cursor_.word_begin(), "bvh-channels",
+                                fmt::format("the channel '{}' of {} is unknown, its values are "
+                                            "left out",
+                                            shown(word), open_name()),
+                                open_name());
+          !told) {
+        return told;
+      }
+    } else if (channel.kind == ChannelKind::position) {
+      bool& seen = has_position[static_cast<std::size_t>(channel.axis)];
+      if (seen) {
+        return fail("bvh-channels", fmt::format("{} has {} twice", open_name(), shown(word)));
+      }
+      seen = true;
+    }
+    result_.channels.push_back(channel);
+    return {};
+  }
+
+  // A skeleton has one root: several get a parent at the origin that does not move.
+  Status join_roots() {
+    std::size_t roots = 0;
+    for (const auto& joint : result_.joints) roots += joint.parent < 0 ? 1 : 0;
+    if (roots == 1) return {};
+    Hierarchy::Joint parent;
+    parent.name = "Roots";
+    result_.joints.insert(result_.joints.begin(), parent);
+    name_places_.insert(name_places_.begin(), 0);
+    for (std::size_t i = 1; i < result_.joints.size(); ++i) ++result_.joints[i].parent;
+    for (Channel& channel : result_.channels) ++channel.joint;
+    Diagnostic told;
+    told.severity = Severity::warning;
+    told.code = "bvh-roots";
+    told.message = fmt::format(
+        "the file has {} ROOTs; a joint 'Roots' at the origin was put above them", roots);
+    told.where.file = file_name_;
+    diagnostics_.push_back(std::move(told));
+    return {};
+  }
+
+  void name_joints() {
+    std::vector<NamedPlace> places;
+    places.reserve(result_.joints.size());
+    for (std::size_t i = 0; i < result_.joints.size(); ++i) {
+      auto& joint = result_.joints[i];
+      places.push_back({&joint.name, joint.parent, joint.end_site, name_places_[i]});
+    }
+    make_names_unique(places, text_, file_name_, diagnostics_);
+  }
+
+  void count_zero_bones() {
+    int zero = 0;
+    std::string first;
+    for (const auto& joint : result_.joints) {
+      if (joint.parent < 0 || joint.end_site || !joint.offset.isZero(0)) continue;
+      if (zero++ == 0) first = joint.name;
+    }
+    if (zero == 0) return;
+    Diagnostic note;
+    note.severity = Severity::note;
+    note.code = "bvh-zero-bones";
+    note.message = fmt::format("{} joint{} at the place of {} parent (the first: {})", zero,
+                               zero == 1 ? " stands" : "s stand", zero == 1 ? "its" : "their",
+                               first);
+    note.where.file = file_name_;
+    diagnostics_.push_back(std::move(note));
+  }
+
+  std::string_view text_;
+  const std::string& file_name_;
+  const ReadOptions& options_;
+  Diagnostics& diagnostics_;
+  TextCursor cursor_;
+  Hierarchy result_;
+  std::vector<int> open_;
+  std::vector<bool> has_offset_, has_channels_;
+  std::vector<std::size_t> name_places_;
+};
+
+}  // namespace
+
+std::string Hierarchy::channel_name(std::size_t channel) const {
+  const Channel& c = channels[channel];
+  const std::string& joint = joints[static_cast<std::size_t>(c.joint)].name;
+  for (const ChannelName& candidate : kChannelNames) {
+    if (candidate.kind == c.kind && candidate.axis == c.axis) {
+      return fmt::format("{}.{}", joint, candidate.name);
+    }
+  }
+  return fmt::format("{}.unknown", joint);
+}
+
+Result<Hierarchy> parse_hierarchy(std::string_view text, const std::string& file_name,
+                                  const ReadOptions& options, Diagnostics& diagnostics) {
+  return HierarchyParser(text, file_name, options, diagnostics).parse();
+}
+
+}  // namespace krok::bvh

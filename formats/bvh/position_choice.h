@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "formats/bvh/bvh_reader.h"
+#include "formats/bvh/hierarchy.h"
+
+namespace krok::bvh {
+
+// Some rows of a file, shape [rows x channels].
+struct SampleRows {
+  std::vector<double> values;
+  std::size_t channels = 0;
+  std::size_t count() const { return channels == 0 ? 0 : values.size() / channels; }
+  std::span<const double> row(std::size_t i) const {
+    return std::span(values).subspan(i * channels, channels);
+  }
+};
+
+struct PositionChoice {
+  Positions positions = Positions::absolute;
+  Choice choice;
+};
+
+// Whether position channels replace OFFSETs or are added to them. Each joint with a non-zero OFFSET
+// beside position channels is asked where its values lie along the OFFSET: near it (absolute) or
+// near zero (additive), in the median row. Joints below the root decide, if there are any; a root
+// travels, so only its height is asked where `up` is known and the OFFSET has a height.
+PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& rows,
+                                std::optional<Direction> up);
+
+}  // namespace krok::bvh

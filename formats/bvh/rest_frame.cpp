@@ -1,0 +1,119 @@
+#include "formats/bvh/rest_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "math/quaternion.h"
+#include "scene/roles.h"
+
+namespace krok::bvh {
+
+namespace {
+
+enum class PoseKind { t_pose, a_pose, other, unknown };
+
+double degrees_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) / kRadiansPerDegree;
+}
+
+// What a pose is, in Krok's frame: legs down, trunk up, arms out (T) or hanging at an angle (A).
+PoseKind kind_of_pose(const RoleMap& roles, std::span<const Transform> pose) {
+  if (!roles.humanoid) return PoseKind::unknown;
+  const auto place = [&](Role role) {
+    return pose[static_cast<std::size_t>(roles.joint(role))].position;
+  };
+  const Role trunk_top = roles.joint(Role::head) >= 0 ? Role::head : Role::neck;
+  const Vec3 trunk = place(trunk_top) - place(Role::hips);
+  const Vec3 left_leg = place(Role::left_foot) - place(Role::left_upper_leg);
+  const Vec3 right_leg = place(Role::right_foot) - place(Role::right_upper_leg);
+  if (degrees_between(trunk, Vec3::UnitY()) > 25 || degrees_between(left_leg, -Vec3::UnitY()) > 25 ||
+      degrees_between(right_leg, -Vec3::UnitY()) > 25) {
+    return PoseKind::other;
+  }
+  const Vec3 left = place(Role::left_hand) - place(Role::left_upper_arm);
+  const Vec3 right = place(Role::right_hand) - place(Role::right_upper_arm);
+  const double left_drop = degrees_between(left, -Vec3::UnitY());
+  const double right_drop = degrees_between(right, -Vec3::UnitY());
+  const bool apart = degrees_between(left, right) > 50;
+  if (std::abs(left_drop - 90) < 20 && std::abs(right_drop - 90) < 20 && apart) {
+    return PoseKind::t_pose;
+  }
+  return left_drop < 70 && right_drop < 70 ? PoseKind::a_pose : PoseKind::other;
+}
+
+// The largest turn of any joint against its parent between two frames, in degrees.
+double largest_turn(const Clip& clip, int first, int second) {
+  const auto joints = static_cast<std::size_t>(clip.joint_count());
+  std::vector<Transform> world(joints), a(joints), b(joints);
+  clip.get_pose(first, world);
+  world_to_local(clip.skeleton.parents, world, a);
+  clip.get_pose(second, world);
+  world_to_local(clip.skeleton.parents, world, b);
+  double largest = 0;
+  for (std::size_t j = 0; j < joints; ++j) {
+    largest = std::max(largest, angle_between(a[j].orientation, b[j].orientation));
+  }
+  return largest / kRadiansPerDegree;
+}
+
+// The share of joints with children that stand unturned against their parents, the root left out.
+double unturned_share(const Clip& clip, int frame) {
+  const auto joints = static_cast<std::size_t>(clip.joint_count());
+  std::vector<Transform> world(joints), local(joints);
+  clip.get_pose(frame, world);
+  world_to_local(clip.skeleton.parents, world, local);
+  int asked = 0;
+  int unturned = 0;
+  for (std::size_t j = 1; j < joints; ++j) {
+    if (clip.skeleton.end_sites[j] != 0) continue;
+    ++asked;
+    if (angle_between(local[j].orientation, Quat::Identity()) < 1e-3) ++unturned;
+  }
+  return asked == 0 ? 0.0 : static_cast<double>(unturned) / asked;
+}
+
+const char* name_of(PoseKind kind) {
+  switch (kind) {
+    case PoseKind::t_pose:
+      return "a T-pose";
+    case PoseKind::a_pose:
+      return "upright with the arms down";
+    case PoseKind::other:
+      return "no T-pose";
+    case PoseKind::unknown:
+      break;
+  }
+  return "of unknown kind, for no human figure was recognised";
+}
+
+}  // namespace
+
+RestPose find_rest_pose(const Clip& clip) {
+  RestPose result;
+  const RoleMap roles = find_roles(clip.skeleton);
+  result.reference = fmt::format("the reference pose (OFFSETs, no rotations) is {}",
+                                 name_of(kind_of_pose(roles, clip.skeleton.reference)));
+  constexpr int kFewest = 4;
+  if (clip.frame_count() < kFewest) return result;
+  const double first_step = largest_turn(clip, 0, 1);
+  double later_step = 0;
+  const int last = std::min(clip.frame_count() - 1, 11);
+  for (int frame = 1; frame < last; ++frame) {
+    later_step = std::max(later_step, largest_turn(clip, frame, frame + 1));
+  }
+  constexpr double kLeastStep = 15.0;  // degrees
+  if (first_step < kLeastStep || first_step < 4.0 * later_step) return result;
+  std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
+  clip.get_pose(0, pose);
+  const bool t_pose = kind_of_pose(roles, pose) == PoseKind::t_pose;
+  if (!t_pose && unturned_share(clip, 0) < 0.6) return result;
+  result.first_frame_is_rest = true;
+  result.reason = fmt::format("frame 0 is a {}, {:.0f} degrees away from frame 1",
+                              t_pose ? "T-pose" : "rest pose", first_step);
+  return result;
+}
+
+}  // namespace krok::bvh

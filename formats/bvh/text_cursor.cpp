@@ -1,0 +1,100 @@
+#include "formats/bvh/text_cursor.h"
+
+namespace krok::bvh {
+
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+}  // namespace
+
+bool same_word(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (lower(a[i]) != lower(b[i])) return false;
+  }
+  return true;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+Location locate(std::string_view text, std::size_t offset, const std::string& file_name) {
+  Location where;
+  where.file = file_name;
+  where.line = 1;
+  std::size_t line_begin = 0;
+  for (std::size_t i = 0; i < offset && i < text.size(); ++i) {
+    const bool ends = text[i] == '\n' ||
+                      (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n'));
+    if (!ends) continue;
+    ++where.line;
+    line_begin = i + 1;
+  }
+  where.column = static_cast<std::int64_t>(offset - line_begin) + 1;
+  return where;
+}
+
+void TextCursor::skip_space() {
+  while (position_ < text_.size() && is_space(text_[position_])) ++position_;
+}
+
+void TextCursor::skip_blanks() {
+  while (position_ < text_.size() && is_space(text_[position_]) &&
+         !is_line_end(text_[position_])) {
+    ++position_;
+  }
+}
+
+std::string_view TextCursor::word() {
+  skip_space();
+  word_begin_ = position_;
+  if (at_end()) return {};
+  if (text_[position_] == '{' || text_[position_] == '}') {
+    ++position_;
+  } else {
+    while (position_ < text_.size() && !is_space(text_[position_]) && text_[position_] != '{' &&
+           text_[position_] != '}') {
+      ++position_;
+    }
+  }
+  return text_.substr(word_begin_, position_ - word_begin_);
+}
+
+std::string_view TextCursor::peek() {
+  const std::size_t before = position_;
+  const std::string_view next = word();
+  position_ = before;
+  return next;
+}
+
+bool TextCursor::accept(std::string_view expected) {
+  skip_space();
+  if (!same_word(text_.substr(position_, expected.size()), expected)) return false;
+  word_begin_ = position_;
+  position_ += expected.size();
+  return true;
+}
+
+std::string_view TextCursor::name() {
+  skip_blanks();
+  word_begin_ = position_;
+  std::size_t end = position_;
+  while (end < text_.size() && !is_line_end(text_[end])) {
+    if (text_[end] == '{') {
+      const bool after_space = end == position_ || is_space(text_[end - 1]);
+      std::size_t next = end + 1;
+      while (next < text_.size() && is_space(text_[next]) && !is_line_end(text_[next])) ++next;
+      if (after_space || next == text_.size() || is_line_end(text_[next])) break;
+    }
+    ++end;
+  }
+  const std::string_view name = trimmed(text_.substr(position_, end - position_));
+  position_ = end;
+  return name;
+}
+
+}  // namespace krok::bvh

@@ -1,0 +1,89 @@
+#include "formats/cam/cam.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <limits>
+
+#include "formats/container/sections.h"
+
+namespace krok::cam {
+
+namespace {
+
+constexpr ContainerFormat kFormat = {registry::Kind::cam, registry::kCamMagic, 1,
+                                     kFlagFourComponents};
+
+struct Info {
+  double rate;
+  std::uint64_t frame_count;
+};
+static_assert(sizeof(Info) == 16);
+
+// A frame: position, orientation, field of view.
+constexpr std::size_t frame_size(OrientationEncoding encoding) {
+  return transform_size(encoding) + sizeof(float);
+}
+
+}  // namespace
+
+Status write(const CameraTrack& camera, const WriteOptions& options, OutputFile& file) {
+  if (Status holds = check(camera); !holds) return holds;
+  const Info info = {camera.rate, camera.positions.size()};
+  const std::size_t size = frame_size(options.orientation);
+  std::vector<std::byte> frames(camera.positions.size() * size);
+  for (std::size_t i = 0; i < camera.positions.size(); ++i) {
+    std::byte* frame = &frames[i * size];
+    write_transform(camera.positions[i], camera.orientations[i].cast<double>(), options.orientation,
+                    frame);
+    std::memcpy(frame + size - sizeof(float), &camera.fields_of_view[i], sizeof(float));
+  }
+  ContainerWriter container(file, kFormat, orientation_flags(options.orientation), 3);
+  Status done = container.section("INFO", std::as_bytes(std::span(&info, 1)));
+  if (done) done = container.section("FRAMES", frames);
+  if (done) done = write_provenance(camera.provenance, container);
+  if (done) done = container.finish();
+  return done;
+}
+
+Result<CameraTrack> read(std::span<const std::byte> file) {
+  const auto container = ContainerReader::open(file, kFormat);
+  if (!container) return container.error();
+  const auto info_section = container->section("INFO", 1, sizeof(Info));
+  if (!info_section) return info_section.error();
+  const auto info = ByteReader(info_section->bytes).read<Info>();
+  if (info.frame_count > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) {
+    return at_section(Error("camera-shape",
+                            fmt::format("says it has {} frames; up to {} are possible",
+                                        info.frame_count, std::numeric_limits<int>::max()),
+                            "make the file anew"),
+                      *container, "INFO");
+  }
+  const OrientationEncoding encoding = orientation_encoding(*container);
+  const std::size_t size = frame_size(encoding);
+  const auto frames = container->section("FRAMES", info.frame_count, size);
+  if (!frames) return frames.error();
+  auto provenance = read_provenance(*container);
+  if (!provenance) return provenance.error();
+
+  CameraTrack camera;
+  camera.rate = info.rate;
+  camera.provenance = *std::move(provenance);
+  camera.positions.resize(info.frame_count);
+  camera.orientations.resize(info.frame_count);
+  camera.fields_of_view.resize(info.frame_count);
+  for (std::size_t i = 0; i < info.frame_count; ++i) {
+    const std::byte* frame = &frames->bytes[i * size];
+    Quat orientation;
+    read_transform(frame, encoding, camera.positions[i], orientation);
+    camera.orientations[i] = orientation.cast<float>();
+    std::memcpy(&camera.fields_of_view[i], frame + size - sizeof(float), sizeof(float));
+  }
+  if (Status holds = check(camera); !holds) {
+    const bool rate = holds.error().code == "camera-rate";
+    return at_section(std::move(holds).error(), *container, rate ? "INFO" : "FRAMES");
+  }
+  return camera;
+}
+
+}  // namespace krok::cam

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "formats/container/sections.h"
+
+namespace krok {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxProvenanceBytes = std::size_t{16} << 20;
+
+// Fetches texts from JSON objects; remembers the first value that is not what it should be.
+struct JsonTexts {
+  std::string trouble;
+
+  std::string text(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    if (found == object.end()) return {};
+    if (!found->is_string()) return note(fmt::format("\"{}\" is no text", key)), std::string();
+    return found->get<std::string>();
+  }
+
+  const Json& list(const Json& object, const char* key) {
+    static const Json kNothing = Json::array();
+    const auto found = object.find(key);
+    if (found == object.end()) return kNothing;
+    if (!found->is_array()) return note(fmt::format("\"{}\" is no list", key)), kNothing;
+    return *found;
+  }
+
+  std::vector<std::string> texts(const Json& object, const char* key) {
+    std::vector<std::string> all;
+    for (const Json& item : list(object, key)) {
+      if (!item.is_string()) return note(fmt::format("\"{}\" holds more than texts", key)), all;
+      all.push_back(item.get<std::string>());
+    }
+    return all;
+  }
+
+  std::vector<std::pair<std::string, std::string>> pairs(const Json& object, const char* key,
+                                                         const char* first, const char* second) {
+    std::vector<std::pair<std::string, std::string>> all;
+    for (const Json& item : list(object, key)) {
+      if (!item.is_object()) return note(fmt::format("\"{}\" holds more than objects", key)), all;
+      all.emplace_back(text(item, first), text(item, second));
+    }
+    return all;
+  }
+
+  void note(std::string what) {
+    if (trouble.empty()) trouble = std::move(what);
+  }
+};
+
+Json pairs_to_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
+  Json list = Json::array();
+  for (const auto& [name, value] : pairs) list.push_back({{"name", name}, {"value", value}});
+  return list;
+}
+
+}  // namespace
+
+Status write_provenance(const Provenance& provenance, ContainerWriter& container) {
+  Json json;
+  json["schema"] = "krok.provenance/1";
+  json["tool"] = provenance.tool;
+  json["version"] = provenance.version;
+  json["sources"] = Json::array();
+  for (const auto& source : provenance.sources) {
+    json["sources"].push_back({{"name", source.name}, {"xxh3", source.xxh3}});
+  }
+  json["options"] = pairs_to_json(provenance.options);
+  json["conversions"] = provenance.conversions;
+  json["warnings"] = provenance.warnings;
+  // A file name may hold bytes that are no UTF-8; they become U+FFFD.
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (text.size() > kMaxProvenanceBytes) {
+    return Error("container-provenance",
+                 fmt::format("the provenance takes {} bytes, a file holds up to {}", text.size(),
+                             kMaxProvenanceBytes));
+  }
+  return container.section("META", std::as_bytes(std::span(text)));
+}
+
+Result<Provenance> read_provenance(const ContainerReader& container) {
+  Provenance provenance;
+  const auto section = container.find("META");
+  if (!section || section->bytes.empty()) return provenance;
+  const auto fail = [&](std::string message) {
+    return Error("container-provenance", fmt::format("the provenance {}", message),
+                 "make the file anew")
+        .at_byte(static_cast<std::int64_t>(section->offset));
+  };
+  if (section->bytes.size() > kMaxProvenanceBytes) {
+    return fail(
+        fmt::format("has {} bytes, the limit is {}", section->bytes.size(), kMaxProvenanceBytes));
+  }
+  const std::string_view text(reinterpret_cast<const char*>(section->bytes.data()),
+                              section->bytes.size());
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded() || !json.is_object()) return fail("is no JSON object");
+  JsonTexts reader;
+  provenance.tool = reader.text(json, "tool");
+  provenance.version = reader.text(json, "version");
+  for (auto& [name, xxh3] : reader.pairs(json, "sources", "name", "xxh3")) {
+    provenance.sources.push_back({std::move(name), std::move(xxh3)});
+  }
+  provenance.options = reader.pairs(json, "options", "name", "value");
+  provenance.conversions = reader.texts(json, "conversions");
+  provenance.warnings = reader.texts(json, "warnings");
+  if (!reader.trouble.empty()) return fail(fmt::format("is not as expected: {}", reader.trouble));
+  return provenance;
+}
+
+}  // namespace krok

@@ -1,0 +1,55 @@
+#include "formats/csv/csv_writer.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/numbers.h"
+
+namespace krok::csv {
+
+namespace {
+
+std::string quoted(std::string_view name) {
+  if (name.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(name);
+  std::string text = "\"";
+  for (const char c : name) {
+    if (c == '"') text += '"';
+    text += c;
+  }
+  return text + '"';
+}
+
+}  // namespace
+
+Status write(const Clip& clip, OutputFile& file) {
+  if (Status sound = check(clip); !sound) return sound;
+  constexpr std::size_t kFlushAt = std::size_t{1} << 20;
+
+  std::vector<std::string> names;
+  for (const std::string& name : clip.skeleton.names) names.push_back(quoted(name));
+
+  std::string text = "frame,time,joint,x,y,z\n";
+  for (int frame = 0; frame < clip.frame_count(); ++frame) {
+    const std::string start = fmt::format("{},{},", frame, shortest(frame / clip.rate));
+    const auto positions = clip.frame_positions(frame);
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      text += start;
+      text += names[j];
+      for (int axis = 0; axis < 3; ++axis) {
+        text += ',';
+        text += shortest(positions[j][axis]);
+      }
+      text += '\n';
+    }
+    if (text.size() < kFlushAt) continue;
+    if (Status written = file.write(text); !written) return written;
+    text.clear();
+  }
+  return file.write(text);
+}
+
+}  // namespace krok::csv

@@ -1,0 +1,142 @@
+#include "formats/gltf/buffers.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+namespace krok::gltf {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// For messages: data URIs can be megabytes long.
+std::string shortened(const std::string& uri) {
+  constexpr std::size_t kLongest = 60;
+  return uri.size() > kLongest ? uri.substr(0, kLongest) + "..." : uri;
+}
+
+// Percent-encoding of RFC 3986 undone; nothing if it is broken or hides a zero byte.
+std::optional<std::string> decode_percent(const std::string& text) {
+  const auto digit = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+  };
+  std::string decoded;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char c = text[i];
+    if (c == '%') {
+      const int high = i + 2 < text.size() ? digit(text[i + 1]) : -1;
+      const int low = i + 2 < text.size() ? digit(text[i + 2]) : -1;
+      if (high < 0 || low < 0) return std::nullopt;
+      c = static_cast<char>(high * 16 + low);
+      i += 2;
+    }
+    if (c == '\0') return std::nullopt;
+    decoded += c;
+  }
+  return decoded;
+}
+
+// The path of a buffer's file, if the URI is a relative path that stays in the folder, links
+// followed.
+Result<std::string> path_inside(const std::string& uri, const std::string& folder) {
+  const auto refuse = [&](const char* why) {
+    return Error("gltf-buffer", fmt::format("the buffer '{}' {}", shortened(uri), why),
+                 "buffers must lie in the file's own folder or be embedded (.glb)");
+  };
+  if (folder.empty()) return refuse("is a file of its own, and no folder is known for it");
+  const auto decoded = decode_percent(uri);
+  if (!decoded || decoded->empty()) return refuse("is no valid path");
+  const fs::path relative(*decoded);
+  if (relative.is_absolute() || decoded->find("://") != std::string::npos ||
+      decoded->find('\\') != std::string::npos) {
+    return refuse("is not a relative path");
+  }
+  for (const fs::path& part : relative) {
+    if (part == "..") return refuse("leaves the file's folder");
+  }
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(folder, error);
+  if (error) return refuse("cannot be looked for");
+  const fs::path full = fs::weakly_canonical(root / relative, error);
+  if (error) return refuse("cannot be looked for");
+  const fs::path inside = full.lexically_relative(root);
+  if (inside.empty() || *inside.begin() == "..") return refuse("leaves the file's folder");
+  return (fs::path(folder) / relative).string();
+}
+
+bool is_data_uri(const std::string& uri) {
+  return uri.starts_with("data:");
+}
+
+// Any media type: what matters is that it is base64.
+Result<std::vector<unsigned char>> decode_data_uri(const std::string& uri, std::size_t index) {
+  constexpr std::string_view kMarker = ";base64,";
+  const std::size_t marker = uri.find(kMarker);
+  if (marker == std::string::npos || marker > 200) {
+    return Error("gltf-buffer", fmt::format("buffer {} is a data URI but not base64", index));
+  }
+  // tinygltf counts in ints, and knows few media types.
+  if (uri.size() > 0x7FFFFFFFu) {
+    return Error("gltf-too-large",
+                 fmt::format("buffer {} is a data URI of {} bytes", index, uri.size()),
+                 "save it as .glb");
+  }
+  std::vector<unsigned char> bytes;
+  std::string media_type;
+  tinygltf::DecodeDataURI(&bytes, media_type, "data:application/octet-stream" + uri.substr(marker),
+                          0, false);
+  return bytes;
+}
+
+}  // namespace
+
+Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Container& container,
+                             const ReadOptions& options) {
+  Buffers buffers;
+  std::uint64_t bytes_left = options.most_bytes;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const BufferEntry& entry = entries[i];
+    std::span<const std::byte> bytes;
+    if (!entry.has_uri) {
+      if (!container.binary || i != 0) {
+        return Error("gltf-buffer", fmt::format("buffer {} has no data: neither a URI nor a GLB's "
+                                                "binary chunk (which is buffer 0)",
+                                                i));
+      }
+      bytes = container.bin;
+    } else if (is_data_uri(entry.uri)) {
+      auto decoded = decode_data_uri(entry.uri, i);
+      if (!decoded) return decoded.error();
+      buffers.decoded.push_back(std::move(*decoded));
+      bytes = std::as_bytes(std::span(buffers.decoded.back()));
+    } else {
+      const auto path = path_inside(entry.uri, options.folder);
+      if (!path) return path.error();
+      auto file = InputFile::open(*path, bytes_left);
+      if (!file) return file.error();
+      buffers.files.push_back(std::move(*file));
+      bytes = buffers.files.back().bytes();
+    }
+    if (entry.byte_length > bytes.size()) {
+      return Error("gltf-buffer",
+                   fmt::format("buffer {} should have {} bytes but has {}", i, entry.byte_length,
+                               bytes.size()),
+                   "the file is damaged or was cut short");
+    }
+    if (bytes.size() > bytes_left) {
+      return Error("gltf-too-large",
+                   fmt::format("the buffers hold more than {} bytes", options.most_bytes));
+    }
+    bytes_left -= bytes.size();
+    buffers.views.push_back(bytes.first(entry.byte_length));
+  }
+  return buffers;
+}
+
+}  // namespace krok::gltf

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/file.h"
+#include "core/result.h"
+#include "formats/gltf/glb_container.h"
+#include "formats/gltf/gltf_reader.h"
+#include "formats/gltf/json_text.h"
+
+// Private to this folder: the bytes of a file's buffers.
+
+namespace krok::gltf {
+
+// The buffers of a file: a GLB's own chunk, data URIs, files beside it. Views live as long as this
+// object and the container's bytes.
+struct Buffers {
+  std::vector<std::span<const std::byte>> views;
+  std::vector<std::vector<unsigned char>> decoded;
+  std::vector<InputFile> files;
+};
+
+// Code gltf-buffer; for files also those of InputFile.
+Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Container& container,
+                             const ReadOptions& options);
+
+}  // namespace krok::gltf

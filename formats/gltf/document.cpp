@@ -1,0 +1,322 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <streambuf>
+
+#include "formats/gltf/document_internal.h"
+
+namespace krok::gltf {
+
+namespace {
+
+// GLB states lengths in 32 bits; some room is left for the JSON and the headers.
+constexpr std::uint64_t kMaxBufferBytes = (std::uint64_t{4} << 30) - (std::uint64_t{256} << 20);
+
+int components_of(int type) {
+  return tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
+}
+
+// A stream that appends to an OutputFile, so that the file is not held in memory a second time.
+class FileBuffer : public std::streambuf {
+ public:
+  explicit FileBuffer(OutputFile& file) : file_(file) {}
+  const Status& status() const { return status_; }
+
+ protected:
+  std::streamsize xsputn(const char* text, std::streamsize count) override {
+    if (status_) status_ = file_.write(std::string_view(text, static_cast<std::size_t>(count)));
+    return status_ ? count : 0;
+  }
+  int_type overflow(int_type c) override {
+    const char character = traits_type::to_char_type(c);
+    return xsputn(&character, 1) == 1 ? c : traits_type::eof();
+  }
+
+ private:
+  OutputFile& file_;
+  Status status_;
+};
+
+tinygltf::Value text_list(const std::vector<std::string>& texts) {
+  tinygltf::Value::Array list;
+  for (const std::string& text : texts) list.emplace_back(text);
+  return tinygltf::Value(list);
+}
+
+tinygltf::Value provenance_value(const Provenance& provenance) {
+  tinygltf::Value::Object value;
+  value["tool"] = tinygltf::Value(provenance.tool);
+  value["version"] = tinygltf::Value(provenance.version);
+  tinygltf::Value::Array sources;
+  for (const auto& source : provenance.sources) {
+    sources.emplace_back(tinygltf::Value::Object{{"name", tinygltf::Value(source.name)},
+                                                 {"xxh3", tinygltf::Value(source.xxh3)}});
+  }
+  if (!sources.empty()) value["sources"] = tinygltf::Value(sources);
+  tinygltf::Value::Object options;
+  for (const auto& [name, given] : provenance.options) options[name] = tinygltf::Value(given);
+  if (!options.empty()) value["options"] = tinygltf::Value(options);
+  if (!provenance.conversions.empty()) value["conversions"] = text_list(provenance.conversions);
+  if (!provenance.warnings.empty()) value["warnings"] = text_list(provenance.warnings);
+  return tinygltf::Value(tinygltf::Value::Object{{"provenance", tinygltf::Value(value)}});
+}
+
+template <typename Vector>
+std::vector<double> as_list(const Vector& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+}  // namespace
+
+Document::Document(const WriteOptions& options) : options_(options) {
+  const Provenance& provenance = options.provenance;
+  gltf.asset.version = "2.0";
+  gltf.asset.generator =
+      provenance.version.empty() ? "krok" : fmt::format("krok {}", provenance.version);
+  if (!provenance.tool.empty()) gltf.asset.extras = provenance_value(provenance);
+  gltf.scenes.resize(1);
+  gltf.defaultScene = 0;
+}
+
+int Document::add_accessor(std::span<const std::byte> bytes, int component,
+                           std::size_t component_size, int type, Use use) {
+  const std::size_t element_size = component_size * static_cast<std::size_t>(components_of(type));
+  tinygltf::BufferView view;
+  view.buffer = 0;
+  view.byteOffset = buffer_.size();
+  view.byteLength = bytes.size();
+  if (use == Use::vertices) {
+    view.target = TINYGLTF_TARGET_ARRAY_BUFFER;
+    view.byteStride = element_size;
+  } else if (use == Use::indices) {
+    view.target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
+  }
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  buffer_.insert(buffer_.end(), data, data + bytes.size());
+  buffer_.resize((buffer_.size() + 3) / 4 * 4, 0);
+  gltf.bufferViews.push_back(std::move(view));
+
+  tinygltf::Accessor accessor;
+  accessor.bufferView = static_cast<int>(gltf.bufferViews.size()) - 1;
+  accessor.byteOffset = 0;
+  accessor.componentType = component;
+  accessor.count = bytes.size() / element_size;
+  accessor.type = type;
+  gltf.accessors.push_back(std::move(accessor));
+  return static_cast<int>(gltf.accessors.size()) - 1;
+}
+
+int Document::add_floats(std::span<const float> values, int type, Use use, bool bounds) {
+  const int accessor =
+      add_accessor(std::as_bytes(values), TINYGLTF_COMPONENT_TYPE_FLOAT, sizeof(float), type, use);
+  if (bounds) {
+    const auto components = static_cast<std::size_t>(components_of(type));
+    std::vector<double> least(values.begin(), values.begin() + static_cast<long>(components));
+    std::vector<double> most = least;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double value = values[i];
+      double& low = least[i % components];
+      double& high = most[i % components];
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    gltf.accessors[accessor].minValues = std::move(least);
+    gltf.accessors[accessor].maxValues = std::move(most);
+  }
+  return accessor;
+}
+
+int Document::add_positions(std::span<const Vec3f> values, Use use) {
+  return add_floats({values.data()->data(), values.size() * 3}, TINYGLTF_TYPE_VEC3, use, true);
+}
+
+int Document::add_vectors(std::span<const Vec3f> values, Use use) {
+  return add_floats({values.data()->data(), values.size() * 3}, TINYGLTF_TYPE_VEC3, use, false);
+}
+
+int Document::add_integers(std::span<const std::uint32_t> values, int type, std::uint32_t largest,
+                           Use use) {
+  // The narrowest type that holds the largest value: as an index, 255 and 65535 are reserved.
+  // Bytes serve joints only: four of them keep to the alignment that vertices need.
+  if (use == Use::vertices && largest < 256) {
+    std::vector<std::uint8_t> narrow(values.begin(), values.end());
+    return add_accessor(std::as_bytes(std::span(narrow)), TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, 1,
+                        type, use);
+  }
+  if (largest < 65535) {
+    std::vector<std::uint16_t> narrow(values.begin(), values.end());
+    return add_accessor(std::as_bytes(std::span(narrow)), TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, 2,
+                        type, use);
+  }
+  return add_accessor(std::as_bytes(values), TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, 4, type, use);
+}
+
+std::string Document::unique_node_name(const std::string& wanted) {
+  std::string name = wanted;
+  for (int i = 2; !node_names_.insert(name).second; ++i) name = fmt::format("{}_{}", wanted, i);
+  return name;
+}
+
+void Document::add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
+                           int values) {
+  tinygltf::AnimationSampler sampler;
+  sampler.input = times;
+  sampler.output = values;
+  sampler.interpolation = "LINEAR";
+  tinygltf::AnimationChannel channel;
+  channel.sampler = static_cast<int>(animation.samplers.size());
+  channel.target_node = node;
+  channel.target_path = path;
+  animation.samplers.push_back(std::move(sampler));
+  animation.channels.push_back(std::move(channel));
+}
+
+int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
+                           const std::string& name) {
+  const int first = static_cast<int>(gltf.nodes.size());
+  std::vector<float> inverse_reference;
+  tinygltf::Skin skin;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const JointTrack& track = tracks.joints[j];
+    tinygltf::Node node;
+    node.name = unique_node_name(skeleton.names[j]);
+    if (!track.rest_translation.isZero(0)) node.translation = as_list(track.rest_translation);
+    if (track.rest_rotation.w() != 1.0f) node.rotation = as_list(track.rest_rotation.coeffs());
+    gltf.nodes.push_back(std::move(node));
+    if (skeleton.parents[j] == Skeleton::kNoParent) {
+      gltf.scenes[0].nodes.push_back(first + j);
+    } else {
+      gltf.nodes[first + skeleton.parents[j]].children.push_back(first + j);
+    }
+    const Mat4f inverse = skeleton.reference[j].inverse().matrix().cast<float>();
+    inverse_reference.insert(inverse_reference.end(), inverse.data(), inverse.data() + 16);
+    skin.joints.push_back(first + j);
+  }
+  skin.name = name;
+  skin.skeleton = first;
+  skin.inverseBindMatrices = add_floats(inverse_reference, TINYGLTF_TYPE_MAT4, Use::data, false);
+  gltf.skins.push_back(std::move(skin));
+
+  if (!tracks.times.empty()) {
+    tinygltf::Animation animation;
+    animation.name = name;
+    const int times = add_floats(tracks.times, TINYGLTF_TYPE_SCALAR, Use::data, true);
+    for (int j = 0; j < skeleton.joint_count(); ++j) {
+      const JointTrack& track = tracks.joints[j];
+      if (!track.translations.empty()) {
+        add_channel(animation, first + j, "translation", times,
+                    add_vectors(track.translations, Use::data));
+      }
+      if (!track.rotations.empty()) {
+        const std::span values(track.rotations.data()->coeffs().data(), track.rotations.size() * 4);
+        add_channel(animation, first + j, "rotation", times,
+                    add_floats(values, TINYGLTF_TYPE_VEC4, Use::data, false));
+      }
+    }
+    // A figure that stands still in its reference pose is still a motion of some length.
+    if (animation.channels.empty()) {
+      const std::vector<Vec3f> still(tracks.times.size(), tracks.joints[0].rest_translation);
+      add_channel(animation, first, "translation", times, add_vectors(still, Use::data));
+    }
+    gltf.animations.push_back(std::move(animation));
+  }
+  return static_cast<int>(gltf.skins.size()) - 1;
+}
+
+int Document::add_material(const std::string& name) {
+  const auto [place, made] = materials_.emplace(name, static_cast<int>(gltf.materials.size()));
+  if (made) {
+    tinygltf::Material material;
+    material.name = name.empty() ? "default" : name;
+    material.pbrMetallicRoughness.baseColorFactor = {0.8, 0.8, 0.8, 1.0};
+    material.pbrMetallicRoughness.metallicFactor = 0.0;
+    material.pbrMetallicRoughness.roughnessFactor = 0.8;
+    gltf.materials.push_back(std::move(material));
+  }
+  return place->second;
+}
+
+Result<int> Document::add_mesh(const Model& model, const std::map<std::string, int>& attributes,
+                               const std::string& name) {
+  tinygltf::Mesh mesh;
+  mesh.name = name;
+  const auto largest = static_cast<std::uint32_t>(model.positions.size() - 1);
+  const std::uint32_t* indices = model.triangles.empty() ? nullptr : model.triangles[0].data();
+  for (const Model::Part& part : model.parts) {
+    if (part.triangle_count == 0) continue;
+    tinygltf::Primitive primitive;
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    primitive.attributes = attributes;
+    primitive.material = add_material(part.material);
+    primitive.indices = add_integers(
+        {indices + std::size_t{3} * part.first_triangle, std::size_t{3} * part.triangle_count},
+        TINYGLTF_TYPE_SCALAR, largest, Use::indices);
+    mesh.primitives.push_back(std::move(primitive));
+  }
+  if (mesh.primitives.empty()) {
+    return Error("gltf-empty-mesh", "the model has no triangles, and glTF knows no empty mesh");
+  }
+  gltf.meshes.push_back(std::move(mesh));
+  return static_cast<int>(gltf.meshes.size()) - 1;
+}
+
+int Document::add_mesh_node(int mesh, int skin, const std::string& name) {
+  tinygltf::Node node;
+  node.name = unique_node_name(name);
+  node.mesh = mesh;
+  node.skin = skin;
+  gltf.nodes.push_back(std::move(node));
+  const int index = static_cast<int>(gltf.nodes.size()) - 1;
+  gltf.scenes[0].nodes.push_back(index);
+  return index;
+}
+
+void Document::add_morph_motion(int mesh, int node,
+                                const std::vector<std::map<std::string, int>>& targets,
+                                std::span<const float> times, const std::string& name) {
+  for (tinygltf::Primitive& primitive : gltf.meshes[mesh].primitives) primitive.targets = targets;
+  // Blender and three.js show these names.
+  std::vector<std::string> names;
+  for (std::size_t t = 0; t < targets.size(); ++t) names.push_back(fmt::format("frame_{}", t + 1));
+  gltf.meshes[mesh].extras =
+      tinygltf::Value(tinygltf::Value::Object{{"targetNames", text_list(names)}});
+
+  std::vector<float> weights(times.size() * targets.size(), 0.0f);
+  for (std::size_t t = 0; t < targets.size(); ++t) weights[(t + 1) * targets.size() + t] = 1.0f;
+  tinygltf::Animation animation;
+  animation.name = name;
+  const int input = add_floats(times, TINYGLTF_TYPE_SCALAR, Use::data, true);
+  add_channel(animation, node, "weights", input,
+              add_floats(weights, TINYGLTF_TYPE_SCALAR, Use::data, false));
+  gltf.animations.push_back(std::move(animation));
+}
+
+Status Document::write(OutputFile& file) {
+  if (buffer_.size() > kMaxBufferBytes) {
+    return Error("gltf-too-large",
+                 fmt::format("the file would hold {} MB, more than glTF's lengths can tell",
+                             buffer_.size() >> 20),
+                 "write fewer frames");
+  }
+  if (!buffer_.empty()) {
+    gltf.buffers.resize(1);
+    gltf.buffers[0].data = std::move(buffer_);
+  }
+  FileBuffer buffer(file);
+  std::ostream stream(&buffer);
+  try {
+    tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, !options_.binary, options_.binary);
+  } catch (const nlohmann::json::exception& error) {
+    // Its serializer throws for one thing alone.
+    return Error("gltf-name", "a name is not valid UTF-8, which glTF asks for",
+                 "rename the joint or material");
+  }
+  stream.flush();
+  if (!buffer.status()) return buffer.status();
+  if (!stream) return Error("file-unwritable", "the output cannot be written");
+  return {};
+}
+
+}  // namespace krok::gltf

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "math/types.h"
+
+// What the project uses of a glTF 2.0 file: nodes, meshes with morph targets, skins, animations.
+// Materials are known by name; images, cameras and lights are left aside. Indices between the parts
+// are checked by the reader and always in range.
+// Source: Khronos Group, glTF 2.0 Specification (ISO/IEC 12113).
+
+namespace krok::gltf {
+
+// Values of an accessor, shared by all that refer to it; null where the file has none.
+template <typename T>
+using Shared = std::shared_ptr<const std::vector<T>>;
+
+struct Node {
+  std::string name;  // may be empty, need not be unique
+  int parent = -1;
+  std::vector<int> children;
+  // node_to_parent: `matrix` where the file gives one, otherwise translation * rotation * scale.
+  bool has_matrix = false;
+  Mat4 matrix = Mat4::Identity();
+  Vec3 translation = Vec3::Zero();
+  Quat rotation = Quat::Identity();  // unit
+  Vec3 scale = Vec3::Ones();
+  int mesh = -1;
+  int skin = -1;
+  std::vector<double> weights;  // of the mesh's targets; empty: the mesh's own
+  bool in_scene = false;        // reached from the scene that is shown
+};
+
+struct MorphTarget {
+  std::string name;  // from the mesh's extras.targetNames, where exporters put it; may be empty
+  Shared<Vec3f> positions;  // displacements, [vertices] or null
+  Shared<Vec3f> normals;
+};
+
+struct Primitive {
+  static constexpr int kMostInfluences = 8;
+
+  std::string material;     // its name; may be empty
+  Shared<Vec3f> positions;  // never null
+  Shared<Vec3f> normals;
+  Shared<Vec2f> texture_coordinates;  // the first set
+  // [vertices x influences_per_vertex]; joints are places in the skin's list. 0, 4 or 8 a vertex.
+  int influences_per_vertex = 0;
+  std::vector<std::uint16_t> influence_joints;
+  std::vector<float> influence_weights;
+  // Strips and fans are written out; none for points and lines.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<MorphTarget> targets;
+
+  std::size_t vertex_count() const { return positions->size(); }
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<Primitive> primitives;  // all with the same number of targets
+  std::vector<double> weights;        // [targets]
+
+  std::size_t target_count() const { return primitives.empty() ? 0 : primitives[0].targets.size(); }
+};
+
+struct Skin {
+  std::string name;
+  std::vector<int> joints;          // nodes
+  std::vector<Mat4> inverse_binds;  // mesh_to_joint in the bind pose, [joints]
+};
+
+enum class Path : unsigned char { translation, rotation, scale, weights };
+enum class Interpolation : unsigned char { linear, step, cubic_spline };
+
+// Keys of one property of one node. Times rise strictly. Values have `width` numbers a key (3, 4 or
+// the number of targets), for cubic splines three times: in-tangent, value, out-tangent.
+struct Channel {
+  int node = 0;
+  Path path = Path::translation;
+  Interpolation interpolation = Interpolation::linear;
+  int width = 3;
+  Shared<float> times;
+  Shared<float> values;
+};
+
+struct Animation {
+  std::string name;
+  std::vector<Channel> channels;
+};
+
+struct Asset {
+  std::string generator;
+  std::vector<Node> nodes;
+  std::vector<int> roots;  // of the scene that is shown: the default one, else the first, else all
+  std::vector<Mesh> meshes;
+  std::vector<Skin> skins;
+  std::vector<Animation> animations;
+  Diagnostics diagnostics;  // what was left aside or is doubtful
+};
+
+}  // namespace krok::gltf

@@ -1,0 +1,293 @@
+#include "formats/gltf/gltf_evaluate.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "math/quaternion.h"
+
+namespace krok::gltf {
+
+namespace {
+
+using Affine = Eigen::Matrix<double, 3, 4>;
+
+constexpr std::size_t kMostVertices = 20'000'000;
+
+Mat4 matrix_of(const Vec3& translation, const Quat& rotation, const Vec3& scale) {
+  Mat4 matrix = Mat4::Identity();
+  matrix.topLeftCorner<3, 3>() = rotation.toRotationMatrix() * scale.asDiagonal();
+  matrix.topRightCorner<3, 1>() = translation;
+  return matrix;
+}
+
+Mat3 nearest_rotation(const Mat3& linear) {
+  const double sign = linear.determinant() < 0 ? -1.0 : 1.0;
+  Mat3 unit = sign * linear;
+  bool vanishes = false;
+  for (int c = 0; c < 3; ++c) {
+    const double length = unit.col(c).norm();
+    vanishes = vanishes || !(length > 1e-150);
+    if (!vanishes) unit.col(c) /= length;
+  }
+  const double skew = vanishes ? 1.0 : (unit.transpose() * unit - Mat3::Identity()).norm();
+  if (skew < 1e-9) return unit;
+  if (!linear.allFinite()) return Mat3::Identity();
+  const Eigen::JacobiSVD<Mat3> svd(sign * linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = svd.matrixU();
+  // The least direction is turned where U V^T would mirror.
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
+  return u * svd.matrixV().transpose();
+}
+
+// Adds weighted displacements to positions or normals.
+void add_targets(const Primitive& primitive, std::span<const double> weights, bool normals,
+                 std::vector<Vec3>& values) {
+  for (std::size_t t = 0; t < primitive.targets.size(); ++t) {
+    const MorphTarget& target = primitive.targets[t];
+    const Shared<Vec3f>& displacements = normals ? target.normals : target.positions;
+    const double weight = weights[t];
+    if (weight == 0 || !displacements) continue;
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      values[v] += weight * (*displacements)[v].cast<double>();
+    }
+  }
+}
+
+void load_vectors(const Shared<Vec3f>& source, std::vector<Vec3>& values) {
+  values.clear();
+  if (!source) return;
+  values.resize(source->size());
+  for (std::size_t v = 0; v < values.size(); ++v) values[v] = (*source)[v].cast<double>();
+}
+
+void skin(const Primitive& primitive, const std::vector<Affine>& palette,
+          std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
+  const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    Affine blended = Affine::Zero();
+    for (std::size_t k = v * per_vertex; k < (v + 1) * per_vertex; ++k) {
+      const auto weight = static_cast<double>(primitive.influence_weights[k]);
+      if (weight != 0) blended += weight * palette[primitive.influence_joints[k]];
+    }
+    positions[v] = blended.leftCols<3>() * positions[v] + blended.col(3);
+    if (!normals.empty()) normals[v] = blended.leftCols<3>() * normals[v];
+  }
+}
+
+void place(const Mat4& node_to_world, std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
+  const Mat3 linear = node_to_world.topLeftCorner<3, 3>();
+  const Vec3 offset = node_to_world.topRightCorner<3, 1>();
+  // The inverse transpose up to a positive factor, without a division.
+  Mat3 cofactors;
+  for (int c = 0; c < 3; ++c) {
+    cofactors.col(c) = linear.col((c + 1) % 3).cross(linear.col((c + 2) % 3));
+  }
+  if (linear.determinant() < 0) cofactors = -cofactors;
+  for (Vec3& position : positions) position = linear * position + offset;
+  for (Vec3& normal : normals) normal = cofactors * normal;
+}
+
+void normalize(std::vector<Vec3>& normals) {
+  for (Vec3& normal : normals) {
+    const double length = normal.stableNorm();
+    if (length > 0) normal /= length;
+  }
+}
+
+}  // namespace
+
+Transform rigid_part(const Mat4& matrix) {
+  const Mat3 rotation = nearest_rotation(matrix.topLeftCorner<3, 3>());
+  return {matrix.topRightCorner<3, 1>(), normalized_or_identity(Quat(rotation))};
+}
+
+Result<Evaluator> Evaluator::create(const Asset& asset) {
+  Evaluator evaluator(asset);
+  evaluator.order_nodes();
+  if (auto found = evaluator.find_instances(); !found) return found.error();
+  evaluator.find_joints();
+  return evaluator;
+}
+
+const Primitive& Evaluator::primitive(const Instance& instance) const {
+  return asset_->meshes[static_cast<std::size_t>(instance.mesh)]
+      .primitives[static_cast<std::size_t>(instance.primitive)];
+}
+
+// Depth first through the scene, so that instances come in the order that people see in an outline;
+// nodes outside of it after.
+void Evaluator::order_nodes() {
+  const auto& nodes = asset_->nodes;
+  std::vector<int> pending(asset_->roots.rbegin(), asset_->roots.rend());
+  const auto visit = [&] {
+    while (!pending.empty()) {
+      const int node = pending.back();
+      pending.pop_back();
+      order_.push_back(node);
+      const auto& children = nodes[static_cast<std::size_t>(node)].children;
+      pending.insert(pending.end(), children.rbegin(), children.rend());
+    }
+  };
+  visit();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i].parent == -1 && !nodes[i].in_scene) pending.push_back(static_cast<int>(i));
+  }
+  visit();
+}
+
+Status Evaluator::find_instances() {
+  std::size_t vertices = 0;
+  for (const int index : order_) {
+    const Node& node = asset_->nodes[static_cast<std::size_t>(index)];
+    if (!node.in_scene || node.mesh < 0) continue;
+    const Mesh& mesh = asset_->meshes[static_cast<std::size_t>(node.mesh)];
+    for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+      instances_.push_back({index, node.mesh, static_cast<int>(p)});
+      vertices += mesh.primitives[p].vertex_count();
+    }
+    if (vertices > kMostVertices) {
+      return Error("gltf-too-large",
+                   fmt::format("the scene shows more than {} vertices", kMostVertices));
+    }
+  }
+  return {};
+}
+
+void Evaluator::find_joints() {
+  const auto& nodes = asset_->nodes;
+  std::vector<char> is_joint(nodes.size(), 0);
+  for (const Skin& one : asset_->skins) {
+    for (const int joint : one.joints) is_joint[static_cast<std::size_t>(joint)] = 1;
+  }
+  if (asset_->skins.empty() && instances_.empty()) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) is_joint[i] = nodes[i].in_scene ? 1 : 0;
+  }
+  // The place in joints_ of each node or of its nearest ancestor that is a joint.
+  std::vector<int> nearest(nodes.size(), -1);
+  for (const int index : order_) {
+    const auto i = static_cast<std::size_t>(index);
+    const int parent = nodes[i].parent;
+    const int above = parent < 0 ? -1 : nearest[static_cast<std::size_t>(parent)];
+    nearest[i] = above;
+    if (!is_joint[i]) continue;
+    nearest[i] = static_cast<int>(joints_.size());
+    joints_.push_back(index);
+    joint_parents_.push_back(above);
+  }
+}
+
+std::vector<double> Evaluator::key_times(int animation) const {
+  std::vector<double> times;
+  std::vector<const std::vector<float>*> seen;  // channels mostly share their times
+  for (const Channel& channel : asset_->animations[static_cast<std::size_t>(animation)].channels) {
+    if (std::find(seen.begin(), seen.end(), channel.times.get()) != seen.end()) continue;
+    seen.push_back(channel.times.get());
+    const std::size_t middle = times.size();
+    times.insert(times.end(), channel.times->begin(), channel.times->end());
+    std::inplace_merge(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(middle),
+                       times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+  }
+  return times;
+}
+
+void Evaluator::place_nodes(int animation, double time, Evaluation& out) const {
+  const auto& nodes = asset_->nodes;
+  out.node_translations.resize(nodes.size());
+  out.node_rotations.resize(nodes.size());
+  out.node_scales.resize(nodes.size());
+  out.node_weights.resize(nodes.size());
+  out.node_to_world.resize(nodes.size());
+  std::vector<char> moved(nodes.size(), 0);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Node& node = nodes[i];
+    out.node_translations[i] = node.translation;
+    out.node_rotations[i] = node.rotation;
+    out.node_scales[i] = node.scale;
+    if (node.mesh >= 0) {
+      out.node_weights[i] = node.weights.empty()
+                                ? asset_->meshes[static_cast<std::size_t>(node.mesh)].weights
+                                : node.weights;
+    }
+    if (node.has_matrix) {
+      const Transform rigid = rigid_part(node.matrix);
+      const Mat3 linear = node.matrix.topLeftCorner<3, 3>();
+      out.node_translations[i] = rigid.position;
+      out.node_rotations[i] = rigid.orientation;
+      out.node_scales[i] = (rigid.orientation.toRotationMatrix().transpose() * linear).diagonal();
+    }
+  }
+  if (animation >= 0) {
+    for (const Channel& channel :
+         asset_->animations[static_cast<std::size_t>(animation)].channels) {
+      const auto i = static_cast<std::size_t>(channel.node);
+      out.values.resize(static_cast<std::size_t>(channel.width));
+      sample(channel, time, out.values);
+      const auto& value = out.values;
+      if (channel.path == Path::weights) {
+        out.node_weights[i] = value;
+        continue;
+      }
+      moved[i] = 1;
+      if (channel.path == Path::translation) {
+        out.node_translations[i] = Vec3(value[0], value[1], value[2]);
+      } else if (channel.path == Path::rotation) {
+        out.node_rotations[i] = Quat(value[3], value[0], value[1], value[2]);
+      } else {
+        out.node_scales[i] = Vec3(value[0], value[1], value[2]);
+      }
+    }
+  }
+  for (const int index : order_) {
+    const auto i = static_cast<std::size_t>(index);
+    const Node& node = nodes[i];
+    const Mat4 to_parent =
+        node.has_matrix && !moved[i]
+            ? node.matrix
+            : matrix_of(out.node_translations[i], out.node_rotations[i], out.node_scales[i]);
+    out.node_to_world[i] =
+        node.parent < 0
+            ? to_parent
+            : Mat4(out.node_to_world[static_cast<std::size_t>(node.parent)] * to_parent);
+  }
+}
+
+void Evaluator::evaluate_instance(std::size_t index, Evaluation& out) const {
+  const Instance& instance = instances_[index];
+  const Primitive& shape = primitive(instance);
+  const Node& node = asset_->nodes[static_cast<std::size_t>(instance.node)];
+  std::vector<Vec3>& positions = out.positions[index];
+  std::vector<Vec3>& normals = out.normals[index];
+  load_vectors(shape.positions, positions);
+  load_vectors(shape.normals, normals);
+  const auto& weights = out.node_weights[static_cast<std::size_t>(instance.node)];
+  add_targets(shape, weights, false, positions);
+  if (!normals.empty()) add_targets(shape, weights, true, normals);
+
+  if (node.skin >= 0 && shape.influences_per_vertex > 0) {
+    // A skinned mesh stands where its joints are; its own node does not matter.
+    const Skin& one = asset_->skins[static_cast<std::size_t>(node.skin)];
+    out.palette.resize(one.joints.size());
+    for (std::size_t j = 0; j < one.joints.size(); ++j) {
+      out.palette[j] =
+          (out.node_to_world[static_cast<std::size_t>(one.joints[j])] * one.inverse_binds[j])
+              .topRows<3>();
+    }
+    skin(shape, out.palette, positions, normals);
+  } else {
+    place(out.node_to_world[static_cast<std::size_t>(instance.node)], positions, normals);
+  }
+  normalize(normals);
+}
+
+void Evaluator::evaluate(int animation, double time, Evaluation& out) const {
+  place_nodes(animation, time, out);
+  out.positions.resize(instances_.size());
+  out.normals.resize(instances_.size());
+  for (std::size_t i = 0; i < instances_.size(); ++i) evaluate_instance(i, out);
+}
+
+}  // namespace krok::gltf

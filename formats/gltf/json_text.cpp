@@ -1,0 +1,275 @@
+#include "formats/gltf/json_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+namespace krok::gltf {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kDeepest = 128;
+constexpr std::size_t kLongestMessage = 200;
+
+Error at_offset(Error error, const Container& container, std::size_t offset) {
+  if (container.binary) {
+    return std::move(error).at_byte(static_cast<std::int64_t>(container.json_offset + offset));
+  }
+  const std::string_view before = container.json.substr(0, offset);
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  const std::size_t start = before.rfind('\n');
+  const std::size_t column = start == std::string_view::npos ? offset : offset - start - 1;
+  return std::move(error).at_line(line, static_cast<std::int64_t>(column) + 1);
+}
+
+// The place where the text nests too deep, or npos. Parsers and destructors may recurse, so this
+// comes before them.
+std::size_t too_deep_at(std::string_view text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kDeepest) return i;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return std::string_view::npos;
+}
+
+Result<Json> parse_text(const Container& container) {
+  const std::string_view text = container.json;
+  if (const std::size_t place = too_deep_at(text); place != std::string_view::npos) {
+    return at_offset(Error("gltf-json", fmt::format("the JSON nests deeper than {}", kDeepest),
+                           "this is no file that an exporter writes"),
+                     container, place);
+  }
+  try {
+    Json json = Json::parse(text);
+    if (json.is_object()) return json;
+    return Error("gltf-json", "the JSON is not an object");
+  } catch (const Json::parse_error& error) {
+    // Its message begins "[json.exception...] parse error at line 1, column 5: ".
+    std::string what = error.what();
+    const std::size_t colon = what.find(": ");
+    if (colon != std::string::npos) what = what.substr(colon + 2);
+    if (what.size() > kLongestMessage) what = what.substr(0, kLongestMessage) + "...";
+    const std::size_t offset = error.byte > 0 ? std::min(error.byte - 1, text.size()) : 0;
+    return at_offset(Error("gltf-json", "the JSON does not parse: " + what,
+                           "the file is damaged or was cut short"),
+                     container, offset);
+  } catch (const Json::exception& error) {
+    return Error("gltf-json", fmt::format("the JSON cannot be used: {}", error.what()));
+  }
+}
+
+std::string text_member(const Json& object, const char* name) {
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  if (!object.is_object() || found == object.end() || !found->is_string()) return {};
+  return found->get<std::string>();
+}
+
+Status check_asset(const Json& json) {
+  const auto asset = json.find("asset");
+  if (asset == json.end()) {
+    return Error("gltf-version", "no 'asset' is given, so this is not glTF 2.0",
+                 "glTF 1.0 and other JSON cannot be read; convert to glTF 2.0");
+  }
+  const std::string version = text_member(*asset, "version");
+  if (!version.starts_with("2.")) {
+    return Error("gltf-version",
+                 fmt::format("glTF version '{}', expected 2.0", version.substr(0, 20)),
+                 "convert it to glTF 2.0");
+  }
+  return {};
+}
+
+// Extensions that change how things look but not where they are.
+bool is_harmless(std::string_view extension) {
+  constexpr std::array kPrefixes = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
+                                    "MSFT_texture_",  "KHR_lights_",  "EXT_lights_",
+                                    "KHR_xmp",        "MSFT_lod"};
+  return extension == "KHR_mesh_quantization" ||
+         std::any_of(kPrefixes.begin(), kPrefixes.end(),
+                     [&](const char* prefix) { return extension.starts_with(prefix); });
+}
+
+Status check_extensions(const Json& json) {
+  const auto required = json.find("extensionsRequired");
+  if (required == json.end() || !required->is_array()) return {};
+  for (const Json& extension : *required) {
+    const std::string name = extension.is_string() ? extension.get<std::string>() : "?";
+    if (is_harmless(name)) continue;
+    return Error("gltf-extension",
+                 fmt::format("the file requires the extension {}, which is not supported",
+                             name.substr(0, 80)),
+                 "export it without that extension (compressed meshes: decompress it first)");
+  }
+  return {};
+}
+
+Result<std::vector<BufferEntry>> read_buffers(const Json& json) {
+  std::vector<BufferEntry> buffers;
+  const auto list = json.find("buffers");
+  if (list == json.end()) return buffers;
+  if (!list->is_array()) return Error("gltf-structure", "'buffers' is not an array");
+  for (const Json& entry : *list) {
+    const auto length = entry.is_object() ? entry.find("byteLength") : entry.end();
+    if (!entry.is_object() || length == entry.end() || !length->is_number_unsigned()) {
+      return Error("gltf-structure",
+                   fmt::format("buffer {} has no valid byteLength", buffers.size()));
+    }
+    const auto uri = entry.find("uri");
+    buffers.push_back(
+        {length->get<std::uint64_t>(), uri != entry.end(), text_member(entry, "uri")});
+  }
+  return buffers;
+}
+
+// Names of a list's entries.
+std::vector<std::string> names_of(const Json& json, const char* list_name) {
+  std::vector<std::string> names;
+  const auto list = json.find(list_name);
+  if (list == json.end() || !list->is_array()) return names;
+  for (const Json& entry : *list) names.push_back(text_member(entry, "name"));
+  return names;
+}
+
+std::vector<std::vector<std::string>> read_target_names(const Json& json) {
+  std::vector<std::vector<std::string>> all;
+  const auto meshes = json.find("meshes");
+  if (meshes == json.end() || !meshes->is_array()) return all;
+  for (const Json& mesh : *meshes) {
+    std::vector<std::string>& names = all.emplace_back();
+    if (!mesh.is_object() || !mesh.contains("extras")) continue;
+    const Json& extras = mesh.at("extras");
+    if (!extras.is_object() || !extras.contains("targetNames")) continue;
+    const Json& list = extras.at("targetNames");
+    if (!list.is_array()) continue;
+    for (const Json& name : list) {
+      names.push_back(name.is_string() ? name.get<std::string>() : std::string());
+    }
+  }
+  return all;
+}
+
+// Removes what is not used. The depth was bounded before.
+void drop_extras(Json& json) {
+  if (json.is_object()) {
+    json.erase("extras");
+    json.erase("extensions");
+  }
+  if (json.is_object() || json.is_array()) {
+    for (Json& part : json) drop_extras(part);
+  }
+}
+
+Json used_parts(Json& json) {
+  Json used = Json::object();
+  for (const char* part : {"asset", "scene", "scenes", "nodes", "meshes", "skins", "animations",
+                           "accessors", "bufferViews"}) {
+    if (const auto found = json.find(part); found != json.end()) used[part] = std::move(*found);
+  }
+  drop_extras(used);
+  return used;
+}
+
+// tinygltf cuts integers to 32 bits, which could turn an index that does not exist into one that
+// does. Coordinates may be any number; sizes that it takes in 64 bits are checked where they are
+// used.
+Status check_integers(const Json& json, bool in_sparse = false) {
+  if (json.is_array()) {
+    for (const Json& part : json) {
+      if (auto ok = check_integers(part, in_sparse); !ok) return ok;
+    }
+  } else if (json.is_object()) {
+    constexpr std::array kNumbers = {"matrix",  "rotation", "scale", "translation",
+                                     "weights", "min",      "max"};
+    constexpr std::array kSizes = {"byteOffset", "byteLength", "count"};
+    const auto is_in = [](const auto& list, const std::string& key) {
+      return std::find(list.begin(), list.end(), key) != list.end();
+    };
+    for (const auto& [key, value] : json.items()) {
+      if (is_in(kNumbers, key) || (!in_sparse && is_in(kSizes, key))) continue;
+      if (auto ok = check_integers(value, in_sparse || key == "sparse"); !ok) return ok;
+    }
+  } else if (json.is_number_integer()) {
+    const bool fits = json.is_number_unsigned() ? json.get<std::uint64_t>() <= 0x7FFFFFFFu
+                                                : json.get<std::int64_t>() >= -1;
+    if (!fits) {
+      return Error("gltf-structure", fmt::format("the integer {} is out of range", json.dump()));
+    }
+  }
+  return {};
+}
+
+Status check_primitives(const Json& json, const tinygltf::Model& model) {
+  const auto meshes = json.find("meshes");
+  for (std::size_t i = 0; i < model.meshes.size(); ++i) {
+    const Json& mesh = (*meshes)[i];
+    const auto primitives = mesh.find("primitives");
+    const std::size_t listed =
+        primitives != mesh.end() && primitives->is_array() ? primitives->size() : 0;
+    if (listed == model.meshes[i].primitives.size() && listed > 0) continue;
+    return Error("gltf-structure",
+                 fmt::format("mesh {} has no primitives, or one without attributes", i));
+  }
+  return {};
+}
+
+std::string first_line(const std::string& text) {
+  const std::string line = text.substr(0, text.find('\n'));
+  return line.size() > kLongestMessage ? line.substr(0, kLongestMessage) + "..." : line;
+}
+
+}  // namespace
+
+Result<ParsedJson> parse_json(const Container& container) {
+  auto parsed = parse_text(container);
+  if (!parsed) return parsed.error();
+  Json& json = *parsed;
+  if (auto ok = check_asset(json); !ok) return ok.error();
+  if (auto ok = check_extensions(json); !ok) return ok.error();
+
+  ParsedJson result;
+  auto buffers = read_buffers(json);
+  if (!buffers) return buffers.error();
+  result.buffers = std::move(*buffers);
+  result.material_names = names_of(json, "materials");
+  result.target_names = read_target_names(json);
+
+  const Json used = used_parts(json);
+  json = Json();
+  if (auto ok = check_integers(used); !ok) return ok.error();
+  tinygltf::TinyGLTF loader;
+  std::string errors, warnings;
+  try {
+    const std::string text = used.dump();
+    const bool loaded = loader.LoadASCIIFromString(&result.model, &errors, &warnings, text.data(),
+                                                   static_cast<unsigned int>(text.size()), "", 0);
+    if (!loaded) {
+      return Error("gltf-structure", "the file's structure is not glTF 2.0: " + first_line(errors),
+                   "run the Khronos glTF validator over it to see all its faults");
+    }
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return Error("gltf-structure",
+                 "the file's structure is not glTF 2.0: " + first_line(error.what()),
+                 "run the Khronos glTF validator over it to see all its faults");
+  }
+  if (auto ok = check_primitives(used, result.model); !ok) return ok.error();
+  return result;
+}
+
+}  // namespace krok::gltf

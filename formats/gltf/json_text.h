@@ -1,0 +1,34 @@
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "formats/gltf/glb_container.h"
+
+// Private to this folder: from the JSON of a glTF file to tinygltf's structures.
+
+namespace krok::gltf {
+
+struct BufferEntry {
+  std::uint64_t byte_length = 0;
+  bool has_uri = false;
+  std::string uri;
+};
+
+struct ParsedJson {
+  tinygltf::Model model;  // without buffers, materials, images, cameras, extras and extensions
+  std::vector<BufferEntry> buffers;
+  std::vector<std::string> material_names;
+  std::vector<std::vector<std::string>> target_names;  // [meshes], each possibly empty
+};
+
+// Refuses JSON that nests deeper than glTF ever needs, and versions and required extensions that
+// are not known. tinygltf gets only those parts of the file that are used, so that what it does
+// with others cannot matter. Codes gltf-json, gltf-version, gltf-extension, gltf-structure.
+Result<ParsedJson> parse_json(const Container& container);
+
+}  // namespace krok::gltf

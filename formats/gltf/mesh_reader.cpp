@@ -1,0 +1,263 @@
+#include "formats/gltf/mesh_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace krok::gltf {
+
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+constexpr const char* kHint = "the file is damaged or its exporter has a fault";
+
+Error bad_mesh(const std::string& name, const std::string& what) {
+  return Error("gltf-mesh", fmt::format("{}: {}", name, what), kHint);
+}
+
+void warn(Diagnostics& diagnostics, std::string code, std::string message) {
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = std::move(code);
+  diagnostic.message = std::move(message);
+  diagnostics.push_back(std::move(diagnostic));
+}
+
+int attribute(const std::map<std::string, int>& attributes, const char* name) {
+  const auto found = attributes.find(name);
+  return found == attributes.end() ? -1 : found->second;
+}
+
+// An attribute of a vector type, null if it is absent; as many as there are vertices.
+Status read_vectors(const std::map<std::string, int>& attributes, const char* what,
+                    std::size_t vertices, Accessors& accessors, const std::string& name,
+                    Shared<Vec3f>& values) {
+  const int accessor = attribute(attributes, what);
+  if (accessor == -1) return {};
+  auto read = accessors.vectors3(accessor);
+  if (!read) return read.error();
+  if ((*read)->size() != vertices) {
+    return bad_mesh(name, fmt::format("{} {} for {} vertices", (*read)->size(), what, vertices));
+  }
+  values = std::move(*read);
+  return {};
+}
+
+Status read_texture_coordinates(const tinygltf::Primitive& source, Accessors& accessors,
+                                const std::string& name, Primitive& primitive) {
+  const int accessor = attribute(source.attributes, "TEXCOORD_0");
+  if (accessor == -1) return {};
+  auto read = accessors.vectors2(accessor);
+  if (!read) return read.error();
+  if ((*read)->size() != primitive.vertex_count()) {
+    return bad_mesh(name, fmt::format("{} TEXCOORD_0 for {} vertices", (*read)->size(),
+                                      primitive.vertex_count()));
+  }
+  primitive.texture_coordinates = std::move(*read);
+  return {};
+}
+
+// Weights that sum to 1, as rounding to bytes would not leave them. A vertex without any hangs on
+// its first joint, as common viewers have it.
+void normalize_weights(Primitive& primitive, const std::string& name, Diagnostics& diagnostics) {
+  const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
+  std::size_t without = 0;
+  for (std::size_t v = 0; v < primitive.vertex_count(); ++v) {
+    const std::span<float> weights(&primitive.influence_weights[v * per_vertex], per_vertex);
+    double sum = 0;
+    for (float& weight : weights) {
+      weight = std::max(weight, 0.0f);
+      sum += static_cast<double>(weight);
+    }
+    if (sum > 0) {
+      for (float& weight : weights) weight = static_cast<float>(static_cast<double>(weight) / sum);
+    } else {
+      weights[0] = 1.0f;
+      ++without;
+    }
+  }
+  if (without > 0) {
+    warn(diagnostics, "gltf-mesh-weights",
+         fmt::format("{}: {} vertices have no weights and hang on their first joint", name,
+                     without));
+  }
+}
+
+Status read_influences(const tinygltf::Primitive& source, Accessors& accessors,
+                       const std::string& name, Primitive& primitive, Diagnostics& diagnostics) {
+  constexpr std::array kJoints = {"JOINTS_0", "JOINTS_1"};
+  constexpr std::array kWeights = {"WEIGHTS_0", "WEIGHTS_1"};
+  std::array<std::vector<std::uint32_t>, 2> joints;
+  std::array<std::vector<float>, 2> weights;
+  const std::size_t vertices = primitive.vertex_count();
+  std::size_t sets = 0;
+  for (; sets < 2; ++sets) {
+    const int joint_accessor = attribute(source.attributes, kJoints[sets]);
+    const int weight_accessor = attribute(source.attributes, kWeights[sets]);
+    if (joint_accessor == -1 && weight_accessor == -1) break;
+    if (joint_accessor == -1 || weight_accessor == -1) {
+      return bad_mesh(name, fmt::format("only one of {} and {}", kJoints[sets], kWeights[sets]));
+    }
+    auto set_joints = accessors.integers(joint_accessor, TINYGLTF_TYPE_VEC4);
+    if (!set_joints) return set_joints.error();
+    auto set_weights = accessors.vectors4(weight_accessor);
+    if (!set_weights) return set_weights.error();
+    if (set_joints->size() != vertices * 4 || set_weights->size() != vertices * 4) {
+      return bad_mesh(name, fmt::format("{} joints and {} weights for {} vertices",
+                                        set_joints->size() / 4, set_weights->size() / 4, vertices));
+    }
+    joints[sets] = std::move(*set_joints);
+    weights[sets] = std::move(*set_weights);
+  }
+  if (attribute(source.attributes, "JOINTS_2") != -1) {
+    warn(diagnostics, "gltf-mesh-influences",
+         fmt::format("{}: more than 8 influences a vertex; the first 8 are used", name));
+  }
+  if (sets == 0 || vertices == 0) return {};
+
+  const std::size_t per_vertex = 4 * sets;
+  if (auto taken = accessors.reserve(vertices * per_vertex * 6); !taken) return taken;
+  primitive.influences_per_vertex = static_cast<int>(per_vertex);
+  primitive.influence_joints.resize(vertices * per_vertex);
+  primitive.influence_weights.resize(vertices * per_vertex);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t k = 0; k < per_vertex; ++k) {
+      const std::size_t from = v * 4 + k % 4;
+      const std::uint32_t joint = joints[k / 4][from];
+      if (joint > 0xFFFF) return bad_mesh(name, fmt::format("joint {} is out of range", joint));
+      primitive.influence_joints[v * per_vertex + k] = static_cast<std::uint16_t>(joint);
+      primitive.influence_weights[v * per_vertex + k] = weights[k / 4][from];
+    }
+  }
+  normalize_weights(primitive, name, diagnostics);
+  return {};
+}
+
+// Corners of triangles, strips and fans as triangles; section 3.7.2.1 of the specification.
+std::vector<Triangle> triangles_of(int mode, std::span<const std::uint32_t> corners) {
+  std::vector<Triangle> triangles;
+  const std::size_t count = corners.size();
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    triangles.reserve(count / 3);
+    for (std::size_t i = 0; i + 2 < count; i += 3) {
+      triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    }
+  } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+    for (std::size_t i = 0; i + 2 < count; ++i) {
+      triangles.push_back({corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
+    }
+  } else if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
+    for (std::size_t i = 1; i + 1 < count; ++i) {
+      triangles.push_back({corners[i], corners[i + 1], corners[0]});
+    }
+  }
+  return triangles;
+}
+
+Status read_triangles(const tinygltf::Primitive& source, Accessors& accessors,
+                      const std::string& name, Primitive& primitive) {
+  if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+    return bad_mesh(name, fmt::format("mode {} is not one of glTF's", source.mode));
+  }
+  const std::size_t vertices = primitive.vertex_count();
+  std::vector<std::uint32_t> corners;
+  if (source.indices >= 0) {
+    auto indices = accessors.integers(source.indices, TINYGLTF_TYPE_SCALAR);
+    if (!indices) return indices.error();
+    corners = std::move(*indices);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (corners[i] < vertices) continue;
+      return bad_mesh(
+          name, fmt::format("index {} is {}, but there are {} vertices", i, corners[i], vertices));
+    }
+  } else {
+    if (auto taken = accessors.reserve(vertices * sizeof(std::uint32_t)); !taken) return taken;
+    corners.resize(vertices);
+    for (std::size_t i = 0; i < vertices; ++i) corners[i] = static_cast<std::uint32_t>(i);
+  }
+  if (source.mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3 != 0) {
+    return bad_mesh(name, fmt::format("{} corners do not make whole triangles", corners.size()));
+  }
+  const std::size_t each = source.mode == TINYGLTF_MODE_TRIANGLES ? 4 : sizeof(Triangle);
+  if (auto taken = accessors.reserve(corners.size() * each); !taken) return taken;
+  primitive.triangles = triangles_of(source.mode, corners);
+  return {};
+}
+
+Status read_targets(const tinygltf::Primitive& source, const std::vector<std::string>& names,
+                    Accessors& accessors, const std::string& name, Primitive& primitive) {
+  for (std::size_t t = 0; t < source.targets.size(); ++t) {
+    MorphTarget& target = primitive.targets.emplace_back();
+    if (t < names.size()) target.name = names[t];
+    const std::string target_name = fmt::format("{}, target {}", name, t);
+    const std::size_t vertices = primitive.vertex_count();
+    if (auto read = read_vectors(source.targets[t], "POSITION", vertices, accessors, target_name,
+                                 target.positions);
+        !read) {
+      return read;
+    }
+    if (auto read = read_vectors(source.targets[t], "NORMAL", vertices, accessors, target_name,
+                                 target.normals);
+        !read) {
+      return read;
+    }
+  }
+  return {};
+}
+
+Result<Primitive> read_primitive(const ParsedJson& parsed, const tinygltf::Primitive& source,
+                                 const std::vector<std::string>& target_names, Accessors& accessors,
+                                 const std::string& name, Diagnostics& diagnostics) {
+  Primitive primitive;
+  if (source.material >= 0 &&
+      static_cast<std::size_t>(source.material) < parsed.material_names.size()) {
+    primitive.material = parsed.material_names[static_cast<std::size_t>(source.material)];
+  }
+  const int position = attribute(source.attributes, "POSITION");
+  if (position == -1) return bad_mesh(name, "has no POSITION");
+  auto positions = accessors.vectors3(position);
+  if (!positions) return positions.error();
+  primitive.positions = std::move(*positions);
+  for (const Status& read : {read_vectors(source.attributes, "NORMAL", primitive.vertex_count(),
+                                          accessors, name, primitive.normals),
+                             read_texture_coordinates(source, accessors, name, primitive),
+                             read_influences(source, accessors, name, primitive, diagnostics),
+                             read_triangles(source, accessors, name, primitive),
+                             read_targets(source, target_names, accessors, name, primitive)}) {
+    if (!read) return read.error();
+  }
+  return primitive;
+}
+
+}  // namespace
+
+Result<Mesh> read_mesh(const ParsedJson& parsed, std::size_t index, Accessors& accessors,
+                       Diagnostics& diagnostics) {
+  const tinygltf::Mesh& source = parsed.model.meshes[index];
+  Mesh mesh;
+  mesh.name = source.name;
+  const std::string name = mesh.name.empty() ? fmt::format("mesh {}", index)
+                                             : fmt::format("mesh {} ({})", index, mesh.name);
+  const std::vector<std::string> no_names;
+  const auto& target_names =
+      index < parsed.target_names.size() ? parsed.target_names[index] : no_names;
+  for (std::size_t p = 0; p < source.primitives.size(); ++p) {
+    auto primitive = read_primitive(parsed, source.primitives[p], target_names, accessors,
+                                    fmt::format("{}, primitive {}", name, p), diagnostics);
+    if (!primitive) return primitive.error();
+    mesh.primitives.push_back(std::move(*primitive));
+    if (mesh.primitives.back().targets.size() == mesh.target_count()) continue;
+    return bad_mesh(name, fmt::format("primitive {} has {} morph targets, the first has {}", p,
+                                      mesh.primitives.back().targets.size(), mesh.target_count()));
+  }
+  mesh.weights = source.weights;
+  if (mesh.weights.empty()) mesh.weights.assign(mesh.target_count(), 0.0);
+  if (mesh.weights.size() != mesh.target_count()) {
+    return bad_mesh(name, fmt::format("{} weights for {} morph targets", mesh.weights.size(),
+                                      mesh.target_count()));
+  }
+  return mesh;
+}
+
+}  // namespace krok::gltf

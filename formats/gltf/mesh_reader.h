@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/result.h"
+#include "formats/gltf/accessors.h"
+#include "formats/gltf/gltf_asset.h"
+#include "formats/gltf/json_text.h"
+
+// Private to this folder: meshes with their primitives, influences and morph targets.
+
+namespace krok::gltf {
+
+// Codes gltf-mesh and those of Accessors.
+Result<Mesh> read_mesh(const ParsedJson& parsed, std::size_t index, Accessors& accessors,
+                       Diagnostics& diagnostics);
+
+}  // namespace krok::gltf

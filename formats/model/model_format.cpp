@@ -1,0 +1,197 @@
+#include "formats/model/model_format.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <limits>
+
+#include "formats/container/sections.h"
+
+namespace krok::model {
+
+namespace {
+
+constexpr ContainerFormat kFormat = {registry::Kind::model, registry::kModelMagic, 1,
+                                     kFlagFourComponents};
+
+struct Info {
+  std::uint32_t joint_count;
+  std::uint32_t vertex_count;
+  std::uint32_t triangle_count;
+  std::uint32_t part_count;
+  std::uint32_t influences_per_vertex;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(Info) == 24);
+
+struct PartRecord {
+  std::uint32_t first_triangle;
+  std::uint32_t triangle_count;
+};
+static_assert(sizeof(PartRecord) == 8);
+
+static_assert(sizeof(Vec2f) == 8 && sizeof(Vec3f) == 12 && sizeof(Vec4f) == 16);
+static_assert(sizeof(std::array<std::uint32_t, 3>) == 12);
+
+// Counts fit 31 bits, so that indices may be ints.
+constexpr std::uint64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
+
+template <typename T>
+Status write_array(std::string_view name, const std::vector<T>& values,
+                   ContainerWriter& container) {
+  // as_bytes wants trivially copyable elements by convention only; Eigen's fixed vectors are plain
+  // arrays of floats (the assertions above).
+  return container.section(
+      name, {reinterpret_cast<const std::byte*>(values.data()), values.size() * sizeof(T)});
+}
+
+template <typename T>
+Status read_array(const ContainerReader& container, std::string_view name, std::uint64_t count,
+                  std::vector<T>& values) {
+  const auto section = container.section(name, count, sizeof(T));
+  if (!section) return section.error();
+  values.resize(count);
+  if (count > 0) {
+    std::memcpy(static_cast<void*>(values.data()), section->bytes.data(), section->bytes.size());
+  }
+  return {};
+}
+
+template <typename T>
+Status read_optional_array(const ContainerReader& container, std::string_view name,
+                           std::uint64_t count, std::vector<T>& values) {
+  if (!container.find(name)) return {};
+  return read_array(container, name, count, values);
+}
+
+Status write_parts(const Model& model, ContainerWriter& container) {
+  std::vector<PartRecord> records;
+  std::vector<std::string> names;
+  for (const Model::Part& part : model.parts) {
+    records.push_back({part.first_triangle, part.triangle_count});
+    names.push_back(part.name);
+    names.push_back(part.material);
+  }
+  if (Status done = write_array("PARTS", records, container); !done) return done;
+  return write_texts("PARTNAME", names, container);
+}
+
+Status read_parts(const ContainerReader& container, std::uint32_t part_count, Model& model) {
+  std::vector<PartRecord> records;
+  if (Status done = read_array(container, "PARTS", part_count, records); !done) return done;
+  auto names = read_texts(container, "PARTNAME", std::uint64_t{2} * part_count);
+  if (!names) return names.error();
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    model.parts.push_back({std::move((*names)[2 * i]), std::move((*names)[2 * i + 1]),
+                           records[i].first_triangle, records[i].triangle_count});
+  }
+  return {};
+}
+
+Status check_storable(const Model& model) {
+  if (Status holds = check(model); !holds) return holds;
+  if (Status holds = krok::check_storable(model.skeleton); !holds) return holds;
+  if (model.positions.size() > kMaxCount || model.triangles.size() > kMaxCount ||
+      model.parts.size() > kMaxCount) {
+    return Error("model-shape",
+                 fmt::format("more than {} vertices, triangles or parts", kMaxCount));
+  }
+  for (const Model::Part& part : model.parts) {
+    if (is_storable_text(part.name) && is_storable_text(part.material)) continue;
+    return Error("model-shape",
+                 "the name or material of a part is no valid UTF-8 or has a zero byte",
+                 "rename the part or its material");
+  }
+  return {};
+}
+
+// The section that check(Model) complains about by this code.
+std::string_view section_of(const std::string& code) {
+  if (code == "model-weight") return "VWEIGHTS";
+  if (code == "model-index") return "TRIANGLE";
+  if (code == "model-value") return "POSITION";
+  return "PARTS";
+}
+
+}  // namespace
+
+Status write(const Model& model, const WriteOptions& options, OutputFile& file) {
+  if (Status holds = check_storable(model); !holds) return holds;
+  const Info info = {static_cast<std::uint32_t>(model.skeleton.names.size()),
+                     static_cast<std::uint32_t>(model.positions.size()),
+                     static_cast<std::uint32_t>(model.triangles.size()),
+                     static_cast<std::uint32_t>(model.parts.size()),
+                     static_cast<std::uint32_t>(model.influences_per_vertex),
+                     0};
+  const bool normals = !model.normals.empty();
+  const bool coordinates = !model.texture_coordinates.empty();
+  const bool tangents = !model.tangents.empty();
+  const std::size_t optional_sections = std::size_t{normals} + coordinates + tangents;
+  ContainerWriter container(file, kFormat, orientation_flags(options.orientation),
+                            8 + kSkeletonSections + optional_sections);
+  Status done = container.section("INFO", std::as_bytes(std::span(&info, 1)));
+  if (done) done = write_skeleton(model.skeleton, options.orientation, container);
+  if (done) done = write_array("POSITION", model.positions, container);
+  if (done && normals) done = write_array("NORMAL", model.normals, container);
+  if (done && coordinates) done = write_array("TEXCOORD", model.texture_coordinates, container);
+  if (done && tangents) done = write_array("TANGENT", model.tangents, container);
+  if (done) done = write_array("VJOINTS", model.influence_joints, container);
+  if (done) done = write_array("VWEIGHTS", model.influence_weights, container);
+  if (done) done = write_array("TRIANGLE", model.triangles, container);
+  if (done) done = write_parts(model, container);
+  if (done) done = write_provenance(model.provenance, container);
+  if (done) done = container.finish();
+  return done;
+}
+
+Result<Model> read(std::span<const std::byte> file) {
+  const auto container = ContainerReader::open(file, kFormat);
+  if (!container) return container.error();
+  const auto info_section = container->section("INFO", 1, sizeof(Info));
+  if (!info_section) return info_section.error();
+  const auto info = ByteReader(info_section->bytes).read<Info>();
+  if (info.joint_count < 1 || info.joint_count > kMaxFileJoints || info.vertex_count > kMaxCount ||
+      info.triangle_count > kMaxCount || info.part_count > kMaxCount ||
+      info.influences_per_vertex < 1 ||
+      info.influences_per_vertex > static_cast<std::uint32_t>(Model::kMaxInfluences)) {
+    return at_section(
+        Error("model-shape",
+              fmt::format("says it has {} joints, {} vertices, {} triangles, {} parts and {} "
+                          "influences a vertex, which is not possible",
+                          info.joint_count, info.vertex_count, info.triangle_count, info.part_count,
+                          info.influences_per_vertex),
+              "make the file anew"),
+        *container, "INFO");
+  }
+
+  Model model;
+  auto skeleton = read_skeleton(*container, info.joint_count);
+  if (!skeleton) return skeleton.error();
+  model.skeleton = *std::move(skeleton);
+  auto provenance = read_provenance(*container);
+  if (!provenance) return provenance.error();
+  model.provenance = *std::move(provenance);
+
+  const std::uint64_t vertices = info.vertex_count;
+  const std::uint64_t influences = vertices * info.influences_per_vertex;
+  model.influences_per_vertex = static_cast<int>(info.influences_per_vertex);
+  Status done = read_array(*container, "POSITION", vertices, model.positions);
+  if (done) done = read_optional_array(*container, "NORMAL", vertices, model.normals);
+  if (done) {
+    done = read_optional_array(*container, "TEXCOORD", vertices, model.texture_coordinates);
+  }
+  if (done) done = read_optional_array(*container, "TANGENT", vertices, model.tangents);
+  if (done) done = read_array(*container, "VJOINTS", influences, model.influence_joints);
+  if (done) done = read_array(*container, "VWEIGHTS", influences, model.influence_weights);
+  if (done) done = read_array(*container, "TRIANGLE", info.triangle_count, model.triangles);
+  if (done) done = read_parts(*container, info.part_count, model);
+  if (!done) return done.error();
+
+  if (Status holds = check(model); !holds) {
+    const std::string_view section = section_of(holds.error().code);
+    return at_section(std::move(holds).error(), *container, section);
+  }
+  return model;
+}
+
+}  // namespace krok::model

@@ -1,0 +1,174 @@
+#include "body/body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "body/build_pose.h"
+#include "body/general_shape.h"
+#include "body/human_shape.h"
+#include "body/polygonise.h"
+#include "body/surface_binding.h"
+#include "core/parallel.h"
+
+namespace krok {
+
+namespace {
+
+using namespace body;
+
+struct Level {
+  std::size_t vertices;
+  int smoothing;  // passes over the weights
+};
+
+Level level_of(BodyDetail detail) {
+  switch (detail) {
+    case BodyDetail::low:
+      return {2500, 2};
+    case BodyDetail::high:
+      return {40000, 12};
+    case BodyDetail::medium:
+      break;
+  }
+  return {10000, 5};
+}
+
+// Cells small enough for the thinnest limb, as far as the number of vertices allows.
+double cell_size(const Field& field, std::size_t target) {
+  // A lattice of this kind has about four vertices per squared cell.
+  const double finest = std::sqrt(4 * field.area_estimate() /
+                                  static_cast<double>(std::max<std::size_t>(100000, 5 * target)));
+  const double coarsest =
+      std::sqrt(4 * field.area_estimate() / static_cast<double>(4 * target));
+  return std::clamp(field.smallest_radius(), finest, coarsest);
+}
+
+// Limbs thinner than the lattice can show would break up.
+void thicken(Shape& shape, double least) {
+  for (Tube& tube : shape.tubes) {
+    for (Station& station : tube.stations) {
+      station.width = std::max(station.width, least);
+      station.depth = std::max(station.depth, least);
+      if (station.cap > 0) station.cap = std::max(station.cap, least);
+    }
+  }
+}
+
+Mesh build_mesh(const BlockedField& blocked, std::size_t target, int jobs, Progress& progress) {
+  progress.begin("shaping the body", 4);
+  Mesh mesh = without_fragments(polygonise(blocked, jobs), 0.02);
+  progress.advance(1);
+  relax(mesh, blocked, 1, 0.5, jobs);
+  progress.advance(1);
+  std::vector<double> detail(mesh.positions.size(), 1.0);
+  parallel_for(detail.size(), 256, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto places = blocked.places(mesh.positions[v]);
+      if (!places.empty()) detail[v] = blocked.field().station_at(places.front()).detail;
+    }
+  });
+  mesh = simplify(mesh, detail, target);
+  progress.advance(1);
+  relax(mesh, blocked, 4, 0.5, jobs);
+  progress.end();
+  return mesh;
+}
+
+// Linear blend skinning of the mesh into another pose of its skeleton.
+void move_to(const Skeleton& skeleton, std::span<const Transform> built,
+             std::span<const Transform> wanted, const Model& bound, Mesh& mesh) {
+  std::vector<Transform> palette(skeleton.names.size());
+  for (std::size_t j = 0; j < palette.size(); ++j) palette[j] = wanted[j] * built[j].inverse();
+  const auto per_vertex = static_cast<std::size_t>(bound.influences_per_vertex);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    Vec3 moved = Vec3::Zero();
+    double sum = 0;
+    for (std::size_t k = v * per_vertex; k < (v + 1) * per_vertex; ++k) {
+      const double weight = bound.influence_weights[k];
+      moved += weight * (palette[bound.influence_joints[k]] * mesh.positions[v]);
+      sum += weight;
+    }
+    mesh.positions[v] = moved / sum;
+  }
+}
+
+}  // namespace
+
+Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
+  if (Status sound = check(clip); !sound) return std::move(sound).error();
+  const Skeleton& skeleton = clip.skeleton;
+  if (options.pose == BodyPose::frame &&
+      (options.frame < 0 || options.frame >= clip.frame_count())) {
+    return Error("body-frame",
+                 fmt::format("there is no frame {}, the clip has {}", options.frame,
+                             clip.frame_count()),
+                 "frames count from 0");
+  }
+  if (skeleton.names.size() > 65536) {
+    return Error("body-joints", fmt::format("{} joints, at most 65,536 fit in a model",
+                                            skeleton.names.size()));
+  }
+  Progress silent;
+  Progress& progress = options.progress ? *options.progress : silent;
+
+  Body body;
+  const auto figure = find_human(skeleton, find_roles(skeleton));
+  body.human = figure.has_value();
+  std::vector<Transform> wanted;  // where another pose is asked for than a body can be built in
+  if (options.pose == BodyPose::reference) wanted = skeleton.reference;
+  if (options.pose == BodyPose::frame) wanted = clip_pose(clip, options.frame);
+  BuildPose pose;
+  Shape shape;
+  if (figure) {
+    body.stature = figure->stature;
+    pose = human_build_pose(clip, *figure);
+    shape = human_shape(skeleton, *figure, pose.joint_to_world);
+  } else {
+    pose = general_build_pose(clip);
+    if (!wanted.empty()) pose.joint_to_world = std::move(wanted);
+    wanted.clear();
+    shape = general_shape(skeleton, pose.joint_to_world);
+  }
+  body.pose = options.pose == BodyPose::automatic   ? pose.name
+              : options.pose == BodyPose::reference ? "reference"
+                                                    : fmt::format("frame {}", options.frame);
+
+  const Level level = level_of(options.detail);
+  const double cell = cell_size(Field(shape), level.vertices);
+  thicken(shape, 0.8 * cell);
+  const Field field(shape);
+  const double size = field.bounds().diagonal().norm();
+  if (!(size > 1e-9) || !(size < 1e9)) {
+    return Error("body-size", fmt::format("the figure is {} m large", size),
+                 "import it with its real unit of length");
+  }
+  const BlockedField blocked(field, cell, options.jobs);
+  Mesh mesh = build_mesh(blocked, level.vertices, options.jobs, progress);
+
+  Model& model = body.model;
+  model.skeleton = skeleton;
+  model.skeleton.reference = wanted.empty() ? pose.joint_to_world : wanted;
+  bind_surface(mesh, blocked, level.smoothing, options.jobs, model);
+  map_surface(mesh, blocked, options.jobs, model);
+  if (!wanted.empty()) move_to(skeleton, pose.joint_to_world, wanted, model, mesh);
+
+  for (const Vec3& position : mesh.positions) model.positions.push_back(position.cast<float>());
+  for (const Vec3& normal : vertex_normals(mesh)) model.normals.push_back(normal.cast<float>());
+  model.triangles = mesh.triangles;
+  model.parts = {{"body", "body", 0, static_cast<std::uint32_t>(model.triangles.size())}};
+  body.volume = signed_volume(mesh);
+  if (Status sound = check(model); !sound) return std::move(sound).error();
+  return body;
+}
+
+Result<Body> make_body(const Skeleton& skeleton, const BodyOptions& options) {
+  Clip clip;
+  clip.skeleton = skeleton;
+  return make_body(clip, options);
+}
+
+}  // namespace krok

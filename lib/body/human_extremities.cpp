@@ -1,0 +1,323 @@
+#include <algorithm>
+#include <cmath>
+
+#include "body/human_parts.h"
+
+// Neck, head, feet and hands of the human shape.
+
+namespace krok::body {
+
+int HumanBuilder::chest_joint() const {
+  const auto path = joint_path(skeleton_, 0, figure_.arms[0].shoulder);
+  const auto other = joint_path(skeleton_, 0, figure_.arms[1].shoulder);
+  int common = path.front();
+  for (std::size_t i = 0; i < std::min(path.size(), other.size()) && path[i] == other[i]; ++i) {
+    common = path[i];
+  }
+  return common;
+}
+
+void HumanBuilder::build_neck_and_head() {
+  const double u = unit_;
+  const int head = figure_.head >= 0 ? figure_.head : figure_.neck;
+  const Vec3 joint = position(head);
+  // The top of the head: the end site where it is plausible, else from the joint at the skull's base.
+  double top = joint.y() + 0.118 * u;
+  if (figure_.head_top >= 0) {
+    const double above = position(figure_.head_top).y() - joint.y();
+    if (above > 0.085 * u && above < 0.16 * u) top = joint.y() + above;
+  }
+  // Not sunk into the shoulders, not on a stalk.
+  const double shoulder = trunk_point(0.285, 0, 0).y();
+  top = std::clamp(top, shoulder + 0.165 * u, shoulder + 0.235 * u);
+  const Vec3 middle(joint.x(), top, joint.z() + 0.010 * u);
+  const auto at = [&](double left, double below_top, double forward) -> Vec3 {
+    return middle + Vec3(left, -below_top, forward) * u;
+  };
+
+  const auto path = joint_path(skeleton_, chest_joint(), head);
+  const Vec3 base = trunk_point(0.285, 0, -0.012);
+  const Vec3 skull_base = at(0, 0.100, -0.012);
+  Tube neck;
+  const auto add = [&](const Vec3& center, double width, double depth) {
+    Station station;
+    station.center = center;
+    station.width = width * u;
+    station.depth = depth * u;
+    station.arc = center.y() - base.y();
+    station.along = along_[static_cast<std::size_t>(head)];
+    station.detail = 0.9;
+    neck.stations.push_back(station);
+  };
+  add(base, 0.0400, 0.0380);
+  add(base + 0.35 * (skull_base - base), 0.0350, 0.0355);
+  add(base + 0.65 * (skull_base - base), 0.0325, 0.0345);
+  add(skull_base, 0.0325, 0.0360);
+  neck.joints = joints_along(path, base, Vec3::UnitY(), 0.022 * u);
+  neck_ = shape_.add(std::move(neck));
+
+  const TubeJoint owner{head, 0, 0};
+  const auto head_station = [&](const Vec3& center, double width, double depth, double cap,
+                                double detail) {
+    Station station;
+    station.center = center;
+    station.width = width * u;
+    station.depth = depth * u;
+    station.cap = cap * u;
+    station.along = along_[static_cast<std::size_t>(head)] + std::max(0.0, center.y() - joint.y());
+    station.detail = detail;
+    return station;
+  };
+  const auto add_head_tube = [&](std::vector<Station> stations) {
+    Tube tube;
+    tube.stations = std::move(stations);
+    tube.joints = {owner};
+    return shape_.add(std::move(tube));
+  };
+  skull_ = add_head_tube({head_station(at(0, 0.0510, 0.000), 0.0425, 0.0550, 0.0510, 0.75)});
+  face_ = add_head_tube({head_station(at(0, 0.050, 0.018), 0.036, 0.034, 0.03, 0.65),
+                         head_station(at(0, 0.080, 0.024), 0.033, 0.030, 0.03, 0.60),
+                         head_station(at(0, 0.103, 0.028), 0.026, 0.0245, 0.02, 0.60),
+                         head_station(at(0, 0.116, 0.035), 0.016, 0.0160, 0.0135, 0.60)});
+  nose_ = add_head_tube({head_station(at(0, 0.062, 0.0500), 0.0055, 0.0060, 0.005, 0.40),
+                         head_station(at(0, 0.079, 0.0575), 0.0085, 0.0070, 0.006, 0.40)});
+  for (std::size_t side = 0; side < 2; ++side) {
+    const double out = side == 0 ? 1.0 : -1.0;
+    ears_[side] = add_head_tube(
+        {head_station(at(0.0425 * out, 0.070, -0.002), 0.0055, 0.0105, 0.0165, 0.40)});
+  }
+}
+
+void HumanBuilder::build_foot(std::size_t side) {
+  const double u = unit_;
+  const auto& leg = figure_.legs[side];
+  const Vec3 ankle = position(leg.ankle);
+  const int far = leg.toes >= 0 ? leg.toes : leg.tip;
+  // Forward along the foot, level; the ball of the foot where the skeleton has it.
+  Vec3 forward = Vec3::UnitZ();
+  double ball = 0.078 * u;
+  if (far >= 0) {
+    Vec3 level = position(far) - ankle;
+    level.y() = 0;
+    if (level.norm() > 0.03 * u && level.z() > 0) {
+      forward = level.normalized();
+      if (leg.toes >= 0) ball = std::clamp(level.norm(), 0.06 * u, 0.11 * u);
+    }
+  }
+  // The sole lies a malleolus' height (0.039 of the stature) below the ankle, or where the toes are.
+  double sole = ankle.y() - 0.039 * u;
+  if (leg.toes >= 0) {
+    sole = std::clamp(position(leg.toes).y() - 0.010 * u, ankle.y() - 0.065 * u,
+                      ankle.y() - 0.036 * u);
+  }
+  const double high = (ankle.y() - sole) / 0.039;
+  const double stretch = ball / 0.078;
+  const Vec3 across = Vec3::UnitY().cross(forward);  // left
+  const double out = side == 0 ? 1.0 : -1.0;
+  struct Row {
+    double forward, height, width, thick, outward;
+  };
+  constexpr Row kRows[] = {{-0.026, 0.0190, 0.0175, 0.0215, 0.0000}, {0.000, 0.0220, 0.0190, 0.0270, 0.0000},
+                           {0.030, 0.0200, 0.0210, 0.0240, 0.0010},  {0.058, 0.0150, 0.0245, 0.0185, 0.0020},
+                           {0.080, 0.0110, 0.0275, 0.0140, 0.0015},  {0.100, 0.0085, 0.0250, 0.0110, 0.0005},
+                           {0.112, 0.0070, 0.0190, 0.0085, -0.0010}};
+  Tube tube;
+  for (const Row& row : kRows) {
+    Station station;
+    const double ahead = row.forward > 0 ? row.forward * stretch : row.forward;
+    station.center = ankle + forward * (ahead * u) + across * (row.outward * out * u);
+    const double lift = row.forward < 0.05 ? high / u : 1.0;
+    station.center.y() = sole + row.height * u * std::min(lift, 1.3);
+    station.width = row.width * u;
+    station.depth = row.thick * u * std::min(lift, 1.3);
+    station.cap = std::min(0.016, row.width) * u;
+    station.side = across;
+    station.front = Vec3::UnitY();
+    station.arc = ahead * u;
+    station.along = along_[static_cast<std::size_t>(leg.ankle)] + std::max(0.0, ahead * u);
+    station.detail = 0.7;
+    tube.stations.push_back(station);
+  }
+  tube.cuts = {{-Vec3::UnitY(), -sole, 0.006 * u}};
+  tube.joints = {{leg.ankle, -1e9, 0}};
+  if (leg.toes >= 0) tube.joints.push_back({leg.toes, ball, 0.020 * u});
+  feet_[side] = shape_.add(std::move(tube));
+}
+
+HumanBuilder::Hand HumanBuilder::hand_frame(std::size_t side) const {
+  const auto& arm = figure_.arms[side];
+  Hand hand;
+  hand.side = side;
+  hand.scale = unit_;
+  hand.wrist = position(arm.wrist);
+  hand.along = (hand.wrist - position(arm.elbow)).normalized();
+  // Towards the knuckles, where there are several.
+  Vec3 knuckles = Vec3::Zero();
+  int count = 0;
+  for (const auto& chain : arm.fingers) {
+    const Vec3 offset = position(chain.front()) - hand.wrist;
+    if (offset.norm() < 0.01 * unit_) continue;
+    knuckles += offset.normalized();
+    ++count;
+  }
+  if (count > 0 && knuckles.norm() > 0.3 * count) {
+    const Vec3 direction = knuckles.normalized();
+    if (direction.dot(hand.along) > 0.5) hand.along = direction;
+  }
+  // The thumb points forward where no fingers tell otherwise.
+  hand.across = Vec3::UnitZ();
+  if (arm.fingers.size() >= 4) {
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+    double spread = 0;
+    for (const auto& a : arm.fingers) {
+      for (const auto& b : arm.fingers) {
+        Vec3 between = position(a.front()) - position(b.front());
+        between -= hand.along * hand.along.dot(between);
+        if (between.norm() > spread && between.z() >= 0) spread = between.norm(), high = between;
+      }
+    }
+    if (spread > 0.015 * unit_) hand.across = high;
+    (void)low;
+  }
+  hand.across -= hand.along * hand.along.dot(hand.across);
+  if (hand.across.norm() < 0.1) hand.across = Vec3::UnitX() - hand.along * hand.along.x();
+  hand.across.normalize();
+  hand.thick = hand.along.cross(hand.across);
+  return hand;
+}
+
+void HumanBuilder::build_hand(std::size_t side) {
+  const double u = unit_;
+  const auto& arm = figure_.arms[side];
+  const Hand hand = hand_frame(side);
+  struct Row {
+    double ahead, width, thick;
+  };
+  constexpr Row kRows[] = {{-0.006, 0.0160, 0.0120}, {0.012, 0.0185, 0.0120}, {0.030, 0.0225, 0.0115},
+                           {0.046, 0.0235, 0.0100},  {0.055, 0.0215, 0.0080}};
+  Tube palm;
+  for (const Row& row : kRows) {
+    Station station;
+    station.center = hand.wrist + hand.along * (row.ahead * u);
+    station.width = row.width * u;
+    station.depth = row.thick * u;
+    station.side = hand.across;
+    station.front = hand.thick;
+    station.cap = 0.006 * u;
+    station.arc = row.ahead * u;
+    station.along = along_[static_cast<std::size_t>(arm.wrist)] + std::max(0.0, row.ahead * u);
+    station.detail = 0.5;
+    palm.stations.push_back(station);
+  }
+  palm.joints = {{arm.wrist, -1e9, 0}};
+  palms_[side] = shape_.add(std::move(palm));
+
+  // Fingers where the skeleton has them all, else a hand of our own with whatever moves it.
+  std::size_t real = 0;
+  for (const auto& chain : arm.fingers) real += chain.size() >= 2 ? 1 : 0;
+  if (real >= 4) {
+    for (const auto& chain : arm.fingers) {
+      if (chain.size() >= 2) build_finger_along(hand, chain);
+    }
+    return;
+  }
+  std::vector<int> fingers, thumb;
+  for (const auto& chain : arm.fingers) {
+    const Vec3 offset = position(chain.back()) - hand.wrist;
+    const bool aside = offset.norm() > 0 && offset.normalized().dot(hand.along) < 0.85;
+    if (aside && thumb.empty()) {
+      thumb = chain;
+    } else if (chain.size() > fingers.size()) {
+      fingers = chain;
+    }
+  }
+  for (int finger = 0; finger < 5; ++finger) {
+    build_free_finger(hand, finger, finger == 0 ? thumb : fingers);
+  }
+}
+
+void HumanBuilder::build_finger_along(const Hand& hand, const std::vector<int>& chain) {
+  const double u = unit_;
+  const double radius = 0.0050 * u;
+  Tube tube;
+  std::vector<Vec3> points;
+  // From inside the palm, so that short and long chains both hold on to it.
+  const Vec3 first = position(chain.front());
+  points.push_back(hand.wrist + 0.55 * (first - hand.wrist));
+  double arc = -(first - points.back()).norm();
+  std::vector<double> arcs{arc};
+  arc = 0;
+  tube.joints = {{figure_.arms[hand.side].wrist, -1e9, 0}};
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    const Vec3 at = position(chain[i]);
+    if (i > 0) arc += (at - position(chain[i - 1])).norm();
+    if (!skeleton_.end_sites[static_cast<std::size_t>(chain[i])]) {
+      tube.joints.push_back({chain[i], arc, 0.006 * u});
+    }
+    if ((at - points.back()).norm() < 0.004 * u) continue;
+    points.push_back(at);
+    arcs.push_back(arc);
+  }
+  if (!skeleton_.end_sites[static_cast<std::size_t>(chain.back())] && points.size() > 1) {
+    const Vec3 last = points[points.size() - 1] - points[points.size() - 2];
+    points.push_back(points.back() + last.normalized() * (0.013 * u));
+    arcs.push_back(arc + 0.013 * u);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 next = points[std::min(i + 1, points.size() - 1)];
+    const Vec3 previous = points[i > 0 ? i - 1 : 0];
+    const Vec3 direction = (next - previous).normalized();
+    Station station;
+    station.center = points[i];
+    const double taper = 1.12 - 0.3 * static_cast<double>(i) / static_cast<double>(points.size() - 1);
+    station.width = station.depth = station.cap = radius * taper;
+    station.front = hand.thick;
+    station.side = direction.cross(hand.thick);
+    station.arc = arcs[i];
+    station.along = along_[static_cast<std::size_t>(chain.front())] + std::max(0.0, arcs[i]);
+    station.detail = 0.32;
+    tube.stations.push_back(station);
+  }
+  fingers_[hand.side].push_back(shape_.add(std::move(tube)));
+}
+
+void HumanBuilder::build_free_finger(const Hand& hand, int finger, const std::vector<int>& chain) {
+  const double u = unit_;
+  // Thumb, then index to little finger: where they start, how long they are, how they spread.
+  struct Row {
+    double ahead, aside, length, radius, spread;
+  };
+  constexpr Row kRows[] = {{0.014, 0.0150, 0.050, 0.0064, 0.75},
+                           {0.046, 0.0165, 0.050, 0.0050, 0.10},
+                           {0.048, 0.0058, 0.055, 0.0052, 0.03},
+                           {0.047, -0.0052, 0.052, 0.0050, -0.04},
+                           {0.044, -0.0158, 0.042, 0.0046, -0.12}};
+  const Row& row = kRows[finger];
+  const Vec3 palm_side = hand.thick * (hand.thick.y() > 0 ? -1.0 : 1.0);
+  const Vec3 start = hand.wrist + (hand.along * row.ahead + hand.across * row.aside) * u;
+  const Vec3 direction = (hand.along + hand.across * row.spread).normalized();
+  Tube tube;
+  for (int i = 0; i <= 3; ++i) {
+    const double t = i / 3.0;
+    Station station;
+    // Slightly bent, as a hand at rest is.
+    station.center = start + (direction * t + palm_side * (0.16 * t * t)) * (row.length * u);
+    station.width = station.depth = station.cap = row.radius * (1.05 - 0.22 * t) * u;
+    station.front = hand.thick;
+    station.side = direction.cross(hand.thick);
+    station.arc = (station.center - hand.wrist).dot(hand.along);
+    station.along =
+        along_[static_cast<std::size_t>(figure_.arms[hand.side].wrist)] + station.arc;
+    station.detail = 0.32;
+    tube.stations.push_back(station);
+  }
+  tube.joints = {{figure_.arms[hand.side].wrist, -1e9, 0}};
+  for (const int joint : chain) {
+    if (skeleton_.end_sites[static_cast<std::size_t>(joint)]) continue;
+    const double at = (position(joint) - hand.wrist).dot(hand.along);
+    tube.joints.push_back({joint, std::max(at, tube.joints.back().at), 0.010 * u});
+  }
+  fingers_[hand.side].push_back(shape_.add(std::move(tube)));
+}
+
+}  // namespace krok::body

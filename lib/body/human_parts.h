@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "body/human_figure.h"
+#include "body/implicit.h"
+
+// The parts of the human shape; used by human_shape.cpp and human_extremities.cpp alone.
+
+namespace krok::body {
+
+class HumanBuilder {
+ public:
+  HumanBuilder(const Skeleton& skeleton, const HumanFigure& figure, std::span<const Transform> pose);
+  Shape build();
+
+ private:
+  Vec3 position(int joint) const { return pose_[static_cast<std::size_t>(joint)].position; }
+  int parent_outside(int joint) const {
+    const int parent = skeleton_.parents[static_cast<std::size_t>(joint)];
+    return parent < 0 ? joint : parent;
+  }
+  // The joint that neck and arms hang on.
+  int chest_joint() const;
+  std::vector<TubeJoint> joints_along(const std::vector<int>& path, const Vec3& origin,
+                                      const Vec3& axis, double half_width) const;
+  void push_path(Tube& tube, int from, int to, const Vec3& origin, const Vec3& axis, double arc,
+                 double half_width) const;
+  // A point by its height over the hip joints and its offsets, over stature.
+  Vec3 trunk_point(double height, double left, double forward) const;
+  int add_ball(const Vec3& center, const Vec3& axes, double detail, int like);
+
+  void build_trunk();
+  void build_neck_and_head();
+  void build_leg(std::size_t side);
+  void build_foot(std::size_t side);
+  void build_arm(std::size_t side);
+  void build_hand(std::size_t side);
+  struct Hand {
+    Vec3 wrist, along, across, thick;  // unit: to the fingertips, to the thumb's side, the rest
+    double scale;
+    std::size_t side;
+  };
+  Hand hand_frame(std::size_t side) const;
+  void build_finger_along(const Hand& hand, const std::vector<int>& chain);
+  void build_free_finger(const Hand& hand, int finger, const std::vector<int>& chain);
+  void join();
+
+  const Skeleton& skeleton_;
+  const HumanFigure& figure_;
+  std::span<const Transform> pose_;
+  double unit_;                // stature, metres
+  std::vector<double> along_;  // distance from the root along the bones, [joints]
+  Shape shape_;
+
+  Vec3 trunk_base_ = Vec3::Zero(), trunk_axis_ = Vec3::UnitY();
+  double trunk_scale_ = 1, chest_scale_ = 1;
+  int trunk_ = 0, neck_ = 0, skull_ = 0, face_ = 0, nose_ = 0;
+  std::array<int, 2> glutes_{}, chest_{}, legs_{}, feet_{}, arms_{}, ridges_{}, palms_{}, ears_{};
+  std::array<std::vector<int>, 2> fingers_;
+};
+
+}  // namespace krok::body

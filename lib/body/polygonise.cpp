@@ -1,0 +1,293 @@
+#include "body/polygonise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.h"
+
+namespace krok::body {
+
+namespace {
+
+constexpr int kBits = 20;  // of a lattice coordinate in a key
+using EdgeKey = std::uint64_t;
+
+std::uint64_t pack(std::int64_t x, std::int64_t y, std::int64_t z) {
+  const auto u = [](std::int64_t v) { return static_cast<std::uint64_t>(v); };
+  return (u(x) << (2 * kBits)) | (u(y) << kBits) | u(z);
+}
+
+// Corners of a cube are bit masks of the axes. A tetrahedron of Kuhn's subdivision walks from corner
+// 0 to corner 7 along the axes in one order; listed so that all are oriented alike.
+constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
+                                   {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}};
+// Even orders that put one vertex, or two, in front.
+constexpr int kOneFirst[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}};
+constexpr int kTwoFirst[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
+                                 {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
+
+struct BlockMesh {
+  std::vector<std::array<EdgeKey, 3>> triangles;
+  std::vector<std::pair<EdgeKey, Vec3>> vertices;
+};
+
+class BlockMarcher {
+ public:
+  BlockMarcher(const BlockedField& field, const BlockedField::Block& block, BlockMesh& out)
+      : field_(field), block_(block), out_(out) {
+    std::size_t i = 0;
+    for (int z = 0; z < kSide; ++z) {
+      for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) values_[i++] = field.field().value(point(x, y, z), block.near);
+      }
+    }
+  }
+
+  void run() {
+    for (int z = 0; z + 1 < kSide; ++z) {
+      for (int y = 0; y + 1 < kSide; ++y) {
+        for (int x = 0; x + 1 < kSide; ++x) cube(x, y, z);
+      }
+    }
+  }
+
+ private:
+  static constexpr int kSide = BlockedField::kCells + 1;
+
+  Vec3 point(int x, int y, int z) const {
+    return field_.lattice_point(block_.corner[0] + x, block_.corner[1] + y, block_.corner[2] + z);
+  }
+  double value(int x, int y, int z) const {
+    return values_[static_cast<std::size_t>((z * kSide + y) * kSide + x)];
+  }
+
+  void cube(int x, int y, int z) {
+    int inside = 0;
+    for (int c = 0; c < 8; ++c) {
+      corner_[c] = value(x + (c & 1), y + ((c >> 1) & 1), z + ((c >> 2) & 1));
+      if (corner_[c] < 0) ++inside;
+    }
+    if (inside == 0 || inside == 8) return;
+    x_ = x, y_ = y, z_ = z;
+    for (const auto& tetrahedron : kTetrahedra) march(tetrahedron);
+  }
+
+  void march(const int (&t)[4]) {
+    int in[4], out[4];
+    int ins = 0, outs = 0;
+    for (int i = 0; i < 4; ++i) (corner_[t[i]] < 0 ? in[ins++] : out[outs++]) = i;
+    if (ins == 1 || ins == 3) {
+      const auto& o = kOneFirst[ins == 1 ? in[0] : out[0]];
+      const EdgeKey a = edge(t[o[0]], t[o[1]]), b = edge(t[o[0]], t[o[2]]),
+                    c = edge(t[o[0]], t[o[3]]);
+      if (ins == 1) {
+        out_.triangles.push_back({a, b, c});
+      } else {
+        out_.triangles.push_back({a, c, b});
+      }
+    } else if (ins == 2) {
+      for (const auto& o : kTwoFirst) {
+        if (!((o[0] == in[0] && o[1] == in[1]) || (o[0] == in[1] && o[1] == in[0]))) continue;
+        const EdgeKey ac = edge(t[o[0]], t[o[2]]), ad = edge(t[o[0]], t[o[3]]),
+                      bd = edge(t[o[1]], t[o[3]]), bc = edge(t[o[1]], t[o[2]]);
+        out_.triangles.push_back({ac, ad, bd});
+        out_.triangles.push_back({ac, bd, bc});
+      }
+    }
+  }
+
+  EdgeKey edge(int a, int b) {
+    if (a > b) std::swap(a, b);  // a is then a subset of b's bits
+    const int dx = a & 1, dy = (a >> 1) & 1, dz = (a >> 2) & 1;
+    const EdgeKey key = (pack(block_.corner[0] + x_ + dx, block_.corner[1] + y_ + dy,
+                              block_.corner[2] + z_ + dz)
+                         << 3) |
+                        static_cast<EdgeKey>(b ^ a);
+    const double va = corner_[a], vb = corner_[b];
+    const double t = std::clamp(va / (va - vb), 0.05, 0.95);
+    const Vec3 from = point(x_ + dx, y_ + dy, z_ + dz);
+    const Vec3 to = point(x_ + (b & 1), y_ + ((b >> 1) & 1), z_ + ((b >> 2) & 1));
+    out_.vertices.emplace_back(key, Vec3(from + t * (to - from)));
+    return key;
+  }
+
+  const BlockedField& field_;
+  const BlockedField::Block& block_;
+  BlockMesh& out_;
+  std::array<double, static_cast<std::size_t>(kSide* kSide* kSide)> values_;
+  double corner_[8];
+  int x_ = 0, y_ = 0, z_ = 0;
+};
+
+}  // namespace
+
+BlockedField::BlockedField(const Field& field, double cell, int jobs) : field_(field), cell_(cell) {
+  const Eigen::AlignedBox3d bounds = field.bounds();
+  origin_ = bounds.min() - Vec3::Constant(2 * cell);
+  const double block = cell * kCells;
+  std::vector<std::array<std::int64_t, 3>> corners;
+  for (const Field::Ball& ball : field.balls()) {
+    std::array<std::int64_t, 3> low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double at = (ball.center[axis] - origin_[axis]) / block, r = ball.radius / block;
+      low[static_cast<std::size_t>(axis)] = std::max<std::int64_t>(
+          0, static_cast<std::int64_t>(std::floor(at - r)));
+      high[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(at + r));
+    }
+    for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t x = low[0]; x <= high[0]; ++x) corners.push_back({x, y, z});
+      }
+    }
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+
+  std::vector<Block> all(corners.size());
+  std::vector<char> active(corners.size(), 0);
+  const double half_diagonal = 0.5 * block * std::sqrt(3.0);
+  parallel_for(corners.size(), 16, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& c = corners[i];
+      all[i].corner = {c[0] * kCells, c[1] * kCells, c[2] * kCells};
+      const Vec3 center = lattice_point(all[i].corner[0], all[i].corner[1], all[i].corner[2]) +
+                          Vec3::Constant(0.5 * block);
+      all[i].near = field.near(center, half_diagonal);
+      active[i] = all[i].near.ranges.empty() ? 0 : 1;
+    }
+  });
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!active[i]) continue;
+    index_.emplace(pack(corners[i][0], corners[i][1], corners[i][2]), blocks_.size());
+    blocks_.push_back(std::move(all[i]));
+  }
+  everything_ = field.near(bounds.center(), bounds.diagonal().norm());
+}
+
+const Field::Near& BlockedField::near(const Vec3& point) const {
+  const Vec3 at = (point - origin_) / (cell_ * kCells);
+  if ((at.array() >= 0).all()) {
+    const auto found = index_.find(pack(static_cast<std::int64_t>(at.x()),
+                                        static_cast<std::int64_t>(at.y()),
+                                        static_cast<std::int64_t>(at.z())));
+    if (found != index_.end()) return blocks_[found->second].near;
+  }
+  return everything_;
+}
+
+Vec3 BlockedField::onto_surface(const Vec3& point, double limit) const {
+  Vec3 at = point;
+  for (int step = 0; step < 4; ++step) {
+    const double distance = value(at);
+    if (std::abs(distance) < 1e-4 * cell_) break;
+    const Vec3 slope = gradient(at);
+    const double slope2 = slope.squaredNorm();
+    if (slope2 < 1e-4) break;
+    Vec3 move = -distance / std::max(slope2, 0.25) * slope;
+    const double length = move.norm();
+    if (length > limit) move *= limit / length;
+    at += move;
+  }
+  const Vec3 moved = at - point;
+  const double length = moved.norm();
+  return length > limit ? Vec3(point + moved * (limit / length)) : at;
+}
+
+Mesh polygonise(const BlockedField& field, int jobs) {
+  const auto& blocks = field.blocks();
+  std::vector<BlockMesh> pieces(blocks.size());
+  parallel_for(blocks.size(), 4, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) BlockMarcher(field, blocks[i], pieces[i]).run();
+  });
+  Mesh mesh;
+  std::unordered_map<EdgeKey, std::uint32_t> numbers;
+  for (BlockMesh& piece : pieces) {
+    for (const auto& [key, position] : piece.vertices) {
+      const auto number = static_cast<std::uint32_t>(mesh.positions.size());
+      if (numbers.emplace(key, number).second) mesh.positions.push_back(position);
+    }
+    for (const auto& triangle : piece.triangles) {
+      mesh.triangles.push_back(
+          {numbers.at(triangle[0]), numbers.at(triangle[1]), numbers.at(triangle[2])});
+    }
+    piece = BlockMesh();
+  }
+  return mesh;
+}
+
+Mesh without_fragments(const Mesh& mesh, double share) {
+  const std::size_t count = mesh.positions.size();
+  std::vector<std::uint32_t> group(count);
+  std::iota(group.begin(), group.end(), 0u);
+  const auto find = [&group](std::uint32_t v) {
+    while (group[v] != v) v = group[v] = group[group[v]];
+    return v;
+  };
+  for (const auto& t : mesh.triangles) {
+    for (int k = 1; k < 3; ++k) {
+      const std::uint32_t a = find(t[0]), b = find(t[static_cast<std::size_t>(k)]);
+      group[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  std::vector<std::size_t> sizes(count, 0);
+  for (std::uint32_t v = 0; v < count; ++v) ++sizes[find(v)];
+  const auto least = static_cast<std::size_t>(share * static_cast<double>(count));
+  Mesh result;
+  std::vector<std::uint32_t> renumbered(count, 0);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    if (sizes[find(v)] < least) continue;
+    renumbered[v] = static_cast<std::uint32_t>(result.positions.size());
+    result.positions.push_back(mesh.positions[v]);
+  }
+  for (const auto& t : mesh.triangles) {
+    if (sizes[find(t[0])] < least) continue;
+    result.triangles.push_back({renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]});
+  }
+  return result;
+}
+
+std::vector<Vec3> vertex_normals(const Mesh& mesh) {
+  std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero());
+  for (const auto& t : mesh.triangles) {
+    const Vec3& a = mesh.positions[t[0]];
+    const Vec3& b = mesh.positions[t[1]];
+    const Vec3& c = mesh.positions[t[2]];
+    const Vec3 normal = (b - a).cross(c - a);
+    // Weights after Max 1999: the cross product over both squared edge lengths at the corner.
+    const double ab = std::max((b - a).squaredNorm(), 1e-300);
+    const double bc = std::max((c - b).squaredNorm(), 1e-300);
+    const double ca = std::max((a - c).squaredNorm(), 1e-300);
+    normals[t[0]] += normal / (ab * ca);
+    normals[t[1]] += normal / (ab * bc);
+    normals[t[2]] += normal / (bc * ca);
+  }
+  for (Vec3& normal : normals) {
+    const double length = normal.norm();
+    normal = length > 0 ? Vec3(normal / length) : Vec3(Vec3::UnitY());
+  }
+  return normals;
+}
+
+double signed_volume(const Mesh& mesh) {
+  if (mesh.positions.empty()) return 0;
+  const Vec3 origin = mesh.positions.front();
+  double volume = 0;
+  for (const auto& t : mesh.triangles) {
+    volume += (mesh.positions[t[0]] - origin)
+                  .dot((mesh.positions[t[1]] - origin).cross(mesh.positions[t[2]] - origin));
+  }
+  return volume / 6;
+}
+
+std::vector<std::vector<std::uint32_t>> vertex_neighbours(const Mesh& mesh) {
+  std::vector<std::vector<std::uint32_t>> lists(mesh.positions.size());
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) lists[t[k]].push_back(t[(k + 1) % 3]);
+  }
+  // In a closed manifold each directed edge occurs once, so each neighbour is listed once.
+  for (auto& list : lists) std::sort(list.begin(), list.end());
+  return lists;
+}
+
+}  // namespace krok::body

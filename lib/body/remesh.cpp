@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <utility>
+
+#include "body/polygonise.h"
+#include "core/parallel.h"
+
+namespace krok::body {
+
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
+
+// Edge collapses over a mesh with triangle lists at the vertices.
+class Simplifier {
+ public:
+  Simplifier(const Mesh& mesh, std::vector<double>& detail)
+      : positions_(mesh.positions), triangles_(mesh.triangles), detail_(detail),
+        at_vertex_(mesh.positions.size()), version_(mesh.positions.size(), 0),
+        alive_(mesh.positions.size(), 1), triangle_alive_(mesh.triangles.size(), 1) {
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      for (const std::uint32_t v : triangles_[t]) at_vertex_[v].push_back(t);
+    }
+    for (const Triangle& t : triangles_) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (t[k] < t[(k + 1) % 3]) push(t[k], t[(k + 1) % 3]);
+      }
+    }
+  }
+
+  void run(std::size_t target) {
+    std::size_t count = positions_.size();
+    while (count > target && !queue_.empty()) {
+      const Candidate top = queue_.top();
+      queue_.pop();
+      if (!alive_[top.a] || !alive_[top.b]) continue;
+      if (top.versions != version_[top.a] + version_[top.b]) continue;
+      if (collapse(top.a, top.b)) --count;
+    }
+  }
+
+  Mesh result() {
+    Mesh mesh;
+    std::vector<std::uint32_t> renumbered(positions_.size(), 0);
+    std::vector<double> detail;
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+      if (!alive_[v]) continue;
+      renumbered[v] = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.push_back(positions_[v]);
+      detail.push_back(detail_[v]);
+    }
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      if (!triangle_alive_[t]) continue;
+      const Triangle& old = triangles_[t];
+      mesh.triangles.push_back({renumbered[old[0]], renumbered[old[1]], renumbered[old[2]]});
+    }
+    detail_ = std::move(detail);
+    return mesh;
+  }
+
+ private:
+  struct Candidate {
+    double cost;
+    std::uint32_t a, b;
+    std::uint64_t versions;
+    bool operator<(const Candidate& other) const {  // the queue's top is the largest
+      if (cost != other.cost) return cost > other.cost;
+      return std::pair(a, b) > std::pair(other.a, other.b);
+    }
+  };
+
+  void push(std::uint32_t a, std::uint32_t b) {
+    if (a > b) std::swap(a, b);
+    const double cost =
+        (positions_[a] - positions_[b]).squaredNorm() / (detail_[a] * detail_[b]);
+    queue_.push({cost, a, b, version_[a] + version_[b]});
+  }
+
+  std::vector<std::uint32_t> neighbours(std::uint32_t v) const {
+    std::vector<std::uint32_t> result;
+    for (const std::uint32_t t : at_vertex_[v]) {
+      for (const std::uint32_t u : triangles_[t]) {
+        if (u != v) result.push_back(u);
+      }
+    }
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  }
+
+  // Whether the triangles at v, but those that also hold `other`, stay sound with v at `to`.
+  bool fits(std::uint32_t v, std::uint32_t other, const Vec3& to) const {
+    for (const std::uint32_t t : at_vertex_[v]) {
+      const Triangle& triangle = triangles_[t];
+      if (triangle[0] == other || triangle[1] == other || triangle[2] == other) continue;
+      Vec3 corners[3];
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = positions_[triangle[k]];
+      const Vec3 before = area_normal(corners[0], corners[1], corners[2]);
+      double longest = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (triangle[k] == v) corners[k] = to;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        longest = std::max(longest, (corners[k] - corners[(k + 1) % 3]).squaredNorm());
+      }
+      const Vec3 after = area_normal(corners[0], corners[1], corners[2]);
+      const double length = after.norm();
+      if (length < 0.08 * longest) return false;
+      if (after.dot(before) < 0.3 * length * before.norm()) return false;
+    }
+    return true;
+  }
+
+  bool collapse(std::uint32_t a, std::uint32_t b) {
+    const auto around_a = neighbours(a), around_b = neighbours(b);
+    std::vector<std::uint32_t> shared;
+    std::set_intersection(around_a.begin(), around_a.end(), around_b.begin(), around_b.end(),
+                          std::back_inserter(shared));
+    // The link condition (Dey et al. 1999): only then does the topology stay.
+    if (shared.size() != 2) return false;
+    if (at_vertex_[shared[0]].size() <= 3 || at_vertex_[shared[1]].size() <= 3) return false;
+    if (at_vertex_[a].size() + at_vertex_[b].size() - 4 > 11) return false;
+    const Vec3 middle = 0.5 * (positions_[a] + positions_[b]);
+    if (!fits(a, b, middle) || !fits(b, a, middle)) return false;
+
+    positions_[a] = middle;
+    detail_[a] = 0.5 * (detail_[a] + detail_[b]);
+    alive_[b] = 0;
+    for (const std::uint32_t t : at_vertex_[b]) {
+      Triangle& triangle = triangles_[t];
+      if (std::find(triangle.begin(), triangle.end(), a) != triangle.end()) {
+        triangle_alive_[t] = 0;
+        for (const std::uint32_t u : triangle) {
+          if (u != b) std::erase(at_vertex_[u], t);
+        }
+        continue;
+      }
+      std::replace(triangle.begin(), triangle.end(), b, a);
+      at_vertex_[a].push_back(t);
+    }
+    at_vertex_[b].clear();
+    ++version_[a];
+    for (const std::uint32_t u : neighbours(a)) push(a, u);
+    return true;
+  }
+
+  std::vector<Vec3> positions_;
+  std::vector<Triangle> triangles_;
+  std::vector<double>& detail_;
+  std::vector<std::vector<std::uint32_t>> at_vertex_;
+  std::vector<std::uint64_t> version_;
+  std::vector<char> alive_, triangle_alive_;
+  std::priority_queue<Candidate> queue_;
+};
+
+std::size_t corner_of(const Triangle& triangle, std::uint32_t v) {
+  return triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
+}
+
+// The edges of a closed mesh as (low vertex, high vertex, two triangles), in order.
+struct Edge {
+  std::uint32_t a, b, left, right;
+};
+std::vector<Edge> edges_of(const Mesh& mesh) {
+  struct Half {
+    std::uint32_t low, high, triangle;
+    bool operator<(const Half& other) const {
+      return std::tie(low, high, triangle) < std::tie(other.low, other.high, other.triangle);
+    }
+  };
+  std::vector<Half> halves;
+  halves.reserve(mesh.triangles.size() * 3);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+      halves.push_back({low, high, t});
+    }
+  }
+  std::sort(halves.begin(), halves.end());
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i + 1 < halves.size(); i += 2) {
+    edges.push_back({halves[i].low, halves[i].high, halves[i].triangle, halves[i + 1].triangle});
+  }
+  return edges;
+}
+
+// Flips edges where that brings the numbers of neighbours closer to six.
+void flip_edges(Mesh& mesh) {
+  std::vector<int> valence(mesh.positions.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) ++valence[v];
+  }
+  auto neighbours = vertex_neighbours(mesh);
+  std::vector<char> touched(mesh.triangles.size(), 0);
+  for (const Edge& edge : edges_of(mesh)) {
+    if (touched[edge.left] || touched[edge.right]) continue;
+    Triangle& left = mesh.triangles[edge.left];
+    Triangle& right = mesh.triangles[edge.right];
+    const std::size_t i = corner_of(left, edge.a);
+    const bool forward = left[(i + 1) % 3] == edge.b;  // left runs a -> b
+    const std::uint32_t a = forward ? edge.a : edge.b, b = forward ? edge.b : edge.a;
+    const std::uint32_t c = left[0] ^ left[1] ^ left[2] ^ a ^ b;
+    const std::uint32_t d = right[0] ^ right[1] ^ right[2] ^ a ^ b;
+    if (c == d || std::binary_search(neighbours[c].begin(), neighbours[c].end(), d)) continue;
+    const auto miss = [&valence](std::uint32_t v, int change) {
+      const int off = valence[v] + change - 6;
+      return off * off;
+    };
+    const int before = miss(a, 0) + miss(b, 0) + miss(c, 0) + miss(d, 0);
+    const int after = miss(a, -1) + miss(b, -1) + miss(c, 1) + miss(d, 1);
+    if (after >= before || valence[a] <= 3 || valence[b] <= 3) continue;
+    const Vec3 &pa = mesh.positions[a], &pb = mesh.positions[b], &pc = mesh.positions[c],
+               &pd = mesh.positions[d];
+    const Vec3 n1 = area_normal(pa, pb, pc), n2 = area_normal(pb, pa, pd);
+    const Vec3 m1 = area_normal(pc, pa, pd), m2 = area_normal(pd, pb, pc);
+    const Vec3 mean = n1 + n2;
+    const double floor = 0.2 * std::min(n1.norm(), n2.norm());
+    if (m1.dot(mean) <= 0.7 * m1.norm() * mean.norm() || m1.norm() < floor) continue;
+    if (m2.dot(mean) <= 0.7 * m2.norm() * mean.norm() || m2.norm() < floor) continue;
+    left = {c, a, d};
+    right = {d, b, c};
+    touched[edge.left] = touched[edge.right] = 1;
+    --valence[a], --valence[b], ++valence[c], ++valence[d];
+    const auto insert = [&neighbours](std::uint32_t at, std::uint32_t v) {
+      auto& list = neighbours[at];
+      list.insert(std::lower_bound(list.begin(), list.end(), v), v);
+    };
+    std::erase(neighbours[a], b), std::erase(neighbours[b], a);
+    insert(c, d), insert(d, c);
+  }
+}
+
+}  // namespace
+
+Mesh simplify(const Mesh& mesh, std::vector<double>& detail, std::size_t target) {
+  Simplifier simplifier(mesh, detail);
+  simplifier.run(target);
+  return simplifier.result();
+}
+
+void relax(Mesh& mesh, const BlockedField& field, int passes, double strength, int jobs) {
+  for (int pass = 0; pass < passes; ++pass) {
+    flip_edges(mesh);
+    const auto neighbours = vertex_neighbours(mesh);
+    const auto normals = vertex_normals(mesh);
+    std::vector<Vec3> moved(mesh.positions.size());
+    parallel_for(mesh.positions.size(), 256, jobs, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const Vec3& at = mesh.positions[v];
+        Vec3 middle = Vec3::Zero();
+        double shortest = 1e300;
+        for (const std::uint32_t u : neighbours[v]) {
+          middle += mesh.positions[u];
+          shortest = std::min(shortest, (mesh.positions[u] - at).norm());
+        }
+        Vec3 move = middle / static_cast<double>(neighbours[v].size()) - at;
+        move -= normals[v] * normals[v].dot(move);
+        moved[v] = field.onto_surface(at + strength * move, std::max(shortest, field.cell()));
+      }
+    });
+    mesh.positions = std::move(moved);
+  }
+}
+
+}  // namespace krok::body

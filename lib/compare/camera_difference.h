@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare/measure.h"
+#include "core/result.h"
+#include "scene/camera_track.h"
+
+namespace krok::compare {
+
+// How far two cameras are apart, frame by frame as in ClipDifference.
+struct CameraDifference {
+  std::vector<std::string> structure;
+  int compared_frames = 0;
+  Measure positions;       // metres
+  Measure orientations;    // radians
+  Measure fields_of_view;  // radians
+
+  bool same() const {
+    return structure.empty() && positions.within() && orientations.within() &&
+           fields_of_view.within();
+  }
+};
+
+// An Error if one of the cameras fails its check().
+Result<CameraDifference> difference(const CameraTrack& first, const CameraTrack& second,
+                                    const Tolerance& tolerance);
+
+}  // namespace krok::compare

@@ -1,0 +1,32 @@
+#include "compare/measure.h"
+
+#include <cmath>
+
+namespace krok::compare {
+
+void Measure::merge(const Measure& later) {
+  if (later.largest > largest) {
+    largest = later.largest;
+    where = later.where;
+  }
+  square_sum += later.square_sum;
+  count += later.count;
+  over += later.over;
+}
+
+double Measure::rms() const {
+  return count == 0 ? 0.0 : std::sqrt(square_sum / static_cast<double>(count));
+}
+
+double angle_between_directions(const Vec3& a, const Vec3& b) {
+  const double length_a = a.norm();
+  const double length_b = b.norm();
+  if (length_a == 0 || length_b == 0) return length_a == length_b ? 0.0 : kPi;
+  // Kahan's formula, "How futile are mindless assessments of roundoff", section 12: no loss of
+  // digits at either end.
+  const Vec3 u = a / length_a;
+  const Vec3 v = b / length_b;
+  return 2.0 * std::atan2((u - v).norm(), (u + v).norm());
+}
+
+}  // namespace krok::compare

@@ -1,0 +1,154 @@
+#include "compare/model_difference.h"
+
+#include <fmt/format.h>
+
+#include "compare/mesh_difference.h"
+#include "compare/skeleton_match.h"
+#include "math/quaternion.h"
+
+namespace krok::compare {
+
+namespace {
+
+// Whether both have the attribute; where only one has it, that is a difference of structure.
+template <typename T>
+bool both_have(const char* what, const std::vector<T>& first, const std::vector<T>& second,
+               std::vector<std::string>& structure) {
+  if (first.empty() != second.empty()) {
+    structure.push_back(
+        fmt::format("only the {} has {}", first.empty() ? "second" : "first", what));
+  }
+  return !first.empty() && !second.empty();
+}
+
+std::string difference_in_parts(const Model& first, const Model& second) {
+  if (first.parts.size() != second.parts.size()) {
+    return fmt::format("{} parts in the first, {} in the second", first.parts.size(),
+                       second.parts.size());
+  }
+  for (std::size_t i = 0; i < first.parts.size(); ++i) {
+    const Model::Part& a = first.parts[i];
+    const Model::Part& b = second.parts[i];
+    if (a.name != b.name) {
+      return fmt::format("part {} is named '{}' in the first and '{}' in the second", i, a.name,
+                         b.name);
+    }
+    if (a.material != b.material) {
+      return fmt::format("part {} ({}) has the material '{}' in the first and '{}' in the second",
+                         i, a.name, a.material, b.material);
+    }
+    if (a.triangle_count != b.triangle_count) {
+      return fmt::format("part {} ({}) has {} triangles in the first and {} in the second", i,
+                         a.name, a.triangle_count, b.triangle_count);
+    }
+  }
+  return {};
+}
+
+// Parts may differ in where their triangles stand, so each is compared on its own.
+std::string difference_in_surface(const Model& first, const Model& second) {
+  if (first.triangles.size() != second.triangles.size()) {
+    return difference_in_triangles(first.triangles, second.triangles);
+  }
+  if (std::string parts = difference_in_parts(first, second); !parts.empty()) return parts;
+  for (const Model::Part& part : first.parts) {
+    const auto run = [&](const Model& model) {
+      return std::span(model.triangles).subspan(part.first_triangle, part.triangle_count);
+    };
+    const std::string text = difference_in_triangles(run(first), run(second));
+    if (text.empty()) continue;
+    return part.name.empty() ? text : fmt::format("part {}: {}", part.name, text);
+  }
+  return {};
+}
+
+void compare_tangents(const Model& first, const Model& second, Measure& measure) {
+  for (std::size_t i = 0; i < first.tangents.size(); ++i) {
+    const Vec4f& a = first.tangents[i];
+    const Vec4f& b = second.tangents[i];
+    const double angle = a.w() != b.w() ? kPi
+                                        : angle_between_directions(a.head<3>().cast<double>(),
+                                                                   b.head<3>().cast<double>());
+    measure.add(angle, Place{.vertex = static_cast<int>(i)});
+  }
+}
+
+void compare_skeletons(const Model& first, const Model& second, const SkeletonMatch& match,
+                       ModelDifference& result) {
+  for (std::size_t j = 0; j < match.second_of_first.size(); ++j) {
+    const Transform& a = first.skeleton.reference[j];
+    const Transform& b =
+        second.skeleton.reference[static_cast<std::size_t>(match.second_of_first[j])];
+    const Place place{.joint = static_cast<int>(j)};
+    result.reference_positions.add((a.position - b.position).norm(), place);
+    result.reference_orientations.add(angle_between(a.orientation, b.orientation), place);
+  }
+}
+
+void compare_weights(const Model& first, const Model& second, const SkeletonMatch& match,
+                     Measure& measure) {
+  std::vector<int> first_of_second(match.second_of_first.size());
+  for (std::size_t i = 0; i < match.second_of_first.size(); ++i) {
+    first_of_second[static_cast<std::size_t>(match.second_of_first[i])] = static_cast<int>(i);
+  }
+  const auto influences = [](const Model& model) {
+    return Influences{model.influences_per_vertex, model.influence_joints, model.influence_weights};
+  };
+  add_weight_differences(influences(first), influences(second), first_of_second, {}, measure);
+}
+
+}  // namespace
+
+bool ModelDifference::same() const {
+  return structure.empty() && reference_positions.within() && reference_orientations.within() &&
+         positions.within() && normals.within() && texture_coordinates.within() &&
+         tangents.within() && weights.within();
+}
+
+Result<ModelDifference> difference(const Model& first, const Model& second,
+                                   const Tolerance& tolerance) {
+  for (const Model* model : {&first, &second}) {
+    if (auto ok = check(*model); !ok) {
+      Error error = ok.error();
+      error.message =
+          fmt::format("the {} model: {}", model == &first ? "first" : "second", error.message);
+      return error;
+    }
+  }
+  ModelDifference result;
+  result.positions = result.reference_positions = Measure(tolerance.length);
+  result.normals = result.tangents = result.reference_orientations = Measure(tolerance.angle);
+  result.texture_coordinates = result.weights = Measure(tolerance.ratio);
+
+  SkeletonMatch skeletons = match_skeletons(first.skeleton, second.skeleton);
+  if (skeletons.difference.empty()) {
+    compare_skeletons(first, second, skeletons, result);
+  } else {
+    result.structure.push_back("skeletons differ: " + skeletons.difference);
+  }
+
+  if (first.vertex_count() != second.vertex_count()) {
+    result.structure.push_back(fmt::format("{} vertices in the first, {} in the second",
+                                           first.vertex_count(), second.vertex_count()));
+    return result;
+  }
+  if (std::string text = difference_in_surface(first, second); !text.empty()) {
+    result.structure.push_back(std::move(text));
+  }
+  add_distances(std::span(first.positions), second.positions, {}, result.positions);
+  if (both_have("normals", first.normals, second.normals, result.structure)) {
+    add_angles(std::span(first.normals), second.normals, {}, result.normals);
+  }
+  if (both_have("texture coordinates", first.texture_coordinates, second.texture_coordinates,
+                result.structure)) {
+    add_coordinate_differences(first.texture_coordinates, second.texture_coordinates, {},
+                               result.texture_coordinates);
+  }
+  if (both_have("tangents", first.tangents, second.tangents, result.structure)) {
+    compare_tangents(first, second, result.tangents);
+  }
+  if (skeletons.difference.empty()) compare_weights(first, second, skeletons, result.weights);
+  return result;
+}
+
+}  // namespace krok::compare

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare/measure.h"
+#include "core/result.h"
+#include "scene/model.h"
+
+namespace krok::compare {
+
+// How far two models are apart. Vertices are matched by index, joints by name, triangles in any
+// order; provenance does not matter.
+struct ModelDifference {
+  // What keeps the two from being the same whatever the tolerance: another skeleton, other numbers
+  // of vertices, other triangles or parts, normals or the like that only one has. Sentences for
+  // people. What can be measured all the same, is.
+  std::vector<std::string> structure;
+
+  Measure reference_positions, reference_orientations;  // of joints
+  Measure positions;                                    // metres
+  Measure normals;                                      // radians
+  Measure texture_coordinates;                          // the larger of u and v
+  Measure tangents;                                     // radians; pi where the handedness differs
+  Measure weights;  // the largest of a vertex; place has the joint too
+
+  bool same() const;
+};
+
+// An Error if one of the models fails its check(). Places carry vertices and joints of `first`.
+Result<ModelDifference> difference(const Model& first, const Model& second,
+                                   const Tolerance& tolerance);
+
+}  // namespace krok::compare

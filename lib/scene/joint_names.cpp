@@ -1,0 +1,297 @@
+#include "scene/joint_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace krok {
+
+namespace {
+
+using Tokens = std::vector<std::string>;
+
+struct Word {
+  std::string_view text;
+  Part part;
+};
+
+// Words of joints that each side has. The spellings are those of the exporters listed in roles.h;
+// Acclaim's bone names (humerus, radius, femur, tibia) are named after their first joint too.
+constexpr std::array kSidedWords = {Word{"clavicle", Part::collar},
+                                    Word{"clav", Part::collar},
+                                    Word{"collar", Part::collar},
+                                    Word{"collarbone", Part::collar},
+                                    Word{"scapula", Part::collar},
+                                    Word{"shoulder", Part::shoulder},
+                                    Word{"shldr", Part::shoulder},
+                                    Word{"shldrbend", Part::upper_arm},
+                                    Word{"upperarm", Part::upper_arm},
+                                    Word{"uparm", Part::upper_arm},
+                                    Word{"uarm", Part::upper_arm},
+                                    Word{"armupper", Part::upper_arm},
+                                    Word{"armup", Part::upper_arm},
+                                    Word{"humerus", Part::upper_arm},
+                                    Word{"arm", Part::arm},
+                                    Word{"forearm", Part::lower_arm},
+                                    Word{"forearmbend", Part::lower_arm},
+                                    Word{"lowerarm", Part::lower_arm},
+                                    Word{"lowarm", Part::lower_arm},
+                                    Word{"loarm", Part::lower_arm},
+                                    Word{"farm", Part::lower_arm},
+                                    Word{"armlower", Part::lower_arm},
+                                    Word{"armlow", Part::lower_arm},
+                                    Word{"elbow", Part::lower_arm},
+                                    Word{"radius", Part::lower_arm},
+                                    Word{"hand", Part::hand},
+                                    Word{"wrist", Part::hand},
+                                    Word{"hip", Part::hip},
+                                    Word{"upperleg", Part::upper_leg},
+                                    Word{"upleg", Part::upper_leg},
+                                    Word{"uleg", Part::upper_leg},
+                                    Word{"legupper", Part::upper_leg},
+                                    Word{"legup", Part::upper_leg},
+                                    Word{"thigh", Part::upper_leg},
+                                    Word{"thighbend", Part::upper_leg},
+                                    Word{"femur", Part::upper_leg},
+                                    Word{"leg", Part::leg},
+                                    Word{"lowerleg", Part::lower_leg},
+                                    Word{"lowleg", Part::lower_leg},
+                                    Word{"loleg", Part::lower_leg},
+                                    Word{"leglower", Part::lower_leg},
+                                    Word{"leglow", Part::lower_leg},
+                                    Word{"shin", Part::lower_leg},
+                                    Word{"shank", Part::lower_leg},
+                                    Word{"calf", Part::lower_leg},
+                                    Word{"knee", Part::lower_leg},
+                                    Word{"tibia", Part::lower_leg},
+                                    Word{"foot", Part::foot},
+                                    Word{"ankle", Part::foot},
+                                    Word{"toe", Part::toes},
+                                    Word{"toes", Part::toes},
+                                    Word{"toebase", Part::toes},
+                                    Word{"forefoot", Part::toes},
+                                    Word{"ball", Part::toes}};
+
+constexpr std::array kMiddleWords = {
+    Word{"hips", Part::hips},       Word{"hip", Part::hips},      Word{"pelvis", Part::hips},
+    Word{"head", Part::head},       Word{"skull", Part::head},    Word{"lowerback", Part::spine},
+    Word{"upperback", Part::spine}, Word{"back", Part::spine},    Word{"abdomen", Part::spine},
+    Word{"ab", Part::spine},        Word{"waist", Part::spine},   Word{"torso", Part::spine},
+    Word{"thorax", Part::spine},    Word{"tospine", Part::spine}, Word{"ribcage", Part::spine}};
+
+// Anywhere in the name.
+constexpr std::array<std::string_view, 27> kHelperWords = {
+    "twist",  "roll",  "share",  "jaw",    "tongue", "teeth",    "face",     "facial",  "breast",
+    "brow",   "cheek", "eyelid", "marker", "target", "effector", "control",  "ctrl",    "helper",
+    "weapon", "prop",  "dummy",  "hair",   "cloth",  "skirt",    "hipjoint", "buttock", "glute"};
+// As a word of its own.
+constexpr std::array<std::string_view, 11> kHelperTokens = {
+    "ik", "pole", "goal", "eye", "eyes", "ear", "lip", "nose", "tail", "nub", "heel"};
+
+std::optional<Part> find_word(std::span<const Word> words, std::string_view text) {
+  const auto found = std::find_if(words.begin(), words.end(),
+                                  [text](const Word& word) { return word.text == text; });
+  if (found == words.end()) return std::nullopt;
+  return found->part;
+}
+
+bool is_number(std::string_view token) {
+  return !token.empty() && std::isdigit(static_cast<unsigned char>(token[0]));
+}
+
+Side side_of(std::string_view token) {
+  if (token == "l" || token == "left" || token == "lft" || token == "lt") return Side::left;
+  if (token == "r" || token == "right" || token == "rgt" || token == "rt") return Side::right;
+  return Side::middle;
+}
+
+// The tokens without numbers in one word.
+std::string joined(const Tokens& tokens) {
+  std::string text;
+  for (const std::string& token : tokens) {
+    if (!is_number(token)) text += token;
+  }
+  return text;
+}
+
+bool is_trunk_word(std::string_view text) {
+  return text.starts_with("spine") || text.ends_with("spine") || text.starts_with("chest") ||
+         text.starts_with("abdomen") || find_word(kMiddleWords, text) == Part::spine;
+}
+
+bool is_neck_word(std::string_view text) {
+  return text.starts_with("neck") || text == "lowerneck" || text == "upperneck";
+}
+
+Part middle_part(std::string_view text) {
+  if (is_neck_word(text)) return Part::neck;
+  if (is_trunk_word(text)) return Part::spine;
+  return find_word(kMiddleWords, text).value_or(Part::unknown);
+}
+
+// Takes the side out of the tokens.
+Side take_side(Tokens& tokens) {
+  // Last and first words are tried before those between, "arm_r_l" being a row of left arms.
+  std::vector<std::size_t> places;
+  if (!tokens.empty()) places = {0, tokens.size() - 1};
+  for (std::size_t i = 1; i + 1 < tokens.size(); ++i) places.push_back(i);
+  for (const std::size_t place : places) {
+    const Side side = side_of(tokens[place]);
+    if (side == Side::middle) continue;
+    Tokens rest = tokens;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
+    if (joined(rest).empty()) continue;  // "L5" is a vertebra
+    tokens = rest;
+    return side;
+  }
+  return Side::middle;
+}
+
+// "leftarm", "handright", "lhand", "LUArm": the side is part of a word. Gives what is left of it.
+std::pair<Side, std::string> split_side(const std::string& text) {
+  for (const auto& [word, side] :
+       {std::pair<std::string_view, Side>{"left", Side::left}, {"right", Side::right}}) {
+    if (text.size() <= word.size()) continue;
+    if (text.starts_with(word)) return {side, text.substr(word.size())};
+    if (text.ends_with(word)) return {side, text.substr(0, text.size() - word.size())};
+  }
+  if (text.size() > 1 && (text[0] == 'l' || text[0] == 'r')) {
+    const std::string rest = text.substr(1);
+    const bool known = find_word(kSidedWords, rest).has_value() || rest == "hipjoint" ||
+                       rest == "buttock" || rest == "thumb" || rest == "fingers" ||
+                       rest == "finger" || rest == "eye";
+    if (known && !find_word(kSidedWords, text)) {
+      return {text[0] == 'l' ? Side::left : Side::right, rest};
+    }
+  }
+  return {Side::middle, text};
+}
+
+JointName read_name(Tokens tokens) {
+  JointName name;
+  if (tokens.size() > 1 && (tokens.front() == "c" || tokens.front() == "center")) {
+    tokens.erase(tokens.begin());
+  }
+  const auto is_helper_token = [](const std::string& token) {
+    return std::find(kHelperTokens.begin(), kHelperTokens.end(), token) != kHelperTokens.end();
+  };
+  name.side = take_side(tokens);
+  std::string text = joined(tokens);
+  if (name.side == Side::middle) {
+    name.part = middle_part(text);
+    if (name.part != Part::unknown) return name;
+    std::tie(name.side, text) = split_side(text);
+  }
+  const bool helper =
+      std::any_of(tokens.begin(), tokens.end(), is_helper_token) || is_helper_token(text) ||
+      std::any_of(kHelperWords.begin(), kHelperWords.end(),
+                  [&](std::string_view word) { return text.find(word) != std::string::npos; });
+  if (helper) {
+    name.part = Part::helper;
+  } else if (name.side != Side::middle) {
+    // A pelvis of one side only carries the leg.
+    name.part =
+        text == "pelvis" ? Part::helper : find_word(kSidedWords, text).value_or(Part::unknown);
+  }
+  return name;
+}
+
+bool is_body_word(const std::string& token) {
+  return side_of(token) != Side::middle || find_word(kSidedWords, token) ||
+         middle_part(token) != Part::unknown || split_side(token).first != Side::middle;
+}
+
+// Takes off the words that more than half of the names begin with and that are no part of a body.
+void strip_common_prefix(std::vector<Tokens>& names) {
+  constexpr int kLongestPrefix = 6;
+  if (names.size() < 4) return;
+  for (int round = 0; round < kLongestPrefix; ++round) {
+    std::map<std::string, std::size_t> counts;
+    for (const Tokens& tokens : names) {
+      if (!tokens.empty()) ++counts[tokens.front()];
+    }
+    const auto most =
+        std::max_element(counts.begin(), counts.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most == counts.end() || most->second * 2 <= names.size() || is_body_word(most->first))
+      return;
+    for (Tokens& tokens : names) {
+      if (!tokens.empty() && tokens.front() == most->first) tokens.erase(tokens.begin());
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> name_tokens(std::string_view name) {
+  const std::size_t space = name.find_last_of(":|");
+  if (space != std::string_view::npos && space + 1 < name.size()) name.remove_prefix(space + 1);
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(name[i]); };
+  Tokens tokens;
+  bool open = false;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const unsigned char c = at(i);
+    const bool digit = std::isdigit(c) != 0;
+    if (!digit && !std::isalpha(c) && c < 0x80) {
+      open = false;
+      continue;
+    }
+    bool begins = !open;
+    if (open) {
+      const unsigned char before = at(i - 1);
+      const bool digit_before = std::isdigit(before) != 0;
+      // "leftArm" splits before A; "LThigh" before T, the last capital of a run.
+      const bool hump = std::isupper(c) &&
+                        (!std::isupper(before) || (i + 1 < name.size() && std::islower(at(i + 1))));
+      begins = digit != digit_before || hump;
+    }
+    if (begins) tokens.emplace_back();
+    tokens.back() += static_cast<char>(c < 0x80 ? std::tolower(c) : c);
+    open = true;
+  }
+  // OptiTrack writes LUArm and LFArm: side, place and part in one.
+  for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
+    const std::string token = tokens[i];
+    if (token.size() == 2 && (token[0] == 'l' || token[0] == 'r') &&
+        (token[1] == 'u' || token[1] == 'f') && tokens[i + 1] == "arm") {
+      tokens[i] = token[1];
+      tokens.insert(tokens.begin() + static_cast<std::ptrdiff_t>(i), std::string(1, token[0]));
+      ++i;
+    }
+  }
+  return tokens;
+}
+
+std::vector<JointName> read_joint_names(const Skeleton& skeleton) {
+  std::vector<std::size_t> joints;
+  std::vector<Tokens> tokens;
+  for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
+    if (skeleton.end_sites[j] != 0) continue;
+    joints.push_back(j);
+    tokens.push_back(name_tokens(skeleton.names[j]));
+  }
+  strip_common_prefix(tokens);
+  std::vector<JointName> names(skeleton.names.size());
+  std::vector<const Tokens*> tokens_of(skeleton.names.size(), nullptr);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    names[joints[i]] = read_name(tokens[i]);
+    tokens_of[joints[i]] = &tokens[i];
+  }
+  // Of two joints of the same name in a row (MakeHuman's "__UpLeg_L" and "UpLeg_L") the first only
+  // leads from the trunk to the place of the second.
+  for (const std::size_t j : joints) {
+    const int above = skeleton.parents[j];
+    if (above < 0 || names[j].part == Part::unknown) continue;
+    const Tokens* tokens_above = tokens_of[static_cast<std::size_t>(above)];
+    if (tokens_above != nullptr && *tokens_above == *tokens_of[j]) {
+      names[static_cast<std::size_t>(above)].part = Part::helper;
+    }
+  }
+  return names;
+}
+
+}  // namespace krok

@@ -1,0 +1,276 @@
+#include "samples/generator/body_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ik/two_bone.h"
+#include "math/euler.h"
+#include "math/quaternion.h"
+#include "samples/generator/gait_curves.h"
+
+#include <cstdlib>
+static double E(const char*n,double d){const char*v=getenv(n);return v?atof(v):d;}
+namespace krok::samples {
+
+namespace {
+
+constexpr double kDegree = kRadiansPerDegree;
+constexpr double kLeastKneeFlexion = 4 * kDegree;   // a walking knee is never locked
+constexpr double kStandingKneeFlexion = 6 * kDegree;
+constexpr double kHeightSpacing = 1.0 / 120.0;      // seconds between the keys of the height
+constexpr double kHeightSmoothing = 0.045;          // seconds, standard deviation
+
+template <typename T, typename Key>
+Spline<T> over_prints(const FootPlan& plan, Key key) {
+  std::vector<T> keys;
+  for (std::size_t i = 0; i < plan.prints.size(); ++i) {
+    keys.push_back(key(plan.prints[i == 0 ? 0 : i - 1], plan.prints[i]));
+  }
+  return Spline<T>(std::move(keys), 0, plan.step_time);
+}
+
+// The rotation of the left side for the right one, mirrored in the plane x = 0.
+Quat on_side(Side side, const Quat& left) {
+  return side == Side::left ? left : Quat(left.w(), left.x(), -left.y(), -left.z());
+}
+
+// How much of the body's weight a foot carries, 0 in swing, 1 while the other swings.
+double load(const Footprint& print, double stride, double time) {
+  const double double_support = (kToeOff - 0.5) * stride;
+  const double on = print.first_of_foot ? 1 : ease((time - print.strike) / double_support);
+  const double off = print.last_of_foot ? 0 : ease((time - print.off) / double_support + 1);
+  return on - off;
+}
+
+}  // namespace
+
+BodyMotion::BodyMotion(const WalkOptions& options, const Figure& figure, const FootPlan& plan)
+    : options_(options),
+      figure_(figure),
+      plan_(plan),
+      feet_{FootMotion(Side::left, plan, figure), FootMotion(Side::right, plan, figure)},
+      path_(over_prints<Vec3>(plan,
+                              [](const Footprint& a, const Footprint& b) {
+                                return Vec3(0.5 * (a.path_point + b.path_point));
+                              })),
+      heading_(over_prints<double>(plan,
+                                   [](const Footprint& a, const Footprint& b) {
+                                     return 0.5 * (a.path_heading + b.path_heading);
+                                   })),
+      activity_(over_prints<double>(
+          plan,
+          [&](const Footprint&, const Footprint& b) {
+            return std::min(1.3, b.step_length / (0.41 * options.stature));
+          })),
+      height_({0.0}, 0, 1) {
+  plan_height();
+}
+
+double BodyMotion::left_phase(double time) const {
+  const Footprint& first = plan_.prints[0];
+  const double offset = first.side == Side::left ? 0 : 0.5;
+  return time / (2 * plan_.step_time) + offset;
+}
+
+Transform BodyMotion::pelvis_without_height(double time) const {
+  const double phase = left_phase(time);
+  const double activity = activity_(time);
+  const double heading = heading_(time);
+  const double stature = figure_.stature;
+
+  // Towards the foot that stands, most in the middle of its single support, phase 0.31.
+  const double moving = std::min(1.0, 2.5 * activity);
+  const double sway = 0.018 * stature / 1.75 * moving * std::cos(2 * kPi * (phase - 0.31));
+  // Before the ankles when standing, more so when walking: at a strike the leg behind reaches further
+  // than the one before. A little faster in double support than in single support.
+  const double ahead = (0.036 + 0.010 + E("A",0.012) * activity) * stature +
+                       0.006 * activity * std::sin(4 * kPi * (phase + 0.03));
+  Transform pelvis;
+  pelvis.position = path_(time) + left_of(heading) * sway + forward_of(heading) * ahead;
+  pelvis.position.y() = 0;
+  const double tilt = (2 + 1.2 * activity * std::cos(4 * kPi * (phase - 0.05))) * kDegree;
+  pelvis.orientation = axis_rotation(Axis::y, heading + activity * pelvis_rotation(phase)) *
+                       axis_rotation(Axis::z, moving * pelvis_list(phase)) *
+                       axis_rotation(Axis::x, tilt);
+  return pelvis;
+}
+
+Transform BodyMotion::pelvis(double time) const {
+  Transform pelvis = pelvis_without_height(time);
+  pelvis.position.y() = height_(time);
+  return pelvis;
+}
+
+// The height at which a hip is as far from its ankle as a leg of that knee flexion is long.
+static double hip_height(const Vec3& hip, const Vec3& ankle, double reach) {
+  const double across = Vec2(hip.x() - ankle.x(), hip.z() - ankle.z()).norm();
+  return ankle.y() + std::sqrt(std::max(0.0, reach * reach - across * across));
+}
+
+double BodyMotion::wanted_height(double time) const {
+  const Transform pelvis = pelvis_without_height(time);
+  const double stride = 2 * plan_.step_time;
+  const double activity = std::clamp(activity_(time), 0.0, 1.0);
+  double height = 0;
+  double weight = 0;
+  for (const Side side : {Side::left, Side::right}) {
+    const FootMotion& foot = feet_[static_cast<std::size_t>(side)];
+    const Footprint& print = foot.print_at(time);
+    const double carried = load(print, stride, time);
+    if (carried <= 0) continue;
+    // Where in the stance; a foot that stands longer waits in the middle of it.
+    double phase = print.first_of_foot ? kHeelRise : std::min(kHeelRise, (time - print.strike) / stride);
+    if (!print.last_of_foot) phase = std::max(phase, kToeOff - (print.off - time) / stride);
+    const double flexion = std::max(
+        kLeastKneeFlexion, kStandingKneeFlexion + activity * (knee_flexion(phase) - kStandingKneeFlexion));
+    const Vec3 hip_local = figure_.skeleton.reference_local(figure_.legs[static_cast<std::size_t>(side)].upper).position;
+    const Vec3 hip = pelvis * hip_local;
+    const double reach = two_bone_reach(figure_.thigh, figure_.shank, flexion);
+    height += carried * (hip_height(hip, foot.at(time).ankle, reach) - hip.y());
+    weight += carried;
+  }
+  return height / weight;
+}
+
+double BodyMotion::highest(double time) const {
+  const Transform pelvis = pelvis_without_height(time);
+  const double reach = two_bone_reach(figure_.thigh, figure_.shank, kLeastKneeFlexion);
+  double height = 1e30;
+  for (const Side side : {Side::left, Side::right}) {
+    const Vec3 hip_local = figure_.skeleton.reference_local(figure_.legs[static_cast<std::size_t>(side)].upper).position;
+    const Vec3 hip = pelvis * hip_local;
+    const Vec3 ankle = feet_[static_cast<std::size_t>(side)].at(time).ankle;
+    height = std::min(height, hip_height(hip, ankle, reach) - hip.y());
+  }
+  return height;
+}
+
+// The pelvis is carried by the leg that stands: its knee's flexion says how high. What comes out is
+// smoothed, and then lowered, smoothly, where a leg could not reach its foot.
+void BodyMotion::plan_height() {
+  const double margin = 1.0;
+  const double start = plan_.first_time - margin;
+  const auto count =
+      static_cast<std::size_t>((plan_.last_time - plan_.first_time + 2 * margin) / kHeightSpacing) + 1;
+  std::vector<double> heights(count), limits(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double time = start + static_cast<double>(i) * kHeightSpacing;
+    heights[i] = wanted_height(time);
+    limits[i] = highest(time);
+  }
+  const double sigma = kHeightSmoothing / kHeightSpacing;
+  smooth(heights, sigma);
+  for (int round = 0; round < 40; ++round) {
+    std::vector<double> excess(count);
+    double largest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      excess[i] = std::max(0.0, heights[i] - limits[i]);
+      largest = std::max(largest, excess[i]);
+    }
+    if (largest < 1e-5) break;
+    smooth(excess, sigma);
+    for (std::size_t i = 0; i < count; ++i) heights[i] -= 1.5 * excess[i];
+  }
+  height_ = Spline<double>(std::move(heights), start, kHeightSpacing);
+}
+
+void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
+  const double phase = left_phase(time);
+  const double activity = activity_(time);
+  const double heading = heading_(time);
+  const auto place = [&](int joint, const Quat& orientation) {
+    const auto index = static_cast<std::size_t>(joint);
+    const auto parent = static_cast<std::size_t>(figure_.skeleton.parents[index]);
+    world[index].position =
+        world[parent] * figure_.skeleton.reference_local(joint).position;
+    world[index].orientation = orientation;
+  };
+  // The shoulders turn against the pelvis, a little later than it, and stay nearly level.
+  const double turn = activity * 5.5 * kDegree * std::cos(2 * kPi * (phase - 0.03));
+  const double list = -0.35 * std::min(1.0, 2.5 * activity) * pelvis_list(phase);
+  const double climb = plan_.ground == Ground::stairs ? plan_.rise / (0.1 * figure_.stature) : 0;
+  const double lean = (2.0 + 1.5 * activity + 1.0 * activity * std::sin(4 * kPi * (phase - 0.05)) +
+                       6.0 * std::max(0.0, climb) * std::min(1.0, 2.5 * activity)) * kDegree;
+  const Quat chest = axis_rotation(Axis::y, heading + turn) * axis_rotation(Axis::z, list) *
+                     axis_rotation(Axis::x, lean);
+  const Quat hips = world[static_cast<std::size_t>(figure_.hips)].orientation;
+  place(figure_.spine, slerp(hips, chest, 0.3));
+  place(figure_.spine1, slerp(hips, chest, 0.65));
+  place(figure_.spine2, chest);
+  // The head keeps level and looks where the walk goes next.
+  const double ahead = heading_(time + 0.35);
+  const Quat head = axis_rotation(Axis::y, ahead + 0.15 * turn) *
+                    axis_rotation(Axis::x, (1.5 - 0.6 * activity * std::sin(4 * kPi * (phase - 0.05))) * kDegree);
+  place(figure_.neck, slerp(chest, head, 0.5) * axis_rotation(Axis::x, 6 * kDegree));
+  place(figure_.head, head);
+}
+
+void BodyMotion::pose_arm(Side side, double time, std::span<Transform> world) const {
+  const ArmJoints& arm = figure_.arms[static_cast<std::size_t>(side)];
+  const double own_phase = left_phase(time) + (side == Side::left ? 0 : 0.5);
+  const double activity = activity_(time);
+  const double swing = std::min(1.15, activity);
+  const double flexion = swing * shoulder_flexion(own_phase) + (1 - swing) * 1 * kDegree;
+  const double elbow = swing * elbow_flexion(own_phase - 0.02) + (1 - swing) * 16 * kDegree;
+  const double abduction = 9 * kDegree;
+
+  const auto set = [&](int joint, const Quat& left_local) {
+    const auto index = static_cast<std::size_t>(joint);
+    const auto parent = static_cast<std::size_t>(figure_.skeleton.parents[index]);
+    world[index] = world[parent] * Transform{figure_.skeleton.reference_local(joint).position,
+                                             on_side(side, left_local)};
+  };
+  // In the left arm's own frame the bone runs along +X; hanging down, its +Y points away from the
+  // body and +Z forward.
+  set(arm.collar, axis_rotation(Axis::y, -0.12 * flexion) * axis_rotation(Axis::z, -3 * kDegree));
+  set(arm.upper, axis_rotation(Axis::x, -flexion) *
+                     axis_rotation(Axis::z, -(kPi / 2 - abduction) + 3 * kDegree) *
+                     axis_rotation(Axis::x, 22 * kDegree));
+  set(arm.lower, axis_rotation(Axis::y, -elbow) * axis_rotation(Axis::x, -12 * kDegree));
+  set(arm.hand, axis_rotation(Axis::z, (-6 - 4 * std::sin(2 * kPi * (own_phase - 0.1)) * swing) * kDegree));
+  set(arm.fingers, axis_rotation(Axis::z, -24 * kDegree));
+}
+
+void BodyMotion::pose_leg(Side side, double time, std::span<Transform> world) const {
+  const LegJoints& leg = figure_.legs[static_cast<std::size_t>(side)];
+  const auto upper = static_cast<std::size_t>(leg.upper);
+  const auto lower = static_cast<std::size_t>(leg.lower);
+  const auto foot = static_cast<std::size_t>(leg.foot);
+  const auto toes = static_cast<std::size_t>(leg.toes);
+  const Transform& hips = world[static_cast<std::size_t>(figure_.hips)];
+  const FootPose planned = feet_[static_cast<std::size_t>(side)].at(time);
+
+  // The knee points between where the pelvis and where the foot points, mostly the foot.
+  const Vec3 foot_forward = (planned.foot * Vec3(Vec3::UnitX())).cross(Vec3(Vec3::UnitY()));
+  const Vec3 hips_forward = (hips.orientation * Vec3(Vec3::UnitX())).cross(Vec3(Vec3::UnitY()));
+  TwoBoneChain chain;
+  chain.root = hips * figure_.skeleton.reference_local(leg.upper).position;
+  chain.middle = chain.root + hips.orientation * Vec3(0, -figure_.thigh, 0);
+  chain.end = chain.middle + hips.orientation * Vec3(0, -figure_.shank, 0);
+  chain.hinge = hips.orientation * Vec3(Vec3::UnitX());
+  TwoBoneGoal goal;
+  goal.target = planned.ankle;
+  goal.pole = 0.65 * foot_forward + 0.35 * hips_forward;
+  const TwoBoneSolution solved = solve_two_bone(chain, goal);
+  world[upper] = {chain.root, solved.root_rotation * hips.orientation};
+  world[lower] = {solved.middle, solved.middle_rotation * hips.orientation};
+  world[foot] = {solved.end, planned.foot};
+  world[toes] = {world[foot] * figure_.toe_joint, planned.toes};
+}
+
+void BodyMotion::pose(double time, std::span<Transform> world) const {
+  world[static_cast<std::size_t>(figure_.hips)] = pelvis(time);
+  pose_trunk(time, world);
+  for (const Side side : {Side::left, Side::right}) {
+    pose_arm(side, time, world);
+    pose_leg(side, time, world);
+  }
+  for (int i = 0; i < figure_.skeleton.joint_count(); ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    if (!figure_.skeleton.end_sites[index]) continue;
+    const auto parent = static_cast<std::size_t>(figure_.skeleton.parents[index]);
+    world[index] = world[parent] * figure_.skeleton.reference_local(i);
+  }
+}
+
+}  // namespace krok::samples

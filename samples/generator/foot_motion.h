@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "samples/generator/curves.h"
+#include "samples/generator/foot_plan.h"
+
+// One foot over time: it rolls over its prints without sliding and swings from one to the next.
+
+namespace krok::samples {
+
+struct FootPose {
+  Vec3 ankle = Vec3::Zero();
+  Quat foot = Quat::Identity();  // foot_to_world
+  Quat toes = Quat::Identity();  // toes_to_world
+};
+
+// In stance the foot turns about the heel's contact point while its toes point up, and about the toe
+// joint, the toes flat, while its heel is up. The swing takes the ankle on from toe-off to the next
+// strike with continuous velocity and acceleration, lifted and held back as far as it takes to clear
+// the ground.
+class FootMotion {
+ public:
+  FootMotion(Side side, const FootPlan& plan, const Figure& figure);
+
+  FootPose at(double time) const;
+
+  // The print the foot is on or has last left.
+  const Footprint& print_at(double time) const;
+
+ private:
+  struct Swing {
+    State<Vec3> from, to;   // of the ankle
+    double lift = 0;        // metres
+    double hold_back = 0;   // metres, against the direction of the step
+    Vec3 direction = Vec3::Zero();
+  };
+
+  double pitch_at(std::size_t print, double time) const;
+  double toe_extension_at(std::size_t print, double time) const;
+  FootPose stance(std::size_t print, double time) const;
+  FootPose swing(std::size_t print, double time) const;
+  State<Vec3> ankle_state(std::size_t print, double pitch, double pitch_rate) const;
+  void clear_ground(std::size_t print, const FootPlan& plan);
+  std::size_t index_at(double time) const;
+
+  Figure figure_;
+  double stride_ = 0;
+  std::vector<Footprint> prints_;
+  std::vector<KnotCurve> pitch_;          // from print i's strike to the strike of print i + 1
+  std::vector<KnotCurve> toe_extension_;  // in the swing from print i to i + 1
+  std::vector<Swing> swings_;             // from print i to i + 1
+};
+
+}  // namespace krok::samples

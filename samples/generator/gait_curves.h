@@ -1,0 +1,30 @@
+#pragma once
+
+#include "samples/generator/curves.h"
+
+// What people's joints do over a stride at a free walking speed. The phase runs from 0, the strike
+// of a foot, to 1, its next strike; angles are radians. The values are read off published mean
+// curves and rounded to the degree: they set the manner of the walk, while the legs' angles follow
+// from where the feet stand.
+
+namespace krok::samples {
+
+// Moments of a stride, in phase (Perry and Burnfield, "Gait Analysis"; Winter).
+inline constexpr double kFootFlat = 0.10;
+inline constexpr double kHeelRise = 0.31;
+inline constexpr double kToeOff = 0.62;
+
+// Flexion of the knee; one peak of 18 degrees as the leg takes the load, one of 61 in swing (Winter,
+// natural cadence).
+double knee_flexion(double phase);
+
+// Flexion of the shoulder and the elbow of the same side (Murray, Sepic and Barnard 1967).
+double shoulder_flexion(double phase);
+double elbow_flexion(double phase);
+
+// The pelvis over the stride of the left foot (Inman, Ralston and Todd; Perry): rotation about the
+// vertical, positive when the right side comes forward; list, positive when the right side drops.
+double pelvis_rotation(double left_phase);
+double pelvis_list(double left_phase);
+
+}  // namespace krok::samples

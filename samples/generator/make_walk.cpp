@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include "core/file.h"
+#include "core/quantity.h"
+#include "formats/bvh/bvh_writer.h"
+#include "samples/generator/ground_truth.h"
+#include "samples/generator/walk.h"
+#include "tools/common/tool.h"
+
+// make-walk: writes a generated walk as BVH, and what is known of it beside it.
+
+namespace {
+
+using namespace krok;
+
+struct Arguments {
+  samples::WalkOptions walk;
+  std::string stature, step_length, step_width, turn, rise, noise_angle, noise_position;
+  std::string ground = "stairs";
+  std::string first = "left";
+  std::string contacts;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  samples::WalkOptions& walk = arguments.walk;
+  const auto quantity = [&](const char* name, std::string& text, const char* unit,
+                            const char* fallback, const char* help) {
+    app.add_option(name, text, help)->type_name(unit)->default_str(fallback)->group("Walk");
+  };
+  app.add_option("--steps", walk.steps, "Number of steps")->type_name("N")->capture_default_str()
+      ->group("Walk");
+  quantity("--step-length", arguments.step_length, "LENGTH", "0.7m", "From heel to heel along the path");
+  quantity("--step-width", arguments.step_width, "LENGTH", "0.1m", "Between the heels");
+  quantity("--turn", arguments.turn, "ANGLE", "0deg", "Heading gained by each step, to the left");
+  quantity("--rise", arguments.rise, "LENGTH", "0m", "Height gained by each step, negative downwards");
+  app.add_option("--ground", arguments.ground, "What a rise is made of: stairs or slope")
+      ->check(CLI::IsMember({"stairs", "slope"}))->type_name("KIND")->capture_default_str()->group("Walk");
+  app.add_option("--cadence", walk.cadence, "Steps a minute; 0 fits the step length")
+      ->type_name("N")->capture_default_str()->group("Walk");
+  app.add_flag("--from-standing", walk.from_standing, "Start and end standing, not in mid-walk")
+      ->group("Walk");
+  app.add_option("--first", arguments.first, "The foot of the first step: left or right")
+      ->check(CLI::IsMember({"left", "right"}))->type_name("SIDE")->capture_default_str()->group("Walk");
+  quantity("--stature", arguments.stature, "LENGTH", "1.75m", "Height of the figure");
+  app.add_option("--rate", walk.rate, "Frames a second")->type_name("N")->capture_default_str()
+      ->group("Capture");
+  const auto noise = [&](const char* name, std::string& text, const char* unit,
+                         const char* fallback, const char* help) {
+    app.add_option(name, text, help)->type_name(unit)->default_str(fallback)->group("Capture");
+  };
+  noise("--noise-angle", arguments.noise_angle, "ANGLE", "0deg", "Deviation of the joints' rotations");
+  noise("--noise-position", arguments.noise_position, "LENGTH", "0mm", "Deviation of the root's position");
+  app.add_option("--seed", walk.seed, "Of the noise")->type_name("N")->capture_default_str()
+      ->group("Capture");
+  app.add_option("--contacts", arguments.contacts,
+                 "Where what is known of the walk goes; NAME.contacts.json beside the capture")
+      ->type_name("FILE")->group("Capture");
+}
+
+using Parser = Result<double> (*)(std::string_view);
+
+Status set(const std::string& text, Parser parse, double& value) {
+  if (text.empty()) return {};
+  Result<double> parsed = parse(text);
+  if (!parsed) return std::move(parsed).error();
+  value = *parsed;
+  return {};
+}
+
+Status read_quantities(Arguments& arguments) {
+  samples::WalkOptions& walk = arguments.walk;
+  const struct {
+    const std::string& text;
+    Parser parse;
+    double& value;
+  } quantities[] = {
+      {arguments.stature, parse_length, walk.stature},
+      {arguments.step_length, parse_length, walk.step_length},
+      {arguments.step_width, parse_length, walk.step_width},
+      {arguments.turn, parse_angle, walk.turn},
+      {arguments.rise, parse_length, walk.rise},
+      {arguments.noise_angle, parse_angle, walk.noise_angle},
+      {arguments.noise_position, parse_length, walk.noise_position},
+  };
+  for (const auto& quantity : quantities) {
+    if (Status done = set(quantity.text, quantity.parse, quantity.value); !done) return done;
+  }
+  walk.ground = arguments.ground == "slope" ? samples::Ground::slope : samples::Ground::stairs;
+  walk.first_side = arguments.first == "right" ? samples::Side::right : samples::Side::left;
+  return {};
+}
+
+// walk.bvh -> walk.contacts.json
+std::string contacts_path(const std::string& capture) {
+  return capture.substr(0, capture.size() - extension(capture).size()) + ".contacts.json";
+}
+
+Result<int> run(ToolContext& context, Arguments& arguments) {
+  if (Status done = read_quantities(arguments); !done) return std::move(done).error();
+  Result<samples::Walk> walk = samples::make_walk(arguments.walk);
+  if (!walk) return std::move(walk).error();
+
+  Result<OutputFile> capture = OutputFile::create(context.output, context.output_options());
+  if (!capture) return std::move(capture).error();
+  if (Status done = bvh::write(walk->clip, {}, *capture); !done) return std::move(done).error();
+  const std::string truth = samples::ground_truth_json(*walk, base_name(context.output));
+  std::string truth_path = arguments.contacts;
+  if (truth_path.empty() && context.output != "-") truth_path = contacts_path(context.output);
+  if (!truth_path.empty()) {
+    if (Status done = write_file(truth_path, truth, context.output_options()); !done) {
+      return std::move(done).error();
+    }
+    context.wrote(truth_path);
+  }
+  if (Status done = capture->commit(); !done) return std::move(done).error();
+  context.wrote(context.output);
+  context.say(fmt::format("{}: {} steps, {} frames at {:g}/s, {:.1f} s", context.output,
+                          arguments.walk.steps, walk->clip.frame_count(), walk->clip.rate,
+                          walk->clip.duration()));
+  return kExitDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  ToolSpec spec;
+  spec.name = "make-walk";
+  spec.summary = "Makes a capture of a walk, with its contacts known";
+  spec.inputs = "";
+  spec.examples = {
+      {"make-walk -o walk.bvh", "eight ordinary steps, cut out of a steady walk"},
+      {"make-walk --turn 15deg --steps 6 --step-length 60cm -o turn.bvh", "a quarter turn to the left"},
+      {"make-walk --rise 16cm --step-length 30cm --from-standing -o stairs.bvh", "up a flight of stairs"},
+  };
+  spec.declare = [&](CLI::App& app) { declare(app, arguments); };
+  spec.run = [&](ToolContext& context) { return run(context, arguments); };
+  return run_tool(spec, argc, argv);
+}

@@ -1,0 +1,80 @@
+#include "samples/generator/walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "samples/generator/body_motion.h"
+#include "samples/generator/noise.h"
+
+namespace krok::samples {
+
+namespace {
+
+void add_contact(std::vector<Contact>& contacts, Contact contact, double last) {
+  contact.open_start = contact.open_start || contact.from < 0;
+  contact.open_end = contact.open_end || contact.to > last;
+  if (contact.open_start) contact.from = 0;
+  if (contact.open_end) contact.to = last;
+  if (contact.to > contact.from) contacts.push_back(contact);
+}
+
+// What of the plan falls into the clip, on the clip's clock.
+void record_contacts(const FootPlan& plan, const Figure& figure, Walk& walk) {
+  const double last = plan.last_time - plan.first_time;
+  for (Footprint print : plan.prints) {
+    for (double* time : {&print.strike, &print.flat, &print.heel_rise, &print.off}) {
+      *time -= plan.first_time;
+    }
+    const bool starts_before = print.first_of_foot || print.strike < 0;
+    const bool lasts_beyond = print.last_of_foot || print.off > last;
+    if ((!print.first_of_foot && print.strike > last) || (!print.last_of_foot && print.off < 0)) {
+      continue;
+    }
+    const int index = static_cast<int>(walk.prints.size());
+    walk.prints.push_back(print);
+    FootContacts& foot = walk.feet[static_cast<std::size_t>(print.side)];
+    const bool ball_first = print.strike_pitch < 0;
+    const Quat ground(Eigen::AngleAxisd(print.heading, Vec3::UnitY()) *
+                      Eigen::AngleAxisd(-print.slope, Vec3::UnitX()));
+    Contact heel{index, ball_first ? print.flat : print.strike, print.heel_rise,
+                 print.first_of_foot, print.last_of_foot, print.heel};
+    Contact toe{index, ball_first ? print.strike : print.flat, print.off, print.first_of_foot,
+                print.last_of_foot, print.heel + ground * Vec3(figure.ball - figure.heel)};
+    add_contact(foot.heel, heel, last);
+    add_contact(foot.toe, toe, last);
+    if (!starts_before) foot.strikes.push_back(print.strike);
+    if (!lasts_beyond) foot.offs.push_back(print.off);
+  }
+}
+
+}  // namespace
+
+Result<Walk> make_walk(const WalkOptions& options) {
+  if (Status valid = check(options); !valid) return std::move(valid).error();
+  Walk walk;
+  walk.options = options;
+  walk.figure = make_figure(options.stature);
+  const FootPlan plan = plan_feet(options, walk.figure);
+  walk.step_time = plan.step_time;
+
+  const double frames = std::floor((plan.last_time - plan.first_time) * options.rate + 1e-6) + 1;
+  if (frames > 1e6) {
+    return Error("walk-too-long", "the walk would have more than a million frames",
+                 "ask for fewer steps or a lower rate");
+  }
+  const BodyMotion body(options, walk.figure, plan);
+  walk.clip.skeleton = walk.figure.skeleton;
+  walk.clip.rate = options.rate;
+  walk.clip.resize(static_cast<int>(frames));
+  std::vector<Transform> world(walk.figure.skeleton.names.size());
+  NoiseSource noise(options.seed);
+  for (int frame = 0; frame < walk.clip.frame_count(); ++frame) {
+    body.pose(plan.first_time + frame / options.rate, world);
+    add_noise(options, walk.figure.skeleton, noise, world);
+    walk.clip.set_pose(frame, world);
+  }
+  record_contacts(plan, walk.figure, walk);
+  return walk;
+}
+
+}  // namespace krok::samples

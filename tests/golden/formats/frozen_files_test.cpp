@@ -1,0 +1,301 @@
+// If these fail, files of version 1 that users have are read differently than before, or the
+// writers no longer write what they wrote, or SPEC.md and the library disagree.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "formats/anim/anim.h"
+#include "formats/cam/cam.h"
+#include "formats/model/model_format.h"
+#include "golden/samples/samples.h"
+
+namespace krok {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAreArray;
+
+const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
+constexpr auto kXyzw = OrientationEncoding::xyzw;
+
+InputFile open(const std::string& path) {
+  auto file = InputFile::open(path);
+  EXPECT_TRUE(file.ok()) << path;
+  return *std::move(file);
+}
+
+std::vector<std::byte> bytes_of_file(const std::string& path) {
+  const InputFile file = open(path);
+  return {file.bytes().begin(), file.bytes().end()};
+}
+
+// What the file holds must be the sample, orientations up to sign and the rounding of w.
+void expect_same(const Quat& found, const Quat& expected) {
+  const double sign = found.dot(expected) < 0 ? -1 : 1;
+  EXPECT_LT((found.coeffs() * sign - expected.coeffs()).norm(), 1e-6)
+      << found.coeffs().transpose() << " instead of " << expected.coeffs().transpose();
+}
+
+void expect_same(const Skeleton& found, const Skeleton& expected) {
+  EXPECT_EQ(found.names, expected.names);
+  EXPECT_EQ(found.parents, expected.parents);
+  EXPECT_EQ(found.end_sites, expected.end_sites);
+  ASSERT_EQ(found.reference.size(), expected.reference.size());
+  for (std::size_t i = 0; i < found.reference.size(); ++i) {
+    EXPECT_EQ(found.reference[i].position, expected.reference[i].position);
+    expect_same(found.reference[i].orientation, expected.reference[i].orientation);
+  }
+}
+
+void expect_same(const Provenance& found, const Provenance& expected) {
+  EXPECT_EQ(found.tool, expected.tool);
+  EXPECT_EQ(found.version, expected.version);
+  ASSERT_EQ(found.sources.size(), expected.sources.size());
+  for (std::size_t i = 0; i < found.sources.size(); ++i) {
+    EXPECT_EQ(found.sources[i].name, expected.sources[i].name);
+    EXPECT_EQ(found.sources[i].xxh3, expected.sources[i].xxh3);
+  }
+  EXPECT_EQ(found.options, expected.options);
+  EXPECT_EQ(found.conversions, expected.conversions);
+  EXPECT_EQ(found.warnings, expected.warnings);
+}
+
+TEST(FrozenFiles, MotionHoldsEveryValue) {
+  const Clip expected = samples::clip();
+  for (const char* name : {"motion.anim", "motion_xyzw.anim"}) {
+    SCOPED_TRACE(name);
+    const auto clip = anim::read(open(kFrozen + name).bytes());
+    ASSERT_TRUE(clip.ok()) << clip.error().message;
+    expect_same(clip->skeleton, expected.skeleton);
+    EXPECT_EQ(clip->rate, expected.rate);
+    EXPECT_THAT(clip->positions, ElementsAreArray(expected.positions));
+    ASSERT_EQ(clip->orientations.size(), expected.orientations.size());
+    for (std::size_t i = 0; i < clip->orientations.size(); ++i) {
+      expect_same(clip->orientations[i].cast<double>(), expected.orientations[i].cast<double>());
+    }
+    expect_same(clip->provenance, expected.provenance);
+  }
+  const auto exact = anim::read(open(kFrozen + "motion_xyzw.anim").bytes());
+  for (std::size_t i = 0; i < expected.orientations.size(); ++i) {
+    EXPECT_EQ(exact->orientations[i].coeffs(), expected.orientations[i].coeffs());
+  }
+}
+
+TEST(FrozenFiles, ModelsHoldEveryValue) {
+  const std::pair<const char*, Model> models[] = {{"full.model", samples::model()},
+                                                  {"plain_xyzw.model", samples::plain_model()}};
+  for (const auto& [name, expected] : models) {
+    SCOPED_TRACE(name);
+    const auto model = model::read(open(kFrozen + name).bytes());
+    ASSERT_TRUE(model.ok()) << model.error().message;
+    expect_same(model->skeleton, expected.skeleton);
+    EXPECT_THAT(model->positions, ElementsAreArray(expected.positions));
+    EXPECT_THAT(model->normals, ElementsAreArray(expected.normals));
+    EXPECT_THAT(model->texture_coordinates, ElementsAreArray(expected.texture_coordinates));
+    EXPECT_THAT(model->tangents, ElementsAreArray(expected.tangents));
+    EXPECT_EQ(model->influences_per_vertex, expected.influences_per_vertex);
+    EXPECT_EQ(model->influence_joints, expected.influence_joints);
+    EXPECT_EQ(model->influence_weights, expected.influence_weights);
+    EXPECT_EQ(model->triangles, expected.triangles);
+    ASSERT_EQ(model->parts.size(), expected.parts.size());
+    for (std::size_t i = 0; i < model->parts.size(); ++i) {
+      EXPECT_EQ(model->parts[i].name, expected.parts[i].name);
+      EXPECT_EQ(model->parts[i].material, expected.parts[i].material);
+      EXPECT_EQ(model->parts[i].first_triangle, expected.parts[i].first_triangle);
+      EXPECT_EQ(model->parts[i].triangle_count, expected.parts[i].triangle_count);
+    }
+    expect_same(model->provenance, expected.provenance);
+  }
+}
+
+TEST(FrozenFiles, CameraHoldsEveryValue) {
+  const CameraTrack expected = samples::camera();
+  for (const char* name : {"camera.cam", "camera_xyzw.cam"}) {
+    SCOPED_TRACE(name);
+    const auto camera = cam::read(open(kFrozen + name).bytes());
+    ASSERT_TRUE(camera.ok()) << camera.error().message;
+    EXPECT_EQ(camera->rate, expected.rate);
+    EXPECT_THAT(camera->positions, ElementsAreArray(expected.positions));
+    EXPECT_EQ(camera->fields_of_view, expected.fields_of_view);
+    ASSERT_EQ(camera->orientations.size(), expected.orientations.size());
+    for (std::size_t i = 0; i < camera->orientations.size(); ++i) {
+      expect_same(camera->orientations[i].cast<double>(), expected.orientations[i].cast<double>());
+    }
+    expect_same(camera->provenance, expected.provenance);
+  }
+}
+
+TEST(FrozenFiles, WritersStillWriteTheSameBytes) {
+  for (const auto& sample : samples::all()) {
+    EXPECT_EQ(samples::bytes_of(sample.write), bytes_of_file(kFrozen + sample.file_name))
+        << sample.file_name;
+  }
+}
+
+TEST(FrozenFiles, ReadingAndWritingGivesTheSameBytes) {
+  EXPECT_EQ(samples::bytes_of(*anim::read(open(kFrozen + "motion.anim").bytes())),
+            bytes_of_file(kFrozen + "motion.anim"));
+  EXPECT_EQ(samples::bytes_of(*anim::read(open(kFrozen + "motion_xyzw.anim").bytes()), kXyzw),
+            bytes_of_file(kFrozen + "motion_xyzw.anim"));
+  EXPECT_EQ(samples::bytes_of(*model::read(open(kFrozen + "full.model").bytes())),
+            bytes_of_file(kFrozen + "full.model"));
+  EXPECT_EQ(samples::bytes_of(*model::read(open(kFrozen + "plain_xyzw.model").bytes()), kXyzw),
+            bytes_of_file(kFrozen + "plain_xyzw.model"));
+  EXPECT_EQ(samples::bytes_of(*cam::read(open(kFrozen + "camera.cam").bytes())),
+            bytes_of_file(kFrozen + "camera.cam"));
+  EXPECT_EQ(samples::bytes_of(*cam::read(open(kFrozen + "camera_xyzw.cam").bytes()), kXyzw),
+            bytes_of_file(kFrozen + "camera_xyzw.cam"));
+}
+
+// --- the reader in Python, written from SPEC.md ---
+
+bool has_python() {
+  return std::system("python3 --version >/dev/null 2>&1") == 0;
+}
+
+// What read_krok_files.py prints for a file; null where it fails.
+json read_by_python(const std::string& path) {
+  const std::string command =
+      "python3 '" KROK_SOURCE_DIR "/tests/golden/read_krok_files.py' '" + path + "'";
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return {};
+  std::string text;
+  char buffer[4096];
+  for (std::size_t count; (count = fread(buffer, 1, sizeof buffer, pipe)) > 0;) {
+    text.append(buffer, count);
+  }
+  if (pclose(pipe) != 0) return {};
+  return json::parse(text);
+}
+
+// Numbers as lists, in doubles, in which floats are exact.
+template <typename Vector>
+json list(const Vector& values) {
+  json all = json::array();
+  for (const auto value : values) all.push_back(static_cast<double>(value));
+  return all;
+}
+template <typename Vector>
+json lists(const std::vector<Vector>& rows) {
+  if (rows.empty()) return nullptr;
+  json all = json::array();
+  for (const Vector& row : rows) all.push_back(list(row));
+  return all;
+}
+
+void expect_record(const json& record, const Vec3f& position, const Quatf& orientation) {
+  EXPECT_EQ(record["position"], list(position));
+  json rounded = json::array();
+  for (const double value : record["orientation"]) rounded.push_back(static_cast<float>(value));
+  EXPECT_EQ(list(rounded.get<std::vector<float>>()), list(orientation.coeffs()));
+}
+
+void expect_skeleton(const json& joints, const Skeleton& skeleton) {
+  ASSERT_EQ(joints.size(), skeleton.names.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    EXPECT_EQ(joints[i]["name"], skeleton.names[i]);
+    EXPECT_EQ(joints[i]["parent"], skeleton.parents[i]);
+    EXPECT_EQ(joints[i]["end_site"], skeleton.end_sites[i] != 0);
+    expect_record(joints[i]["reference"], skeleton.reference[i].position.cast<float>(),
+                  skeleton.reference[i].orientation.cast<float>());
+  }
+}
+
+void expect_anim(const json& found, const Clip& clip) {
+  EXPECT_EQ(found["kind"], "anim");
+  EXPECT_EQ(found["rate"], clip.rate);
+  expect_skeleton(found["skeleton"], clip.skeleton);
+  ASSERT_EQ(found["frames"].size(), static_cast<std::size_t>(clip.frame_count()));
+  for (int i = 0; i < clip.frame_count(); ++i) {
+    for (std::size_t k = 0; k < clip.skeleton.names.size(); ++k) {
+      expect_record(found["frames"][static_cast<std::size_t>(i)][k], clip.frame_positions(i)[k],
+                    clip.frame_orientations(i)[k]);
+    }
+  }
+}
+
+void expect_model(const json& found, const Model& model) {
+  EXPECT_EQ(found["kind"], "model");
+  expect_skeleton(found["skeleton"], model.skeleton);
+  EXPECT_EQ(found["positions"], lists(model.positions));
+  EXPECT_EQ(found["normals"], lists(model.normals));
+  EXPECT_EQ(found["texture_coordinates"], lists(model.texture_coordinates));
+  EXPECT_EQ(found["tangents"], lists(model.tangents));
+  std::vector<std::uint16_t> joints;
+  for (const json& row : found["joints"]) joints.insert(joints.end(), row.begin(), row.end());
+  EXPECT_EQ(joints, model.influence_joints);
+  std::vector<float> weights;
+  for (const json& row : found["weights"]) weights.insert(weights.end(), row.begin(), row.end());
+  EXPECT_EQ(weights, model.influence_weights);
+  EXPECT_EQ(found["triangles"], json(model.triangles));
+  ASSERT_EQ(found["parts"].size(), model.parts.size());
+  for (std::size_t i = 0; i < model.parts.size(); ++i) {
+    const Model::Part& part = model.parts[i];
+    EXPECT_EQ(found["parts"][i], (json{{"name", part.name},
+                                       {"material", part.material},
+                                       {"first_triangle", part.first_triangle},
+                                       {"triangle_count", part.triangle_count}}));
+  }
+}
+
+void expect_camera(const json& found, const CameraTrack& camera) {
+  EXPECT_EQ(found["kind"], "cam");
+  EXPECT_EQ(found["rate"], camera.rate);
+  ASSERT_EQ(found["frames"].size(), camera.positions.size());
+  for (std::size_t i = 0; i < camera.positions.size(); ++i) {
+    expect_record(found["frames"][i], camera.positions[i], camera.orientations[i]);
+    EXPECT_EQ(found["frames"][i]["field_of_view"], static_cast<double>(camera.fields_of_view[i]));
+  }
+}
+
+void expect_python_agrees(const std::string& path) {
+  SCOPED_TRACE(path);
+  const json found = read_by_python(path);
+  ASSERT_FALSE(found.is_null()) << "the reader written from SPEC.md refuses the file";
+  const InputFile file = open(path);
+  const std::string ending = extension(path);
+  if (ending == ".anim") expect_anim(found, *anim::read(file.bytes()));
+  if (ending == ".model") expect_model(found, *model::read(file.bytes()));
+  if (ending == ".cam") expect_camera(found, *cam::read(file.bytes()));
+}
+
+TEST(ReaderFromSpecification, ReadsTheFrozenFiles) {
+  if (!has_python()) GTEST_SKIP() << "skipped: there is no python3";
+  for (const auto& sample : samples::all()) expect_python_agrees(kFrozen + sample.file_name);
+  EXPECT_EQ(read_by_python(kFrozen + "motion.anim")["provenance"]["options"][0]["value"], "cm");
+}
+
+TEST(ReaderFromSpecification, ReadsAFreshFile) {
+  if (!has_python()) GTEST_SKIP() << "skipped: there is no python3";
+  Clip clip = samples::clip();
+  clip.resize(200);
+  for (std::size_t i = 0; i < clip.positions.size(); ++i) {
+    const double t = 0.1 * static_cast<double>(i);
+    clip.positions[i] = Vec3f(static_cast<float>(std::sin(t)), static_cast<float>(t), -1);
+    clip.orientations[i] =
+        Quat(std::cos(t), 0.6 * std::sin(t), 0, 0.8 * std::sin(t)).normalized().cast<float>();
+  }
+  const std::string path = testing::TempDir() + "krok-fresh-" + std::to_string(getpid()) + ".anim";
+  ASSERT_TRUE(write_file(path, samples::bytes_of(clip)).ok());
+  expect_python_agrees(path);
+  std::filesystem::remove(path);
+}
+
+TEST(ReaderFromSpecification, RefusesACutFile) {
+  if (!has_python()) GTEST_SKIP() << "skipped: there is no python3";
+  auto bytes = bytes_of_file(kFrozen + "motion.anim");
+  bytes.resize(bytes.size() - 400);
+  const std::string path = testing::TempDir() + "krok-cut-" + std::to_string(getpid()) + ".anim";
+  ASSERT_TRUE(write_file(path, bytes).ok());
+  EXPECT_TRUE(read_by_python(path).is_null());
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,180 @@
+#include "golden/samples/samples.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "core/hash.h"
+#include "formats/anim/anim.h"
+#include "formats/cam/cam.h"
+#include "formats/model/model_format.h"
+
+namespace krok::samples {
+
+namespace {
+
+Skeleton skeleton() {
+  Skeleton skeleton;
+  skeleton.add("Hips", Skeleton::kNoParent, {Vec3(0, 1, 0), Quat::Identity()});
+  skeleton.add(
+      "Kn\xC3\xA4"
+      "chel 2",
+      0, {Vec3(0.125, 0.5, -0.25), Quat(0.5, 0.5, -0.5, 0.5)});
+  skeleton.add(
+      "Kn\xC3\xA4"
+      "chel 2_end",
+      1, {Vec3(0.125, 0, 0.0625), Quat(0.5, 0.5, -0.5, 0.5)}, true);
+  return skeleton;
+}
+
+Provenance provenance(const char* tool) {
+  Provenance provenance;
+  provenance.tool = tool;
+  provenance.version = "0.1.0";
+  provenance.sources = {{"walk \"1\".bvh", "0123456789abcdef"}, {"zw\xC3\xB6lf.bvh", ""}};
+  provenance.options = {{"unit", "cm"}, {"repair", "true"}};
+  provenance.conversions = {"unit: centimetres to metres (detected, certain)", "up: z to y"};
+  provenance.warnings = {"2 frames were cut short [bvh-frame-count]"};
+  return provenance;
+}
+
+}  // namespace
+
+Clip clip() {
+  Clip clip;
+  clip.skeleton = skeleton();
+  clip.rate = 30000.0 / 1001.0;
+  clip.resize(2);
+  clip.positions = {Vec3f(0, 1, 0),        Vec3f(0.125f, 0.5f, -0.25f), Vec3f(0.125f, 0, 0.0625f),
+                    Vec3f(0.5f, 1.5f, -2), Vec3f(0.1f, 0.2f, 0.3f),     Vec3f(-1e-6f, 1e3f, 7)};
+  const float tiny = 1.0f / 4096;
+  clip.orientations = {Quatf(1, 0, 0, 0),
+                       Quatf(0.5f, 0.5f, -0.5f, 0.5f),
+                       Quatf(-0.5f, 0.5f, -0.5f, 0.5f),
+                       Quatf(0, 0, 1, 0),
+                       Quatf(0.8f, -0.6f, 0, 0),
+                       Quatf(tiny, 0.48f, 0.64f, std::sqrt(0.36f - tiny * tiny))};
+  clip.provenance = provenance("krok-import");
+  return clip;
+}
+
+Model model() {
+  Model model;
+  model.skeleton = skeleton();
+  model.positions = {Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(1, 1, 0), Vec3f(0, 1, 0.5f)};
+  model.normals = {Vec3f(0, 0, 1), Vec3f(0, 0, 1), Vec3f(0, 1, 0), Vec3f(0.6f, 0, 0.8f)};
+  model.texture_coordinates = {Vec2f(0, 1), Vec2f(1, 1), Vec2f(1, 0), Vec2f(0.25f, -0.75f)};
+  model.tangents = {Vec4f(1, 0, 0, 1), Vec4f(1, 0, 0, 1), Vec4f(1, 0, 0, -1), Vec4f(0, 1, 0, -1)};
+  model.influences_per_vertex = 3;
+  model.influence_joints = {0, 0, 0, 0, 1, 0, 1, 2, 0, 2, 1, 0};
+  model.influence_weights = {1, 0, 0, 0.75f, 0.25f, 0, 0.5f, 0.25f, 0.25f, 0.5f, 0.5f, 0};
+  model.triangles = {{0, 1, 2}, {0, 2, 3}};
+  model.parts = {{"body", "skin", 0, 1}, {"Sch\xC3\xBCrze", "", 1, 1}};
+  model.provenance = provenance("krok-body");
+  return model;
+}
+
+Model plain_model() {
+  Model model = samples::model();
+  model.normals.clear();
+  model.texture_coordinates.clear();
+  model.tangents.clear();
+  model.influences_per_vertex = 1;
+  model.influence_joints = {0, 1, 2, 1};
+  model.influence_weights = {1, 1, 1, 1};
+  model.parts = {{"", "", 0, 2}};
+  model.provenance = {};
+  return model;
+}
+
+CameraTrack camera() {
+  CameraTrack camera;
+  camera.rate = 25;
+  camera.positions = {Vec3f(0, 1.5f, 4), Vec3f(0.1f, 1.5f, 3.75f)};
+  camera.orientations = {Quatf(1, 0, 0, 0), Quatf(0.96f, 0, 0.28f, 0)};
+  camera.fields_of_view = {0.75f, 0.875f};
+  camera.provenance = provenance("krok-cam");
+  return camera;
+}
+
+std::vector<Sample> all() {
+  constexpr auto kXyz = OrientationEncoding::xyz;
+  constexpr auto kXyzw = OrientationEncoding::xyzw;
+  return {
+      {"motion.anim",
+       [](OutputFile& file) { return anim::write(clip(), {.orientation = kXyz}, file); }},
+      {"motion_xyzw.anim",
+       [](OutputFile& file) { return anim::write(clip(), {.orientation = kXyzw}, file); }},
+      {"full.model",
+       [](OutputFile& file) { return model::write(model(), {.orientation = kXyz}, file); }},
+      {"plain_xyzw.model",
+       [](OutputFile& file) { return model::write(plain_model(), {.orientation = kXyzw}, file); }},
+      {"camera.cam",
+       [](OutputFile& file) { return cam::write(camera(), {.orientation = kXyz}, file); }},
+      {"camera_xyzw.cam",
+       [](OutputFile& file) { return cam::write(camera(), {.orientation = kXyzw}, file); }},
+  };
+}
+
+std::vector<std::byte> bytes_of(const std::function<Status(OutputFile&)>& write) {
+  static std::atomic<int> count{0};
+  const std::string path =
+      (std::filesystem::temp_directory_path() /
+       ("krok-sample-" + std::to_string(getpid()) + "-" + std::to_string(count++)))
+          .string();
+  std::vector<std::byte> bytes;
+  const auto done = [&]() -> Status {
+    auto file = OutputFile::create(path);
+    if (!file) return file.error();
+    if (Status written = write(*file); !written) return written;
+    if (Status committed = file->commit(); !committed) return committed;
+    const auto back = InputFile::open(path);
+    if (!back) return back.error();
+    bytes.assign(back->bytes().begin(), back->bytes().end());
+    return {};
+  }();
+  std::filesystem::remove(path);
+  if (!done) {
+    std::fprintf(stderr, "a sample cannot be written: %s\n", done.error().message.c_str());
+    std::abort();
+  }
+  return bytes;
+}
+
+std::vector<std::byte> bytes_of(const Clip& clip, OrientationEncoding encoding) {
+  return bytes_of(
+      [&](OutputFile& file) { return anim::write(clip, {.orientation = encoding}, file); });
+}
+
+std::vector<std::byte> bytes_of(const Model& model, OrientationEncoding encoding) {
+  return bytes_of(
+      [&](OutputFile& file) { return model::write(model, {.orientation = encoding}, file); });
+}
+
+std::vector<std::byte> bytes_of(const CameraTrack& camera, OrientationEncoding encoding) {
+  return bytes_of(
+      [&](OutputFile& file) { return cam::write(camera, {.orientation = encoding}, file); });
+}
+
+void repair_header(std::vector<std::byte>& file) {
+  if (file.size() < 64) return;
+  const std::uint64_t size = file.size();
+  std::memcpy(&file[16], &size, sizeof size);
+  std::memset(&file[24], 0, 8);
+  std::uint32_t sections = 0;
+  std::memcpy(&sections, &file[32], sizeof sections);
+  const std::uint64_t head = 64 + std::uint64_t{32} * sections;
+  if (head > size) return;
+  Xxh3Stream stream;
+  stream.update(std::span(file).subspan(head));
+  stream.update(std::span(file).first(head));
+  const std::uint64_t checksum = stream.digest();
+  std::memcpy(&file[24], &checksum, sizeof checksum);
+}
+
+}  // namespace krok::samples

@@ -1,0 +1,25 @@
+// Writes the sample files of the formats into a folder: write_samples FOLDER.
+
+#include <cstdio>
+#include <string>
+
+#include "golden/samples/samples.h"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: write_samples FOLDER\n", stderr);
+    return 2;
+  }
+  for (const auto& sample : krok::samples::all()) {
+    const std::string path = std::string(argv[1]) + "/" + sample.file_name;
+    auto file = krok::OutputFile::create(path);
+    krok::Status done = file ? sample.write(*file) : krok::Status(file.error());
+    if (done) done = file->commit();
+    if (!done) {
+      std::fprintf(stderr, "%s: %s\n", path.c_str(), done.error().message.c_str());
+      return 2;
+    }
+    std::printf("%s\n", path.c_str());
+  }
+  return 0;
+}
