@@ -121,6 +121,10 @@ Status check_storable(const Skeleton& skeleton) {
                                                skeleton.names.size(), kMaxFileJoints));
   }
   for (std::size_t i = 0; i < skeleton.names.size(); ++i) {
+    if (!skeleton.reference[i].position.cast<float>().allFinite()) {
+      return Error("skeleton-value", fmt::format("the reference position of joint {} is too large",
+                                                 skeleton.names[i]));
+    }
     if (is_storable_text(skeleton.names[i])) continue;
     return Error("skeleton-name",
                  fmt::format("the name of joint {} is no valid UTF-8 or has a zero byte", i),

@@ -13,7 +13,7 @@ namespace krok::csv {
 
 namespace {
 
-std::string quoted(std::string_view name) {
+std::string csv_field(std::string_view name) {
   if (name.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(name);
   std::string text = "\"";
   for (const char c : name) {
@@ -30,7 +30,7 @@ Status write(const Clip& clip, OutputFile& file) {
   constexpr std::size_t kFlushAt = std::size_t{1} << 20;
 
   std::vector<std::string> names;
-  for (const std::string& name : clip.skeleton.names) names.push_back(quoted(name));
+  for (const std::string& name : clip.skeleton.names) names.push_back(csv_field(name));
 
   std::string text = "frame,time,joint,x,y,z\n";
   for (int frame = 0; frame < clip.frame_count(); ++frame) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <streambuf>
 
@@ -308,7 +309,7 @@ Status Document::write(OutputFile& file) {
   std::ostream stream(&buffer);
   try {
     tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, !options_.binary, options_.binary);
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const nlohmann::json::exception&) {
     // Its serializer throws for one thing alone.
     return Error("gltf-name", "a name is not valid UTF-8, which glTF asks for",
                  "rename the joint or material");

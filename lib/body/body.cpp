@@ -152,11 +152,14 @@ Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
   Model& model = body.model;
   model.skeleton = skeleton;
   model.skeleton.reference = wanted.empty() ? pose.joint_to_world : wanted;
+  model.positions.resize(mesh.positions.size());
   bind_surface(mesh, blocked, level.smoothing, options.jobs, model);
   map_surface(mesh, blocked, options.jobs, model);
   if (!wanted.empty()) move_to(skeleton, pose.joint_to_world, wanted, model, mesh);
 
-  for (const Vec3& position : mesh.positions) model.positions.push_back(position.cast<float>());
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    model.positions[v] = mesh.positions[v].cast<float>();
+  }
   for (const Vec3& normal : vertex_normals(mesh)) model.normals.push_back(normal.cast<float>());
   model.triangles = mesh.triangles;
   model.parts = {{"body", "body", 0, static_cast<std::uint32_t>(model.triangles.size())}};

@@ -111,7 +111,7 @@ void HumanBuilder::build_foot(std::size_t side) {
                       ankle.y() - 0.036 * u);
   }
   const double high = (ankle.y() - sole) / 0.039;
-  const double stretch = ball / 0.078;
+  const double stretch = ball / (0.078 * u);
   const Vec3 across = Vec3::UnitY().cross(forward);  // left
   const double out = side == 0 ? 1.0 : -1.0;
   struct Row {

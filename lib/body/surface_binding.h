@@ -5,7 +5,7 @@
 
 namespace krok::body {
 
-// Fills the influences of a model whose vertices are those of `mesh`: from the joints of the tube
+// Fills the influences of a model with as many vertices as `mesh`: from the joints of the tube
 // that each vertex lies on and, where tubes melt together, of those beside it; then smoothed along
 // the surface by `passes` steps, so that nothing bleeds from an arm to the trunk that it hangs
 // against. The best four remain.

@@ -23,8 +23,7 @@ class ByteReader {
   explicit ByteReader(std::span<const std::byte> data) : data_(data) {}
 
   template <typename T>
-    requires std::is_trivially_copyable_v<T>
-  T read() {
+  requires std::is_trivially_copyable_v<T> T read() {
     T value{};
     const auto bytes = take(sizeof(T));
     if (!bytes.empty()) std::memcpy(&value, bytes.data(), sizeof(T));
@@ -67,10 +66,8 @@ class ByteReader {
 class ByteWriter {
  public:
   template <typename T>
-    requires std::is_trivially_copyable_v<T>
-  void write(const T& value) {
-    append(std::as_bytes(std::span(&value, 1)));
-  }
+  requires std::is_trivially_copyable_v<T>
+  void write(const T& value) { append(std::as_bytes(std::span(&value, 1))); }
 
   void append(std::span<const std::byte> bytes) {
     data_.insert(data_.end(), bytes.begin(), bytes.end());

@@ -10,11 +10,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <climits>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <vector>
 
 namespace krok {
@@ -26,7 +28,9 @@ Error file_error(const char* code, const std::string& path, std::string message,
   return Error(code, std::move(message), std::move(hint)).in_file(path);
 }
 
-std::string system_text(int error_number) { return std::strerror(error_number); }
+std::string system_text(int error_number) {
+  return std::strerror(error_number);
+}
 
 // Temporary files that a signal must remove. A fixed table, because a signal handler may not
 // allocate or lock: a slot is claimed, filled, then marked ready.
@@ -35,6 +39,7 @@ struct TemporarySlot {
   char path[PATH_MAX];
 };
 std::array<TemporarySlot, 256> temporary_slots;
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait");
 
 int remember_temporary(const std::string& path) {
   if (path.size() >= PATH_MAX) return -1;
@@ -58,6 +63,74 @@ extern "C" void remove_temporaries_and_end(int signal_number) {
   }
   signal(signal_number, SIG_DFL);
   raise(signal_number);
+}
+
+// The process's file mode mask. It can only be read by setting it, which would race between
+// threads, so that is done once.
+mode_t mode_mask() {
+  static const mode_t mask = [] {
+    const mode_t current = umask(0);
+    umask(current);
+    return current;
+  }();
+  return mask;
+}
+
+// What a chain of symbolic links ends in, whether or not that exists.
+std::filesystem::path link_target(std::filesystem::path path) {
+  constexpr int kMaxLinks = 40;
+  for (int i = 0; i < kMaxLinks; ++i) {
+    std::error_code no_link;
+    const std::filesystem::path target = std::filesystem::read_symlink(path, no_link);
+    if (no_link) break;
+    path = target.is_absolute() ? target : path.parent_path() / target;
+  }
+  return path;
+}
+
+struct Temporary {
+  std::string path;
+  int descriptor = -1;
+  int slot = -1;
+};
+
+// A new file in `folder`, private to the user. Its name is remembered before it exists, so that a
+// signal at any moment removes it. errno tells why the descriptor is -1.
+Temporary create_temporary(const std::string& folder) {
+  static std::atomic<unsigned> counter{0};
+  constexpr int kAttempts = 1000;  // names that killed programs left behind
+  Temporary temporary;
+  for (int i = 0; i < kAttempts; ++i) {
+    temporary.path = fmt::format("{}/.krok-{}-{}", folder, getpid(), counter.fetch_add(1));
+    temporary.slot = remember_temporary(temporary.path);
+    temporary.descriptor =
+        ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (temporary.descriptor >= 0) break;
+    const int why = errno;
+    forget_temporary(temporary.slot);
+    errno = why;
+    if (why != EEXIST) break;
+  }
+  return temporary;
+}
+
+// Gives the temporary file its name; EEXIST where `no_clobber` and the name is taken. Two programs
+// with --no-clobber cannot both win.
+int put_in_place(const std::string& temporary, const std::string& target, bool no_clobber) {
+  if (!no_clobber) return ::rename(temporary.c_str(), target.c_str()) == 0 ? 0 : errno;
+  if (renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0) {
+    return 0;
+  }
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  // A file system that cannot do that in one step: link() refuses an existing name too.
+  if (link(temporary.c_str(), target.c_str()) != 0) return errno;
+  unlink(temporary.c_str());
+  return 0;
+}
+
+Error exists_error(const std::string& path) {
+  return file_error("file-exists", path, "exists already and --no-clobber was given",
+                    "choose another name or leave --no-clobber out");
 }
 
 }  // namespace
@@ -113,8 +186,7 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
                       fmt::format("cannot be examined: {}", system_text(errno)));
   }
   if (S_ISDIR(status.st_mode)) {
-    return file_error("file-directory", path, "is a folder, not a file",
-                      "name a file inside it");
+    return file_error("file-directory", path, "is a folder, not a file", "name a file inside it");
   }
   const auto too_large = [&] {
     return file_error("file-too-large", path, fmt::format("is larger than {} bytes", limit));
@@ -146,7 +218,8 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
 }
 
 struct OutputFile::State {
-  std::string path;
+  std::string path;       // as the caller wrote it, for messages
+  std::string target;     // what is replaced, through symbolic links
   std::string temporary;  // empty where bytes go to `path` directly
   int descriptor = -1;
   int slot = -1;
@@ -172,9 +245,9 @@ struct OutputFile::State {
   }
 
   Status fail(int error_number, const char* what) {
-    failure = file_error("file-unwritable", path,
-                         fmt::format("{}: {}", what, system_text(error_number)),
-                         error_number == ENOSPC ? "free some space, nothing was changed" : "");
+    failure =
+        file_error("file-unwritable", path, fmt::format("{}: {}", what, system_text(error_number)),
+                   error_number == ENOSPC ? "free some space, nothing was changed" : "");
     return failure;
   }
 
@@ -224,23 +297,18 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
     return OutputFile(std::move(state));
   }
   if (exists && options.no_clobber) {
-    return file_error("file-exists", path, "exists already and --no-clobber was given",
-                      "choose another name or leave --no-clobber out");
+    return exists_error(path);
   }
   if (exists && access(path.c_str(), W_OK) != 0) {
     return file_error("file-unwritable", path,
                       fmt::format("cannot be replaced: {}", system_text(errno)));
   }
   // Through a link, the file that it points to is replaced, not the link.
-  std::error_code ignored;
-  const std::filesystem::path target =
-      exists ? std::filesystem::canonical(path, ignored) : std::filesystem::path(path);
-  state->path = ignored ? path : target.string();
-  std::string folder = std::filesystem::path(state->path).parent_path().string();
+  state->target = link_target(path).string();
+  std::string folder = std::filesystem::path(state->target).parent_path().string();
   if (folder.empty()) folder = ".";
-  std::string name = folder + "/.krok-XXXXXX";
-  state->descriptor = mkostemp(name.data(), O_CLOEXEC);
-  if (state->descriptor < 0) {
+  Temporary temporary = create_temporary(folder);
+  if (temporary.descriptor < 0) {
     if (errno == ENOENT || errno == ENOTDIR) {
       return file_error("file-unwritable", path, fmt::format("there is no folder {}", folder),
                         "create the folder first");
@@ -248,12 +316,11 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
     return file_error("file-unwritable", path,
                       fmt::format("cannot be created: {}", system_text(errno)));
   }
-  state->temporary = name;
-  state->slot = remember_temporary(name);
-  // mkostemp makes files private; the result gets the mode it would have had, or had before.
-  const mode_t mask = umask(0);
-  umask(mask);
-  (void)fchmod(state->descriptor, exists ? (status.st_mode & 07777) : (0666 & ~mask));
+  state->descriptor = temporary.descriptor;
+  state->temporary = std::move(temporary.path);
+  state->slot = temporary.slot;
+  // The result gets the mode it would have had, or had before; not the bits that lend out rights.
+  (void)fchmod(state->descriptor, exists ? (status.st_mode & 0777) : (0666 & ~mode_mask()));
   return OutputFile(std::move(state));
 }
 
@@ -271,7 +338,9 @@ Status OutputFile::write(std::span<const std::byte> bytes) {
   return {};
 }
 
-bool OutputFile::can_overwrite() const { return !state_->temporary.empty(); }
+bool OutputFile::can_overwrite() const {
+  return !state_->temporary.empty();
+}
 
 Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (!state_->failure) return state_->failure;
@@ -290,7 +359,9 @@ Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> by
   return {};
 }
 
-std::uint64_t OutputFile::size() const { return state_->written; }
+std::uint64_t OutputFile::size() const {
+  return state_->written;
+}
 
 Status OutputFile::commit() {
   State& state = *state_;
@@ -322,15 +393,17 @@ Status OutputFile::commit() {
     return failure;
   }
   state.descriptor = -1;
-  // link() refuses an existing name, so that two programs with --no-clobber cannot both win.
-  const int renamed = state.no_clobber ? link(state.temporary.c_str(), state.path.c_str())
-                                       : rename(state.temporary.c_str(), state.path.c_str());
-  if (renamed != 0) {
-    const Status failure = state.fail(errno, "cannot be put in place");
+  const int trouble = put_in_place(state.temporary, state.target, state.no_clobber);
+  if (trouble != 0) {
+    if (trouble == EEXIST && state.no_clobber) {
+      state.failure = exists_error(state.path);
+    } else {
+      state.failure = state.fail(trouble, "cannot be put in place");
+    }
+    const Status failure = state.failure;
     state.discard();
     return failure;
   }
-  if (state.no_clobber) unlink(state.temporary.c_str());
   forget_temporary(state.slot);
   state.temporary.clear();
   return {};
@@ -353,6 +426,9 @@ void remove_temporaries_on_signals() {
   action.sa_handler = remove_temporaries_and_end;
   sigemptyset(&action.sa_mask);
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+    // What the caller ignores stays ignored: nohup, a shell's background jobs.
+    struct sigaction before {};
+    if (sigaction(signal_number, nullptr, &before) == 0 && before.sa_handler == SIG_IGN) continue;
     sigaction(signal_number, &action, nullptr);
   }
 }

@@ -41,9 +41,11 @@ class InputFile {
 
 // A file that appears whole or not at all. Bytes go to a temporary file in the folder of `path`;
 // commit() flushes, checks and renames it. If the object dies before commit(), or the program ends
-// by SIGINT, SIGTERM or SIGHUP (see remove_temporaries_on_signals), the temporary file is removed
-// and what stood at `path` still stands. "-" is standard output; a path that exists and is no
-// regular file (a device, a pipe) is written directly, for a rename would replace the device.
+// by SIGINT, SIGTERM, SIGHUP or SIGPIPE (see remove_temporaries_on_signals), the temporary file is
+// removed and what stood at `path` still stands. The result keeps the permissions of the file that
+// it replaces; a symbolic link stays, what it points to is replaced. "-" is standard output; a path
+// that exists and is no regular file (a device, a pipe) is written directly, for a rename would
+// replace the device.
 class OutputFile {
  public:
   struct Options {
@@ -83,9 +85,10 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes,
                   OutputFile::Options options = {});
 Status write_file(const std::string& path, std::string_view text, OutputFile::Options options = {});
 
-// Installs handlers for SIGINT, SIGTERM, SIGHUP and SIGPIPE's default that remove the temporary
-// files of all living OutputFiles and end the program by the same signal. For programs, called once
-// at their start.
+// Installs handlers for SIGINT, SIGTERM, SIGHUP and SIGPIPE that remove the temporary files of all
+// living OutputFiles (up to 256 at a time) and end the program by the same signal. A signal that
+// the program was started to ignore (nohup) stays ignored. For programs, called once at their
+// start.
 void remove_temporaries_on_signals();
 
 // `path` without its folder; the base name that provenance records.

@@ -23,12 +23,16 @@ void Xxh3Stream::update(std::span<const std::byte> data) {
   XXH3_64bits_update(state_->xxh3, data.data(), data.size());
 }
 
-std::uint64_t Xxh3Stream::digest() const { return XXH3_64bits_digest(state_->xxh3); }
+std::uint64_t Xxh3Stream::digest() const {
+  return XXH3_64bits_digest(state_->xxh3);
+}
 
 std::uint64_t xxh3(std::span<const std::byte> data) {
   return XXH3_64bits(data.data(), data.size());
 }
 
-std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+std::string hex(std::uint64_t value) {
+  return fmt::format("{:016x}", value);
+}
 
 }  // namespace krok

@@ -36,11 +36,16 @@ std::optional<long long> parse_integer(std::string_view text) {
   return value;
 }
 
-std::string shortest(double value) { return fmt::format("{}", value == 0 ? 0.0 : value); }
-std::string shortest(float value) { return fmt::format("{}", value == 0 ? 0.0f : value); }
+std::string shortest(double value) {
+  return fmt::format("{}", value == 0 ? 0.0 : value);
+}
+std::string shortest(float value) {
+  return fmt::format("{}", value == 0 ? 0.0f : value);
+}
 
 std::string readable(double value, int digits) {
   if (value == 0) return "0";
+  if (!std::isfinite(value)) return fmt::format("{}", value);
   const double magnitude = std::abs(value);
   if (magnitude < 1e-4 || magnitude >= 1e9) return fmt::format("{:.{}g}", value, digits);
   const int before = static_cast<int>(std::floor(std::log10(magnitude))) + 1;

@@ -21,6 +21,7 @@ void parallel_for(std::size_t count, std::size_t grain, int jobs,
   const std::size_t ranges = (count + grain - 1) / grain;
   std::atomic<std::size_t> next{0};
   std::exception_ptr failure;
+  std::size_t failed_range = ranges;
   std::mutex failure_mutex;
 
   const auto work = [&] {
@@ -33,14 +34,17 @@ void parallel_for(std::size_t count, std::size_t grain, int jobs,
       } catch (...) {
         next.store(ranges);
         const std::lock_guard lock(failure_mutex);
-        if (!failure) failure = std::current_exception();
+        // Ranges are begun in order, so that the first one that throws is always among those run.
+        if (range < failed_range) {
+          failed_range = range;
+          failure = std::current_exception();
+        }
         return;
       }
     }
   };
 
-  const std::size_t threads =
-      std::min(static_cast<std::size_t>(thread_count(jobs)), ranges);
+  const std::size_t threads = std::min(static_cast<std::size_t>(thread_count(jobs)), ranges);
   {
     std::vector<std::jthread> helpers;
     for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);

@@ -32,7 +32,10 @@ Result<Split> split(std::string_view text) {
   std::string_view number = text.substr(0, end);
   while (!number.empty() && number.back() == ' ') number.remove_suffix(1);
   const auto value = parse_finite(number);
-  if (!value) return Error("quantity-number", fmt::format("'{}' is not a number", text));
+  if (!value) {
+    return Error("quantity-number", fmt::format("'{}' is not a number", text),
+                 "write a number, with or without a unit after it");
+  }
   return Split{*value, text.substr(end)};
 }
 
@@ -45,20 +48,22 @@ Result<double> parse_with(std::string_view text, std::span<const NamedUnit> unit
     if (unit.name == parts->unit) return parts->number * unit.size;
     known += fmt::format("{}{}", known.empty() ? "" : ", ", unit.name);
   }
-  return Error("quantity-unit", fmt::format("'{}' in '{}' is no unit that fits here", parts->unit, text),
+  return Error("quantity-unit",
+               fmt::format("'{}' in '{}' is no unit that fits here", parts->unit, text),
                fmt::format("use one of {}", known));
 }
 
-constexpr std::array kLengths = {NamedUnit{"m", 1.0},      NamedUnit{"dm", 0.1},
-                                 NamedUnit{"cm", 0.01},    NamedUnit{"mm", 0.001},
-                                 NamedUnit{"um", 1e-6},    NamedUnit{"in", 0.0254},
-                                 NamedUnit{"ft", 0.3048}};
+constexpr std::array kLengths = {
+    NamedUnit{"m", 1.0},   NamedUnit{"dm", 0.1},    NamedUnit{"cm", 0.01},  NamedUnit{"mm", 0.001},
+    NamedUnit{"um", 1e-6}, NamedUnit{"in", 0.0254}, NamedUnit{"ft", 0.3048}};
 constexpr std::array kAngles = {NamedUnit{"deg", std::numbers::pi / 180.0}, NamedUnit{"rad", 1.0}};
 constexpr std::array kTimes = {NamedUnit{"s", 1.0}, NamedUnit{"ms", 0.001}, NamedUnit{"f", 1.0}};
 
 }  // namespace
 
-Result<double> parse_length(std::string_view text) { return parse_with(text, kLengths, 1.0); }
+Result<double> parse_length(std::string_view text) {
+  return parse_with(text, kLengths, 1.0);
+}
 
 Result<double> parse_angle(std::string_view text) {
   return parse_with(text, kAngles, std::numbers::pi / 180.0);

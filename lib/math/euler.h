@@ -25,8 +25,8 @@ Quat from_axis_rotations(std::span<const Axis> axes, std::span<const double> ang
 // +-pi/2) the last angle is `last_at_lock` and the first takes up the rest.
 Vec3 to_euler(const Quat& q, const EulerOrder& order, double last_at_lock = 0.0);
 
-// Of the equivalent angle triples (the other branch of the middle angle, whole turns added), the one
-// closest to `previous`, so that a curve of angles over time has no jumps.
+// Of the equivalent angle triples (the other branch of the middle angle, whole turns added), the
+// one closest to `previous`, so that a curve of angles over time has no jumps.
 Vec3 closest_euler(const Vec3& angles, const Vec3& previous);
 
 }  // namespace krok

@@ -72,8 +72,7 @@ Quat shortest_arc(const Vec3& from, const Vec3& to) {
   }
   // Half-angle form, accurate up to nearly opposite directions.
   const double angle = std::atan2(axis.norm(), cosine);
-  return axis.norm() == 0 ? Quat::Identity()
-                          : from_rotation_vector(axis.normalized() * angle);
+  return axis.norm() == 0 ? Quat::Identity() : from_rotation_vector(axis.normalized() * angle);
 }
 
 }  // namespace krok

@@ -3,26 +3,26 @@
 #include "math/types.h"
 
 // Unit quaternions without surprises: each function says what it does for equal, nearly equal,
-// opposite and zero input. All take and give q = (w, x, y, z) as Eigen has it; q and -q are the same
-// rotation.
+// opposite and zero input. All take and give q = (w, x, y, z) as Eigen has it; q and -q are the
+// same rotation.
 
 namespace krok {
 
-// q scaled to length 1; the identity where the length is zero, not finite, or too small to divide by
-// (under 1e-150).
+// q scaled to length 1; the identity where the length is zero, not finite, or too small to divide
+// by (under 1e-150).
 Quat normalized_or_identity(const Quat& q);
 
 // The one of q and -q that lies in the hemisphere of `reference` (dot product >= 0).
 Quat in_hemisphere_of(const Quat& reference, const Quat& q);
 
-// The angle of the rotation that takes a to b, in [0, pi] radians; accurate for tiny angles and near
-// pi (atan2, not acos), the same for q and -q.
+// The angle of the rotation that takes a to b, in [0, pi] radians; accurate for tiny angles and
+// near pi (atan2, not acos), the same for q and -q.
 double angle_between(const Quat& a, const Quat& b);
 
 // Spherical interpolation along the shorter arc from a (t = 0) to b (t = 1); t is not clamped.
-// Falls back on normalised linear interpolation where a and b are so close (under 1e-6 rad) that the
-// sine cannot be divided by. For rotations half a turn of 4-D arc apart (dot = 0 exactly) the arc is
-// still unique after the sign choice; the sign chosen for dot = 0 is b's own.
+// Falls back on normalised linear interpolation where a and b are so close (under 1e-6 rad) that
+// the sine cannot be divided by. For rotations half a turn of 4-D arc apart (dot = 0 exactly) the
+// arc is still unique after the sign choice; the sign chosen for dot = 0 is b's own.
 Quat slerp(const Quat& a, const Quat& b, double t);
 
 // Normalised linear interpolation along the shorter arc; identity where the sum vanishes.
@@ -34,9 +34,9 @@ Vec3 rotation_vector(const Quat& q);
 // The inverse of rotation_vector, for vectors of any length.
 Quat from_rotation_vector(const Vec3& v);
 
-// The rotation by the smallest angle that takes the direction of `from` to that of `to`. Identity if
-// either is zero; for opposite directions half a turn about an axis perpendicular to `from`, always
-// the same one for the same `from`.
+// The rotation by the smallest angle that takes the direction of `from` to that of `to`. Identity
+// if either is zero; for opposite directions half a turn about an axis perpendicular to `from`,
+// always the same one for the same `from`.
 Quat shortest_arc(const Vec3& from, const Vec3& to);
 
 }  // namespace krok

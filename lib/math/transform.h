@@ -7,7 +7,7 @@ namespace krok {
 // A rigid transform: x -> orientation * x + position. Named a_to_b it takes coordinates in frame a
 // to coordinates in frame b; joint_to_world is what the formats call a joint's global transform.
 struct Transform {
-  Vec3 position = Vec3::Zero();        // metres
+  Vec3 position = Vec3::Zero();         // metres
   Quat orientation = Quat::Identity();  // unit
 
   Vec3 operator*(const Vec3& point) const { return orientation * point + position; }

@@ -9,26 +9,41 @@
 
 namespace krok {
 
+namespace {
+
+// A place between two frames; fraction 0 is the frame itself.
+struct Moment {
+  int before = 0;
+  double fraction = 0;
+};
+
+Moment moment_at(const Clip& clip, double time) {
+  const int last = clip.frame_count() - 1;
+  const double wanted = time * clip.rate;
+  if (!(wanted > 0)) return {};  // not a number counts as the beginning
+  if (wanted >= last) return {last, 0};
+  const int before = static_cast<int>(wanted);
+  const double fraction = wanted - before;
+  // Times that are a frame's own up to rounding give that frame, not a mixture.
+  constexpr double kSameFrame = 1e-9;
+  if (fraction < kSameFrame) return {before, 0};
+  if (fraction > 1.0 - kSameFrame) return {before + 1, 0};
+  return {before, fraction};
+}
+
+}  // namespace
+
 void sample(const Clip& clip, double time, std::span<Transform> joint_to_world,
             std::span<Transform> scratch) {
   const auto joints = static_cast<std::size_t>(clip.joint_count());
-  const int frames = clip.frame_count();
-  if (frames == 0) {
+  if (clip.frame_count() == 0) {
     std::copy(clip.skeleton.reference.begin(), clip.skeleton.reference.end(),
               joint_to_world.begin());
     return;
   }
-  const double position = std::clamp(time * clip.rate, 0.0, static_cast<double>(frames - 1));
-  const int before = static_cast<int>(position);
-  const double fraction = position - before;
-  // Times that are a frame's own up to rounding give that frame, not a mixture.
-  constexpr double kSameFrame = 1e-9;
-  if (fraction < kSameFrame || before == frames - 1) {
+  const auto [before, fraction] = moment_at(clip, time);
+  if (fraction == 0) {
     clip.get_pose(before, joint_to_world);
-    return;
-  }
-  if (fraction > 1.0 - kSameFrame) {
-    clip.get_pose(before + 1, joint_to_world);
     return;
   }
   const auto world = scratch.subspan(0, joints);
@@ -63,6 +78,13 @@ Result<Clip> resample(const Clip& clip, double rate) {
   const auto joints = static_cast<std::size_t>(clip.joint_count());
   std::vector<Transform> pose(joints), scratch(3 * joints);
   for (int frame = 0; frame < result.frame_count(); ++frame) {
+    const Moment moment = moment_at(clip, frame / rate);
+    if (moment.fraction == 0) {
+      std::ranges::copy(clip.frame_positions(moment.before), result.frame_positions(frame).begin());
+      std::ranges::copy(clip.frame_orientations(moment.before),
+                        result.frame_orientations(frame).begin());
+      continue;
+    }
     sample(clip, frame / rate, pose, scratch);
     result.set_pose(frame, pose);
   }

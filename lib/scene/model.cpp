@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 namespace krok {
 
@@ -12,6 +13,7 @@ Status check_influences(const Model& model) {
   const auto per_vertex = static_cast<std::size_t>(model.influences_per_vertex);
   for (std::size_t v = 0; v < model.positions.size(); ++v) {
     double sum = 0;
+    float previous = std::numeric_limits<float>::infinity();
     for (std::size_t k = v * per_vertex; k < (v + 1) * per_vertex; ++k) {
       const float weight = model.influence_weights[k];
       if (!(weight >= 0) || !std::isfinite(weight)) {
@@ -22,6 +24,14 @@ Status check_influences(const Model& model) {
                      fmt::format("vertex {} is bound to joint {}, of {}", v,
                                  model.influence_joints[k], model.skeleton.joint_count()));
       }
+      if (weight > previous || (weight == 0 && model.influence_joints[k] != 0)) {
+        return Error(
+            "model-weight",
+            fmt::format("the influences of vertex {} are not in falling order, or an unused "
+                        "one names a joint",
+                        v));
+      }
+      previous = weight;
       sum += static_cast<double>(weight);
     }
     if (std::abs(sum - 1.0) > 1e-4) {

@@ -50,9 +50,9 @@ struct Model {
   int vertex_count() const { return static_cast<int>(positions.size()); }
 };
 
-// Whether what the comments above promise holds (weights sum to 1 within 1e-4, indices in range,
-// finite values, parts cover the triangles). Codes: those of check(Skeleton), model-shape,
-// model-index, model-weight, model-value.
+// Whether what the comments above promise holds (weights in falling order with a sum of 1 within
+// 1e-4, indices in range, finite values, parts cover the triangles). Codes: those of
+// check(Skeleton), model-shape, model-index, model-weight, model-value.
 Status check(const Model& model);
 
 }  // namespace krok

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "core/text.h"
+
 namespace krok {
 
 int Skeleton::add(std::string name, int parent, const Transform& joint_to_world, bool end_site) {
@@ -49,6 +51,9 @@ Status check(const Skeleton& skeleton) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::string& name = skeleton.names[i];
     if (name.empty()) return Error("skeleton-name", fmt::format("joint {} has no name", i));
+    if (!is_utf8(name)) {
+      return Error("skeleton-name", fmt::format("the name of joint {} is not UTF-8", i));
+    }
     if (!seen.insert(name).second) {
       return Error("skeleton-name", fmt::format("two joints are named {}", name));
     }
@@ -57,6 +62,11 @@ Status check(const Skeleton& skeleton) {
       return Error("skeleton-parent",
                    fmt::format("joint {} ({}) has parent {}, expected {}", i, name, parent,
                                i == 0 ? "none" : "an earlier joint"));
+    }
+    if (parent >= 0 && skeleton.end_sites[static_cast<std::size_t>(parent)] != 0) {
+      return Error("skeleton-parent",
+                   fmt::format("joint {} hangs on {}, an end site, which has no children", name,
+                               skeleton.names[static_cast<std::size_t>(parent)]));
     }
     const Transform& transform = skeleton.reference[i];
     if (!transform.position.allFinite() || !transform.orientation.coeffs().allFinite() ||

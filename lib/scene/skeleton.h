@@ -41,8 +41,9 @@ struct Skeleton {
 };
 
 // Whether everything that the comments above promise holds: equal lengths, unique non-empty names,
-// parents before children, one root, finite positions, unit orientations (within 1e-4). Codes:
-// skeleton-shape, skeleton-name, skeleton-parent, skeleton-value.
+// parents before children, one root, end sites without children, finite positions, unit
+// orientations (within 1e-4). Codes: skeleton-shape, skeleton-name, skeleton-parent,
+// skeleton-value.
 Status check(const Skeleton& skeleton);
 
 // joint_to_world of all joints from joint_to_parent of all joints. Both spans have [joints]

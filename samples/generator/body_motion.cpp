@@ -83,7 +83,7 @@ Transform BodyMotion::pelvis_without_height(double time) const {
   const double sway = 0.018 * stature / 1.75 * moving * std::cos(2 * kPi * (phase - 0.31));
   // Before the ankles when standing, more so when walking: at a strike the leg behind reaches further
   // than the one before. A little faster in double support than in single support.
-  const double ahead = (0.036 + 0.010 + E("A",0.012) * activity) * stature +
+  const double ahead = (0.036 + 0.010 + E("A",0.0) * activity) * stature +
                        0.006 * activity * std::sin(4 * kPi * (phase + 0.03));
   Transform pelvis;
   pelvis.position = path_(time) + left_of(heading) * sway + forward_of(heading) * ahead;

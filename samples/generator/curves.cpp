@@ -17,8 +17,8 @@ double KnotCurve::operator()(double time) const {
   while (knots_[next].time <= time) ++next;
   const Knot& a = knots_[next - 1];
   const Knot& b = knots_[next];
-  return quintic<double>({a.value, a.velocity, 0}, {b.value, b.velocity, 0}, b.time - a.time,
-                         time - a.time);
+  return quintic<double>({a.value, a.velocity, a.acceleration},
+                         {b.value, b.velocity, b.acceleration}, b.time - a.time, time - a.time);
 }
 
 PeriodicCurve::PeriodicCurve(std::span<const double> samples, int harmonics) {

@@ -32,14 +32,15 @@ T quintic(const State<T>& from, const State<T>& to, double duration, double time
          to.acceleration * (half * (u3 - 2 * u4 + u5));
 }
 
-// A curve through knots (time, value, velocity) with no acceleration at the knots; constant before
-// the first and after the last.
+// A curve through knots with given velocity and acceleration; constant before the first and after
+// the last.
 class KnotCurve {
  public:
   struct Knot {
     double time;
     double value;
     double velocity;
+    double acceleration;
   };
   explicit KnotCurve(std::vector<Knot> knots) : knots_(std::move(knots)) {}
   double operator()(double time) const;

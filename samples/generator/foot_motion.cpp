@@ -12,6 +12,7 @@ namespace krok::samples {
 
 namespace {
 
+constexpr double kToesUpInSwing = 20 * kRadiansPerDegree;
 constexpr double kClearance = 0.012;  // metres under the sole in mid-swing, at least
 
 // Toes up is a turn about -X.
@@ -27,11 +28,41 @@ double bump(double u) {
   return u * u * u * v * v * v * v * v * (16777216.0 / 84375.0);
 }
 
-double strike_rate(const Footprint& print) {
-  return -E("S",1.5) * print.strike_pitch / (print.flat - print.strike);
+// The heel, and later the ball, rise as the cube of time.
+State<double> cubic_rise(double start, double end, double angle) {
+  const double duration = end - start;
+  return {angle, 3 * angle / duration, 6 * angle / (duration * duration)};
 }
-double off_rate(const Footprint& print) {
-  return E("R",2.1) * print.off_pitch / (print.off - print.heel_rise);
+State<double> off_pitch(const Footprint& print) {
+  return cubic_rise(print.heel_rise, print.off, print.off_pitch);
+}
+State<double> off_toe_pitch(const Footprint& print) {
+  return cubic_rise(print.ball_rise, print.off, print.off_toe_pitch);
+}
+State<double> strike_pitch(const Footprint& print) {
+  return {print.strike_pitch, -E("S",1.5) * print.strike_pitch / (print.flat - print.strike), 0};
+}
+
+State<double> operator-(const State<double>& a, const State<double>& b) {
+  return {a.position - b.position, a.velocity - b.velocity, a.acceleration - b.acceleration};
+}
+
+KnotCurve::Knot knot(double time, const State<double>& state) {
+  return {time, state.position, state.velocity, state.acceleration};
+}
+
+// A turning point shortly after (or before) a moment, about where the velocity there leads to.
+KnotCurve::Knot turning_point(double from, const State<double>& state, double delay) {
+  return {from + delay, state.position + 0.45 * state.velocity * delay, 0, 0};
+}
+
+// A vector of the foot's plane turned by a pitch over time, with its derivatives.
+State<Vec3> turned(const Vec3& v, const State<double>& pitch) {
+  const double c = std::cos(pitch.position), s = std::sin(pitch.position);
+  const Vec3 value(0, v.y() * c + v.z() * s, -v.y() * s + v.z() * c);
+  const Vec3 first(0, value.z(), -value.y());
+  return {value, first * pitch.velocity,
+          first * pitch.acceleration - value * (pitch.velocity * pitch.velocity)};
 }
 
 }  // namespace
@@ -41,40 +72,35 @@ FootMotion::FootMotion(Side side, const FootPlan& plan, const Figure& figure)
   for (const Footprint& print : plan.prints) {
     if (print.side == side) prints_.push_back(print);
   }
-  const double degree = kRadiansPerDegree;
   for (std::size_t i = 0; i < prints_.size(); ++i) {
     const Footprint& print = prints_[i];
     std::vector<KnotCurve::Knot> pitch;
-    if (!print.first_of_foot) {
-      pitch.push_back({print.strike, print.strike_pitch, strike_rate(print)});
-    }
-    pitch.push_back({print.flat, 0, 0});
+    if (!print.first_of_foot) pitch.push_back(knot(print.strike, strike_pitch(print)));
+    pitch.push_back({print.flat, 0, 0, 0});
     if (i + 1 == prints_.size()) {
       pitch_.emplace_back(std::move(pitch));
       break;
     }
     const Footprint& next = prints_[i + 1];
-    const double swing_time = next.strike - print.off;
-    pitch.push_back({print.heel_rise, 0, 0});
-    pitch.push_back({print.off, print.off_pitch, off_rate(print)});
-    pitch.push_back({print.off + 0.1 * swing_time,
-                     print.off_pitch + 0.45 * off_rate(print) * 0.1 * swing_time, 0});
-    pitch.push_back({next.strike - 0.1 * swing_time,
-                     next.strike_pitch - 0.4 * strike_rate(next) * 0.1 * swing_time, 0});
-    pitch.push_back({next.strike, next.strike_pitch, strike_rate(next)});
+    const double turning = 0.1 * (next.strike - print.off);
+    pitch.push_back({print.heel_rise, 0, 0, 0});
+    pitch.push_back(knot(print.off, off_pitch(print)));
+    pitch.push_back(turning_point(print.off, off_pitch(print), turning));
+    pitch.push_back(turning_point(next.strike, strike_pitch(next), -turning));
+    pitch.push_back(knot(next.strike, strike_pitch(next)));
     pitch_.emplace_back(std::move(pitch));
 
-    const bool ball_first = next.strike_pitch < 0;
+    // How far the toes are bent up against the foot; on the ground they lie flat.
+    const State<double> flat{0, 0, 0};
+    const State<double> bent = off_toe_pitch(print) - off_pitch(print);
+    const State<double> down = next.strike_pitch < 0 ? flat - strike_pitch(next) : flat;
     toe_extension_.emplace_back(std::vector<KnotCurve::Knot>{
-        {print.off, -print.off_pitch, -off_rate(print)},
-        {print.off + 0.1 * swing_time,
-         -print.off_pitch - 0.4 * off_rate(print) * 0.1 * swing_time, 0},
-        {print.off + 0.4 * swing_time, 22 * degree, 0},
-        {next.strike, ball_first ? -next.strike_pitch : 0.0, ball_first ? -strike_rate(next) : 0.0}});
+        knot(print.off, bent), turning_point(print.off, bent, turning),
+        {print.off + 4 * turning, kToesUpInSwing, 0, 0}, knot(next.strike, down)});
 
     Swing swing;
-    swing.from = ankle_state(i, print.off_pitch, off_rate(print));
-    swing.to = ankle_state(i + 1, next.strike_pitch, strike_rate(next));
+    swing.from = ankle_state(i, off_pitch(print), off_toe_pitch(print));
+    swing.to = ankle_state(i + 1, strike_pitch(next), flat);
     swing.direction = next.path_point - print.path_point;
     swing.direction.y() = 0;
     if (swing.direction.norm() > 0) swing.direction.normalize();
@@ -89,29 +115,41 @@ double FootMotion::toe_extension_at(std::size_t print, double time) const {
   return toe_extension_[print](time);
 }
 
-State<Vec3> FootMotion::ankle_state(std::size_t index, double pitch, double rate) const {
+double FootMotion::toe_pitch_at(std::size_t index, double time) const {
+  const Footprint& print = prints_[index];
+  if (print.last_of_foot || time <= print.ball_rise) return 0;
+  const double u = (time - print.ball_rise) / (print.off - print.ball_rise);
+  return print.off_toe_pitch * u * u * u;
+}
+
+State<Vec3> FootMotion::ankle_state(std::size_t index, const State<double>& foot_pitch,
+                                    const State<double>& toe_pitch) const {
   const Footprint& print = prints_[index];
   const Quat ground = ground_frame(print.heading, print.slope);
-  const bool on_heel = pitch >= 0;
-  const Vec3 pivot = on_heel ? figure_.heel : figure_.toe_joint;
-  const Vec3 pivot_place = print.heel + ground * Vec3(pivot - figure_.heel);
-  const double c = std::cos(pitch), s = std::sin(pitch);
-  // The pivot seen from the ankle, turned by the pitch, and its derivatives by the pitch.
-  const Vec3 turned(0, pivot.y() * c + pivot.z() * s, -pivot.y() * s + pivot.z() * c);
-  const Vec3 first(0, turned.z(), -turned.y());
-  const Vec3 second(0, -turned.y(), -turned.z());
-  return {pivot_place - ground * turned, -(ground * Vec3(first * rate)),
-          -(ground * Vec3(second * (rate * rate)))};
+  Vec3 pivot = print.heel;
+  State<Vec3> from_ankle;  // the pivot seen from the ankle, in the ground's frame
+  if (foot_pitch.position >= 0) {
+    from_ankle = turned(figure_.heel, foot_pitch);
+  } else {
+    pivot += ground * Vec3(figure_.toe_tip - figure_.heel);
+    const State<Vec3> foot = turned(figure_.toe_joint, foot_pitch);
+    const State<Vec3> toes = turned(figure_.toe_tip - figure_.toe_joint, toe_pitch);
+    from_ankle = {foot.position + toes.position, foot.velocity + toes.velocity,
+                  foot.acceleration + toes.acceleration};
+  }
+  return {pivot - ground * from_ankle.position, -(ground * from_ankle.velocity),
+          -(ground * from_ankle.acceleration)};
 }
 
 FootPose FootMotion::stance(std::size_t index, double time) const {
   const Footprint& print = prints_[index];
   const double pitch = pitch_at(index, time);
+  const double toe_pitch = pitch < 0 ? toe_pitch_at(index, time) : pitch;
   const Quat ground = ground_frame(print.heading, print.slope);
   FootPose pose;
-  pose.ankle = ankle_state(index, pitch, 0).position;
+  pose.ankle = ankle_state(index, {pitch, 0, 0}, {toe_pitch, 0, 0}).position;
   pose.foot = ground * pitched(pitch);
-  pose.toes = pitch < 0 ? ground : pose.foot;
+  pose.toes = ground * pitched(toe_pitch);
   return pose;
 }
 

@@ -15,8 +15,8 @@ struct FootPose {
   Quat toes = Quat::Identity();  // toes_to_world
 };
 
-// In stance the foot turns about the heel's contact point while its toes point up, and about the toe
-// joint, the toes flat, while its heel is up. The swing takes the ankle on from toe-off to the next
+// In stance the foot turns about the heel's contact point while its toes point up, about the toe
+// joint, the toes flat, while its heel is up, and at last rolls over the tip of the toes. The swing takes the ankle on from toe-off to the next
 // strike with continuous velocity and acceleration, lifted and held back as far as it takes to clear
 // the ground.
 class FootMotion {
@@ -38,9 +38,11 @@ class FootMotion {
 
   double pitch_at(std::size_t print, double time) const;
   double toe_extension_at(std::size_t print, double time) const;
+  double toe_pitch_at(std::size_t print, double time) const;
   FootPose stance(std::size_t print, double time) const;
   FootPose swing(std::size_t print, double time) const;
-  State<Vec3> ankle_state(std::size_t print, double pitch, double pitch_rate) const;
+  State<Vec3> ankle_state(std::size_t print, const State<double>& foot_pitch,
+                          const State<double>& toe_pitch) const;
   void clear_ground(std::size_t print, const FootPlan& plan);
   std::size_t index_at(double time) const;
 

@@ -41,7 +41,8 @@ void set_pitches(Footprint& print, double length_before, double length_after,
   const double after = std::clamp(length_after / nominal, 0.0, 1.25);
   const double degree = kRadiansPerDegree;
   print.strike_pitch = E("SP",21) * degree * before;
-  print.off_pitch = -(22 + E("P",36) * after) * degree;
+  print.off_pitch = -(22 + E("P",44) * after) * degree;
+  print.off_toe_pitch = E("TP",0.45) * print.off_pitch;
   if (options.ground == Ground::stairs && options.rise != 0) {
     // Up, the sole comes down flat; down, the ball comes first.
     const double climb = std::min(1.0, std::abs(options.rise) / (0.07 * options.stature));
@@ -111,7 +112,8 @@ FootPlan plan_feet(const WalkOptions& options, const Figure&) {
     print.strike = plan.time_of(i);
     print.flat = print.strike + kFootFlat * stride;
     print.off = print.strike + kToeOff * stride;
-    print.heel_rise = print.off - kHeelRise * stride;
+    print.heel_rise = print.strike + kHeelRise * stride;
+    print.ball_rise = print.strike + kBallRise * stride;
   }
 
   // The origin is where the walk asked for starts, facing +Z there.

@@ -20,9 +20,11 @@ struct Footprint {
   double strike = 0;                // the heel (or the ball, downstairs) comes down
   double flat = 0;                  // the whole sole is down
   double heel_rise = 0;             // the heel leaves
-  double off = 0;                   // the toes leave
+  double ball_rise = 0;             // the ball leaves, the foot rolls on over the tip of the toes
+  double off = 0;                   // the tip leaves
   double strike_pitch = 0;          // of the foot to the ground at strike, positive toes up
-  double off_pitch = 0;             // at toe-off, negative
+  double off_pitch = 0;             // of the foot at toe-off, negative
+  double off_toe_pitch = 0;         // of the toes at toe-off, negative
   bool first_of_foot = false;       // there is no step to it, the foot stood there before
   bool last_of_foot = false;        // there is no step from it
 };

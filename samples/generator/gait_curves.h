@@ -12,6 +12,7 @@ namespace krok::samples {
 // Moments of a stride, in phase (Perry and Burnfield, "Gait Analysis"; Winter).
 inline constexpr double kFootFlat = 0.10;
 inline constexpr double kHeelRise = 0.31;
+inline constexpr double kBallRise = 0.48;
 inline constexpr double kToeOff = 0.62;
 
 // Flexion of the knee; one peak of 18 degrees as the leg takes the load, one of 61 in swing (Winter,

@@ -51,7 +51,7 @@ Json contact_points(const Figure& figure) {
       return entry;
     };
     json[side_name(side)]["heel"] = point(leg.foot, figure.heel);
-    json[side_name(side)]["toe"] = point(leg.toes, figure.ball - figure.toe_joint);
+    json[side_name(side)]["toe"] = point(leg.toes, figure.toe_tip - figure.toe_joint);
   }
   return json;
 }
@@ -81,6 +81,7 @@ Json footprints(const Walk& walk) {
     entry["strike"] = moment(print.strike, print.first_of_foot);
     entry["flat"] = moment(print.flat, print.first_of_foot);
     entry["heel_rise"] = moment(print.heel_rise, print.last_of_foot);
+    entry["ball_rise"] = moment(print.ball_rise, print.last_of_foot);
     entry["off"] = moment(print.off, print.last_of_foot);
     json.push_back(std::move(entry));
   }

@@ -13,6 +13,9 @@ namespace {
 
 using namespace krok;
 
+// A micrometre, and as much at the end of a leg.
+constexpr int kDecimals = 4;
+
 struct Arguments {
   samples::WalkOptions walk;
   std::string stature, step_length, step_width, turn, rise, noise_angle, noise_position;
@@ -102,7 +105,11 @@ Result<int> run(ToolContext& context, Arguments& arguments) {
 
   Result<OutputFile> capture = OutputFile::create(context.output, context.output_options());
   if (!capture) return std::move(capture).error();
-  if (Status done = bvh::write(walk->clip, {}, *capture); !done) return std::move(done).error();
+  bvh::WriteOptions options;
+  options.decimals = kDecimals;
+  if (Status done = bvh::write(walk->clip, options, *capture); !done) {
+    return std::move(done).error();
+  }
   const std::string truth = samples::ground_truth_json(*walk, base_name(context.output));
   std::string truth_path = arguments.contacts;
   if (truth_path.empty() && context.output != "-") truth_path = contacts_path(context.output);

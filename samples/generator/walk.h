@@ -21,7 +21,7 @@ struct Contact {
 
 struct FootContacts {
   std::vector<Contact> heel;  // the heel's point of the sole
-  std::vector<Contact> toe;   // the ball's point of the sole, below the toe joint
+  std::vector<Contact> toe;   // the point of the sole below the tip of the toes
   std::vector<double> strikes, offs;  // keytimes within the clip: first touch, last touch
 };
 

@@ -1,12 +1,15 @@
 #include "tools/common/tool.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
+#include <map>
+#include <memory>
 #include <new>
-#include <span>
 
 #include "core/hash.h"
 #include "core/parallel.h"
@@ -17,8 +20,22 @@ namespace krok {
 namespace {
 
 // Options that say where results go or how the tool talks, not what the result is.
-const char* const kSilentOptions[] = {"help",  "version", "output",   "quiet",     "verbose",
-                                      "json",  "jobs",    "progress", "no-clobber"};
+const char* const kSilentOptions[] = {"help", "version", "output",   "quiet",     "verbose",
+                                      "json", "jobs",    "progress", "no-clobber"};
+
+// Nothing can be done about a message that nobody can be told of, so failures are passed over here;
+// what matters on standard output is checked once, at the end.
+void put(std::FILE* stream, const std::string& text) {
+  (void)std::fwrite(text.data(), 1, text.size(), stream);
+}
+
+// A program may be started with standard streams closed. The next file opened would take their
+// place, and messages would be written into it.
+void open_missing_standard_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);
+  }
+}
 
 bool is_silent(const std::string& name) {
   for (const char* silent : kSilentOptions) {
@@ -100,26 +117,46 @@ int finish(ToolContext& context, const std::string& json_path, int exit_code) {
   const std::string text =
       context.report.to_json().dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (const Status written = write_file(json_path, text); !written) {
-    fmt::print(stderr, "{}\n", to_text(written.error()));
+    put(stderr, to_text(written.error()) + "\n");
     return kExitTrouble;
   }
   return exit_code;
 }
 
 int fail(ToolContext& context, const std::string& json_path, const Error& error) {
-  fmt::print(stderr, "{}{}\n", error.where.file.empty() ? context.report.tool + ": " : "",
-             to_text(error));
+  put(stderr, (error.where.file.empty() ? context.report.tool + ": " : "") + to_text(error) + "\n");
   context.report.issues.push_back(error);
   return finish(context, json_path, kExitTrouble);
 }
 
+bool standard_output_written() {
+  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+}
+
+Error standard_output_error() {
+  return Error("file-unwritable", "standard output cannot be written", "check where it goes");
+}
+
+int finish_output(const std::string& tool) {
+  if (standard_output_written()) return kExitDone;
+  put(stderr, tool + ": " + to_text(standard_output_error()) + "\n");
+  return kExitTrouble;
+}
+
+int usage_error(const std::string& tool, const std::string& message) {
+  put(stderr, fmt::format("{}: error: {} [usage]\n  hint: see {} --help\n", tool, message, tool));
+  return kExitTrouble;
+}
+
 }  // namespace
 
-std::string version() { return KROK_VERSION; }
+std::string version() {
+  return KROK_VERSION;
+}
 
 void ToolContext::tell(Diagnostic diagnostic) {
   const bool shown = !quiet && (verbose || diagnostic.severity != Severity::note);
-  if (shown) fmt::print(stderr, "{}\n", to_text(diagnostic));
+  if (shown) put(stderr, to_text(diagnostic) + "\n");
   report.issues.push_back(std::move(diagnostic));
 }
 
@@ -137,12 +174,12 @@ void ToolContext::warn(std::string code, std::string message, std::string hint) 
 }
 
 void ToolContext::say(const std::string& line) {
-  if (!quiet && !report_on_standard_output) fmt::print(stderr, "{}\n", line);
+  if (!quiet && !report_on_standard_output) put(stderr, line + "\n");
 }
 
 void ToolContext::print(const std::string& text) {
   if (report_on_standard_output) return;
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  put(stdout, text);
 }
 
 Result<InputFile> ToolContext::open_input(const std::string& path) {
@@ -151,7 +188,9 @@ Result<InputFile> ToolContext::open_input(const std::string& path) {
   return file;
 }
 
-void ToolContext::wrote(const std::string& path) { report.outputs.push_back(path); }
+void ToolContext::wrote(const std::string& path) {
+  report.outputs.push_back(path);
+}
 
 Provenance ToolContext::provenance() const {
   Provenance provenance;
@@ -161,8 +200,8 @@ Provenance ToolContext::provenance() const {
     provenance.sources.push_back({base_name(input.path), input.xxh3});
   }
   for (const auto& [name, value] : report.options.items()) {
-    provenance.options.emplace_back(name, value.is_string() ? value.get<std::string>()
-                                                            : value.dump());
+    provenance.options.emplace_back(name,
+                                    value.is_string() ? value.get<std::string>() : value.dump());
   }
   for (const Diagnostic& issue : report.issues) {
     if (issue.severity == Severity::warning) {
@@ -173,6 +212,7 @@ Provenance ToolContext::provenance() const {
 }
 
 int run_tool(const ToolSpec& spec, int argc, char** argv) {
+  open_missing_standard_streams();
   remove_temporaries_on_signals();
 
   ToolContext context;
@@ -183,9 +223,9 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
 
   CLI::App app(spec.summary, spec.name);
   app.footer(help_footer(spec));
-  app.formatter(std::make_shared<HelpFormatter>(fmt::format(
-      "{} [options] {}{}", spec.name, spec.inputs,
-      spec.has_output ? (spec.needs_output ? " -o OUTPUT" : " [-o OUTPUT]") : "")));
+  app.formatter(std::make_shared<HelpFormatter>(
+      fmt::format("{} [options] {}{}", spec.name, spec.inputs,
+                  spec.has_output ? (spec.needs_output ? " -o OUTPUT" : " [-o OUTPUT]") : "")));
   app.set_help_flag("-h,--help", "This text")->group("Common options");
   app.set_version_flag("--version", fmt::format("{} {}", spec.name, version()), "The version")
       ->group("Common options");
@@ -207,11 +247,11 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
   app.add_option("--progress", style, "Progress: auto, bar, plain, json or none")
       ->type_name("STYLE")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
-                                               {"bar", ProgressStyle::bar},
-                                               {"plain", ProgressStyle::plain},
-                                               {"json", ProgressStyle::json},
-                                               {"none", ProgressStyle::none}})
+                      std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
+                                                           {"bar", ProgressStyle::bar},
+                                                           {"plain", ProgressStyle::plain},
+                                                           {"json", ProgressStyle::json},
+                                                           {"none", ProgressStyle::none}})
                       .description(""))
       ->default_str("auto")
       ->group("Common options");
@@ -226,18 +266,19 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
     std::reverse(arguments.begin(), arguments.end());
     app.parse(arguments);
   } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", app.help());
-    return kExitDone;
+    put(stdout, app.help());
+    return finish_output(spec.name);
   } catch (const CLI::CallForVersion&) {
-    fmt::print("{} {}\n", spec.name, version());
-    return kExitDone;
+    put(stdout, fmt::format("{} {}\n", spec.name, version()));
+    return finish_output(spec.name);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{}: error: {} [usage]\n  hint: see {} --help\n", spec.name, error.what(),
-               spec.name);
-    return kExitTrouble;
+    return usage_error(spec.name, error.what());
   }
 
   context.report_on_standard_output = json_path == "-";
+  if (context.report_on_standard_output && context.output == "-") {
+    return usage_error(spec.name, "the report and the output cannot both go to standard output");
+  }
   context.report.options = given_options(app);
   if (context.quiet && style == ProgressStyle::automatic) style = ProgressStyle::none;
   const auto progress = console_progress(style);
@@ -247,10 +288,7 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
     const Result<int> done = spec.run(context);
     progress->end();
     if (!done) return fail(context, json_path, done.error());
-    if (std::fflush(stdout) != 0) {
-      return fail(context, json_path,
-                  Error("file-unwritable", "standard output cannot be written"));
-    }
+    if (!standard_output_written()) return fail(context, json_path, standard_output_error());
     return finish(context, json_path, *done);
   } catch (const std::bad_alloc&) {
     progress->end();

@@ -24,11 +24,11 @@ inline constexpr int kExitPartly = 3;   // a batch ended with some files failed
 // What a tool's work is given: the common options, and the places for what it has to say.
 class ToolContext {
  public:
-  int jobs = 0;               // -j; 0 is one thread a core
-  bool no_clobber = false;    // --no-clobber
-  bool quiet = false;         // -q
-  bool verbose = false;       // -v
-  std::string output;         // -o, empty where none was given
+  int jobs = 0;             // -j; 0 is one thread a core
+  bool no_clobber = false;  // --no-clobber
+  bool quiet = false;       // -q
+  bool verbose = false;     // -v
+  std::string output;       // -o, empty where none was given
   Progress* progress = nullptr;
   Report report;
 
@@ -64,11 +64,11 @@ struct ToolSpec {
     std::string command;
     std::string does;
   };
-  std::string name;     // "krok-import"
-  std::string summary;  // a sentence without a full stop
-  std::string inputs;   // for the usage line: "IN.bvh"
+  std::string name;               // "krok-import"
+  std::string summary;            // a sentence without a full stop
+  std::string inputs;             // for the usage line: "IN.bvh"
   std::vector<Example> examples;  // at least two
-  std::string exit_no;  // what exit code 1 means here; empty where it does not happen
+  std::string exit_no;            // what exit code 1 means here; empty where it does not happen
   bool has_output = true;         // takes -o
   bool needs_output = true;       // -o must be given
 

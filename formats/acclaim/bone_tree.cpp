@@ -1,0 +1,166 @@
+#include "formats/acclaim/bone_tree.h"
+
+#include <fmt/format.h>
+
+#include <unordered_set>
+
+#include "core/text.h"
+
+namespace krok::acclaim {
+
+namespace {
+
+constexpr int kRoot = 0;
+constexpr std::string_view kRootName = "root";
+
+class BoneTree {
+ public:
+  BoneTree(std::vector<LooseBone>& bones, SourceText& source, SkeletonFile& skeleton)
+      : bones_(bones), source_(source), skeleton_(skeleton) {}
+
+  Status hang(const std::vector<HierarchyLink>& links) {
+    if (Status named = collect_names(); !named) return named;
+    children_.resize(bones_.size() + 1);
+    hangs_.assign(bones_.size() + 1, false);
+    for (const HierarchyLink& link : links) {
+      if (Status added = add(link); !added) return added;
+    }
+    place_bones();
+    return tell_loose_bones();
+  }
+
+ private:
+  // Bone i is number i + 1 here, the root 0. The maps are made to number loose bones first and
+  // joints in the end.
+  Status collect_names() {
+    skeleton_.by_name.emplace(kRootName, kRoot);
+    skeleton_.by_lower_name.emplace(kRootName, kRoot);
+    for (std::size_t i = 0; i < bones_.size(); ++i) {
+      const LooseBone& bone = bones_[i];
+      const int number = static_cast<int>(i) + 1;
+      if (same_word(bone.name, kRootName)) {
+        return source_.error(bone.offset, "acclaim-bone", "a bone is named root",
+                             "root is the place where the bones begin; rename the bone");
+      }
+      if (!skeleton_.by_name.emplace(bone.name, number).second) {
+        return source_.error(bone.offset, "acclaim-bone",
+                             fmt::format("a second bone is named {}", shown(bone.name)),
+                             ":hierarchy and the motion know bones by their names");
+      }
+      const auto [place, is_new] =
+          skeleton_.by_lower_name.emplace(ascii_lower(bone.name), number);
+      if (!is_new) place->second = SkeletonFile::kUnknown;
+    }
+    return {};
+  }
+
+  Status add(const HierarchyLink& link) {
+    const int parent = skeleton_.find(link.parent);
+    const int child = skeleton_.find(link.child);
+    const bool no_parent = parent == SkeletonFile::kUnknown;
+    if (no_parent || child == SkeletonFile::kUnknown) {
+      return source_.error(no_parent ? link.parent_offset : link.child_offset, "acclaim-hierarchy",
+                           fmt::format(":hierarchy names {}, which :bonedata does not have",
+                                       shown(no_parent ? link.parent : link.child)));
+    }
+    if (child == kRoot) {
+      return source_.error(link.child_offset, "acclaim-hierarchy", "root hangs on a bone");
+    }
+    if (hangs_[static_cast<std::size_t>(child)]) {
+      return source_.error(link.child_offset, "acclaim-hierarchy",
+                           fmt::format("{} hangs on a second parent", shown(link.child)));
+    }
+    hangs_[static_cast<std::size_t>(child)] = true;
+    children_[static_cast<std::size_t>(parent)].push_back(child);
+    return {};
+  }
+
+  // Depth first from the root, children in the order of :hierarchy.
+  void place_bones() {
+    joint_of_.assign(bones_.size() + 1, SkeletonFile::kLeftOut);
+    joint_of_[kRoot] = kRoot;
+    names_.insert(std::string(kRootName));
+    struct Visit {
+      int bone, parent_joint;
+    };
+    std::vector<Visit> open;
+    const auto open_children = [&](int bone, int joint) {
+      const auto& below = children_[static_cast<std::size_t>(bone)];
+      for (auto child = below.rbegin(); child != below.rend(); ++child) {
+        open.push_back({*child, joint});
+      }
+      skeleton_.joints[static_cast<std::size_t>(joint)].has_children = !below.empty();
+    };
+    open_children(kRoot, kRoot);
+    while (!open.empty()) {
+      const Visit visit = open.back();
+      open.pop_back();
+      LooseBone& bone = bones_[static_cast<std::size_t>(visit.bone) - 1];
+      const int joint = static_cast<int>(skeleton_.joints.size());
+      joint_of_[static_cast<std::size_t>(visit.bone)] = joint;
+      bone.joint.name = unique_name(bone);
+      bone.joint.parent = visit.parent_joint;
+      skeleton_.joints.push_back(std::move(bone.joint));
+      open_children(visit.bone, joint);
+    }
+    for (auto* names : {&skeleton_.by_name, &skeleton_.by_lower_name}) {
+      for (auto& [name, number] : *names) {
+        if (number >= 0) number = joint_of_[static_cast<std::size_t>(number)];
+      }
+    }
+  }
+
+  // Names differ as bytes; read as Latin-1 two may be the same.
+  std::string unique_name(const LooseBone& bone) {
+    const std::string name = to_utf8(bone.name);
+    std::string candidate = name;
+    for (int number = 2; !names_.insert(candidate).second; ++number) {
+      candidate = fmt::format("{}_{}", name, number);
+    }
+    if (candidate != bone.name) {
+      source_.warn(bone.offset, "acclaim-name",
+                   fmt::format("the name of a bone is not UTF-8; it is called {}", candidate), {},
+                   candidate);
+    }
+    return candidate;
+  }
+
+  Status tell_loose_bones() {
+    std::size_t count = 0;
+    const LooseBone* first = nullptr;
+    for (std::size_t i = 0; i < bones_.size(); ++i) {
+      if (joint_of_[i + 1] != SkeletonFile::kLeftOut) continue;
+      if (count++ == 0) first = &bones_[i];
+    }
+    if (count == 0) return {};
+    return source_.fault(
+        first->offset, "acclaim-hierarchy",
+        fmt::format("{} bone{} not hang on the root and {} left out (the first: {})", count,
+                    count == 1 ? " does" : "s do", count == 1 ? "is" : "are", shown(first->name)));
+  }
+
+  std::vector<LooseBone>& bones_;
+  SourceText& source_;
+  SkeletonFile& skeleton_;
+  std::vector<std::vector<int>> children_;
+  std::vector<bool> hangs_;
+  std::vector<int> joint_of_;
+  std::unordered_set<std::string> names_;
+};
+
+}  // namespace
+
+int SkeletonFile::find(std::string_view searched) const {
+  if (const auto found = by_name.find(std::string(searched)); found != by_name.end()) {
+    return found->second;
+  }
+  const auto found = by_lower_name.find(ascii_lower(searched));
+  return found == by_lower_name.end() ? kUnknown : found->second;
+}
+
+Status hang_bones(std::vector<LooseBone>& bones, const std::vector<HierarchyLink>& links,
+                  SourceText& source, SkeletonFile& skeleton) {
+  return BoneTree(bones, source, skeleton).hang(links);
+}
+
+}  // namespace krok::acclaim

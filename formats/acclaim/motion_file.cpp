@@ -1,0 +1,401 @@
+#include "formats/acclaim/motion_file.h"
+
+#include <fast_float/fast_float.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/numbers.h"
+#include "core/text.h"
+
+namespace krok::acclaim {
+
+namespace {
+
+constexpr const char* kCutHint = "the file is cut short; export or copy it again";
+
+// Steps through one line by words; ends at a comment.
+class LineCursor {
+ public:
+  LineCursor(const char* position, const char* end) : position_(position), end_(end) {}
+
+  bool at_end() {
+    while (position_ < end_ && is_separator(*position_)) ++position_;
+    return position_ == end_ || *position_ == '#';
+  }
+  std::string_view word() {
+    if (at_end()) return {};
+    const char* begin = position_;
+    while (position_ < end_ && !is_separator(*position_)) ++position_;
+    return {begin, static_cast<std::size_t>(position_ - begin)};
+  }
+  // The next word if it is a finite number; otherwise nothing is stepped over.
+  bool number(double& value) {
+    if (at_end()) return false;
+    const auto parsed = fast_float::from_chars(position_, end_, value);
+    if (parsed.ec == std::errc() && std::isfinite(value) &&
+        (parsed.ptr == end_ || is_separator(*parsed.ptr))) {
+      position_ = parsed.ptr;
+      return true;
+    }
+    LineCursor ahead = *this;  // a plus sign, or no number
+    const auto whole = parse_finite(ahead.word());
+    if (!whole) return false;
+    value = *whole;
+    *this = ahead;
+    return true;
+  }
+  const char* position() const { return position_; }
+
+ private:
+  const char* position_;
+  const char* end_;
+};
+
+class MotionParser {
+ public:
+  MotionParser(SourceText& source, const SkeletonFile& skeleton, std::size_t joint_count,
+               const ReadOptions& options)
+      : source_(source), skeleton_(skeleton), text_(source.text()) {
+    first_channel_.reserve(skeleton.joints.size() + 1);
+    for (const auto& joint : skeleton.joints) {
+      first_channel_.push_back(motion_.channel_count);
+      motion_.channel_count += joint.channels.size();
+      moving_ += joint.channels.empty() ? 0 : 1;
+      // What a bone is like before its first value.
+      for (const Channel channel : joint.channels) {
+        current_.push_back(channel == Channel::length ? joint.length : 0.0);
+      }
+    }
+    last_seen_.assign(skeleton.joints.size(), 0);
+    lines_.assign(skeleton.joints.size(), 0);
+    most_frames_ = most_frames(text_.size(), motion_.channel_count, joint_count, options);
+  }
+
+  Result<MotionFile> parse() {
+    std::size_t begin = 0;
+    while (begin < text_.size()) {
+      std::size_t end = begin;
+      while (end < text_.size() && !is_line_end(text_[end])) ++end;
+      const bool unfinished = end == text_.size();
+      if (Status read = parse_line(begin, end); !read) {
+        if (Status handled = handle_fault(std::move(read).error(), begin, unfinished); !handled) {
+          return handled.error();
+        }
+        if (cut_) break;
+      }
+      begin = end + 1;
+    }
+    if (Status finished = finish_last_frame(); !finished) return finished.error();
+    if (Status told = tell_oddities(); !told) return told.error();
+    return std::move(motion_);
+  }
+
+ private:
+  std::size_t offset_of(const char* position) const {
+    return static_cast<std::size_t>(position - text_.data());
+  }
+
+  // An error inside of the last line of a file that ends without a line end is the file's end.
+  Status handle_fault(Error error, std::size_t line_begin, bool unfinished) {
+    if (error.code == "acclaim-limit" || source_.strictness() == Strictness::strict) return error;
+    if (unfinished && in_frame_) {
+      cut_ = true;
+      return {};
+    }
+    // What stands before the first frame, or between frames, is not a value to be left out.
+    if (source_.strictness() != Strictness::repair || !in_frame_ || error.code == "acclaim-syntax") {
+      return error;
+    }
+    motion_.repairs.push_back(fmt::format("line {} left out: {}", error.where.line, error.message));
+    source_.warn(line_begin, "acclaim-repair", "left out: " + error.message);
+    return {};
+  }
+
+  Status parse_line(std::size_t begin, std::size_t end) {
+    LineCursor line(text_.data() + begin, text_.data() + end);
+    if (line.at_end()) return {};
+    if (*line.position() == ':') return parse_keyword(line);
+    const char* name_begin = line.position();
+    const std::string_view name = line.word();
+    const bool digits_first = name[0] >= '0' && name[0] <= '9';
+    if ((digits_first || name[0] == '-') && line.at_end()) {
+      if (const auto number = parse_integer(name)) return begin_frame(*number, offset_of(name_begin));
+    }
+    if (!in_frame_) {
+      return source_.error(offset_of(name_begin), "acclaim-syntax",
+                           fmt::format("'{}' where the number of the first frame is expected",
+                                       shown(name)));
+    }
+    return parse_values(name, offset_of(name_begin), line);
+  }
+
+  Status parse_keyword(LineCursor& line) {
+    const std::size_t offset = offset_of(line.position());
+    const std::string_view word = line.word();
+    const std::string keyword = ascii_lower(word);
+    if (in_frame_) {
+      return source_.error(offset, "acclaim-syntax",
+                           fmt::format("{} in the middle of the frames", shown(word)));
+    }
+    if (keyword == ":fully-specified") {
+      specified_ = true;
+    } else if (keyword == ":degrees" || keyword == ":radians") {
+      motion_.degrees = keyword == ":degrees";
+    } else if (keyword == ":samples-per-second") {
+      double rate = 0;
+      if (!line.number(rate) || !(rate > 0)) {
+        return source_.error(offset, "acclaim-rate",
+                             fmt::format("{} is not followed by a positive number", shown(word)));
+      }
+      motion_.rate = rate;
+    } else if (keyword != ":frame-range" && keyword != ":asf-file" && keyword != ":asf-path") {
+      return source_.fault(offset, "acclaim-keyword",
+                           fmt::format("'{}' is unknown and left out", shown(word)));
+    }
+    return {};
+  }
+
+  Status begin_frame(long long number, std::size_t offset) {
+    if (in_frame_) {
+      if (Status finished = finish_frame(); !finished) return finished;
+    }
+    if (motion_.frame_count() >= most_frames_) {
+      return source_.error(offset, "acclaim-limit",
+                           fmt::format("more than {} frames of {} joints are out of proportion to "
+                                       "the size of the file",
+                                       most_frames_, skeleton_.joints.size()));
+    }
+    in_frame_ = true;
+    number_ = number;
+    frame_offset_ = offset;
+    seen_ = 0;
+    place_ = 0;
+    ++stamp_;
+    return {};
+  }
+
+  // Bones stand in the same order in every frame, so the next one is nearly always the one that
+  // followed last time.
+  int joint_of(std::string_view name) {
+    if (place_ < order_.size() && order_[place_].name == name) return order_[place_++].joint;
+    const int joint = skeleton_.find(name);
+    if (joint == SkeletonFile::kUnknown) return joint;
+    if (stamp_ == 1) {
+      order_.push_back({name, joint});
+      place_ = order_.size();
+      return joint;
+    }
+    for (std::size_t i = 0; i < order_.size() && i < kSearch; ++i) {
+      // Somewhere near, after a bone that was left out.
+      if (place_ + i < order_.size() && order_[place_ + i].joint == joint) {
+        place_ += i + 1;
+        break;
+      }
+    }
+    return joint;
+  }
+
+  Status parse_values(std::string_view name, std::size_t offset, LineCursor& line) {
+    const int joint = joint_of(name);
+    if (joint == SkeletonFile::kLeftOut) return {};
+    if (joint == SkeletonFile::kUnknown) {
+      return source_.error(offset, "acclaim-unknown-bone",
+                           fmt::format("the skeleton has no bone {}", shown(name)),
+                           "the motion was made for another skeleton; give that one's ASF");
+    }
+    const auto j = static_cast<std::size_t>(joint);
+    if (last_seen_[j] == stamp_) {
+      return source_.error(offset, "acclaim-frame",
+                           fmt::format("frame {} has {} twice", number_, shown(name)),
+                           "perhaps the number of a frame is missing between the two");
+    }
+    const std::vector<Channel>& channels = skeleton_.joints[j].channels;
+    values_.clear();
+    double value = 0;
+    while (line.number(value)) values_.push_back(value);
+    if (!line.at_end()) {
+      const std::size_t place = offset_of(line.position());
+      return source_.error(place, "acclaim-number",
+                           fmt::format("'{}' in the values of {} is not a finite number",
+                                       shown(line.word()), shown(name)));
+    }
+    if (values_.size() != channels.size()) {
+      return source_.error(offset, "acclaim-values",
+                           fmt::format("{} value{} for {}, expected {}{}", values_.size(),
+                                       values_.size() == 1 ? "" : "s", shown(name),
+                                       channels.size(), channel_list(channels)));
+    }
+    std::copy(values_.begin(), values_.end(),
+              current_.begin() + static_cast<std::ptrdiff_t>(first_channel_[j]));
+    last_seen_[j] = stamp_;
+    if (!channels.empty()) {
+      ++seen_;
+      ++lines_[j];
+    }
+    return {};
+  }
+
+  static std::string channel_list(const std::vector<Channel>& channels) {
+    std::string list;
+    for (const Channel channel : channels) {
+      list += list.empty() ? " (" : " ";
+      list += channel_name(channel);
+    }
+    return list.empty() ? list : list + ")";
+  }
+
+  Status finish_frame() {
+    if (seen_ < moving_) {
+      if (source_.strictness() == Strictness::strict) {
+        return source_.error(frame_offset_, "acclaim-missing",
+                             fmt::format("frame {} has no values for {}", number_,
+                                         skeleton_.joints[first_missing()].name));
+      }
+      if (seen_ < seen_before_ || (short_frames_ == 0 && motion_.frame_count() == 0)) {
+        if (short_frames_++ == 0) short_offset_ = frame_offset_;
+      }
+    }
+    seen_before_ = std::max(seen_before_, seen_);
+    motion_.values.insert(motion_.values.end(), current_.begin(), current_.end());
+    motion_.frame_numbers.push_back(number_);
+    frame_offsets_tail_ = frame_offset_;
+    if (motion_.frame_count() > 1 && odd_number_offset_ == kNowhere) {
+      const auto& numbers = motion_.frame_numbers;
+      if (numbers[numbers.size() - 1] <= numbers[numbers.size() - 2]) {
+        odd_number_offset_ = frame_offset_;
+      }
+    }
+    return {};
+  }
+
+  std::size_t first_missing() const {
+    for (std::size_t j = 0; j < last_seen_.size(); ++j) {
+      if (!skeleton_.joints[j].channels.empty() && last_seen_[j] != stamp_) return j;
+    }
+    return 0;
+  }
+
+  // The last frame is whole if it has what the frames before it have.
+  Status finish_last_frame() {
+    if (!in_frame_) return {};
+    const bool lacks = motion_.frame_count() > 0 && seen_ < seen_before_;
+    if (!cut_ && !lacks) return finish_frame();
+    motion_.repairs.push_back(fmt::format("frame {}, cut short, left out", number_));
+    return source_.fault(frame_offset_, "acclaim-cut",
+                         fmt::format("the file ends in the middle of frame {}, which is left out",
+                                     number_),
+                         kCutHint);
+  }
+
+  Status tell_oddities() {
+    if (!specified_) {
+      if (Status told = source_.fault(0, "acclaim-keyword",
+                                      "the motion does not say :FULLY-SPECIFIED; read as such");
+          !told) {
+        return told;
+      }
+    }
+    if (motion_.frame_count() == 0) {
+      return source_.fault(text_.size(), "acclaim-frame", "the motion has no whole frame",
+                           kCutHint);
+    }
+    if (odd_number_offset_ != kNowhere) {
+      if (Status told = source_.fault(odd_number_offset_, "acclaim-frame",
+                                      "the number of this frame is not greater than the one "
+                                      "before; frames are taken in the file's order");
+          !told) {
+        return told;
+      }
+    }
+    return tell_missing();
+  }
+
+  Status tell_missing() {
+    std::size_t never = 0, now_and_then = 0;
+    std::size_t first_never = 0, first_short = 0;
+    for (std::size_t j = 0; j < lines_.size(); ++j) {
+      if (skeleton_.joints[j].channels.empty() || lines_[j] >= motion_.frame_count()) continue;
+      if (lines_[j] == 0) {
+        if (never++ == 0) first_never = j;
+      } else if (now_and_then++ == 0) {
+        first_short = j;
+      }
+    }
+    if (never > 0) {
+      const std::string& name = skeleton_.joints[first_never].name;
+      if (Status told = source_.fault(
+              0, "acclaim-missing",
+              fmt::format("the motion has no values for {} bone{} that can move (the first: {}); "
+                          "they stay as in the reference pose",
+                          never, never == 1 ? "" : "s", name),
+              "perhaps it was made for another skeleton", name);
+          !told) {
+        return told;
+      }
+    }
+    if (now_and_then == 0) return {};
+    const std::string& name = skeleton_.joints[first_short].name;
+    return source_.fault(
+        short_offset_, "acclaim-missing",
+        fmt::format("some frames have no values for {} bone{} that others have values for (the "
+                    "first: {}); there they stay as they were",
+                    now_and_then, now_and_then == 1 ? "" : "s", name),
+        {}, name);
+  }
+
+  static constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
+  static constexpr std::size_t kSearch = 64;
+
+  SourceText& source_;
+  const SkeletonFile& skeleton_;
+  std::string_view text_;
+  MotionFile motion_;
+  std::size_t most_frames_ = 0;
+  std::size_t moving_ = 0;  // joints with channels
+  std::vector<std::size_t> first_channel_;
+
+  struct Place {
+    std::string_view name;
+    int joint;
+  };
+  std::vector<Place> order_;  // as in the first frame
+  std::size_t place_ = 0;
+
+  // The frame being read.
+  bool in_frame_ = false, cut_ = false, specified_ = false;
+  long long number_ = 0;
+  std::size_t frame_offset_ = 0;
+  std::size_t stamp_ = 0;  // counts begun frames
+  std::size_t seen_ = 0;   // moving joints
+  std::vector<double> current_, values_;
+  std::vector<std::size_t> last_seen_;  // [joints] stamp
+  std::vector<std::size_t> lines_;      // [joints] frames with values
+
+  std::size_t seen_before_ = 0;
+  std::size_t short_frames_ = 0, short_offset_ = 0;
+  std::size_t frame_offsets_tail_ = 0;
+  std::size_t odd_number_offset_ = kNowhere;
+};
+
+}  // namespace
+
+std::size_t most_frames(std::size_t text_size, std::size_t channels, std::size_t joints,
+                        const ReadOptions& options) {
+  constexpr double kAlways = 1 << 26;  // bytes that a small file may take
+  const double bytes = static_cast<double>(channels * sizeof(double) +
+                                           joints * (sizeof(Vec3f) + sizeof(Quatf)));
+  const double frames =
+      (kAlways + options.max_expansion * static_cast<double>(text_size)) / std::max(bytes, 1.0);
+  return static_cast<std::size_t>(
+      std::min(frames, static_cast<double>(std::numeric_limits<int>::max())));
+}
+
+Result<MotionFile> parse_motion(SourceText& source, const SkeletonFile& skeleton,
+                                std::size_t joint_count, const ReadOptions& options) {
+  return MotionParser(source, skeleton, joint_count, options).parse();
+}
+
+}  // namespace krok::acclaim

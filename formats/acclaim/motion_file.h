@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "formats/acclaim/acclaim_reader.h"
+#include "formats/acclaim/skeleton_file.h"
+#include "formats/acclaim/source_text.h"
+
+namespace krok::acclaim {
+
+// An AMC: the values of all channels in all frames, in the file's units, joint by joint in the order
+// of the skeleton's joints and their channels.
+struct MotionFile {
+  std::size_t channel_count = 0;
+  std::vector<double> values;             // [frames x channels]
+  std::vector<long long> frame_numbers;   // [frames], as printed
+  std::optional<double> rate;             // what the file says
+  std::optional<bool> degrees;            // what the file says
+  std::vector<std::string> repairs;
+
+  std::size_t frame_count() const { return frame_numbers.size(); }
+  std::span<const double> frame(std::size_t i) const {
+    return std::span(values).subspan(i * channel_count, channel_count);
+  }
+};
+
+// The most frames that the memory for `channels` and `joints` may be taken for, from the size of the
+// text.
+std::size_t most_frames(std::size_t text_size, std::size_t channels, std::size_t joints,
+                        const ReadOptions& options);
+
+// Parses a whole AMC in one pass. `joint_count` is that of the clip, for the limit on memory.
+Result<MotionFile> parse_motion(SourceText& source, const SkeletonFile& skeleton,
+                                std::size_t joint_count, const ReadOptions& options);
+
+}  // namespace krok::acclaim

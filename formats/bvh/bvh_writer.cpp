@@ -1,0 +1,271 @@
+#include "formats/bvh/bvh_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <vector>
+
+#include "formats/bvh/text_cursor.h"
+#include "math/quaternion.h"
+
+namespace krok::bvh {
+
+namespace {
+
+constexpr std::array kAxisLetters = {'X', 'Y', 'Z'};
+
+// What a joint becomes in the file.
+struct WrittenJoint {
+  int index = 0;      // in the clip
+  int depth = 0;
+  bool end_site = false;
+  bool positions = false;
+  Vec3 offset = Vec3::Zero();  // metres
+};
+
+class Writer {
+ public:
+  Writer(const Clip& clip, const WriteOptions& options, OutputFile& file)
+      : clip_(clip),
+        options_(options),
+        file_(file),
+        count_(clip.skeleton.names.size()),
+        scale_(1.0 / options.unit.metres) {
+    // A finer unit needs fewer decimals for the same length.
+    const double shift = std::log10(options.unit.metres / 0.01);
+    length_decimals_ = std::clamp(options.decimals + static_cast<int>(std::lround(shift)), 0, 15);
+    for (const Transform& joint : clip.skeleton.reference) {
+      from_reference_.push_back(joint.orientation.normalized().conjugate());
+    }
+  }
+
+  Status write() {
+    order_joints();
+    find_moving_translations();
+    write_hierarchy();
+    write_motion_header();
+    if (Status flushed = flush(); !flushed) return flushed;
+    return write_frames();
+  }
+
+ private:
+  const Skeleton& skeleton() const { return clip_.skeleton; }
+  int parent_of(std::size_t joint) const { return skeleton().parents[joint]; }
+
+  // Depth first, children in the clip's order, without recursion.
+  void order_joints() {
+    const auto children = skeleton().children();
+    std::vector<std::pair<int, int>> open = {{0, 0}};
+    while (!open.empty()) {
+      const auto [joint, depth] = open.back();
+      open.pop_back();
+      const auto j = static_cast<std::size_t>(joint);
+      WrittenJoint written;
+      written.index = joint;
+      written.depth = depth;
+      written.end_site = skeleton().end_sites[j] != 0 && children[j].empty() && depth > 0;
+      written.positions = depth == 0;
+      if (depth > 0 || options_.root_offset) {
+        written.offset = skeleton().reference[j].position;
+        if (depth > 0) {
+          written.offset -=
+              skeleton().reference[static_cast<std::size_t>(parent_of(j))].position;
+        }
+      }
+      written_.push_back(written);
+      for (auto child = children[j].rbegin(); child != children[j].rend(); ++child) {
+        open.emplace_back(*child, depth + 1);
+      }
+    }
+  }
+
+  // joint_to_world of a frame with the reference orientations taken off, so that an unturned joint
+  // is what it is in the reference pose.
+  void folded_pose(int frame, std::span<Transform> pose) const {
+    clip_.get_pose(frame, pose);
+    for (std::size_t j = 0; j < count_; ++j) {
+      pose[j].orientation = pose[j].orientation * from_reference_[j];
+    }
+  }
+
+  Vec3 translation_in_parent(std::span<const Transform> pose, const WrittenJoint& joint) const {
+    const auto j = static_cast<std::size_t>(joint.index);
+    if (joint.depth == 0) return pose[j].position;
+    const Transform& parent = pose[static_cast<std::size_t>(parent_of(j))];
+    return parent.orientation.conjugate() * (pose[j].position - parent.position);
+  }
+
+  // Stored positions are floats: what they cannot tell apart is no movement.
+  double tolerance() const {
+    float reach = 0;
+    for (const Vec3f& position : clip_.positions) {
+      reach = std::max(reach, position.cwiseAbs().maxCoeff());
+    }
+    constexpr double kRounding = 16.0 * std::numeric_limits<float>::epsilon();
+    return std::max(options_.translation_tolerance, kRounding * static_cast<double>(reach));
+  }
+
+  void find_moving_translations() {
+    const double allowed = tolerance();
+    std::vector<Transform> pose(count_);
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      folded_pose(frame, pose);
+      for (WrittenJoint& joint : written_) {
+        if (joint.positions) continue;
+        if ((translation_in_parent(pose, joint) - joint.offset).norm() <= allowed) continue;
+        joint.positions = true;
+        joint.end_site = false;
+      }
+    }
+  }
+
+  // A name on one line that no reader mistakes for a brace.
+  std::string written_name(const std::string& name) const {
+    std::string result;
+    for (const char c : trimmed(name)) {
+      if (c == ' ') {
+        result += options_.space_in_names;
+      } else {
+        result += static_cast<unsigned char>(c) < 0x20 || c == '{' || c == '}' ? '_' : c;
+      }
+    }
+    return result.empty() ? "joint" : result;
+  }
+
+  void length(double metres) { number(metres * scale_, length_decimals_); }
+
+  void number(double value, int decimals) {
+    const std::size_t begin = text_.size();
+    fmt::format_to(std::back_inserter(text_), "{:.{}f}", value, decimals);
+    // "-0.000000" is zero.
+    if (text_[begin] == '-' && text_.find_first_not_of("0.", begin + 1) == std::string::npos) {
+      text_.erase(begin, 1);
+    }
+  }
+
+  void write_hierarchy() {
+    text_ = "HIERARCHY\n";
+    int open = 0;
+    for (const WrittenJoint& joint : written_) {
+      close_to(joint.depth, open);
+      const std::string indent(static_cast<std::size_t>(joint.depth), '\t');
+      const std::string& name = skeleton().names[static_cast<std::size_t>(joint.index)];
+      if (joint.end_site) {
+        text_ += indent + "End Site\n";
+      } else {
+        text_ += indent + (joint.depth == 0 ? "ROOT " : "JOINT ") + written_name(name) + "\n";
+      }
+      text_ += indent + "{\n" + indent + "\tOFFSET";
+      for (const double component : joint.offset) {
+        text_ += ' ';
+        length(component);
+      }
+      text_ += '\n';
+      if (!joint.end_site) {
+        text_ += indent + (joint.positions ? "\tCHANNELS 6 Xposition Yposition Zposition"
+                                           : "\tCHANNELS 3");
+        for (const Axis axis : options_.order) {
+          text_ += ' ';
+          text_ += kAxisLetters[static_cast<std::size_t>(axis)];
+          text_ += "rotation";
+        }
+        text_ += '\n';
+      }
+      ++open;
+    }
+    close_to(0, open);
+  }
+
+  void close_to(int depth, int& open) {
+    while (open > depth) text_ += std::string(static_cast<std::size_t>(--open), '\t') + "}\n";
+  }
+
+  void write_motion_header() {
+    text_ += fmt::format("MOTION\nFrames: {}\nFrame Time: {}\n", clip_.frame_count(),
+                         frame_time_text());
+  }
+
+  // Enough digits that 1 / frame time is the rate again; ten at least, as readers snap them.
+  std::string frame_time_text() const {
+    const double frame_time = 1.0 / clip_.rate;
+    return fmt::format("{:.{}g}", frame_time, 17);
+  }
+
+  Status flush() {
+    const Status written = file_.write(text_);
+    text_.clear();
+    return written;
+  }
+
+  Status write_frames() {
+    std::vector<Transform> pose(count_);
+    std::vector<Vec3> previous(count_, Vec3::Zero());
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      folded_pose(frame, pose);
+      bool first = true;
+      for (const WrittenJoint& joint : written_) {
+        if (joint.end_site) continue;
+        if (!first) text_ += ' ';
+        first = false;
+        write_joint(joint, pose, previous[static_cast<std::size_t>(joint.index)]);
+      }
+      text_ += '\n';
+      if (Status flushed = flush(); !flushed) return flushed;
+    }
+    return {};
+  }
+
+  void write_joint(const WrittenJoint& joint, std::span<const Transform> pose, Vec3& previous) {
+    if (joint.positions) {
+      for (const double component : translation_in_parent(pose, joint)) {
+        length(component);
+        text_ += ' ';
+      }
+    }
+    const auto j = static_cast<std::size_t>(joint.index);
+    const Quat local =
+        joint.depth == 0
+            ? pose[j].orientation
+            : pose[static_cast<std::size_t>(parent_of(j))].orientation.conjugate() *
+                  pose[j].orientation;
+    previous = closest_euler(to_euler(local, options_.order, previous[2]), previous);
+    for (int i = 0; i < 3; ++i) {
+      if (i > 0) text_ += ' ';
+      number(previous[i] / kRadiansPerDegree, options_.decimals);
+    }
+  }
+
+  const Clip& clip_;
+  const WriteOptions& options_;
+  OutputFile& file_;
+  std::size_t count_;
+  double scale_;
+  int length_decimals_ = 6;
+  std::vector<Quat> from_reference_;
+  std::vector<WrittenJoint> written_;
+  std::string text_;
+};
+
+}  // namespace
+
+Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
+  if (Status checked = check(clip); !checked) return checked;
+  if (options.decimals < 1 || options.decimals > 15) {
+    return Error("bvh-options", fmt::format("{} decimals, expected 1 to 15", options.decimals));
+  }
+  if (!(options.unit.metres > 0) || !std::isfinite(options.unit.metres)) {
+    return Error("bvh-options", fmt::format("a unit of {} m is not a length", options.unit.metres));
+  }
+  std::array<int, 3> axes{};
+  for (const Axis axis : options.order) ++axes[static_cast<std::size_t>(axis)];
+  if (axes != std::array{1, 1, 1}) {
+    return Error("bvh-options", "the rotation order names an axis twice");
+  }
+  return Writer(clip, options, file).write();
+}
+
+}  // namespace krok::bvh

@@ -1,0 +1,136 @@
+#include "scene/convention_choice.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/numbers.h"
+
+namespace krok {
+
+namespace {
+
+constexpr const char* kGiven = "as given";
+
+bool parallel(Direction a, Direction b) {
+  return direction_vector(a).dot(direction_vector(b)) != 0.0;
+}
+
+std::string how(bool given, Confidence confidence) {
+  return given ? "given" : fmt::format("detected, {}", confidence_name(confidence));
+}
+
+}  // namespace
+
+void apply_given(const GivenConventions& given, Conventions& conventions) {
+  if (given.unit) {
+    conventions.unit = *given.unit;
+    conventions.unit_confidence = Confidence::certain;
+    conventions.unit_reason = kGiven;
+  }
+  if (given.up) {
+    conventions.up = conventions.reference_up = *given.up;
+    conventions.up_confidence = Confidence::certain;
+    conventions.up_reason = kGiven;
+  }
+  if (given.forward) {
+    conventions.forward = conventions.reference_forward = *given.forward;
+    conventions.forward_confidence = Confidence::certain;
+    conventions.forward_reason = kGiven;
+  }
+  if (given.up && given.forward) return;
+  if (!parallel(conventions.up, conventions.forward) &&
+      !parallel(conventions.reference_up, conventions.reference_forward)) {
+    return;
+  }
+  if (given.up) {
+    const bool along_z = parallel(*given.up, Direction::plus_z);
+    conventions.forward = along_z ? Direction::minus_y : Direction::plus_z;
+    conventions.reference_forward = conventions.forward;
+    conventions.forward_confidence = Confidence::guess;
+    conventions.forward_reason = "what the data show lies along the axis given as up";
+  } else if (given.forward) {
+    const bool along_y = parallel(*given.forward, Direction::plus_y);
+    conventions.up = along_y ? Direction::plus_z : Direction::plus_y;
+    conventions.reference_up = conventions.up;
+    conventions.up_confidence = Confidence::guess;
+    conventions.up_reason = "what the data show lies along the axis given as forward";
+  }
+}
+
+Result<Conversion> Conversion::make(const Conventions& conventions) {
+  auto turn = rotation_to_krok(conventions.up, conventions.forward);
+  if (!turn) return std::move(turn).error();
+  auto reference = rotation_to_krok(conventions.reference_up, conventions.reference_forward);
+  if (!reference) return std::move(reference).error();
+  Conversion conversion;
+  conversion.metres_ = conventions.unit.metres;
+  conversion.turn_ = *turn;
+  conversion.reference_turn_ = *reference;
+  conversion.to_krok_ = turn->toRotationMatrix().array().round().matrix();
+  conversion.reference_to_krok_ = reference->toRotationMatrix().array().round().matrix();
+  return conversion;
+}
+
+Transform Conversion::pose(const Transform& joint_to_world) const {
+  return {to_krok_ * (joint_to_world.position * metres_),
+          turn_ * joint_to_world.orientation * reference_turn_.conjugate()};
+}
+
+Transform Conversion::reference(const Transform& joint_to_world) const {
+  return {reference_to_krok_ * (joint_to_world.position * metres_),
+          reference_rotation(joint_to_world.orientation)};
+}
+
+Quat Conversion::reference_rotation(const Quat& rotation) const {
+  return reference_turn_ * rotation * reference_turn_.conjugate();
+}
+
+void report_conventions(const Conventions& conventions, const GivenConventions& given,
+                        const std::string& code_prefix, const std::string& file_name,
+                        Diagnostics& diagnostics) {
+  const auto report = [&](bool is_given, const char* name, const std::string& value,
+                          Confidence confidence, const std::string& reason) {
+    if (is_given) return;
+    const bool guess = confidence == Confidence::guess;
+    Diagnostic told;
+    told.severity = guess ? Severity::warning : Severity::note;
+    told.code = fmt::format("{}-{}", code_prefix, name);
+    told.message = fmt::format("{} is {} ({})", name, value, confidence_name(confidence)) +
+                   (reason.empty() ? std::string() : ": " + reason);
+    if (guess) told.hint = fmt::format("say it with --{} if it is otherwise", name);
+    told.where.file = file_name;
+    diagnostics.push_back(std::move(told));
+  };
+  report(given.unit.has_value(), "unit", conventions.unit.name, conventions.unit_confidence,
+         conventions.unit_reason);
+  report(given.up.has_value(), "up", std::string(direction_name(conventions.up)),
+         conventions.up_confidence, conventions.up_reason);
+  report(given.forward.has_value(), "forward", std::string(direction_name(conventions.forward)),
+         conventions.forward_confidence, conventions.forward_reason);
+}
+
+std::vector<std::string> describe_conversions(const Conventions& conventions,
+                                              const GivenConventions& given) {
+  std::vector<std::string> lines;
+  if (conventions.unit.metres != 1.0) {
+    lines.push_back(fmt::format("unit: {} ({} m) to metres ({})", conventions.unit.name,
+                                readable(conventions.unit.metres),
+                                how(given.unit.has_value(), conventions.unit_confidence)));
+  }
+  const auto axes = [&](const char* what, Direction up, Direction forward) {
+    if (up == Direction::plus_y && forward == Direction::plus_z) return;
+    lines.push_back(
+        fmt::format("{}: up {} ({}), forward {} ({}) to up y, forward z", what, direction_name(up),
+                    how(given.up.has_value(), conventions.up_confidence), direction_name(forward),
+                    how(given.forward.has_value(), conventions.forward_confidence)));
+  };
+  axes("axes", conventions.up, conventions.forward);
+  if (conventions.reference_up != conventions.up ||
+      conventions.reference_forward != conventions.forward) {
+    axes("axes of the reference pose", conventions.reference_up, conventions.reference_forward);
+  }
+  return lines;
+}
+
+}  // namespace krok

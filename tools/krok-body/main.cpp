@@ -1,0 +1,18 @@
+#include "tools/krok-body/make_model.h"
+
+int main(int argc, char** argv) {
+  krok::body_tool::Options options;
+  krok::ToolSpec spec;
+  spec.name = "krok-body";
+  spec.summary =
+      "Builds a smooth closed body around any skeleton, bound to its joints, so that a capture can "
+      "be looked at as a character";
+  spec.inputs = "IN.anim|IN.model";
+  spec.examples = {{"krok-body walk.anim -o walker.model",
+                    "a body for the figure of a capture, about 10,000 vertices"},
+                   {"krok-body dog.anim --detail high -o dog.model",
+                    "any other skeleton is shaped by the lengths of its bones"}};
+  spec.declare = [&options](CLI::App& app) { declare(app, options); };
+  spec.run = [&options](krok::ToolContext& context) { return run(options, context); };
+  return krok::run_tool(spec, argc, argv);
+}

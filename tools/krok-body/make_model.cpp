@@ -1,0 +1,148 @@
+#include "tools/krok-body/make_model.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "core/numbers.h"
+#include "formats/anim/anim.h"
+#include "formats/model/model_format.h"
+#include "formats/registry/registry.h"
+
+namespace krok::body_tool {
+
+namespace {
+
+template <typename Value>
+CLI::CheckedTransformer choice(std::map<std::string, Value> values) {
+  CLI::CheckedTransformer transformer(std::move(values));
+  transformer.description("");
+  return transformer;
+}
+
+Result<BodyOptions> body_options(const Options& options) {
+  BodyOptions result;
+  result.detail = options.detail;
+  if (options.pose == "auto") return result;
+  if (options.pose == "reference") {
+    result.pose = BodyPose::reference;
+    return result;
+  }
+  const auto frame = parse_integer(options.pose);
+  if (!frame || *frame < 0 || *frame > 2'000'000'000) {
+    return Error("usage", fmt::format("--pose {} is neither auto, reference nor a frame number",
+                                      options.pose),
+                 "frames count from 0");
+  }
+  result.pose = BodyPose::frame;
+  result.frame = static_cast<int>(*frame);
+  return result;
+}
+
+// A clip with the file's skeleton, and its motion if it has one.
+Result<Clip> read_skeleton(const InputFile& input) {
+  switch (registry::kind_of_content(input.bytes())) {
+    case registry::Kind::anim: {
+      auto clip = anim::read(input.bytes());
+      if (!clip) return std::move(clip).error().in_file(input.path());
+      return clip;
+    }
+    case registry::Kind::model: {
+      auto model = model::read(input.bytes());
+      if (!model) return std::move(model).error().in_file(input.path());
+      Clip clip;
+      clip.skeleton = std::move(model->skeleton);
+      return clip;
+    }
+    default:
+      break;
+  }
+  const registry::Kind kind = registry::identify(input.path(), input.bytes());
+  return Error("body-input",
+               fmt::format("expected a .anim or .model file, this is {}",
+                           registry::describe_content(input.bytes())),
+               registry::advice(kind, registry::Kind::anim))
+      .in_file(input.path());
+}
+
+Json result_of(const Body& body) {
+  Json result;
+  result["vertices"] = body.model.vertex_count();
+  result["triangles"] = body.model.triangles.size();
+  result["joints"] = body.model.skeleton.joint_count();
+  result["bones"] = body.model.skeleton.joint_count() - 1;
+  result["volume"] = body.volume;
+  result["human"] = body.human;
+  result["stature"] = body.human ? Json(body.stature) : Json();
+  result["pose"] = body.pose;
+  return result;
+}
+
+std::string with_commas(std::size_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+  return digits;
+}
+
+}  // namespace
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("input", options.input, "A motion or model; its skeleton is taken (- is standard input)")
+      ->type_name("IN")
+      ->required();
+  app.add_option("--detail", options.detail,
+                 "Vertices: low (about 2,500), medium (10,000) or high (40,000)")
+      ->type_name("LEVEL")
+      ->transform(choice<BodyDetail>(
+          {{"low", BodyDetail::low}, {"medium", BodyDetail::medium}, {"high", BodyDetail::high}}))
+      ->default_str("medium")
+      ->group("Body");
+  app.add_option("--pose", options.pose,
+                 "The pose that the body stands in: reference (the skeleton's), the number of a frame, "
+                 "or auto: the reference pose with limbs turned aside that are in the way")
+      ->type_name("POSE")
+      ->default_str("auto")
+      ->group("Body");
+  app.add_option("--orientation", options.orientation,
+                 "Components stored of an orientation: xyz (w is rebuilt) or xyzw")
+      ->type_name("HOW")
+      ->transform(choice<OrientationEncoding>(
+          {{"xyz", OrientationEncoding::xyz}, {"xyzw", OrientationEncoding::xyzw}}))
+      ->default_str("xyz")
+      ->group("Body");
+}
+
+Result<int> run(const Options& options, ToolContext& context) {
+  auto how = body_options(options);
+  if (!how) return how.error();
+  how->jobs = context.jobs;
+  how->progress = context.progress;
+
+  auto input = context.open_input(options.input);
+  if (!input) return input.error();
+  auto clip = read_skeleton(*input);
+  if (!clip) return clip.error();
+  auto body = make_body(*clip, *how);
+  if (!body) return std::move(body).error().in_file(input->path());
+  context.tell(body->diagnostics);
+
+  Model& model = body->model;
+  model.provenance = context.provenance();
+  model.provenance.conversions.push_back(fmt::format("body built in pose: {}", body->pose));
+  auto file = OutputFile::create(context.output, context.output_options());
+  if (!file) return file.error();
+  if (Status written = model::write(model, {.orientation = options.orientation}, *file); !written) {
+    return written.error();
+  }
+  if (Status done = file->commit(); !done) return done.error();
+  context.wrote(context.output);
+
+  context.report.result = result_of(*body);
+  context.say(fmt::format("body: {} vertices, {} triangles, {} bones, {} m3 -> {}",
+                          with_commas(model.positions.size()), with_commas(model.triangles.size()),
+                          model.skeleton.joint_count() - 1, readable(body->volume, 2),
+                          context.output));
+  return kExitDone;
+}
+
+}  // namespace krok::body_tool

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "compare/scene_difference.h"
+#include "core/result.h"
+#include "formats/gltf/gltf_asset.h"
+
+namespace krok::diff {
+
+// A glTF asset as lib/compare sees scenes. The scene refers to `asset`, which must outlive it.
+Result<compare::Scene> scene_of(const gltf::Asset& asset);
+
+// "1 mesh, 10,120 vertices, 20,236 triangles; 31 joints; 1 animation".
+std::string summary_of(const compare::Scene& scene);
+
+}  // namespace krok::diff

@@ -1,0 +1,142 @@
+#include "tools/krok-import/options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace krok::import {
+
+namespace {
+
+// An option whose value is one of a list of words. CLI11 would list words and numbers in the help.
+template <typename T>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
+                        const std::map<std::string, T>& words, const std::string& description,
+                        const std::string& type_name, const std::string& default_word) {
+  return app.add_option(name, value, description)
+      ->type_name(type_name)
+      ->transform(CLI::CheckedTransformer(words).description(""))
+      ->default_str(default_word);
+}
+
+// A positive finite number; CLI11 alone takes "1e999" and "nan".
+CLI::Option* add_rate(CLI::App& app, const std::string& name, double& value,
+                      const std::string& description) {
+  return app.add_option(name, value, description)
+      ->type_name("N")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const CLI::Range range(1e-3, 1e6);
+            return range(text).empty() ? std::string()
+                                       : "'" + text + "' is no rate from 0.001 to 1000000";
+          },
+          ""));
+}
+
+Result<std::optional<Direction>> direction_option(const std::string& text, const char* option) {
+  if (text == "auto") return std::optional<Direction>();
+  const auto direction = parse_direction(text);
+  if (!direction) {
+    return Error("usage", fmt::format("{}: {}", option, direction.error().message),
+                 "write auto, x, y, z, -x, -y or -z");
+  }
+  return std::optional<Direction>(*direction);
+}
+
+}  // namespace
+
+void declare_options(CLI::App& app, Options& options) {
+  app.add_option("input", options.input, "The capture, a BVH file; - is standard input")
+      ->type_name("IN.bvh")
+      ->required();
+  app.add_option("--model", options.model,
+                 "Also write the skeleton with its reference pose as a model without vertices")
+      ->type_name("OUT.model");
+
+  const std::string space = "What the file is written in";
+  app.add_option("--unit", options.unit,
+                 "Its unit of length: auto, m, dm, cm, mm, in, ft, cmu (the CMU collection's) or a "
+                 "length such as 5.64cm")
+      ->type_name("UNIT")
+      ->default_str("auto")
+      ->group(space);
+  app.add_option("--up", options.up, "Its axis that points up: auto, x, y, z, -x, -y, -z")
+      ->type_name("AXIS")
+      ->default_str("auto")
+      ->group(space);
+  app.add_option("--forward", options.forward,
+                 "Its axis that the figure faces in the reference pose: as --up")
+      ->type_name("AXIS")
+      ->default_str("auto")
+      ->group(space);
+  add_choice<bvh::Positions>(app, "--positions", options.positions,
+                             {{"auto", bvh::Positions::automatic},
+                              {"absolute", bvh::Positions::absolute},
+                              {"additive", bvh::Positions::additive}},
+                             "Whether position channels replace OFFSETs (absolute) or are added to "
+                             "them (additive)",
+                             "HOW", "auto")
+      ->group(space);
+
+  const std::string time = "Time";
+  add_rate(app, "--fps", options.fps, "The file's frames come N a second, whatever it says")
+      ->group(time);
+  add_rate(app, "--resample", options.resample, "Bring the motion to N frames a second")
+      ->group(time);
+  add_choice<bvh::RestFrame>(app, "--skip-rest-frame", options.rest_frame,
+                             {{"no", bvh::RestFrame::keep},
+                              {"auto", bvh::RestFrame::automatic},
+                              {"yes", bvh::RestFrame::drop}},
+                             "Leave out the first frame: auto (where it is a rest pose and no part "
+                             "of the motion), yes or no",
+                             "WHEN", "no")
+      ->group(time);
+
+  const std::string faults = "Faults in the file";
+  auto* strict = app.add_flag("--strict", options.strict,
+                              "Refuse a file with any fault; otherwise rows that are not whole are "
+                              "left out with a warning")
+                     ->group(faults);
+  app.add_flag("--repair", options.repair,
+               "Fill faulty frames from their neighbours; each repair is listed")
+      ->excludes(strict)
+      ->group(faults);
+
+  add_choice<OrientationEncoding>(app, "--orientation", options.orientation,
+                                  {{"xyz", OrientationEncoding::xyz},
+                                   {"xyzw", OrientationEncoding::xyzw}},
+                                  "How orientations are stored: three numbers each (xyz) or four, "
+                                  "exactly (xyzw)",
+                                  "HOW", "xyz")
+      ->group("Output");
+}
+
+Result<bvh::ReadOptions> read_options(const Options& options) {
+  bvh::ReadOptions result;
+  if (options.unit != "auto") {
+    auto unit = parse_unit(options.unit);
+    if (!unit) {
+      return Error("usage", "--unit: " + unit.error().message, unit.error().hint);
+    }
+    result.unit = *unit;
+  }
+  const auto up = direction_option(options.up, "--up");
+  if (!up) return up.error();
+  result.up = *up;
+  const auto forward = direction_option(options.forward, "--forward");
+  if (!forward) return forward.error();
+  result.forward = *forward;
+  if (result.up && result.forward) {
+    const auto rotation = rotation_to_krok(*result.up, *result.forward);
+    if (!rotation) return Error("usage", rotation.error().message, rotation.error().hint);
+  }
+  result.positions = options.positions;
+  result.rest_frame = options.rest_frame;
+  if (options.fps > 0) result.rate = options.fps;
+  result.strictness = options.strict   ? bvh::Strictness::strict
+                      : options.repair ? bvh::Strictness::repair
+                                       : bvh::Strictness::normal;
+  return result;
+}
+
+}  // namespace krok::import

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "core/result.h"
+#include "formats/bvh/bvh_reader.h"
+#include "formats/container/packed_orientation.h"
+
+namespace krok::import {
+
+// What stands on the command line, as text where the library says what it means.
+struct Options {
+  std::string input;
+  std::string model;  // --model, empty where none is wanted
+  std::string unit = "auto";
+  std::string up = "auto";
+  std::string forward = "auto";
+  bvh::Positions positions = bvh::Positions::automatic;
+  bvh::RestFrame rest_frame = bvh::RestFrame::keep;
+  double fps = 0;       // 0: what the file says
+  double resample = 0;  // 0: not at all
+  OrientationEncoding orientation = OrientationEncoding::xyz;
+  bool strict = false;
+  bool repair = false;
+};
+
+void declare_options(CLI::App& app, Options& options);
+
+// The options of the reader; an Error for a unit or an axis that is none.
+Result<bvh::ReadOptions> read_options(const Options& options);
+
+}  // namespace krok::import

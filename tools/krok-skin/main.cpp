@@ -1,0 +1,52 @@
+#include "tools/krok-skin/skin.h"
+
+namespace {
+
+void declare(CLI::App& app, krok::SkinOptions& options, std::string& method) {
+  using krok::SkinAs;
+  app.add_option("model", options.model, "The skinned mesh")->type_name("IN.model")->required();
+  app.add_option("motion", options.motion, "The motion")->type_name("IN.anim")->required();
+  app.add_option("--as", options.as,
+                 "What to write. clip: the motion baked, a morph target a frame. pose: one mesh. "
+                 "rig: joints, weights and the animation, for the viewer's own skinning. frames: "
+                 "one file a frame, OUT_0000.glb, OUT_0001.glb, ... for -o OUT.glb")
+      ->type_name("WHAT")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SkinAs>{{"clip", SkinAs::clip},
+                                                                        {"pose", SkinAs::pose},
+                                                                        {"rig", SkinAs::rig},
+                                                                        {"frames", SkinAs::frames}})
+                      .description(""))
+      ->default_str("clip");
+  app.add_option("--time", options.time, "For --as pose: when, as 1.5s, 250ms or 120f")
+      ->type_name("T")
+      ->default_str("0");
+  app.add_option("--from", options.from, "Where the part to write begins, as for --time")
+      ->type_name("T");
+  app.add_option("--to", options.to, "Where it ends, that frame included")->type_name("T");
+  app.add_option("--every", options.every, "Take every Nth frame only")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000).description(""))
+      ->default_str("1");
+  app.add_option("--method", method, "How vertices follow the joints: linear (linear blend)")
+      ->type_name("METHOD")
+      ->check(CLI::IsMember({"linear"}).description(""))
+      ->default_str("linear");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  krok::SkinOptions options;
+  std::string method = "linear";
+  krok::ToolSpec spec;
+  spec.name = "krok-skin";
+  spec.summary = "Moves a mesh by a skeleton's motion and writes it as glTF";
+  spec.inputs = "IN.model IN.anim";
+  spec.examples = {
+      {"krok-skin body.model walk.anim -o walk.glb", "the motion baked, for viewers without skins"},
+      {"krok-skin body.model walk.anim --as rig -o walk.glb", "a rig for a game engine or Blender"},
+      {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one moment"}};
+  spec.declare = [&](CLI::App& app) { declare(app, options, method); };
+  spec.run = [&](krok::ToolContext& context) { return krok::run_skin(options, context); };
+  return krok::run_tool(spec, argc, argv);
+}

@@ -1,0 +1,330 @@
+#include "tools/krok-skin/skin.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "core/quantity.h"
+#include "formats/anim/anim.h"
+#include "formats/gltf/gltf_writer.h"
+#include "formats/model/model_format.h"
+#include "motion/cut.h"
+#include "motion/sample.h"
+#include "skin/bind.h"
+#include "skin/linear_blend.h"
+#include "skin/palette.h"
+
+namespace krok {
+
+namespace {
+
+// A model and the motion that moves it, on one skeleton.
+struct Scene {
+  Model model;
+  Clip clip;
+  int first_frame = 0, every = 1;  // of the motion as read, for names of files
+};
+
+// A baked file above this is refused; --as rig has no such limit.
+constexpr std::uint64_t kMaxBakedBytes = std::uint64_t{1} << 30;
+// More morph targets than this fit in no browser on common hardware, or only just.
+constexpr int kManyMorphTargets = 1000;
+
+Error at_option(const char* option, Error error) {
+  error.message = fmt::format("{}: {}", option, error.message);
+  return error;
+}
+
+// The frame nearest to a moment given on the command line.
+Result<int> frame_at(const char* option, const std::string& text, const Clip& clip, int fallback) {
+  if (text.empty()) return fallback;
+  const auto time = parse_clip_time(text);
+  if (!time) return at_option(option, time.error());
+  const double frame = std::round(time->in_frames ? time->value : time->value * clip.rate);
+  if (!(frame >= 0 && frame < clip.frame_count())) {
+    return Error("skin-time",
+                 fmt::format("{} {} lies outside the motion, which has frames 0 to {} ({} s)",
+                             option, text, clip.frame_count() - 1, readable(clip.duration())));
+  }
+  return static_cast<int>(frame);
+}
+
+Status cut_to_range(const SkinOptions& options, Scene& scene) {
+  const int frames = scene.clip.frame_count();
+  if (options.from.empty() && options.to.empty() && options.every == 1) return {};
+  if (frames == 0) {
+    return Error("skin-no-frames",
+                 "the motion has no frames to choose from by --from, --to, --every");
+  }
+  const auto first = frame_at("--from", options.from, scene.clip, 0);
+  if (!first) return first.error();
+  const auto last = frame_at("--to", options.to, scene.clip, frames - 1);
+  if (!last) return last.error();
+  if (*last < *first) {
+    return Error("skin-time",
+                 fmt::format("--from {} lies after --to {}", options.from, options.to));
+  }
+  scene.clip = cut(scene.clip, *first, *last, options.every);
+  scene.first_frame = *first;
+  scene.every = options.every;
+  return {};
+}
+
+Result<Scene> load(const SkinOptions& options, ToolContext& context) {
+  Scene scene;
+  const auto model_file = context.open_input(options.model);
+  if (!model_file) return model_file.error();
+  auto model = model::read(model_file->bytes());
+  if (!model) return std::move(model.error()).in_file(options.model);
+  const auto motion_file = context.open_input(options.motion);
+  if (!motion_file) return motion_file.error();
+  auto clip = anim::read(motion_file->bytes());
+  if (!clip) return std::move(clip.error()).in_file(options.motion);
+  scene.clip = std::move(*clip);
+
+  auto bound = bind_to(std::move(*model), scene.clip.skeleton);
+  if (!bound) return std::move(bound.error()).in_file(options.motion);
+  scene.model = std::move(*bound);
+  if (scene.model.triangles.empty()) {
+    return Error("skin-empty-model", "the model has no triangles").in_file(options.model);
+  }
+  context.tell(reference_differences(scene.model.skeleton, scene.clip.skeleton));
+  if (Status done = cut_to_range(options, scene); !done) return done.error();
+  return scene;
+}
+
+// Skins the model in poses one after the other; owns the working memory.
+class Skinner {
+ public:
+  Skinner(const Model& model, int jobs)
+      : model_(model),
+        jobs_(jobs),
+        reference_to_joint_(inverse_reference(model.skeleton)),
+        palette_(reference_to_joint_.size()) {}
+
+  void skin(std::span<const Transform> joint_to_world, std::span<Vec3f> positions,
+            std::span<Vec3f> normals) {
+    make_palette(reference_to_joint_, joint_to_world, palette_);
+    linear_blend_parallel(palette_, skin_vertices(model_), {positions, normals}, jobs_);
+  }
+
+  // Tangents turn like normals.
+  std::vector<Vec4f> skin_tangents() {
+    std::vector<Vec3f> in, out(model_.tangents.size()), places(model_.tangents.size());
+    for (const Vec4f& tangent : model_.tangents) in.push_back(tangent.head<3>());
+    if (in.empty()) return {};
+    SkinVertices vertices = skin_vertices(model_);
+    vertices.normals = in;
+    linear_blend_parallel(palette_, vertices, {places, out}, jobs_);
+    std::vector<Vec4f> tangents;
+    for (std::size_t v = 0; v < out.size(); ++v) {
+      tangents.emplace_back(out[v].x(), out[v].y(), out[v].z(), model_.tangents[v].w());
+    }
+    return tangents;
+  }
+
+ private:
+  const Model& model_;
+  int jobs_;
+  std::vector<Transform> reference_to_joint_;
+  std::vector<SkinMatrix> palette_;
+};
+
+gltf::WriteOptions write_options(const ToolContext& context, const std::string& output) {
+  gltf::WriteOptions options;
+  options.binary = extension(output) != ".gltf";
+  options.provenance = context.provenance();
+  options.name = "body";
+  return options;
+}
+
+Status write_pose(const Scene& scene, std::span<const Transform> joint_to_world, int jobs,
+                  const gltf::WriteOptions& options, OutputFile& file) {
+  Skinner skinner(scene.model, jobs);
+  std::vector<Vec3f> positions(scene.model.positions.size());
+  std::vector<Vec3f> normals(scene.model.normals.size());
+  skinner.skin(joint_to_world, positions, normals);
+  const auto tangents = skinner.skin_tangents();
+  return gltf::write_mesh(scene.model, {positions, normals, tangents}, options, file);
+}
+
+Status write_pose_at(const Scene& scene, double seconds, const ToolContext& context,
+                     OutputFile& file) {
+  const std::size_t joints = scene.clip.skeleton.names.size();
+  std::vector<Transform> pose(joints), scratch(3 * joints);
+  sample(scene.clip, seconds, pose, scratch);
+  return write_pose(scene, pose, context.jobs, write_options(context, context.output), file);
+}
+
+// The smallest --every that brings a motion within the limits; 0 if none does.
+int fitting_step(const Model& model, int frames) {
+  for (int step = 2; step < frames; ++step) {
+    const int kept = (frames - 1) / step + 1;
+    if (kept <= gltf::kMaxMorphTargets && gltf::baked_bytes(model, kept) <= kMaxBakedBytes) {
+      return step;
+    }
+  }
+  return 0;
+}
+
+Status check_bakeable(const Scene& scene, ToolContext& context) {
+  const int frames = scene.clip.frame_count();
+  if (frames == 0) {
+    return Error("skin-no-frames", "the motion has no frames to bake",
+                 "--as pose gives the reference pose");
+  }
+  const std::uint64_t bytes = gltf::baked_bytes(scene.model, frames);
+  const auto megabytes = (bytes >> 20) + 1;
+  if (frames - 1 > gltf::kMaxMorphTargets || bytes > kMaxBakedBytes) {
+    const int step = fitting_step(scene.model, frames);
+    return Error(
+        "skin-clip-too-long",
+        fmt::format("{} frames of {} vertices make {} morph targets and {} MB; viewers hold at "
+                    "most {} targets, and {} MB is the limit here",
+                    frames, scene.model.vertex_count(), frames - 1, megabytes,
+                    gltf::kMaxMorphTargets, kMaxBakedBytes >> 20),
+        step > 0 ? fmt::format("--as rig holds any length; or --every {}, or a part by --from and "
+                               "--to",
+                               step * scene.every)
+                 : "--as rig holds any number of vertices and frames");
+  }
+  if (frames - 1 > kManyMorphTargets) {
+    context.warn("skin-many-targets",
+                 fmt::format("{} morph targets are more than some viewers show", frames - 1),
+                 "--as rig, or --every 2");
+  }
+  return {};
+}
+
+Status write_clip(const Scene& scene, const ToolContext& context, OutputFile& file) {
+  Skinner skinner(scene.model, context.jobs);
+  std::vector<Transform> pose(scene.clip.skeleton.names.size());
+  gltf::BakedMotion motion;
+  motion.frames = scene.clip.frame_count();
+  motion.rate = scene.clip.rate;
+  motion.shape_at = [&](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
+    scene.clip.get_pose(frame, pose);
+    skinner.skin(pose, positions, normals);
+  };
+  return gltf::write_baked(scene.model, motion, write_options(context, context.output), file,
+                           context.progress);
+}
+
+// "walk.glb" and frame 7 of 1500 give "walk_0007.glb".
+std::string frame_path(const std::string& output, int frame, int last_frame) {
+  const std::size_t digits = std::max<std::size_t>(4, fmt::format("{}", last_frame).size());
+  const std::string end = extension(output);
+  const std::string stem = output.substr(0, output.size() - end.size());
+  return fmt::format("{}_{:0{}}{}", stem, frame, digits, output.substr(stem.size()));
+}
+
+// One file a frame, several at a time. Of several failures the one of the earliest frame is told.
+Result<int> write_frames(const Scene& scene, ToolContext& context) {
+  const int frames = scene.clip.frame_count();
+  if (frames == 0) {
+    return Error("skin-no-frames", "the motion has no frames",
+                 "--as pose gives the reference pose");
+  }
+  const int last_frame = scene.first_frame + (frames - 1) * scene.every;
+  const auto path_of = [&](std::size_t i) {
+    return frame_path(context.output, scene.first_frame + static_cast<int>(i) * scene.every,
+                      last_frame);
+  };
+  std::vector<Status> results(static_cast<std::size_t>(frames));
+  std::mutex failure_mutex;
+  bool failed = false;
+  context.progress->begin("writing frames", static_cast<std::uint64_t>(frames));
+  parallel_for(results.size(), 1, context.jobs, [&](std::size_t i, std::size_t) {
+    {
+      const std::lock_guard lock(failure_mutex);
+      if (failed) return;
+    }
+    const auto write = [&]() -> Status {
+      auto file = OutputFile::create(path_of(i), context.output_options());
+      if (!file) return file.error();
+      std::vector<Transform> pose(scene.clip.skeleton.names.size());
+      scene.clip.get_pose(static_cast<int>(i), pose);
+      Status written = write_pose(scene, pose, 1, write_options(context, context.output), *file);
+      if (!written) return std::move(written.error()).in_file(path_of(i));
+      return file->commit();
+    };
+    results[i] = write();
+    context.progress->advance(1);
+    if (!results[i]) {
+      const std::lock_guard lock(failure_mutex);
+      failed = true;
+    }
+  });
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!results[i]) return results[i].error();
+    context.wrote(path_of(i));
+  }
+  context.say(fmt::format("{} to {}: {} files", path_of(0), path_of(results.size() - 1), frames));
+  return kExitDone;
+}
+
+Status write_one(const SkinOptions& options, const Scene& scene, ToolContext& context,
+                 OutputFile& file) {
+  switch (options.as) {
+    case SkinAs::pose: {
+      const auto time = parse_clip_time(options.time);
+      if (!time) return at_option("--time", time.error());
+      const double seconds = time->seconds(scene.clip.rate);
+      const double end = scene.clip.duration();
+      if (seconds < 0 || seconds > end * (1 + 1e-9)) {
+        return Error("skin-time", fmt::format("--time {} lies outside the motion, which lasts {} s",
+                                              options.time, readable(end)));
+      }
+      return write_pose_at(scene, seconds, context, file);
+    }
+    case SkinAs::rig:
+      if (scene.clip.frame_count() == 0) {
+        context.warn("skin-no-frames", "the motion has no frames, so the rig does not move");
+      }
+      return gltf::write_rig(scene.model, scene.clip, write_options(context, context.output), file);
+    default:
+      return write_clip(scene, context, file);
+  }
+}
+
+Status check_output(const SkinOptions& options, const std::string& output) {
+  const std::string end = extension(output);
+  if (options.as == SkinAs::frames && output == "-") {
+    return Error("skin-output", "--as frames writes many files, which standard output cannot take");
+  }
+  if (output == "-" || end == ".glb" || end == ".gltf") return {};
+  return Error("skin-format",
+               end.empty() ? fmt::format("{} has no extension to tell the format by", output)
+                           : fmt::format("no format of this tool has the extension {}", end),
+               "known are .glb and .gltf")
+      .in_file(output);
+}
+
+}  // namespace
+
+Result<int> run_skin(const SkinOptions& options, ToolContext& context) {
+  if (Status fits = check_output(options, context.output); !fits) return fits.error();
+  auto scene = load(options, context);
+  if (!scene) return scene.error();
+  if (options.as == SkinAs::frames) return write_frames(*scene, context);
+  if (options.as == SkinAs::clip) {
+    if (Status fits = check_bakeable(*scene, context); !fits) return fits.error();
+  }
+
+  auto file = OutputFile::create(context.output, context.output_options());
+  if (!file) return file.error();
+  if (Status written = write_one(options, *scene, context, *file); !written) {
+    return std::move(written.error()).in_file(context.output);
+  }
+  if (Status done = file->commit(); !done) return done.error();
+  context.wrote(context.output);
+  context.say(fmt::format("{}: {} vertices, {} frames", context.output, scene->model.vertex_count(),
+                          options.as == SkinAs::pose ? 1 : scene->clip.frame_count()));
+  return kExitDone;
+}
+
+}  // namespace krok

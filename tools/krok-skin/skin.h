@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tools/common/tool.h"
+
+namespace krok {
+
+enum class SkinAs { clip, pose, rig, frames };
+
+struct SkinOptions {
+  std::string model, motion;
+  SkinAs as = SkinAs::clip;
+  std::string time = "0";  // --as pose; a ClipTime
+  std::string from, to;    // the part of the motion; ClipTimes, empty for its ends
+  int every = 1;           // of the frames
+};
+
+// Reads a model and a motion, skins, and writes glTF.
+Result<int> run_skin(const SkinOptions& options, ToolContext& context);
+
+}  // namespace krok
