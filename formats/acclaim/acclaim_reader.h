@@ -18,11 +18,11 @@
 
 namespace krok::acclaim {
 
-// What to do with a file that is not quite right. normal: bones that a frame leaves out stay as they
-// were, a frame that the end of the file cuts short is left out, gaps between frame numbers close;
-// each is a warning. A line that cannot be read is an error. strict: all of these are errors.
-// repair: lines that cannot be read are left out, gaps are filled by interpolation; each repair is
-// listed.
+// What to do with a file that is not quite right. normal: bones that a frame leaves out stay as
+// they were, a frame that the end of the file cuts short is left out, gaps between frame numbers
+// close; each is a warning. A line that cannot be read is an error. strict: all of these are
+// errors. repair: lines that cannot be read are left out, gaps are filled by interpolation; each
+// repair is listed.
 enum class Strictness { normal, strict, repair };
 
 struct ReadOptions {
@@ -44,7 +44,8 @@ struct ReadOptions {
 
   // Limits against files that are made to exhaust memory.
   int max_joints = 65536;
-  // The largest ratio of the memory for the motion to the size of its text; real files stay under 4.
+  // The largest ratio of the memory for the motion to the size of its text; real files stay
+  // under 4.
   double max_expansion = 64.0;
 };
 
@@ -82,8 +83,8 @@ struct Capture {
   std::vector<JointFreedom> freedoms;  // [joints]
   std::string name;                    // of the skeleton
   std::string documentation;
-  long long first_frame_number = 0;    // of the first frame in the AMC; 0 without frames
-  std::vector<std::string> repairs;    // what was left out or filled, a line each
+  long long first_frame_number = 0;  // of the first frame in the AMC; 0 without frames
+  std::vector<std::string> repairs;  // what was left out or filled, a line each
 };
 
 // Reads a skeleton and a motion for it. Texts need not outlive the call; names are for messages.
@@ -91,9 +92,9 @@ struct Capture {
 //
 // A bone turns at its beginning, about axes that `axis` gives: with C their orientation and the
 // values v1, v2, v3 of a `dof rx ry rz`, its rotation relative to its parent is
-// C Rz(v3) Ry(v2) Rx(v1) C^-1. `tx ty tz` move its beginning along the axes of C, `l` is its length.
-// The root's position and orientation in :root are put before its motion. World transforms are
-// computed in doubles and stored as floats.
+// C Rz(v3) Ry(v2) Rx(v1) C^-1. `tx ty tz` move its beginning along the axes of C, `l` is its
+// length. The root's position and orientation in :root are put before its motion. World transforms
+// are computed in doubles and stored as floats.
 //
 // Frames whose numbers go up by a constant step n > 1 are taken as every n-th of the recording: the
 // rate is divided by n unless it was given.

@@ -4,7 +4,7 @@
 
 #include <unordered_set>
 
-#include "core/text.h"
+#include "core/text_reading.h"
 
 namespace krok::acclaim {
 
@@ -47,8 +47,7 @@ class BoneTree {
                              fmt::format("a second bone is named {}", shown(bone.name)),
                              ":hierarchy and the motion know bones by their names");
       }
-      const auto [place, is_new] =
-          skeleton_.by_lower_name.emplace(ascii_lower(bone.name), number);
+      const auto [place, is_new] = skeleton_.by_lower_name.emplace(ascii_lower(bone.name), number);
       if (!is_new) place->second = SkeletonFile::kUnknown;
     }
     return {};

@@ -24,8 +24,8 @@ struct HierarchyLink {
 };
 
 // Hangs the bones on the root that stands in `skeleton` already: fills its joints (depth first,
-// names made unique and UTF-8) and its maps of names. Bones that no chain of links joins to the root
-// are left out with a warning.
+// names made unique and UTF-8) and its maps of names. Bones that no chain of links joins to the
+// root are left out with a warning.
 Status hang_bones(std::vector<LooseBone>& bones, const std::vector<HierarchyLink>& links,
                   SourceText& source, SkeletonFile& skeleton);
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "core/numbers.h"
-#include "core/text.h"
+#include "core/text_reading.h"
 
 namespace krok::acclaim {
 
@@ -75,69 +75,81 @@ class MotionParser {
   }
 
   Result<MotionFile> parse() {
-    std::size_t begin = 0;
-    while (begin < text_.size()) {
-      std::size_t end = begin;
+    while (line_begin_ < text_.size()) {
+      std::size_t end = line_begin_;
       while (end < text_.size() && !is_line_end(text_[end])) ++end;
-      const bool unfinished = end == text_.size();
-      if (Status read = parse_line(begin, end); !read) {
-        if (Status handled = handle_fault(std::move(read).error(), begin, unfinished); !handled) {
+      if (Status read = parse_line(end); !read) {
+        const bool unfinished = end == text_.size();
+        if (Status handled = handle_fault(std::move(read).error(), unfinished); !handled) {
           return handled.error();
         }
         if (cut_) break;
       }
-      begin = end + 1;
+      const bool pair = end + 1 < text_.size() && text_[end] == '\r' && text_[end + 1] == '\n';
+      line_begin_ = end + (pair ? 2 : 1);
+      ++line_number_;
     }
     if (Status finished = finish_last_frame(); !finished) return finished.error();
+    if (lines_left_out_ > kMostRepairs) {
+      motion_.repairs.push_back(
+          fmt::format("{} more lines left out", lines_left_out_ - kMostRepairs));
+    }
     if (Status told = tell_oddities(); !told) return told.error();
     return std::move(motion_);
   }
 
  private:
-  std::size_t offset_of(const char* position) const {
-    return static_cast<std::size_t>(position - text_.data());
+  // A place in the line being read.
+  SourceText::Place place_of(const char* position) const {
+    return {line_number_, position - text_.data() - static_cast<std::ptrdiff_t>(line_begin_) + 1};
   }
 
   // An error inside of the last line of a file that ends without a line end is the file's end.
-  Status handle_fault(Error error, std::size_t line_begin, bool unfinished) {
+  Status handle_fault(Error error, bool unfinished) {
     if (error.code == "acclaim-limit" || source_.strictness() == Strictness::strict) return error;
     if (unfinished && in_frame_) {
       cut_ = true;
       return {};
     }
     // What stands before the first frame, or between frames, is not a value to be left out.
-    if (source_.strictness() != Strictness::repair || !in_frame_ || error.code == "acclaim-syntax") {
+    if (source_.strictness() != Strictness::repair || !in_frame_ ||
+        error.code == "acclaim-syntax") {
       return error;
     }
-    motion_.repairs.push_back(fmt::format("line {} left out: {}", error.where.line, error.message));
-    source_.warn(line_begin, "acclaim-repair", "left out: " + error.message);
+    if (++lines_left_out_ <= kMostRepairs) {
+      motion_.repairs.push_back(
+          fmt::format("line {} left out: {}", error.where.line, error.message));
+    }
+    source_.warn({error.where.line, error.where.column}, "acclaim-repair",
+                 "left out: " + error.message);
     return {};
   }
 
-  Status parse_line(std::size_t begin, std::size_t end) {
-    LineCursor line(text_.data() + begin, text_.data() + end);
+  Status parse_line(std::size_t end) {
+    LineCursor line(text_.data() + line_begin_, text_.data() + end);
     if (line.at_end()) return {};
     if (*line.position() == ':') return parse_keyword(line);
     const char* name_begin = line.position();
     const std::string_view name = line.word();
     const bool digits_first = name[0] >= '0' && name[0] <= '9';
     if ((digits_first || name[0] == '-') && line.at_end()) {
-      if (const auto number = parse_integer(name)) return begin_frame(*number, offset_of(name_begin));
+      if (const auto number = parse_integer(name))
+        return begin_frame(*number, place_of(name_begin));
     }
     if (!in_frame_) {
-      return source_.error(offset_of(name_begin), "acclaim-syntax",
-                           fmt::format("'{}' where the number of the first frame is expected",
-                                       shown(name)));
+      return source_.error(
+          place_of(name_begin), "acclaim-syntax",
+          fmt::format("'{}' where the number of the first frame is expected", shown(name)));
     }
-    return parse_values(name, offset_of(name_begin), line);
+    return parse_values(name, place_of(name_begin), line);
   }
 
   Status parse_keyword(LineCursor& line) {
-    const std::size_t offset = offset_of(line.position());
+    const SourceText::Place place = place_of(line.position());
     const std::string_view word = line.word();
     const std::string keyword = ascii_lower(word);
     if (in_frame_) {
-      return source_.error(offset, "acclaim-syntax",
+      return source_.error(place, "acclaim-syntax",
                            fmt::format("{} in the middle of the frames", shown(word)));
     }
     if (keyword == ":fully-specified") {
@@ -147,30 +159,30 @@ class MotionParser {
     } else if (keyword == ":samples-per-second") {
       double rate = 0;
       if (!line.number(rate) || !(rate > 0)) {
-        return source_.error(offset, "acclaim-rate",
+        return source_.error(place, "acclaim-rate",
                              fmt::format("{} is not followed by a positive number", shown(word)));
       }
       motion_.rate = rate;
     } else if (keyword != ":frame-range" && keyword != ":asf-file" && keyword != ":asf-path") {
-      return source_.fault(offset, "acclaim-keyword",
+      return source_.fault(place, "acclaim-keyword",
                            fmt::format("'{}' is unknown and left out", shown(word)));
     }
     return {};
   }
 
-  Status begin_frame(long long number, std::size_t offset) {
+  Status begin_frame(long long number, const SourceText::Place& place) {
     if (in_frame_) {
       if (Status finished = finish_frame(); !finished) return finished;
     }
     if (motion_.frame_count() >= most_frames_) {
-      return source_.error(offset, "acclaim-limit",
+      return source_.error(place, "acclaim-limit",
                            fmt::format("more than {} frames of {} joints are out of proportion to "
                                        "the size of the file",
                                        most_frames_, skeleton_.joints.size()));
     }
     in_frame_ = true;
     number_ = number;
-    frame_offset_ = offset;
+    frame_place_ = place;
     seen_ = 0;
     place_ = 0;
     ++stamp_;
@@ -188,27 +200,26 @@ class MotionParser {
       place_ = order_.size();
       return joint;
     }
-    for (std::size_t i = 0; i < order_.size() && i < kSearch; ++i) {
-      // Somewhere near, after a bone that was left out.
-      if (place_ + i < order_.size() && order_[place_ + i].joint == joint) {
-        place_ += i + 1;
-        break;
-      }
+    // Where bones are left out, the order goes on somewhere near.
+    for (std::size_t i = place_; i < std::min(order_.size(), place_ + kSearch); ++i) {
+      if (order_[i].joint != joint) continue;
+      place_ = i + 1;
+      break;
     }
     return joint;
   }
 
-  Status parse_values(std::string_view name, std::size_t offset, LineCursor& line) {
+  Status parse_values(std::string_view name, const SourceText::Place& place, LineCursor& line) {
     const int joint = joint_of(name);
     if (joint == SkeletonFile::kLeftOut) return {};
     if (joint == SkeletonFile::kUnknown) {
-      return source_.error(offset, "acclaim-unknown-bone",
+      return source_.error(place, "acclaim-unknown-bone",
                            fmt::format("the skeleton has no bone {}", shown(name)),
                            "the motion was made for another skeleton; give that one's ASF");
     }
     const auto j = static_cast<std::size_t>(joint);
     if (last_seen_[j] == stamp_) {
-      return source_.error(offset, "acclaim-frame",
+      return source_.error(place, "acclaim-frame",
                            fmt::format("frame {} has {} twice", number_, shown(name)),
                            "perhaps the number of a frame is missing between the two");
     }
@@ -217,16 +228,16 @@ class MotionParser {
     double value = 0;
     while (line.number(value)) values_.push_back(value);
     if (!line.at_end()) {
-      const std::size_t place = offset_of(line.position());
-      return source_.error(place, "acclaim-number",
+      const SourceText::Place place_of_value = place_of(line.position());
+      return source_.error(place_of_value, "acclaim-number",
                            fmt::format("'{}' in the values of {} is not a finite number",
                                        shown(line.word()), shown(name)));
     }
     if (values_.size() != channels.size()) {
-      return source_.error(offset, "acclaim-values",
+      return source_.error(place, "acclaim-values",
                            fmt::format("{} value{} for {}, expected {}{}", values_.size(),
-                                       values_.size() == 1 ? "" : "s", shown(name),
-                                       channels.size(), channel_list(channels)));
+                                       values_.size() == 1 ? "" : "s", shown(name), channels.size(),
+                                       channel_list(channels)));
     }
     std::copy(values_.begin(), values_.end(),
               current_.begin() + static_cast<std::ptrdiff_t>(first_channel_[j]));
@@ -250,23 +261,20 @@ class MotionParser {
   Status finish_frame() {
     if (seen_ < moving_) {
       if (source_.strictness() == Strictness::strict) {
-        return source_.error(frame_offset_, "acclaim-missing",
+        return source_.error(frame_place_, "acclaim-missing",
                              fmt::format("frame {} has no values for {}", number_,
                                          skeleton_.joints[first_missing()].name));
       }
-      if (seen_ < seen_before_ || (short_frames_ == 0 && motion_.frame_count() == 0)) {
-        if (short_frames_++ == 0) short_offset_ = frame_offset_;
-      }
+      if (!short_place_ && seen_ < seen_before_) short_place_ = frame_place_;
     }
     seen_before_ = std::max(seen_before_, seen_);
     motion_.values.insert(motion_.values.end(), current_.begin(), current_.end());
     motion_.frame_numbers.push_back(number_);
-    frame_offsets_tail_ = frame_offset_;
-    if (motion_.frame_count() > 1 && odd_number_offset_ == kNowhere) {
-      const auto& numbers = motion_.frame_numbers;
-      if (numbers[numbers.size() - 1] <= numbers[numbers.size() - 2]) {
-        odd_number_offset_ = frame_offset_;
-      }
+    const auto& numbers = motion_.frame_numbers;
+    if (numbers.size() == 1) {
+      first_place_ = frame_place_;
+    } else if (!odd_number_place_ && number_ <= numbers[numbers.size() - 2]) {
+      odd_number_place_ = frame_place_;
     }
     return {};
   }
@@ -284,10 +292,10 @@ class MotionParser {
     const bool lacks = motion_.frame_count() > 0 && seen_ < seen_before_;
     if (!cut_ && !lacks) return finish_frame();
     motion_.repairs.push_back(fmt::format("frame {}, cut short, left out", number_));
-    return source_.fault(frame_offset_, "acclaim-cut",
-                         fmt::format("the file ends in the middle of frame {}, which is left out",
-                                     number_),
-                         kCutHint);
+    return source_.fault(
+        frame_place_, "acclaim-cut",
+        fmt::format("the file ends in the middle of frame {}, which is left out", number_),
+        kCutHint);
   }
 
   Status tell_oddities() {
@@ -302,8 +310,8 @@ class MotionParser {
       return source_.fault(text_.size(), "acclaim-frame", "the motion has no whole frame",
                            kCutHint);
     }
-    if (odd_number_offset_ != kNowhere) {
-      if (Status told = source_.fault(odd_number_offset_, "acclaim-frame",
+    if (odd_number_place_) {
+      if (Status told = source_.fault(*odd_number_place_, "acclaim-frame",
                                       "the number of this frame is not greater than the one "
                                       "before; frames are taken in the file's order");
           !told) {
@@ -339,19 +347,21 @@ class MotionParser {
     if (now_and_then == 0) return {};
     const std::string& name = skeleton_.joints[first_short].name;
     return source_.fault(
-        short_offset_, "acclaim-missing",
+        short_place_.value_or(first_place_), "acclaim-missing",
         fmt::format("some frames have no values for {} bone{} that others have values for (the "
                     "first: {}); there they stay as they were",
                     now_and_then, now_and_then == 1 ? "" : "s", name),
         {}, name);
   }
 
-  static constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
   static constexpr std::size_t kSearch = 64;
+  static constexpr std::size_t kMostRepairs = 1000;
 
   SourceText& source_;
   const SkeletonFile& skeleton_;
   std::string_view text_;
+  std::size_t line_begin_ = 0;
+  std::int64_t line_number_ = 1;
   MotionFile motion_;
   std::size_t most_frames_ = 0;
   std::size_t moving_ = 0;  // joints with channels
@@ -367,7 +377,7 @@ class MotionParser {
   // The frame being read.
   bool in_frame_ = false, cut_ = false, specified_ = false;
   long long number_ = 0;
-  std::size_t frame_offset_ = 0;
+  SourceText::Place frame_place_ = 0;
   std::size_t stamp_ = 0;  // counts begun frames
   std::size_t seen_ = 0;   // moving joints
   std::vector<double> current_, values_;
@@ -375,9 +385,9 @@ class MotionParser {
   std::vector<std::size_t> lines_;      // [joints] frames with values
 
   std::size_t seen_before_ = 0;
-  std::size_t short_frames_ = 0, short_offset_ = 0;
-  std::size_t frame_offsets_tail_ = 0;
-  std::size_t odd_number_offset_ = kNowhere;
+  std::size_t lines_left_out_ = 0;
+  SourceText::Place first_place_ = 0;
+  std::optional<SourceText::Place> short_place_, odd_number_place_;
 };
 
 }  // namespace
@@ -385,8 +395,8 @@ class MotionParser {
 std::size_t most_frames(std::size_t text_size, std::size_t channels, std::size_t joints,
                         const ReadOptions& options) {
   constexpr double kAlways = 1 << 26;  // bytes that a small file may take
-  const double bytes = static_cast<double>(channels * sizeof(double) +
-                                           joints * (sizeof(Vec3f) + sizeof(Quatf)));
+  const double bytes =
+      static_cast<double>(channels * sizeof(double) + joints * (sizeof(Vec3f) + sizeof(Quatf)));
   const double frames =
       (kAlways + options.max_expansion * static_cast<double>(text_size)) / std::max(bytes, 1.0);
   return static_cast<std::size_t>(

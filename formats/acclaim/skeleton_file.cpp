@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/numbers.h"
-#include "core/text.h"
+#include "core/text_reading.h"
 #include "formats/acclaim/bone_tree.h"
 #include "math/quaternion.h"
 
@@ -48,12 +48,14 @@ std::optional<double> parse_limit(std::string_view word) {
   return parse_finite(word);
 }
 
-bool is_section(const Token& token) { return token.starts_line && token.text.starts_with(':'); }
+bool is_section(const Token& token) {
+  return token.starts_line && token.text.starts_with(':');
+}
 
 constexpr EulerOrder kXyz = {Axis::x, Axis::y, Axis::z};
 
-// An orientation as `axis` and `orientation` have it: angles about x, y and z, whatever the order in
-// which they are turned about.
+// An orientation as `axis` and `orientation` have it: angles about x, y and z, whatever the order
+// in which they are turned about.
 struct PrintedAxes {
   Vec3 angles = Vec3::Zero();
   EulerOrder order = kXyz;
@@ -130,9 +132,9 @@ class SkeletonParser {
     if (keyword == ":bonedata") return parse_bones();
     if (keyword == ":hierarchy") return parse_hierarchy(token.offset);
     if (keyword != ":skin") {
-      if (Status told = source_.fault(token.offset, "acclaim-keyword",
-                                      fmt::format("the section {} is unknown and left out",
-                                                  shown(token.text)));
+      if (Status told = source_.fault(
+              token.offset, "acclaim-keyword",
+              fmt::format("the section {} is unknown and left out", shown(token.text)));
           !told) {
         return told;
       }
@@ -159,11 +161,11 @@ class SkeletonParser {
     const Token token = cursor_.next();
     const auto value = parse_finite(token.text);
     if (value) return *value;
-    return source_.error(token.offset, "acclaim-number",
-                         token.end() ? fmt::format("the file ends in the {}", what)
-                                     : fmt::format("'{}' in the {} is not a finite number",
-                                                   shown(token.text), what),
-                         token.end() ? "the file is cut short; export or copy it again" : "");
+    return source_.error(
+        token.offset, "acclaim-number",
+        token.end() ? fmt::format("the file ends in the {}", what)
+                    : fmt::format("'{}' in the {} is not a finite number", shown(token.text), what),
+        token.end() ? "the file is cut short; export or copy it again" : "");
   }
 
   Status vector(const std::string& what, Vec3& vector) {
@@ -196,17 +198,17 @@ class SkeletonParser {
         const std::string angle = ascii_lower(value.text);
         result_.degrees = angle.starts_with("deg");
         if (!result_.degrees && !angle.starts_with("rad")) {
-          return source_.error(
-              value.offset, "acclaim-syntax",
-              fmt::format("'{}' is no unit of angles", shown(value.text)), "write deg or rad");
+          return source_.error(value.offset, "acclaim-syntax",
+                               fmt::format("'{}' is no unit of angles", shown(value.text)),
+                               "write deg or rad");
         }
       } else if (unit == "length" || unit == "mass") {
         const auto factor = number("unit of " + unit);
         if (!factor) return factor.error();
         if (*factor <= 0) {
-          return source_.error(value.offset, "acclaim-number",
-                               fmt::format("a unit of {} of {} is not positive", unit,
-                                           shown(value.text)));
+          return source_.error(
+              value.offset, "acclaim-number",
+              fmt::format("a unit of {} of {} is not positive", unit, shown(value.text)));
         }
         if (unit == "length") result_.length_unit = *factor;
       } else if (Status told = skip_unknown(token); !told) {
@@ -263,10 +265,10 @@ class SkeletonParser {
       cursor_.next();
       const auto channel = parse_channel(token.text);
       if (!channel) {
-        return source_.error(token.offset, "acclaim-dof",
-                             fmt::format("'{}' is no degree of freedom (of {})", shown(token.text),
-                                         whose),
-                             "they are tx ty tz rx ry rz l");
+        return source_.error(
+            token.offset, "acclaim-dof",
+            fmt::format("'{}' is no degree of freedom (of {})", shown(token.text), whose),
+            "they are tx ty tz rx ry rz l");
       }
       if (std::find(channels.begin(), channels.end(), *channel) != channels.end()) {
         return source_.error(token.offset, "acclaim-dof",
@@ -300,9 +302,9 @@ class SkeletonParser {
     for (Token token = cursor_.peek(); !token.end() && !is_section(token); token = cursor_.peek()) {
       cursor_.next();
       if (!same_word(token.text, "begin")) {
-        return source_.error(token.offset, "acclaim-syntax",
-                             fmt::format("'{}' where the begin of a bone is expected",
-                                         shown(token.text)));
+        return source_.error(
+            token.offset, "acclaim-syntax",
+            fmt::format("'{}' where the begin of a bone is expected", shown(token.text)));
       }
       if (static_cast<int>(bones_.size()) + 1 >= options_.max_joints) {
         return source_.error(token.offset, "acclaim-limit",
@@ -424,11 +426,11 @@ class SkeletonParser {
     const double norm = direction.stableNorm();
     if (std::abs(norm - 1.0) > kRounding && bone.joint.length != 0) {
       const char* taken = norm > 0 ? "only its direction counts" : "the bone has no length then";
-      if (Status told = source_.fault(
-              bone.offset, "acclaim-bone",
-              fmt::format("the direction of {} has length {}, expected 1; {}", shown(bone.name),
-                          readable(norm, 4), taken),
-              {}, joint);
+      if (Status told =
+              source_.fault(bone.offset, "acclaim-bone",
+                            fmt::format("the direction of {} has length {}, expected 1; {}",
+                                        shown(bone.name), readable(norm, 4), taken),
+                            {}, joint);
           !told) {
         return told;
       }
@@ -446,8 +448,7 @@ class SkeletonParser {
     has_hierarchy_ = true;
     Token token = cursor_.next();
     if (!same_word(token.text, "begin")) {
-      return source_.error(token.offset, "acclaim-syntax",
-                           "a begin is expected after :hierarchy");
+      return source_.error(token.offset, "acclaim-syntax", "a begin is expected after :hierarchy");
     }
     Token parent;
     for (token = cursor_.next(); !token.end() && !is_section(token); token = cursor_.next()) {

@@ -20,16 +20,22 @@ namespace krok::acclaim {
 // One value of a joint in an AMC.
 enum class Channel : std::uint8_t { tx, ty, tz, rx, ry, rz, length };
 
-inline bool is_rotation(Channel c) { return c >= Channel::rx && c <= Channel::rz; }
-inline bool is_translation(Channel c) { return c <= Channel::tz; }
+inline bool is_rotation(Channel c) {
+  return c >= Channel::rx && c <= Channel::rz;
+}
+inline bool is_translation(Channel c) {
+  return c <= Channel::tz;
+}
 // 0, 1, 2 for the channels of x, y, z.
-inline int axis_index(Channel c) { return static_cast<int>(c) % 3; }
+inline int axis_index(Channel c) {
+  return static_cast<int>(c) % 3;
+}
 
 // "rx".
 std::string_view channel_name(Channel channel);
 
-// An ASF, lengths in the file's unit, angles in radians. Joint 0 is the root; the bones that hang on
-// it follow depth first, parents before children.
+// An ASF, lengths in the file's unit, angles in radians. Joint 0 is the root; the bones that hang
+// on it follow depth first, parents before children.
 struct SkeletonFile {
   struct Limit {
     double lower = -std::numeric_limits<double>::infinity();

@@ -4,41 +4,46 @@
 
 #include <algorithm>
 
-#include "core/text.h"
+#include "core/text_reading.h"
 
 namespace krok::acclaim {
 
-Error SourceText::error(std::size_t offset, std::string code, std::string message,
+Error SourceText::error(const Place& place, std::string code, std::string message,
                         std::string hint) const {
   Error error(std::move(code), std::move(message), std::move(hint));
-  error.where = locate(text_, offset, file_name_);
+  if (place.line == 0) {
+    error.where = locate(text_, place.offset, file_name_);
+  } else {
+    error.where.file = file_name_;
+    error.where.line = place.line;
+    error.where.column = place.column;
+  }
   return error;
 }
 
-void SourceText::note(std::size_t offset, std::string code, std::string message,
-                      std::string hint) {
-  Error told = error(offset, std::move(code), std::move(message), std::move(hint));
+void SourceText::note(const Place& place, std::string code, std::string message, std::string hint) {
+  Error told = error(place, std::move(code), std::move(message), std::move(hint));
   told.severity = Severity::note;
   diagnostics_.push_back(std::move(told));
 }
 
-void SourceText::warn(std::size_t offset, std::string code, std::string message, std::string hint,
+void SourceText::warn(const Place& place, std::string code, std::string message, std::string hint,
                       std::string joint) {
   if (++warnings_ > kMostWarnings) return;
-  Error told = error(offset, std::move(code), std::move(message), std::move(hint));
+  Error told = error(place, std::move(code), std::move(message), std::move(hint));
   told.severity = Severity::warning;
   told.joint = std::move(joint);
   diagnostics_.push_back(std::move(told));
 }
 
-Status SourceText::fault(std::size_t offset, std::string code, std::string message,
+Status SourceText::fault(const Place& place, std::string code, std::string message,
                          std::string hint, std::string joint) {
   if (strictness_ == Strictness::strict) {
-    Error refused = error(offset, std::move(code), std::move(message), std::move(hint));
+    Error refused = error(place, std::move(code), std::move(message), std::move(hint));
     refused.joint = std::move(joint);
     return refused;
   }
-  warn(offset, std::move(code), std::move(message), std::move(hint), std::move(joint));
+  warn(place, std::move(code), std::move(message), std::move(hint), std::move(joint));
   return {};
 }
 
@@ -99,11 +104,16 @@ struct KnownBeginning {
 };
 
 constexpr std::array kOthers = {
-    KnownBeginning{"HIERARCHY", "a BVH file"},       KnownBeginning{"KROK", "a file of Krok's own"},
-    KnownBeginning{"glTF", "a binary glTF file"},    KnownBeginning{"\x89PNG", "a PNG image"},
-    KnownBeginning{"PK\x03\x04", "a ZIP archive"},   KnownBeginning{"\x1F\x8B", "gzip-compressed"},
-    KnownBeginning{"<", "an XML file or a web page"}, KnownBeginning{"%PDF", "a PDF document"},
-    KnownBeginning{"Kaydara", "an FBX file"},        KnownBeginning{"\xFF\xFE", "UTF-16 text"},
+    KnownBeginning{"HIERARCHY", "a BVH file"},
+    KnownBeginning{"KROK", "a file of Krok's own"},
+    KnownBeginning{"glTF", "a binary glTF file"},
+    KnownBeginning{"\x89PNG", "a PNG image"},
+    KnownBeginning{"PK\x03\x04", "a ZIP archive"},
+    KnownBeginning{"\x1F\x8B", "gzip-compressed"},
+    KnownBeginning{"<", "an XML file or a web page"},
+    KnownBeginning{"%PDF", "a PDF document"},
+    KnownBeginning{"Kaydara", "an FBX file"},
+    KnownBeginning{"\xFF\xFE", "UTF-16 text"},
     KnownBeginning{"\xFE\xFF", "UTF-16 text"},
 };
 
@@ -140,8 +150,7 @@ Status check_kind(std::string_view text, const std::string& file_name, bool is_a
     return refuse(fmt::format("is a binary file, not {}", wanted), fmt::format("give {}", wanted));
   }
   if (TokenCursor(text).next().end()) {
-    return refuse("the file holds nothing but white space and comments",
-                  "export or copy it again");
+    return refuse("the file holds nothing but white space and comments", "export or copy it again");
   }
   if (is_asf ? begins_as_motion(text) : begins_as_skeleton(text)) {
     return refuse(fmt::format("is an Acclaim {}, where {} is expected",

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -16,8 +17,12 @@ inline constexpr std::array<bool, 256> kIsSeparator = [] {
   for (const unsigned char c : {' ', '\t', '\r', '\n', '\v', '\f', ',', '(', ')'}) table[c] = true;
   return table;
 }();
-inline bool is_separator(char c) { return kIsSeparator[static_cast<unsigned char>(c)]; }
-inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+inline bool is_separator(char c) {
+  return kIsSeparator[static_cast<unsigned char>(c)];
+}
+inline bool is_line_end(char c) {
+  return c == '\n' || c == '\r';
+}
 
 // A file's text and what is told about it.
 class SourceText {
@@ -30,15 +35,26 @@ class SourceText {
   const std::string& file_name() const { return file_name_; }
   Strictness strictness() const { return strictness_; }
 
-  Error error(std::size_t offset, std::string code, std::string message,
+  // A place in the text, by its byte or where the line is known. Finding the line of a byte takes
+  // time with the byte's offset.
+  struct Place {
+    Place(std::size_t byte) : offset(byte) {}  // NOLINT: implicit
+    Place(std::int64_t line_number, std::int64_t column_number)
+        : line(line_number), column(column_number) {}
+    std::size_t offset = 0;
+    std::int64_t line = 0;  // 0: by offset
+    std::int64_t column = 0;
+  };
+
+  Error error(const Place& place, std::string code, std::string message,
               std::string hint = {}) const;
 
-  void note(std::size_t offset, std::string code, std::string message, std::string hint = {});
+  void note(const Place& place, std::string code, std::string message, std::string hint = {});
   // After kMostWarnings of them only their number is told, by finish().
-  void warn(std::size_t offset, std::string code, std::string message, std::string hint = {},
+  void warn(const Place& place, std::string code, std::string message, std::string hint = {},
             std::string joint = {});
   // A warning that is an error where reading is strict.
-  Status fault(std::size_t offset, std::string code, std::string message, std::string hint = {},
+  Status fault(const Place& place, std::string code, std::string message, std::string hint = {},
                std::string joint = {});
   void finish();
 
@@ -63,20 +79,18 @@ struct Token {
 // passed over.
 class TokenCursor {
  public:
-  explicit TokenCursor(std::string_view text, std::size_t position = 0)
-      : text_(text), position_(position), at_start_(true) {}
+  explicit TokenCursor(std::string_view text) : text_(text) {}
 
   Token next();
   Token peek() const;
   // What is left of the line up to a comment, trimmed.
   std::string_view rest_of_line();
   void skip_line();
-  std::size_t position() const { return position_; }
 
  private:
   std::string_view text_;
-  std::size_t position_;
-  bool at_start_;
+  std::size_t position_ = 0;
+  bool at_start_ = true;
 };
 
 // Whether the two texts can be Acclaim files at all: not empty, not binary, not another kind of

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 
 #include "core/numbers.h"
@@ -41,20 +42,26 @@ class Reader {
 
     // Nearly every file has a row a line and nothing odd; the rows are taken as such, and only if
     // one of them turns out otherwise does the careful search for the rows begin.
+    const Diagnostics before = capture_.diagnostics;
     rows_ = index_lines(text_, header_.end);
-    const bool plain = !hierarchy_.channels.empty() &&
-                       static_cast<long long>(rows_.size()) == header_.frames;
-    if (!plain || !rows_are_whole_lines()) {
-      auto index = index_rows_with_care(text_, header_, hierarchy_, file_name_, options_,
-                                        capture_.diagnostics);
-      if (!index) return std::move(index).error();
-      rows_ = std::move(index->begins);
-      capture_.repairs = std::move(index->repairs);
+    if (!hierarchy_.channels.empty() && static_cast<long long>(rows_.size()) == header_.frames) {
+      Status done = convert();
+      if (!row_is_faulty_) {
+        if (!done) return std::move(done).error();
+        return std::move(capture_);
+      }
+      capture_.clip = {};
     }
-    choose_rate();
-    if (Status chosen = choose_conventions(); !chosen) return chosen.error();
-    if (Status filled = fill_clip(); !filled) return filled.error();
-    report_rest_pose();
+    capture_.diagnostics = before;
+    auto index = index_rows_with_care(text_, header_, hierarchy_, file_name_, options_,
+                                      capture_.diagnostics);
+    if (!index) return std::move(index).error();
+    rows_ = std::move(index->begins);
+    capture_.repairs = std::move(index->repairs);
+    row_is_faulty_ = false;
+    careful_ = true;
+    if (Status done = convert(); !done) return std::move(done).error();
+    assert(!row_is_faulty_);
     return std::move(capture_);
   }
 
@@ -71,20 +78,13 @@ class Reader {
     capture_.diagnostics.push_back(std::move(told));
   }
 
-  // Whether each row of the plain index holds as many whole numbers as there are channels, and
-  // nothing else on its line.
-  bool rows_are_whole_lines() const {
-    std::atomic<bool> whole = true;
-    parallel_for(rows_.size(), kRowsAtOnce, options_.jobs, [&](std::size_t begin, std::size_t end) {
-      std::vector<double> values(hierarchy_.channels.size());
-      for (std::size_t row = begin; row < end && whole; ++row) {
-        const std::size_t line_end = std::min(text_.find('\n', rows_[row]), text_.size());
-        std::size_t after = parse_row(text_.substr(0, line_end), rows_[row], values);
-        while (after < line_end && is_space(text_[after])) ++after;
-        if (after != line_end) whole = false;
-      }
-    });
-    return whole;
+  // From the places of the rows to the clip.
+  Status convert() {
+    choose_rate();
+    if (Status chosen = choose_conventions(); !chosen) return chosen;
+    if (Status filled = fill_clip(); !filled) return filled;
+    if (!row_is_faulty_) report_rest_pose();
+    return {};
   }
 
   void choose_rate() {
@@ -102,7 +102,7 @@ class Reader {
     tell(doubtful ? Severity::warning : Severity::note, "bvh-rate",
          fmt::format("{} frames a second: {}", readable(rate), printed.reason),
          doubtful ? "say the rate with --fps N if it is another" : "",
-         doubtful ? locate(text_, header_.frame_time_offset, file_name_) : Location());
+         doubtful ? Locator(text_, file_name_)(header_.frame_time_offset) : Location());
   }
 
   // Up to kMostSamples whole rows, evenly over the file.
@@ -138,7 +138,7 @@ class Reader {
     }
     positions_ = positions.positions;
     capture_.positions = positions.choice;
-    if (options_.positions == Positions::automatic && has_position_channels()) {
+    if (options_.positions == Positions::automatic && positions.has_evidence) {
       const bool guess = positions.choice.confidence == Confidence::guess;
       tell(guess ? Severity::warning : Severity::note, "bvh-positions",
            fmt::format("position channels are {} ({}): {}", positions.choice.choice,
@@ -146,11 +146,6 @@ class Reader {
            guess ? "say --positions absolute or additive if it is otherwise" : "");
     }
     return make_conversion();
-  }
-
-  bool has_position_channels() const {
-    return std::any_of(hierarchy_.channels.begin(), hierarchy_.channels.end(),
-                       [](const Channel& c) { return c.kind == ChannelKind::position; });
   }
 
   Skeleton skeleton_of(const Kinematics& kinematics) const {
@@ -283,7 +278,10 @@ class Reader {
       std::vector<Transform> pose(kinematics.joint_count());
       for (std::size_t row = begin; row < end; ++row) {
         if (rows_[row] == RowIndex::kFaulty) continue;
-        parse_row(text_, rows_[row], values);
+        if (!parse_whole_row(row, values)) {
+          row_is_faulty_ = true;
+          return;
+        }
         kinematics.pose(values, pose);
         for (const Transform& joint : pose) {
           if (!joint.position.cast<float>().allFinite() ||
@@ -295,6 +293,7 @@ class Reader {
       }
       if (options_.progress != nullptr) options_.progress->advance(end - begin);
     });
+    if (row_is_faulty_) return {};
     if (!finite) {
       return Error("bvh-number", "the numbers are so large that positions overflow").in_file(
           file_name_);
@@ -302,6 +301,16 @@ class Reader {
     if (options_.progress != nullptr) options_.progress->end();
     fill_faulty_frames();
     return {};
+  }
+
+  // False if the row is not all there, or if more than it stands before the next row.
+  bool parse_whole_row(std::size_t row, std::span<double> values) const {
+    std::size_t after = parse_row(text_, rows_[row], values);
+    if (after == RowIndex::kFaulty) return false;
+    if (careful_) return true;
+    const std::size_t end = row + 1 < rows_.size() ? rows_[row + 1] : text_.size();
+    while (after < end && is_space(text_[after])) ++after;
+    return after == end;
   }
 
   // Interpolates the frames without a row, which stand between whole ones, relative to parents.
@@ -363,6 +372,8 @@ class Reader {
   Hierarchy hierarchy_;
   MotionHeader header_;
   std::vector<std::size_t> rows_;
+  bool careful_ = false;  // rows_ comes from the careful search
+  std::atomic<bool> row_is_faulty_ = false;
   Positions positions_ = Positions::absolute;
   Conversion conversion_;
   Capture capture_;

@@ -90,7 +90,7 @@ struct Capture {
 // stored as floats. Frames have increasing times without gaps: a row left out in the middle moves
 // the later frames to the front, which the warning says.
 //
-// Codes of errors: bvh-kind (not a BVH file), bvh-syntax, bvh-number, bvh-channels, bvh-row-length,
+// Codes of errors: bvh-kind (not a BVH file), bvh-syntax, bvh-number, bvh-channels, bvh-channel-count,
 // bvh-frame-count, bvh-frame-time, bvh-no-motion, bvh-limit, direction-parallel. Of warnings and
 // notes besides these: bvh-name, bvh-name-duplicate, bvh-roots, bvh-offset, bvh-text-after,
 // bvh-positions, bvh-rate, bvh-unit, bvh-up, bvh-forward, bvh-rest-frame, bvh-reference,

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "formats/bvh/names.h"
 #include "formats/bvh/text_cursor.h"
 #include "math/quaternion.h"
 
@@ -34,9 +35,9 @@ class Writer {
         options_(options),
         file_(file),
         count_(clip.skeleton.names.size()),
-        scale_(1.0 / options.unit.metres) {
-    // A finer unit needs fewer decimals for the same length.
-    const double shift = std::log10(options.unit.metres / 0.01);
+        scale_(1.0 / options.unit_metres) {
+    // A coarser unit needs more decimals for the same length.
+    const double shift = std::log10(options.unit_metres / 0.01);
     length_decimals_ = std::clamp(options.decimals + static_cast<int>(std::lround(shift)), 0, 15);
     for (const Transform& joint : clip.skeleton.reference) {
       from_reference_.push_back(joint.orientation.normalized().conjugate());
@@ -123,8 +124,8 @@ class Writer {
     }
   }
 
-  // A name on one line that no reader mistakes for a brace.
-  std::string written_name(const std::string& name) const {
+  // A name on one line that no reader mistakes for a brace; unique still, after what it takes.
+  std::string written_name(const std::string& name) {
     std::string result;
     for (const char c : trimmed(name)) {
       if (c == ' ') {
@@ -133,7 +134,7 @@ class Writer {
         result += static_cast<unsigned char>(c) < 0x20 || c == '{' || c == '}' ? '_' : c;
       }
     }
-    return result.empty() ? "joint" : result;
+    return names_.make(result.empty() ? "joint" : result);
   }
 
   void length(double metres) { number(metres * scale_, length_decimals_); }
@@ -247,6 +248,7 @@ class Writer {
   int length_decimals_ = 6;
   std::vector<Quat> from_reference_;
   std::vector<WrittenJoint> written_;
+  UniqueNames names_;
   std::string text_;
 };
 
@@ -257,8 +259,8 @@ Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
   if (options.decimals < 1 || options.decimals > 15) {
     return Error("bvh-options", fmt::format("{} decimals, expected 1 to 15", options.decimals));
   }
-  if (!(options.unit.metres > 0) || !std::isfinite(options.unit.metres)) {
-    return Error("bvh-options", fmt::format("a unit of {} m is not a length", options.unit.metres));
+  if (!(options.unit_metres > 0) || !std::isfinite(options.unit_metres)) {
+    return Error("bvh-options", fmt::format("a unit of {} m is not a length", options.unit_metres));
   }
   std::array<int, 3> axes{};
   for (const Axis axis : options.order) ++axes[static_cast<std::size_t>(axis)];

@@ -6,7 +6,6 @@
 #include "core/result.h"
 #include "math/euler.h"
 #include "scene/clip.h"
-#include "scene/conventions.h"
 
 namespace krok::bvh {
 
@@ -15,8 +14,8 @@ struct WriteOptions {
   // with +Y up: its middle angle, where gimbal lock sits, is the bend about the x axis.
   EulerOrder order = {Axis::z, Axis::x, Axis::y};
 
-  // The unit of the numbers. BVH does not say it; centimetres are what most readers expect.
-  Unit unit = {0.01, "cm"};
+  // The size of the numbers' unit. BVH does not say it; centimetres are what most readers expect.
+  double unit_metres = 0.01;
 
   // Decimals of angles (degrees), and of lengths in a centimetre; other units get as many more or
   // fewer as keep the same fineness. 6 keeps positions within a millionth of a figure's size.

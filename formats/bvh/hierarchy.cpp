@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <unordered_map>
-#include <unordered_set>
 
 #include "core/numbers.h"
 #include "formats/bvh/file_kind.h"
@@ -37,6 +35,7 @@ class HierarchyParser {
         file_name_(file_name),
         options_(options),
         diagnostics_(diagnostics),
+        locate_(text, file_name),
         cursor_(text) {}
 
   Result<Hierarchy> parse() {
@@ -59,6 +58,10 @@ class HierarchyParser {
       return fail("bvh-syntax", "the hierarchy has no ROOT", "the file holds no skeleton");
     }
     if (Status joined = join_roots(); !joined) return joined.error();
+    if (warnings_ > kMostWarnings) {
+      tell_in_file(Severity::warning, "bvh-syntax",
+                   fmt::format("{} more such oddities", warnings_ - kMostWarnings));
+    }
     name_joints();
     count_zero_bones();
     return std::move(result_);
@@ -67,7 +70,7 @@ class HierarchyParser {
  private:
   Error fail_at(std::size_t offset, std::string code, std::string message, std::string hint = {}) {
     Error error(std::move(code), std::move(message), std::move(hint));
-    error.where = locate(text_, offset, file_name_);
+    error.where = locate_(offset);
     return error;
   }
   // At the word read last.
@@ -81,8 +84,14 @@ class HierarchyParser {
     warning.joint = std::move(joint);
     if (options_.strictness == Strictness::strict) return warning;
     warning.severity = Severity::warning;
-    diagnostics_.push_back(std::move(warning));
+    if (++warnings_ <= kMostWarnings) diagnostics_.push_back(std::move(warning));
     return {};
+  }
+
+  void tell_in_file(Severity severity, std::string code, std::string message) {
+    Error told = Error(std::move(code), std::move(message)).in_file(file_name_);
+    told.severity = severity;
+    diagnostics_.push_back(std::move(told));
   }
 
   Status parse_start() {
@@ -266,13 +275,9 @@ class HierarchyParser {
     name_places_.insert(name_places_.begin(), 0);
     for (std::size_t i = 1; i < result_.joints.size(); ++i) ++result_.joints[i].parent;
     for (Channel& channel : result_.channels) ++channel.joint;
-    Diagnostic told;
-    told.severity = Severity::warning;
-    told.code = "bvh-roots";
-    told.message = fmt::format(
-        "the file has {} ROOTs; a joint 'Roots' at the origin was put above them", roots);
-    told.where.file = file_name_;
-    diagnostics_.push_back(std::move(told));
+    tell_in_file(Severity::warning, "bvh-roots",
+                 fmt::format("the file has {} ROOTs; a joint at the origin was put above them",
+                             roots));
     return {};
   }
 
@@ -294,20 +299,21 @@ class HierarchyParser {
       if (zero++ == 0) first = joint.name;
     }
     if (zero == 0) return;
-    Diagnostic note;
-    note.severity = Severity::note;
-    note.code = "bvh-zero-bones";
-    note.message = fmt::format("{} joint{} at the place of {} parent (the first: {})", zero,
-                               zero == 1 ? " stands" : "s stand", zero == 1 ? "its" : "their",
-                               first);
-    note.where.file = file_name_;
-    diagnostics_.push_back(std::move(note));
+    tell_in_file(Severity::note, "bvh-zero-bones",
+                 fmt::format("{} joint{} at the place of {} parent (the first: {})", zero,
+                             zero == 1 ? " stands" : "s stand", zero == 1 ? "its" : "their",
+                             first));
   }
+
+  // More than these would drown what else there is to say.
+  static constexpr int kMostWarnings = 20;
 
   std::string_view text_;
   const std::string& file_name_;
   const ReadOptions& options_;
   Diagnostics& diagnostics_;
+  Locator locate_;
+  int warnings_ = 0;
   TextCursor cursor_;
   Hierarchy result_;
   std::vector<int> open_;

@@ -123,7 +123,8 @@ class CarefulIndexer {
         channels_(hierarchy.channels.size()),
         file_name_(file_name),
         options_(options),
-        diagnostics_(diagnostics) {}
+        diagnostics_(diagnostics),
+        locate_(text, file_name) {}
 
   Result<RowIndex> index() {
     lines_ = split_lines(text_, header_.end);
@@ -140,7 +141,6 @@ class CarefulIndexer {
   struct Fault {
     std::size_t row;  // its place among the rows, faulty ones counted
     Error error;
-    bool at_end;  // nothing follows it
   };
 
   bool strict() const { return options_.strictness == Strictness::strict; }
@@ -151,7 +151,7 @@ class CarefulIndexer {
 
   Error error_at(std::size_t offset, std::string code, std::string message) {
     Error error(std::move(code), std::move(message));
-    error.where = locate(text_, offset, file_name_);
+    error.where = locate_(offset);
     return error;
   }
 
@@ -188,8 +188,10 @@ class CarefulIndexer {
       // What follows all rows and is none is text; a tail of numbers in a file that has too few
       // rows is a row cut short.
       if (i > last_row && (enough_rows() || line.text)) return text_after(i);
-      add_fault(line.words == channels_ ? number_fault(line.begin) : length_fault(line),
-                i + 1 == lines_.size());
+      if (too_many_faults(line.words == channels_)) continue;
+      Status kept = add_fault(line.words == channels_ ? number_fault(line.begin)
+                                                      : length_fault(line));
+      if (!kept) return kept;
     }
     return {};
   }
@@ -211,7 +213,10 @@ class CarefulIndexer {
         }
         if (row_is_whole && !line.numbers && !is_number(word)) {
           row_is_whole = false;
-          add_fault(number_fault_at(word, at, values % channels_), false);
+          if (!too_many_faults(true)) {
+            Status kept = add_fault(number_fault_at(word, at, values % channels_));
+            if (!kept) return kept;
+          }
         }
         if (++values % channels_ == 0 && row_is_whole) result_.begins.push_back(row_begin);
         at += word.size();
@@ -221,13 +226,13 @@ class CarefulIndexer {
     const std::size_t rest = values % channels_;
     if (rest == 0) return {};
     if (values / channels_ >= static_cast<std::size_t>(header_.frames)) {
-      Error more = error_at(row_begin, "bvh-row-length",
+      Error more = error_at(row_begin, "bvh-channel-count",
                             fmt::format("{} values after the last frame", rest));
       if (strict()) return more;
       tell(Severity::warning, std::move(more));
       return {};
     }
-    if (row_is_whole) add_fault(short_fault(row_begin, text_.size(), rest), true);
+    if (row_is_whole) return add_fault(short_fault(row_begin, text_.size(), rest));
     return {};
   }
 
@@ -265,7 +270,7 @@ class CarefulIndexer {
       at += word_at(text_, at).size();
       while (at < text_.size() && is_space(text_[at])) ++at;
     }
-    return error_at(at, "bvh-row-length",
+    return error_at(at, "bvh-channel-count",
                     fmt::format("{} values, expected {}", line.words, channels_));
   }
 
@@ -273,17 +278,36 @@ class CarefulIndexer {
   Error short_fault(std::size_t begin, std::size_t end, std::size_t values) {
     while (end > begin && is_space(text_[end - 1])) --end;
     const std::size_t missing = channels_ - values;
-    return error_at(end, "bvh-row-length",
+    return error_at(end, "bvh-channel-count",
                     fmt::format("{} values, expected {} (missing: {}{})", values, channels_,
                                 hierarchy_.channel_name(values),
                                 missing == 1 ? "" : fmt::format(" and {} more", missing - 1)));
   }
 
-  void add_fault(Error error, bool at_end) {
+  // Marks the next row as faulty; an Error where the strictness does not allow it.
+  Status add_fault(Error error) {
     const std::size_t row = result_.begins.size();
     error.frame = static_cast<std::int64_t>(row);
+    if (strict() || (error.code == "bvh-number" && !repair())) {
+      if (error.hint.empty()) {
+        error.hint = fmt::format("frame {} of {}; --repair fills it from its neighbours, or drops "
+                                 "it at the ends",
+                                 row, header_.frames);
+      }
+      return error;
+    }
     result_.begins.push_back(RowIndex::kFaulty);
-    faults_.push_back({row, std::move(error), at_end});
+    faults_.push_back({row, std::move(error)});
+    return {};
+  }
+
+  // Keeps a file of faults alone from making more messages than text: beyond a number only the
+  // frame is marked. A number that is none must be listed where it is an error.
+  bool too_many_faults(bool number) {
+    if (faults_.size() < kMostListed || (number && !repair())) return false;
+    ++unlisted_;
+    result_.begins.push_back(RowIndex::kFaulty);
+    return true;
   }
 
   Status text_after(std::size_t line) {
@@ -294,24 +318,23 @@ class CarefulIndexer {
     const bool like_text = lines_[line].text;
     if (strict() && !like_text) return note;
     tell(like_text ? Severity::note : Severity::warning, std::move(note));
+    text_ended_early_ = true;
     return {};
   }
 
   // A file that ends without a line end, in its last frame's last value, with frames missing: the
   // value may have more digits than are left of it.
-  void doubt_cut_value() {
-    if (result_.begins.empty() || enough_rows() || text_.empty() || is_space(text_.back())) return;
-    if (result_.begins.back() == RowIndex::kFaulty) return;
+  Status doubt_cut_value() {
+    if (result_.begins.empty() || enough_rows() || is_space(text_.back())) return {};
+    if (result_.begins.back() == RowIndex::kFaulty || text_ended_early_) return {};
     const std::size_t begin = result_.begins.back();
-    result_.begins.back() = RowIndex::kFaulty;
-    Error error = error_at(begin, "bvh-cut",
-                           "the file ends in the last value of this frame, which may be cut short");
-    error.frame = static_cast<std::int64_t>(result_.begins.size()) - 1;
-    faults_.push_back({result_.begins.size() - 1, std::move(error), true});
+    result_.begins.pop_back();
+    return add_fault(error_at(
+        begin, "bvh-cut", "the file ends in the last value of this frame, which may be cut short"));
   }
 
   Status settle_faults() {
-    doubt_cut_value();
+    if (Status doubted = doubt_cut_value(); !doubted) return doubted;
     std::vector<std::size_t> kept;
     // Only rows between whole ones can be filled.
     std::size_t first = result_.begins.size();
@@ -323,9 +346,6 @@ class CarefulIndexer {
     }
     for (Fault& fault : faults_) {
       const bool can_fill = fault.row > first && fault.row < last;
-      if (strict() || (fault.error.code == "bvh-number" && !repair())) {
-        return fault.error;
-      }
       const bool fill = repair() && can_fill;
       const char* what = fill ? "was filled from its neighbours" : "was left out";
       if (repair()) {
@@ -343,8 +363,9 @@ class CarefulIndexer {
       tell(Severity::warning, std::move(fault.error));
     }
     if (told_ > kMostTold) {
-      Error more(repair() ? "bvh-repair" : "bvh-row-length",
-                 fmt::format("{} more faulty frames", told_ - kMostTold));
+      Error more(repair() ? "bvh-repair" : "bvh-channel-count",
+                 fmt::format("{} more faulty frames", told_ - kMostTold + unlisted_));
+      if (repair() && unlisted_ > 0) result_.repairs.push_back(more.message);
       tell(Severity::warning, std::move(more).in_file(file_name_));
     }
     for (std::size_t i = 0; i < result_.begins.size(); ++i) {
@@ -369,6 +390,11 @@ class CarefulIndexer {
     Error differs = error_at(header_.frames_offset, "bvh-frame-count",
                              fmt::format("{} frames are announced, the file has {}",
                                          header_.frames, result_.begins.size()));
+    if (result_.begins.empty() && header_.frames > 0 && !repair()) {
+      differs.message = fmt::format("{} frames are announced, the file has none", header_.frames);
+      differs.hint = "the file is cut short; --repair takes the skeleton alone";
+      return differs;
+    }
     if (strict()) {
       differs.hint = "without --strict the frames that are there are taken";
       return differs;
@@ -384,6 +410,7 @@ class CarefulIndexer {
   }
 
   static constexpr int kMostTold = 20;
+  static constexpr std::size_t kMostListed = 1000;
 
   std::string_view text_;
   const MotionHeader& header_;
@@ -392,10 +419,13 @@ class CarefulIndexer {
   const std::string& file_name_;
   const ReadOptions& options_;
   Diagnostics& diagnostics_;
+  Locator locate_;
   std::vector<Line> lines_;
   std::vector<Fault> faults_;
   std::size_t rows_found_ = 0;
   int told_ = 0;
+  int unlisted_ = 0;
+  bool text_ended_early_ = false;  // something that is no data follows the data
   RowIndex result_;
 };
 

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <unordered_map>
-#include <unordered_set>
-
 #include "formats/bvh/text_cursor.h"
 
 namespace krok::bvh {
@@ -14,30 +11,20 @@ namespace {
 // More than these would drown what else there is to say.
 constexpr int kMostWarnings = 20;
 
-class UniqueNames {
- public:
-  // Claims a name that must stay as it is; false if it is taken.
-  bool claim(const std::string& name) { return taken_.insert(name).second; }
-
-  // The first free one of name, name_2, name_3, ...
-  std::string make(const std::string& name) {
-    if (claim(name)) return name;
-    int& number = numbers_.try_emplace(name, 1).first->second;
-    for (;;) {
-      std::string candidate = fmt::format("{}_{}", name, ++number);
-      if (claim(candidate)) return candidate;
-    }
-  }
-
- private:
-  std::unordered_set<std::string> taken_;
-  std::unordered_map<std::string, int> numbers_;
-};
-
 }  // namespace
+
+std::string UniqueNames::make(const std::string& name) {
+  if (claim(name)) return name;
+  int& number = numbers_.try_emplace(name, 1).first->second;
+  for (;;) {
+    std::string candidate = fmt::format("{}_{}", name, ++number);
+    if (claim(candidate)) return candidate;
+  }
+}
 
 void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
                        const std::string& file_name, Diagnostics& diagnostics) {
+  Locator locate(text, file_name);
   int duplicates = 0;
   int recoded = 0;
   const auto warn = [&](const NamedPlace& place, const char* code, std::string message) {
@@ -45,7 +32,7 @@ void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
     warning.severity = Severity::warning;
     warning.code = code;
     warning.message = std::move(message);
-    warning.where = locate(text, place.offset, file_name);
+    warning.where = locate(place.offset);
     warning.joint = *place.name;
     diagnostics.push_back(std::move(warning));
   };

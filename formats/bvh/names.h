@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "core/result.h"
@@ -25,6 +27,20 @@ struct NamedPlace {
 // read as Latin-1. What changed a name of the file is a warning.
 void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
                        const std::string& file_name, Diagnostics& diagnostics);
+
+// Names that were given out already.
+class UniqueNames {
+ public:
+  // Claims a name that must stay as it is; false if it is taken.
+  bool claim(const std::string& name) { return taken_.insert(name).second; }
+
+  // Claims the first free one of name, name_2, name_3, ...
+  std::string make(const std::string& name);
+
+ private:
+  std::unordered_set<std::string> taken_;
+  std::unordered_map<std::string, int> numbers_;
+};
 
 // For messages: short, without control characters or bytes that are not UTF-8.
 std::string shown(std::string_view text);

@@ -66,6 +66,7 @@ PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& ro
     if (std::abs(*place) > 0.35 && std::abs(*place - 1.0) > 0.35) ++doubtful;
   }
   const int asked = absolute + additive;
+  result.has_evidence = asked > 0 || root_place;
   bool is_additive = false;
   if (asked > 0) {
     is_additive = additive > absolute;

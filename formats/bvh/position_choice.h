@@ -21,6 +21,7 @@ struct SampleRows {
 struct PositionChoice {
   Positions positions = Positions::absolute;
   Choice choice;
+  bool has_evidence = false;  // a joint could be asked; otherwise both readings are the same
 };
 
 // Whether position channels replace OFFSETs or are added to them. Each joint with a non-zero OFFSET

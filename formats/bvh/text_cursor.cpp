@@ -22,19 +22,23 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-Location locate(std::string_view text, std::size_t offset, const std::string& file_name) {
-  Location where;
-  where.file = file_name;
-  where.line = 1;
-  std::size_t line_begin = 0;
-  for (std::size_t i = 0; i < offset && i < text.size(); ++i) {
-    const bool ends = text[i] == '\n' ||
-                      (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n'));
-    if (!ends) continue;
-    ++where.line;
-    line_begin = i + 1;
+Location Locator::operator()(std::size_t offset) {
+  if (offset < at_) {
+    at_ = 0;
+    line_begin_ = 0;
+    line_ = 1;
   }
-  where.column = static_cast<std::int64_t>(offset - line_begin) + 1;
+  for (; at_ < offset && at_ < text_.size(); ++at_) {
+    const bool ends = text_[at_] == '\n' || (text_[at_] == '\r' && (at_ + 1 == text_.size() ||
+                                                                   text_[at_ + 1] != '\n'));
+    if (!ends) continue;
+    ++line_;
+    line_begin_ = at_ + 1;
+  }
+  Location where;
+  where.file = file_name_;
+  where.line = line_;
+  where.column = static_cast<std::int64_t>(offset - line_begin_) + 1;
   return where;
 }
 

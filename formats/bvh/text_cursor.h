@@ -25,9 +25,22 @@ bool same_word(std::string_view a, std::string_view b);
 // `text` without white space at its ends.
 std::string_view trimmed(std::string_view text);
 
-// Line and column of a byte, lines ended by LF, CR LF or a lone CR. Takes time with the offset, so
-// it is for messages.
-Location locate(std::string_view text, std::size_t offset, const std::string& file_name);
+// Lines and columns of bytes, lines ended by LF, CR LF or a lone CR. Going forward costs one look at
+// each byte in all, going back starts anew.
+class Locator {
+ public:
+  Locator(std::string_view text, const std::string& file_name)
+      : text_(text), file_name_(file_name) {}
+
+  Location operator()(std::size_t offset);
+
+ private:
+  std::string_view text_;
+  const std::string& file_name_;
+  std::size_t at_ = 0;
+  std::size_t line_begin_ = 0;
+  std::int64_t line_ = 1;
+};
 
 // Steps through a text by words. Braces are words of their own wherever they stand.
 class TextCursor {

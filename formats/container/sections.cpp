@@ -37,6 +37,13 @@ constexpr std::uint32_t kJointIsEndSite = 1;
 
 }  // namespace
 
+OrientationEncoding stored_orientation(std::span<const std::byte> file) {
+  ByteReader header(file);
+  header.seek(12);
+  const bool four = (header.read<std::uint32_t>() & kFlagFourComponents) != 0;
+  return four ? OrientationEncoding::xyzw : OrientationEncoding::xyz;
+}
+
 void write_transform(const Vec3f& position, const Quat& orientation, OrientationEncoding encoding,
                      std::byte* out) {
   std::memcpy(out, position.data(), 3 * sizeof(float));

@@ -29,6 +29,9 @@ inline OrientationEncoding orientation_encoding(const ContainerReader& container
                                                         : OrientationEncoding::xyz;
 }
 
+// How a file that a reader has accepted stores its orientations.
+OrientationEncoding stored_orientation(std::span<const std::byte> file);
+
 // Bytes of a position with an orientation: 24 or 28.
 constexpr std::size_t transform_size(OrientationEncoding encoding) {
   return (3 + static_cast<std::size_t>(float_count(encoding))) * sizeof(float);

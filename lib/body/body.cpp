@@ -9,6 +9,7 @@
 
 #include "body/build_pose.h"
 #include "body/general_shape.h"
+#include "body/human_pose.h"
 #include "body/human_shape.h"
 #include "body/polygonise.h"
 #include "body/surface_binding.h"
@@ -126,6 +127,9 @@ Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
   if (figure) {
     body.stature = figure->stature;
     pose = human_build_pose(clip, *figure);
+    // Built with fanned fingers, so that the surface does not grow together between them.
+    if (wanted.empty()) wanted = pose.joint_to_world;
+    pose.joint_to_world = spread_fingers(skeleton, *figure, pose.joint_to_world);
     shape = human_shape(skeleton, *figure, pose.joint_to_world);
   } else {
     pose = general_build_pose(clip);

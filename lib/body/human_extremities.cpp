@@ -29,7 +29,7 @@ void HumanBuilder::build_neck_and_head() {
   }
   // Not sunk into the shoulders, not on a stalk.
   const double shoulder = trunk_point(0.285, 0, 0).y();
-  top = std::clamp(top, shoulder + 0.165 * u, shoulder + 0.235 * u);
+  top = std::clamp(top, shoulder + 0.165 * u, shoulder + 0.205 * u);
   const Vec3 middle(joint.x(), top, joint.z() + 0.010 * u);
   const auto at = [&](double left, double below_top, double forward) -> Vec3 {
     return middle + Vec3(left, -below_top, forward) * u;
@@ -238,7 +238,7 @@ void HumanBuilder::build_hand(std::size_t side) {
 
 void HumanBuilder::build_finger_along(const Hand& hand, const std::vector<int>& chain) {
   const double u = unit_;
-  const double radius = 0.0050 * u;
+  const double radius = 0.0047 * u;
   Tube tube;
   std::vector<Vec3> points;
   // From inside the palm, so that short and long chains both hold on to it.
@@ -288,10 +288,10 @@ void HumanBuilder::build_free_finger(const Hand& hand, int finger, const std::ve
     double ahead, aside, length, radius, spread;
   };
   constexpr Row kRows[] = {{0.014, 0.0150, 0.050, 0.0064, 0.75},
-                           {0.046, 0.0165, 0.050, 0.0050, 0.10},
-                           {0.048, 0.0058, 0.055, 0.0052, 0.03},
-                           {0.047, -0.0052, 0.052, 0.0050, -0.04},
-                           {0.044, -0.0158, 0.042, 0.0046, -0.12}};
+                           {0.044, 0.0172, 0.050, 0.0046, 0.20},
+                           {0.047, 0.0060, 0.055, 0.0048, 0.065},
+                           {0.046, -0.0058, 0.052, 0.0046, -0.075},
+                           {0.042, -0.0170, 0.042, 0.0042, -0.21}};
   const Row& row = kRows[finger];
   const Vec3 palm_side = hand.thick * (hand.thick.y() > 0 ? -1.0 : 1.0);
   const Vec3 start = hand.wrist + (hand.along * row.ahead + hand.across * row.aside) * u;

@@ -21,11 +21,19 @@ class Straightener {
   StandingPose run() {
     face_forward();
     straighten_trunk();
+    // What one side needs, both get.
+    const bool legs = leg_in_the_way(0) || leg_in_the_way(1);
+    const bool arms = arm_in_the_way(0) || arm_in_the_way(1);
     for (std::size_t side = 0; side < 2; ++side) {
-      place_leg(side);
-      place_arm(side);
+      place_leg(side, legs);
+      place_arm(side, arms);
     }
     return {std::move(pose_), turned_, heading_};
+  }
+
+  std::vector<Transform> spread_fingers() {
+    for (std::size_t side = 0; side < 2; ++side) spread_fingers_of(figure_.arms[side]);
+    return std::move(pose_);
   }
 
  private:
@@ -56,6 +64,48 @@ class Straightener {
     turned_ += off;
   }
 
+  void spread_fingers_of(const HumanFigure::Arm& arm) {
+    std::vector<const std::vector<int>*> fingers;
+    Vec3 along = Vec3::Zero();
+    for (const auto& chain : arm.fingers) {
+      if (chain.size() < 2) continue;
+      fingers.push_back(&chain);
+      along += bone(arm.wrist, chain.front()).normalized();
+    }
+    if (fingers.size() < 4) return;
+    along.normalize();
+    // The line of the knuckles: between the two first joints that lie farthest apart across the hand.
+    Vec3 across = Vec3::Zero();
+    for (const auto* a : fingers) {
+      for (const auto* b : fingers) {
+        Vec3 between = bone(b->front(), a->front());
+        between -= along * along.dot(between);
+        if (between.norm() > across.norm() * (1 + 1e-9)) across = between;
+      }
+    }
+    if (across.norm() < 1e-3 * figure_.stature) return;
+    const double breadth = across.norm();
+    across /= breadth;
+    double middle = 0;
+    for (const auto* chain : fingers) {
+      middle += bone(arm.wrist, chain->front()).dot(across) / static_cast<double>(fingers.size());
+    }
+    for (const auto* chain : fingers) {
+      const int base = chain->front();
+      const Vec3 first = bone(base, (*chain)[1]);
+      const bool thumb = angle(bone(arm.wrist, base), along) > 30 * kDegree;
+      Vec3 direction = first;
+      if (!thumb) {
+        const double aside = (bone(arm.wrist, base).dot(across) - middle) / breadth;
+        direction = along + 0.45 * aside * across;
+        point(base, (*chain)[1], direction, 0);
+      }
+      for (std::size_t i = 1; i + 1 < chain->size(); ++i) {
+        point((*chain)[i], (*chain)[i + 1], direction, thumb ? 20 * kDegree : 0);
+      }
+    }
+  }
+
   void face_forward() {
     const HumanAxes axes = human_axes(figure_, pose_);
     Mat3 from;
@@ -68,26 +118,52 @@ class Straightener {
     rotate(0, rotation);
   }
 
-  void straighten_trunk() {
-    const auto path = joint_path(skeleton_, figure_.hips, figure_.head >= 0 ? figure_.head
-                                                                            : figure_.neck);
+  // The bones from one joint to another, turned up one by one where they are folded or, taken
+  // together, lie more than 40 degrees from it. Single bones that step back or aside are left.
+  void straighten(int from, int to) {
+    const auto path = joint_path(skeleton_, from, to);
+    double length = 0;
+    for (std::size_t i = 1; i < path.size(); ++i) length += bone(path[i - 1], path[i]).norm();
+    const Vec3 whole = bone(path.front(), path.back());
+    if (whole.norm() > 0.75 * length && angle(whole, Vec3::UnitY()) < 40 * kDegree) return;
     for (std::size_t i = 1; i < path.size(); ++i) {
-      if (path.size() < 2) break;
-      point(path[i - 1], path[i], Vec3::UnitY(), 40 * kDegree);
-    }
-    if (figure_.head >= 0 && figure_.head_top >= 0) {
-      point(figure_.head, figure_.head_top, Vec3::UnitY(), 35 * kDegree);
+      point(path[i - 1], path[i], Vec3::UnitY(), 30 * kDegree);
     }
   }
 
-  void place_leg(std::size_t side) {
+  void straighten_trunk() {
+    const int top = figure_.head >= 0 ? figure_.head : figure_.neck;
+    const Quat before = pose_[static_cast<std::size_t>(top)].orientation;
+    const int chest = skeleton_.parents[static_cast<std::size_t>(
+        figure_.neck >= 0 ? figure_.neck : figure_.head)];
+    straighten(figure_.hips, chest);
+    straighten(chest, top);
+    // The face looks where it did. (Where the end site of the head lies tells nothing: some
+    // exporters put it anywhere.)
+    rotate(top, normalized_or_identity(
+                    before * pose_[static_cast<std::size_t>(top)].orientation.conjugate()));
+  }
+
+  // A thigh that crosses to the other side, is spread wide or is raised.
+  bool leg_in_the_way(std::size_t side) const {
+    const auto& leg = figure_.legs[side];
+    const Vec3 thigh = bone(leg.hip, leg.knee).normalized();
+    const double apart = (side == 0 ? 1.0 : -1.0) * thigh.x();
+    return apart < -0.06 || apart > 0.45 || std::abs(thigh.z()) > 0.30 || thigh.y() > 0;
+  }
+
+  // An upper arm beside the trunk, raised, or well before or behind it.
+  bool arm_in_the_way(std::size_t side) const {
+    const auto& arm = figure_.arms[side];
+    const Vec3 upper = bone(arm.shoulder, arm.elbow).normalized();
+    const double out = (side == 0 ? 1.0 : -1.0) * upper.x();
+    return out < 0.45 || upper.y() > 0.21 || std::abs(upper.z()) > 0.4;
+  }
+
+  void place_leg(std::size_t side, bool turn) {
     const auto& leg = figure_.legs[side];
     const double out = side == 0 ? 1.0 : -1.0;
-    const Vec3 down = Vec3(0.06 * out, -1, 0).normalized();
-    const Vec3 thigh = bone(leg.hip, leg.knee).normalized();
-    const double apart = out * thigh.x();
-    const bool crossing = apart < -0.06 || apart > 0.30 || std::abs(thigh.z()) > 0.30;
-    point(leg.hip, leg.knee, down, crossing ? 0 : 25 * kDegree);
+    if (turn) point(leg.hip, leg.knee, Vec3(0.06 * out, -1, 0), 0);
     const Vec3 upper = bone(leg.hip, leg.knee).normalized();
     point(leg.knee, leg.ankle, Vec3(upper.x(), upper.y(), std::min(0.0, upper.z())), 20 * kDegree);
     const int far = leg.toes >= 0 ? leg.toes : leg.tip;
@@ -109,7 +185,7 @@ class Straightener {
     }
   }
 
-  void place_arm(std::size_t side) {
+  void place_arm(std::size_t side, bool turn) {
     const auto& arm = figure_.arms[side];
     const double out = side == 0 ? 1.0 : -1.0;
     if (arm.collar >= 0) {
@@ -119,8 +195,8 @@ class Straightener {
       }
     }
     const Vec3 upper = bone(arm.shoulder, arm.elbow).normalized();
-    const double hanging = angle(upper, -Vec3::UnitY());
-    if (out * upper.x() < 0.45 || hanging > 102 * kDegree || std::abs(upper.z()) > 0.4) {
+    if (turn) {
+      const double hanging = angle(upper, -Vec3::UnitY());
       // A raised or level arm goes to a T-pose, a hanging one half-way there.
       const double aim = hanging > 75 * kDegree ? 90 * kDegree : 45 * kDegree;
       point(arm.shoulder, arm.elbow, Vec3(out * std::sin(aim), -std::cos(aim), 0), 0);
@@ -153,6 +229,11 @@ class Straightener {
 };
 
 }  // namespace
+
+std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanFigure& figure,
+                                      std::span<const Transform> pose) {
+  return Straightener(skeleton, figure, pose).spread_fingers();
+}
 
 StandingPose stand_upright(const Skeleton& skeleton, const HumanFigure& figure,
                            std::span<const Transform> pose) {

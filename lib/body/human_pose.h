@@ -15,11 +15,15 @@ struct StandingPose {
 };
 
 // Turns what stands in the way of a body, and nothing else: the whole figure upright and facing +Z,
-// arms away from the trunk (between 30 and 100 degrees from hanging straight down), elbows, wrists,
+// arms away from the trunk (some 30 to 100 degrees from hanging straight down), elbows, wrists,
 // knees and toes that are bent by more than some 25 degrees straight, legs side by side under the
-// hips, feet level and forward, the trunk's and the neck's bones up. Bones keep their lengths. Limbs
+// hips, feet level and forward, a folded trunk or neck up. What one side needs, both get. Bones keep their lengths. Limbs
 // are turned by the shortest way, so that they keep their twist.
 StandingPose stand_upright(const Skeleton& skeleton, const HumanFigure& figure,
                            std::span<const Transform> pose);
+
+// The same pose with the fingers of each hand straight and fanned out, so that none touches another.
+std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanFigure& figure,
+                                      std::span<const Transform> pose);
 
 }  // namespace krok::body

@@ -9,7 +9,7 @@ namespace krok::body {
 
 namespace {
 
-constexpr int kPieces = 4;  // straight pieces of a spline between two stations
+constexpr int kPieces = 5;  // straight pieces of a spline between two stations
 
 double cubic(double a, double b, double c, double d, double t) {
   return 0.5 * (2 * b + t * ((c - a) + t * ((2 * a - 5 * b + 4 * c - d) + t * (3 * (b - c) + d - a))));

@@ -363,6 +363,16 @@ std::uint64_t OutputFile::size() const {
   return state_->written;
 }
 
+Status OutputFile::sync() {
+  State& state = *state_;
+  if (!state.failure) return state.failure;
+  if (Status flushed = state.flush_pending(); !flushed) return flushed;
+  if (!state.temporary.empty() && fsync(state.descriptor) != 0) {
+    return state.fail(errno, "cannot be written");
+  }
+  return {};
+}
+
 Status OutputFile::commit() {
   State& state = *state_;
   if (state.failure) {

@@ -72,6 +72,10 @@ class OutputFile {
 
   std::uint64_t size() const;
 
+  // Brings what was written to the disk without putting the file in place, so that of several files
+  // that belong together none is put in place before all of them are safe.
+  Status sync();
+
   Status commit();
 
  private:

@@ -50,14 +50,14 @@ struct TwoBoneSolution {
   // To be multiplied from the left to the joints' present global orientations.
   Quat root_rotation = Quat::Identity();
   Quat middle_rotation = Quat::Identity();
-  double bend = 0;         // radians, within the limits
-  bool reached = false;    // end equals target within 1e-9 m
+  double bend = 0;       // radians, within the limits
+  bool reached = false;  // end equals target within 1e-9 m
 };
 
 // The pose of the chain that brings its end to the target, or as near to it as lengths and limits
 // allow. A target at the root keeps the present direction from root to end. A chain of two bones of
-// length 0, and any value that is not finite, gives the chain as it is, with reached telling whether
-// it happens to be there.
+// length 0, and any value that is not finite, gives the chain as it is, with reached telling
+// whether it happens to be there.
 TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goal);
 
 // The distance from root to end of two bones that meet at `bend`.

@@ -29,13 +29,11 @@ Vec3 to_euler(const Quat& q, const EulerOrder& order, double last_at_lock) {
   const double cosine = std::hypot(m(i, i), m(i, j));
   const double middle = std::atan2(sine, cosine);
   if (cosine > 1e-7) {
-    // Adding zero makes -0 to 0, so that half a turn is pi, not -pi.
-    return {std::atan2(-parity * m(j, k) + 0.0, m(k, k)), middle,
-            std::atan2(-parity * m(i, j) + 0.0, m(i, i))};
+    return {std::atan2(-parity * m(j, k), m(k, k)), middle, std::atan2(-parity * m(i, j), m(i, i))};
   }
   // Locked: take the last rotation off and read the first from what is left.
   const Mat3 rest = (q * axis_rotation(order[2], -last_at_lock)).toRotationMatrix();
-  return {std::atan2(parity * rest(k, j) + 0.0, rest(j, j)), middle, last_at_lock};
+  return {std::atan2(parity * rest(k, j), rest(j, j)), middle, last_at_lock};
 }
 
 namespace {

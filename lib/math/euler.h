@@ -21,7 +21,7 @@ Quat axis_rotation(Axis axis, double angle);
 Quat from_axis_rotations(std::span<const Axis> axes, std::span<const double> angles);
 
 // Angles (radians, in the order of `order`) with from_axis_rotations(order, angles) = q. The middle
-// angle lies in [-pi/2, pi/2], the others in (-pi, pi]. At gimbal lock (middle angle within 1e-7 of
+// angle lies in [-pi/2, pi/2], the others in [-pi, pi]. At gimbal lock (middle angle within 1e-7 of
 // +-pi/2) the last angle is `last_at_lock` and the first takes up the rest.
 Vec3 to_euler(const Quat& q, const EulerOrder& order, double last_at_lock = 0.0);
 

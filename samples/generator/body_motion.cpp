@@ -8,17 +8,15 @@
 #include "math/quaternion.h"
 #include "samples/generator/gait_curves.h"
 
-#include <cstdlib>
-static double E(const char*n,double d){const char*v=getenv(n);return v?atof(v):d;}
 namespace krok::samples {
 
 namespace {
 
 constexpr double kDegree = kRadiansPerDegree;
-constexpr double kLeastKneeFlexion = 4 * kDegree;   // a walking knee is never locked
+constexpr double kLeastKneeFlexion = 4 * kDegree;  // a walking knee is never locked
 constexpr double kStandingKneeFlexion = 6 * kDegree;
-constexpr double kHeightSpacing = 1.0 / 120.0;      // seconds between the keys of the height
-constexpr double kHeightSmoothing = 0.045;          // seconds, standard deviation
+constexpr double kHeightSpacing = 1.0 / 120.0;  // seconds between the keys of the height
+constexpr double kHeightSmoothing = 0.045;      // seconds, standard deviation
 
 template <typename T, typename Key>
 Spline<T> over_prints(const FootPlan& plan, Key key) {
@@ -57,11 +55,11 @@ BodyMotion::BodyMotion(const WalkOptions& options, const Figure& figure, const F
                                    [](const Footprint& a, const Footprint& b) {
                                      return 0.5 * (a.path_heading + b.path_heading);
                                    })),
-      activity_(over_prints<double>(
-          plan,
-          [&](const Footprint&, const Footprint& b) {
-            return std::min(1.3, b.step_length / (0.41 * options.stature));
-          })),
+      activity_(over_prints<double>(plan,
+                                    [&](const Footprint&, const Footprint& b) {
+                                      return std::min(1.3,
+                                                      b.step_length / (0.41 * options.stature));
+                                    })),
       height_({0.0}, 0, 1) {
   plan_height();
 }
@@ -81,10 +79,9 @@ Transform BodyMotion::pelvis_without_height(double time) const {
   // Towards the foot that stands, most in the middle of its single support, phase 0.31.
   const double moving = std::min(1.0, 2.5 * activity);
   const double sway = 0.018 * stature / 1.75 * moving * std::cos(2 * kPi * (phase - 0.31));
-  // Before the ankles when standing, more so when walking: at a strike the leg behind reaches further
-  // than the one before. A little faster in double support than in single support.
-  const double ahead = (0.036 + 0.010 + E("A",0.0) * activity) * stature +
-                       0.006 * activity * std::sin(4 * kPi * (phase + 0.03));
+  // Before the ankles when standing, more so when walking: at a strike the leg behind reaches
+  // further than the one before. A little faster in double support than in single support.
+  const double ahead = 0.046 * stature + 0.006 * activity * std::sin(4 * kPi * (phase + 0.03));
   Transform pelvis;
   pelvis.position = path_(time) + left_of(heading) * sway + forward_of(heading) * ahead;
   pelvis.position.y() = 0;
@@ -107,7 +104,7 @@ static double hip_height(const Vec3& hip, const Vec3& ankle, double reach) {
   return ankle.y() + std::sqrt(std::max(0.0, reach * reach - across * across));
 }
 
-double BodyMotion::wanted_height(double time) const {
+double BodyMotion::level_height(double time) const {
   const Transform pelvis = pelvis_without_height(time);
   const double stride = 2 * plan_.step_time;
   const double activity = std::clamp(activity_(time), 0.0, 1.0);
@@ -119,11 +116,15 @@ double BodyMotion::wanted_height(double time) const {
     const double carried = load(print, stride, time);
     if (carried <= 0) continue;
     // Where in the stance; a foot that stands longer waits in the middle of it.
-    double phase = print.first_of_foot ? kHeelRise : std::min(kHeelRise, (time - print.strike) / stride);
+    double phase =
+        print.first_of_foot ? kHeelRise : std::min(kHeelRise, (time - print.strike) / stride);
     if (!print.last_of_foot) phase = std::max(phase, kToeOff - (print.off - time) / stride);
-    const double flexion = std::max(
-        kLeastKneeFlexion, kStandingKneeFlexion + activity * (knee_flexion(phase) - kStandingKneeFlexion));
-    const Vec3 hip_local = figure_.skeleton.reference_local(figure_.legs[static_cast<std::size_t>(side)].upper).position;
+    const double flexion =
+        std::max(kLeastKneeFlexion,
+                 kStandingKneeFlexion + activity * (knee_flexion(phase) - kStandingKneeFlexion));
+    const Vec3 hip_local =
+        figure_.skeleton.reference_local(figure_.legs[static_cast<std::size_t>(side)].upper)
+            .position;
     const Vec3 hip = pelvis * hip_local;
     const double reach = two_bone_reach(figure_.thigh, figure_.shank, flexion);
     height += carried * (hip_height(hip, foot.at(time).ankle, reach) - hip.y());
@@ -132,12 +133,24 @@ double BodyMotion::wanted_height(double time) const {
   return height / weight;
 }
 
+// On stairs the body rises evenly while the knee that leads extends, bent by as much as it is
+// ahead.
+double BodyMotion::stairs_height(double time) const {
+  const Vec3 hip = figure_.skeleton.reference_local(figure_.legs[0].upper).position;
+  const double standing = two_bone_reach(figure_.thigh, figure_.shank, kStandingKneeFlexion) -
+                          figure_.heel.y() - hip.y();
+  const double moving = std::min(1.0, 2.5 * activity_(time));
+  return path_(time).y() + standing - 0.3 * moving * std::abs(plan_.rise);
+}
+
 double BodyMotion::highest(double time) const {
   const Transform pelvis = pelvis_without_height(time);
   const double reach = two_bone_reach(figure_.thigh, figure_.shank, kLeastKneeFlexion);
   double height = 1e30;
   for (const Side side : {Side::left, Side::right}) {
-    const Vec3 hip_local = figure_.skeleton.reference_local(figure_.legs[static_cast<std::size_t>(side)].upper).position;
+    const Vec3 hip_local =
+        figure_.skeleton.reference_local(figure_.legs[static_cast<std::size_t>(side)].upper)
+            .position;
     const Vec3 hip = pelvis * hip_local;
     const Vec3 ankle = feet_[static_cast<std::size_t>(side)].at(time).ankle;
     height = std::min(height, hip_height(hip, ankle, reach) - hip.y());
@@ -151,11 +164,15 @@ void BodyMotion::plan_height() {
   const double margin = 1.0;
   const double start = plan_.first_time - margin;
   const auto count =
-      static_cast<std::size_t>((plan_.last_time - plan_.first_time + 2 * margin) / kHeightSpacing) + 1;
+      static_cast<std::size_t>((plan_.last_time - plan_.first_time + 2 * margin) / kHeightSpacing) +
+      1;
+  const double on_stairs = plan_.ground == Ground::stairs
+                               ? std::min(1.0, std::abs(plan_.rise) / (0.05 * figure_.stature))
+                               : 0;
   std::vector<double> heights(count), limits(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double time = start + static_cast<double>(i) * kHeightSpacing;
-    heights[i] = wanted_height(time);
+    heights[i] = (1 - on_stairs) * level_height(time) + on_stairs * stairs_height(time);
     limits[i] = highest(time);
   }
   const double sigma = kHeightSmoothing / kHeightSpacing;
@@ -181,8 +198,7 @@ void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
   const auto place = [&](int joint, const Quat& orientation) {
     const auto index = static_cast<std::size_t>(joint);
     const auto parent = static_cast<std::size_t>(figure_.skeleton.parents[index]);
-    world[index].position =
-        world[parent] * figure_.skeleton.reference_local(joint).position;
+    world[index].position = world[parent] * figure_.skeleton.reference_local(joint).position;
     world[index].orientation = orientation;
   };
   // The shoulders turn against the pelvis, a little later than it, and stay nearly level.
@@ -190,7 +206,8 @@ void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
   const double list = -0.35 * std::min(1.0, 2.5 * activity) * pelvis_list(phase);
   const double climb = plan_.ground == Ground::stairs ? plan_.rise / (0.1 * figure_.stature) : 0;
   const double lean = (2.0 + 1.5 * activity + 1.0 * activity * std::sin(4 * kPi * (phase - 0.05)) +
-                       6.0 * std::max(0.0, climb) * std::min(1.0, 2.5 * activity)) * kDegree;
+                       6.0 * std::max(0.0, climb) * std::min(1.0, 2.5 * activity)) *
+                      kDegree;
   const Quat chest = axis_rotation(Axis::y, heading + turn) * axis_rotation(Axis::z, list) *
                      axis_rotation(Axis::x, lean);
   const Quat hips = world[static_cast<std::size_t>(figure_.hips)].orientation;
@@ -199,8 +216,9 @@ void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
   place(figure_.spine2, chest);
   // The head keeps level and looks where the walk goes next.
   const double ahead = heading_(time + 0.35);
-  const Quat head = axis_rotation(Axis::y, ahead + 0.15 * turn) *
-                    axis_rotation(Axis::x, (1.5 - 0.6 * activity * std::sin(4 * kPi * (phase - 0.05))) * kDegree);
+  const Quat head =
+      axis_rotation(Axis::y, ahead + 0.15 * turn) *
+      axis_rotation(Axis::x, (1.5 - 0.6 * activity * std::sin(4 * kPi * (phase - 0.05))) * kDegree);
   place(figure_.neck, slerp(chest, head, 0.5) * axis_rotation(Axis::x, 6 * kDegree));
   place(figure_.head, head);
 }
@@ -227,7 +245,8 @@ void BodyMotion::pose_arm(Side side, double time, std::span<Transform> world) co
                      axis_rotation(Axis::z, -(kPi / 2 - abduction) + 3 * kDegree) *
                      axis_rotation(Axis::x, 22 * kDegree));
   set(arm.lower, axis_rotation(Axis::y, -elbow) * axis_rotation(Axis::x, -12 * kDegree));
-  set(arm.hand, axis_rotation(Axis::z, (-6 - 4 * std::sin(2 * kPi * (own_phase - 0.1)) * swing) * kDegree));
+  set(arm.hand,
+      axis_rotation(Axis::z, (-6 - 4 * std::sin(2 * kPi * (own_phase - 0.1)) * swing) * kDegree));
   set(arm.fingers, axis_rotation(Axis::z, -24 * kDegree));
 }
 

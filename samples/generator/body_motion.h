@@ -27,7 +27,8 @@ class BodyMotion {
   Transform pelvis(double time) const;
   double left_phase(double time) const;
   void plan_height();
-  double wanted_height(double time) const;
+  double level_height(double time) const;
+  double stairs_height(double time) const;
   double highest(double time) const;
   void pose_trunk(double time, std::span<Transform> world) const;
   void pose_arm(Side side, double time, std::span<Transform> world) const;
@@ -39,8 +40,8 @@ class BodyMotion {
   std::array<FootMotion, 2> feet_;  // [Side]
   Spline<Vec3> path_;               // the middle between the feet, along the walk
   Spline<double> heading_;
-  Spline<double> activity_;         // step length over an ordinary one, 0 when standing
-  Spline<double> height_;           // of the pelvis, worked out from the legs
+  Spline<double> activity_;  // step length over an ordinary one, 0 when standing
+  Spline<double> height_;    // of the pelvis, worked out from the legs
 };
 
 }  // namespace krok::samples

@@ -71,14 +71,14 @@ class Spline {
 
   T operator()(double time) const {
     const double s = (time - first_time_) / spacing_;
-    const double cell = s < -2 ? -2 : s > static_cast<double>(keys_.size()) + 1
-                                          ? static_cast<double>(keys_.size()) + 1
-                                          : s;
+    const double cell = s < -2 ? -2
+                        : s > static_cast<double>(keys_.size()) + 1
+                            ? static_cast<double>(keys_.size()) + 1
+                            : s;
     const auto base = static_cast<long>(cell + 16) - 16;  // floor
     const double u = cell - static_cast<double>(base);
     const double v = 1 - u;
-    return T(key(base - 1) * (v * v * v / 6) +
-             key(base) * ((4 - 6 * u * u + 3 * u * u * u) / 6) +
+    return T(key(base - 1) * (v * v * v / 6) + key(base) * ((4 - 6 * u * u + 3 * u * u * u) / 6) +
              key(base + 1) * ((4 - 6 * v * v + 3 * v * v * v) / 6) +
              key(base + 2) * (u * u * u / 6));
   }

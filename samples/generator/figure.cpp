@@ -6,9 +6,9 @@ namespace krok::samples {
 
 namespace {
 
-// Heights above the floor and lengths as fractions of stature. Ankle, knee, hip, upper arm, forearm,
-// hand, foot and shoulder breadth are Drillis and Contini's; the places of the spine's joints and of
-// the ball of the foot within them are ours.
+// Heights above the floor and lengths as fractions of stature. Ankle, knee, hip, upper arm,
+// forearm, hand, foot and shoulder breadth are Drillis and Contini's; the places of the spine's
+// joints and of the ball of the foot within them are ours.
 constexpr double kAnkleHeight = 0.039;
 constexpr double kKneeHeight = 0.285;
 constexpr double kHipHeight = 0.530;
@@ -46,8 +46,8 @@ LegJoints add_leg(Builder& build, const std::string& side, double sign, int hips
   leg.upper = build.add(side + "UpLeg", hips, x, kHipHeight, 0);
   leg.lower = build.add(side + "Leg", leg.upper, x, kKneeHeight, 0);
   leg.foot = build.add(side + "Foot", leg.lower, x, kAnkleHeight, 0);
-  leg.toes = build.add(side + "ToeBase", leg.foot, x, kToeJointHeight,
-                       kBallFromHeel - kHeelBehindAnkle);
+  leg.toes =
+      build.add(side + "ToeBase", leg.foot, x, kToeJointHeight, kBallFromHeel - kHeelBehindAnkle);
   build.end(leg.toes, x, kToeTipHeight, kFootLength - kHeelBehindAnkle);
   return leg;
 }
@@ -62,8 +62,8 @@ ArmJoints add_arm(Builder& build, const std::string& side, double sign, int ches
   arm.lower = build.add(side + "ForeArm", arm.upper, sign * x, kShoulderHeight, z);
   x += kForearm;
   arm.hand = build.add(side + "Hand", arm.lower, sign * x, kShoulderHeight, z);
-  arm.fingers = build.add(side + "HandMiddle1", arm.hand, sign * (x + kKnuckles),
-                          kShoulderHeight, z);
+  arm.fingers =
+      build.add(side + "HandMiddle1", arm.hand, sign * (x + kKnuckles), kShoulderHeight, z);
   build.end(arm.fingers, sign * (x + kHand), kShoulderHeight, z);
   return arm;
 }

@@ -12,8 +12,12 @@ namespace krok::samples {
 enum class Side : unsigned char { left = 0, right = 1 };
 
 // +1 for left, -1 for right: the sign of x on that side.
-inline double side_sign(Side side) { return side == Side::left ? 1.0 : -1.0; }
-inline Side other(Side side) { return side == Side::left ? Side::right : Side::left; }
+inline double side_sign(Side side) {
+  return side == Side::left ? 1.0 : -1.0;
+}
+inline Side other(Side side) {
+  return side == Side::left ? Side::right : Side::left;
+}
 
 struct LegJoints {
   int upper = -1, lower = -1, foot = -1, toes = -1;
@@ -35,9 +39,9 @@ struct Figure {
   // Points of the sole, relative to the foot joint (the ankle) in the reference pose; the same for
   // both feet, straight below and before the ankle.
   Vec3 heel = Vec3::Zero();
-  Vec3 ball = Vec3::Zero();        // below the toe joint
+  Vec3 ball = Vec3::Zero();  // below the toe joint
   Vec3 toe_tip = Vec3::Zero();
-  Vec3 toe_joint = Vec3::Zero();   // LeftToeBase itself
+  Vec3 toe_joint = Vec3::Zero();  // LeftToeBase itself
 };
 
 // A figure of that stature (metres, > 0). Proportions as fractions of stature after Drillis and

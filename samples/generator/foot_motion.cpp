@@ -6,26 +6,45 @@
 
 #include "math/euler.h"
 
-#include <cstdlib>
-static double E(const char*n,double d){const char*v=getenv(n);return v?atof(v):d;}
 namespace krok::samples {
 
 namespace {
 
+// The foot comes down still slowing: a jolt, as every heel strike is one. In steps over the swing's
+// time squared.
+constexpr double kLandingDeceleration = 2.5;
 constexpr double kToesUpInSwing = 20 * kRadiansPerDegree;
 constexpr double kClearance = 0.012;  // metres under the sole in mid-swing, at least
 
 // Toes up is a turn about -X.
-Quat pitched(double angle) { return axis_rotation(Axis::x, -angle); }
+Quat pitched(double angle) {
+  return axis_rotation(Axis::x, -angle);
+}
 
 Quat ground_frame(double heading, double slope) {
   return axis_rotation(Axis::y, heading) * pitched(slope);
 }
 
-// 0 at both ends with velocity and acceleration, 1 at 3/8: toes need room early in a swing.
+// Both are 0 at both ends with velocity and acceleration, and 1 at their peak: in the middle, or at
+// 3/8.
 double bump(double u) {
+  const double v = 4 * u * (1 - u);
+  return v * v * v;
+}
+double early_bump(double u) {
   const double v = 1 - u;
   return u * u * u * v * v * v * v * v * (16777216.0 / 84375.0);
+}
+
+// How a swing is lifted: on level ground early, when the toes need room.
+double lift_shape(double u, int climb) {
+  return climb == 0 ? early_bump(u) : bump(u);
+}
+
+// How it is held back: upstairs early, while the foot has the next tread's edge before it;
+// downstairs late and the other way, until the heel is past the edge.
+double hold_shape(double u, int climb) {
+  return climb > 0 ? early_bump(u) * (1 - ease(u)) : -early_bump(1 - u) * ease(u);
 }
 
 // The heel, and later the ball, rise as the cube of time.
@@ -40,7 +59,7 @@ State<double> off_toe_pitch(const Footprint& print) {
   return cubic_rise(print.ball_rise, print.off, print.off_toe_pitch);
 }
 State<double> strike_pitch(const Footprint& print) {
-  return {print.strike_pitch, -E("S",1.5) * print.strike_pitch / (print.flat - print.strike), 0};
+  return {print.strike_pitch, -1.5 * print.strike_pitch / (print.flat - print.strike), 0};
 }
 
 State<double> operator-(const State<double>& a, const State<double>& b) {
@@ -94,22 +113,29 @@ FootMotion::FootMotion(Side side, const FootPlan& plan, const Figure& figure)
     const State<double> flat{0, 0, 0};
     const State<double> bent = off_toe_pitch(print) - off_pitch(print);
     const State<double> down = next.strike_pitch < 0 ? flat - strike_pitch(next) : flat;
-    toe_extension_.emplace_back(std::vector<KnotCurve::Knot>{
-        knot(print.off, bent), turning_point(print.off, bent, turning),
-        {print.off + 4 * turning, kToesUpInSwing, 0, 0}, knot(next.strike, down)});
+    toe_extension_.emplace_back(
+        std::vector<KnotCurve::Knot>{knot(print.off, bent),
+                                     turning_point(print.off, bent, turning),
+                                     {print.off + 4 * turning, kToesUpInSwing, 0, 0},
+                                     knot(next.strike, down)});
 
     Swing swing;
     swing.from = ankle_state(i, off_pitch(print), off_toe_pitch(print));
     swing.to = ankle_state(i + 1, strike_pitch(next), flat);
+    if (plan.ground == Ground::stairs) swing.climb = (plan.rise > 0) - (plan.rise < 0);
     swing.direction = next.path_point - print.path_point;
     swing.direction.y() = 0;
+    const double swing_time = next.strike - print.off;
+    swing.to.acceleration -= swing.direction * (kLandingDeceleration / (swing_time * swing_time));
     if (swing.direction.norm() > 0) swing.direction.normalize();
     swings_.push_back(swing);
     clear_ground(i, plan);
   }
 }
 
-double FootMotion::pitch_at(std::size_t print, double time) const { return pitch_[print](time); }
+double FootMotion::pitch_at(std::size_t print, double time) const {
+  return pitch_[print](time);
+}
 
 double FootMotion::toe_extension_at(std::size_t print, double time) const {
   return toe_extension_[print](time);
@@ -162,9 +188,10 @@ FootPose FootMotion::swing(std::size_t index, double time) const {
   const double eased = ease(u);
   FootPose pose;
   pose.ankle = quintic(swing.from, swing.to, duration, u * duration);
-  pose.ankle.y() += swing.lift * bump(u);
-  // Held back in the first half, where a foot has the next tread's edge before it.
-  pose.ankle -= swing.direction * (swing.hold_back * bump(u) * (1 - eased));
+  pose.ankle.y() += swing.lift * lift_shape(u, swing.climb);
+  if (swing.climb != 0) {
+    pose.ankle -= swing.direction * (swing.hold_back * hold_shape(u, swing.climb));
+  }
   pose.foot = ground_frame(from.heading + (to.heading - from.heading) * eased,
                            from.slope + (to.slope - from.slope) * eased) *
               pitched(pitch_at(index, time));
@@ -179,14 +206,13 @@ void FootMotion::clear_ground(std::size_t index, const FootPlan& plan) {
   constexpr int kSamples = 120;
   double best_cost = 1e30;
   Swing best = swing_of;
-  const int most_hold_back = plan.rise == 0 ? 0 : 20;
+  const int most_hold_back = swing_of.climb == 0 ? 0 : 20;
   for (int step = 0; step <= most_hold_back; ++step) {
     swing_of.hold_back = 0.02 * step;
     swing_of.lift = 0;
     double lift = 0;
-    for (int k = 1; k < kSamples; ++k) {
+    for (int k = 2; k < kSamples - 1; ++k) {
       const double u = static_cast<double>(k) / kSamples;
-      if (getenv("DBG") && k%6==0 && index==2) { const FootPose pp = swing(index, from.off + u * (to.strike - from.off)); const Vec3 tj = pp.ankle + pp.foot * figure_.toe_joint; printf("u %.2f heel %.1f ball %.1f tip %.1f pitch %.1f\n", u, 1e3*(pp.ankle + pp.foot * figure_.heel).y(), 1e3*(tj+ pp.toes * Vec3(figure_.ball - figure_.toe_joint)).y(), 1e3*(tj+ pp.toes * Vec3(figure_.toe_tip - figure_.toe_joint)).y(), pitch_at(index, from.off + u * (to.strike - from.off))*57.3);}
       const FootPose pose = swing(index, from.off + u * (to.strike - from.off));
       const Vec3 toe_joint = pose.ankle + pose.foot * figure_.toe_joint;
       const std::array<Vec3, 3> sole = {
@@ -195,10 +221,7 @@ void FootMotion::clear_ground(std::size_t index, const FootPlan& plan) {
           toe_joint + pose.toes * Vec3(figure_.toe_tip - figure_.toe_joint)};
       for (const Vec3& point : sole) {
         const double missing = plan.ground_height(point) - point.y();
-        // What is missing at the very ends is rounding, not a place to lift the foot for.
-        if (missing > -0.05 && missing + kClearance * bump(u) > 1e-9) {
-          lift = std::max(lift, missing / bump(u) + kClearance);
-        }
+        lift = std::max(lift, missing / lift_shape(u, swing_of.climb) + kClearance);
       }
     }
     const double cost = lift + 0.3 * swing_of.hold_back;
@@ -217,7 +240,9 @@ std::size_t FootMotion::index_at(double time) const {
   return index;
 }
 
-const Footprint& FootMotion::print_at(double time) const { return prints_[index_at(time)]; }
+const Footprint& FootMotion::print_at(double time) const {
+  return prints_[index_at(time)];
+}
 
 FootPose FootMotion::at(double time) const {
   const std::size_t index = index_at(time);

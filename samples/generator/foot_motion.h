@@ -16,9 +16,9 @@ struct FootPose {
 };
 
 // In stance the foot turns about the heel's contact point while its toes point up, about the toe
-// joint, the toes flat, while its heel is up, and at last rolls over the tip of the toes. The swing takes the ankle on from toe-off to the next
-// strike with continuous velocity and acceleration, lifted and held back as far as it takes to clear
-// the ground.
+// joint, the toes flat, while its heel is up, and at last rolls over the tip of the toes. The swing
+// takes the ankle on from toe-off to the next strike with continuous velocity and acceleration,
+// lifted and held back as far as it takes to clear the ground.
 class FootMotion {
  public:
   FootMotion(Side side, const FootPlan& plan, const Figure& figure);
@@ -30,9 +30,10 @@ class FootMotion {
 
  private:
   struct Swing {
-    State<Vec3> from, to;   // of the ankle
-    double lift = 0;        // metres
-    double hold_back = 0;   // metres, against the direction of the step
+    State<Vec3> from, to;  // of the ankle
+    double lift = 0;       // metres
+    double hold_back = 0;  // metres, against the direction of the step
+    int climb = 0;         // +1 up stairs, -1 down, 0 otherwise
     Vec3 direction = Vec3::Zero();
   };
 

@@ -5,17 +5,14 @@
 
 #include "samples/generator/gait_curves.h"
 
-#include <cstdlib>
-static double E(const char*n,double d){const char*v=getenv(n);return v?atof(v):d;}
 namespace krok::samples {
 
 namespace {
 
-constexpr double kToeOut = 6 * kRadiansPerDegree;     // of each foot, outwards (Murray 1964)
-constexpr int kPadding = 4;                           // steps planned beyond a steady walk's ends
-constexpr double kStandingTime = 0.5;                 // seconds
-constexpr double kEdgeBehindHeel = 0.015;             // metres of tread behind a heel
-constexpr double kNominalStep = 0.41;                 // of the stature: an ordinary step
+constexpr double kToeOut = 6 * kRadiansPerDegree;  // of each foot, outwards (Murray 1964)
+constexpr int kPadding = 4;                        // steps planned beyond a steady walk's ends
+constexpr double kStandingTime = 0.5;              // seconds
+constexpr double kNominalStep = 0.41;              // of the stature: an ordinary step
 
 struct Step {
   double length, turn, rise;
@@ -40,21 +37,28 @@ void set_pitches(Footprint& print, double length_before, double length_after,
   const double before = std::clamp(length_before / nominal, 0.0, 1.25);
   const double after = std::clamp(length_after / nominal, 0.0, 1.25);
   const double degree = kRadiansPerDegree;
-  print.strike_pitch = E("SP",21) * degree * before;
-  print.off_pitch = -(22 + E("P",44) * after) * degree;
-  print.off_toe_pitch = E("TP",0.45) * print.off_pitch;
+  print.strike_pitch = 21 * degree * before;
+  print.off_pitch = -(22 + 47 * after) * degree;
+  print.off_toe_pitch = 0.45 * print.off_pitch;
   if (options.ground == Ground::stairs && options.rise != 0) {
     // Up, the sole comes down flat; down, the ball comes first.
     const double climb = std::min(1.0, std::abs(options.rise) / (0.07 * options.stature));
     const double on_stairs = options.rise > 0 ? 0.0 : -16 * degree;
     print.strike_pitch += climb * (on_stairs - print.strike_pitch);
+    // The foot is lifted off rather than rolled off.
+    print.off_pitch += climb * (-24 * degree - print.off_pitch);
+    print.off_toe_pitch *= 1 - climb;
   }
 }
 
 }  // namespace
 
-Vec3 forward_of(double heading) { return {std::sin(heading), 0, std::cos(heading)}; }
-Vec3 left_of(double heading) { return {std::cos(heading), 0, -std::sin(heading)}; }
+Vec3 forward_of(double heading) {
+  return {std::sin(heading), 0, std::cos(heading)};
+}
+Vec3 left_of(double heading) {
+  return {std::cos(heading), 0, -std::sin(heading)};
+}
 
 double FootPlan::ground_height(const Vec3& place) const {
   if (rise == 0) return prints.front().heel.y();
@@ -66,7 +70,7 @@ double FootPlan::ground_height(const Vec3& place) const {
     const double along = from_print.dot(forward_of(print.path_heading));
     const double distance = Vec2(from_print.x(), from_print.z()).norm();
     // A path that turns comes back: only treads nearby count.
-    if (along >= -kEdgeBehindHeel && distance < 1.5) height = print.path_point.y();
+    if (along >= -edge_behind_heel && distance < 1.5) height = print.path_point.y();
     if (distance < nearest_distance) {
       nearest_distance = distance;
       nearest = &print;
@@ -77,7 +81,7 @@ double FootPlan::ground_height(const Vec3& place) const {
   return nearest->path_point.y() + along * std::tan(nearest->slope);
 }
 
-FootPlan plan_feet(const WalkOptions& options, const Figure&) {
+FootPlan plan_feet(const WalkOptions& options, const Figure& figure) {
   const std::vector<Step> steps = steps_of(options);
   const int count = static_cast<int>(steps.size()) + 1;
   // The print before the first step asked for.
@@ -87,6 +91,9 @@ FootPlan plan_feet(const WalkOptions& options, const Figure&) {
   plan.step_time = 60.0 / cadence_of(options);
   plan.rise = options.rise;
   plan.ground = options.ground;
+  // A foot stands in the middle of its tread.
+  const double foot_length = figure.toe_tip.z() - figure.heel.z();
+  plan.edge_behind_heel = std::max(0.0, 0.5 * (options.step_length - foot_length));
   const double stride = 2 * plan.step_time;
   const double slope = options.ground == Ground::slope && options.step_length > 0
                            ? std::atan(options.rise / options.step_length)

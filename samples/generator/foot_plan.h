@@ -11,22 +11,22 @@ namespace krok::samples {
 // One stay of a foot on the ground. Times in seconds, on the plan's own clock.
 struct Footprint {
   Side side = Side::left;
-  Vec3 heel = Vec3::Zero();         // where the heel's contact point stands
-  double heading = 0;               // of the foot about +Y, 0 faces +Z, positive to the left
-  double slope = 0;                 // of the ground in that direction, positive uphill
-  Vec3 path_point = Vec3::Zero();   // the walk's midline beside the heel
+  Vec3 heel = Vec3::Zero();        // where the heel's contact point stands
+  double heading = 0;              // of the foot about +Y, 0 faces +Z, positive to the left
+  double slope = 0;                // of the ground in that direction, positive uphill
+  Vec3 path_point = Vec3::Zero();  // the walk's midline beside the heel
   double path_heading = 0;
-  double step_length = 0;           // from the print before, along the path; 0 for the first two
-  double strike = 0;                // the heel (or the ball, downstairs) comes down
-  double flat = 0;                  // the whole sole is down
-  double heel_rise = 0;             // the heel leaves
-  double ball_rise = 0;             // the ball leaves, the foot rolls on over the tip of the toes
-  double off = 0;                   // the tip leaves
-  double strike_pitch = 0;          // of the foot to the ground at strike, positive toes up
-  double off_pitch = 0;             // of the foot at toe-off, negative
-  double off_toe_pitch = 0;         // of the toes at toe-off, negative
-  bool first_of_foot = false;       // there is no step to it, the foot stood there before
-  bool last_of_foot = false;        // there is no step from it
+  double step_length = 0;      // from the print before, along the path; 0 for the first two
+  double strike = 0;           // the heel (or the ball, downstairs) comes down
+  double flat = 0;             // the whole sole is down
+  double heel_rise = 0;        // the heel leaves
+  double ball_rise = 0;        // the ball leaves, the foot rolls on over the tip of the toes
+  double off = 0;              // the tip leaves
+  double strike_pitch = 0;     // of the foot to the ground at strike, positive toes up
+  double off_pitch = 0;        // of the foot at toe-off, negative
+  double off_toe_pitch = 0;    // of the toes at toe-off, negative
+  bool first_of_foot = false;  // there is no step to it, the foot stood there before
+  bool last_of_foot = false;   // there is no step from it
 };
 
 struct FootPlan {
@@ -36,11 +36,12 @@ struct FootPlan {
   double last_time = 0;
   double rise = 0;
   Ground ground = Ground::stairs;
+  double edge_behind_heel = 0;  // metres of tread behind a heel
 
   // When print i strikes, also where it stood before.
   double time_of(int print) const { return print * step_time; }
 
-  // The height of the ground at a place: treads whose edge is shortly behind the heels, or a slope.
+  // The height of the ground at a place: treads that begin shortly behind the heels, or a slope.
   double ground_height(const Vec3& place) const;
 };
 

@@ -15,8 +15,8 @@ inline constexpr double kHeelRise = 0.31;
 inline constexpr double kBallRise = 0.48;
 inline constexpr double kToeOff = 0.62;
 
-// Flexion of the knee; one peak of 18 degrees as the leg takes the load, one of 61 in swing (Winter,
-// natural cadence).
+// Flexion of the knee; one peak of 18 degrees as the leg takes the load, one of 61 in swing
+// (Winter, natural cadence).
 double knee_flexion(double phase);
 
 // Flexion of the shoulder and the elbow of the same side (Murray, Sepic and Barnard 1967).

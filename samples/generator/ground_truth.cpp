@@ -15,11 +15,17 @@ double rounded(double value) {
   const double printed = std::round(result * 1e6) / 1e6;
   return printed == 0 ? 0 : printed;
 }
-double degrees(double angle) { return rounded(angle / kRadiansPerDegree); }
+double degrees(double angle) {
+  return rounded(angle / kRadiansPerDegree);
+}
 
-Json vector(const Vec3& v) { return Json::array({rounded(v.x()), rounded(v.y()), rounded(v.z())}); }
+Json vector(const Vec3& v) {
+  return Json::array({rounded(v.x()), rounded(v.y()), rounded(v.z())});
+}
 
-const char* side_name(Side side) { return side == Side::left ? "left" : "right"; }
+const char* side_name(Side side) {
+  return side == Side::left ? "left" : "right";
+}
 
 Json parameters(const Walk& walk) {
   const WalkOptions& options = walk.options;

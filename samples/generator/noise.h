@@ -19,8 +19,9 @@ class NoiseSource {
   std::uint64_t state_;
 };
 
-// Adds the options' measuring noise to a pose (joint_to_world): each joint's rotation to its parent,
-// and the root's position. Bones keep their lengths. Without noise in the options nothing changes.
+// Adds the options' measuring noise to a pose (joint_to_world): each joint's rotation to its
+// parent, and the root's position. Bones keep their lengths. Without noise in the options nothing
+// changes.
 void add_noise(const WalkOptions& options, const Skeleton& skeleton, NoiseSource& noise,
                std::span<Transform> joint_to_world);
 

@@ -22,7 +22,8 @@ void add_contact(std::vector<Contact>& contacts, Contact contact, double last) {
 void record_contacts(const FootPlan& plan, const Figure& figure, Walk& walk) {
   const double last = plan.last_time - plan.first_time;
   for (Footprint print : plan.prints) {
-    for (double* time : {&print.strike, &print.flat, &print.heel_rise, &print.ball_rise, &print.off}) {
+    for (double* time :
+         {&print.strike, &print.flat, &print.heel_rise, &print.ball_rise, &print.off}) {
       *time -= plan.first_time;
     }
     const bool starts_before = print.first_of_foot || print.strike < 0;
@@ -36,10 +37,18 @@ void record_contacts(const FootPlan& plan, const Figure& figure, Walk& walk) {
     const bool ball_first = print.strike_pitch < 0;
     const Quat ground(Eigen::AngleAxisd(print.heading, Vec3::UnitY()) *
                       Eigen::AngleAxisd(-print.slope, Vec3::UnitX()));
-    Contact heel{index, ball_first ? print.flat : print.strike, print.heel_rise,
-                 print.first_of_foot, print.last_of_foot, print.heel};
-    Contact toe{index, ball_first ? print.strike : print.flat, print.off, print.first_of_foot,
-                print.last_of_foot, print.heel + ground * Vec3(figure.toe_tip - figure.heel)};
+    Contact heel{index,
+                 ball_first ? print.flat : print.strike,
+                 print.heel_rise,
+                 print.first_of_foot,
+                 print.last_of_foot,
+                 print.heel};
+    Contact toe{index,
+                ball_first ? print.strike : print.flat,
+                print.off,
+                print.first_of_foot,
+                print.last_of_foot,
+                print.heel + ground * Vec3(figure.toe_tip - figure.heel)};
     add_contact(foot.heel, heel, last);
     add_contact(foot.toe, toe, last);
     if (!starts_before) foot.strikes.push_back(print.strike);

@@ -20,8 +20,8 @@ struct Contact {
 };
 
 struct FootContacts {
-  std::vector<Contact> heel;  // the heel's point of the sole
-  std::vector<Contact> toe;   // the point of the sole below the tip of the toes
+  std::vector<Contact> heel;          // the heel's point of the sole
+  std::vector<Contact> toe;           // the point of the sole below the tip of the toes
   std::vector<double> strikes, offs;  // keytimes within the clip: first touch, last touch
 };
 
@@ -30,7 +30,7 @@ struct Walk {
   Figure figure;
   WalkOptions options;
   double step_time = 0;
-  std::vector<Footprint> prints;  // all that touch the clip's range; times from the clip's start
+  std::vector<Footprint> prints;     // all that touch the clip's range; times from the clip's start
   std::array<FootContacts, 2> feet;  // [Side]
 };
 

@@ -32,18 +32,20 @@ Status check(const WalkOptions& options) {
                              range.unit, range.lowest, range.highest),
                  "give a value within the range");
   }
-  if (options.rise != 0 && options.step_length < 0.15 * options.stature) {
-    return Error("walk-option",
-                 fmt::format("steps of {:.3g} m are too short to gain height: the foot needs {:.3g} m",
-                             options.step_length, 0.15 * options.stature),
-                 "make the steps longer, or the rise 0");
+  if (options.rise != 0 && options.step_length < 0.165 * options.stature) {
+    return Error(
+        "walk-option",
+        fmt::format("steps of {:.3g} m are too short to gain height: the foot needs {:.3g} m",
+                    options.step_length, 0.165 * options.stature),
+        "make the steps longer, or the rise 0");
   }
   return {};
 }
 
 double cadence_of(const WalkOptions& options) {
   if (options.cadence > 0) return options.cadence;
-  return std::clamp(options.step_length / 0.0064, 70.0, 140.0);
+  const bool on_stairs = options.rise != 0 && options.ground == Ground::stairs;
+  return std::clamp(options.step_length / 0.0064, on_stairs ? 90.0 : 70.0, 140.0);
 }
 
 }  // namespace krok::samples

@@ -21,7 +21,8 @@ struct WalkOptions {
   Ground ground = Ground::stairs;  // whether a rise comes in treads or on an even slope
 
   // Steps a minute, 40 .. 200; 0: after the walk ratio, step length over cadence, that people keep
-  // over speeds, 0.0064 m per step a minute (Sekiya and Nagasaki 1998), between 70 and 140.
+  // over speeds, 0.0064 m per step a minute (Sekiya and Nagasaki 1998), between 70 and 140, from 90
+  // on stairs.
   double cadence = 0;
 
   // From standing to standing (the last foot is brought beside the other, one strike more than

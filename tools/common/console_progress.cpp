@@ -61,19 +61,22 @@ class ConsoleProgress : public Progress {
   }
 
  private:
+  // Progress that cannot be shown is no reason to stop.
+  static void put(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }
+
   void show() {
     if (style_ == ProgressStyle::json) {
       const nlohmann::ordered_json line = {
           {"progress", {{"what", what_}, {"done", done_}, {"total", total_}}}};
-      fmt::print(stderr, "{}\n", line.dump());
+      put(line.dump() + "\n");
     } else if (style_ == ProgressStyle::plain) {
-      fmt::print(stderr, "{}: {}\n", what_, amount());
+      put(fmt::format("{}: {}\n", what_, amount()));
     } else {
       constexpr std::uint64_t kWidth = 30;
       const std::uint64_t filled =
           total_ > 0 ? std::min(kWidth, done_ * kWidth / total_) : std::uint64_t{0};
-      fmt::print(stderr, "\r\033[K{} {}{:#<{}}{}{:.<{}} {}", what_, color_ ? "\033[32m" : "", "",
-                 filled, color_ ? "\033[0m" : "", "", kWidth - filled, amount());
+      put(fmt::format("\r\033[K{} {}{:#<{}}{}{:.<{}} {}", what_, color_ ? "\033[32m" : "", "",
+                      filled, color_ ? "\033[0m" : "", "", kWidth - filled, amount()));
       drawn_ = true;
     }
     std::fflush(stderr);

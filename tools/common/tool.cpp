@@ -155,7 +155,8 @@ std::string version() {
 }
 
 void ToolContext::tell(Diagnostic diagnostic) {
-  const bool shown = !quiet && (verbose || diagnostic.severity != Severity::note);
+  const bool shown = diagnostic.severity == Severity::error ||
+                     (!quiet && (verbose || diagnostic.severity != Severity::note));
   if (shown) put(stderr, to_text(diagnostic) + "\n");
   report.issues.push_back(std::move(diagnostic));
 }

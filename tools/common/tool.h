@@ -32,8 +32,8 @@ class ToolContext {
   Progress* progress = nullptr;
   Report report;
 
-  // Prints a warning or note in the common form on standard error (notes with -v only, nothing with
-  // -q) and keeps it in the report.
+  // Prints a diagnostic in the common form on standard error (notes with -v only, with -q errors
+  // only) and keeps it in the report.
   void tell(Diagnostic diagnostic);
   void tell(const Diagnostics& diagnostics);
   void warn(std::string code, std::string message, std::string hint = {});

@@ -89,6 +89,9 @@ Status write_outputs(const Options& options, ToolContext& context, const Clip& c
   if (!file) return file.error();
   const model::WriteOptions model_options{.orientation = options.orientation};
   if (Status written = model::write(model, model_options, *file); !written) return written;
+  // Both are safe on the disk before either is put in place.
+  if (Status done = motion->sync(); !done) return done;
+  if (Status done = file->sync(); !done) return done;
   if (Status done = file->commit(); !done) return done;
   if (Status done = motion->commit(); !done) return done;
   context.wrote(context.output);

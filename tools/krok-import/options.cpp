@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include "core/numbers.h"
 
 namespace krok::import {
 
@@ -26,9 +26,10 @@ CLI::Option* add_rate(CLI::App& app, const std::string& name, double& value,
       ->type_name("N")
       ->check(CLI::Validator(
           [](std::string& text) {
-            const CLI::Range range(1e-3, 1e6);
-            return range(text).empty() ? std::string()
-                                       : "'" + text + "' is no rate from 0.001 to 1000000";
+            const auto rate = parse_finite(text);
+            return rate && *rate >= 1e-3 && *rate <= 1e6
+                       ? std::string()
+                       : "'" + text + "' is no rate from 0.001 to 1000000";
           },
           ""));
 }

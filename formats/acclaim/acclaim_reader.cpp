@@ -1,0 +1,318 @@
+#include "formats/acclaim/acclaim_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "formats/acclaim/kinematics.h"
+#include "formats/acclaim/motion_file.h"
+#include "formats/acclaim/skeleton_file.h"
+#include "formats/acclaim/source_text.h"
+#include "scene/fill_frames.h"
+#include "scene/roles.h"
+
+namespace krok::acclaim {
+
+namespace {
+
+constexpr double kInch = 0.0254;
+// CMU's skeletons say "length 0.45"; their lengths are inches divided by it (mocap.cs.cmu.edu,
+// frequently asked questions).
+constexpr double kCmuLengthUnit = 0.45;
+constexpr double kUsualRate = 120.0;
+constexpr std::size_t kMostSamples = 200;
+constexpr std::size_t kFramesAtOnce = 64;
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  return text;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view asf_text, const std::string& asf_name, std::string_view amc_text,
+         const std::string& amc_name, const ReadOptions& options)
+      : asf_(without_byte_order_mark(asf_text), asf_name, options.strictness, capture_.diagnostics),
+        amc_(without_byte_order_mark(amc_text), amc_name, options.strictness, capture_.diagnostics),
+        has_motion_(!amc_text.empty() || !amc_name.empty()),
+        options_(options),
+        given_{options.unit, options.up, options.forward} {}
+
+  Result<Capture> read() {
+    if (Status kind = check_kind(asf_.text(), asf_.file_name(), true); !kind) return kind.error();
+    if (has_motion_) {
+      if (Status kind = check_kind(amc_.text(), amc_.file_name(), false); !kind) {
+        return kind.error();
+      }
+    }
+    auto skeleton = parse_skeleton(asf_, options_);
+    if (!skeleton) return std::move(skeleton).error();
+    file_ = std::move(*skeleton);
+    capture_.name = file_.name;
+    capture_.documentation = file_.documentation;
+    if (has_motion_) {
+      auto motion = parse_motion(amc_, file_, joint_count_with_ends(file_), options_);
+      if (!motion) return std::move(motion).error();
+      motion_ = std::move(*motion);
+      capture_.repairs = motion_.repairs;
+    }
+    const Kinematics kinematics(file_,
+                                motion_.degrees.value_or(file_.degrees) ? kRadiansPerDegree : 1.0);
+    if (Status chosen = choose_conventions(kinematics); !chosen) return chosen.error();
+    if (Status placed = place_frames(); !placed) return placed.error();
+    choose_rate();
+    if (Status filled = fill_clip(kinematics); !filled) return filled.error();
+    fill_freedoms(kinematics);
+    asf_.finish();
+    amc_.finish();
+    return std::move(capture_);
+  }
+
+ private:
+  void tell(Severity severity, const SourceText& source, std::string code, std::string message,
+            std::string hint = {}) {
+    Diagnostic told;
+    told.severity = severity;
+    told.code = std::move(code);
+    told.message = std::move(message);
+    told.hint = std::move(hint);
+    told.where.file = source.file_name();
+    capture_.diagnostics.push_back(std::move(told));
+  }
+
+  Status choose_conventions(const Kinematics& kinematics) {
+    Conventions& conventions = capture_.conventions;
+    const Skeleton in_file = kinematics.skeleton();
+    if (!given_.complete()) {
+      std::vector<Vec3> samples;
+      std::vector<Transform> pose(kinematics.joint_count());
+      const std::size_t count = std::min(motion_.frame_count(), kMostSamples);
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t frame = count < 2 ? 0 : i * (motion_.frame_count() - 1) / (count - 1);
+        kinematics.pose(motion_.frame(frame), pose);
+        for (const Transform& joint : pose) samples.push_back(joint.position);
+      }
+      conventions = detect_conventions(in_file, find_roles(in_file), samples);
+      take_unit_of_file(in_file);
+    }
+    apply_given(given_, conventions);
+    auto conversion = Conversion::make(conventions);
+    if (!conversion) return std::move(conversion).error().in_file(asf_.file_name());
+    conversion_ = *conversion;
+    report_conventions(conventions, given_, "acclaim", asf_.file_name(), capture_.diagnostics);
+    capture_.clip.provenance.conversions = describe_conversions(conventions, given_);
+    return {};
+  }
+
+  // The format's "length" is a factor without a unit. Vicon's files have inches divided by it; that
+  // is believed where it makes a figure of a person's size.
+  void take_unit_of_file(const Skeleton& in_file) {
+    if (!file_.length_unit || *file_.length_unit == 1.0) return;
+    const double metres = kInch / *file_.length_unit;
+    const double size = reference_extent(in_file) * metres;
+    const bool cmu = *file_.length_unit == kCmuLengthUnit;
+    const bool person = size > 1.0 && size < 2.6;
+    const bool possible = size > 0.05 && size < 10.0;
+    if (!person && !(cmu && possible)) return;
+    Conventions& conventions = capture_.conventions;
+    const std::string unit = readable(*file_.length_unit);
+    conventions.unit = {metres, cmu ? "cmu" : fmt::format("inches / {}", unit)};
+    conventions.unit_confidence = cmu && person ? Confidence::certain : Confidence::likely;
+    conventions.unit_reason = fmt::format(
+        ":units says length {}, which stands for inches divided by it; the figure "
+        "then measures {} m",
+        unit, readable(size, 3));
+  }
+
+  // What the numbers of the frames say of their times.
+  Status place_frames() {
+    const std::vector<long long>& numbers = motion_.frame_numbers;
+    const std::size_t count = numbers.size();
+    places_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) places_[i] = i;
+    if (count == 0) return {};
+    capture_.first_frame_number = numbers[0];
+    if (numbers[0] != 0 && numbers[0] != 1) {
+      tell(Severity::note, amc_, "acclaim-frame",
+           fmt::format("the first frame has the number {}; times count from it", numbers[0]));
+    }
+    if (std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>()) !=
+        numbers.end()) {
+      return {};  // no times can be made of these; the parser has told
+    }
+    // Differences without overflow: numbers are increasing.
+    const auto step = [&](std::size_t i) {
+      return static_cast<unsigned long long>(numbers[i]) -
+             static_cast<unsigned long long>(numbers[i - 1]);
+    };
+    std::size_t gaps = 0, first_gap = 0;
+    bool constant = true;
+    for (std::size_t i = 1; i < count; ++i) {
+      constant = constant && step(i) == step(1);
+      if (step(i) > 1 && gaps++ == 0) first_gap = i;
+    }
+    if (gaps == 0) return {};
+    if (constant && count > 2) {
+      frame_step_ = static_cast<double>(step(1));
+      return {};
+    }
+    return close_or_fill(gaps, first_gap);
+  }
+
+  Status close_or_fill(std::size_t gaps, std::size_t first_gap) {
+    const std::vector<long long>& numbers = motion_.frame_numbers;
+    const std::string where =
+        fmt::format("{} gap{} in the numbers of the frames (the first: {} is followed by {})", gaps,
+                    gaps == 1 ? "" : "s", numbers[first_gap - 1], numbers[first_gap]);
+    if (options_.strictness != Strictness::repair) {
+      if (options_.strictness == Strictness::strict) {
+        return Error("acclaim-frame", where, "").in_file(amc_.file_name());
+      }
+      tell(Severity::warning, amc_, "acclaim-frame", where + "; later frames move to the front",
+           "--repair fills the gaps");
+      return {};
+    }
+    const auto after_first = [&](std::size_t i) {
+      return static_cast<std::size_t>(static_cast<unsigned long long>(numbers[i]) -
+                                      static_cast<unsigned long long>(numbers[0]));
+    };
+    const std::size_t last = after_first(numbers.size() - 1);
+    if (last >= most_frames(amc_.text().size(), 0, joint_count_with_ends(file_), options_)) {
+      return Error("acclaim-limit",
+                   where + "; filling them is out of proportion to the size of the file",
+                   "read it without --repair")
+          .in_file(amc_.file_name());
+    }
+    for (std::size_t i = 0; i < places_.size(); ++i) places_[i] = after_first(i);
+    capture_.repairs.push_back(
+        fmt::format("{} frames filled by interpolation in {}", last + 1 - numbers.size(), where));
+    tell(Severity::warning, amc_, "acclaim-repair", where + ", filled by interpolation");
+    return {};
+  }
+
+  void choose_rate() {
+    double& rate = capture_.clip.rate;
+    rate = kUsualRate;
+    if (!has_motion_) {
+      if (options_.rate) rate = *options_.rate;
+      capture_.rate = {readable(rate), "there is no motion", Confidence::guess};
+      return;
+    }
+    if (options_.rate) {
+      rate = *options_.rate;
+      capture_.rate = {readable(rate), "as given", Confidence::certain};
+      return;
+    }
+    std::string reason = "the motion says so";
+    if (motion_.rate) {
+      rate = *motion_.rate;
+    } else {
+      reason = "an AMC does not say its rate; most of the CMU collection has this";
+    }
+    if (frame_step_ > 1) {
+      rate /= frame_step_;
+      reason =
+          fmt::format("the numbers of the frames go up by {}, so it is {} / {}; for the {}, {}",
+                      readable(frame_step_), readable(rate * frame_step_), readable(frame_step_),
+                      readable(rate * frame_step_), reason);
+    }
+    const bool guess = !motion_.rate || frame_step_ > 1;
+    capture_.rate = {readable(rate), reason, guess ? Confidence::guess : Confidence::certain};
+    tell(guess ? Severity::warning : Severity::note, amc_, "acclaim-rate",
+         fmt::format("{} frames a second: {}", readable(rate), reason),
+         guess ? "say the rate with --fps N if it is another" : "");
+  }
+
+  Error overflow(const SourceText& source) const {
+    return Error("acclaim-number", "the numbers are so large that positions overflow")
+        .in_file(source.file_name());
+  }
+
+  Status fill_clip(const Kinematics& kinematics) {
+    Clip& clip = capture_.clip;
+    clip.skeleton = kinematics.skeleton();
+    for (Transform& joint : clip.skeleton.reference) {
+      joint = conversion_.reference(joint);
+      if (!joint.position.cast<float>().allFinite()) return overflow(asf_);
+    }
+    if (places_.empty()) return {};
+    clip.resize(static_cast<int>(places_.back() + 1));
+    const std::size_t count = places_.size();
+    if (options_.progress != nullptr) options_.progress->begin("reading frames", count);
+    std::atomic<bool> finite = true;
+    parallel_for(count, kFramesAtOnce, options_.jobs, [&](std::size_t begin, std::size_t end) {
+      std::vector<Transform> pose(kinematics.joint_count());
+      for (std::size_t i = begin; i < end; ++i) {
+        kinematics.pose(motion_.frame(i), pose);
+        for (Transform& joint : pose) {
+          joint = conversion_.pose(joint);
+          if (!joint.position.cast<float>().allFinite()) finite = false;
+        }
+        clip.set_pose(static_cast<int>(places_[i]), pose);
+      }
+      if (options_.progress != nullptr) options_.progress->advance(end - begin);
+    });
+    if (!finite) return overflow(amc_);
+    if (options_.progress != nullptr) options_.progress->end();
+    for (std::size_t i = 1; i < count; ++i) {
+      if (places_[i] - places_[i - 1] < 2) continue;
+      fill_frames_between(clip, static_cast<int>(places_[i - 1]), static_cast<int>(places_[i]));
+    }
+    return {};
+  }
+
+  void fill_freedoms(const Kinematics& kinematics) {
+    capture_.freedoms.resize(kinematics.joint_count());
+    for (std::size_t j = 0; j < capture_.freedoms.size(); ++j) {
+      const int source = kinematics.file_joint(j);
+      if (source < 0) continue;
+      const SkeletonFile::Joint& joint = file_.joints[static_cast<std::size_t>(source)];
+      JointFreedom& freedom = capture_.freedoms[j];
+      freedom.axes = conversion_.reference_rotation(joint.axes);
+      for (std::size_t c = 0; c < joint.channels.size(); ++c) {
+        const Channel channel = joint.channels[c];
+        const SkeletonFile::Limit limit =
+            joint.limits.empty() ? SkeletonFile::Limit() : joint.limits[c];
+        using Kind = DegreeOfFreedom::Kind;
+        DegreeOfFreedom degree;
+        degree.kind = is_rotation(channel)      ? Kind::rotation
+                      : is_translation(channel) ? Kind::translation
+                                                : Kind::stretch;
+        degree.axis = axis_index(channel);
+        const double unit = is_rotation(channel) ? 1.0 : conversion_.metres();
+        degree.lower = limit.lower * unit;
+        degree.upper = limit.upper * unit;
+        freedom.degrees.push_back(degree);
+      }
+    }
+  }
+
+  Capture capture_;
+  SourceText asf_, amc_;
+  bool has_motion_;
+  const ReadOptions& options_;
+  GivenConventions given_;
+  SkeletonFile file_;
+  MotionFile motion_;
+  Conversion conversion_;
+  std::vector<std::size_t> places_;  // [frames of the file] the frame of the clip
+  double frame_step_ = 1;
+};
+
+}  // namespace
+
+Result<Capture> read(std::string_view asf_text, const std::string& asf_name,
+                     std::string_view amc_text, const std::string& amc_name,
+                     const ReadOptions& options) {
+  if (options.rate && !(*options.rate > 0 && std::isfinite(*options.rate))) {
+    return Error("acclaim-rate",
+                 fmt::format("a rate of {} frames a second is not positive", *options.rate));
+  }
+  return Reader(asf_text, asf_name, amc_text, amc_name, options).read();
+}
+
+}  // namespace krok::acclaim

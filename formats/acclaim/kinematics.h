@@ -1,0 +1,53 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "formats/acclaim/skeleton_file.h"
+#include "math/transform.h"
+#include "scene/skeleton.h"
+
+namespace krok::acclaim {
+
+// The joints of a clip made from an ASF: the file's joints in their order, each leaf followed by
+// its end. In the file's unit and axes.
+class Kinematics {
+ public:
+  // `radians` is the size of an angle's unit in the motion. The skeleton must outlive this.
+  Kinematics(const SkeletonFile& skeleton, double radians);
+
+  std::size_t joint_count() const { return joints_.size(); }
+
+  // Names, parents and end sites, with the reference pose.
+  Skeleton skeleton() const;
+
+  // For each joint of the clip the file's, or -1 for an end.
+  int file_joint(std::size_t joint) const {
+    return joints_[joint].is_end ? -1 : joints_[joint].source;
+  }
+
+  // joint_to_world, shape [joints], from a frame's values, shape [channels], in doubles.
+  void pose(std::span<const double> values, std::span<Transform> joint_to_world) const;
+
+ private:
+  struct Joint {
+    int parent = -1;
+    int source = 0;  // of the file; the leaf's own for an end
+    bool is_end = false;
+    std::size_t first_channel = 0;
+    // Where the parent bone's length stands in a frame's values, if it can stretch.
+    std::size_t parent_length = kFixed;
+  };
+  static constexpr std::size_t kFixed = static_cast<std::size_t>(-1);
+
+  Vec3 bone_end(int file_joint, double length) const;
+
+  const SkeletonFile& file_;
+  double radians_;
+  std::vector<Joint> joints_;
+};
+
+// How many joints the clip has.
+std::size_t joint_count_with_ends(const SkeletonFile& skeleton);
+
+}  // namespace krok::acclaim

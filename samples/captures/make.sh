@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Makes the captures of this folder anew: make.sh [OUTPUT_FOLDER]. The program is found through
+# $MAKE_WALK or in build/samples.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+make_walk=${MAKE_WALK:-$here/../../build/samples/make-walk}
+out=${1:-$here}
+mkdir -p "$out"
+
+"$make_walk" --steps 8 -o "$out/walk.bvh"
+"$make_walk" --steps 6 --step-length 32cm --rise 16cm --from-standing -o "$out/stairs.bvh"
+"$make_walk" --steps 6 --step-length 65cm --turn 15deg -o "$out/turn.bvh"

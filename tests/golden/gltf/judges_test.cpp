@@ -1,0 +1,175 @@
+// Would fail if a glTF file that the tools write broke the standard, or showed something else in
+// three.js than Krok computed: another pose of the joints, another shape of the mesh.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "formats/anim/anim.h"
+#include "formats/model/model_format.h"
+#include "support/test_scenes.h"
+
+namespace krok {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string text;  // both streams
+};
+
+Outcome run(const std::string& command, const fs::path& folder) {
+  const fs::path log = folder / "log.txt";
+  const int status = std::system(fmt::format("{} > '{}' 2>&1", command, log.string()).c_str());
+  std::ostringstream text;
+  text << std::ifstream(log).rdbuf();
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
+}
+
+class GltfJudges : public testing::Test {
+ protected:
+  void SetUp() override {
+    const fs::path modules = fs::path(KROK_SOURCE_DIR) / "tests/node_modules";
+    for (const char* needed : {"gltf-validator", "three"}) {
+      if (!fs::exists(modules / needed)) {
+        GTEST_SKIP() << "skipped: no " << (modules / needed).string() << "; run npm ci in tests/";
+      }
+    }
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / fmt::format("krok_{}_{}", info->name(), getpid());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override {
+    if (!folder_.empty()) fs::remove_all(folder_);
+  }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  void write_clip(const Clip& clip, OrientationEncoding encoding = OrientationEncoding::xyz) {
+    auto file = OutputFile::create(path("in.anim"));
+    ASSERT_TRUE(file.ok());
+    anim::WriteOptions options;
+    options.orientation = encoding;
+    ASSERT_TRUE(anim::write(clip, options, *file).ok());
+    ASSERT_TRUE(file->commit().ok());
+  }
+  void write_model(const Model& model) {
+    auto file = OutputFile::create(path("in.model"));
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE(model::write(model, {}, *file).ok());
+    ASSERT_TRUE(file->commit().ok());
+  }
+
+  void tool(const std::string& arguments, int exit_code = 0) {
+    const auto outcome =
+        run(fmt::format("cd '{}' && {}/{}", folder_.string(), KROK_BIN_DIR, arguments), folder_);
+    EXPECT_EQ(outcome.exit_code, exit_code) << arguments << "\n" << outcome.text;
+  }
+  void judge(const std::string& script, const std::string& arguments, int exit_code = 0) {
+    const auto outcome = run(fmt::format("cd '{}' && node '{}/tests/golden/{}' {}",
+                                         folder_.string(), KROK_SOURCE_DIR, script, arguments),
+                             folder_);
+    EXPECT_EQ(outcome.exit_code, exit_code) << arguments << "\n" << outcome.text;
+  }
+  void valid(const std::string& files) { judge("validate_gltf.mjs", files); }
+
+  fs::path folder_;
+};
+
+Skeleton human() {
+  return test::with_turned_joints(test::human_skeleton());
+}
+
+TEST_F(GltfJudges, SkeletonsShowTheJointsOfTheTable) {
+  write_clip(test::swinging_clip(human(), 41, 30));
+  for (const char* name : {"a.glb", "a.gltf", "--no-bones -o b.glb", "a.csv"}) {
+    tool(fmt::format("krok-export in.anim {}{}", *name == '-' ? "" : "-o ", name));
+  }
+  valid("a.glb a.gltf b.glb");
+  for (const char* file : {"a.glb", "a.gltf", "b.glb"}) {
+    judge("three_bounds.mjs", fmt::format("{} --joints a.csv --tolerance 2e-6", file));
+  }
+}
+
+TEST_F(GltfJudges, RigShowsWhatTheBakeShows) {
+  write_clip(test::swinging_clip(human(), 41, 30));
+  write_model(test::tube_model(human()));
+  tool("krok-skin in.model in.anim -o clip.glb");
+  tool("krok-skin in.model in.anim --as rig -o rig.glb");
+  tool("krok-skin in.model in.anim --as rig -o rig.gltf");
+  tool("krok-export in.anim -o joints.csv");
+  valid("clip.glb rig.glb rig.gltf");
+  judge("three_bounds.mjs", "rig.glb --against clip.glb --tolerance 1e-5");
+  judge("three_bounds.mjs", "rig.gltf --against clip.glb --tolerance 1e-5");
+  judge("three_bounds.mjs", "rig.glb --joints joints.csv --tolerance 2e-6");
+}
+
+TEST_F(GltfJudges, PosesAndFramesShowTheBake) {
+  write_clip(test::swinging_clip(human(), 21, 25));
+  write_model(test::tube_model(human()));
+  tool("krok-skin in.model in.anim --from 10f --to 10f -o clip.glb");
+  tool("krok-skin in.model in.anim --as pose --time 10f -o pose.glb");
+  tool("krok-skin in.model in.anim --as frames --from 8f --every 2 --to 12f -o out.glb");
+  valid(".");
+  judge("three_bounds.mjs", "pose.glb --against clip.glb --tolerance 1e-6");
+  judge("three_bounds.mjs", "out_0010.glb --against clip.glb --tolerance 1e-6");
+  judge("three_bounds.mjs", "out_0008.glb --against clip.glb --tolerance 1e-3", 1);
+}
+
+TEST_F(GltfJudges, OddFilesAreValid) {
+  Skeleton odd = human();
+  odd.names[1] = "spine: \"a/b\" [c].d";
+  odd.names[2] = "bones_mesh";  // what the mesh's node would like to be called
+  odd.names[3] = "\xc5\x99\xc3\xadha";
+  for (const int frames : {0, 1, 2}) {
+    write_clip(test::swinging_clip(odd, frames, 29.97));
+    write_model(test::tube_model(odd, 8));
+    const std::string n = std::to_string(frames);
+    tool(fmt::format("krok-export in.anim -o export{}.glb", n));
+    tool(fmt::format("krok-export in.anim --no-bones -o plain{}.gltf", n));
+    tool(fmt::format("krok-skin in.model in.anim --as rig -o rig{}.glb", n));
+    tool(fmt::format("krok-skin in.model in.anim --as pose -o pose{}.glb", n));
+    tool(fmt::format("krok-skin in.model in.anim --as clip -o clip{}.glb", n), frames > 0 ? 0 : 2);
+  }
+  Skeleton lone;
+  lone.add("only", Skeleton::kNoParent, {});
+  write_clip(test::swinging_clip(lone, 3, 10));
+  tool("krok-export in.anim -o lone.glb");
+  // A figure that does not move at all.
+  Clip still;
+  still.skeleton = odd;
+  still.resize(4);
+  for (int f = 0; f < 4; ++f) still.set_pose(f, odd.reference);
+  write_clip(still);
+  tool("krok-export in.anim -o still.glb");
+  tool("krok-export in.anim --no-bones -o still_plain.glb");
+  valid(".");
+}
+
+TEST_F(GltfJudges, TheJudgesFindFaults) {
+  write_clip(test::swinging_clip(human(), 12, 30));
+  tool("krok-export in.anim -o a.glb");
+  tool("krok-export in.anim -o a.csv");
+  // A byte of a joint's name becomes a control character, and a position in the table is moved.
+  std::ostringstream content;
+  content << std::ifstream(path("a.glb"), std::ios::binary).rdbuf();
+  std::string bytes = content.str();
+  const auto at = bytes.find("\"LINEAR\"");
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at, 8, "\"LINEAL\"");
+  std::ofstream(path("b.glb"), std::ios::binary) << bytes;
+  judge("validate_gltf.mjs", "b.glb", 1);
+  tool("krok-export in.anim -o c.csv");
+  run(fmt::format("sed -i '5s/^0,0,\\([^,]*\\),/0,0,\\1,1/' '{}'", path("c.csv")), folder_);
+  judge("three_bounds.mjs", "a.glb --joints a.csv");
+  judge("three_bounds.mjs", "a.glb --joints c.csv", 1);
+}
+
+}  // namespace
+}  // namespace krok

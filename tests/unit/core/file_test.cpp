@@ -1,0 +1,361 @@
+// If these fail, a user's file is lost or left half-written, or a device is replaced by a file.
+#include "core/file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace krok {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FileTest : public testing::Test {
+ protected:
+  FileTest() {
+    std::string name = (fs::temp_directory_path() / "krok-file-test-XXXXXX").string();
+    EXPECT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  ~FileTest() override {
+    std::error_code ignored;
+    fs::permissions(folder_, fs::perms::owner_all, ignored);
+    fs::remove_all(folder_, ignored);
+  }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  static void put(const std::string& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+  }
+  static std::string get(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  // Everything in the folder, hidden temporary files included.
+  std::vector<std::string> listing() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_))
+      names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  fs::path folder_;
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(FileTest, ReadsAWholeFile) {
+  put(path("a"), std::string("one\0two", 7));
+  const auto file = InputFile::open(path("a"));
+  ASSERT_TRUE(file.ok());
+  EXPECT_EQ(file->text(), std::string_view("one\0two", 7));
+  EXPECT_EQ(file->path(), path("a"));
+}
+
+TEST_F(FileTest, ReadsAnEmptyFile) {
+  put(path("a"), "");
+  const auto file = InputFile::open(path("a"));
+  ASSERT_TRUE(file.ok());
+  EXPECT_TRUE(file->bytes().empty());
+}
+
+TEST_F(FileTest, ReadsAPipe) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  std::thread writer([&] { put(path("pipe"), std::string(200000, 'x')); });
+  const auto file = InputFile::open(path("pipe"));
+  writer.join();
+  ASSERT_TRUE(file.ok());
+  EXPECT_EQ(file->text(), std::string(200000, 'x'));
+}
+
+TEST_F(FileTest, SaysWhyAFileCannotBeRead) {
+  const auto code = [&](const std::string& name, std::uint64_t limit = 1000) {
+    const auto file = InputFile::open(name, limit);
+    EXPECT_FALSE(file.ok());
+    if (file.ok()) return std::string();
+    EXPECT_EQ(file.error().where.file, name);
+    return file.error().code;
+  };
+  put(path("big"), std::string(1001, 'x'));
+  put(path("plain"), "x");
+  EXPECT_EQ(code(path("missing")), "file-missing");
+  EXPECT_EQ(code(path("plain/inside")), "file-missing");
+  EXPECT_EQ(code(folder_.string()), "file-directory");
+  EXPECT_EQ(code(path("big")), "file-too-large");
+  EXPECT_EQ(code("/dev/zero"), "file-too-large");
+  EXPECT_EQ(code(""), "file-missing");
+}
+
+TEST_F(FileTest, AppearsOnlyOnCommit) {
+  auto file = OutputFile::create(path("out"));
+  ASSERT_TRUE(file.ok());
+  ASSERT_TRUE(file->write("abc").ok());
+  EXPECT_FALSE(fs::exists(path("out")));
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(get(path("out")), "abc");
+  EXPECT_EQ(listing(), Names{"out"});
+}
+
+TEST_F(FileTest, LeavesNothingWithoutCommit) {
+  put(path("out"), "old");
+  {
+    auto file = OutputFile::create(path("out"));
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE(file->write(std::string(1 << 20, 'n')).ok());
+    EXPECT_EQ(listing().size(), 2u);
+  }
+  EXPECT_EQ(get(path("out")), "old");
+  EXPECT_EQ(listing(), Names{"out"});
+}
+
+TEST_F(FileTest, AnAssignedOverFileIsDiscarded) {
+  auto first = OutputFile::create(path("first"));
+  auto second = OutputFile::create(path("second"));
+  ASSERT_TRUE(first.ok() && second.ok());
+  *first = std::move(*second);
+  EXPECT_EQ(listing().size(), 1u);
+  ASSERT_TRUE(first->commit().ok());
+  EXPECT_EQ(listing(), Names{"second"});
+}
+
+TEST_F(FileTest, WritesLargeAndSmallPiecesInOrder) {
+  std::string expected;
+  auto file = OutputFile::create(path("out"));
+  ASSERT_TRUE(file.ok());
+  for (const std::size_t size : {1, 1000, 262143, 262144, 5, 700000, 0, 3}) {
+    const std::string piece(size, static_cast<char>('a' + size % 26));
+    expected += piece;
+    ASSERT_TRUE(file->write(piece).ok());
+    EXPECT_EQ(file->size(), expected.size());
+  }
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(get(path("out")), expected);
+}
+
+TEST_F(FileTest, OverwritesWhatIsWritten) {
+  auto file = OutputFile::create(path("out"));
+  ASSERT_TRUE(file.ok());
+  EXPECT_TRUE(file->can_overwrite());
+  ASSERT_TRUE(file->write("0123456789").ok());
+  ASSERT_TRUE(file->overwrite(2, std::as_bytes(std::span("AB", 2))).ok());
+  ASSERT_TRUE(file->write("xyz").ok());
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(get(path("out")), "01AB456789xyz");
+}
+
+TEST_F(FileTest, NoClobberRefusesAFileThatExists) {
+  put(path("out"), "old");
+  const auto file = OutputFile::create(path("out"), {.no_clobber = true});
+  ASSERT_FALSE(file.ok());
+  EXPECT_EQ(file.error().code, "file-exists");
+  EXPECT_EQ(get(path("out")), "old");
+}
+
+TEST_F(FileTest, NoClobberRefusesAFileThatAppearedMeanwhile) {
+  auto file = OutputFile::create(path("out"), {.no_clobber = true});
+  ASSERT_TRUE(file.ok());
+  ASSERT_TRUE(file->write("new").ok());
+  put(path("out"), "other");
+  const Status done = file->commit();
+  ASSERT_FALSE(done.ok());
+  EXPECT_EQ(done.error().code, "file-exists");
+  EXPECT_EQ(get(path("out")), "other");
+  EXPECT_EQ(listing(), Names{"out"});
+}
+
+TEST_F(FileTest, NoClobberWritesANewFile) {
+  ASSERT_TRUE(write_file(path("out"), "new", {.no_clobber = true}).ok());
+  EXPECT_EQ(get(path("out")), "new");
+  EXPECT_EQ(listing(), Names{"out"});
+}
+
+TEST_F(FileTest, WritesThroughASymbolicLink) {
+  fs::create_directory(path("deep"));
+  put(path("deep/real"), "old");
+  fs::create_symlink("deep/real", path("link"));
+  fs::create_symlink("link", path("link-to-link"));
+  ASSERT_TRUE(write_file(path("link-to-link"), "new").ok());
+  EXPECT_TRUE(fs::is_symlink(path("link-to-link")));
+  EXPECT_TRUE(fs::is_symlink(path("link")));
+  EXPECT_EQ(get(path("deep/real")), "new");
+}
+
+TEST_F(FileTest, WritesThroughADanglingSymbolicLink) {
+  fs::create_symlink("later", path("link"));
+  ASSERT_TRUE(write_file(path("link"), "new").ok());
+  EXPECT_TRUE(fs::is_symlink(path("link")));
+  EXPECT_EQ(get(path("later")), "new");
+}
+
+TEST_F(FileTest, SymbolicLinksInACircleAreAnError) {
+  fs::create_symlink("b", path("a"));
+  fs::create_symlink("a", path("b"));
+  EXPECT_FALSE(InputFile::open(path("a")).ok());
+  const Names before = listing();
+  (void)OutputFile::create(path("a"));
+  EXPECT_EQ(listing(), before);
+}
+
+TEST_F(FileTest, KeepsTheModeOfTheFileItReplaces) {
+  put(path("out"), "old");
+  ASSERT_EQ(chmod(path("out").c_str(), 0640), 0);
+  ASSERT_TRUE(write_file(path("out"), "new").ok());
+  struct stat status {};
+  ASSERT_EQ(stat(path("out").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0640u);
+}
+
+TEST_F(FileTest, NewFilesHaveTheUsualMode) {
+  put(path("usual"), "x");
+  ASSERT_TRUE(write_file(path("out"), "new").ok());
+  struct stat usual {
+  }, status{};
+  ASSERT_EQ(stat(path("usual").c_str(), &usual), 0);
+  ASSERT_EQ(stat(path("out").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode, usual.st_mode);
+}
+
+// The mode mask can only be read by setting it; threads that did so at once lost it.
+TEST_F(FileTest, ThreadsLeaveTheModeMaskAlone) {
+  const mode_t before = umask(027);
+  umask(before);
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < 50; ++i) {
+        EXPECT_TRUE(write_file(path("f" + std::to_string(t * 100 + i)), "x").ok());
+      }
+    });
+  }
+  for (auto& thread : threads) thread.join();
+  const mode_t after = umask(before);
+  EXPECT_EQ(after, before);
+  EXPECT_EQ(listing().size(), 200u);
+}
+
+TEST_F(FileTest, AFullDeviceIsAnErrorAndStaysADevice) {
+  const Status written = write_file("/dev/full", "text");
+  ASSERT_FALSE(written.ok());
+  EXPECT_EQ(written.error().code, "file-unwritable");
+  EXPECT_NE(written.error().message.find("No space left"), std::string::npos);
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST_F(FileTest, TheFirstFailureIsKept) {
+  auto file = OutputFile::create("/dev/full");
+  ASSERT_TRUE(file.ok());
+  EXPECT_FALSE(file->can_overwrite());
+  EXPECT_FALSE(file->overwrite(0, {}).ok());
+  EXPECT_FALSE(file->write(std::string(1 << 20, 'x')).ok());
+  EXPECT_FALSE(file->write("y").ok());
+  EXPECT_FALSE(file->commit().ok());
+}
+
+TEST_F(FileTest, DevicesAreWrittenDirectly) {
+  EXPECT_TRUE(write_file("/dev/null", "text").ok());
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(FileTest, AFolderCannotBeWritten) {
+  const auto file = OutputFile::create(folder_.string());
+  ASSERT_FALSE(file.ok());
+  EXPECT_EQ(file.error().code, "file-directory");
+}
+
+TEST_F(FileTest, AMissingFolderIsNamed) {
+  const auto file = OutputFile::create(path("no/such/out"));
+  ASSERT_FALSE(file.ok());
+  EXPECT_EQ(file.error().code, "file-unwritable");
+  EXPECT_NE(file.error().message.find(path("no/such")), std::string::npos);
+}
+
+TEST_F(FileTest, AFolderWithoutWritePermissionIsAnError) {
+  if (geteuid() == 0) {
+    // Permissions do not bind root; the kernel's own folder does.
+    const auto file = OutputFile::create("/proc/out");
+    ASSERT_FALSE(file.ok());
+    EXPECT_EQ(file.error().code, "file-unwritable");
+    return;
+  }
+  ASSERT_EQ(chmod(folder_.c_str(), 0500), 0);
+  const auto file = OutputFile::create(path("out"));
+  ASSERT_FALSE(file.ok());
+  EXPECT_EQ(file.error().code, "file-unwritable");
+}
+
+TEST_F(FileTest, AnEmptyNameIsAnError) {
+  EXPECT_FALSE(OutputFile::create("").ok());
+}
+
+TEST(FileNames, BaseNameAndExtension) {
+  EXPECT_EQ(base_name("/a/b/walk.bvh"), "walk.bvh");
+  EXPECT_EQ(base_name("walk.bvh"), "walk.bvh");
+  EXPECT_EQ(extension("/a.b/Walk.BVH"), ".bvh");
+  EXPECT_EQ(extension("/a.b/walk"), "");
+  EXPECT_EQ(extension("take.1.anim"), ".anim");
+}
+
+// A child writes half a file, then gets the signal.
+class SignalTest : public FileTest, public testing::WithParamInterface<int> {
+ protected:
+  // What the child ended with: its signal, or 0 for an ordinary end.
+  int end_child_by(int signal_number, bool ignored) {
+    int ready[2];
+    EXPECT_EQ(pipe(ready), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+      if (ignored) signal(signal_number, SIG_IGN);
+      remove_temporaries_on_signals();
+      auto file = OutputFile::create(path("out"));
+      if (!file || !file->write(std::string(1 << 20, 'n'))) _exit(9);
+      (void)!write(ready[1], "x", 1);
+      if (ignored) {
+        raise(signal_number);
+        _exit(file->commit().ok() ? 0 : 8);
+      }
+      for (;;) pause();
+    }
+    char byte = 0;
+    EXPECT_EQ(read(ready[0], &byte, 1), 1);
+    if (!ignored) {
+      EXPECT_EQ(listing().size(), 2u) << "the temporary file should be there";
+      kill(child, signal_number);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    close(ready[0]);
+    close(ready[1]);
+    return WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
+  }
+};
+
+TEST_P(SignalTest, RemovesTheTemporaryFileAndKeepsTheOldOne) {
+  put(path("out"), "old");
+  EXPECT_EQ(end_child_by(GetParam(), false), GetParam());
+  EXPECT_EQ(get(path("out")), "old");
+  EXPECT_EQ(listing(), Names{"out"});
+}
+
+TEST_P(SignalTest, ASignalThatWasIgnoredStaysSo) {
+  put(path("out"), "old");
+  EXPECT_EQ(end_child_by(GetParam(), true), 0);
+  EXPECT_EQ(get(path("out")), std::string(1 << 20, 'n'));
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, SignalTest, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGPIPE));
+
+}  // namespace
+}  // namespace krok

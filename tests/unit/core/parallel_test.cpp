@@ -1,0 +1,95 @@
+// If these fail, work is skipped or done twice, or results and errors depend on the number of
+// threads.
+#include "core/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace krok {
+namespace {
+
+TEST(ThreadCount, IsAtLeastOne) {
+  EXPECT_EQ(thread_count(3), 3);
+  EXPECT_GE(thread_count(0), 1);
+  EXPECT_GE(thread_count(-5), 1);
+}
+
+TEST(ParallelFor, CoversEachItemOnce) {
+  for (const std::size_t count : {0, 1, 2, 63, 64, 65, 1000}) {
+    for (const std::size_t grain : {0, 1, 7, 64, 5000}) {
+      for (const int jobs : {1, 2, 5, 0}) {
+        std::vector<std::atomic<int>> visits(count);
+        parallel_for(count, grain, jobs, [&](std::size_t begin, std::size_t end) {
+          EXPECT_LT(begin, end);
+          EXPECT_LE(end - begin, std::max<std::size_t>(grain, 1));
+          EXPECT_EQ(begin % std::max<std::size_t>(grain, 1), 0u);
+          for (std::size_t i = begin; i < end; ++i) ++visits[i];
+        });
+        for (const auto& visit : visits) EXPECT_EQ(visit.load(), 1);
+      }
+    }
+  }
+}
+
+TEST(ParallelFor, OneJobRunsInOrderOnTheCaller) {
+  std::vector<std::size_t> begins;
+  const auto caller = std::this_thread::get_id();
+  parallel_for(10, 3, 1, [&](std::size_t begin, std::size_t) {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    begins.push_back(begin);
+  });
+  EXPECT_EQ(begins, (std::vector<std::size_t>{0, 3, 6, 9}));
+}
+
+TEST(ParallelFor, GivesTheSameForAnyNumberOfJobs) {
+  const auto run = [](int jobs) {
+    std::vector<double> sums(100);
+    parallel_for(1000, 10, jobs, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        sums[begin / 10] += std::sin(static_cast<double>(i));
+    });
+    return sums;
+  };
+  const auto alone = run(1);
+  EXPECT_EQ(run(2), alone);
+  EXPECT_EQ(run(7), alone);
+}
+
+// The error a user sees must not depend on which thread was quicker.
+TEST(ParallelFor, RethrowsTheFirstInOrder) {
+  for (int round = 0; round < 20; ++round) {
+    for (const int jobs : {1, 2, 4}) {
+      std::string message;
+      try {
+        parallel_for(100, 1, jobs, [](std::size_t begin, std::size_t) {
+          if (begin == 3) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+          if (begin >= 3) throw std::runtime_error(std::to_string(begin));
+        });
+      } catch (const std::runtime_error& error) {
+        message = error.what();
+      }
+      EXPECT_EQ(message, "3") << jobs << " jobs";
+    }
+  }
+}
+
+TEST(ParallelFor, SkipsTheRestAfterAnException) {
+  std::atomic<int> calls{0};
+  EXPECT_THROW(parallel_for(1000, 1, 1,
+                            [&](std::size_t, std::size_t) {
+                              if (++calls == 5) throw std::runtime_error("stop");
+                            }),
+               std::runtime_error);
+  EXPECT_EQ(calls.load(), 5);
+}
+
+}  // namespace
+}  // namespace krok

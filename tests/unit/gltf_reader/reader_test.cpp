@@ -1,0 +1,285 @@
+// If these fail, glTF files come in with wrong vertices, triangles, influences or keys.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "formats/gltf/gltf_reader.h"
+#include "support/glb_builder.h"
+
+namespace krok {
+namespace {
+
+using test::GlbBuilder;
+using testing::ElementsAre;
+using Json = nlohmann::ordered_json;
+
+gltf::Asset read_good(const GlbBuilder& builder) {
+  const auto bytes = builder.glb();
+  auto asset = gltf::read(bytes);
+  EXPECT_TRUE(asset.ok()) << asset.error().message;
+  return asset.ok() ? std::move(*asset) : gltf::Asset();
+}
+
+Json& primitive_of(GlbBuilder& builder) {
+  return builder.json["meshes"][0]["primitives"][0];
+}
+
+TEST(GltfReader, ReadsARig) {
+  const gltf::Asset asset = read_good(test::rig());
+  ASSERT_EQ(asset.nodes.size(), 3u);
+  EXPECT_EQ(asset.nodes[2].name, "Tip");
+  EXPECT_EQ(asset.nodes[2].parent, 1);
+  EXPECT_EQ(asset.nodes[0].parent, -1);
+  EXPECT_TRUE(asset.nodes[2].in_scene);
+  EXPECT_THAT(asset.roots, ElementsAre(0, 1));
+  const gltf::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
+  EXPECT_EQ(primitive.vertex_count(), 4u);
+  EXPECT_EQ((*primitive.positions)[2], Vec3f(1, 1, 0));
+  EXPECT_EQ((*primitive.normals)[0], Vec3f(0, 0, 1));
+  EXPECT_EQ(primitive.triangles.at(1), (std::array<std::uint32_t, 3>{0, 2, 3}));
+  EXPECT_EQ(primitive.influences_per_vertex, 4);
+  EXPECT_EQ(primitive.influence_joints[8], 1);
+  EXPECT_EQ(asset.skins.at(0).inverse_binds.at(1)(1, 3), -1.0);
+  const gltf::Channel& channel = asset.animations.at(0).channels.at(0);
+  EXPECT_EQ(channel.node, 2);
+  EXPECT_EQ(channel.path, gltf::Path::rotation);
+  EXPECT_THAT(*channel.times, ElementsAre(0.0f, 0.5f, 1.0f));
+}
+
+TEST(GltfReader, ReadsMorphTargetsWithTheirNames) {
+  const gltf::Asset asset = read_good(test::baked_rig());
+  const auto& targets = asset.meshes.at(0).primitives.at(0).targets;
+  ASSERT_EQ(targets.size(), 2u);
+  EXPECT_EQ(targets[1].name, "full");
+  EXPECT_EQ((*targets[1].positions)[2], Vec3f(-1, 1, 0));
+  EXPECT_EQ(targets[1].normals, nullptr);
+  EXPECT_EQ(asset.animations.at(0).channels.at(0).width, 2);
+}
+
+TEST(GltfReader, ReadsIndicesOfEachSize) {
+  for (const int bytes : {1, 2, 4}) {
+    GlbBuilder builder = test::square();
+    const int accessor = bytes == 1   ? builder.add(std::vector<std::uint8_t>{2, 1, 0}, "SCALAR")
+                         : bytes == 2 ? builder.add(std::vector<std::uint16_t>{2, 1, 0}, "SCALAR")
+                                      : builder.add(std::vector<std::uint32_t>{2, 1, 0}, "SCALAR");
+    primitive_of(builder)["indices"] = accessor;
+    const auto triangles = read_good(builder).meshes.at(0).primitives.at(0).triangles;
+    EXPECT_THAT(triangles, ElementsAre(std::array<std::uint32_t, 3>{2, 1, 0})) << bytes;
+  }
+}
+
+TEST(GltfReader, WritesOutStripsFansAndPlainVertices) {
+  using Triangle = std::array<std::uint32_t, 3>;
+  GlbBuilder builder = test::square();
+  primitive_of(builder).erase("indices");
+  primitive_of(builder)["mode"] = 5;
+  EXPECT_THAT(read_good(builder).meshes.at(0).primitives.at(0).triangles,
+              ElementsAre(Triangle{0, 1, 2}, Triangle{1, 3, 2}));
+  primitive_of(builder)["mode"] = 6;
+  EXPECT_THAT(read_good(builder).meshes.at(0).primitives.at(0).triangles,
+              ElementsAre(Triangle{1, 2, 0}, Triangle{2, 3, 0}));
+  primitive_of(builder)["mode"] = 0;
+  EXPECT_TRUE(read_good(builder).meshes.at(0).primitives.at(0).triangles.empty());
+}
+
+TEST(GltfReader, ReadsInterleavedVertices) {
+  GlbBuilder builder = test::square();
+  std::vector<float> both;
+  const auto positions = test::square_positions();
+  for (std::size_t v = 0; v < 4; ++v) {
+    both.insert(both.end(), positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
+                positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3));
+    both.insert(both.end(), {1, 0, 0});
+  }
+  const int view = builder.add_view(std::as_bytes(std::span(both)), 24);
+  const int position = builder.add_accessor(view, "VEC3", 5126, 4);
+  const int normal = builder.add_accessor(view, "VEC3", 5126, 4);
+  builder.json["accessors"][static_cast<std::size_t>(normal)]["byteOffset"] = 12;
+  primitive_of(builder)["attributes"] = {{"POSITION", position}, {"NORMAL", normal}};
+  const gltf::Asset asset = read_good(builder);
+  const gltf::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
+  EXPECT_EQ((*primitive.positions)[3], Vec3f(0, 1, 0));
+  EXPECT_EQ((*primitive.normals)[3], Vec3f(1, 0, 0));
+}
+
+TEST(GltfReader, ReadsNormalisedIntegersAndTwoSetsOfInfluences) {
+  GlbBuilder builder = test::rig();
+  Json& attributes = primitive_of(builder)["attributes"];
+  // Bytes that sum to 255 in the first vertex, to 254 in the others.
+  std::vector<std::uint8_t> first(16, 0), second(16, 0), joints(16, 0);
+  for (std::size_t v = 0; v < 4; ++v) {
+    first[4 * v] = 127;
+    second[4 * v] = v == 0 ? 128 : 127;
+    joints[4 * v] = 1;
+  }
+  attributes["WEIGHTS_0"] = builder.add(first, "VEC4", true);
+  attributes["WEIGHTS_1"] = builder.add(second, "VEC4", true);
+  attributes["JOINTS_1"] = builder.add(joints, "VEC4");
+  const gltf::Asset asset = read_good(builder);
+  const gltf::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
+  ASSERT_EQ(primitive.influences_per_vertex, 8);
+  EXPECT_NEAR(primitive.influence_weights[0], 127.0 / 255.0, 1e-6);
+  EXPECT_NEAR(primitive.influence_weights[4], 128.0 / 255.0, 1e-6);
+  EXPECT_EQ(primitive.influence_joints[4], 1);
+  EXPECT_FLOAT_EQ(primitive.influence_weights[8] + primitive.influence_weights[12], 1.0f);
+}
+
+TEST(GltfReader, ReadsSparseValuesOverZerosAndOverAView) {
+  GlbBuilder builder = test::baked_rig();
+  const auto sparse = [&](int count) {
+    const std::vector<std::uint8_t> index = {3};
+    const std::vector<float> value = {7, 8, 9};
+    const int indices = builder.add_view(std::as_bytes(std::span(index)));
+    const int values = builder.add_view(std::as_bytes(std::span(value)));
+    return Json{{"count", count},
+                {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                {"values", {{"bufferView", values}}}};
+  };
+  // A target whose accessor has no view, as exporters write sparse shapes.
+  Json& accessor =
+      builder.json["accessors"][primitive_of(builder)["targets"][0]["POSITION"].get<std::size_t>()];
+  accessor.erase("bufferView");
+  accessor["sparse"] = sparse(1);
+  builder.json["accessors"][primitive_of(builder)["targets"][1]["POSITION"].get<std::size_t>()]
+              ["sparse"] = sparse(1);
+  const gltf::Asset asset = read_good(builder);
+  const auto& targets = asset.meshes.at(0).primitives.at(0).targets;
+  EXPECT_EQ((*targets[0].positions)[2], Vec3f(0, 0, 0));
+  EXPECT_EQ((*targets[0].positions)[3], Vec3f(7, 8, 9));
+  EXPECT_EQ((*targets[1].positions)[2], Vec3f(-1, 1, 0));
+  EXPECT_EQ((*targets[1].positions)[3], Vec3f(7, 8, 9));
+}
+
+TEST(GltfReader, VerticesWithoutWeightsHangOnTheirFirstJointWithAWarning) {
+  GlbBuilder builder = test::rig();
+  primitive_of(builder)["attributes"]["WEIGHTS_0"] =
+      builder.add(std::vector<float>(16, 0.0f), "VEC4");
+  const gltf::Asset asset = read_good(builder);
+  EXPECT_EQ(asset.meshes.at(0).primitives.at(0).influence_weights[8], 1.0f);
+  ASSERT_EQ(asset.diagnostics.size(), 1u);
+  EXPECT_EQ(asset.diagnostics[0].code, "gltf-mesh-weights");
+}
+
+TEST(GltfReader, WithoutScenesAllRootsAreShown) {
+  GlbBuilder builder = test::rig();
+  builder.json.erase("scenes");
+  builder.json.erase("scene");
+  const gltf::Asset asset = read_good(builder);
+  EXPECT_THAT(asset.roots, ElementsAre(0, 1));
+}
+
+TEST(GltfReader, AFileWithoutAnythingIsRead) {
+  const gltf::Asset asset = read_good(GlbBuilder());
+  EXPECT_TRUE(asset.nodes.empty());
+}
+
+TEST(GltfReader, ChannelsOfUnknownPathsAreLeftAsideWithAWarning) {
+  GlbBuilder builder = test::rig();
+  builder.json["animations"][0]["channels"][0]["target"]["path"] = "pointer";
+  const gltf::Asset asset = read_good(builder);
+  EXPECT_TRUE(asset.animations.at(0).channels.empty());
+  ASSERT_EQ(asset.diagnostics.size(), 1u);
+  EXPECT_EQ(asset.diagnostics[0].code, "gltf-animation-path");
+}
+
+TEST(GltfReader, ImagesMaterialsAndExtrasDoNotMatter) {
+  GlbBuilder builder = test::square();
+  builder.json["images"] = {{{"bufferView", 77}}, {{"uri", "nowhere.png"}}, 5};
+  builder.json["textures"] = "none";
+  builder.json["materials"] = {{{"name", "Skin"}, {"extensions", 3}}};
+  builder.json["extensionsRequired"] = {"KHR_materials_unlit", "KHR_mesh_quantization"};
+  primitive_of(builder)["material"] = 0;
+  EXPECT_EQ(read_good(builder).meshes.at(0).primitives.at(0).material, "Skin");
+}
+
+// A folder that is gone after the test.
+class GltfFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("krok_gltf_files_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_ / "inner");
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  // The square as JSON whose buffer is at `uri`.
+  Result<gltf::Asset> read_with_buffer(const std::string& uri) {
+    GlbBuilder builder = test::square();
+    builder.json["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", uri}}};
+    std::ofstream(folder_ / "inner" / "square.gltf") << builder.json.dump(1);
+    for (const char* name : {"inner/square.bin", "inner/a b.bin", "outside.bin"}) {
+      std::ofstream(folder_ / name, std::ios::binary)
+          .write(reinterpret_cast<const char*>(builder.bin.data()),
+                 static_cast<std::streamsize>(builder.bin.size()));
+    }
+    return gltf::read_file((folder_ / "inner" / "square.gltf").string());
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(GltfFiles, ReadsABufferBesideTheFile) {
+  for (const char* uri : {"square.bin", "./square.bin", "a%20b.bin"}) {
+    const auto asset = read_with_buffer(uri);
+    ASSERT_TRUE(asset.ok()) << uri << ": " << asset.error().message;
+    EXPECT_EQ((*asset->meshes.at(0).primitives.at(0).positions)[2], Vec3f(1, 1, 0));
+  }
+}
+
+TEST_F(GltfFiles, RefusesBuffersOutsideOfTheFolder) {
+  std::filesystem::create_symlink(folder_ / "outside.bin", folder_ / "inner" / "link.bin");
+  std::filesystem::create_directory_symlink(folder_, folder_ / "inner" / "up");
+  const std::string absolute = (folder_ / "inner" / "square.bin").string();
+  for (const std::string& uri : {std::string("../outside.bin"), std::string("%2e%2e/outside.bin"),
+                                 std::string("x/../../outside.bin"), absolute, "file://" + absolute,
+                                 std::string("http://example.org/a.bin"), std::string("link.bin"),
+                                 std::string("up/outside.bin"), std::string("..\\outside.bin"),
+                                 std::string("a%00b"), std::string("bad%zz"), std::string("")}) {
+    const auto asset = read_with_buffer(uri);
+    ASSERT_FALSE(asset.ok()) << uri;
+    EXPECT_EQ(asset.error().code, "gltf-buffer") << uri << ": " << asset.error().message;
+    EXPECT_FALSE(asset.error().hint.empty());
+    EXPECT_NE(asset.error().where.file, "");
+  }
+}
+
+TEST_F(GltfFiles, AMissingOrShortBufferIsAnError) {
+  const auto missing = read_with_buffer("missing.bin");
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().code, "file-missing");
+  ASSERT_TRUE(read_with_buffer("square.bin").ok());
+  std::filesystem::resize_file(folder_ / "inner" / "square.bin", 20);
+  const auto cut = gltf::read_file((folder_ / "inner" / "square.gltf").string());
+  ASSERT_FALSE(cut.ok());
+  EXPECT_EQ(cut.error().code, "gltf-buffer");
+}
+
+TEST_F(GltfFiles, ReadsADataUri) {
+  // One vertex at (1, 2, 3) in base64.
+  const std::string text = R"({"asset":{"version":"2.0"},
+    "buffers":[{"byteLength":12,"uri":"data:model/unheard-of;base64,AACAPwAAAEAAAEBA"}],
+    "bufferViews":[{"buffer":0,"byteLength":12}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":1,"type":"VEC3"}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":0}]}]})";
+  const auto asset = gltf::read(std::as_bytes(std::span(text)));
+  ASSERT_TRUE(asset.ok()) << asset.error().message;
+  EXPECT_EQ((*asset->meshes.at(0).primitives.at(0).positions)[0], Vec3f(1, 2, 3));
+}
+
+TEST_F(GltfFiles, TellsGltfFromOtherFiles) {
+  const auto looks = [](std::string_view text) {
+    return gltf::looks_like_gltf(std::as_bytes(std::span(text)));
+  };
+  EXPECT_TRUE(gltf::looks_like_gltf(test::square().glb()));
+  EXPECT_TRUE(looks("\xEF\xBB\xBF {\"asset\": {\"version\": \"2.0\"}}"));
+  EXPECT_FALSE(looks("HIERARCHY\nROOT Hips"));
+  EXPECT_FALSE(looks("{\"keys\": []}"));
+  EXPECT_FALSE(looks(""));
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,220 @@
+// If these fail, captures arrive too large, lying on their back or facing sideways.
+#include "scene/conventions.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace krok {
+namespace {
+
+// A person of 1.7 m, hips at the origin, feet `spread` apart, written in a unit and in axes.
+Skeleton person(double metres_per_unit, Direction up, Direction forward) {
+  const Mat3 to_file = rotation_to_krok(up, forward)->conjugate().toRotationMatrix();
+  Skeleton s;
+  const auto add = [&](const char* name, int parent, double x, double y, double z) {
+    return s.add(name, parent, {to_file * Vec3(x, y, z) / metres_per_unit, Quat::Identity()});
+  };
+  const int hips = add("Hips", -1, 0, 0, 0);
+  const int spine = add("Spine", hips, 0, 0.4, 0);
+  const int neck = add("Neck", spine, 0, 0.5, 0);
+  add("Head", neck, 0, 0.62, 0);
+  for (const double side : {1.0, -1.0}) {
+    const std::string lr = side > 0 ? "Left" : "Right";
+    const int shoulder = add((lr + "Shoulder").c_str(), spine, side * 0.05, 0.42, 0);
+    const int arm = add((lr + "Arm").c_str(), shoulder, side * 0.2, 0.42, 0);
+    const int elbow = add((lr + "ForeArm").c_str(), arm, side * 0.48, 0.42, 0);
+    add((lr + "Hand").c_str(), elbow, side * 0.74, 0.42, 0);
+    const int leg = add((lr + "UpLeg").c_str(), hips, side * 0.1, -0.02, 0);
+    const int knee = add((lr + "Leg").c_str(), leg, side * 0.1, -0.44, 0.01);
+    const int foot = add((lr + "Foot").c_str(), knee, side * 0.1, -0.86, 0);
+    add((lr + "ToeBase").c_str(), foot, side * 0.1, -0.92, 0.15);
+  }
+  return s;
+}
+
+std::vector<Vec3> sample_of(const Skeleton& skeleton, const Quat& turn = Quat::Identity()) {
+  std::vector<Vec3> positions;
+  for (const Transform& joint : skeleton.reference) positions.push_back(turn * joint.position);
+  return positions;
+}
+
+Conventions detect(const Skeleton& skeleton, const std::vector<Vec3>& samples = {}) {
+  return detect_conventions(skeleton, find_roles(skeleton), samples);
+}
+
+constexpr Direction kAll[] = {Direction::plus_x,  Direction::minus_x, Direction::plus_y,
+                              Direction::minus_y, Direction::plus_z,  Direction::minus_z};
+
+TEST(DetectConventions, FindsUpAndForwardInAllAxes) {
+  for (const Direction up : kAll) {
+    for (const Direction forward : kAll) {
+      if (!rotation_to_krok(up, forward).ok()) continue;
+      const Skeleton skeleton = person(1, up, forward);
+      for (const auto& samples : {std::vector<Vec3>(), sample_of(skeleton)}) {
+        const Conventions found = detect(skeleton, samples);
+        EXPECT_EQ(found.up, up) << found.up_reason;
+        EXPECT_EQ(found.forward, forward) << found.forward_reason;
+        EXPECT_EQ(found.up_confidence, Confidence::certain);
+        EXPECT_EQ(found.forward_confidence, Confidence::certain);
+        EXPECT_EQ(found.reference_up, up);
+        EXPECT_EQ(found.reference_forward, forward);
+      }
+    }
+  }
+}
+
+TEST(DetectConventions, FindsTheUnit) {
+  for (const char* name : {"m", "dm", "cm", "mm", "in", "ft", "cmu"}) {
+    const double size = parse_unit(name)->metres;
+    const Conventions found = detect(person(size, Direction::plus_z, Direction::minus_y));
+    EXPECT_EQ(found.unit.name, name) << found.unit_reason;
+    EXPECT_DOUBLE_EQ(found.unit.metres, size);
+    EXPECT_NE(found.unit_confidence, Confidence::guess);
+    EXPECT_FALSE(found.unit_reason.empty());
+  }
+}
+
+TEST(DetectConventions, AFigureOfAnUnusualSizeIsAGuess) {
+  // Half a metre in metres could be anything.
+  const Conventions found = detect(person(1 / 0.3, Direction::plus_y, Direction::plus_z));
+  EXPECT_NE(found.unit_confidence, Confidence::certain);
+}
+
+TEST(DetectConventions, APoseDoesNotChangeTheUnit) {
+  // The legs folded up beside the trunk: small extents, the same bones.
+  Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
+  for (const char* name :
+       {"LeftLeg", "LeftFoot", "LeftToeBase", "RightLeg", "RightFoot", "RightToeBase"}) {
+    auto& p = skeleton.reference[static_cast<std::size_t>(skeleton.find(name))].position;
+    p.y() = -4 - p.y();
+  }
+  EXPECT_EQ(detect(skeleton).unit.name, "cm");
+}
+
+TEST(DetectConventions, AReferencePoseThatStandsOtherwiseThanTheMotionYieldsToIt) {
+  const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
+  // The root turns the figure upright in a z-up world, facing -y there.
+  const Quat turn = rotation_to_krok(Direction::plus_z, Direction::minus_y)->conjugate();
+  const Conventions found = detect(skeleton, sample_of(skeleton, turn));
+  EXPECT_EQ(found.up, Direction::plus_z);
+  EXPECT_EQ(found.forward, Direction::minus_y);
+  EXPECT_EQ(found.reference_up, Direction::plus_y);
+  EXPECT_EQ(found.reference_forward, Direction::plus_z);
+  EXPECT_NE(found.up_reason.find("the motion decides"), std::string::npos) << found.up_reason;
+}
+
+TEST(DetectConventions, AHandstandDoesNotTurnTheWorldOver) {
+  const Skeleton skeleton = person(1, Direction::plus_y, Direction::plus_z);
+  const Quat upside_down(0, 1, 0, 0);
+  const Conventions found = detect(skeleton, sample_of(skeleton, upside_down));
+  EXPECT_EQ(found.up, Direction::plus_y) << found.up_reason;
+}
+
+TEST(DetectConventions, TurningOnTheSpotLeavesForwardToTheReferencePose) {
+  const Skeleton skeleton = person(1, Direction::plus_y, Direction::plus_z);
+  const Quat about(0, 0, 1, 0);
+  const Conventions found = detect(skeleton, sample_of(skeleton, about));
+  EXPECT_EQ(found.forward, Direction::plus_z) << found.forward_reason;
+}
+
+TEST(DetectConventions, ToesThatPointBackMakeForwardAGuess) {
+  Skeleton skeleton = person(1, Direction::plus_y, Direction::plus_z);
+  for (const char* name : {"LeftToeBase", "RightToeBase"}) {
+    skeleton.reference[static_cast<std::size_t>(skeleton.find(name))].position.z() = -0.15;
+  }
+  const Conventions found = detect(skeleton);
+  EXPECT_EQ(found.forward_confidence, Confidence::guess);
+  EXPECT_NE(found.forward_reason.find("toes"), std::string::npos);
+}
+
+TEST(DetectConventions, WhatIsNoPersonGetsDefaults) {
+  Skeleton chain;
+  chain.add("base", -1, {});
+  chain.add("tip", 0, {Vec3(0, 120, 0), Quat::Identity()});
+  const Conventions found = detect(chain);
+  EXPECT_EQ(found.up, Direction::plus_y);
+  EXPECT_EQ(found.forward, Direction::plus_z);
+  EXPECT_EQ(found.unit.name, "cm");
+  EXPECT_EQ(found.unit_confidence, Confidence::guess);
+  EXPECT_EQ(found.up_confidence, Confidence::guess);
+  EXPECT_EQ(found.forward_confidence, Confidence::guess);
+}
+
+TEST(DetectConventions, SurvivesEmptyAndDegenerateInput) {
+  EXPECT_EQ(detect({}).unit.name, "m");
+  Skeleton flat = person(1, Direction::plus_y, Direction::plus_z);
+  for (Transform& joint : flat.reference) joint.position.setZero();
+  const Conventions nothing = detect(flat, sample_of(flat));
+  EXPECT_TRUE(std::isfinite(nothing.unit.metres));
+  EXPECT_EQ(nothing.up_confidence, Confidence::guess);
+  const Skeleton good = person(1, Direction::plus_y, Direction::plus_z);
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
+    const Conventions in_samples =
+        detect(good, std::vector<Vec3>(good.names.size(), Vec3::Constant(bad)));
+    EXPECT_EQ(in_samples.unit.name, "m");
+    EXPECT_EQ(in_samples.up, Direction::plus_y);
+    Skeleton broken = good;
+    for (Transform& joint : broken.reference) joint.position.setConstant(bad);
+    EXPECT_TRUE(std::isfinite(detect(broken).unit.metres));
+    EXPECT_EQ(detect(broken, sample_of(good)).up, Direction::plus_y);
+  }
+}
+
+TEST(DetectConventions, TakesTheLengthsFromTheMotionWhereTheReferencePoseHasNone) {
+  const Skeleton good = person(0.01, Direction::plus_y, Direction::plus_z);
+  Skeleton collapsed = good;
+  for (Transform& joint : collapsed.reference) joint.position.setZero();
+  EXPECT_EQ(detect(collapsed, sample_of(good)).unit.name, "cm");
+}
+
+TEST(RotationToKrok, TakesUpToYAndForwardToZ) {
+  for (const Direction up : kAll) {
+    for (const Direction forward : kAll) {
+      const auto rotation = rotation_to_krok(up, forward);
+      if (direction_vector(up).cross(direction_vector(forward)).isZero()) {
+        ASSERT_FALSE(rotation.ok());
+        EXPECT_EQ(rotation.error().code, "direction-parallel");
+        continue;
+      }
+      ASSERT_TRUE(rotation.ok());
+      EXPECT_TRUE((*rotation * direction_vector(up)).isApprox(Vec3::UnitY(), 1e-15));
+      EXPECT_TRUE((*rotation * direction_vector(forward)).isApprox(Vec3::UnitZ(), 1e-15));
+      EXPECT_NEAR(rotation->norm(), 1, 1e-15);
+    }
+  }
+}
+
+// Numbers in Krok's own frame must pass unconverted.
+TEST(RotationToKrok, IsExactlyTheIdentityForKroksFrame) {
+  const Quat q = *rotation_to_krok(Direction::plus_y, Direction::plus_z);
+  EXPECT_EQ(q.coeffs(), Quat::Identity().coeffs());
+}
+
+TEST(Directions, NamesReadBack) {
+  for (const Direction d : kAll) EXPECT_EQ(*parse_direction(direction_name(d)), d);
+  EXPECT_EQ(*parse_direction("+y"), Direction::plus_y);
+  for (const char* text : {"", "+", "-", "w", "X", "+-x", "--x", "xy"}) {
+    const auto parsed = parse_direction(text);
+    ASSERT_FALSE(parsed.ok()) << text;
+    EXPECT_EQ(parsed.error().code, "direction-unknown");
+  }
+}
+
+TEST(Units, AreParsed) {
+  EXPECT_DOUBLE_EQ(parse_unit("cm")->metres, 0.01);
+  EXPECT_DOUBLE_EQ(parse_unit("cmu")->metres, 0.0254 / 0.45);
+  EXPECT_DOUBLE_EQ(parse_unit("5.64cm")->metres, 0.0564);
+  EXPECT_DOUBLE_EQ(parse_unit("1e-1m")->metres, 0.1);
+  for (const char* text : {"", "auto", "1", "0cm", "-1cm", "km", "nan", "infm", "cm2"}) {
+    const auto parsed = parse_unit(text);
+    ASSERT_FALSE(parsed.ok()) << text;
+    EXPECT_EQ(parsed.error().code, "unit-unknown");
+    EXPECT_FALSE(parsed.error().hint.empty());
+  }
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,443 @@
+// If these fail, limbs of captures of a well-known exporter are mistaken or not found, and with
+// them everything that works on limbs: bodies, retargeting, inverse kinematics.
+#include "scene/roles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "scene/joint_names.h"
+#include "support/skeleton_text.h"
+
+namespace krok {
+namespace {
+
+using test::skeleton_from_text;
+
+// The joint of each role, "left_hand=LHand"; roles that are not named must be absent, except those
+// of the right side, which must mirror the left, and end sites and helpers.
+struct Scheme {
+  const char* exporter;
+  const char* joints;
+  const char* roles;
+};
+
+std::string joint_name(const Skeleton& skeleton, const RoleMap& map, Role role) {
+  const int joint = map.joint(role);
+  return joint < 0 ? "-" : skeleton.names[static_cast<std::size_t>(joint)];
+}
+
+// For a failing test: all joints with their roles.
+std::string table(const Skeleton& skeleton, const RoleMap& map) {
+  std::string text;
+  for (std::size_t j = 0; j < map.roles.size(); ++j) {
+    text += "  " + skeleton.names[j] + ": " + std::string(role_name(map.roles[j])) + "\n";
+  }
+  return text;
+}
+
+constexpr Role kLeftRoles[] = {Role::left_collar,    Role::left_upper_arm, Role::left_lower_arm,
+                               Role::left_hand,      Role::left_fingers,   Role::left_upper_leg,
+                               Role::left_lower_leg, Role::left_foot,      Role::left_toes};
+constexpr Role kMiddleRoles[] = {Role::root,  Role::hips, Role::spine,
+                                 Role::chest, Role::neck, Role::head};
+
+class RoleSchemes : public testing::TestWithParam<Scheme> {};
+
+TEST_P(RoleSchemes, AreKnown) {
+  const Scheme& scheme = GetParam();
+  const Skeleton skeleton = skeleton_from_text(scheme.joints);
+  ASSERT_TRUE(check(skeleton).ok());
+  const RoleMap map = find_roles(skeleton);
+  EXPECT_TRUE(map.humanoid) << table(skeleton, map);
+  std::map<std::string, std::string> expected;
+  std::istringstream words(scheme.roles);
+  for (std::string word; words >> word;) {
+    const std::size_t equals = word.find('=');
+    expected[word.substr(0, equals)] = word.substr(equals + 1);
+  }
+  const auto hold = [&](std::span<const Role> roles) {
+    for (const Role role : roles) {
+      const auto found = expected.find(std::string(role_name(role)));
+      EXPECT_EQ(joint_name(skeleton, map, role), found == expected.end() ? "-" : found->second)
+          << role_name(role) << "\n"
+          << table(skeleton, map);
+      if (found != expected.end()) expected.erase(found);
+    }
+  };
+  hold(kLeftRoles);
+  hold(kMiddleRoles);
+  EXPECT_TRUE(expected.empty()) << "the test names a role that there is not";
+  // The right side has as many joints of each role as the left.
+  for (const Role left : kLeftRoles) {
+    const auto right =
+        static_cast<Role>(static_cast<int>(left) + (left >= Role::left_upper_leg ? 4 : 5));
+    EXPECT_EQ(std::count(map.roles.begin(), map.roles.end(), left),
+              std::count(map.roles.begin(), map.roles.end(), right))
+        << role_name(left) << "\n"
+        << table(skeleton, map);
+  }
+}
+
+const Scheme kSchemes[] = {
+    {"ipi",
+     "Hip .LowerSpine ..MiddleSpine ...Chest ....Neck .....Head ......Head_end! "
+     "....LClavicle .....LShoulder ......LForearm .......LHand ........LFinger1 .........LFinger11 "
+     "........LFinger0 ....RClavicle .....RShoulder ......RForearm .......RHand ........RFinger1 "
+     ".........RFinger11 ........RFinger0 .RThigh ..RShin ...RFoot ....RToe .LThigh ..LShin "
+     "...LFoot "
+     "....LToe",
+     "hips=Hip spine=LowerSpine chest=Chest neck=Neck head=Head left_collar=LClavicle "
+     "left_upper_arm=LShoulder left_lower_arm=LForearm left_hand=LHand left_fingers=LFinger1 "
+     "left_upper_leg=LThigh left_lower_leg=LShin left_foot=LFoot left_toes=LToe"},
+    {"motionbuilder",
+     "Hips .LeftUpLeg ..LeftLeg ...LeftFoot ....LeftToeBase .RightUpLeg ..RightLeg ...RightFoot "
+     "....RightToeBase .Spine ..Spine1 ...LeftShoulder ....LeftArm .....LeftForeArm ......LeftHand "
+     ".......LeftHandThumb1 ...RightShoulder ....RightArm .....RightForeArm ......RightHand "
+     ".......RightHandThumb1 ...Neck ....Head",
+     "hips=Hips spine=Spine chest=Spine1 neck=Neck head=Head left_collar=LeftShoulder "
+     "left_upper_arm=LeftArm left_lower_arm=LeftForeArm left_hand=LeftHand "
+     "left_fingers=LeftHandThumb1 left_upper_leg=LeftUpLeg left_lower_leg=LeftLeg "
+     "left_foot=LeftFoot left_toes=LeftToeBase"},
+    {"motionbuilder_with_rolls",
+     "Reference .Hips ..LeftUpLeg ...LeftUpLegRoll ...LeftLeg ....LeftLegRoll ....LeftFoot "
+     "..RightUpLeg ...RightUpLegRoll ...RightLeg ....RightLegRoll ....RightFoot ..Spine "
+     "...LeftShoulder ....LeftArm .....LeftArmRoll .....LeftForeArm ......LeftForeArmRoll "
+     "......LeftHand ...RightShoulder ....RightArm .....RightArmRoll .....RightForeArm "
+     "......RightForeArmRoll ......RightHand ...Neck ....Head",
+     "root=Reference hips=Hips chest=Spine neck=Neck head=Head left_collar=LeftShoulder "
+     "left_upper_arm=LeftArm left_lower_arm=LeftForeArm left_hand=LeftHand "
+     "left_upper_leg=LeftUpLeg "
+     "left_lower_leg=LeftLeg left_foot=LeftFoot"},
+    {"mixamo",
+     "mixamorig:Hips .mixamorig:Spine ..mixamorig:Spine1 ...mixamorig:Neck ....mixamorig:Head "
+     ".....mixamorig:HeadTop_End .....mixamorig:LeftEye ...mixamorig:LeftShoulder "
+     "....mixamorig:LeftArm .....mixamorig:LeftForeArm ......mixamorig:LeftHand "
+     ".......mixamorig:LeftHandIndex1 ...mixamorig:RightShoulder ....mixamorig:RightArm "
+     ".....mixamorig:RightForeArm ......mixamorig:RightHand .......mixamorig:RightHandIndex1 "
+     ".mixamorig:LeftUpLeg ..mixamorig:LeftLeg ...mixamorig:LeftFoot ....mixamorig:LeftToeBase "
+     ".mixamorig:RightUpLeg ..mixamorig:RightLeg ...mixamorig:RightFoot ....mixamorig:RightToeBase",
+     "hips=mixamorig:Hips spine=mixamorig:Spine chest=mixamorig:Spine1 neck=mixamorig:Neck "
+     "head=mixamorig:Head left_collar=mixamorig:LeftShoulder left_upper_arm=mixamorig:LeftArm "
+     "left_lower_arm=mixamorig:LeftForeArm left_hand=mixamorig:LeftHand "
+     "left_fingers=mixamorig:LeftHandIndex1 left_upper_leg=mixamorig:LeftUpLeg "
+     "left_lower_leg=mixamorig:LeftLeg left_foot=mixamorig:LeftFoot "
+     "left_toes=mixamorig:LeftToeBase"},
+    {"cmu",
+     "Hips .LHipJoint ..LeftUpLeg ...LeftLeg ....LeftFoot .....LeftToeBase .RHipJoint ..RightUpLeg "
+     "...RightLeg ....RightFoot .....RightToeBase .LowerBack ..Spine ...Spine1 ....Neck .....Neck1 "
+     "......Head ....LeftShoulder .....LeftArm ......LeftForeArm .......LeftHand "
+     "........LeftFingerBase .........LFingers ........LThumb ....RightShoulder .....RightArm "
+     "......RightForeArm .......RightHand ........RightFingerBase .........RFingers ........RThumb",
+     "hips=Hips spine=LowerBack chest=Spine1 neck=Neck head=Head left_collar=LeftShoulder "
+     "left_upper_arm=LeftArm left_lower_arm=LeftForeArm left_hand=LeftHand "
+     "left_fingers=LeftFingerBase left_upper_leg=LeftUpLeg left_lower_leg=LeftLeg "
+     "left_foot=LeftFoot left_toes=LeftToeBase"},
+    {"acclaim",
+     "root .lhipjoint ..lfemur ...ltibia ....lfoot .....ltoes .rhipjoint ..rfemur ...rtibia "
+     "....rfoot .....rtoes .lowerback ..upperback ...thorax ....lowerneck .....upperneck "
+     "......head "
+     "....lclavicle .....lhumerus ......lradius .......lwrist ........lhand .........lfingers "
+     "........lthumb ....rclavicle .....rhumerus ......rradius .......rwrist ........rhand "
+     ".........rfingers ........rthumb",
+     "hips=root spine=lowerback chest=thorax neck=lowerneck head=head left_collar=lclavicle "
+     "left_upper_arm=lhumerus left_lower_arm=lradius left_hand=lwrist left_fingers=lhand "
+     "left_upper_leg=lfemur left_lower_leg=ltibia left_foot=lfoot left_toes=ltoes"},
+    {"biovision_limbs",
+     "Hips .Chest ..Neck ...Head ..LeftCollar ...LeftUpArm ....LeftLowArm .....LeftHand "
+     "..RightCollar ...RightUpArm ....RightLowArm .....RightHand .LeftUpLeg ..LeftLowLeg "
+     "...LeftFoot "
+     ".RightUpLeg ..RightLowLeg ...RightFoot",
+     "hips=Hips chest=Chest neck=Neck head=Head left_collar=LeftCollar left_upper_arm=LeftUpArm "
+     "left_lower_arm=LeftLowArm left_hand=LeftHand left_upper_leg=LeftUpLeg "
+     "left_lower_leg=LeftLowLeg left_foot=LeftFoot"},
+    {"biovision_places",
+     "Hips .LeftHip ..LeftKnee ...LeftAnkle ....LeftToe .RightHip ..RightKnee ...RightAnkle "
+     "....RightToe .Chest ..Chest2 ...LeftCollar ....LeftShoulder .....LeftElbow ......LeftWrist "
+     "...RightCollar ....RightShoulder .....RightElbow ......RightWrist ...Neck ....Head",
+     "hips=Hips spine=Chest chest=Chest2 neck=Neck head=Head left_collar=LeftCollar "
+     "left_upper_arm=LeftShoulder left_lower_arm=LeftElbow left_hand=LeftWrist "
+     "left_upper_leg=LeftHip left_lower_leg=LeftKnee left_foot=LeftAnkle left_toes=LeftToe"},
+    {"poser",
+     "hip .abdomen ..chest ...neck ....head .....leftEye ...lCollar ....lShldr .....lForeArm "
+     "......lHand .......lThumb1 ...rCollar ....rShldr .....rForeArm ......rHand .......rThumb1 "
+     ".lButtock ..lThigh ...lShin ....lFoot .....lToe .rButtock ..rThigh ...rShin ....rFoot "
+     ".....rToe",
+     "hips=hip spine=abdomen chest=chest neck=neck head=head left_collar=lCollar "
+     "left_upper_arm=lShldr left_lower_arm=lForeArm left_hand=lHand left_fingers=lThumb1 "
+     "left_upper_leg=lThigh left_lower_leg=lShin left_foot=lFoot left_toes=lToe"},
+    {"second_life",
+     "mPelvis .mTorso ..mChest ...mNeck ....mHead ...mCollarLeft ....mShoulderLeft .....mElbowLeft "
+     "......mWristLeft ...mCollarRight ....mShoulderRight .....mElbowRight ......mWristRight "
+     ".mHipRight ..mKneeRight ...mAnkleRight ....mFootRight .....mToeRight .mHipLeft ..mKneeLeft "
+     "...mAnkleLeft ....mFootLeft .....mToeLeft",
+     "hips=mPelvis spine=mTorso chest=mChest neck=mNeck head=mHead left_collar=mCollarLeft "
+     "left_upper_arm=mShoulderLeft left_lower_arm=mElbowLeft left_hand=mWristLeft "
+     "left_upper_leg=mHipLeft left_lower_leg=mKneeLeft left_foot=mAnkleLeft left_toes=mFootLeft"},
+    {"daz_genesis",
+     "hip .pelvis ..lThighBend ...lThighTwist ....lShin .....lFoot ......lMetatarsals .......lToe "
+     "..rThighBend ...rThighTwist ....rShin .....rFoot ......rMetatarsals .......rToe "
+     ".abdomenLower "
+     "..abdomenUpper ...chestLower ....chestUpper .....lCollar ......lShldrBend .......lShldrTwist "
+     "........lForearmBend .........lForearmTwist ..........lHand ...........lCarpal1 .....rCollar "
+     "......rShldrBend .......rShldrTwist ........rForearmBend .........rForearmTwist "
+     "..........rHand "
+     "...........rCarpal1 .....neckLower ......neckUpper .......head",
+     "hips=hip spine=abdomenLower chest=chestUpper neck=neckLower head=head left_collar=lCollar "
+     "left_upper_arm=lShldrBend left_lower_arm=lForearmBend left_hand=lHand left_fingers=lCarpal1 "
+     "left_upper_leg=lThighBend left_lower_leg=lShin left_foot=lFoot left_toes=lMetatarsals"},
+    {"iclone",
+     "RL_BoneRoot .CC_Base_Hip ..CC_Base_Pelvis ...CC_Base_L_Thigh ....CC_Base_L_Calf "
+     ".....CC_Base_L_Foot ......CC_Base_L_ToeBaseShareBone ......CC_Base_L_ToeBase "
+     ".....CC_Base_L_CalfTwist01 ...CC_Base_R_Thigh ....CC_Base_R_Calf .....CC_Base_R_Foot "
+     "......CC_Base_R_ToeBaseShareBone ......CC_Base_R_ToeBase .....CC_Base_R_CalfTwist01 "
+     "..CC_Base_Waist ...CC_Base_Spine01 ....CC_Base_Spine02 .....CC_Base_NeckTwist01 "
+     "......CC_Base_Head .......CC_Base_FacialBone ........CC_Base_JawRoot .....CC_Base_L_Clavicle "
+     "......CC_Base_L_Upperarm .......CC_Base_L_UpperarmTwist01 .......CC_Base_L_Forearm "
+     "........CC_Base_L_ElbowShareBone ........CC_Base_L_Hand .........CC_Base_L_Mid1 "
+     ".....CC_Base_R_Clavicle ......CC_Base_R_Upperarm .......CC_Base_R_UpperarmTwist01 "
+     ".......CC_Base_R_Forearm ........CC_Base_R_ElbowShareBone ........CC_Base_R_Hand "
+     ".........CC_Base_R_Mid1 .....CC_Base_L_RibsTwist ......CC_Base_L_Breast",
+     "root=RL_BoneRoot hips=CC_Base_Hip spine=CC_Base_Waist chest=CC_Base_Spine02 "
+     "neck=CC_Base_NeckTwist01 head=CC_Base_Head left_collar=CC_Base_L_Clavicle "
+     "left_upper_arm=CC_Base_L_Upperarm left_lower_arm=CC_Base_L_Forearm left_hand=CC_Base_L_Hand "
+     "left_fingers=CC_Base_L_Mid1 left_upper_leg=CC_Base_L_Thigh left_lower_leg=CC_Base_L_Calf "
+     "left_foot=CC_Base_L_Foot left_toes=CC_Base_L_ToeBase"},
+    {"xsens_mvn",
+     "Pelvis .L5 ..L3 ...T12 ....T8 .....Neck ......Head .....RightShoulder ......RightUpperArm "
+     ".......RightForeArm ........RightHand .....LeftShoulder ......LeftUpperArm "
+     ".......LeftForeArm "
+     "........LeftHand .RightUpperLeg ..RightLowerLeg ...RightFoot ....RightToe .LeftUpperLeg "
+     "..LeftLowerLeg ...LeftFoot ....LeftToe",
+     "hips=Pelvis spine=L5 chest=T8 neck=Neck head=Head left_collar=LeftShoulder "
+     "left_upper_arm=LeftUpperArm left_lower_arm=LeftForeArm left_hand=LeftHand "
+     "left_upper_leg=LeftUpperLeg left_lower_leg=LeftLowerLeg left_foot=LeftFoot "
+     "left_toes=LeftToe"},
+    {"rokoko",
+     "Hips .Spine1 ..Spine2 ...Spine3 ....Spine4 .....Neck ......Head .....LeftShoulder "
+     "......LeftArm "
+     ".......LeftForeArm ........LeftHand .........LeftFinger1Metacarpal .....RightShoulder "
+     "......RightArm .......RightForeArm ........RightHand .........RightFinger1Metacarpal "
+     ".LeftThigh ..LeftShin ...LeftFoot ....LeftToe .....LeftToeTip .RightThigh ..RightShin "
+     "...RightFoot ....RightToe .....RightToeTip",
+     "hips=Hips spine=Spine1 chest=Spine4 neck=Neck head=Head left_collar=LeftShoulder "
+     "left_upper_arm=LeftArm left_lower_arm=LeftForeArm left_hand=LeftHand "
+     "left_fingers=LeftFinger1Metacarpal left_upper_leg=LeftThigh left_lower_leg=LeftShin "
+     "left_foot=LeftFoot left_toes=LeftToe"},
+    {"optitrack",
+     "Skeleton1_Hip .Skeleton1_Ab ..Skeleton1_Chest ...Skeleton1_Neck ....Skeleton1_Head "
+     "...Skeleton1_LShoulder ....Skeleton1_LUArm .....Skeleton1_LFArm ......Skeleton1_LHand "
+     ".......Skeleton1_LThumb1 ...Skeleton1_RShoulder ....Skeleton1_RUArm .....Skeleton1_RFArm "
+     "......Skeleton1_RHand .......Skeleton1_RThumb1 .Skeleton1_LThigh ..Skeleton1_LShin "
+     "...Skeleton1_LFoot ....Skeleton1_LToe .Skeleton1_RThigh ..Skeleton1_RShin ...Skeleton1_RFoot "
+     "....Skeleton1_RToe",
+     "hips=Skeleton1_Hip spine=Skeleton1_Ab chest=Skeleton1_Chest neck=Skeleton1_Neck "
+     "head=Skeleton1_Head left_collar=Skeleton1_LShoulder left_upper_arm=Skeleton1_LUArm "
+     "left_lower_arm=Skeleton1_LFArm left_hand=Skeleton1_LHand left_fingers=Skeleton1_LThumb1 "
+     "left_upper_leg=Skeleton1_LThigh left_lower_leg=Skeleton1_LShin left_foot=Skeleton1_LFoot "
+     "left_toes=Skeleton1_LToe"},
+    {"perception_neuron",
+     "Robot_Hips .Robot_RightUpLeg ..Robot_RightLeg ...Robot_RightFoot .Robot_LeftUpLeg "
+     "..Robot_LeftLeg ...Robot_LeftFoot .Robot_Spine ..Robot_Spine1 ...Robot_Spine2 "
+     "....Robot_Spine3 "
+     ".....Robot_Neck ......Robot_Head .....Robot_RightShoulder ......Robot_RightArm "
+     ".......Robot_RightForeArm ........Robot_RightHand .........Robot_RightInHandIndex "
+     "..........Robot_RightHandIndex1 .....Robot_LeftShoulder ......Robot_LeftArm "
+     ".......Robot_LeftForeArm ........Robot_LeftHand .........Robot_LeftInHandIndex "
+     "..........Robot_LeftHandIndex1",
+     "hips=Robot_Hips spine=Robot_Spine chest=Robot_Spine3 neck=Robot_Neck head=Robot_Head "
+     "left_collar=Robot_LeftShoulder left_upper_arm=Robot_LeftArm left_lower_arm=Robot_LeftForeArm "
+     "left_hand=Robot_LeftHand left_fingers=Robot_LeftInHandIndex left_upper_leg=Robot_LeftUpLeg "
+     "left_lower_leg=Robot_LeftLeg left_foot=Robot_LeftFoot"},
+    {"makehuman",
+     "root .pelvis.L ..upperleg01.L ...upperleg02.L ....lowerleg01.L .....lowerleg02.L "
+     "......foot.L "
+     ".......toe1-1.L .pelvis.R ..upperleg01.R ...upperleg02.R ....lowerleg01.R .....lowerleg02.R "
+     "......foot.R .......toe1-1.R .spine05 ..spine04 ...spine01 ....clavicle.L .....shoulder01.L "
+     "......upperarm01.L .......upperarm02.L ........lowerarm01.L .........lowerarm02.L "
+     "..........wrist.L ...........metacarpal1.L ....clavicle.R .....shoulder01.R "
+     "......upperarm01.R "
+     ".......upperarm02.R ........lowerarm01.R .........lowerarm02.R ..........wrist.R "
+     "...........metacarpal1.R ....neck01 .....neck02 ......head .......jaw .......eye.L",
+     "hips=root spine=spine05 chest=spine01 neck=neck01 head=head left_collar=clavicle.L "
+     "left_upper_arm=upperarm01.L left_lower_arm=lowerarm01.L left_hand=wrist.L "
+     "left_fingers=metacarpal1.L left_upper_leg=upperleg01.L left_lower_leg=lowerleg01.L "
+     "left_foot=foot.L left_toes=toe1-1.L"},
+    {"biped",
+     "Bip01 .Bip01_Pelvis ..Bip01_Spine ...Bip01_L_Thigh ....Bip01_L_Calf .....Bip01_L_Foot "
+     "......Bip01_L_Toe0 ...Bip01_R_Thigh ....Bip01_R_Calf .....Bip01_R_Foot ......Bip01_R_Toe0 "
+     "...Bip01_Spine1 ....Bip01_Neck .....Bip01_Head .....Bip01_L_Clavicle ......Bip01_L_UpperArm "
+     ".......Bip01_L_Forearm ........Bip01_L_Hand .........Bip01_L_Finger0 .....Bip01_R_Clavicle "
+     "......Bip01_R_UpperArm .......Bip01_R_Forearm ........Bip01_R_Hand .........Bip01_R_Finger0",
+     "root=Bip01 hips=Bip01_Pelvis spine=Bip01_Spine chest=Bip01_Neck head=Bip01_Head "
+     "left_collar=Bip01_L_Clavicle left_upper_arm=Bip01_L_UpperArm left_lower_arm=Bip01_L_Forearm "
+     "left_hand=Bip01_L_Hand left_fingers=Bip01_L_Finger0 left_upper_leg=Bip01_L_Thigh "
+     "left_lower_leg=Bip01_L_Calf left_foot=Bip01_L_Foot left_toes=Bip01_L_Toe0"},
+    {"unreal",
+     "root .pelvis ..spine_01 ...spine_02 ....clavicle_l .....upperarm_l ......upperarm_twist_01_l "
+     "......lowerarm_l .......hand_l ........index_01_l ....clavicle_r .....upperarm_r "
+     "......upperarm_twist_01_r ......lowerarm_r .......hand_r ........index_01_r ....neck_01 "
+     ".....head ..thigh_l ...calf_l ....foot_l .....ball_l ..thigh_r ...calf_r ....foot_r "
+     ".....ball_r "
+     ".ik_foot_root ..ik_foot_l ..ik_foot_r .ik_hand_root ..ik_hand_l ..ik_hand_r",
+     "root=root hips=pelvis spine=spine_01 chest=spine_02 neck=neck_01 head=head "
+     "left_collar=clavicle_l left_upper_arm=upperarm_l left_lower_arm=lowerarm_l left_hand=hand_l "
+     "left_fingers=index_01_l left_upper_leg=thigh_l left_lower_leg=calf_l left_foot=foot_l "
+     "left_toes=ball_l"},
+    {"no_collars_no_neck",
+     "hips .spine ..head ..left_arm ...left_forearm ....left_hand ..right_arm ...right_forearm "
+     "....right_hand .left_leg ..left_knee ...left_ankle .right_leg ..right_knee ...right_ankle",
+     "hips=hips chest=spine head=head left_upper_arm=left_arm left_lower_arm=left_forearm "
+     "left_hand=left_hand left_upper_leg=left_leg left_lower_leg=left_knee left_foot=left_ankle"}};
+
+INSTANTIATE_TEST_SUITE_P(Exporters, RoleSchemes, testing::ValuesIn(kSchemes),
+                         [](const auto& test_case) {
+                           return std::string(test_case.param.exporter);
+                         });
+
+TEST(Roles, TheSideIsFoundInAnySpelling) {
+  for (const char* name :
+       {"L_Hand", "LHand", "lHand", "LeftHand", "Left_Hand", "left hand", "Hand.L", "Hand_L",
+        "Hand_l", "hand-left", "HandLeft", "LEFTHAND", "LEFT_HAND", "lhand", "Lhand", "ns:LeftHand",
+        "a|b|L.Hand", "lft_hand"}) {
+    Skeleton skeleton;
+    skeleton.add(name, -1, {});
+    const auto names = read_joint_names(skeleton);
+    EXPECT_EQ(names[0].part, Part::hand) << name;
+    EXPECT_EQ(names[0].side, Side::left) << name;
+  }
+  for (const char* name :
+       {"R_Hand", "RHand", "rHand", "RightHand", "Hand.R", "hand_r", "RIGHTHAND"}) {
+    Skeleton skeleton;
+    skeleton.add(name, -1, {});
+    EXPECT_EQ(read_joint_names(skeleton)[0].side, Side::right) << name;
+  }
+  for (const char* name : {"LowerBack", "Root", "Reference", "L5", "Rib", "lowerneck"}) {
+    Skeleton skeleton;
+    skeleton.add(name, -1, {});
+    EXPECT_EQ(read_joint_names(skeleton)[0].side, Side::middle) << name;
+  }
+}
+
+TEST(Roles, NamesAreSplitIntoWords) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(name_tokens("mixamorig:LeftForeArm2"), (Words{"left", "fore", "arm", "2"}));
+  EXPECT_EQ(name_tokens("CC_Base_L_Thigh"), (Words{"cc", "base", "l", "thigh"}));
+  EXPECT_EQ(name_tokens("LThigh"), (Words{"l", "thigh"}));
+  EXPECT_EQ(name_tokens("toe1-1.R"), (Words{"toe", "1", "1", "r"}));
+  EXPECT_EQ(name_tokens("LUArm"), (Words{"l", "u", "arm"}));
+  EXPECT_EQ(name_tokens(""), Words{});
+  EXPECT_EQ(name_tokens("::"), Words{});
+}
+
+TEST(Roles, EveryJointBeyondTheWristIsAFinger) {
+  const Skeleton skeleton = skeleton_from_text(kSchemes[0].joints);
+  const RoleMap map = find_roles(skeleton);
+  EXPECT_EQ(std::count(map.roles.begin(), map.roles.end(), Role::left_fingers), 3);
+  EXPECT_EQ(map.roles[static_cast<std::size_t>(skeleton.find("LFinger11"))], Role::left_fingers);
+  EXPECT_EQ(map.roles[static_cast<std::size_t>(skeleton.find("Head_end"))], Role::end);
+}
+
+TEST(Roles, AHandThatHangsUnderNoArmIsNotTheHand) {
+  const Skeleton skeleton = skeleton_from_text(
+      "Hips .LeftHand .Spine ..LeftShoulder ...LeftArm ....LeftForeArm .....LeftHand2 "
+      "..RightShoulder ...RightArm ....RightForeArm .....RightHand ..Neck ...Head .LeftUpLeg "
+      "..LeftLeg ...LeftFoot .RightUpLeg ..RightLeg ...RightFoot");
+  const RoleMap map = find_roles(skeleton);
+  EXPECT_TRUE(map.humanoid);
+  EXPECT_EQ(joint_name(skeleton, map, Role::left_hand), "LeftHand2");
+}
+
+TEST(Roles, PartOfAPersonKeepsItsRoles) {
+  const Skeleton skeleton = skeleton_from_text(
+      "Hips .Spine ..Neck ...Head ..LeftShoulder ...LeftArm ....LeftForeArm .....LeftHand "
+      "..RightShoulder ...RightArm ....RightForeArm .....RightHand");
+  const RoleMap map = find_roles(skeleton);
+  EXPECT_FALSE(map.humanoid);
+  EXPECT_EQ(joint_name(skeleton, map, Role::left_hand), "LeftHand");
+  EXPECT_EQ(joint_name(skeleton, map, Role::hips), "Hips");
+  EXPECT_EQ(joint_name(skeleton, map, Role::chest), "Spine");
+}
+
+TEST(Roles, WhatIsNoPersonGetsNone) {
+  for (const char* text : {"base .child1 ..child2 ...child3 ....tip!", "only", "Hips .Head",
+                           "door .hinge ..handle", "a .b .c .d .e"}) {
+    const Skeleton skeleton = skeleton_from_text(text);
+    const RoleMap map = find_roles(skeleton);
+    EXPECT_FALSE(map.humanoid) << text;
+    for (std::size_t j = 0; j < map.roles.size(); ++j) {
+      EXPECT_EQ(map.roles[j], skeleton.end_sites[j] != 0 ? Role::end : Role::none) << text;
+    }
+  }
+}
+
+TEST(Roles, AnEmptySkeletonIsNoPerson) {
+  const RoleMap map = find_roles({});
+  EXPECT_TRUE(map.roles.empty());
+  EXPECT_FALSE(map.humanoid);
+  EXPECT_EQ(map.joint(Role::hips), -1);
+}
+
+TEST(Roles, AVeryLongChainIsNoTrouble) {
+  Skeleton skeleton;
+  for (int j = 0; j < 100000; ++j) skeleton.add("LeftArm" + std::to_string(j), j - 1, {});
+  EXPECT_FALSE(find_roles(skeleton).humanoid);
+}
+
+// A person whose joints have no names that tell anything, y-up, facing +z, left at +x.
+Skeleton unnamed_figure(double hands_height) {
+  Skeleton s;
+  int next = 0;
+  const auto add = [&](int parent, double x, double y, double z) {
+    return s.add("n" + std::to_string(next++), parent, {Vec3(x, y, z), Quat::Identity()});
+  };
+  const int hips = add(-1, 0, 1, 0);
+  const int chest = add(add(hips, 0, 1.2, 0), 0, 1.4, 0);
+  add(add(chest, 0, 1.5, 0), 0, 1.6, 0);
+  for (const double side : {-1.0, 1.0}) {
+    const int shoulder = add(add(chest, side * 0.05, 1.4, 0), side * 0.2, 1.4, 0);
+    add(add(shoulder, side * 0.45, 0.5 * (1.4 + hands_height), 0), side * 0.7, hands_height, 0);
+    const int foot =
+        add(add(add(hips, side * 0.1, 0.95, 0), side * 0.1, 0.5, 0), side * 0.1, 0.1, 0);
+    add(foot, side * 0.1, 0, 0.15);
+  }
+  return s;
+}
+
+TEST(Roles, AnUnnamedPersonIsKnownByShape) {
+  const Skeleton skeleton = unnamed_figure(1.4);
+  const RoleMap map = find_roles(skeleton);
+  ASSERT_TRUE(map.humanoid) << table(skeleton, map);
+  const auto place = [&](Role role) {
+    return skeleton.reference[static_cast<std::size_t>(map.joint(role))].position;
+  };
+  EXPECT_GT(place(Role::left_hand).x(), 0.6);
+  EXPECT_LT(place(Role::right_hand).x(), -0.6);
+  EXPECT_GT(place(Role::left_foot).x(), 0);
+  EXPECT_DOUBLE_EQ(place(Role::head).y(), 1.6);
+  EXPECT_DOUBLE_EQ(place(Role::left_foot).y(), 0.1);
+  EXPECT_GE(map.joint(Role::left_collar), 0);
+}
+
+// An animal on four legs has its "hands" on the ground: sides are not guessed there.
+TEST(Roles, AnUnnamedFigureWithItsHandsOnTheGroundIsLeftAlone) {
+  EXPECT_FALSE(find_roles(unnamed_figure(0.1)).humanoid);
+}
+
+TEST(Roles, EveryRoleHasItsName) {
+  std::vector<std::string_view> seen;
+  for (int r = 0; r <= static_cast<int>(Role::helper); ++r) {
+    const std::string_view name = role_name(static_cast<Role>(r));
+    EXPECT_FALSE(name.empty());
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), name), 0);
+    seen.push_back(name);
+  }
+  EXPECT_EQ(role_name(Role::left_upper_arm), "left_upper_arm");
+  EXPECT_EQ(role_name(Role::right_toes), "right_toes");
+  EXPECT_EQ(role_name(Role::helper), "helper");
+}
+
+}  // namespace
+}  // namespace krok

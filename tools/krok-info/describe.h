@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "core/file.h"
+#include "core/result.h"
+#include "description.h"
+#include "tools/common/tool.h"
+
+// One function a kind of file. Each reads the whole file, so that what is described is also known
+// to be sound; a reader's warnings are told to the context.
+
+namespace krok::info {
+
+Result<Description> describe_anim(const InputFile& file, ToolContext& context);
+Result<Description> describe_model(const InputFile& file, ToolContext& context);
+Result<Description> describe_cam(const InputFile& file, ToolContext& context);
+Result<Description> describe_bvh(const InputFile& file, ToolContext& context);
+Result<Description> describe_gltf(const InputFile& file, ToolContext& context);
+
+}  // namespace krok::info

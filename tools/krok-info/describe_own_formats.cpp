@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/numbers.h"
+#include "describe.h"
+#include "formats/anim/anim.h"
+#include "formats/cam/cam.h"
+#include "formats/container/sections.h"
+#include "formats/model/model_format.h"
+
+namespace krok::info {
+
+namespace {
+
+void add_reference_size(const Skeleton& skeleton, Description& out) {
+  std::vector<Vec3> positions;
+  for (const Transform& joint : skeleton.reference) positions.push_back(joint.position);
+  add_size<Vec3>(positions, "joints in the reference pose", out);
+}
+
+void add_orientations(const InputFile& file, Description& out) {
+  const bool four = stored_orientation(file.bytes()) == OrientationEncoding::xyzw;
+  out.add("orientations", four ? "x, y, z, w" : "x, y, z; w is rebuilt");
+  out.json["orientations"] = four ? "xyzw" : "xyz";
+}
+
+std::string or_none(const std::string& name) {
+  return name.empty() ? "(no name)" : name;
+}
+
+void add_parts(const Model& model, Description& out) {
+  out.json["parts"] = Json::array();
+  std::vector<std::string> lines;
+  for (const Model::Part& part : model.parts) {
+    out.json["parts"].push_back(
+        {{"name", part.name}, {"material", part.material}, {"triangles", part.triangle_count}});
+    lines.push_back(
+        fmt::format("{}, {}, {}", or_none(part.name), count_of(part.triangle_count, "triangle"),
+                    part.material.empty() ? "no material" : "material " + part.material));
+  }
+  out.add("parts", std::move(lines));
+}
+
+}  // namespace
+
+Result<Description> describe_anim(const InputFile& file, ToolContext& context) {
+  const auto clip = anim::read(file.bytes());
+  if (!clip) return clip.error();
+  Description out;
+  out.what = "a motion (.anim)";
+  out.json["kind"] = "anim";
+  add_timing(clip->frame_count(), clip->rate, out);
+  add_skeleton(clip->skeleton, context.verbose, out);
+  add_reference_size(clip->skeleton, out);
+  add_orientations(file, out);
+  add_provenance(clip->provenance, out);
+  return out;
+}
+
+Result<Description> describe_model(const InputFile& file, ToolContext& context) {
+  const auto model = model::read(file.bytes());
+  if (!model) return model.error();
+  Description out;
+  out.what = "a model (.model)";
+  out.json["kind"] = "model";
+  const auto vertices = model->positions.size(), triangles = model->triangles.size();
+  std::vector<std::string> with;
+  if (!model->normals.empty()) with.emplace_back("normals");
+  if (!model->texture_coordinates.empty()) with.emplace_back("texture coordinates");
+  if (!model->tangents.empty()) with.emplace_back("tangents");
+  out.add("mesh", vertices == 0 ? std::string("none, a skeleton alone")
+                                : fmt::format("{}, {}", count_of(vertices, "vertex", "vertices"),
+                                              count_of(triangles, "triangle")));
+  out.add("with", with.empty() ? std::vector<std::string>()
+                               : std::vector{fmt::format("{}", fmt::join(with, ", "))});
+  if (vertices > 0) {
+    out.add("influences", fmt::format("up to {} a vertex", model->influences_per_vertex));
+  }
+  out.json["vertices"] = vertices;
+  out.json["triangles"] = triangles;
+  out.json["attributes"] = with;
+  out.json["influences_per_vertex"] = model->influences_per_vertex;
+  add_parts(*model, out);
+  add_skeleton(model->skeleton, context.verbose, out);
+  if (vertices > 0) {
+    add_size<Vec3f>(model->positions, "mesh in the reference pose", out);
+  } else {
+    add_reference_size(model->skeleton, out);
+  }
+  add_orientations(file, out);
+  add_provenance(model->provenance, out);
+  return out;
+}
+
+Result<Description> describe_cam(const InputFile& file, ToolContext&) {
+  const auto camera = cam::read(file.bytes());
+  if (!camera) return camera.error();
+  Description out;
+  out.what = "a camera (.cam)";
+  out.json["kind"] = "cam";
+  add_timing(camera->frame_count(), camera->rate, out);
+  if (camera->frame_count() > 0) {
+    const auto [low, high] =
+        std::minmax_element(camera->fields_of_view.begin(), camera->fields_of_view.end());
+    const auto degrees = [](float angle) { return readable(angle / kRadiansPerDegree, 4); };
+    out.add("field of view",
+            *low == *high ? fmt::format("{} deg, vertical", degrees(*low))
+                          : fmt::format("{} to {} deg, vertical", degrees(*low), degrees(*high)));
+    out.json["field_of_view"] = {{"least", *low}, {"most", *high}};
+    Eigen::AlignedBox3d box;
+    for (const Vec3f& position : camera->positions) box.extend(position.cast<double>());
+    const Vec3 size = box.sizes();
+    out.add("moves within", fmt::format("{} x {} x {} m", readable(size.x(), 4),
+                                        readable(size.y(), 4), readable(size.z(), 4)));
+    out.json["range"] = {size.x(), size.y(), size.z()};
+  }
+  add_orientations(file, out);
+  add_provenance(camera->provenance, out);
+  return out;
+}
+
+}  // namespace krok::info

@@ -1,0 +1,159 @@
+#include "description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/numbers.h"
+#include "scene/roles.h"
+
+namespace krok::info {
+
+namespace {
+
+std::string printable(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    // U+0080 to U+009F, in UTF-8 0xC2 and the byte itself, are control characters too.
+    const bool two_bytes =
+        byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    if (two_bytes) ++i;
+    result += byte < 32 || byte == 127 || two_bytes ? '?' : text[i];
+  }
+  return result;
+}
+
+// 12,345.
+std::string grouped(std::uint64_t value) {
+  std::string digits = std::to_string(value);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+  return digits;
+}
+
+std::vector<int> depths_of(const Skeleton& skeleton) {
+  std::vector<int> depths;
+  for (const int parent : skeleton.parents) {
+    depths.push_back(parent < 0 ? 0 : depths[static_cast<std::size_t>(parent)] + 1);
+  }
+  return depths;
+}
+
+}  // namespace
+
+void Description::add(std::string label, std::string line) {
+  rows.push_back({std::move(label), {std::move(line)}});
+}
+
+void Description::add(std::string label, std::vector<std::string> lines) {
+  if (!lines.empty()) rows.push_back({std::move(label), std::move(lines)});
+}
+
+std::string to_text(const std::string& path, const Description& description) {
+  std::size_t width = 0;
+  for (const auto& row : description.rows) width = std::max(width, row.label.size());
+  std::string text = fmt::format("{}: {}\n", printable(path), description.what);
+  for (const auto& row : description.rows) {
+    std::string label = row.label;
+    for (const std::string& line : row.lines) {
+      text += fmt::format("  {:<{}}  {}\n", label, width, printable(line));
+      label.clear();
+    }
+  }
+  return text;
+}
+
+std::string count_of(std::uint64_t count, const std::string& noun, std::string plural) {
+  if (plural.empty()) plural = noun + "s";
+  return fmt::format("{} {}", grouped(count), count == 1 ? noun : plural);
+}
+
+void add_timing(int frames, double rate, Description& out) {
+  const double duration = frames < 2 ? 0.0 : (frames - 1) / rate;
+  out.add("frames", fmt::format("{} at {} frames/s", grouped(static_cast<std::uint64_t>(frames)),
+                                readable(rate)));
+  out.add("duration", readable(duration, 5) + " s");
+  out.json["frames"] = frames;
+  out.json["rate"] = rate;
+  out.json["duration"] = duration;
+}
+
+void add_skeleton(const Skeleton& skeleton, bool verbose, Description& out) {
+  const auto ends = std::count(skeleton.end_sites.begin(), skeleton.end_sites.end(), 1);
+  const RoleMap roles = find_roles(skeleton);
+  const auto placed = std::count_if(roles.roles.begin(), roles.roles.end(), [](Role role) {
+    return role != Role::none && role != Role::end && role != Role::helper;
+  });
+  std::string joints = grouped(skeleton.names.size());
+  if (ends > 0) joints += fmt::format(", {} of them end sites", ends);
+  out.add("joints", joints);
+  out.add("figure", roles.humanoid
+                        ? fmt::format("humanoid, {} with a role in the body",
+                                      count_of(static_cast<std::uint64_t>(placed), "joint"))
+                        : std::string("not recognised as a humanoid"));
+  out.json["joints"] = skeleton.joint_count();
+  out.json["end_sites"] = ends;
+  out.json["humanoid"] = roles.humanoid;
+  out.json["skeleton"] = Json::array();
+  std::vector<std::string> lines;
+  const std::vector<int> depths = depths_of(skeleton);
+  for (std::size_t i = 0; i < skeleton.names.size(); ++i) {
+    const Role role = roles.roles[i];
+    const std::string_view role_text = role == Role::none ? "-" : role_name(role);
+    lines.push_back(fmt::format("{:<16} {:>{}}{}", role_text, "", 2 * std::min(depths[i], 40),
+                                skeleton.names[i]));
+    const int parent = skeleton.parents[i];
+    out.json["skeleton"].push_back(
+        {{"joint", skeleton.names[i]},
+         {"parent", parent < 0 ? Json() : Json(skeleton.names[static_cast<std::size_t>(parent)])},
+         {"role", role == Role::none ? Json() : Json(role_name(role))}});
+  }
+  if (verbose) out.add("roles", std::move(lines));
+}
+
+void add_size(const Eigen::AlignedBox3d& box, const std::string& measured, Description& out) {
+  if (box.isEmpty()) return;
+  const Vec3 size = box.sizes();
+  out.add("size",
+          fmt::format("{} x {} x {} m (width, height, depth of the {})", readable(size.x(), 4),
+                      readable(size.y(), 4), readable(size.z(), 4), measured));
+  out.add("height",
+          fmt::format("{} m (top minus bottom on Y of the {})", readable(size.y(), 4), measured));
+  out.json["size"] = {size.x(), size.y(), size.z()};
+  out.json["height"] = size.y();
+  out.json["measured"] = measured;
+}
+
+void add_provenance(const Provenance& provenance, Description& out) {
+  Json json = Json::object();
+  json["tool"] = provenance.tool;
+  json["version"] = provenance.version;
+  json["sources"] = Json::array();
+  std::vector<std::string> sources;
+  for (const auto& source : provenance.sources) {
+    json["sources"].push_back({{"name", source.name}, {"xxh3", source.xxh3}});
+    sources.push_back(source.xxh3.empty() ? source.name
+                                          : fmt::format("{} (xxh3 {})", source.name, source.xxh3));
+  }
+  json["options"] = Json::array();
+  std::vector<std::string> options;
+  for (const auto& [name, value] : provenance.options) {
+    json["options"].push_back({{"name", name}, {"value", value}});
+    options.push_back(value == "true" ? "--" + name : fmt::format("--{} {}", name, value));
+  }
+  json["conversions"] = provenance.conversions;
+  json["warnings"] = provenance.warnings;
+  out.json["provenance"] = std::move(json);
+
+  if (provenance.tool.empty()) {
+    out.add("made by", "unknown, the file does not say");
+  } else {
+    out.add("made by", fmt::format("{} {}", provenance.tool, provenance.version));
+  }
+  out.add("from", std::move(sources));
+  out.add("options", std::move(options));
+  out.add("conversions", provenance.conversions);
+  out.add("warnings", provenance.warnings);
+}
+
+}  // namespace krok::info

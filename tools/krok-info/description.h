@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "math/types.h"
+#include "scene/provenance.h"
+#include "scene/skeleton.h"
+#include "tools/common/report.h"
+
+// What is said of a file, once for people and once for programs, and the parts of it that several
+// kinds of files share.
+
+namespace krok::info {
+
+// Rows of a label and one or more lines.
+struct Description {
+  std::string what;  // "a motion (.anim)"
+  struct Row {
+    std::string label;
+    std::vector<std::string> lines;
+  };
+  std::vector<Row> rows;
+  Json json = Json::object();
+
+  void add(std::string label, std::string line);
+  void add(std::string label, std::vector<std::string> lines);  // nothing for no lines
+};
+
+// Labels in one column, values in the next. Control characters, which a file may hold in its names
+// and which a terminal would obey, become "?".
+std::string to_text(const std::string& path, const Description& description);
+
+// "52 joints", "1 joint", "12,345 vertices"; `plural` where an s is not enough.
+std::string count_of(std::uint64_t count, const std::string& noun, std::string plural = {});
+
+// Frames, rate and duration.
+void add_timing(int frames, double rate, Description& out);
+
+// Joints, end sites, whether it is a humanoid; each joint with its role in JSON, and in the text
+// too with `verbose`.
+void add_skeleton(const Skeleton& skeleton, bool verbose, Description& out);
+
+// Extents over the axes, and as the height that on Y. `measured` says of what: "joints in the
+// reference pose". Nothing for no points.
+template <typename Point>
+void add_size(std::span<const Point> points, const std::string& measured, Description& out);
+void add_size(const Eigen::AlignedBox3d& box, const std::string& measured, Description& out);
+
+void add_provenance(const Provenance& provenance, Description& out);
+
+template <typename Point>
+void add_size(std::span<const Point> points, const std::string& measured, Description& out) {
+  Eigen::AlignedBox3d box;
+  for (const Point& point : points) box.extend(point.template cast<double>());
+  add_size(box, measured, out);
+}
+
+}  // namespace krok::info

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/common/tool.h"
+
+namespace krok::info {
+
+struct Options {
+  std::vector<std::string> files;
+};
+
+// Describes each file on standard output and in the report. A file that cannot be read gets its
+// message and the next one is taken; the exit code is then kExitTrouble.
+Result<int> run(const Options& options, ToolContext& context);
+
+}  // namespace krok::info
