@@ -68,7 +68,7 @@ class Writer {
       WrittenJoint written;
       written.index = joint;
       written.depth = depth;
-      written.end_site = skeleton().end_sites[j] != 0 && children[j].empty() && depth > 0;
+      written.end_site = skeleton().end_sites[j] != 0 && depth > 0;
       written.positions = depth == 0;
       if (depth > 0 || options_.root_offset) {
         written.offset = skeleton().reference[j].position;

@@ -42,7 +42,7 @@ struct WriteOptions {
 // motion, so that world positions come back and a joint's frame in the file's rest pose is the
 // world's. Angles are continuous over frames. Joints stand depth first; those marked as end sites
 // become End Sites, which have no name of their own (they read back as <parent>_end) and no motion:
-// an end site with children, or that moves in its parent, is written as a joint. Leaves that are no
+// an end site that moves in its parent is written as a joint. Leaves that are no
 // end sites have none written for them. Line ends are LF; a rate is printed as the frame time with
 // enough digits to read back as the same rate.
 //

@@ -49,13 +49,12 @@ PrintedRate rate_of_frame_time(std::string_view text, double frame_time) {
   for (const double rate : kCommonRates) {
     if (agrees(rate) && (best == 0 || distance(rate) < distance(best))) best = rate;
   }
-  if (best == 0) {
-    // Whole rates are spaced by frame_time squared; more than one may agree.
-    const double whole = std::round(result.rate);
-    if (whole >= 1 && whole <= 1000 && agrees(whole) && !agrees(whole + 1) &&
-        (whole == 1 || !agrees(whole - 1))) {
-      best = whole;
-    }
+  // Other rates are taken as round as the digits allow: 15, 59.94, 23.976.
+  for (const double step : {1.0, 0.01, 0.001}) {
+    if (best != 0) break;
+    const double round = std::round(result.rate / step) * step;
+    if (round < step || round > 1000 || !agrees(round)) continue;
+    if (!agrees(round + step) && (round < 1.5 * step || !agrees(round - step))) best = round;
   }
   if (best == 0) {
     result.reason = fmt::format("1 / {} s, the Frame Time", text);

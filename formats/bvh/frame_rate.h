@@ -16,7 +16,8 @@ struct PrintedRate {
 
 // The nearest common rate (24, 25, 30, 48, 50, 60, 90, 100, 120, 240 and NTSC's 24, 30, 48, 60, 120
 // and 240 / 1.001) whose frame time agrees with the number to the digits that are printed (zeros at
-// the end do not count), or else the only whole rate up to 1000 that does, or else 1 / frame time. A whole
+// the end do not count), or else the only rate up to 1000 without decimals, or with two
+// or three, that does, or else 1 / frame time. A whole
 // rate that the number gives exactly stands against a common one more than half a percent away.
 // `text` is the number as printed, `frame_time` its value, > 0.
 PrintedRate rate_of_frame_time(std::string_view text, double frame_time);

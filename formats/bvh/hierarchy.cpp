@@ -154,7 +154,8 @@ class HierarchyParser {
       return fail("bvh-limit", fmt::format("more than {} joints", options_.max_joints));
     }
     const std::size_t keyword = cursor_.word_begin();
-    const std::string_view name = cursor_.name();
+    // What follows "End" is "Site", and with some exporters a name that is no joint's.
+    const std::string_view name = end_site ? cursor_.to_brace() : cursor_.name();
     Hierarchy::Joint joint;
     joint.parent = open_.empty() ? -1 : open_.back();
     joint.end_site = end_site;

@@ -83,6 +83,14 @@ bool TextCursor::accept(std::string_view expected) {
   return true;
 }
 
+std::string_view TextCursor::to_brace() {
+  word_begin_ = position_;
+  while (position_ < text_.size() && !is_line_end(text_[position_]) && text_[position_] != '{') {
+    ++position_;
+  }
+  return trimmed(text_.substr(word_begin_, position_ - word_begin_));
+}
+
 std::string_view TextCursor::name() {
   skip_blanks();
   word_begin_ = position_;

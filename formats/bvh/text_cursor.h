@@ -68,6 +68,9 @@ class TextCursor {
   // The rest of the line as a name: trimmed, up to a '{' that ends the line or follows white space.
   std::string_view name();
 
+  // The rest of the line up to any '{'.
+  std::string_view to_brace();
+
  private:
   std::string_view text_;
   std::size_t position_ = 0;

@@ -399,11 +399,4 @@ Result<Asset> read_file(const std::string& path) {
   return asset;
 }
 
-bool looks_like_gltf(std::span<const std::byte> bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.starts_with("glTF")) return true;
-  const auto container = open_container(bytes);
-  return container && text.find("\"asset\"") != std::string_view::npos;
-}
-
 }  // namespace krok::gltf

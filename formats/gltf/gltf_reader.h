@@ -31,7 +31,4 @@ Result<Asset> read(std::span<const std::byte> bytes, const ReadOptions& options 
 // InputFile.
 Result<Asset> read_file(const std::string& path);
 
-// Whether the bytes begin like a GLB, or like a JSON text that calls itself glTF ("asset").
-bool looks_like_gltf(std::span<const std::byte> bytes);
-
 }  // namespace krok::gltf

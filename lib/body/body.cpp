@@ -9,7 +9,7 @@
 
 #include "body/build_pose.h"
 #include "body/general_shape.h"
-#include "body/human_pose.h"
+#include "body/human_hand.h"
 #include "body/human_shape.h"
 #include "body/polygonise.h"
 #include "body/surface_binding.h"
@@ -42,10 +42,10 @@ Level level_of(BodyDetail detail) {
 double cell_size(const Field& field, std::size_t target) {
   // A lattice of this kind has about four vertices per squared cell.
   const double finest = std::sqrt(4 * field.area_estimate() /
-                                  static_cast<double>(std::max<std::size_t>(100000, 5 * target)));
+                                  static_cast<double>(std::max<std::size_t>(160000, 5 * target)));
   const double coarsest =
       std::sqrt(4 * field.area_estimate() / static_cast<double>(4 * target));
-  return std::clamp(field.smallest_radius(), finest, coarsest);
+  return std::clamp(0.8 * field.smallest_radius(), finest, coarsest);
 }
 
 // Limbs thinner than the lattice can show would break up.
@@ -60,10 +60,10 @@ void thicken(Shape& shape, double least) {
 }
 
 Mesh build_mesh(const BlockedField& blocked, std::size_t target, int jobs, Progress& progress) {
-  progress.begin("shaping the body", 4);
+  progress.begin("shaping the body", 3);
   Mesh mesh = without_fragments(polygonise(blocked, jobs), 0.02);
-  progress.advance(1);
-  relax(mesh, blocked, 1, 0.5, jobs);
+  // Marching leaves slivers that would block the collapses.
+  smooth(mesh, jobs);
   progress.advance(1);
   std::vector<double> detail(mesh.positions.size(), 1.0);
   parallel_for(detail.size(), 256, jobs, [&](std::size_t begin, std::size_t end) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "body/human_figure.h"
+#include "body/human_hand.h"
 #include "body/implicit.h"
 
 // The parts of the human shape; used by human_shape.cpp and human_extremities.cpp alone.
@@ -38,14 +39,8 @@ class HumanBuilder {
   void build_foot(std::size_t side);
   void build_arm(std::size_t side);
   void build_hand(std::size_t side);
-  struct Hand {
-    Vec3 wrist, along, across, thick;  // unit: to the fingertips, to the thumb's side, the rest
-    double scale;
-    std::size_t side;
-  };
-  Hand hand_frame(std::size_t side) const;
-  void build_finger_along(const Hand& hand, const std::vector<int>& chain);
-  void build_free_finger(const Hand& hand, int finger, const std::vector<int>& chain);
+  void build_finger_along(std::size_t side, const HandLayout& hand, const std::vector<int>& chain);
+  void build_free_finger(std::size_t side, const HandLayout& hand, int finger);
   void join();
 
   const Skeleton& skeleton_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/turn_joint.h"
 #include "math/quaternion.h"
 
 namespace krok::body {
@@ -10,8 +11,6 @@ namespace krok::body {
 namespace {
 
 constexpr double kDegree = kRadiansPerDegree;
-
-double angle(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 class Straightener {
  public:
@@ -31,91 +30,41 @@ class Straightener {
     return {std::move(pose_), turned_, heading_};
   }
 
-  std::vector<Transform> spread_fingers() {
-    for (std::size_t side = 0; side < 2; ++side) spread_fingers_of(figure_.arms[side]);
-    return std::move(pose_);
-  }
-
  private:
   Vec3 position(int joint) const { return pose_[static_cast<std::size_t>(joint)].position; }
   Vec3 bone(int from, int to) const { return position(to) - position(from); }
 
-  void rotate(int joint, const Quat& rotation) {
-    const Vec3 pivot = position(joint);
-    std::vector<char> below(pose_.size(), 0);
-    below[static_cast<std::size_t>(joint)] = 1;
-    for (std::size_t j = static_cast<std::size_t>(joint); j < pose_.size(); ++j) {
-      const int parent = skeleton_.parents[j];
-      if (parent >= joint && below[static_cast<std::size_t>(parent)]) below[j] = 1;
-      if (!below[j]) continue;
-      pose_[j].position = pivot + rotation * (pose_[j].position - pivot);
-      pose_[j].orientation = normalized_or_identity(rotation * pose_[j].orientation);
-    }
-  }
+  void rotate(int joint, const Quat& rotation) { turn_joint(skeleton_, joint, rotation, pose_); }
 
   // Turns `joint` so that the bone to `child` points along `wanted`, if it is more than `tolerance`
   // away from it.
   void point(int joint, int child, const Vec3& wanted, double tolerance) {
     const Vec3 now = bone(joint, child);
     if (now.norm() < 1e-3 * figure_.stature) return;
-    const double off = angle(now, wanted);
+    const double off = turn_angle(now, wanted);
     if (off <= tolerance) return;
     rotate(joint, shortest_arc(now, wanted));
     turned_ += off;
   }
 
-  void spread_fingers_of(const HumanFigure::Arm& arm) {
-    std::vector<const std::vector<int>*> fingers;
-    Vec3 along = Vec3::Zero();
-    for (const auto& chain : arm.fingers) {
-      if (chain.size() < 2) continue;
-      fingers.push_back(&chain);
-      along += bone(arm.wrist, chain.front()).normalized();
-    }
-    if (fingers.size() < 4) return;
-    along.normalize();
-    // The line of the knuckles: between the two first joints that lie farthest apart across the hand.
-    Vec3 across = Vec3::Zero();
-    for (const auto* a : fingers) {
-      for (const auto* b : fingers) {
-        Vec3 between = bone(b->front(), a->front());
-        between -= along * along.dot(between);
-        if (between.norm() > across.norm() * (1 + 1e-9)) across = between;
-      }
-    }
-    if (across.norm() < 1e-3 * figure_.stature) return;
-    const double breadth = across.norm();
-    across /= breadth;
-    double middle = 0;
-    for (const auto* chain : fingers) {
-      middle += bone(arm.wrist, chain->front()).dot(across) / static_cast<double>(fingers.size());
-    }
-    for (const auto* chain : fingers) {
-      const int base = chain->front();
-      const Vec3 first = bone(base, (*chain)[1]);
-      const bool thumb = angle(bone(arm.wrist, base), along) > 30 * kDegree;
-      Vec3 direction = first;
-      if (!thumb) {
-        const double aside = (bone(arm.wrist, base).dot(across) - middle) / breadth;
-        direction = along + 0.45 * aside * across;
-        point(base, (*chain)[1], direction, 0);
-      }
-      for (std::size_t i = 1; i + 1 < chain->size(); ++i) {
-        point((*chain)[i], (*chain)[i + 1], direction, thumb ? 20 * kDegree : 0);
-      }
-    }
-  }
-
   void face_forward() {
     const HumanAxes axes = human_axes(figure_, pose_);
-    Mat3 from;
-    from << axes.left, axes.up, axes.forward;
-    const double tilt = angle(axes.up, Vec3::UnitY());
-    const double turn = angle(axes.forward, Vec3::UnitZ());
-    if (tilt < 10 * kDegree && turn < 10 * kDegree) return;
-    const Quat rotation = normalized_or_identity(Quat(Mat3(from.transpose())));
-    heading_ = std::max(tilt, turn);
-    rotate(0, rotation);
+    const double tilt = turn_angle(axes.up, Vec3::UnitY());
+    Vec3 forward = axes.forward;
+    Quat rotation = Quat::Identity();
+    if (tilt > 25 * kDegree) {
+      Mat3 from;
+      from << axes.left, axes.up, axes.forward;
+      rotation = Quat(Mat3(from.transpose()));
+      heading_ = tilt;
+    } else {  // a trunk that leans a little may
+      forward.y() = 0;
+      const double turn = std::atan2(forward.x(), forward.z());
+      if (std::abs(turn) < 10 * kDegree) return;
+      rotation = Quat(Eigen::AngleAxisd(-turn, Vec3::UnitY()));
+      heading_ = std::abs(turn);
+    }
+    rotate(0, normalized_or_identity(rotation));
   }
 
   // The bones from one joint to another, turned up one by one where they are folded or, taken
@@ -125,7 +74,7 @@ class Straightener {
     double length = 0;
     for (std::size_t i = 1; i < path.size(); ++i) length += bone(path[i - 1], path[i]).norm();
     const Vec3 whole = bone(path.front(), path.back());
-    if (whole.norm() > 0.75 * length && angle(whole, Vec3::UnitY()) < 40 * kDegree) return;
+    if (whole.norm() > 0.75 * length && turn_angle(whole, Vec3::UnitY()) < 40 * kDegree) return;
     for (std::size_t i = 1; i < path.size(); ++i) {
       point(path[i - 1], path[i], Vec3::UnitY(), 30 * kDegree);
     }
@@ -149,7 +98,7 @@ class Straightener {
     const auto& leg = figure_.legs[side];
     const Vec3 thigh = bone(leg.hip, leg.knee).normalized();
     const double apart = (side == 0 ? 1.0 : -1.0) * thigh.x();
-    return apart < -0.06 || apart > 0.45 || std::abs(thigh.z()) > 0.30 || thigh.y() > 0;
+    return apart < -0.06 || apart > 0.28 || std::abs(thigh.z()) > 0.30 || thigh.y() > 0;
   }
 
   // An upper arm beside the trunk, raised, or well before or behind it.
@@ -196,7 +145,7 @@ class Straightener {
     }
     const Vec3 upper = bone(arm.shoulder, arm.elbow).normalized();
     if (turn) {
-      const double hanging = angle(upper, -Vec3::UnitY());
+      const double hanging = turn_angle(upper, -Vec3::UnitY());
       // A raised or level arm goes to a T-pose, a hanging one half-way there.
       const double aim = hanging > 75 * kDegree ? 90 * kDegree : 45 * kDegree;
       point(arm.shoulder, arm.elbow, Vec3(out * std::sin(aim), -std::cos(aim), 0), 0);
@@ -215,7 +164,7 @@ class Straightener {
     }
     if (count == 0 || knuckles.norm() < 0.3 * count) return;
     const Vec3 forearm = bone(arm.elbow, arm.wrist);
-    const double off = angle(knuckles, forearm);
+    const double off = turn_angle(knuckles, forearm);
     if (off > 30 * kDegree) {
       rotate(arm.wrist, shortest_arc(knuckles, forearm));
       turned_ += off;
@@ -229,11 +178,6 @@ class Straightener {
 };
 
 }  // namespace
-
-std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanFigure& figure,
-                                      std::span<const Transform> pose) {
-  return Straightener(skeleton, figure, pose).spread_fingers();
-}
 
 StandingPose stand_upright(const Skeleton& skeleton, const HumanFigure& figure,
                            std::span<const Transform> pose) {

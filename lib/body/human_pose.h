@@ -22,8 +22,4 @@ struct StandingPose {
 StandingPose stand_upright(const Skeleton& skeleton, const HumanFigure& figure,
                            std::span<const Transform> pose);
 
-// The same pose with the fingers of each hand straight and fanned out, so that none touches another.
-std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanFigure& figure,
-                                      std::span<const Transform> pose);
-
 }  // namespace krok::body

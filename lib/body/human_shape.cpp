@@ -262,8 +262,11 @@ void HumanBuilder::join() {
     shape_.blends.push_back({{neck_, ridges_[side], trunk_}, 0.030 * u});
     shape_.blends.push_back({{legs_[side], feet_[side]}, 0.022 * u});
     shape_.blends.push_back({{arms_[side], palms_[side]}, 0.010 * u});
-    for (const int finger : fingers_[side]) {
-      shape_.blends.push_back({{palms_[side], finger}, 0.008 * u});
+    const auto& fingers = fingers_[side];
+    for (std::size_t i = 0; i < fingers.size(); ++i) {
+      shape_.blends.push_back({{palms_[side], fingers[i]}, 0.008 * u});
+      // A little between fingers, or the lattice would leave threads where they part.
+      if (i > 0) shape_.blends.push_back({{fingers[i - 1], fingers[i]}, 0.006 * u});
     }
     shape_.blends.push_back({{skull_, ears_[side]}, 0.006 * u});
   }

@@ -64,6 +64,9 @@ Mesh polygonise(const BlockedField& field, int jobs);
 // The connected pieces of a mesh but those with under `share` of the vertices.
 Mesh without_fragments(const Mesh& mesh, double share);
 
+// Moves every vertex half-way to the middle of its neighbours.
+void smooth(Mesh& mesh, int jobs);
+
 // A mesh of at most `target` vertices made from a finer one by collapsing edges, the shortest for
 // their place first: `detail` [vertices] is the edge length wanted at each vertex, in any unit. The
 // result is a closed 2-manifold of the same topology; where that forbids more collapses it has more

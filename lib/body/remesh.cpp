@@ -241,6 +241,20 @@ Mesh simplify(const Mesh& mesh, std::vector<double>& detail, std::size_t target)
   return simplifier.result();
 }
 
+void smooth(Mesh& mesh, int jobs) {
+  const auto neighbours = vertex_neighbours(mesh);
+  std::vector<Vec3> moved(mesh.positions.size());
+  parallel_for(moved.size(), 1024, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      Vec3 middle = Vec3::Zero();
+      for (const std::uint32_t u : neighbours[v]) middle += mesh.positions[u];
+      moved[v] = 0.5 * mesh.positions[v] +
+                 0.5 / static_cast<double>(neighbours[v].size()) * middle;
+    }
+  });
+  mesh.positions = std::move(moved);
+}
+
 void relax(Mesh& mesh, const BlockedField& field, int passes, double strength, int jobs) {
   for (int pass = 0; pass < passes; ++pass) {
     flip_edges(mesh);

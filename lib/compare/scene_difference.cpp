@@ -51,6 +51,10 @@ std::string label(const char* kind, const std::string& name, int index) {
   return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {}", kind, name);
 }
 
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
 // One moment at which both scenes are evaluated.
 struct Moment {
   int first_animation = -1;
@@ -145,8 +149,8 @@ void Comparison::match_joint_lists() {
 
 void Comparison::match_meshes() {
   if (first_.meshes.size() != second_.meshes.size()) {
-    say(fmt::format("{} meshes in the first, {} in the second", first_.meshes.size(),
-                    second_.meshes.size()));
+    say(fmt::format("{} in the first, {} in the second",
+                    counted(first_.meshes.size(), "mesh", "meshes"), second_.meshes.size()));
   }
   for (const auto& [i, j] : match(first_.meshes, second_.meshes)) {
     if (compare_shape(i, j)) meshes_.emplace_back(i, j);
@@ -223,7 +227,8 @@ void Comparison::compare_weights(const SceneMesh& a, const SceneMesh& b, const s
 
 Status Comparison::choose_moments() {
   if (first_.animations.size() != second_.animations.size()) {
-    say(fmt::format("{} animations in the first, {} in the second", first_.animations.size(),
+    say(fmt::format("{} in the first, {} in the second",
+                    counted(first_.animations.size(), "animation", "animations"),
                     second_.animations.size()));
   }
   for (const auto& [i, j] : match(first_.animations, second_.animations)) {

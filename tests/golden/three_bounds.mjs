@@ -24,7 +24,9 @@ function parseTable(path) {
     const frame = Number(match[1]);
     if (!frames.has(frame)) frames.set(frame, {time: Number(match[2]), joints: []});
     const name = match[3] !== undefined ? match[3].replaceAll('""', '"') : match[4];
-    frames.get(frame).joints.push({name, at: match.slice(5, 8).map(Number)});
+    const at = match.slice(5, 8).map(Number);
+    if (!at.every(Number.isFinite)) throw new Error(`${path}: not a number: ${row}`);
+    frames.get(frame).joints.push({name, at});
   }
   return frames;
 }
@@ -53,7 +55,8 @@ class Worst {
   distance = 0;
   text = 'nothing differs';
   add(distance, text) {
-    if (distance <= this.distance) return;
+    // NaN is the worst of all, and stays.
+    if (Number.isNaN(this.distance) || distance <= this.distance) return;
     this.distance = distance;
     this.text = text;
   }

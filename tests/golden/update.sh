@@ -46,4 +46,9 @@ for file in "$fresh"/*; do
     refused=1
   fi
 done
+
+# Pages that are made from what the programs say of themselves.
+if [ -d "$build/bin" ]; then
+  python3 "$source/tests/golden/manual.py" "$build/bin" "$source" --update
+fi
 exit $refused

@@ -19,6 +19,8 @@ namespace krok {
 
 namespace {
 
+constexpr std::size_t kHelpColumn = 34;
+
 // Options that say where results go or how the tool talks, not what the result is.
 const char* const kSilentOptions[] = {"help", "version", "output",   "quiet",     "verbose",
                                       "json", "jobs",    "progress", "no-clobber"};
@@ -68,10 +70,37 @@ std::string help_footer(const ToolSpec& spec) {
   return text;
 }
 
+// CLI11 neither breaks long lines nor keeps to one empty line between groups.
+std::string tidy_help(const std::string& help) {
+  constexpr std::size_t kWidth = 100;
+  std::string tidy;
+  bool empty_before = true;
+  for (std::size_t at = 0; at < help.size();) {
+    const std::size_t end = std::min(help.find('\n', at), help.size());
+    std::string line = help.substr(at, end - at);
+    at = end + 1;
+    if (line.empty() && empty_before) continue;
+    empty_before = line.empty();
+    // Options continue under their text, everything else under itself.
+    const bool option = line.size() > kHelpColumn && line[0] == ' ' &&
+                        line.find_first_not_of(' ') == 2 && line[kHelpColumn - 1] == ' ';
+    const std::size_t indent = option ? kHelpColumn : std::min(line.find_first_not_of(' '), kWidth);
+    while (line.size() > kWidth) {
+      std::size_t space = line.rfind(' ', kWidth);
+      if (space == std::string::npos || space <= indent) space = line.find(' ', kWidth);
+      if (space == std::string::npos) break;
+      tidy += line.substr(0, space) + "\n";
+      line = std::string(indent, ' ') + line.substr(space + 1);
+    }
+    tidy += line + "\n";
+  }
+  return tidy;
+}
+
 class HelpFormatter : public CLI::Formatter {
  public:
   explicit HelpFormatter(std::string usage) : usage_(std::move(usage)) {
-    column_width(34);
+    column_width(kHelpColumn);
     label("REQUIRED", "(required)");
   }
   std::string make_usage(const CLI::App*, std::string) const override {
@@ -227,10 +256,10 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
   app.formatter(std::make_shared<HelpFormatter>(
       fmt::format("{} [options] {}{}", spec.name, spec.inputs,
                   spec.has_output ? (spec.needs_output ? " -o OUTPUT" : " [-o OUTPUT]") : "")));
+  spec.declare(app);
   app.set_help_flag("-h,--help", "This text")->group("Common options");
   app.set_version_flag("--version", fmt::format("{} {}", spec.name, version()), "The version")
       ->group("Common options");
-  spec.declare(app);
   if (spec.has_output) {
     auto* option = app.add_option("-o,--output", context.output, "Where the result goes")
                        ->type_name("OUTPUT")
@@ -267,7 +296,7 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
     std::reverse(arguments.begin(), arguments.end());
     app.parse(arguments);
   } catch (const CLI::CallForHelp&) {
-    put(stdout, app.help());
+    put(stdout, tidy_help(app.help()));
     return finish_output(spec.name);
   } catch (const CLI::CallForVersion&) {
     put(stdout, fmt::format("{} {}\n", spec.name, version()));

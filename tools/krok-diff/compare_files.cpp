@@ -73,9 +73,9 @@ Result<Outcome> compare_clips(const InputFile& first, const InputFile& second,
   if (!found) return found.error();
   Outcome outcome;
   outcome.kind = "anim";
-  outcome.summary = fmt::format("motions: {}, {} compared",
-                                counted(clips->first.joint_count(), "joint", "joints"),
-                                counted(found->compared_frames, "frame", "frames"));
+  outcome.summary = {fmt::format("motions: {}, {} compared",
+                                 counted(clips->first.joint_count(), "joint", "joints"),
+                                 counted(found->compared_frames, "frame", "frames"))};
   outcome.structure = found->structure;
   outcome.names.joints = clips->first.skeleton.names;
   outcome.add_row("reference positions", Unit::length, found->reference_positions);
@@ -95,10 +95,10 @@ Result<Outcome> compare_models(const InputFile& first, const InputFile& second,
   if (!found) return found.error();
   Outcome outcome;
   outcome.kind = "model";
-  outcome.summary = fmt::format(
+  outcome.summary = {fmt::format(
       "models: {}, {}, {}", counted(models->first.vertex_count(), "vertex", "vertices"),
       counted(static_cast<std::int64_t>(models->first.triangles.size()), "triangle", "triangles"),
-      counted(models->first.skeleton.joint_count(), "joint", "joints"));
+      counted(models->first.skeleton.joint_count(), "joint", "joints"))};
   outcome.structure = found->structure;
   outcome.names.joints = models->first.skeleton.names;
   outcome.add_row("joint positions", Unit::length, found->reference_positions);
@@ -121,8 +121,8 @@ Result<Outcome> compare_cameras(const InputFile& first, const InputFile& second,
   if (!found) return found.error();
   Outcome outcome;
   outcome.kind = "cam";
-  outcome.summary =
-      fmt::format("cameras: {} compared", counted(found->compared_frames, "frame", "frames"));
+  outcome.summary = {
+      fmt::format("cameras: {} compared", counted(found->compared_frames, "frame", "frames"))};
   outcome.structure = found->structure;
   outcome.add_row("positions", Unit::length, found->positions);
   outcome.add_row("orientations", Unit::angle, found->orientations);
@@ -160,13 +160,13 @@ Result<Outcome> compare_gltf(const InputFile& first, const InputFile& second,
   outcome.kind = "gltf";
   const std::string first_summary = summary_of(*a);
   const std::string second_summary = summary_of(*b);
-  outcome.summary = "glTF: " + first_summary;
-  if (second_summary != first_summary) outcome.summary += "\n  against " + second_summary;
+  outcome.summary = {"glTF: " + first_summary};
+  if (second_summary != first_summary) outcome.summary.push_back("against " + second_summary);
   if (a->animations.empty() || b->animations.empty()) {
-    outcome.summary += "\n  compared without animation";
+    outcome.summary.push_back("compared without animation");
   } else {
-    outcome.summary +=
-        fmt::format("\n  compared at {}", counted(found->compared_times, "moment", "moments"));
+    outcome.summary.push_back(
+        fmt::format("compared at {}", counted(found->compared_times, "moment", "moments")));
   }
   outcome.structure = found->structure;
   outcome.notes = found->notes;

@@ -134,7 +134,8 @@ std::string counted(std::int64_t number, const char* one, const char* many) {
 }
 
 std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance) {
-  std::string text = outcome.summary + "\n";
+  std::string text;
+  for (const std::string& line : outcome.summary) text += (text.empty() ? "" : "  ") + line + "\n";
   for (const std::string& line : outcome.structure) text += "  differs: " + line + "\n";
   for (const std::string& line : outcome.notes) text += "  note: " + line + "\n";
   bool measured_over = false;

@@ -27,7 +27,7 @@ struct PlaceNames {
 
 struct Outcome {
   std::string kind;                    // "anim"
-  std::string summary;                 // what was compared: "31 joints, 240 frames at 60 Hz"
+  std::vector<std::string> summary;    // lines on what was compared: "31 joints, 240 frames"
   std::vector<std::string> structure;  // differences that no tolerance allows
   std::vector<std::string> notes;
   std::vector<Row> rows;  // those without a single value are left out

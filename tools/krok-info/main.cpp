@@ -8,12 +8,10 @@ int main(int argc, char** argv) {
       "What is in a file: motions (.anim), models (.model), cameras (.cam), captures (.bvh), glTF "
       "(.glb, .gltf)";
   spec.inputs = "FILE...";
-  spec.examples = {
-      {"krok-info walk.anim", "Frames, rate, duration, joints, size and provenance."},
-      {"krok-info -v capture.bvh",
-       "Also each joint with its role in the body, and the notes of the reader: what it "
-       "took for unit, axes and positions, and why."},
-      {"krok-info --json *.model > models.json", "The same for programs."}};
+  spec.examples = {{"krok-info walk.anim", "Frames, rate, duration, joints, size and provenance."},
+                   {"krok-info -v capture.bvh",
+                    "Also each joint with its role in the body, and the reader's notes."},
+                   {"krok-info --json *.model > models.json", "The same for programs."}};
   spec.has_output = false;
   spec.declare = [&](CLI::App& app) {
     app.add_option("FILE", options.files, "Files of any of these kinds; - is standard input")

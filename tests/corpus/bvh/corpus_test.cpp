@@ -225,8 +225,9 @@ TEST_F(Corpus, WrittenFilesReadBackAsTheSameMotion) {
       largest = std::max(largest, static_cast<double>((a.positions[i] - b.positions[i]).norm()));
       turned = std::max(turned, static_cast<double>(a.orientations[i].angularDistance(b.orientations[i])));
     }
-    // Floats far from the origin are coarser than the digits that are printed.
-    EXPECT_LE(largest, 2e-6 * reach);
+    // Floats far from the origin are coarser than the digits that are printed, and translations that
+    // vary by less than the writer's tolerance are left out.
+    EXPECT_LE(largest, 1e-5 * reach);
     EXPECT_LE(turned, 2e-3);
   }
   std::filesystem::remove(out);

@@ -10,6 +10,7 @@
 
 namespace {
 
+using std::string_literals::operator""s;
 using krok::acclaim::Strictness;
 using small_files::kAmc;
 using small_files::kAsf;
@@ -52,7 +53,7 @@ TEST(AcclaimFuzz, every_prefix_of_both_files) {
 }
 
 TEST(AcclaimFuzz, every_byte_changed) {
-  const std::string values("\0\xFF\n\r :#-9eE.(\tl", 16);
+  const std::string values = "\0\xFF\n\r :#-9eE.(\tl"s;
   Outcome outcome;
   for (const bool in_asf : {true, false}) {
     const std::string& original = in_asf ? kAsf : kAmc;

@@ -271,6 +271,7 @@ TEST(GltfFaults, ManyViewsOfTheSameBytesAreRefused) {
   const int view = builder.add_view(std::as_bytes(std::span(many)));
   Json targets = Json::array();
   builder.json["meshes"][0]["primitives"][0].erase("indices");
+  builder.json["meshes"][0]["primitives"][0]["mode"] = 0;
   builder.json["meshes"][0]["primitives"][0]["attributes"] = {
       {"POSITION", builder.add_accessor(view, "VEC3", 5126, 100'000)}};
   for (int i = 0; i < 5'000; ++i) {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+
+#include "scene/skeleton.h"
+
+namespace krok::body {
+
+// Turns a joint and all below it about its position, in the world's frame.
+void turn_joint(const Skeleton& skeleton, int joint, const Quat& rotation,
+                std::span<Transform> joint_to_world);
+
+// The angle between two vectors, radians in [0, pi]; 0 if either is zero.
+double turn_angle(const Vec3& a, const Vec3& b);
+
+}  // namespace krok::body

@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# From a motion capture to a skinned, animated glTF, and back again to be sure. README.md tells the
+# same story step by step.
+#
+#   run.sh [CAPTURE.bvh] [OUTPUT_FOLDER]
+#
+# Without arguments: samples/captures/walk.bvh to out/demo. The tools are found through $KROK_BIN, or
+# in build/bin.
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+bin=${KROK_BIN:-$here/../../build/bin}
+# Longest parts to bake, in turn, where a whole capture is too long for that.
+parts=(4s 2s 1s 0.5s)
+
+usage() { sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+
+fail() {
+  echo "run.sh: error: $1" >&2
+  [ $# -lt 2 ] || echo "  hint: $2" >&2
+  exit 2
+}
+
+case "${1:-}" in -h | --help) usage && exit 0 ;; esac
+[ $# -le 2 ] || fail "$# arguments, at most 2 are taken" "put names with spaces in quotes"
+capture=${1:-$here/../captures/walk.bvh}
+out=${2:-out/demo}
+for tool in import body skin diff export info; do
+  [ -x "$bin/krok-$tool" ] || fail "no krok-$tool in $bin" "build with make, or set KROK_BIN"
+done
+mkdir -p -- "$out" || fail "cannot make the folder $out"
+out=$(cd -- "$out" && pwd)
+
+name=$(basename -- "$capture")
+name=${name%.*}
+base=$out/$name
+
+say() { printf '\n%s\n' "$1"; }
+
+# made FILE WHAT: a line with the file's size.
+made() {
+  printf '  %9s  %s  (%s)\n' "$(du -h --apparent-size -- "$1" | cut -f1)B" "$1" "$2"
+}
+
+say "1. The capture becomes a motion"
+"$bin/krok-import" -o "$base.anim" -- "$capture"
+made "$base.anim" "the motion: skeleton and frames"
+"$bin/krok-info" -- "$base.anim"
+
+say "2. A body is built around the skeleton"
+"$bin/krok-body" -q -o "$base.model" -- "$base.anim"
+made "$base.model" "a mesh with smooth weights"
+
+say "3. The body moves: as a rig, and baked"
+"$bin/krok-skin" -q --as rig -o "${base}_rig.glb" -- "$base.model" "$base.anim"
+made "${base}_rig.glb" "mesh, joints, weights, animation"
+
+# Baking writes the whole mesh for each frame; krok-skin refuses to where viewers could not show it.
+clip=${base}_clip.glb
+same_rig=${base}_rig.glb
+refusal=$(mktemp)
+trap 'rm -f -- "$refusal"' EXIT
+if ! "$bin/krok-skin" -q --as clip -o "$clip" -- "$base.model" "$base.anim" 2>"$refusal"; then
+  grep -q '\[skin-clip-too-long\]' "$refusal" || { cat "$refusal" >&2 && exit 2; }
+  baked=
+  for part in "${parts[@]}"; do
+    if "$bin/krok-skin" -q --as clip --to "$part" -o "$clip" -- "$base.model" "$base.anim" \
+      2>"$refusal"; then
+      baked=$part
+      break
+    fi
+  done
+  [ -n "$baked" ] || { cat "$refusal" >&2 && exit 2; }
+  echo "  The capture is too long to be baked whole: the first $baked are baked, the rig has it all."
+  same_rig=${base}_rig_part.glb
+  "$bin/krok-skin" -q --as rig --to "$baked" -o "$same_rig" -- "$base.model" "$base.anim"
+  made "$same_rig" "the rig of the same part, to compare"
+fi
+made "$clip" "each frame's vertices, for viewers that know no skins"
+
+say "4. Both ways show the same"
+"$bin/krok-diff" --tolerance 0.01mm -- "$same_rig" "$clip" ||
+  fail "the rig and the baked clip differ by more than 0.01 mm"
+
+say "5. The motion goes on to other programs"
+for kind in csv bvh glb; do
+  "$bin/krok-export" -q -o "${base}_motion.$kind" -- "$base.anim"
+done
+made "${base}_motion.csv" "world positions of the joints, for a spreadsheet"
+made "${base}_motion.bvh" "the motion as BVH again"
+made "${base}_motion.glb" "the skeleton alone, animated"
+
+say "Done. Drop ${base}_rig.glb into any glTF viewer."

@@ -1,0 +1,200 @@
+// If these fail, scripts that use the tools break: exit codes, streams, reports, and the promise
+// that the same input gives the same bytes.
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+
+namespace krok::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kTools[] = {"krok-import", "krok-export", "krok-info",
+                                  "krok-body",   "krok-skin",   "krok-diff"};
+
+class Tools : public CliTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(Tools, HelpAndVersionEndWithSuccess) {
+  for (const char* option : {"--help", "-h"}) {
+    const ToolRun run = run_tool(GetParam(), {option});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_EQ(run.err, "");
+    for (const char* part : {"Usage: krok-", "Examples:", "Exit codes:", "--json", "--progress"}) {
+      EXPECT_NE(run.out.find(part), std::string::npos) << part << "\n" << run.out;
+    }
+  }
+  const ToolRun version = run_tool(GetParam(), {"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.out.find(std::string(GetParam()) + " "), 0u) << version.out;
+}
+
+TEST_P(Tools, HelpReadsWell) {
+  const std::string help = run_tool(GetParam(), {"--help"}).out;
+  EXPECT_EQ(help.find(":{"), std::string::npos) << "value lists as CLI11 prints them";
+  EXPECT_EQ(help.find("TEXT"), std::string::npos) << help;
+  EXPECT_EQ(help.find("INT"), std::string::npos) << help;
+  EXPECT_EQ(help.find("FLOAT"), std::string::npos) << help;
+  EXPECT_EQ(help.find("\n\n\n"), std::string::npos) << help;
+  for (std::size_t at = 0; at < help.size();) {
+    const std::size_t end = std::min(help.find('\n', at), help.size());
+    const std::string line = help.substr(at, end - at);
+    const bool command = line.find("  krok-") == 0 || line.find("Usage:") == 0;
+    EXPECT_TRUE(command || line.size() <= 100) << line;
+    at = end + 1;
+  }
+}
+
+TEST_P(Tools, WrongUsageEndsWithTwo) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--no-such-option"},
+                                                    {},
+                                                    {"--progress=loud"},
+                                                    {"-j", "many"},
+                                                    {"-j", "2x"},
+                                                    {"-j", "-1"}}) {
+    const ToolRun run = run_tool(GetParam(), arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(run.err.find(std::string(GetParam()) + ": error: "), 0u) << run.err;
+    EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
+    EXPECT_NE(run.err.find("\n  hint: "), std::string::npos) << run.err;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Tools, testing::ValuesIn(kTools), [](const auto& test_case) {
+  return std::string(test_case.param).substr(5);
+});
+
+class Behaviour : public CliTest {
+ protected:
+  Behaviour() { put("in.bvh", capture(40)); }
+};
+
+TEST_F(Behaviour, JsonAloneGoesToStandardOutput) {
+  // Before a positional argument too, which must not be taken for its value.
+  const ToolRun run = run_tool("krok-import", {"--json", path("in.bvh"), "-o", path("out.anim")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["schema"], "krok.report/1");
+  EXPECT_EQ(report["tool"], "krok-import");
+  EXPECT_EQ(report["inputs"][0]["path"], path("in.bvh"));
+  EXPECT_EQ(report["inputs"][0]["xxh3"].get<std::string>().size(), 16u);
+  EXPECT_EQ(report["outputs"][0], path("out.anim"));
+  std::vector<std::string> keys;
+  for (const auto& item : report.items()) keys.push_back(item.key());
+  EXPECT_EQ(keys, (std::vector<std::string>{"schema", "tool", "version", "inputs", "options",
+                                            "outputs", "issues", "result"}));
+}
+
+TEST_F(Behaviour, JsonWithAFileGoesThere) {
+  const ToolRun run =
+      run_tool("krok-import", {path("in.bvh"), "--json=" + path("r.json"), "-o", path("out.anim")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(Json::parse(get(path("r.json")))["tool"], "krok-import");
+}
+
+TEST_F(Behaviour, AnErrorStandsInTheReportToo) {
+  const ToolRun run = run_tool("krok-import", {path("none.bvh"), "--json", "-o", path("out.anim")});
+  EXPECT_EQ(run.exit_code, 2);
+  const Json report = Json::parse(run.out);
+  ASSERT_EQ(report["issues"].size(), 1u);
+  EXPECT_EQ(report["issues"][0]["code"], "file-missing");
+  EXPECT_EQ(report["issues"][0]["severity"], "error");
+  EXPECT_TRUE(has_code(run.err, "file-missing"));
+}
+
+TEST_F(Behaviour, ReportAndDataCannotShareStandardOutput) {
+  const ToolRun run = run_tool("krok-import", {path("in.bvh"), "--json", "-o", "-"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
+}
+
+TEST_F(Behaviour, QuietSaysNothing) {
+  const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-q", "-o", path("out.anim")});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.out + run.err, "");
+}
+
+TEST_F(Behaviour, StandardInputAndOutputTakePartInPipes) {
+  ToolOptions piped;
+  piped.input = get(path("in.bvh"));
+  const ToolRun import = run_tool("krok-import", {"-", "-o", "-", "-q"}, piped);
+  ASSERT_EQ(import.exit_code, 0) << import.err;
+  put("piped.anim", import.out);
+  EXPECT_EQ(run_tool("krok-info", {path("piped.anim")}).exit_code, 0);
+  ToolOptions next;
+  next.input = import.out;
+  const ToolRun info = run_tool("krok-info", {"-"}, next);
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+}
+
+TEST_F(Behaviour, TheSameBytesAgainAndForAnyJobs) {
+  put("in.bvh", capture(3000));
+  std::string first;
+  for (const char* jobs : {"1", "2", "2", "5", "0"}) {
+    const ToolRun run =
+        run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "-j", jobs});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    if (first.empty()) first = get(path("out.anim"));
+    EXPECT_TRUE(get(path("out.anim")) == first) << jobs << " jobs";
+  }
+}
+
+TEST_F(Behaviour, TheWholeWayGivesTheSameBytesForAnyJobs) {
+  std::vector<std::string> glb;
+  for (const char* jobs : {"1", "2"}) {
+    const std::vector<std::vector<std::string>> steps = {
+        {"krok-import", path("in.bvh"), "-o", path("a.anim")},
+        {"krok-body", path("a.anim"), "-o", path("a.model"), "--detail", "low"},
+        {"krok-skin", path("a.model"), path("a.anim"), "--as", "rig", "-o", path("a.glb")}};
+    for (std::vector<std::string> step : steps) {
+      const std::string tool = step.front();
+      step.erase(step.begin());
+      step.insert(step.end(), {"-j", jobs, "-q"});
+      const ToolRun run = run_tool(tool, step);
+      ASSERT_EQ(run.exit_code, 0) << tool << ": " << run.err;
+    }
+    glb.push_back(get(path("a.glb")));
+  }
+  EXPECT_FALSE(glb[0].empty());
+  EXPECT_TRUE(glb[0] == glb[1]);
+}
+
+TEST_F(Behaviour, DiffAnswersWithItsExitCode) {
+  put("other.bvh", capture(40, "0.5"));
+  ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("a.anim")}).exit_code, 0);
+  ASSERT_EQ(run_tool("krok-import", {path("other.bvh"), "-o", path("b.anim")}).exit_code, 0);
+  EXPECT_EQ(run_tool("krok-diff", {path("a.anim"), path("a.anim")}).exit_code, 0);
+  EXPECT_EQ(run_tool("krok-diff", {path("a.anim"), path("b.anim")}).exit_code, 1);
+  EXPECT_EQ(run_tool("krok-diff",
+                     {path("a.anim"), path("b.anim"), "--tolerance", "1m", "--angle", "1deg"})
+                .exit_code,
+            0);
+  EXPECT_EQ(run_tool("krok-diff", {path("a.anim"), path("none.anim")}).exit_code, 2);
+  EXPECT_EQ(
+      run_tool("krok-diff", {path("a.anim"), path("b.anim"), "--tolerance", "12.3abc"}).exit_code,
+      2);
+}
+
+TEST_F(Behaviour, NumbersOfOptionsMustParseWhole) {
+  for (const char* fps : {"12.3abc", "nan", "inf", "", "-5", "0"}) {
+    const ToolRun run =
+        run_tool("krok-import", {path("in.bvh"), "-o", path("o.anim"), "--fps", fps});
+    EXPECT_EQ(run.exit_code, 2) << fps << run.err;
+    EXPECT_NE(run.err.find("error: "), std::string::npos) << run.err;
+  }
+}
+
+// A program started with its standard streams closed must not write messages into files.
+TEST_F(Behaviour, ClosedStandardStreamsAreNoTrouble) {
+  const std::string tool = std::string(KROK_BIN_DIR) + "/krok-import";
+  const ToolRun run = test::run(
+      {"/bin/sh", "-c",
+       "'" + tool + "' '" + path("in.bvh") + "' -v -o '" + path("out.anim") + "' 0<&- 1>&- 2>&-"});
+  EXPECT_EQ(run.exit_code, 0);
+  ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-v", "-o", path("usual.anim")}).exit_code, 0);
+  EXPECT_TRUE(get(path("out.anim")) == get(path("usual.anim")));
+}
+
+}  // namespace
+}  // namespace krok::test

@@ -1,0 +1,219 @@
+// If these fail, krok-info tells something wrong of a file, or a script that calls it cannot trust
+// its exit code and its JSON.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "golden/samples/samples.h"
+
+namespace krok {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+class KrokInfo : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = testing::TempDir() + "krok-info-" + std::to_string(getpid());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+
+  std::string make(const std::string& name, std::string_view text) const {
+    EXPECT_TRUE(write_file(path(name), text).ok());
+    return path(name);
+  }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command = std::string(KROK_BIN_DIR) + "/krok-info " + arguments + " >'" +
+                                path("out") + "' 2>'" + path("err") + "'";
+    Outcome result;
+    const int status = std::system(command.c_str());
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    result.out = read(path("out"));
+    result.err = read(path("err"));
+    return result;
+  }
+
+ private:
+  static std::string read(const std::string& name) {
+    const auto file = InputFile::open(name);
+    return file ? std::string(file->text()) : std::string();
+  }
+  std::string folder_;
+};
+
+constexpr const char* kBvh =
+    "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation "
+    "Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 50 0\n}\n}\nMOTION\nFrames: 3\nFrame Time: 0.05\n"
+    "0 90 0 0 0 0\n0 90 1 0 0 0\n0 90 2 0 0 0\n";
+
+TEST_F(KrokInfo, TellsWhatIsInAMotion) {
+  const Outcome result = run(kFrozen + "motion.anim");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+  for (const char* text :
+       {"a motion (.anim)", "2 at 29.97 frames/s", "0.033367 s", "3, 1 of them end sites",
+        "1 m (top minus bottom on Y; joints in the "
+        "reference pose)",
+        "x, y, z; w is rebuilt", "krok-import 0.1.0", "walk \"1\".bvh (xxh3 0123456789abcdef)",
+        "--unit cm", "--repair", "up: z to y", "2 frames were cut short [bvh-frame-count]"}) {
+    EXPECT_THAT(result.out, HasSubstr(text));
+  }
+}
+
+TEST_F(KrokInfo, ColumnsAreAligned) {
+  const std::string out = run(kFrozen + "camera.cam").out;
+  EXPECT_THAT(out, HasSubstr("\n  frames         2 at"));
+  EXPECT_THAT(out, HasSubstr("\n  field of view  42.97 to 50.13 deg, vertical\n"));
+}
+
+TEST_F(KrokInfo, TellsWhatIsInAModel) {
+  const Outcome result = run(kFrozen + "full.model");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* text :
+       {"4 vertices, 2 triangles", "normals, texture coordinates, tangents", "up to 3 a vertex",
+        "body, 1 triangle, material skin", "1 x 1 x 0.5 m (X, Y, Z; mesh in the reference pose)"}) {
+    EXPECT_THAT(result.out, HasSubstr(text));
+  }
+}
+
+TEST_F(KrokInfo, JsonHoldsTheFigures) {
+  const Outcome result =
+      run("--json " + kFrozen + "motion.anim " + kFrozen + "full.model " + kFrozen + "camera.cam");
+  EXPECT_EQ(result.exit_code, 0);
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report["schema"], "krok.report/1");
+  const json& files = report["result"]["files"];
+  ASSERT_EQ(files.size(), 3u);
+  EXPECT_EQ(files[0]["kind"], "anim");
+  EXPECT_EQ(files[0]["frames"], 2);
+  EXPECT_EQ(files[0]["rate"], 30000.0 / 1001.0);
+  EXPECT_EQ(files[0]["joints"], 3);
+  EXPECT_EQ(files[0]["size"], (json{0.125, 1.0, 0.3125}));
+  EXPECT_EQ(files[0]["height"], 1.0);
+  EXPECT_EQ(files[0]["skeleton"][1]["parent"], "Hips");
+  EXPECT_TRUE(files[0]["skeleton"][2].contains("role"));
+  EXPECT_EQ(files[0]["provenance"]["tool"], "krok-import");
+  EXPECT_EQ(files[1]["vertices"], 4);
+  EXPECT_EQ(files[1]["influences_per_vertex"], 3);
+  EXPECT_EQ(files[1]["parts"][0]["material"], "skin");
+  EXPECT_EQ(files[2]["field_of_view"]["most"], 0.875);
+}
+
+TEST_F(KrokInfo, TellsWhatACaptureIsTakenFor) {
+  const Outcome result = run("--json " + make("walk.bvh", kBvh));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const json file = json::parse(result.out)["result"]["files"][0];
+  EXPECT_EQ(file["kind"], "bvh");
+  EXPECT_EQ(file["frames"], 3);
+  EXPECT_EQ(file["rate"], 20);
+  for (const char* key : {"unit", "up", "forward", "positions"}) {
+    EXPECT_TRUE(file[key].contains("choice")) << key;
+    EXPECT_TRUE(file[key].contains("confidence")) << key;
+  }
+}
+
+TEST_F(KrokInfo, VerboseShowsJointsAndRoles) {
+  EXPECT_THAT(run(kFrozen + "motion.anim").out, Not(HasSubstr("roles")));
+  EXPECT_THAT(run("-v " + kFrozen + "motion.anim").out, HasSubstr("roles"));
+  EXPECT_THAT(run("-v " + kFrozen + "motion.anim").out, HasSubstr("  Kn\xC3\xA4"
+                                                                  "chel 2\n"));
+}
+
+TEST_F(KrokInfo, GoesOnAfterAFileThatFails) {
+  const Outcome result = run(path("none.anim") + " " + kFrozen + "motion.anim " +
+                             make("hello.txt", "hello\n") + " " + kFrozen + "camera.cam");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("none.anim: error: no such file [file-missing]"));
+  EXPECT_THAT(result.err, HasSubstr("hello.txt: error: is a text file of unknown kind"));
+  EXPECT_THAT(result.err, HasSubstr("[info-kind]"));
+  EXPECT_THAT(result.out, HasSubstr("a motion"));
+  EXPECT_THAT(result.out, HasSubstr("a camera"));
+}
+
+TEST_F(KrokInfo, JsonTellsOfFilesThatFail) {
+  const Outcome result = run("--json " + path("none.anim") + " " + kFrozen + "camera.cam");
+  EXPECT_EQ(result.exit_code, 2);
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report["result"]["files"][0]["error"], "file-missing");
+  EXPECT_EQ(report["issues"][0]["severity"], "error");
+  EXPECT_EQ(report["result"]["files"][1]["kind"], "cam");
+}
+
+TEST_F(KrokInfo, QuietStillTellsErrors) {
+  const Outcome result = run("-q " + path("none.anim"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("no such file"));
+}
+
+TEST_F(KrokInfo, BadFilesGetAMessageAndExitCode2) {
+  auto cut = samples::bytes_of(samples::clip());
+  cut.resize(cut.size() / 2);
+  ASSERT_TRUE(write_file(path("cut.anim"), cut).ok());
+  auto damaged = samples::bytes_of(samples::clip());
+  damaged[600] ^= std::byte{1};
+  ASSERT_TRUE(write_file(path("damaged.anim"), damaged).ok());
+  std::filesystem::create_directories(path("folder.anim"));
+
+  const std::pair<std::string, const char*> cases[] = {
+      {path("cut.anim"), "[container-truncated]"},
+      {path("damaged.anim"), "[container-checksum]"},
+      {path("folder.anim"), "[file-directory]"},
+      {make("empty.anim", ""), "is an empty file, not a .anim file"},
+      {make("cut.bvh", "HIERARCHY\nROOT Hips\n{\n"), "cut.bvh:"},
+      {make("cut.glb", "glTF\2"), "[gltf-"},
+  };
+  for (const auto& [file, text] : cases) {
+    const Outcome result = run(file);
+    EXPECT_EQ(result.exit_code, 2) << file;
+    EXPECT_THAT(result.err, HasSubstr(text));
+    EXPECT_THAT(result.err, HasSubstr("error: "));
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+TEST_F(KrokInfo, ControlCharactersDoNotReachTheTerminal) {
+  Clip clip = samples::clip();
+  clip.skeleton.names[0] = "\x1B[31mred\x07\xC2\x9Bx";
+  ASSERT_TRUE(write_file(path("odd.anim"), samples::bytes_of(clip)).ok());
+  const Outcome result = run("-v " + path("odd.anim"));
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, HasSubstr("?[31mred??x"));
+  EXPECT_THAT(result.out, Not(HasSubstr("\x1B")));
+}
+
+TEST_F(KrokInfo, ReadsStandardInput) {
+  const Outcome result = run("- <" + kFrozen + "camera.cam");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, HasSubstr("a camera"));
+}
+
+TEST_F(KrokInfo, UsageErrors) {
+  EXPECT_EQ(run("").exit_code, 2);
+  EXPECT_EQ(run("--nonsense " + kFrozen + "camera.cam").exit_code, 2);
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, HasSubstr("Usage: krok-info [options] FILE..."));
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,242 @@
+// If these fail, a tool ends with success after an error, says nothing useful, or destroys a file.
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/fixture.h"
+
+namespace krok::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+class Trouble : public CliTest {
+ protected:
+  // Runs an import that must fail with this code and leave nothing.
+  void expect_import_fails(const std::string& input, const std::string& output,
+                           const std::string& code) {
+    const Names before = listing();
+    const ToolRun run = run_tool("krok-import", {input, "-o", output});
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_TRUE(has_code(run.err, code)) << run.err;
+    EXPECT_NE(run.err.find("error: "), std::string::npos) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(listing(), before);
+  }
+};
+
+TEST_F(Trouble, MissingFile) {
+  expect_import_fails(path("none.bvh"), path("out.anim"), "file-missing");
+}
+
+TEST_F(Trouble, AFolderAsInput) {
+  expect_import_fails(folder_.string(), path("out.anim"), "file-directory");
+}
+
+TEST_F(Trouble, AnEmptyFile) {
+  put("in.bvh", "");
+  expect_import_fails(path("in.bvh"), path("out.anim"), "bvh-kind");
+}
+
+TEST_F(Trouble, SomethingElse) {
+  put("in.bvh", "This is a letter.\n");
+  expect_import_fails(path("in.bvh"), path("out.anim"), "bvh-kind");
+}
+
+TEST_F(Trouble, AFileCutInItsHierarchy) {
+  put("in.bvh", capture(5).substr(0, 150));
+  const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim")});
+  EXPECT_EQ(run.exit_code, 2) << run.err;
+  EXPECT_NE(run.err.find("in.bvh:"), std::string::npos) << "file and line: " << run.err;
+  EXPECT_EQ(listing(), Names{"in.bvh"});
+}
+
+TEST_F(Trouble, AFileCutInItsMotionIsRefusedWhenStrict) {
+  const std::string text = capture(5);
+  put("in.bvh", text.substr(0, text.size() - 8));
+  const ToolRun strict =
+      run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--strict"});
+  EXPECT_EQ(strict.exit_code, 2) << strict.err;
+  EXPECT_EQ(listing(), Names{"in.bvh"});
+  const ToolRun usual = run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim")});
+  EXPECT_EQ(usual.exit_code, 0) << usual.err;
+  EXPECT_NE(usual.err.find("warning: "), std::string::npos) << usual.err;
+}
+
+TEST_F(Trouble, NumbersThatAreNone) {
+  for (const char* value : {"nan", "inf", "-Infinity", "12.3abc", "1e999", "1,5", "0x10"}) {
+    put("in.bvh", capture(5, value));
+    const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim")});
+    EXPECT_EQ(run.exit_code, 2) << value << "\n" << run.err;
+    EXPECT_TRUE(has_code(run.err, "bvh-number")) << run.err;
+    // The second row stands on line 24 of the file.
+    EXPECT_NE(run.err.find("in.bvh:24:5: error"), std::string::npos) << run.err;
+    EXPECT_EQ(listing(), Names{"in.bvh"});
+  }
+}
+
+TEST_F(Trouble, OwnFormatsThatAreCutOrChanged) {
+  put("in.bvh", capture(20));
+  ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("good.anim")}).exit_code, 0);
+  const std::string good = get(path("good.anim"));
+  std::string changed = good;
+  changed[changed.size() / 2] = static_cast<char>(changed[changed.size() / 2] ^ 1);
+  put("cut.anim", good.substr(0, good.size() / 2));
+  put("changed.anim", changed);
+  put("empty.anim", "");
+  for (const char* name : {"cut.anim", "changed.anim", "empty.anim"}) {
+    const ToolRun run = run_tool("krok-export", {path(name), "-o", path("out.csv")});
+    EXPECT_EQ(run.exit_code, 2) << name;
+    EXPECT_NE(run.err.find(name), std::string::npos) << run.err;
+    EXPECT_FALSE(fs::exists(path("out.csv")));
+  }
+}
+
+TEST_F(Trouble, AMissingOutputFolder) {
+  put("in.bvh", capture(5));
+  expect_import_fails(path("in.bvh"), path("no/such/out.anim"), "file-unwritable");
+}
+
+TEST_F(Trouble, AFolderAsOutput) {
+  put("in.bvh", capture(5));
+  fs::create_directory(path("out.anim"));
+  expect_import_fails(path("in.bvh"), path("out.anim"), "file-directory");
+}
+
+TEST_F(Trouble, AFolderThatCannotBeWritten) {
+  put("in.bvh", capture(5));
+  if (geteuid() == 0) {
+    expect_import_fails(path("in.bvh"), "/proc/out.anim", "file-unwritable");
+    return;
+  }
+  fs::create_directory(path("locked"));
+  ASSERT_EQ(chmod(path("locked").c_str(), 0500), 0);
+  expect_import_fails(path("in.bvh"), path("locked/out.anim"), "file-unwritable");
+}
+
+TEST_F(Trouble, AReadOnlyOutputStays) {
+  if (geteuid() == 0) GTEST_SKIP() << "skipped: permissions do not bind root";
+  put("in.bvh", capture(5));
+  put("out.anim", "old");
+  ASSERT_EQ(chmod(path("out.anim").c_str(), 0400), 0);
+  expect_import_fails(path("in.bvh"), path("out.anim"), "file-unwritable");
+  EXPECT_EQ(get(path("out.anim")), "old");
+}
+
+TEST_F(Trouble, AFullDevice) {
+  put("in.bvh", capture(5));
+  expect_import_fails(path("in.bvh"), "/dev/full", "file-unwritable");
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST_F(Trouble, AFullStandardOutput) {
+  put("in.bvh", capture(50));
+  ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("a.anim")}).exit_code, 0);
+  ToolOptions full;
+  full.output_path = "/dev/full";
+  EXPECT_EQ(run_tool("krok-info", {path("a.anim")}, full).exit_code, 2);
+  EXPECT_EQ(run_tool("krok-info", {path("a.anim"), "--json"}, full).exit_code, 2);
+  EXPECT_EQ(run_tool("krok-info", {"--help"}, full).exit_code, 2);
+  EXPECT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", "-"}, full).exit_code, 2);
+}
+
+TEST_F(Trouble, AFullDiskKeepsTheOldFile) {
+  fs::create_directory(path("disk"));
+  if (mount("none", path("disk").c_str(), "tmpfs", 0, "size=256k") != 0) {
+    GTEST_SKIP() << "skipped: a small file system cannot be mounted here";
+  }
+  put("disk/out.anim", "old");
+  put("in.bvh", capture(20000));
+  const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path("disk/out.anim")});
+  std::vector<std::string> left;
+  for (const auto& entry : fs::directory_iterator(path("disk")))
+    left.push_back(entry.path().filename());
+  const std::string still = get(path("disk/out.anim"));
+  umount(path("disk").c_str());
+  EXPECT_EQ(run.exit_code, 2) << run.err;
+  EXPECT_TRUE(has_code(run.err, "file-unwritable")) << run.err;
+  EXPECT_NE(run.err.find("No space left"), std::string::npos) << run.err;
+  EXPECT_EQ(left, Names{"out.anim"});
+  EXPECT_EQ(still, "old");
+}
+
+TEST_F(Trouble, NoClobberRefuses) {
+  put("in.bvh", capture(5));
+  put("out.anim", "old");
+  const ToolRun run =
+      run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--no-clobber"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(has_code(run.err, "file-exists")) << run.err;
+  EXPECT_EQ(get(path("out.anim")), "old");
+  EXPECT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim")}).exit_code, 0);
+  EXPECT_NE(get(path("out.anim")), "old");
+}
+
+// Output over the input: the input is read whole first, and a failure leaves it alone.
+TEST_F(Trouble, OutputEqualToInput) {
+  put("in.bvh", capture(30));
+  ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("a.anim")}).exit_code, 0);
+  fs::copy_file(path("a.anim"), path("same.bvh"));
+  put("broken.bvh", capture(5, "nan"));
+  const std::string broken = get(path("broken.bvh"));
+  EXPECT_EQ(run_tool("krok-import", {path("broken.bvh"), "-o", path("broken.bvh")}).exit_code, 2);
+  EXPECT_EQ(get(path("broken.bvh")), broken);
+  const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path("in.bvh")});
+  const std::string after = get(path("in.bvh"));
+  if (run.exit_code == 0) {
+    EXPECT_EQ(run_tool("krok-info", {path("in.bvh")}).exit_code, 0) << "a whole file";
+  } else {
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(after, capture(30));
+  }
+}
+
+class Signals : public CliTest, public testing::WithParamInterface<int> {};
+
+// As soon as the temporary file is there, or the tool has run for a while, the signal comes.
+TEST_P(Signals, InTheMiddleLeaveTheOldOutput) {
+  put("in.bvh", capture(200000));
+  put("out.anim", "old");
+  ToolOptions options;
+  int looks = 0;
+  options.meanwhile = [&](pid_t child) {
+    const bool writing = listing().size() > 2;
+    if (!writing && ++looks < 100000) return false;
+    kill(child, GetParam());
+    return true;
+  };
+  const ToolRun run =
+      run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "-q"}, options);
+  ASSERT_FALSE(run.timed_out);
+  const std::string now = get(path("out.anim"));
+  if (run.signal != 0) {
+    EXPECT_EQ(run.signal, GetParam());
+    EXPECT_EQ(now, "old");
+  } else {
+    // The tool was done before the signal came; then the file is whole.
+    EXPECT_EQ(run_tool("krok-info", {path("out.anim")}).exit_code, 0);
+  }
+  EXPECT_EQ(listing(), (Names{"in.bvh", "out.anim"}));
+}
+
+TEST_P(Signals, WhileReadingLeaveTheOldOutput) {
+  put("in.bvh", capture(200000));
+  put("out.anim", "old");
+  ToolOptions options;
+  int looks = 0;
+  options.meanwhile = [&](pid_t child) {
+    if (++looks < 20) return false;
+    kill(child, GetParam());
+    return true;
+  };
+  const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim")}, options);
+  EXPECT_EQ(run.signal, GetParam()) << run.exit_code << run.err;
+  EXPECT_EQ(get(path("out.anim")), "old");
+  EXPECT_EQ(listing(), (Names{"in.bvh", "out.anim"}));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGTERM, SIGINT, SIGHUP));
+
+}  // namespace
+}  // namespace krok::test

@@ -1,0 +1,128 @@
+// If these fail, a damaged glTF file crashes or hangs a program, or is read into something that
+// breaks what gltf_asset.h promises. Best run with the address and undefined-behaviour sanitizers.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+
+#include "formats/gltf/gltf_evaluate.h"
+#include "formats/gltf/gltf_reader.h"
+#include "support/glb_builder.h"
+
+namespace krok {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+// All that gltf_asset.h says of indices and sizes, for whoever uses an asset relies on it.
+void expect_consistent(const gltf::Asset& asset) {
+  const auto in = [](int index, std::size_t count) {
+    return index >= 0 && static_cast<std::size_t>(index) < count;
+  };
+  for (const gltf::Node& node : asset.nodes) {
+    ASSERT_TRUE(node.parent == -1 || in(node.parent, asset.nodes.size()));
+    ASSERT_TRUE(node.mesh == -1 || in(node.mesh, asset.meshes.size()));
+    ASSERT_TRUE(node.skin == -1 || in(node.skin, asset.skins.size()));
+  }
+  for (const gltf::Mesh& mesh : asset.meshes) {
+    ASSERT_EQ(mesh.weights.size(), mesh.target_count());
+    for (const gltf::Primitive& primitive : mesh.primitives) {
+      const std::size_t vertices = primitive.vertex_count();
+      ASSERT_TRUE(!primitive.normals || primitive.normals->size() == vertices);
+      ASSERT_EQ(primitive.influence_weights.size(),
+                vertices * static_cast<std::size_t>(primitive.influences_per_vertex));
+      for (const auto& triangle : primitive.triangles) {
+        for (const std::uint32_t corner : triangle) ASSERT_LT(corner, vertices);
+      }
+    }
+  }
+}
+
+// Reads, and where that succeeds evaluates, a copy of exactly the size, so that the sanitizer sees
+// each byte read past the end. Returns whether it was read.
+bool survive(const Bytes& bytes) {
+  const std::unique_ptr<std::byte[]> copy(new std::byte[bytes.size()]);
+  std::copy(bytes.begin(), bytes.end(), copy.get());
+  const auto asset = gltf::read(std::span<const std::byte>(copy.get(), bytes.size()));
+  if (!asset) {
+    EXPECT_FALSE(asset.error().code.empty());
+    EXPECT_FALSE(asset.error().message.empty());
+    EXPECT_LT(asset.error().message.size(), 1000u);
+    return false;
+  }
+  expect_consistent(*asset);
+  const auto evaluator = gltf::Evaluator::create(*asset);
+  if (!evaluator) return true;
+  gltf::Evaluation state;
+  for (int animation = -1; animation < static_cast<int>(asset->animations.size()); ++animation) {
+    evaluator->evaluate(animation, 0.3, state);
+    if (animation < 0) continue;
+    EXPECT_LT(evaluator->key_times(animation).size(), 10'000u);
+  }
+  return true;
+}
+
+std::vector<Bytes> files() {
+  return {test::rig().glb(), test::baked_rig().glb()};
+}
+
+TEST(DamagedGltf, EveryTruncationIsAnError) {
+  for (const Bytes& whole : files()) {
+    ASSERT_TRUE(survive(whole));
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      EXPECT_FALSE(survive(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))))
+          << "cut to " << size << " bytes";
+    }
+  }
+}
+
+TEST(DamagedGltf, EveryChangedByteIsSurvived) {
+  for (const Bytes& whole : files()) {
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      const auto old = static_cast<unsigned>(whole[i]);
+      for (const unsigned value :
+           {old ^ 1u, old ^ 0x80u, 0u, 0xFFu, unsigned('9'), unsigned('{')}) {
+        Bytes changed = whole;
+        changed[i] = static_cast<std::byte>(value);
+        survive(changed);
+      }
+    }
+  }
+}
+
+TEST(DamagedGltf, EveryNumberOfTheJsonMayBeAnother) {
+  // Each run of digits becomes numbers that are wrong in different ways.
+  for (const auto& builder : {test::rig(), test::baked_rig()}) {
+    const std::string text = builder.json.dump();
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const auto is_digit = [&](std::size_t k) { return text[k] >= '0' && text[k] <= '9'; };
+      if (!is_digit(i) || (i > 0 && is_digit(i - 1))) continue;
+      std::size_t end = i;
+      while (end < text.size() && is_digit(end)) ++end;
+      for (const char* number : {"-1", "0", "1", "3", "255", "65536", "2147483648", "4294967296",
+                                 "18446744073709551615", "1e300", "null", "[]", "\"x\""}) {
+        test::GlbBuilder changed = builder;
+        const std::string other = text.substr(0, i) + number + text.substr(end);
+        changed.json = nlohmann::ordered_json::parse(other, nullptr, false);
+        if (!changed.json.is_discarded()) survive(changed.glb());
+      }
+    }
+  }
+}
+
+TEST(DamagedGltf, ManyChangedBytesAtOnceAreSurvived) {
+  std::mt19937 random(7);
+  for (const Bytes& whole : files()) {
+    for (int round = 0; round < 500; ++round) {
+      Bytes changed = whole;
+      for (int k = 0; k < 8; ++k) {
+        changed[random() % changed.size()] = static_cast<std::byte>(random() % 256);
+      }
+      survive(changed);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+// Runs a program and catches what it writes. For tests of the real tools.
+
+namespace krok::test {
+
+struct ToolRun {
+  int exit_code = -1;  // -1 where a signal ended it
+  int signal = 0;      // the signal that ended it, or 0
+  bool timed_out = false;
+  std::string out;  // standard output
+  std::string err;  // standard error
+};
+
+struct ToolOptions {
+  std::string input;        // what stands on standard input
+  std::string output_path;  // standard output goes there instead, "/dev/full"
+  std::string folder;       // the working folder
+  double timeout = 60;      // seconds; then the program is killed
+  // Called with the process's id again and again while it runs, until it gives true.
+  std::function<bool(pid_t)> meanwhile;
+};
+
+inline std::string text_of(std::FILE* file) {
+  std::string text;
+  std::rewind(file);
+  char buffer[65536];
+  for (std::size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
+    text.append(buffer, n);
+  return text;
+}
+
+// `arguments` begins with the program's path. Standard streams are files, so that nothing blocks.
+inline ToolRun run(const std::vector<std::string>& arguments, const ToolOptions& options = {}) {
+  std::FILE* in = std::tmpfile();
+  std::FILE* out = std::tmpfile();
+  std::FILE* err = std::tmpfile();
+  std::fwrite(options.input.data(), 1, options.input.size(), in);
+  std::fflush(in);
+  lseek(fileno(in), 0, SEEK_SET);
+  std::vector<char*> argv;
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+
+  const pid_t child = fork();
+  if (child == 0) {
+    int output = fileno(out);
+    if (!options.output_path.empty()) output = open(options.output_path.c_str(), O_WRONLY);
+    dup2(fileno(in), STDIN_FILENO);
+    dup2(output, STDOUT_FILENO);
+    dup2(fileno(err), STDERR_FILENO);
+    if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) _exit(126);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(number, SIG_DFL);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+
+  ToolRun result;
+  const auto end = std::chrono::steady_clock::now() +
+                   std::chrono::milliseconds(static_cast<int>(options.timeout * 1000));
+  bool watching = static_cast<bool>(options.meanwhile);
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (watching) watching = !options.meanwhile(child);
+    if (std::chrono::steady_clock::now() > end) {
+      result.timed_out = true;
+      kill(child, SIGKILL);
+      waitpid(child, &status, 0);
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(watching ? 200 : 2000));
+  }
+  if (WIFSIGNALED(status)) {
+    result.signal = WTERMSIG(status);
+  } else {
+    result.exit_code = WEXITSTATUS(status);
+  }
+  result.out = text_of(out);
+  result.err = text_of(err);
+  for (std::FILE* file : {in, out, err}) std::fclose(file);
+  return result;
+}
+
+// A tool of this build.
+inline ToolRun run_tool(const std::string& tool, std::vector<std::string> arguments,
+                        const ToolOptions& options = {}) {
+  arguments.insert(arguments.begin(), std::string(KROK_BIN_DIR) + "/" + tool);
+  return run(arguments, options);
+}
+
+}  // namespace krok::test

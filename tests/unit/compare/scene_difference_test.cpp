@@ -1,0 +1,224 @@
+// If these fail, comparing glTF scenes by what they show overlooks a difference, or names the wrong
+// vertex and moment.
+
+#include "compare/scene_difference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace krok::compare {
+namespace {
+
+const std::vector<Triangle>& triangles() {
+  static const std::vector<Triangle> list = {{0, 1, 2}};
+  return list;
+}
+
+// A triangle that moves along X by a metre a second, and one joint with it.
+Scene make_scene(int keys = 11) {
+  Scene scene;
+  SceneMesh mesh;
+  mesh.name = "Body";
+  mesh.vertex_count = 3;
+  mesh.has_normals = true;
+  mesh.triangles = triangles();
+  scene.meshes.push_back(mesh);
+  scene.joint_names = {"Hips"};
+  scene.joint_parents = {-1};
+  Scene::Animation animation{"Walk", {}};
+  for (int k = 0; k < keys; ++k) animation.key_times.push_back(0.1 * k);
+  scene.animations.push_back(animation);
+  scene.evaluate = [](int which, double time, SceneState& state) {
+    const double x = which < 0 ? 0.0 : time;
+    state.positions = {{Vec3(x, 0, 0), Vec3(x + 1, 0, 0), Vec3(x, 1, 0)}};
+    state.normals = {{Vec3(0, 0, 1), Vec3(0, 0, 1), Vec3(0, 0, 1)}};
+    state.joints = {{Vec3(x, 0, 0), Quat::Identity()}};
+  };
+  return scene;
+}
+
+// The same with a change of its state.
+Scene changed(std::function<void(double time, SceneState&)> change, int keys = 11) {
+  Scene scene = make_scene(keys);
+  scene.evaluate = [plain = scene.evaluate, change](int which, double time, SceneState& state) {
+    plain(which, time, state);
+    change(time, state);
+  };
+  return scene;
+}
+
+SceneDifference compare(const Scene& a, const Scene& b, int jobs = 1) {
+  Progress progress;
+  const auto found = difference(a, b, {}, jobs, progress);
+  EXPECT_TRUE(found.ok()) << found.error().message;
+  return found.ok() ? *found : SceneDifference();
+}
+
+TEST(SceneDifference, ASceneIsTheSameAsItself) {
+  const SceneDifference found = compare(make_scene(), make_scene());
+  EXPECT_TRUE(found.same());
+  EXPECT_TRUE(found.notes.empty());
+  EXPECT_EQ(found.compared_times, 11);
+  EXPECT_EQ(found.positions.count, 33);
+  EXPECT_EQ(found.joint_positions.count, 11);
+}
+
+TEST(SceneDifference, FindsOneVertexMovedByATenthOfAMillimetreInOneFrame) {
+  for (const int jobs : {1, 2, 5}) {
+    const SceneDifference found = compare(make_scene(), changed([](double time, SceneState& state) {
+                                            if (std::abs(time - 0.7) < 1e-9) {
+                                              state.positions[0][2].y() += 1e-4;
+                                            }
+                                          }),
+                                          jobs);
+    EXPECT_FALSE(found.same());
+    EXPECT_NEAR(found.positions.largest, 1e-4, 1e-12);
+    EXPECT_EQ(found.positions.over, 1);
+    EXPECT_EQ(found.positions.where.mesh, 0);
+    EXPECT_EQ(found.positions.where.vertex, 2);
+    EXPECT_EQ(found.positions.where.frame, 7);
+    EXPECT_NEAR(found.positions.where.time, 0.7, 1e-12);
+    EXPECT_TRUE(found.normals.within());
+  }
+}
+
+TEST(SceneDifference, ResultsDoNotDependOnTheNumberOfJobs) {
+  const Scene other = changed([](double time, SceneState& state) {
+    for (Vec3& p : state.positions[0]) p.z() += 1e-3 * std::sin(40 * time);
+  });
+  const SceneDifference one = compare(make_scene(500), other, 1);
+  const SceneDifference many = compare(make_scene(500), other, 7);
+  EXPECT_EQ(one.positions.square_sum, many.positions.square_sum);
+  EXPECT_EQ(one.positions.largest, many.positions.largest);
+  EXPECT_EQ(one.positions.where.frame, many.positions.where.frame);
+}
+
+TEST(SceneDifference, ComparesAtTheKeysOfBoth) {
+  // The second leaves the line between the first's keys only.
+  const Scene other = changed(
+      [](double time, SceneState& state) {
+        if (std::abs(time - 0.05) < 1e-9) state.positions[0][1].x() += 0.5;
+      },
+      11);
+  Scene finer = other;
+  finer.animations[0].key_times = {0, 0.05, 1.0};
+  const SceneDifference found = compare(make_scene(), finer);
+  EXPECT_EQ(found.compared_times, 12);
+  EXPECT_EQ(found.positions.largest, 0.5);
+  EXPECT_EQ(found.notes.size(), 1u);
+  // Times that only rounding parts are one.
+  Scene rounded = make_scene();
+  for (double& time : rounded.animations[0].key_times) time += 3e-8;
+  EXPECT_EQ(compare(make_scene(), rounded).compared_times, 11);
+}
+
+TEST(SceneDifference, AnotherDurationDiffersButWhatIsCommonIsCompared) {
+  const SceneDifference found = compare(make_scene(11), make_scene(6));
+  EXPECT_FALSE(found.same());
+  EXPECT_EQ(found.compared_times, 6);
+  EXPECT_TRUE(found.positions.within());
+  ASSERT_EQ(found.structure.size(), 1u);
+}
+
+TEST(SceneDifference, MeshesAreMatchedByNameOrElseByPlace) {
+  const auto two = [](bool swapped, const char* second_name) {
+    Scene scene = make_scene();
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].name = second_name;
+    scene.evaluate = [swapped](int, double, SceneState& state) {
+      state.positions = {std::vector<Vec3>(3, Vec3(0, 0, 0)), std::vector<Vec3>(3, Vec3(5, 5, 5))};
+      state.normals.assign(2, std::vector<Vec3>(3, Vec3(0, 0, 1)));
+      state.joints = {Transform()};
+      if (swapped) std::swap(state.positions[0], state.positions[1]);
+    };
+    if (swapped) std::swap(scene.meshes[0], scene.meshes[1]);
+    return scene;
+  };
+  EXPECT_TRUE(compare(two(false, "Hat"), two(true, "Hat")).same());
+  EXPECT_FALSE(compare(two(false, "Body"), two(true, "Body")).same());
+  EXPECT_TRUE(compare(two(false, "Body"), two(false, "Body")).same());
+}
+
+TEST(SceneDifference, SaysWhatDiffersInStructure) {
+  Scene other = make_scene();
+  other.meshes[0].vertex_count = 4;
+  EXPECT_EQ(compare(make_scene(), other).structure.at(0),
+            "mesh Body: 3 vertices in the first, 4 in the second");
+  other = make_scene();
+  const std::vector<Triangle> turned = {{0, 2, 1}};
+  other.meshes[0].triangles = turned;
+  EXPECT_EQ(compare(make_scene(), other).structure.at(0),
+            "mesh Body: triangle 0 is (0, 1, 2) in the first and (0, 2, 1) in the second");
+  other = make_scene();
+  other.joint_names = {"Pelvis"};
+  EXPECT_NE(compare(make_scene(), other).structure.at(0).find("only in the second: Pelvis"),
+            std::string::npos);
+  other = make_scene();
+  other.meshes.clear();
+  EXPECT_EQ(compare(make_scene(), other).structure.at(0), "1 mesh in the first, 0 in the second");
+  other = make_scene();
+  other.animations.clear();
+  EXPECT_FALSE(compare(make_scene(), other).same());
+}
+
+TEST(SceneDifference, ARigAgainstItsBakedMotionIsComparedByVertices) {
+  const std::vector<std::uint16_t> joints(3, 0);
+  const std::vector<float> weights(3, 1.0f);
+  Scene rig = make_scene();
+  rig.meshes[0].influences = {1, joints, weights};
+  const std::vector<Vec3f> displacements(3, Vec3f(1, 0, 0));
+  Scene baked = make_scene();
+  baked.joint_names.clear();
+  baked.joint_parents.clear();
+  baked.meshes[0].targets = {{"frame 1", displacements, {}}};
+  const SceneDifference found = compare(rig, baked);
+  EXPECT_TRUE(found.same());
+  EXPECT_TRUE(found.structure.empty());
+  EXPECT_EQ(found.notes.size(), 3u);  // joints, targets, skin
+  EXPECT_EQ(found.joint_positions.count, 0);
+
+  // Two with other numbers of targets and no skin are no such pair.
+  Scene more = baked;
+  more.meshes[0].targets.push_back(more.meshes[0].targets[0]);
+  EXPECT_FALSE(compare(baked, more).same());
+}
+
+TEST(SceneDifference, ComparesMorphTargetsAndWeightsThemselves) {
+  const std::vector<Vec3f> one(3, Vec3f(1, 0, 0));
+  std::vector<Vec3f> two = one;
+  two[1].y() = 0.5f;
+  Scene a = make_scene();
+  Scene b = make_scene();
+  a.meshes[0].targets = {{"smile", one, {}}};
+  b.meshes[0].targets = {{"smile", two, {}}};
+  const SceneDifference shapes = compare(a, b);
+  EXPECT_EQ(shapes.target_positions.largest, 0.5);
+  EXPECT_EQ(shapes.target_positions.where.vertex, 1);
+  EXPECT_EQ(shapes.target_positions.where.target, 0);
+  EXPECT_FALSE(shapes.same());
+
+  const std::vector<std::uint16_t> joints(6, 0);
+  const std::vector<float> whole = {1, 0, 1, 0, 1, 0};
+  const std::vector<float> less = {1, 0, 1, 0, 0.75f, 0};
+  a = b = make_scene();
+  a.meshes[0].influences = {2, joints, whole};
+  b.meshes[0].influences = {2, joints, less};
+  const SceneDifference skins = compare(a, b);
+  EXPECT_EQ(skins.weights.largest, 0.25);
+  EXPECT_EQ(skins.weights.where.vertex, 2);
+}
+
+TEST(SceneDifference, ValuesThatAreNotNumbersAreTrouble) {
+  Progress progress;
+  const Scene bad = changed([](double, SceneState& state) {
+    state.positions[0][0].x() = std::numeric_limits<double>::quiet_NaN();
+  });
+  const auto found = difference(make_scene(), bad, {}, 1, progress);
+  ASSERT_FALSE(found.ok());
+  EXPECT_EQ(found.error().code, "compare-value");
+}
+
+}  // namespace
+}  // namespace krok::compare

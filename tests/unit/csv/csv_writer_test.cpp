@@ -1,0 +1,97 @@
+// Would fail if the table of world positions had another header, order or number of rows, lost
+// digits, or broke on a name with a comma.
+
+#include "formats/csv/csv_writer.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "core/numbers.h"
+#include "support/test_scenes.h"
+
+namespace krok {
+namespace {
+
+std::string written(const Clip& clip) {
+  const std::string path = testing::TempDir() + "krok_csv_" + std::to_string(getpid());
+  {
+    auto file = OutputFile::create(path);
+    EXPECT_TRUE(file.ok());
+    EXPECT_TRUE(csv::write(clip, *file).ok());
+    EXPECT_TRUE(file->commit().ok());
+  }
+  const auto input = InputFile::open(path);
+  EXPECT_TRUE(input.ok());
+  std::string text(input->text());
+  std::filesystem::remove(path);
+  return text;
+}
+
+Clip two_joints() {
+  Clip clip;
+  const int root = clip.skeleton.add("hips", Skeleton::kNoParent, {});
+  clip.skeleton.add("arm, \"left\"", root, {});
+  clip.rate = 30;
+  clip.resize(2);
+  for (Quatf& orientation : clip.orientations) orientation = Quatf::Identity();
+  clip.positions = {{0, 1, -2.5f}, {0.1f, -0.0f, 1e-7f}, {1e20f, 16777216, 3}, {1, 2, 3}};
+  return clip;
+}
+
+TEST(CsvWriter, WritesARowForEachFrameAndJoint) {
+  EXPECT_EQ(written(two_joints()),
+            "frame,time,joint,x,y,z\n"
+            "0,0,hips,0,1,-2.5\n"
+            "0,0,\"arm, \"\"left\"\"\",0.1,0,1e-07\n"
+            "1,0.03333333333333333,hips,1e+20,16777216,3\n"
+            "1,0.03333333333333333,\"arm, \"\"left\"\"\",1,2,3\n");
+}
+
+TEST(CsvWriter, NumbersReadBackTheSame) {
+  const Clip clip = test::swinging_clip(test::human_skeleton(), 50, 120 / 1.001);
+  const std::string text = written(clip);
+  std::size_t at = text.find('\n') + 1;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    for (int j = 0; j < clip.joint_count(); ++j) {
+      std::vector<std::string> fields;
+      const std::size_t end = text.find('\n', at);
+      for (std::size_t from = at; from <= end;) {
+        const std::size_t comma = std::min(text.find(',', from), end);
+        fields.push_back(text.substr(from, comma - from));
+        from = comma + 1;
+      }
+      at = end + 1;
+      ASSERT_EQ(fields.size(), 6u);
+      EXPECT_EQ(fields[0], std::to_string(f));
+      EXPECT_EQ(parse_finite(fields[1]), f / clip.rate);
+      EXPECT_EQ(fields[2], clip.skeleton.names[j]);
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(static_cast<float>(parse_finite(fields[3 + i]).value()),
+                  clip.frame_positions(f)[j][i]);
+      }
+    }
+  }
+  EXPECT_EQ(at, text.size());
+}
+
+TEST(CsvWriter, AClipWithoutFramesGivesTheHeader) {
+  Clip clip = two_joints();
+  clip.resize(0);
+  EXPECT_EQ(written(clip), "frame,time,joint,x,y,z\n");
+}
+
+TEST(CsvWriter, RefusesWhatIsNotFinite) {
+  Clip clip = two_joints();
+  clip.positions[2].x() = std::numeric_limits<float>::quiet_NaN();
+  auto file = OutputFile::create(testing::TempDir() + "krok_csv_nan");
+  ASSERT_TRUE(file.ok());
+  const Status refused = csv::write(clip, *file);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, "clip-value");
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,297 @@
+// Would fail if a glTF file lacked what viewers need, held other numbers than it was given, or
+// differed between two runs.
+
+#include "formats/gltf/gltf_writer.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "support/test_scenes.h"
+#include "unit/gltf/glb.h"
+
+namespace krok {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+
+Skeleton human() {
+  return test::with_turned_joints(test::human_skeleton());
+}
+Clip motion(int frames = 7) {
+  return test::swinging_clip(human(), frames, 30);
+}
+
+test::Glb rig(const Model& model, const Clip& clip, const gltf::WriteOptions& options = {}) {
+  return test::written(
+      [&](OutputFile& file) { return gltf::write_rig(model, clip, options, file); });
+}
+test::Glb skeleton(const Clip& clip, const gltf::WriteOptions& options = {}) {
+  return test::written([&](OutputFile& file) { return gltf::write_skeleton(clip, options, file); });
+}
+
+// A motion in which every vertex goes its own way, and its normal turns.
+gltf::BakedMotion wobble(const Model& model, int frames) {
+  gltf::BakedMotion result;
+  result.frames = frames;
+  result.rate = 25;
+  result.shape_at = [&model](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      const float angle = 0.01f * static_cast<float>(v % 100) * static_cast<float>(frame);
+      positions[v] = model.positions[v] + Vec3f(std::sin(angle), 0, 1 - std::cos(angle));
+      if (!normals.empty()) normals[v] = Vec3f(std::cos(angle), std::sin(angle), 0);
+    }
+  };
+  return result;
+}
+
+std::string error_code(const std::function<Status(OutputFile&)>& write) {
+  Status status;
+  test::bytes_of(write, status);
+  return status ? "none" : status.error().code;
+}
+
+TEST(GltfWriter, SkeletonHasANodeAJointAndExactTimes) {
+  const Clip clip = motion();
+  gltf::WriteOptions options;
+  options.provenance.tool = "krok-export";
+  options.provenance.version = "1.2.3";
+  options.provenance.sources = {{"walk.anim", "00ff"}};
+  const auto glb = skeleton(clip, options);
+  EXPECT_EQ(glb.json["asset"]["generator"], "krok 1.2.3");
+  EXPECT_EQ(glb.json["asset"]["extras"]["provenance"]["sources"][0]["name"], "walk.anim");
+  ASSERT_EQ(glb.json["nodes"].size(), clip.skeleton.names.size());
+  for (int j = 0; j < clip.joint_count(); ++j) {
+    EXPECT_EQ(glb.json["nodes"][j]["name"], clip.skeleton.names[j]);
+  }
+  EXPECT_EQ(glb.json["scenes"][0]["nodes"], nlohmann::json::array({0}));
+  EXPECT_EQ(glb.json["skins"][0]["joints"].size(), clip.skeleton.names.size());
+  ASSERT_EQ(glb.json["animations"].size(), 1u);
+  for (const auto& sampler : glb.json["animations"][0]["samplers"]) {
+    const auto times = glb.values<float>(sampler["input"]);
+    ASSERT_EQ(times.size(), 7u);
+    for (int f = 0; f < 7; ++f) EXPECT_EQ(times[f], static_cast<float>(f / 30.0));
+  }
+}
+
+TEST(GltfWriter, ASkeletonWithoutFramesHasNoAnimation) {
+  EXPECT_FALSE(skeleton(motion(0)).json.contains("animations"));
+  EXPECT_TRUE(skeleton(motion(1)).json.contains("animations"));
+}
+
+TEST(GltfWriter, TheSameInputGivesTheSameBytes) {
+  const Model model = test::tube_model(human());
+  EXPECT_EQ(rig(model, motion()).bytes, rig(model, motion()).bytes);
+}
+
+TEST(GltfWriter, RigHoldsTheMeshItsBoundsAndItsInfluences) {
+  for (const int influences : {1, 3, 4, 8}) {
+    const Model model = test::tube_model(human(), influences);
+    const auto glb = rig(model, motion());
+    const auto& primitive = glb.json["meshes"][0]["primitives"][0];
+    const auto& attributes = primitive["attributes"];
+    EXPECT_EQ(attributes.contains("JOINTS_1"), influences > 4);
+
+    const auto positions = glb.values<float>(attributes["POSITION"]);
+    ASSERT_EQ(positions.size(), 3 * model.positions.size());
+    Vec3f least = model.positions[0], most = least;
+    for (std::size_t v = 0; v < model.positions.size(); ++v) {
+      ASSERT_EQ(Vec3f(&positions[3 * v]), model.positions[v]);
+      least = least.cwiseMin(model.positions[v]);
+      most = most.cwiseMax(model.positions[v]);
+    }
+    const auto& accessor = glb.json["accessors"][attributes["POSITION"].get<int>()];
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(accessor["min"][i].get<float>(), least[i]);
+      EXPECT_EQ(accessor["max"][i].get<float>(), most[i]);
+    }
+    const auto normals = glb.values<float>(attributes["NORMAL"]);
+    for (std::size_t v = 0; v < model.positions.size(); ++v) {
+      ASSERT_NEAR(Vec3f(&normals[3 * v]).norm(), 1, 2e-7f);
+    }
+    for (int set = 0; set < (influences + 3) / 4; ++set) {
+      const auto joints = glb.values<std::uint8_t>(attributes[fmt::format("JOINTS_{}", set)]);
+      const auto weights = glb.values<float>(attributes[fmt::format("WEIGHTS_{}", set)]);
+      const int used = std::min(4, influences - 4 * set);
+      for (std::size_t v = 0; v < model.positions.size(); ++v) {
+        for (int k = 0; k < 4; ++k) {
+          const std::size_t from =
+              v * static_cast<std::size_t>(influences) + static_cast<std::size_t>(4 * set + k);
+          const std::size_t to = 4 * v + static_cast<std::size_t>(k);
+          ASSERT_EQ(joints[to], k < used ? model.influence_joints[from] : 0);
+          ASSERT_EQ(weights[to], k < used ? model.influence_weights[from] : 0.0f);
+        }
+      }
+    }
+    const auto indices = glb.values<std::uint16_t>(primitive["indices"]);
+    ASSERT_EQ(indices.size(), 3 * model.triangles.size());
+    EXPECT_EQ(indices[5], model.triangles[1][2]);
+  }
+}
+
+TEST(GltfWriter, InverseBindMatricesUndoTheReferencePose) {
+  const Model model = test::tube_model(human());
+  const auto glb = rig(model, motion());
+  const auto matrices = glb.values<float>(glb.json["skins"][0]["inverseBindMatrices"]);
+  for (std::size_t j = 0; j < model.skeleton.names.size(); ++j) {
+    const Mat4 inverse = Eigen::Map<const Mat4f>(&matrices[16 * j]).cast<double>();
+    const Mat4 product = model.skeleton.reference[j].matrix() * inverse;
+    EXPECT_LT((product - Mat4::Identity()).cwiseAbs().maxCoeff(), 1e-6);
+    EXPECT_EQ(inverse.row(3), Eigen::RowVector4d(0, 0, 0, 1));
+  }
+}
+
+TEST(GltfWriter, NamesOfNodesAreUnique) {
+  Clip clip = motion();
+  clip.skeleton.names[3] = "body_mesh";
+  Model model = test::tube_model(clip.skeleton);
+  gltf::WriteOptions options;
+  options.name = "body";
+  const auto glb = rig(model, clip, options);
+  std::set<std::string> names;
+  for (const auto& node : glb.json["nodes"]) names.insert(node["name"]);
+  EXPECT_EQ(names.size(), clip.skeleton.names.size() + 1);
+}
+
+TEST(GltfWriter, ManyJointsAndManyVerticesTakeWiderNumbers) {
+  Skeleton chain;
+  for (int j = 0; j < 300; ++j) {
+    chain.add("j" + std::to_string(j), j - 1, {Vec3(0, 0.01 * j, 0), Quat::Identity()});
+  }
+  const Clip clip = test::swinging_clip(chain, 2, 10);
+  const Model model = test::tube_model(chain, 2, 16, 16);
+  ASSERT_GT(model.vertex_count(), 65535);
+  const auto glb = rig(model, clip);
+  const auto& primitive = glb.json["meshes"][0]["primitives"][0];
+  EXPECT_EQ(glb.values<std::uint16_t>(primitive["attributes"]["JOINTS_0"]).size(),
+            4 * model.positions.size());
+  EXPECT_EQ(glb.values<std::uint32_t>(primitive["indices"]).back(), model.triangles.back()[2]);
+}
+
+TEST(GltfWriter, PartsBecomePrimitivesWithTheirMaterials) {
+  Model model = test::tube_model(human());
+  const auto count = static_cast<std::uint32_t>(model.triangles.size());
+  model.parts = {{"a", "skin", 0, 10},
+                 {"none", "unused", 10, 0},
+                 {"b", "", 10, 20},
+                 {"c", "skin", 30, count - 30}};
+  const auto glb = rig(model, motion());
+  const auto& primitives = glb.json["meshes"][0]["primitives"];
+  ASSERT_EQ(primitives.size(), 3u);
+  ASSERT_EQ(glb.json["materials"].size(), 2u);
+  EXPECT_EQ(primitives[0]["material"], primitives[2]["material"]);
+  EXPECT_EQ(glb.json["materials"][0]["name"], "skin");
+  EXPECT_EQ(glb.values<std::uint16_t>(primitives[1]["indices"])[0], model.triangles[10][0]);
+}
+
+TEST(GltfWriter, BakedFramesAddUpToTheShapes) {
+  const Model model = test::tube_model(human());
+  const auto baked = wobble(model, 6);
+  const auto glb =
+      test::written([&](OutputFile& file) { return gltf::write_baked(model, baked, {}, file); });
+  const auto& primitive = glb.json["meshes"][0]["primitives"][0];
+  const auto base = glb.values<float>(primitive["attributes"]["POSITION"]);
+  const auto base_normals = glb.values<float>(primitive["attributes"]["NORMAL"]);
+  ASSERT_EQ(primitive["targets"].size(), 5u);
+  std::vector<Vec3f> positions(model.positions.size()), normals(model.positions.size());
+  for (int f = 0; f < 6; ++f) {
+    baked.shape_at(f, positions, normals);
+    std::vector<float> delta(base.size(), 0), delta_normals(base.size(), 0);
+    if (f > 0) {
+      delta = glb.values<float>(primitive["targets"][f - 1]["POSITION"]);
+      delta_normals = glb.values<float>(primitive["targets"][f - 1]["NORMAL"]);
+    }
+    for (std::size_t i = 0; i < base.size(); ++i) {
+      ASSERT_NEAR(base[i] + delta[i], positions[i / 3][i % 3], 3e-7f);
+      ASSERT_NEAR(base_normals[i] + delta_normals[i], normals[i / 3][i % 3], 3e-7f);
+    }
+  }
+  const auto& sampler = glb.json["animations"][0]["samplers"][0];
+  EXPECT_EQ(sampler["interpolation"], "LINEAR");
+  EXPECT_EQ(glb.values<float>(sampler["input"])[5], static_cast<float>(5 / 25.0));
+  const auto weights = glb.values<float>(sampler["output"]);
+  ASSERT_EQ(weights.size(), 6u * 5u);
+  for (int f = 0; f < 6; ++f) {
+    for (int t = 0; t < 5; ++t) EXPECT_EQ(weights[5 * f + t], f == t + 1 ? 1.0f : 0.0f);
+  }
+}
+
+TEST(GltfWriter, OneBakedFrameIsAMesh) {
+  Model model = test::tube_model(human());
+  model.normals.clear();
+  model.texture_coordinates.clear();
+  const auto glb = test::written(
+      [&](OutputFile& file) { return gltf::write_baked(model, wobble(model, 1), {}, file); });
+  EXPECT_FALSE(glb.json.contains("animations"));
+  EXPECT_EQ(glb.json["meshes"][0]["primitives"][0]["attributes"].size(), 1u);
+}
+
+TEST(GltfWriter, TextHoldsTheSameData) {
+  const Clip clip = motion();
+  gltf::WriteOptions text;
+  text.binary = false;
+  const auto glb = skeleton(clip);
+  Status status;
+  const auto bytes = test::bytes_of(
+      [&](OutputFile& file) { return gltf::write_skeleton(clip, text, file); }, status);
+  ASSERT_TRUE(status.ok());
+  auto json = nlohmann::json::parse(bytes);
+  const std::string uri = json["buffers"][0]["uri"];
+  EXPECT_EQ(uri.substr(0, 37), "data:application/octet-stream;base64,");
+  json["buffers"][0].erase("uri");
+  EXPECT_EQ(json, glb.json);
+  EXPECT_EQ(uri.size() - 37, (json["buffers"][0]["byteLength"].get<std::size_t>() + 2) / 3 * 4);
+}
+
+TEST(GltfWriter, OddNormalsAndTangentsAreMadeUnit) {
+  Model model = test::tube_model(human());
+  model.normals[0].setZero();
+  model.normals[1] *= 30;
+  model.tangents.assign(model.positions.size(), Vec4f(0, 0, 5, -0.5f));
+  model.tangents[2].setZero();
+  const auto glb = rig(model, motion());
+  const auto& attributes = glb.json["meshes"][0]["primitives"][0]["attributes"];
+  const auto normals = glb.values<float>(attributes["NORMAL"]);
+  EXPECT_EQ(Vec3f(&normals[0]), Vec3f::UnitY());
+  EXPECT_NEAR(Vec3f(&normals[3]).norm(), 1, 2e-7f);
+  const auto tangents = glb.values<float>(attributes["TANGENT"]);
+  EXPECT_EQ(Vec4f(&tangents[0]), Vec4f(0, 0, 1, -1));
+  EXPECT_EQ(Vec4f(&tangents[8]), Vec4f(0, 1, 0, 1));
+}
+
+TEST(GltfWriter, RefusesWhatGltfCannotHold) {
+  const Clip clip = motion();
+  const Model model = test::tube_model(clip.skeleton);
+  const auto rig_error = [&](const Model& m, const Clip& c) {
+    return error_code([&](OutputFile& file) { return gltf::write_rig(m, c, {}, file); });
+  };
+  Model empty = model;
+  empty.triangles.clear();
+  empty.parts.clear();
+  EXPECT_EQ(rig_error(empty, clip), "gltf-empty-mesh");
+  Clip other = clip;
+  other.skeleton.names[4] = "other";
+  EXPECT_EQ(rig_error(model, other), "gltf-structure");
+  Clip fast = clip;
+  fast.rate = 1e300;
+  EXPECT_EQ(rig_error(model, fast), "gltf-times");
+  Model latin = model;
+  latin.parts[0].material = "b\xf6rn";
+  EXPECT_EQ(rig_error(latin, clip), "gltf-name");
+  EXPECT_NE(error_code([](OutputFile& file) { return gltf::write_skeleton({}, {}, file); }),
+            "none");
+}
+
+TEST(GltfWriter, AFullDiskIsAnError) {
+  auto file = OutputFile::create("/dev/full");
+  ASSERT_TRUE(file.ok());
+  const Status written = gltf::write_skeleton(motion(), {}, *file);
+  EXPECT_FALSE(written.ok() && file->commit().ok());
+}
+
+}  // namespace
+}  // namespace krok
