@@ -14,6 +14,7 @@ namespace krok::acclaim {
 
 namespace {
 
+constexpr const char* kRepairHint = "--repair leaves the line out";
 constexpr const char* kCutHint = "the file is cut short; export or copy it again";
 
 // Steps through one line by words; ends at a comment.
@@ -231,13 +232,15 @@ class MotionParser {
       const SourceText::Place place_of_value = place_of(line.position());
       return source_.error(place_of_value, "acclaim-number",
                            fmt::format("'{}' in the values of {} is not a finite number",
-                                       shown(line.word()), shown(name)));
+                                       shown(line.word()), shown(name)),
+                           kRepairHint);
     }
     if (values_.size() != channels.size()) {
       return source_.error(place, "acclaim-values",
                            fmt::format("{} value{} for {}, expected {}{}", values_.size(),
                                        values_.size() == 1 ? "" : "s", shown(name), channels.size(),
-                                       channel_list(channels)));
+                                       channel_list(channels)),
+                           kRepairHint);
     }
     std::copy(values_.begin(), values_.end(),
               current_.begin() + static_cast<std::ptrdiff_t>(first_channel_[j]));

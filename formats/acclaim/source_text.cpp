@@ -21,12 +21,6 @@ Error SourceText::error(const Place& place, std::string code, std::string messag
   return error;
 }
 
-void SourceText::note(const Place& place, std::string code, std::string message, std::string hint) {
-  Error told = error(place, std::move(code), std::move(message), std::move(hint));
-  told.severity = Severity::note;
-  diagnostics_.push_back(std::move(told));
-}
-
 void SourceText::warn(const Place& place, std::string code, std::string message, std::string hint,
                       std::string joint) {
   if (++warnings_ > kMostWarnings) return;

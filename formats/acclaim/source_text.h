@@ -49,7 +49,6 @@ class SourceText {
   Error error(const Place& place, std::string code, std::string message,
               std::string hint = {}) const;
 
-  void note(const Place& place, std::string code, std::string message, std::string hint = {});
   // After kMostWarnings of them only their number is told, by finish().
   void warn(const Place& place, std::string code, std::string message, std::string hint = {},
             std::string joint = {});

@@ -33,8 +33,8 @@ class Reader {
     auto hierarchy = parse_hierarchy(text_, file_name_, options_, capture_.diagnostics);
     if (!hierarchy) return std::move(hierarchy).error();
     hierarchy_ = std::move(*hierarchy);
-    auto header = parse_motion_header(text_, hierarchy_.end, file_name_, options_,
-                                      capture_.diagnostics);
+    auto header =
+        parse_motion_header(text_, hierarchy_.end, file_name_, options_, capture_.diagnostics);
     if (!header) return std::move(header).error();
     header_ = *header;
     capture_.frames_announced = header_.frames;
@@ -127,8 +127,7 @@ class Reader {
       positions = choose_positions(hierarchy_, samples, options_.up);
     } else {
       positions.positions = options_.positions;
-      positions.choice.choice =
-          options_.positions == Positions::absolute ? "absolute" : "additive";
+      positions.choice.choice = options_.positions == Positions::absolute ? "absolute" : "additive";
       positions.choice.reason = "as given";
       positions.choice.confidence = Confidence::certain;
     }
@@ -238,7 +237,8 @@ class Reader {
 
     auto& conversions = capture_.clip.provenance.conversions;
     const auto how = [](bool given, Confidence confidence) {
-      return given ? std::string("given") : fmt::format("detected, {}", confidence_name(confidence));
+      return given ? std::string("given")
+                   : fmt::format("detected, {}", confidence_name(confidence));
     };
     if (c.unit.metres != 1.0) {
       conversions.push_back(fmt::format("unit: {} ({} m) to metres ({})", c.unit.name,
@@ -246,11 +246,10 @@ class Reader {
                                         how(options_.unit.has_value(), c.unit_confidence)));
     }
     if (c.up != Direction::plus_y || c.forward != Direction::plus_z) {
-      conversions.push_back(fmt::format("axes: up {} ({}), forward {} ({}) to up y, forward z",
-                                        direction_name(c.up),
-                                        how(options_.up.has_value(), c.up_confidence),
-                                        direction_name(c.forward),
-                                        how(options_.forward.has_value(), c.forward_confidence)));
+      conversions.push_back(
+          fmt::format("axes: up {} ({}), forward {} ({}) to up y, forward z", direction_name(c.up),
+                      how(options_.up.has_value(), c.up_confidence), direction_name(c.forward),
+                      how(options_.forward.has_value(), c.forward_confidence)));
     }
   }
 
@@ -295,8 +294,8 @@ class Reader {
     });
     if (row_is_faulty_) return {};
     if (!finite) {
-      return Error("bvh-number", "the numbers are so large that positions overflow").in_file(
-          file_name_);
+      return Error("bvh-number", "the numbers are so large that positions overflow")
+          .in_file(file_name_);
     }
     if (options_.progress != nullptr) options_.progress->end();
     fill_faulty_frames();
@@ -343,10 +342,9 @@ class Reader {
     const RestPose rest = find_rest_pose(capture_.clip);
     tell(Severity::note, "bvh-reference", rest.reference);
     capture_.rest_frame_found = rest.first_frame_is_rest;
-    const bool drop =
-        capture_.clip.frame_count() > 0 &&
-        (options_.rest_frame == RestFrame::drop ||
-         (options_.rest_frame == RestFrame::automatic && rest.first_frame_is_rest));
+    const bool drop = capture_.clip.frame_count() > 0 &&
+                      (options_.rest_frame == RestFrame::drop ||
+                       (options_.rest_frame == RestFrame::automatic && rest.first_frame_is_rest));
     if (drop) {
       Clip& clip = capture_.clip;
       const auto joints = static_cast<std::ptrdiff_t>(clip.joint_count());
@@ -384,8 +382,8 @@ class Reader {
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options) {
   if (options.rate && !(*options.rate > 0 && std::isfinite(*options.rate))) {
-    return Error("bvh-frame-time", fmt::format("a rate of {} frames a second is not positive",
-                                               *options.rate));
+    return Error("bvh-frame-time",
+                 fmt::format("a rate of {} frames a second is not positive", *options.rate));
   }
   return Reader(text, file_name, options).read();
 }

@@ -22,9 +22,9 @@ namespace krok::bvh {
 enum class Positions { automatic, absolute, additive };
 
 // What to do with a file that is not quite right. normal: rows that are not whole are left out and
-// reported, a number that is no number is an error. strict: whatever would be a fault in the data is
-// an error. repair: faulty frames are filled from their neighbours, or left out at the ends; each
-// repair is listed.
+// reported, a number that is no number is an error. strict: whatever would be a fault in the data
+// is an error. repair: faulty frames are filled from their neighbours, or left out at the ends;
+// each repair is listed.
 enum class Strictness { normal, strict, repair };
 
 // Many captures begin with a frame that holds a rest pose and is no part of the motion. keep: it
@@ -76,10 +76,10 @@ struct Capture {
   Conventions conventions;
   Choice positions;
 
-  double frame_time = 0;          // seconds, as printed; 0 where there is none
-  Choice rate;                    // how the rate came out of it
-  long long frames_announced = 0; // what Frames: says
-  bool rest_frame_found = false;  // the first frame is a rest pose
+  double frame_time = 0;           // seconds, as printed; 0 where there is none
+  Choice rate;                     // how the rate came out of it
+  long long frames_announced = 0;  // what Frames: says
+  bool rest_frame_found = false;   // the first frame is a rest pose
   bool rest_frame_dropped = false;
   std::vector<std::string> repairs;  // what was left out or filled, a line each
 };
@@ -90,11 +90,11 @@ struct Capture {
 // stored as floats. Frames have increasing times without gaps: a row left out in the middle moves
 // the later frames to the front, which the warning says.
 //
-// Codes of errors: bvh-kind (not a BVH file), bvh-syntax, bvh-number, bvh-channels, bvh-channel-count,
-// bvh-frame-count, bvh-frame-time, bvh-no-motion, bvh-limit, direction-parallel. Of warnings and
-// notes besides these: bvh-name, bvh-name-duplicate, bvh-roots, bvh-offset, bvh-text-after,
-// bvh-positions, bvh-rate, bvh-unit, bvh-up, bvh-forward, bvh-rest-frame, bvh-reference,
-// bvh-repair, bvh-cut, bvh-zero-bones.
+// Codes of errors: bvh-kind (not a BVH file), bvh-syntax, bvh-number, bvh-channels,
+// bvh-channel-count, bvh-frame-count, bvh-frame-time, bvh-no-motion, bvh-limit, direction-parallel.
+// Of warnings and notes besides these: bvh-name, bvh-name-duplicate, bvh-roots, bvh-offset,
+// bvh-text-after, bvh-positions, bvh-rate, bvh-unit, bvh-up, bvh-forward, bvh-rest-frame,
+// bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones.
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options = {});
 

@@ -21,7 +21,7 @@ constexpr std::array kAxisLetters = {'X', 'Y', 'Z'};
 
 // What a joint becomes in the file.
 struct WrittenJoint {
-  int index = 0;      // in the clip
+  int index = 0;  // in the clip
   int depth = 0;
   bool end_site = false;
   bool positions = false;
@@ -73,8 +73,7 @@ class Writer {
       if (depth > 0 || options_.root_offset) {
         written.offset = skeleton().reference[j].position;
         if (depth > 0) {
-          written.offset -=
-              skeleton().reference[static_cast<std::size_t>(parent_of(j))].position;
+          written.offset -= skeleton().reference[static_cast<std::size_t>(parent_of(j))].position;
         }
       }
       written_.push_back(written);
@@ -167,8 +166,8 @@ class Writer {
       }
       text_ += '\n';
       if (!joint.end_site) {
-        text_ += indent + (joint.positions ? "\tCHANNELS 6 Xposition Yposition Zposition"
-                                           : "\tCHANNELS 3");
+        text_ += indent +
+                 (joint.positions ? "\tCHANNELS 6 Xposition Yposition Zposition" : "\tCHANNELS 3");
         for (const Axis axis : options_.order) {
           text_ += ' ';
           text_ += kAxisLetters[static_cast<std::size_t>(axis)];
@@ -186,8 +185,8 @@ class Writer {
   }
 
   void write_motion_header() {
-    text_ += fmt::format("MOTION\nFrames: {}\nFrame Time: {}\n", clip_.frame_count(),
-                         frame_time_text());
+    text_ +=
+        fmt::format("MOTION\nFrames: {}\nFrame Time: {}\n", clip_.frame_count(), frame_time_text());
   }
 
   // Enough digits that 1 / frame time is the rate again; ten at least, as readers snap them.
@@ -228,11 +227,10 @@ class Writer {
       }
     }
     const auto j = static_cast<std::size_t>(joint.index);
-    const Quat local =
-        joint.depth == 0
-            ? pose[j].orientation
-            : pose[static_cast<std::size_t>(parent_of(j))].orientation.conjugate() *
-                  pose[j].orientation;
+    const Quat local = joint.depth == 0
+                           ? pose[j].orientation
+                           : pose[static_cast<std::size_t>(parent_of(j))].orientation.conjugate() *
+                                 pose[j].orientation;
     previous = closest_euler(to_euler(local, options_.order, previous[2]), previous);
     for (int i = 0; i < 3; ++i) {
       if (i > 0) text_ += ' ';

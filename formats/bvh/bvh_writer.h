@@ -21,9 +21,9 @@ struct WriteOptions {
   // fewer as keep the same fineness. 6 keeps positions within a millionth of a figure's size.
   int decimals = 6;
 
-  // Writes the root's reference position as its OFFSET. Without it the root's OFFSET is 0 0 0, which
-  // every reader takes alike; with it, readers that add position channels to OFFSETs misplace the
-  // figure. Either way the root's channels hold its place.
+  // Writes the root's reference position as its OFFSET. Without it the root's OFFSET is 0 0 0,
+  // which every reader takes alike; with it, readers that add position channels to OFFSETs misplace
+  // the figure. Either way the root's channels hold its place.
   bool root_offset = false;
 
   // Joints other than the root get position channels where their translation in the parent leaves
@@ -36,10 +36,11 @@ struct WriteOptions {
   std::string space_in_names = " ";
 };
 
-// Writes a clip as BVH text in Krok's axes (+Y up, facing +Z): appends to `file`, the caller commits.
+// Writes a clip as BVH text in Krok's axes (+Y up, facing +Z): appends to `file`, the caller
+// commits.
 //
-// OFFSETs come from the reference pose, whose orientations BVH cannot hold: they are folded into the
-// motion, so that world positions come back and a joint's frame in the file's rest pose is the
+// OFFSETs come from the reference pose, whose orientations BVH cannot hold: they are folded into
+// the motion, so that world positions come back and a joint's frame in the file's rest pose is the
 // world's. Angles are continuous over frames. Joints stand depth first; those marked as end sites
 // become End Sites, which have no name of their own (they read back as <parent>_end) and no motion:
 // an end site that moves in its parent is written as a joint. Leaves that are no

@@ -19,13 +19,12 @@ struct ChannelName {
   Axis axis;
 };
 
-constexpr std::array kChannelNames = {
-    ChannelName{"Xposition", ChannelKind::position, Axis::x},
-    ChannelName{"Yposition", ChannelKind::position, Axis::y},
-    ChannelName{"Zposition", ChannelKind::position, Axis::z},
-    ChannelName{"Xrotation", ChannelKind::rotation, Axis::x},
-    ChannelName{"Yrotation", ChannelKind::rotation, Axis::y},
-    ChannelName{"Zrotation", ChannelKind::rotation, Axis::z}};
+constexpr std::array kChannelNames = {ChannelName{"Xposition", ChannelKind::position, Axis::x},
+                                      ChannelName{"Yposition", ChannelKind::position, Axis::y},
+                                      ChannelName{"Zposition", ChannelKind::position, Axis::z},
+                                      ChannelName{"Xrotation", ChannelKind::rotation, Axis::x},
+                                      ChannelName{"Yrotation", ChannelKind::rotation, Axis::y},
+                                      ChannelName{"Zrotation", ChannelKind::rotation, Axis::z}};
 
 class HierarchyParser {
  public:
@@ -46,8 +45,7 @@ class HierarchyParser {
       if (same_word(word, "MOTION")) {
         if (!open_.empty()) {
           return fail("bvh-syntax",
-                      fmt::format("MOTION, but {} is not closed: a '}}' is missing",
-                                  open_name()));
+                      fmt::format("MOTION, but {} is not closed: a '}}' is missing", open_name()));
         }
         break;
       }
@@ -197,8 +195,9 @@ class HierarchyParser {
       const std::string_view word = cursor_.word();
       const auto value = parse_finite(word);
       if (!value) {
-        return fail("bvh-number", fmt::format("'{}' in the OFFSET of {} is not a finite number",
-                                              shown(word), open_name()),
+        return fail("bvh-number",
+                    fmt::format("'{}' in the OFFSET of {} is not a finite number", shown(word),
+                                open_name()),
                     "OFFSET takes three numbers");
       }
       result_.joints[index].offset[axis] = *value;
@@ -223,9 +222,9 @@ class HierarchyParser {
       const std::string_view word = cursor_.peek();
       if (word.empty() || word == "{" || word == "}" || same_word(word, "JOINT") ||
           same_word(word, "End") || same_word(word, "OFFSET")) {
-        return fail_at(count_place, "bvh-channels",
-                       fmt::format("{} announces {} channels and names {}", open_name(), *count,
-                                   i));
+        return fail_at(
+            count_place, "bvh-channels",
+            fmt::format("{} announces {} channels and names {}", open_name(), *count, i));
       }
       cursor_.word();
       if (Status added = add_channel(word, index, has_position); !added) return added;
@@ -276,9 +275,9 @@ class HierarchyParser {
     name_places_.insert(name_places_.begin(), 0);
     for (std::size_t i = 1; i < result_.joints.size(); ++i) ++result_.joints[i].parent;
     for (Channel& channel : result_.channels) ++channel.joint;
-    tell_in_file(Severity::warning, "bvh-roots",
-                 fmt::format("the file has {} ROOTs; a joint at the origin was put above them",
-                             roots));
+    tell_in_file(
+        Severity::warning, "bvh-roots",
+        fmt::format("the file has {} ROOTs; a joint at the origin was put above them", roots));
     return {};
   }
 
@@ -300,10 +299,10 @@ class HierarchyParser {
       if (zero++ == 0) first = joint.name;
     }
     if (zero == 0) return;
-    tell_in_file(Severity::note, "bvh-zero-bones",
-                 fmt::format("{} joint{} at the place of {} parent (the first: {})", zero,
-                             zero == 1 ? " stands" : "s stand", zero == 1 ? "its" : "their",
-                             first));
+    tell_in_file(
+        Severity::note, "bvh-zero-bones",
+        fmt::format("{} joint{} at the place of {} parent (the first: {})", zero,
+                    zero == 1 ? " stands" : "s stand", zero == 1 ? "its" : "their", first));
   }
 
   // More than these would drown what else there is to say.

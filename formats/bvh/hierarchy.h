@@ -21,8 +21,8 @@ struct Channel {
   int joint = 0;
 };
 
-// What stands between HIERARCHY and MOTION, in the file's unit and axes. Joints in the file's order,
-// End Sites among them, parents first; exactly one root (several get a common parent).
+// What stands between HIERARCHY and MOTION, in the file's unit and axes. Joints in the file's
+// order, End Sites among them, parents first; exactly one root (several get a common parent).
 struct Hierarchy {
   struct Joint {
     std::string name;  // unique, UTF-8

@@ -52,7 +52,7 @@ void Kinematics::pose(std::span<const double> values, std::span<Transform> joint
       const double value = values[step.channel] * step.factor;
       if (step.kind == ChannelKind::position) {
         local.position[static_cast<int>(step.axis)] += value;
-      } else {
+      } else if (value != 0) {  // many channels are never used
         local.orientation = local.orientation * axis_rotation(step.axis, value);
       }
     }

@@ -38,9 +38,9 @@ class Kinematics {
     double factor;  // to metres or radians, with the axis's sign
   };
   std::vector<int> parents_;
-  std::vector<Vec3> offsets_;           // metres, Krok's axes
-  std::vector<Vec3> base_;              // the offset's part that position channels leave
-  std::vector<Step> steps_;             // joint by joint
+  std::vector<Vec3> offsets_;             // metres, Krok's axes
+  std::vector<Vec3> base_;                // the offset's part that position channels leave
+  std::vector<Step> steps_;               // joint by joint
   std::vector<std::size_t> step_begins_;  // [joints + 1]
 };
 

@@ -69,12 +69,11 @@ Result<MotionHeader> parse_motion_header(std::string_view text, std::size_t begi
     } else {
       cursor.skip_space();
       const std::string_view next = cursor.peek();
-      return error_at(
-          cursor.position(), "bvh-syntax",
-          fmt::format("{} where '{}' is expected",
-                      next.empty() ? "the file ends" : fmt::format("'{}'", shown(next)),
-                      has_frames ? "Frame Time:" : "Frames:"),
-          next.empty() ? "the file is cut short; export or copy it again" : "");
+      return error_at(cursor.position(), "bvh-syntax",
+                      fmt::format("{} where '{}' is expected",
+                                  next.empty() ? "the file ends" : fmt::format("'{}'", shown(next)),
+                                  has_frames ? "Frame Time:" : "Frames:"),
+                      next.empty() ? "the file is cut short; export or copy it again" : "");
     }
   }
   header.end = cursor.position();

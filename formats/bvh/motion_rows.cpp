@@ -42,10 +42,9 @@ std::vector<std::size_t> index_lines(std::string_view text, std::size_t begin) {
   std::vector<std::size_t> begins;
   for (std::size_t line = begin; line < text.size();) {
     const void* found = std::memchr(text.data() + line, '\n', text.size() - line);
-    const std::size_t end = found == nullptr
-                                ? text.size()
-                                : static_cast<std::size_t>(static_cast<const char*>(found) -
-                                                           text.data());
+    const std::size_t end =
+        found == nullptr ? text.size()
+                         : static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
     std::size_t first = line;
     while (first < end && is_space(text[first])) ++first;
     if (first < end) begins.push_back(first);
@@ -58,10 +57,10 @@ namespace {
 
 // A line that is not empty.
 struct Line {
-  std::size_t begin = 0;      // its first word
-  std::uint32_t words = 0;    // how many
-  bool numbers = true;        // all of them whole, finite numbers
-  bool text = false;          // the first one is not even the beginning of a number
+  std::size_t begin = 0;    // its first word
+  std::uint32_t words = 0;  // how many
+  bool numbers = true;      // all of them whole, finite numbers
+  bool text = false;        // the first one is not even the beginning of a number
 };
 
 // Letters at the start, but not those of nan and inf, show that a line is no row of numbers.
@@ -115,8 +114,7 @@ std::vector<Line> split_lines(std::string_view text, std::size_t begin) {
 class CarefulIndexer {
  public:
   CarefulIndexer(std::string_view text, const MotionHeader& header, const Hierarchy& hierarchy,
-                 const std::string& file_name, const ReadOptions& options,
-                 Diagnostics& diagnostics)
+                 const std::string& file_name, const ReadOptions& options, Diagnostics& diagnostics)
       : text_(text),
         header_(header),
         hierarchy_(hierarchy),
@@ -128,7 +126,7 @@ class CarefulIndexer {
 
   Result<RowIndex> index() {
     lines_ = split_lines(text_, header_.end);
-    Status done = channels_ == 0 ? index_nothing()
+    Status done = channels_ == 0     ? index_nothing()
                   : one_row_a_line() ? index_rows_as_lines()
                                      : index_rows_over_lines();
     if (!done) return done.error();
@@ -189,8 +187,8 @@ class CarefulIndexer {
       // rows is a row cut short.
       if (i > last_row && (enough_rows() || line.text)) return text_after(i);
       if (too_many_faults(line.words == channels_)) continue;
-      Status kept = add_fault(line.words == channels_ ? number_fault(line.begin)
-                                                      : length_fault(line));
+      Status kept =
+          add_fault(line.words == channels_ ? number_fault(line.begin) : length_fault(line));
       if (!kept) return kept;
     }
     return {};
@@ -290,9 +288,10 @@ class CarefulIndexer {
     error.frame = static_cast<std::int64_t>(row);
     if (strict() || (error.code == "bvh-number" && !repair())) {
       if (error.hint.empty()) {
-        error.hint = fmt::format("frame {} of {}; --repair fills it from its neighbours, or drops "
-                                 "it at the ends",
-                                 row, header_.frames);
+        error.hint = fmt::format(
+            "frame {} of {}; --repair fills it from its neighbours, or drops "
+            "it at the ends",
+            row, header_.frames);
       }
       return error;
     }
@@ -379,17 +378,17 @@ class CarefulIndexer {
 
   Status compare_count() {
     if (channels_ == 0 && header_.frames > 0) {
-      Error nothing = error_at(header_.frames_offset, "bvh-frame-count",
-                               fmt::format("{} frames are announced, but no joint has channels",
-                                           header_.frames));
+      Error nothing = error_at(
+          header_.frames_offset, "bvh-frame-count",
+          fmt::format("{} frames are announced, but no joint has channels", header_.frames));
       if (strict()) return nothing;
       tell(Severity::warning, std::move(nothing));
       return {};
     }
     if (static_cast<long long>(rows_found_) == header_.frames) return {};
     Error differs = error_at(header_.frames_offset, "bvh-frame-count",
-                             fmt::format("{} frames are announced, the file has {}",
-                                         header_.frames, result_.begins.size()));
+                             fmt::format("{} frames are announced, the file has {}", header_.frames,
+                                         result_.begins.size()));
     if (result_.begins.empty() && header_.frames > 0 && !repair()) {
       differs.message = fmt::format("{} frames are announced, the file has none", header_.frames);
       differs.hint = "the file is cut short; --repair takes the skeleton alone";

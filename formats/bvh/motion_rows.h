@@ -31,8 +31,8 @@ Result<MotionHeader> parse_motion_header(std::string_view text, std::size_t begi
 // Where rows begin. A faulty row that --repair fills has no place.
 struct RowIndex {
   static constexpr std::size_t kFaulty = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> begins;       // [frames] byte offsets, or kFaulty
-  std::vector<std::string> repairs;      // what was left out or is to be filled
+  std::vector<std::size_t> begins;   // [frames] byte offsets, or kFaulty
+  std::vector<std::string> repairs;  // what was left out or is to be filled
 };
 
 // Parses `values.size()` numbers from byte `begin` on. Returns the offset after the last one, or

@@ -66,8 +66,8 @@ void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
     Diagnostic more;
     more.severity = Severity::warning;
     more.code = "bvh-name-duplicate";
-    more.message = fmt::format("{} more joints with a name that was given before",
-                               duplicates - kMostWarnings);
+    more.message =
+        fmt::format("{} more joints with a name that was given before", duplicates - kMostWarnings);
     more.where.file = file_name;
     diagnostics.push_back(std::move(more));
   }

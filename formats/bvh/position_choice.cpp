@@ -85,9 +85,8 @@ PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& ro
                     is_additive ? "so they are added to it" : "so they replace it");
     result.choice.confidence = distance < 0.35 ? Confidence::likely : Confidence::guess;
   } else {
-    result.choice.reason = rows.count() == 0
-                               ? "there are no frames to tell by"
-                               : "no joint has both position channels and an OFFSET";
+    result.choice.reason = rows.count() == 0 ? "there are no frames to tell by"
+                                             : "no joint has both position channels and an OFFSET";
     result.choice.confidence = Confidence::certain;
   }
   if (is_additive) {

@@ -29,7 +29,8 @@ PoseKind kind_of_pose(const RoleMap& roles, std::span<const Transform> pose) {
   const Vec3 trunk = place(trunk_top) - place(Role::hips);
   const Vec3 left_leg = place(Role::left_foot) - place(Role::left_upper_leg);
   const Vec3 right_leg = place(Role::right_foot) - place(Role::right_upper_leg);
-  if (degrees_between(trunk, Vec3::UnitY()) > 25 || degrees_between(left_leg, -Vec3::UnitY()) > 25 ||
+  if (degrees_between(trunk, Vec3::UnitY()) > 25 ||
+      degrees_between(left_leg, -Vec3::UnitY()) > 25 ||
       degrees_between(right_leg, -Vec3::UnitY()) > 25) {
     return PoseKind::other;
   }

@@ -4,7 +4,9 @@ namespace krok::bvh {
 
 namespace {
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
 
 }  // namespace
 
@@ -29,8 +31,8 @@ Location Locator::operator()(std::size_t offset) {
     line_ = 1;
   }
   for (; at_ < offset && at_ < text_.size(); ++at_) {
-    const bool ends = text_[at_] == '\n' || (text_[at_] == '\r' && (at_ + 1 == text_.size() ||
-                                                                   text_[at_ + 1] != '\n'));
+    const bool ends = text_[at_] == '\n' ||
+                      (text_[at_] == '\r' && (at_ + 1 == text_.size() || text_[at_ + 1] != '\n'));
     if (!ends) continue;
     ++line_;
     line_begin_ = at_ + 1;
@@ -47,8 +49,7 @@ void TextCursor::skip_space() {
 }
 
 void TextCursor::skip_blanks() {
-  while (position_ < text_.size() && is_space(text_[position_]) &&
-         !is_line_end(text_[position_])) {
+  while (position_ < text_.size() && is_space(text_[position_]) && !is_line_end(text_[position_])) {
     ++position_;
   }
 }

@@ -16,8 +16,12 @@ inline constexpr std::array<bool, 256> kIsSpace = [] {
   return table;
 }();
 
-inline bool is_space(char c) { return kIsSpace[static_cast<unsigned char>(c)]; }
-inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+inline bool is_space(char c) {
+  return kIsSpace[static_cast<unsigned char>(c)];
+}
+inline bool is_line_end(char c) {
+  return c == '\n' || c == '\r';
+}
 
 // Whether two ASCII texts are the same but for case.
 bool same_word(std::string_view a, std::string_view b);
@@ -25,8 +29,8 @@ bool same_word(std::string_view a, std::string_view b);
 // `text` without white space at its ends.
 std::string_view trimmed(std::string_view text);
 
-// Lines and columns of bytes, lines ended by LF, CR LF or a lone CR. Going forward costs one look at
-// each byte in all, going back starts anew.
+// Lines and columns of bytes, lines ended by LF, CR LF or a lone CR. Going forward costs one look
+// at each byte in all, going back starts anew.
 class Locator {
  public:
   Locator(std::string_view text, const std::string& file_name)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace krok {
 
@@ -34,6 +35,13 @@ constexpr auto kSteps = make_steps();
 // Good enough to stop searching: 2e-7 rad, a few times what rounding four components costs anyway.
 // Squared distance of quaternions; the angle is twice the distance.
 constexpr double kGoodEnough = 1e-7 * 1e-7;
+
+// The smaller w, the more there is to gain, and the finer the steps that it takes. Most
+// orientations of a motion need none or a few.
+std::size_t steps_worth_trying(double w) {
+  const int reach = std::abs(w) > 0.02 ? 1 : std::abs(w) > 0.002 ? 3 : kReach;
+  return static_cast<std::size_t>((2 * reach + 1) * (2 * reach + 1));
+}
 
 double rebuilt_w(double x, double y, double z) {
   const double square = 1 - x * x - y * y - z * z;
@@ -79,7 +87,7 @@ std::array<float, 3> search(const Vec4& target) {
   };
 
   consider(nearest_a, rounded(b), rounded(c));
-  for (const Step& step : kSteps) {
+  for (const Step& step : std::span(kSteps).first(steps_worth_trying(w))) {
     if (best_distance <= kGoodEnough) break;
     // What is given to a leaves a sphere for b, c and w, then b a circle for c and w; the closest
     // points on them.

@@ -41,10 +41,11 @@ Level level_of(BodyDetail detail) {
 // Cells small enough for the thinnest limb, as far as the number of vertices allows.
 double cell_size(const Field& field, std::size_t target) {
   // A lattice of this kind has about four vertices per squared cell.
-  const double finest = std::sqrt(4 * field.area_estimate() /
-                                  static_cast<double>(std::max<std::size_t>(160000, 5 * target)));
-  const double coarsest =
-      std::sqrt(4 * field.area_estimate() / static_cast<double>(4 * target));
+  const double finest =
+      std::sqrt(4 * field.area_estimate() /
+                static_cast<double>(std::clamp<std::size_t>(
+                    16 * target, 70000, std::max<std::size_t>(160000, 5 * target))));
+  const double coarsest = std::sqrt(4 * field.area_estimate() / static_cast<double>(4 * target));
   return std::clamp(0.8 * field.smallest_radius(), finest, coarsest);
 }
 
@@ -104,14 +105,14 @@ Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
   const Skeleton& skeleton = clip.skeleton;
   if (options.pose == BodyPose::frame &&
       (options.frame < 0 || options.frame >= clip.frame_count())) {
-    return Error("body-frame",
-                 fmt::format("there is no frame {}, the clip has {}", options.frame,
-                             clip.frame_count()),
-                 "frames count from 0");
+    return Error(
+        "body-frame",
+        fmt::format("there is no frame {}, the clip has {}", options.frame, clip.frame_count()),
+        "frames count from 0");
   }
   if (skeleton.names.size() > 65536) {
-    return Error("body-joints", fmt::format("{} joints, at most 65,536 fit in a model",
-                                            skeleton.names.size()));
+    return Error("body-joints",
+                 fmt::format("{} joints, at most 65,536 fit in a model", skeleton.names.size()));
   }
   Progress silent;
   Progress& progress = options.progress ? *options.progress : silent;

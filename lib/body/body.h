@@ -29,8 +29,8 @@ struct BodyOptions {
 struct Body {
   // One part, "body", of material "body". The mesh is a closed, oriented 2-manifold without
   // duplicated vertices, normals point out. Four influences a vertex. Texture coordinates lie in
-  // [0, 1]: u runs around a limb from its front (0) to its back (1), the same on the left and on the
-  // right, so that no seam is needed; v is the distance from the root along the bones, 0 at the
+  // [0, 1]: u runs around a limb from its front (0) to its back (1), the same on the left and on
+  // the right, so that no seam is needed; v is the distance from the root along the bones, 0 at the
   // root and 1 at the farthest tip.
   Model model;
   bool human = false;       // shaped by human proportions; otherwise by the lengths of the bones
@@ -40,10 +40,10 @@ struct Body {
   Diagnostics diagnostics;  // notes and warnings
 };
 
-// Builds a body around the clip's skeleton, which may have any shape and size: no joint but one, all
-// joints in one point, bones of no length. A human (see find_roles) is shaped by published body
-// measurements scaled to its bones (human_shape.h), any other figure by the lengths of its bones and
-// of what hangs on them (general_shape.h).
+// Builds a body around the clip's skeleton, which may have any shape and size: no joint but one,
+// all joints in one point, bones of no length. A human (see find_roles) is shaped by published body
+// measurements scaled to its bones (human_shape.h), any other figure by the lengths of its bones
+// and of what hangs on them (general_shape.h).
 //
 // Codes: those of check(Clip); body-frame for a frame that the clip does not have; body-size for a
 // figure so large or small that its coordinates overflow.

@@ -23,8 +23,8 @@ constexpr int kSamples = 60;  // frames looked at for a pose
 // Past this much turning (radians) the reference pose is no use and a frame may be better.
 constexpr double kTooMuch = 4.0;
 
-// How far a pose spreads its bones: the mean distance between the middles of bones that do not meet,
-// over the length of all bones.
+// How far a pose spreads its bones: the mean distance between the middles of bones that do not
+// meet, over the length of all bones.
 double spread(const Skeleton& skeleton, std::span<const Transform> pose) {
   std::vector<Vec3> middles;
   std::vector<std::pair<int, int>> ends;
@@ -64,7 +64,7 @@ std::vector<Transform> clip_pose(const Clip& clip, int frame) {
 BuildPose human_build_pose(const Clip& clip, const HumanFigure& figure) {
   const Skeleton& skeleton = clip.skeleton;
   StandingPose best = stand_upright(skeleton, figure, skeleton.reference);
-  std::string name = best.turned > 0     ? "reference, limbs turned aside"
+  std::string name = best.turned > 0    ? "reference, limbs turned aside"
                      : best.heading > 0 ? "reference, turned upright"
                                         : "reference";
   if (best.turned > kTooMuch) {

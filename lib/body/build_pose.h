@@ -18,13 +18,13 @@ struct BuildPose {
 // One frame of a clip, joint_to_world.
 std::vector<Transform> clip_pose(const Clip& clip, int frame);
 
-// The reference pose, standing upright with its limbs apart (see human_pose.h); made from a frame of
-// the clip instead where the reference pose needs so much turning that the twist of the limbs would
-// be arbitrary.
+// The reference pose, standing upright with its limbs apart (see human_pose.h); made from a frame
+// of the clip instead where the reference pose needs so much turning that the twist of the limbs
+// would be arbitrary.
 BuildPose human_build_pose(const Clip& clip, const HumanFigure& figure);
 
-// The reference pose, or the frame of the clip that spreads the bones the most if the reference pose
-// folds them on top of each other.
+// The reference pose, or the frame of the clip that spreads the bones the most if the reference
+// pose folds them on top of each other.
 BuildPose general_build_pose(const Clip& clip);
 
 }  // namespace krok::body

@@ -10,7 +10,9 @@ namespace {
 class GeneralBuilder {
  public:
   GeneralBuilder(const Skeleton& skeleton, std::span<const Transform> pose)
-      : skeleton_(skeleton), pose_(pose), children_(skeleton.children()),
+      : skeleton_(skeleton),
+        pose_(pose),
+        children_(skeleton.children()),
         count_(skeleton.names.size()) {
     Eigen::AlignedBox3d box;
     for (const Transform& transform : pose) box.extend(transform.position);
@@ -61,7 +63,8 @@ class GeneralBuilder {
   // The radius where `carried` metres of bone hang on.
   double radius(double carried) const {
     const double share = std::sqrt(carried / total_);
-    return extent_ * std::max(0.012, 0.105 * share * std::min(1.0, 0.45 + std::sqrt(extent_ / total_)));
+    return extent_ *
+           std::max(0.012, 0.105 * share * std::min(1.0, 0.45 + std::sqrt(extent_ / total_)));
   }
 
   // The chain that starts with the bones from `joint`'s parent to `joint` (the root: from itself);
@@ -96,7 +99,8 @@ class GeneralBuilder {
       }
       if (parent >= 0) return;
     }
-    for (std::size_t i = 0; i < chain.size(); ++i) add_station(tube, chain, i, parent, chain_length);
+    for (std::size_t i = 0; i < chain.size(); ++i)
+      add_station(tube, chain, i, parent, chain_length);
     orient(tube);
     shape_.add(std::move(tube));
   }

@@ -21,7 +21,8 @@ void HumanBuilder::build_neck_and_head() {
   const double u = unit_;
   const int head = figure_.head >= 0 ? figure_.head : figure_.neck;
   const Vec3 joint = position(head);
-  // The top of the head: the end site where it is plausible, else from the joint at the skull's base.
+  // The top of the head: the end site where it is plausible, else from the joint at the skull's
+  // base.
   double top = joint.y() + 0.118 * u;
   if (figure_.head_top >= 0) {
     const double above = position(figure_.head_top).y() - joint.y();
@@ -104,7 +105,8 @@ void HumanBuilder::build_foot(std::size_t side) {
       if (leg.toes >= 0) ball = std::clamp(level.norm(), 0.06 * u, 0.11 * u);
     }
   }
-  // The sole lies a malleolus' height (0.039 of the stature) below the ankle, or where the toes are.
+  // The sole lies a malleolus' height (0.039 of the stature) below the ankle, or where the toes
+  // are.
   double sole = ankle.y() - 0.039 * u;
   if (leg.toes >= 0) {
     sole = std::clamp(position(leg.toes).y() - 0.010 * u, ankle.y() - 0.065 * u,
@@ -117,10 +119,11 @@ void HumanBuilder::build_foot(std::size_t side) {
   struct Row {
     double forward, height, width, thick, outward;
   };
-  constexpr Row kRows[] = {{-0.026, 0.0190, 0.0175, 0.0215, 0.0000}, {0.000, 0.0220, 0.0190, 0.0270, 0.0000},
-                           {0.030, 0.0200, 0.0210, 0.0240, 0.0010},  {0.058, 0.0150, 0.0245, 0.0185, 0.0020},
-                           {0.080, 0.0110, 0.0275, 0.0140, 0.0015},  {0.100, 0.0085, 0.0250, 0.0110, 0.0005},
-                           {0.112, 0.0070, 0.0190, 0.0085, -0.0010}};
+  constexpr Row kRows[] = {
+      {-0.026, 0.0190, 0.0175, 0.0215, 0.0000}, {0.000, 0.0220, 0.0190, 0.0270, 0.0000},
+      {0.030, 0.0200, 0.0210, 0.0240, 0.0010},  {0.058, 0.0150, 0.0245, 0.0185, 0.0020},
+      {0.080, 0.0110, 0.0275, 0.0140, 0.0015},  {0.100, 0.0085, 0.0250, 0.0110, 0.0005},
+      {0.112, 0.0070, 0.0190, 0.0085, -0.0010}};
   Tube tube;
   for (const Row& row : kRows) {
     Station station;

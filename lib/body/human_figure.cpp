@@ -32,8 +32,8 @@ std::vector<int> longest_chain(const Skeleton& skeleton,
 
 // All chains of fingers below the wrist. A joint between wrist and knuckles that several fingers
 // share (a palm) is passed through.
-void find_fingers(const Skeleton& skeleton, const std::vector<std::vector<int>>& children, int joint,
-                  int depth, std::vector<std::vector<int>>& fingers) {
+void find_fingers(const Skeleton& skeleton, const std::vector<std::vector<int>>& children,
+                  int joint, int depth, std::vector<std::vector<int>>& fingers) {
   for (const int child : children[static_cast<std::size_t>(joint)]) {
     std::size_t deep = 0;
     for (const int grandchild : children[static_cast<std::size_t>(child)]) {
@@ -115,8 +115,9 @@ std::optional<HumanFigure> find_human(const Skeleton& skeleton, const RoleMap& r
   }
   const Vec3 hip_middle = 0.5 * (pose[static_cast<std::size_t>(figure.legs[0].hip)].position +
                                  pose[static_cast<std::size_t>(figure.legs[1].hip)].position);
-  const Vec3 shoulder_middle = 0.5 * (pose[static_cast<std::size_t>(figure.arms[0].shoulder)].position +
-                                      pose[static_cast<std::size_t>(figure.arms[1].shoulder)].position);
+  const Vec3 shoulder_middle =
+      0.5 * (pose[static_cast<std::size_t>(figure.arms[0].shoulder)].position +
+             pose[static_cast<std::size_t>(figure.arms[1].shoulder)].position);
   const double trunk = (shoulder_middle - hip_middle).norm();
   if (trunk < 0.1 * figure.stature || trunk > 0.7 * figure.stature) return std::nullopt;
 

@@ -16,21 +16,22 @@ struct HumanFigure {
   struct Arm {
     int collar = -1;  // or -1
     int shoulder = -1, elbow = -1, wrist = -1;
-    // Chains of joints from the hand on, end sites included, each from its first joint away from the
-    // wrist to its tip; thumb and fingers, as far as the skeleton has them.
+    // Chains of joints from the hand on, end sites included, each from its first joint away from
+    // the wrist to its tip; thumb and fingers, as far as the skeleton has them.
     std::vector<std::vector<int>> fingers;
   };
   struct Leg {
     int hip = -1, knee = -1, ankle = -1;
     int toes = -1;  // the ball of the foot, or -1
-    int tip = -1;   // a joint or end site beyond it, or beyond the ankle where there is no ball; or -1
+    int tip =
+        -1;  // a joint or end site beyond it, or beyond the ankle where there is no ball; or -1
   };
   int hips = -1;
   int neck = -1, head = -1;  // one of them may be -1
   int head_top = -1;         // the child of the head that lies farthest up, or -1
   std::array<Arm, 2> arms;   // left, right
   std::array<Leg, 2> legs;
-  double stature = 0;        // metres, from the lengths of the bones
+  double stature = 0;  // metres, from the lengths of the bones
 };
 
 // The landmarks, if the roles make a human and the lengths of its bones are such that a human body

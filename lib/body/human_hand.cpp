@@ -57,7 +57,9 @@ HandLayout hand_layout(const Skeleton& skeleton, const HumanFigure& figure, std:
   hand.along = knuckles.norm() > 0.5 ? Vec3(knuckles.normalized()) : forearm;
   if (hand.along.dot(forearm) < 0.5) hand.along = forearm;
 
-  const auto sideways = [&hand](const Vec3& v) -> Vec3 { return v - hand.along * hand.along.dot(v); };
+  const auto sideways = [&hand](const Vec3& v) -> Vec3 {
+    return v - hand.along * hand.along.dot(v);
+  };
   Vec3 thumb = Vec3::UnitZ();  // forward where no thumb tells otherwise
   if (!hand.thumb.empty() && sideways(at(hand.thumb.back()) - wrist).norm() > 0.012 * u) {
     thumb = at(hand.thumb.back()) - wrist;

@@ -15,8 +15,11 @@ void HumanBuilder::build_hand(std::size_t side) {
   struct Row {
     double ahead, width, thick;
   };
-  constexpr Row kRows[] = {{-0.006, 0.0160, 0.0120}, {0.012, 0.0185, 0.0120}, {0.030, 0.0225, 0.0115},
-                           {0.046, 0.0235, 0.0100},  {0.055, 0.0215, 0.0080}};
+  constexpr Row kRows[] = {{-0.006, 0.0160, 0.0120},
+                           {0.012, 0.0185, 0.0120},
+                           {0.030, 0.0225, 0.0115},
+                           {0.046, 0.0235, 0.0100},
+                           {0.055, 0.0215, 0.0080}};
   Tube palm;
   for (const Row& row : kRows) {
     Station station;
@@ -81,7 +84,8 @@ void HumanBuilder::build_finger_along(std::size_t side, const HandLayout& hand,
     const Vec3 direction = (next - previous).normalized();
     Station station;
     station.center = points[i];
-    const double taper = 1.12 - 0.3 * static_cast<double>(i) / static_cast<double>(points.size() - 1);
+    const double taper =
+        1.12 - 0.3 * static_cast<double>(i) / static_cast<double>(points.size() - 1);
     station.width = station.depth = station.cap = radius * taper;
     station.front = thick;
     station.side = direction.cross(thick);
@@ -122,8 +126,7 @@ void HumanBuilder::build_free_finger(std::size_t side, const HandLayout& hand, i
     station.front = thick;
     station.side = direction.cross(thick);
     station.arc = (station.center - wrist).dot(hand.along);
-    station.along =
-        along_[static_cast<std::size_t>(wrist_joint)] + station.arc;
+    station.along = along_[static_cast<std::size_t>(wrist_joint)] + station.arc;
     station.detail = 0.32;
     tube.stations.push_back(station);
   }

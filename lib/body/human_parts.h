@@ -14,7 +14,8 @@ namespace krok::body {
 
 class HumanBuilder {
  public:
-  HumanBuilder(const Skeleton& skeleton, const HumanFigure& figure, std::span<const Transform> pose);
+  HumanBuilder(const Skeleton& skeleton, const HumanFigure& figure,
+               std::span<const Transform> pose);
   Shape build();
 
  private:

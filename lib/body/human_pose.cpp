@@ -83,8 +83,9 @@ class Straightener {
   void straighten_trunk() {
     const int top = figure_.head >= 0 ? figure_.head : figure_.neck;
     const Quat before = pose_[static_cast<std::size_t>(top)].orientation;
-    const int chest = skeleton_.parents[static_cast<std::size_t>(
-        figure_.neck >= 0 ? figure_.neck : figure_.head)];
+    const int chest =
+        skeleton_
+            .parents[static_cast<std::size_t>(figure_.neck >= 0 ? figure_.neck : figure_.head)];
     straighten(figure_.hips, chest);
     straighten(chest, top);
     // The face looks where it did. (Where the end site of the head lies tells nothing: some
@@ -121,8 +122,8 @@ class Straightener {
     const double level = std::hypot(foot.x(), foot.z());
     const double pitch = std::atan2(-foot.y(), level);
     const double yaw = std::atan2(out * foot.x(), foot.z());
-    const bool fits = pitch > -12 * kDegree && pitch < 60 * kDegree && yaw > -20 * kDegree &&
-                      yaw < 40 * kDegree;
+    const bool fits =
+        pitch > -12 * kDegree && pitch < 60 * kDegree && yaw > -20 * kDegree && yaw < 40 * kDegree;
     if (!fits) {
       const Vec3 wanted(0.1 * out, -std::tan(leg.toes >= 0 ? 25 * kDegree : 10 * kDegree), 1);
       point(leg.ankle, far, wanted, 0);

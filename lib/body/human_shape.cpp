@@ -14,37 +14,47 @@ struct LimbRow {
   double at, width, depth, outward, back;
 };
 
-constexpr LimbRow kUpperArm[] = {{-0.04, 0.0300, 0.0330, 0.000, 0.000}, {0.10, 0.0325, 0.0345, 0.001, 0.000},
-                                 {0.28, 0.0315, 0.0335, 0.001, 0.000},  {0.55, 0.0275, 0.0305, 0.000, -0.002},
+constexpr LimbRow kUpperArm[] = {{-0.04, 0.0300, 0.0330, 0.000, 0.000},
+                                 {0.10, 0.0325, 0.0345, 0.001, 0.000},
+                                 {0.28, 0.0315, 0.0335, 0.001, 0.000},
+                                 {0.55, 0.0275, 0.0305, 0.000, -0.002},
                                  {0.82, 0.0235, 0.0250, 0.000, 0.000}};
-constexpr LimbRow kForearm[] = {{0.00, 0.0230, 0.0235, 0.000, 0.000}, {0.18, 0.0250, 0.0270, 0.000, 0.000},
-                                {0.40, 0.0230, 0.0250, 0.000, 0.000}, {0.70, 0.0175, 0.0195, 0.000, 0.000},
-                                {0.93, 0.0130, 0.0165, 0.000, 0.000}, {1.00, 0.0125, 0.0165, 0.000, 0.000}};
-constexpr LimbRow kThigh[] = {{0.00, 0.0450, 0.0530, 0.002, 0.002}, {0.15, 0.0475, 0.0550, 0.003, 0.000},
-                              {0.40, 0.0430, 0.0490, 0.002, -0.003}, {0.70, 0.0360, 0.0400, 0.000, -0.003},
+constexpr LimbRow kForearm[] = {
+    {0.00, 0.0230, 0.0235, 0.000, 0.000}, {0.18, 0.0250, 0.0270, 0.000, 0.000},
+    {0.40, 0.0230, 0.0250, 0.000, 0.000}, {0.70, 0.0175, 0.0195, 0.000, 0.000},
+    {0.93, 0.0130, 0.0165, 0.000, 0.000}, {1.00, 0.0125, 0.0165, 0.000, 0.000}};
+constexpr LimbRow kThigh[] = {{0.00, 0.0450, 0.0530, 0.002, 0.002},
+                              {0.15, 0.0475, 0.0550, 0.003, 0.000},
+                              {0.40, 0.0430, 0.0490, 0.002, -0.003},
+                              {0.70, 0.0360, 0.0400, 0.000, -0.003},
                               {0.90, 0.0310, 0.0340, 0.000, 0.000}};
-constexpr LimbRow kShank[] = {{0.00, 0.0295, 0.0330, 0.000, 0.000}, {0.12, 0.0290, 0.0320, 0.000, 0.002},
-                              {0.30, 0.0325, 0.0360, 0.001, 0.008}, {0.50, 0.0285, 0.0315, 0.000, 0.008},
-                              {0.75, 0.0200, 0.0225, 0.000, 0.004}, {0.95, 0.0170, 0.0195, 0.000, 0.001}};
+constexpr LimbRow kShank[] = {
+    {0.00, 0.0295, 0.0330, 0.000, 0.000}, {0.12, 0.0290, 0.0320, 0.000, 0.002},
+    {0.30, 0.0325, 0.0360, 0.001, 0.008}, {0.50, 0.0285, 0.0315, 0.000, 0.008},
+    {0.75, 0.0200, 0.0225, 0.000, 0.004}, {0.95, 0.0170, 0.0195, 0.000, 0.001}};
 
-// Height over the hip joints, half-breadth, half-depth, offset forward; all over stature, the height
-// for a trunk (hip joints to shoulder joints) of 0.285.
+// Height over the hip joints, half-breadth, half-depth, offset forward; all over stature, the
+// height for a trunk (hip joints to shoulder joints) of 0.285.
 struct TrunkRow {
   double height, width, depth, forward, detail;
 };
 constexpr double kTrunkLength = 0.285;
-constexpr TrunkRow kTrunk[] = {{-0.045, 0.0460, 0.0470, -0.004, 1.2}, {-0.015, 0.0760, 0.0580, -0.005, 1.3},
-                               {0.015, 0.0850, 0.0620, -0.005, 1.3},  {0.050, 0.0835, 0.0590, -0.003, 1.3},
-                               {0.085, 0.0780, 0.0555, 0.000, 1.3},   {0.120, 0.0760, 0.0545, 0.001, 1.3},
-                               {0.160, 0.0820, 0.0590, 0.002, 1.3},   {0.205, 0.0900, 0.0640, 0.002, 1.3},
-                               {0.240, 0.0930, 0.0630, -0.002, 1.3},  {0.270, 0.0830, 0.0530, -0.006, 1.2},
-                               {0.295, 0.0540, 0.0400, -0.009, 1.1}};
+constexpr TrunkRow kTrunk[] = {
+    {-0.045, 0.0460, 0.0470, -0.004, 1.2}, {-0.015, 0.0760, 0.0580, -0.005, 1.3},
+    {0.015, 0.0850, 0.0620, -0.005, 1.3},  {0.050, 0.0835, 0.0590, -0.003, 1.3},
+    {0.085, 0.0780, 0.0555, 0.000, 1.3},   {0.120, 0.0760, 0.0545, 0.001, 1.3},
+    {0.160, 0.0820, 0.0590, 0.002, 1.3},   {0.205, 0.0900, 0.0640, 0.002, 1.3},
+    {0.240, 0.0930, 0.0630, -0.002, 1.3},  {0.270, 0.0830, 0.0530, -0.006, 1.2},
+    {0.295, 0.0540, 0.0400, -0.009, 1.1}};
 
 }  // namespace
 
 HumanBuilder::HumanBuilder(const Skeleton& skeleton, const HumanFigure& figure,
                            std::span<const Transform> pose)
-    : skeleton_(skeleton), figure_(figure), pose_(pose), unit_(figure.stature),
+    : skeleton_(skeleton),
+      figure_(figure),
+      pose_(pose),
+      unit_(figure.stature),
       along_(skeleton.names.size(), 0) {
   for (std::size_t j = 1; j < along_.size(); ++j) {
     const auto parent = static_cast<std::size_t>(skeleton.parents[j]);
@@ -65,8 +75,8 @@ Shape HumanBuilder::build() {
   return std::move(shape_);
 }
 
-// The joints of `path` as they take over along a tube that starts at `origin` and runs along `axis`:
-// arc is the distance along that axis, rising from joint to joint.
+// The joints of `path` as they take over along a tube that starts at `origin` and runs along
+// `axis`: arc is the distance along that axis, rising from joint to joint.
 std::vector<TubeJoint> HumanBuilder::joints_along(const std::vector<int>& path, const Vec3& origin,
                                                   const Vec3& axis, double half_width) const {
   std::vector<TubeJoint> joints;
@@ -104,8 +114,7 @@ void HumanBuilder::build_trunk() {
     station.side = Vec3::UnitX();
     station.front = Vec3::UnitZ();
     station.arc = row.height * trunk_scale_ * unit_;
-    station.along = along_[static_cast<std::size_t>(figure_.hips)] +
-                    std::max(0.0, station.arc);
+    station.along = along_[static_cast<std::size_t>(figure_.hips)] + std::max(0.0, station.arc);
     station.detail = row.detail;
     tube.stations.push_back(station);
   }
@@ -116,8 +125,8 @@ void HumanBuilder::build_trunk() {
 
   for (std::size_t side = 0; side < 2; ++side) {
     const double x = side == 0 ? 1.0 : -1.0;
-    glutes_[side] = add_ball(trunk_point(-0.020, 0.040 * x, -0.038), {0.040, 0.033, 0.044}, 1.2,
-                             trunk_);
+    glutes_[side] =
+        add_ball(trunk_point(-0.020, 0.040 * x, -0.038), {0.040, 0.033, 0.044}, 1.2, trunk_);
     chest_[side] = add_ball(trunk_point(0.224, 0.039 * x * chest_scale_, 0.040),
                             {0.042, 0.0165, 0.030}, 1.1, trunk_);
   }
@@ -128,8 +137,8 @@ Vec3 HumanBuilder::trunk_point(double height, double left, double forward) const
          Vec3(left * unit_, 0, forward * unit_);
 }
 
-// An ellipsoid with half-axes (left, forward, up) over stature that moves with the trunk or whatever
-// `like` moves with.
+// An ellipsoid with half-axes (left, forward, up) over stature that moves with the trunk or
+// whatever `like` moves with.
 int HumanBuilder::add_ball(const Vec3& center, const Vec3& axes, double detail, int like) {
   Tube tube;
   Station station;
@@ -212,7 +221,8 @@ void HumanBuilder::build_arm(std::size_t side) {
     const Vec3 along = bone.normalized();
     station.front = (Vec3::UnitZ() - along * along.z()).normalized();
     station.side = along.cross(station.front) * (side == 0 ? -1.0 : 1.0);  // up in a T-pose
-    station.center = from + row.at * bone + (row.outward * station.side - row.back * station.front) * unit_;
+    station.center =
+        from + row.at * bone + (row.outward * station.side - row.back * station.front) * unit_;
     station.width = row.width * unit_;
     station.depth = row.depth * unit_;
     station.arc = arc + row.at * bone.norm();

@@ -12,7 +12,8 @@ namespace {
 constexpr int kPieces = 5;  // straight pieces of a spline between two stations
 
 double cubic(double a, double b, double c, double d, double t) {
-  return 0.5 * (2 * b + t * ((c - a) + t * ((2 * a - 5 * b + 4 * c - d) + t * (3 * (b - c) + d - a))));
+  return 0.5 *
+         (2 * b + t * ((c - a) + t * ((2 * a - 5 * b + 4 * c - d) + t * (3 * (b - c) + d - a))));
 }
 
 Station mix(const Station& a, const Station& b, double t) {
@@ -64,6 +65,7 @@ std::vector<Station> smooth_path(const Tube& tube) {
         station.width = std::max(cubic(a.width, b.width, c.width, d.width, t), low);
         const double thin = 0.8 * std::min(b.depth, c.depth);
         station.depth = std::max(cubic(a.depth, b.depth, c.depth, d.depth, t), thin);
+        if (b.cap == b.width && c.cap == c.width) station.cap = station.width;
       }
       out.push_back(station);
     }
@@ -102,8 +104,8 @@ Field::Field(const Shape& shape) : blends_(shape.blends) {
       smallest_radius_ = std::min({smallest_radius_, s.width, s.depth});
       if (i > 0) {
         const Station& p = path.stations[i - 1];
-        area_ += 2 * kPi * 0.25 * (s.width + s.depth + p.width + p.depth) *
-                 (s.center - p.center).norm();
+        area_ +=
+            2 * kPi * 0.25 * (s.width + s.depth + p.width + p.depth) * (s.center - p.center).norm();
       }
     }
     const Station& first = path.stations.front();
@@ -164,6 +166,10 @@ double Field::segment_value(const Path& path, int segment, const Vec3& point,
   t = std::clamp(t, 0.0, 1.0);
   *fraction = t;
   const Vec3 q = point - (a.center + t * axis);
+  // Round on both ends: no frame is needed, which in general shapes may turn from one to the other.
+  if (a.width == a.depth && a.width == a.cap && b.width == b.depth && b.width == b.cap) {
+    return q.norm() - (a.width + t * (b.width - a.width));
+  }
   // The frames of neighbouring stations differ little, so the mixed one is nearly orthonormal.
   const Vec3 side = a.side + t * (b.side - a.side);
   const Vec3 front = a.front + t * (b.front - a.front);
@@ -256,8 +262,8 @@ std::vector<TubePlace> Field::places(const Vec3& point, const Near& near) const 
     TubePlace place;
     place.tube = range.tube;
     place.segment = range.first;
-    place.value = tube_value(range.tube, range.first, range.last, point, &place.segment,
-                             &place.fraction);
+    place.value =
+        tube_value(range.tube, range.first, range.last, point, &place.segment, &place.fraction);
     places.push_back(place);
   }
   std::stable_sort(places.begin(), places.end(),
@@ -268,7 +274,8 @@ std::vector<TubePlace> Field::places(const Vec3& point, const Near& near) const 
 Station Field::station_at(const TubePlace& place) const {
   const auto& stations = paths_[static_cast<std::size_t>(place.tube)].stations;
   const auto i = static_cast<std::size_t>(place.segment);
-  Station station = mix(stations[i], stations[std::min(i + 1, stations.size() - 1)], place.fraction);
+  Station station =
+      mix(stations[i], stations[std::min(i + 1, stations.size() - 1)], place.fraction);
   square_up(station);
   return station;
 }
@@ -291,7 +298,9 @@ void Field::bind(const TubePlace& place, double scale,
   }
 }
 
-bool Field::blended(int tube_a, int tube_b) const { return blend_radius(tube_a, tube_b) > 0; }
+bool Field::blended(int tube_a, int tube_b) const {
+  return blend_radius(tube_a, tube_b) > 0;
+}
 
 double Field::blend_radius(int tube_a, int tube_b) const {
   return pair_radius_[static_cast<std::size_t>(tube_a)][static_cast<std::size_t>(tube_b)];

@@ -6,7 +6,8 @@
 #include "math/types.h"
 
 // The implicit surface of a body: tubes along the bones, blended smoothly where they belong
-// together and not at all where they merely come close, so that an arm beside the trunk stays apart.
+// together and not at all where they merely come close, so that an arm beside the trunk stays
+// apart.
 
 namespace krok::body {
 
@@ -17,7 +18,7 @@ struct Station {
   Vec3 center = Vec3::Zero();
   double width = 0, depth = 0;
   Vec3 side = Vec3::UnitX(), front = Vec3::UnitZ();
-  double cap = 0;  // 0: the smaller of width and depth
+  double cap = 0;     // 0: the smaller of width and depth
   double arc = 0;     // where the tube's joints take over from each other, see Tube::joints
   double along = 0;   // distance from the root along the bones
   double detail = 1;  // edge length wanted here, relative to the rest of the body
@@ -37,7 +38,8 @@ struct TubeJoint {
 
 struct Tube {
   std::vector<Station> stations;  // at least one
-  std::vector<TubeJoint> joints;  // at least one, in rising order of `at`; the first holds before it too
+  std::vector<TubeJoint>
+      joints;  // at least one, in rising order of `at`; the first holds before it too
   std::vector<Cut> cuts;
   bool spline = true;  // round the path and the profile through the stations
 };
@@ -60,7 +62,7 @@ struct Shape {
 
 // Where a point lies on a tube.
 struct TubePlace {
-  double value = 0;     // signed distance, about
+  double value = 0;  // signed distance, about
   int tube = 0;
   int segment = 0;      // between stations segment and segment + 1 of Field::tube_stations
   double fraction = 0;  // in [0, 1]
@@ -90,7 +92,8 @@ class Field {
   std::vector<TubePlace> places(const Vec3& point, const Near& near) const;
 
   Station station_at(const TubePlace& place) const;
-  // The joints that move the place, with weights that sum to 1; appended to `weights`, times `scale`.
+  // The joints that move the place, with weights that sum to 1; appended to `weights`, times
+  // `scale`.
   void bind(const TubePlace& place, double scale,
             std::vector<std::pair<int, double>>& weights) const;
   bool blended(int tube_a, int tube_b) const;

@@ -18,8 +18,8 @@ std::uint64_t pack(std::int64_t x, std::int64_t y, std::int64_t z) {
   return (u(x) << (2 * kBits)) | (u(y) << kBits) | u(z);
 }
 
-// Corners of a cube are bit masks of the axes. A tetrahedron of Kuhn's subdivision walks from corner
-// 0 to corner 7 along the axes in one order; listed so that all are oriented alike.
+// Corners of a cube are bit masks of the axes. A tetrahedron of Kuhn's subdivision walks from
+// corner 0 to corner 7 along the axes in one order; listed so that all are oriented alike.
 constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
                                    {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}};
 // Even orders that put one vertex, or two, in front.
@@ -39,7 +39,8 @@ class BlockMarcher {
     std::size_t i = 0;
     for (int z = 0; z < kSide; ++z) {
       for (int y = 0; y < kSide; ++y) {
-        for (int x = 0; x < kSide; ++x) values_[i++] = field.field().value(point(x, y, z), block.near);
+        for (int x = 0; x < kSide; ++x)
+          values_[i++] = field.field().value(point(x, y, z), block.near);
       }
     }
   }
@@ -100,10 +101,10 @@ class BlockMarcher {
   EdgeKey edge(int a, int b) {
     if (a > b) std::swap(a, b);  // a is then a subset of b's bits
     const int dx = a & 1, dy = (a >> 1) & 1, dz = (a >> 2) & 1;
-    const EdgeKey key = (pack(block_.corner[0] + x_ + dx, block_.corner[1] + y_ + dy,
-                              block_.corner[2] + z_ + dz)
-                         << 3) |
-                        static_cast<EdgeKey>(b ^ a);
+    const EdgeKey key =
+        (pack(block_.corner[0] + x_ + dx, block_.corner[1] + y_ + dy, block_.corner[2] + z_ + dz)
+         << 3) |
+        static_cast<EdgeKey>(b ^ a);
     const double va = corner_[a], vb = corner_[b];
     const double t = std::clamp(va / (va - vb), 0.05, 0.95);
     const Vec3 from = point(x_ + dx, y_ + dy, z_ + dz);
@@ -131,8 +132,8 @@ BlockedField::BlockedField(const Field& field, double cell, int jobs) : field_(f
     std::array<std::int64_t, 3> low, high;
     for (int axis = 0; axis < 3; ++axis) {
       const double at = (ball.center[axis] - origin_[axis]) / block, r = ball.radius / block;
-      low[static_cast<std::size_t>(axis)] = std::max<std::int64_t>(
-          0, static_cast<std::int64_t>(std::floor(at - r)));
+      low[static_cast<std::size_t>(axis)] =
+          std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(at - r)));
       high[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(at + r));
     }
     for (std::int64_t z = low[2]; z <= high[2]; ++z) {
@@ -168,9 +169,9 @@ BlockedField::BlockedField(const Field& field, double cell, int jobs) : field_(f
 const Field::Near& BlockedField::near(const Vec3& point) const {
   const Vec3 at = (point - origin_) / (cell_ * kCells);
   if ((at.array() >= 0).all()) {
-    const auto found = index_.find(pack(static_cast<std::int64_t>(at.x()),
-                                        static_cast<std::int64_t>(at.y()),
-                                        static_cast<std::int64_t>(at.z())));
+    const auto found =
+        index_.find(pack(static_cast<std::int64_t>(at.x()), static_cast<std::int64_t>(at.y()),
+                         static_cast<std::int64_t>(at.z())));
     if (found != index_.end()) return blocks_[found->second].near;
   }
   return everything_;

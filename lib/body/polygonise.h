@@ -39,8 +39,8 @@ class BlockedField {
   };
   const std::vector<Block>& blocks() const { return blocks_; }
   Vec3 lattice_point(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return origin_ + cell_ * Vec3(static_cast<double>(x), static_cast<double>(y),
-                                  static_cast<double>(z));
+    return origin_ +
+           cell_ * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
   }
   const Field& field() const { return field_; }
   double cell() const { return cell_; }
@@ -57,8 +57,8 @@ class BlockedField {
 };
 
 // Marching tetrahedra (Doi and Koide 1991) over the cubes of the lattice, each cut into the six
-// tetrahedra around its main diagonal (Kuhn's subdivision), which fit together from cube to cube: the
-// result is a closed 2-manifold whatever the field. Vertices come in a fixed order.
+// tetrahedra around its main diagonal (Kuhn's subdivision), which fit together from cube to cube:
+// the result is a closed 2-manifold whatever the field. Vertices come in a fixed order.
 Mesh polygonise(const BlockedField& field, int jobs);
 
 // The connected pieces of a mesh but those with under `share` of the vertices.

@@ -12,15 +12,22 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
+Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b - a).cross(c - a);
+}
 
 // Edge collapses over a mesh with triangle lists at the vertices.
 class Simplifier {
  public:
   Simplifier(const Mesh& mesh, std::vector<double>& detail)
-      : positions_(mesh.positions), triangles_(mesh.triangles), detail_(detail),
-        at_vertex_(mesh.positions.size()), version_(mesh.positions.size(), 0),
-        alive_(mesh.positions.size(), 1), triangle_alive_(mesh.triangles.size(), 1) {
+      : positions_(mesh.positions),
+        normals_(vertex_normals(mesh)),
+        triangles_(mesh.triangles),
+        detail_(detail),
+        at_vertex_(mesh.positions.size()),
+        version_(mesh.positions.size(), 0),
+        alive_(mesh.positions.size(), 1),
+        triangle_alive_(mesh.triangles.size(), 1) {
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
       for (const std::uint32_t v : triangles_[t]) at_vertex_[v].push_back(t);
     }
@@ -74,8 +81,7 @@ class Simplifier {
 
   void push(std::uint32_t a, std::uint32_t b) {
     if (a > b) std::swap(a, b);
-    const double cost =
-        (positions_[a] - positions_[b]).squaredNorm() / (detail_[a] * detail_[b]);
+    const double cost = (positions_[a] - positions_[b]).squaredNorm() / (detail_[a] * detail_[b]);
     queue_.push({cost, a, b, version_[a] + version_[b]});
   }
 
@@ -110,6 +116,9 @@ class Simplifier {
       const double length = after.norm();
       if (length < 0.08 * longest) return false;
       if (after.dot(before) < 0.3 * length * before.norm()) return false;
+      // Nor may it turn away from where the surface faced at the start, little by little.
+      const Vec3 facing = normals_[triangle[0]] + normals_[triangle[1]] + normals_[triangle[2]];
+      if (after.dot(facing) < 0.3 * length * facing.norm()) return false;
     }
     return true;
   }
@@ -128,6 +137,9 @@ class Simplifier {
 
     positions_[a] = middle;
     detail_[a] = 0.5 * (detail_[a] + detail_[b]);
+    normals_[a] += normals_[b];
+    const double facing = normals_[a].norm();
+    if (facing > 0) normals_[a] /= facing;
     alive_[b] = 0;
     for (const std::uint32_t t : at_vertex_[b]) {
       Triangle& triangle = triangles_[t];
@@ -147,7 +159,7 @@ class Simplifier {
     return true;
   }
 
-  std::vector<Vec3> positions_;
+  std::vector<Vec3> positions_, normals_;
   std::vector<Triangle> triangles_;
   std::vector<double>& detail_;
   std::vector<std::vector<std::uint32_t>> at_vertex_;
@@ -233,6 +245,21 @@ void flip_edges(Mesh& mesh) {
   }
 }
 
+// Takes back the moves that would fold a triangle over.
+void keep_facing(const Mesh& mesh, const std::vector<Vec3>& normals, std::vector<Vec3>& moved) {
+  for (int round = 0; round < 3; ++round) {
+    bool folded = false;
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3 facing = normals[t[0]] + normals[t[1]] + normals[t[2]];
+      const Vec3 after = area_normal(moved[t[0]], moved[t[1]], moved[t[2]]);
+      if (after.dot(facing) > 0.2 * after.norm() * facing.norm()) continue;
+      for (const std::uint32_t v : t) moved[v] = mesh.positions[v];
+      folded = true;
+    }
+    if (!folded) return;
+  }
+}
+
 }  // namespace
 
 Mesh simplify(const Mesh& mesh, std::vector<double>& detail, std::size_t target) {
@@ -248,8 +275,7 @@ void smooth(Mesh& mesh, int jobs) {
     for (std::size_t v = begin; v < end; ++v) {
       Vec3 middle = Vec3::Zero();
       for (const std::uint32_t u : neighbours[v]) middle += mesh.positions[u];
-      moved[v] = 0.5 * mesh.positions[v] +
-                 0.5 / static_cast<double>(neighbours[v].size()) * middle;
+      moved[v] = 0.5 * mesh.positions[v] + 0.5 / static_cast<double>(neighbours[v].size()) * middle;
     }
   });
   mesh.positions = std::move(moved);
@@ -275,6 +301,7 @@ void relax(Mesh& mesh, const BlockedField& field, int passes, double strength, i
         moved[v] = field.onto_surface(at + strength * move, std::max(shortest, field.cell()));
       }
     });
+    keep_facing(mesh, normals, moved);
     mesh.positions = std::move(moved);
   }
 }

@@ -22,6 +22,8 @@ void turn_joint(const Skeleton& skeleton, int joint, const Quat& rotation,
   }
 }
 
-double turn_angle(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double turn_angle(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 }  // namespace krok::body

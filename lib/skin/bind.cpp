@@ -6,7 +6,6 @@
 #include <unordered_map>
 
 #include "core/numbers.h"
-#include "math/quaternion.h"
 #include "scene/influences.h"
 
 namespace krok {
@@ -32,6 +31,24 @@ Diagnostic warning(std::string code, std::string joint, std::string message, std
   result.message = std::move(message);
   result.hint = std::move(hint);
   return result;
+}
+
+constexpr double kPlaceTolerance = 1e-3;  // metres
+
+// Of the places that joint `j` takes in its parent's frame, in the reference pose and in all
+// frames, the one nearest to `wanted`.
+Vec3 nearest_place(const Clip& motion, int j, const Vec3& wanted) {
+  Vec3 nearest = motion.skeleton.reference_local(j).position;
+  const int parent = motion.skeleton.parents[j];
+  for (int f = 0; f < motion.frame_count(); ++f) {
+    // Most joints have one place only, which the reference pose shows.
+    if ((nearest - wanted).norm() <= kPlaceTolerance) break;
+    const auto positions = motion.frame_positions(f);
+    const Quat orientation = motion.frame_orientations(f)[parent].cast<double>().normalized();
+    const Vec3 place = orientation.conjugate() * (positions[j] - positions[parent]).cast<double>();
+    if ((place - wanted).norm() < (nearest - wanted).norm()) nearest = place;
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -81,37 +98,42 @@ Result<Model> bind_to(Model model, const Skeleton& skeleton) {
   return model;
 }
 
-Diagnostics reference_differences(const Skeleton& model, const Skeleton& motion) {
-  double largest_length = 0, largest_angle = 0;
-  int length_joint = 0, angle_joint = 0;
+Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
+  double largest_length = 0, largest_turn = 0;
+  int length_joint = 0, turn_joint = 0;
   for (int j = 0; j < model.joint_count(); ++j) {
-    const Transform a = model.reference_local(j), b = motion.reference_local(j);
-    const bool root = model.parents[j] == Skeleton::kNoParent;
     // Where the root stands does not distort a mesh.
-    const double length = root ? 0.0 : std::abs(a.position.norm() - b.position.norm());
-    const double angle =
-        angle_between(model.reference[j].orientation, motion.reference[j].orientation);
-    if (length > largest_length) largest_length = length, length_joint = j;
-    if (angle > largest_angle) largest_angle = angle, angle_joint = j;
+    if (model.parents[j] == Skeleton::kNoParent) continue;
+    const Vec3 wanted = model.reference_local(j).position;
+    const Vec3 found = nearest_place(motion, j, wanted);
+    const double length = std::abs(wanted.norm() - found.norm());
+    const double turn = (wanted - found).norm();
+    if (length > largest_length) {
+      largest_length = length;
+      length_joint = j;
+    }
+    if (length <= kPlaceTolerance && turn > largest_turn) {
+      largest_turn = turn;
+      turn_joint = j;
+    }
   }
+  const std::string hint = "make the model for this motion's skeleton";
   Diagnostics result;
-  if (largest_length > 1e-3) {
+  if (largest_length > kPlaceTolerance) {
     const std::string& name = model.names[length_joint];
-    result.push_back(warning(
-        "skin-proportions", name,
-        fmt::format("the bone to {} differs by {} mm between model and motion, so the mesh is "
-                    "stretched",
-                    name, readable(largest_length * 1e3, 3)),
-        "make the model for this motion's skeleton"));
+    result.push_back(warning("skin-proportions", name,
+                             fmt::format("the bone to {} is {} mm longer or shorter in the motion "
+                                         "than in the model, so the mesh is stretched",
+                                         name, readable(largest_length * 1e3, 3)),
+                             hint));
   }
-  if (largest_angle > kRadiansPerDegree) {
-    const std::string& name = model.names[angle_joint];
-    result.push_back(warning(
-        "skin-reference", name,
-        fmt::format("the reference poses of model and motion differ by {} degrees at {}, so the "
-                    "mesh is bent",
-                    readable(largest_angle / kRadiansPerDegree, 3), name),
-        "make the model for this motion's skeleton"));
+  if (largest_turn > kPlaceTolerance) {
+    const std::string& name = model.names[turn_joint];
+    result.push_back(warning("skin-reference", name,
+                             fmt::format("the bone to {} points elsewhere in its parent's frame in "
+                                         "the motion than in the model, so the mesh is bent",
+                                         name),
+                             hint));
   }
   return result;
 }

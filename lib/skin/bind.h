@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/result.h"
+#include "scene/clip.h"
 #include "scene/model.h"
 
 // Bringing a model and a motion together.
@@ -14,10 +15,13 @@ namespace krok {
 // normalize_influences.
 Result<Model> bind_to(Model model, const Skeleton& skeleton);
 
-// Warnings where the reference poses of two skeletons of the same structure differ by so much that
-// a motion for one distorts a mesh of the other: more than 1 mm between a joint and its parent
-// (code skin-proportions) or more than 1 degree (code skin-reference). One warning each, which
-// names the joint that differs most.
-Diagnostics reference_differences(const Skeleton& model, const Skeleton& motion);
+// Warnings where a motion would distort a model that is bound to its skeleton. The model's
+// reference pose may be any pose of that skeleton, for bones keep their place in their parents
+// whatever the pose is; so each joint's place in its parent is held against the motion's reference
+// pose and all its frames. Where even the nearest is more than 1 mm off, either the length differs
+// (code skin-proportions: the mesh is stretched) or the direction alone (code skin-reference: the
+// joints' frames are not the same). At most one warning of each kind, which names the joint that
+// differs most.
+Diagnostics reference_differences(const Skeleton& model, const Clip& motion);
 
 }  // namespace krok

@@ -13,7 +13,11 @@ namespace krok::samples {
 namespace {
 
 constexpr double kDegree = kRadiansPerDegree;
-constexpr double kLeastKneeFlexion = 4 * kDegree;  // a walking knee is never locked
+// A walking knee is never locked, and in steps that are longer than ordinary bent more, or it would
+// snap straight before each strike.
+double least_knee_flexion(double activity) {
+  return (4 + 18 * std::max(0.0, activity - 1)) * kDegree;
+}
 constexpr double kStandingKneeFlexion = 6 * kDegree;
 constexpr double kHeightSpacing = 1.0 / 120.0;  // seconds between the keys of the height
 constexpr double kHeightSmoothing = 0.045;      // seconds, standard deviation
@@ -120,7 +124,7 @@ double BodyMotion::level_height(double time) const {
         print.first_of_foot ? kHeelRise : std::min(kHeelRise, (time - print.strike) / stride);
     if (!print.last_of_foot) phase = std::max(phase, kToeOff - (print.off - time) / stride);
     const double flexion =
-        std::max(kLeastKneeFlexion,
+        std::max(least_knee_flexion(activity_(time)),
                  kStandingKneeFlexion + activity * (knee_flexion(phase) - kStandingKneeFlexion));
     const Vec3 hip_local =
         figure_.skeleton.reference_local(figure_.legs[static_cast<std::size_t>(side)].upper)
@@ -145,7 +149,8 @@ double BodyMotion::stairs_height(double time) const {
 
 double BodyMotion::highest(double time) const {
   const Transform pelvis = pelvis_without_height(time);
-  const double reach = two_bone_reach(figure_.thigh, figure_.shank, kLeastKneeFlexion);
+  const double reach =
+      two_bone_reach(figure_.thigh, figure_.shank, least_knee_flexion(activity_(time)));
   double height = 1e30;
   for (const Side side : {Side::left, Side::right}) {
     const Vec3 hip_local =

@@ -70,8 +70,8 @@ TEST_F(Trouble, NumbersThatAreNone) {
     const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim")});
     EXPECT_EQ(run.exit_code, 2) << value << "\n" << run.err;
     EXPECT_TRUE(has_code(run.err, "bvh-number")) << run.err;
-    // The second row stands on line 24 of the file.
-    EXPECT_NE(run.err.find("in.bvh:24:5: error"), std::string::npos) << run.err;
+    // The second row stands on line 25 of the file.
+    EXPECT_NE(run.err.find("in.bvh:25:5: error"), std::string::npos) << run.err;
     EXPECT_EQ(listing(), Names{"in.bvh"});
   }
 }
@@ -176,8 +176,6 @@ TEST_F(Trouble, NoClobberRefuses) {
 // Output over the input: the input is read whole first, and a failure leaves it alone.
 TEST_F(Trouble, OutputEqualToInput) {
   put("in.bvh", capture(30));
-  ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("a.anim")}).exit_code, 0);
-  fs::copy_file(path("a.anim"), path("same.bvh"));
   put("broken.bvh", capture(5, "nan"));
   const std::string broken = get(path("broken.bvh"));
   EXPECT_EQ(run_tool("krok-import", {path("broken.bvh"), "-o", path("broken.bvh")}).exit_code, 2);

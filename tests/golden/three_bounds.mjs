@@ -2,9 +2,8 @@
 // something else.
 //
 // Usage: node three_bounds.mjs FILE [--every N] [--tolerance METRES]
-//          [--against OTHER.glb]   the same vertices, shown by three.js from another file (a rig
-//                                  against its bake); also half-way between frames where both files
-//                                  interpolate alike is not asked for
+//          [--against OTHER.glb]   the same vertices, shown by three.js from another file: a rig
+//                                  against its bake, say
 //          [--joints TABLE.csv]    frame,time,joint,x,y,z: the joints' world positions; the file
 //                                  must show every joint and frame of the table
 //          [--bounds FILE.json]    [{"frame", "min": [x,y,z], "max": [x,y,z]}, ...]

@@ -30,9 +30,10 @@ Result<BodyOptions> body_options(const Options& options) {
   }
   const auto frame = parse_integer(options.pose);
   if (!frame || *frame < 0 || *frame > 2'000'000'000) {
-    return Error("usage", fmt::format("--pose {} is neither auto, reference nor a frame number",
-                                      options.pose),
-                 "frames count from 0");
+    return Error(
+        "usage",
+        fmt::format("--pose {} is neither auto, reference nor a frame number", options.pose),
+        "frames count from 0");
   }
   result.pose = BodyPose::frame;
   result.frame = static_cast<int>(*frame);
@@ -87,7 +88,8 @@ std::string with_commas(std::size_t count) {
 }  // namespace
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("input", options.input, "A motion or model; its skeleton is taken (- is standard input)")
+  app.add_option("input", options.input,
+                 "A motion or model; its skeleton is taken (- is standard input)")
       ->type_name("IN")
       ->required();
   app.add_option("--detail", options.detail,
@@ -97,9 +99,10 @@ void declare(CLI::App& app, Options& options) {
           {{"low", BodyDetail::low}, {"medium", BodyDetail::medium}, {"high", BodyDetail::high}}))
       ->default_str("medium")
       ->group("Body");
-  app.add_option("--pose", options.pose,
-                 "The pose that the body stands in: reference (the skeleton's), the number of a frame, "
-                 "or auto: the reference pose with limbs turned aside that are in the way")
+  app.add_option(
+         "--pose", options.pose,
+         "The pose that the body stands in: reference (the skeleton's), the number of a frame, "
+         "or auto: the reference pose with limbs turned aside that are in the way")
       ->type_name("POSE")
       ->default_str("auto")
       ->group("Body");

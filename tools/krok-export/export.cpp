@@ -7,6 +7,7 @@
 #include "formats/bvh/bvh_writer.h"
 #include "formats/csv/csv_writer.h"
 #include "formats/gltf/gltf_writer.h"
+#include "scene/conventions.h"
 #include "skin/bone_mesh.h"
 
 namespace krok {
@@ -41,7 +42,12 @@ Status write_gltf(const Clip& clip, bool binary, const ExportOptions& options,
 Status write_as(ExportFormat format, const Clip& clip, const ExportOptions& options,
                 const ToolContext& context, OutputFile& file) {
   if (format == ExportFormat::bvh) {
-    const bvh::WriteOptions writing;
+    bvh::WriteOptions writing;
+    if (!options.unit.empty()) {
+      const auto unit = parse_unit(options.unit);
+      if (!unit) return unit.error();
+      writing.unit_metres = unit->metres;
+    }
     return bvh::write(clip, writing, file);
   }
   if (format == ExportFormat::csv) return csv::write(clip, file);
@@ -53,6 +59,9 @@ Status write_as(ExportFormat format, const Clip& clip, const ExportOptions& opti
 Result<int> run_export(const ExportOptions& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
   if (!format) return format.error();
+  if (!options.unit.empty() && *format != ExportFormat::bvh) {
+    return Error("export-unit", "--unit is for BVH; the other formats hold metres");
+  }
   const auto input = context.open_input(options.input);
   if (!input) return input.error();
   auto clip = anim::read(input->bytes());

@@ -11,6 +11,7 @@ enum class ExportFormat { from_extension, bvh, glb, gltf, csv };
 struct ExportOptions {
   std::string input;
   ExportFormat format = ExportFormat::from_extension;
+  std::string unit;   // BVH: of lengths; empty for centimetres
   bool bones = true;  // glTF: a thin mesh that shows the skeleton
 };
 

@@ -23,6 +23,9 @@ int main(int argc, char** argv) {
                                                             {"gltf", ExportFormat::gltf},
                                                             {"csv", ExportFormat::csv}})
                         .description(""));
+    app.add_option("--unit", options.unit, "BVH: the unit of lengths: m, cm, mm, in, ft")
+        ->type_name("UNIT")
+        ->default_str("cm");
     app.add_flag("--bones,!--no-bones", options.bones,
                  "glTF: add a thin mesh for each bone, so that viewers show the skeleton (the "
                  "default; --no-bones leaves joints alone)");

@@ -61,10 +61,10 @@ Json result_of(const bvh::Capture& capture, const Clip& clip) {
   result["up"] = to_json(std::string(direction_name(c.up)), c.up_confidence, c.up_reason);
   result["forward"] =
       to_json(std::string(direction_name(c.forward)), c.forward_confidence, c.forward_reason);
-  result["positions"] = to_json(capture.positions.choice, capture.positions.confidence,
-                                capture.positions.reason);
-  result["source_rate"] = to_json(capture.rate.choice, capture.rate.confidence,
-                                  capture.rate.reason);
+  result["positions"] =
+      to_json(capture.positions.choice, capture.positions.confidence, capture.positions.reason);
+  result["source_rate"] =
+      to_json(capture.rate.choice, capture.rate.confidence, capture.rate.reason);
   result["frames_announced"] = capture.frames_announced;
   result["rest_frame"] = {{"found", capture.rest_frame_found},
                           {"left_out", capture.rest_frame_dropped}};
@@ -105,10 +105,10 @@ void say_what_was_done(const Options& options, ToolContext& context, const Clip&
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
   context.say(fmt::format("{}: {}, {} at {} /s ({} s), height {} m -> {}{}", name,
-                          plural(clip.joint_count(), "joint"),
-                          plural(clip.frame_count(), "frame"), readable(clip.rate),
-                          readable(clip.duration(), 2), readable(height_of(clip), 3),
-                          context.output, options.model.empty() ? "" : ", " + options.model));
+                          plural(clip.joint_count(), "joint"), plural(clip.frame_count(), "frame"),
+                          readable(clip.rate), readable(clip.duration(), 2),
+                          readable(height_of(clip), 3), context.output,
+                          options.model.empty() ? "" : ", " + options.model));
 }
 
 }  // namespace

@@ -103,12 +103,12 @@ void declare_options(CLI::App& app, Options& options) {
       ->excludes(strict)
       ->group(faults);
 
-  add_choice<OrientationEncoding>(app, "--orientation", options.orientation,
-                                  {{"xyz", OrientationEncoding::xyz},
-                                   {"xyzw", OrientationEncoding::xyzw}},
-                                  "How orientations are stored: three numbers each (xyz) or four, "
-                                  "exactly (xyzw)",
-                                  "HOW", "xyz")
+  add_choice<OrientationEncoding>(
+      app, "--orientation", options.orientation,
+      {{"xyz", OrientationEncoding::xyz}, {"xyzw", OrientationEncoding::xyzw}},
+      "How orientations are stored: three numbers each (xyz) or four, "
+      "exactly (xyzw)",
+      "HOW", "xyz")
       ->group("Output");
 }
 

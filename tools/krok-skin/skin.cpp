@@ -92,8 +92,10 @@ Result<Scene> load(const SkinOptions& options, ToolContext& context) {
   if (scene.model.triangles.empty()) {
     return Error("skin-empty-model", "the model has no triangles").in_file(options.model);
   }
-  context.tell(reference_differences(scene.model.skeleton, scene.clip.skeleton));
-  if (Status done = cut_to_range(options, scene); !done) return done.error();
+  context.tell(reference_differences(scene.model.skeleton, scene.clip));
+  if (Status done = cut_to_range(options, scene); !done) {
+    return std::move(done.error()).in_file(options.motion);
+  }
   return scene;
 }
 
@@ -173,10 +175,6 @@ int fitting_step(const Model& model, int frames) {
 
 Status check_bakeable(const Scene& scene, ToolContext& context) {
   const int frames = scene.clip.frame_count();
-  if (frames == 0) {
-    return Error("skin-no-frames", "the motion has no frames to bake",
-                 "--as pose gives the reference pose");
-  }
   const std::uint64_t bytes = gltf::baked_bytes(scene.model, frames);
   const auto megabytes = (bytes >> 20) + 1;
   if (frames - 1 > gltf::kMaxMorphTargets || bytes > kMaxBakedBytes) {
@@ -225,10 +223,6 @@ std::string frame_path(const std::string& output, int frame, int last_frame) {
 // One file a frame, several at a time. Of several failures the one of the earliest frame is told.
 Result<int> write_frames(const Scene& scene, ToolContext& context) {
   const int frames = scene.clip.frame_count();
-  if (frames == 0) {
-    return Error("skin-no-frames", "the motion has no frames",
-                 "--as pose gives the reference pose");
-  }
   const int last_frame = scene.first_frame + (frames - 1) * scene.every;
   const auto path_of = [&](std::size_t i) {
     return frame_path(context.output, scene.first_frame + static_cast<int>(i) * scene.every,
@@ -310,9 +304,15 @@ Result<int> run_skin(const SkinOptions& options, ToolContext& context) {
   if (Status fits = check_output(options, context.output); !fits) return fits.error();
   auto scene = load(options, context);
   if (!scene) return scene.error();
+  if (scene->clip.frame_count() == 0 &&
+      (options.as == SkinAs::clip || options.as == SkinAs::frames)) {
+    return Error("skin-no-frames", "the motion has no frames", "--as pose gives the reference pose")
+        .in_file(options.motion);
+  }
   if (options.as == SkinAs::frames) return write_frames(*scene, context);
   if (options.as == SkinAs::clip) {
-    if (Status fits = check_bakeable(*scene, context); !fits) return fits.error();
+    Status fits = check_bakeable(*scene, context);
+    if (!fits) return std::move(fits.error()).in_file(options.motion);
   }
 
   auto file = OutputFile::create(context.output, context.output_options());

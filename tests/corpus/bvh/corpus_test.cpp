@@ -35,9 +35,9 @@ std::vector<Listed> listed_files() {
   std::getline(index, line);
   while (std::getline(index, line)) {
     const std::string convention = line.substr(line.rfind('\t') + 1);
-    files.push_back({line.substr(0, line.find('\t')),
-                     convention.find("additive") != std::string::npos ||
-                         convention.find("delta") != std::string::npos});
+    files.push_back(
+        {line.substr(0, line.find('\t')), convention.find("additive") != std::string::npos ||
+                                              convention.find("delta") != std::string::npos});
   }
   return files;
 }
@@ -80,8 +80,8 @@ void expect_same_motion(const naive::Bvh& expected, const Clip& clip, bool addit
   ASSERT_EQ(clip.frame_count(), static_cast<int>(expected.rows.size()));
   double largest = 0;
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
-    const auto points = naive::world_positions(
-        expected, expected.rows[static_cast<std::size_t>(frame)], additive);
+    const auto points =
+        naive::world_positions(expected, expected.rows[static_cast<std::size_t>(frame)], additive);
     const auto positions = clip.frame_positions(frame);
     for (std::size_t j = 0; j < points.size(); ++j) {
       const double dx = points[j][0] - positions[j].x();
@@ -131,8 +131,8 @@ TEST_F(Corpus, ImportedFilesAgreeWithIndependentKinematics) {
     const std::string path = kFolder + "/" + file.path;
     const std::string command = std::string(KROK_BIN_DIR) + "/krok-import -q --unit m --up y " +
                                 "--forward z --positions " +
-                                (file.additive ? "additive" : "absolute") + " '" + path +
-                                "' -o '" + out + "'";
+                                (file.additive ? "additive" : "absolute") + " '" + path + "' -o '" +
+                                out + "'";
     ASSERT_EQ(std::system(command.c_str()), 0);
     const auto bytes = InputFile::open(out);
     ASSERT_TRUE(bytes.ok());
@@ -145,10 +145,9 @@ TEST_F(Corpus, ImportedFilesAgreeWithIndependentKinematics) {
 
 // Which files mean additive channels was decided by looking at where the feet stand.
 TEST_F(Corpus, PositionChannelsAreReadAsTheExporterMeansThem) {
-  const std::vector<std::string> additive = {"iclone_cmu/003_01",  "iclone_cmu/005_01",
-                                             "iclone_cmu/006_",    "walkset_cmu07/",
-                                             "makehuman/benchmark", "makehuman/debug",
-                                             "makehuman/face",     "makehuman/walk1"};
+  const std::vector<std::string> additive = {
+      "iclone_cmu/003_01",   "iclone_cmu/005_01", "iclone_cmu/006_", "walkset_cmu07/",
+      "makehuman/benchmark", "makehuman/debug",   "makehuman/face",  "makehuman/walk1"};
   for (const Listed& file : files_) {
     SCOPED_TRACE(file.path);
     const auto capture = bvh::read(text_of(kFolder + "/" + file.path), file.path);
@@ -223,10 +222,11 @@ TEST_F(Corpus, WrittenFilesReadBackAsTheSameMotion) {
     double turned = 0;
     for (std::size_t i = 0; i < a.positions.size(); ++i) {
       largest = std::max(largest, static_cast<double>((a.positions[i] - b.positions[i]).norm()));
-      turned = std::max(turned, static_cast<double>(a.orientations[i].angularDistance(b.orientations[i])));
+      turned = std::max(turned,
+                        static_cast<double>(a.orientations[i].angularDistance(b.orientations[i])));
     }
-    // Floats far from the origin are coarser than the digits that are printed, and translations that
-    // vary by less than the writer's tolerance are left out.
+    // Floats far from the origin are coarser than the digits that are printed, and translations
+    // that vary by less than the writer's tolerance are left out.
     EXPECT_LE(largest, 1e-5 * reach);
     EXPECT_LE(turned, 2e-3);
   }

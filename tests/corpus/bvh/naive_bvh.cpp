@@ -117,7 +117,8 @@ std::vector<Point> world_positions(const Bvh& bvh, const std::vector<double>& ro
       }
     }
     world[j] = times(translation, turn);
-    if (joint.parent >= 0) world[j] = times(world[static_cast<std::size_t>(joint.parent)], world[j]);
+    if (joint.parent >= 0)
+      world[j] = times(world[static_cast<std::size_t>(joint.parent)], world[j]);
     positions.push_back({world[j][0][3], world[j][1][3], world[j][2][3]});
   }
   return positions;

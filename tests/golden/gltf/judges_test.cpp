@@ -2,6 +2,7 @@
 // three.js than Krok computed: another pose of the joints, another shape of the mesh.
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -66,12 +67,16 @@ class GltfJudges : public testing::Test {
     ASSERT_TRUE(file->commit().ok());
   }
 
+  std::string content(const std::string& name) const {
+    std::ostringstream bytes;
+    bytes << std::ifstream(path(name), std::ios::binary).rdbuf();
+    return bytes.str();
+  }
+
   // Copies a file with one piece of text changed.
   void replace_in(const std::string& from, const std::string& to, const std::string& what,
                   const std::string& with) {
-    std::ostringstream content;
-    content << std::ifstream(path(from), std::ios::binary).rdbuf();
-    std::string bytes = content.str();
+    std::string bytes = content(from);
     const auto at = bytes.find(what);
     ASSERT_NE(at, std::string::npos) << what;
     bytes.replace(at, what.size(), with);
@@ -132,6 +137,29 @@ TEST_F(GltfJudges, PosesAndFramesShowTheBake) {
   judge("three_bounds.mjs", "pose.glb --against clip.glb --tolerance 1e-6");
   judge("three_bounds.mjs", "out_0010.glb --against clip.glb --tolerance 1e-6");
   judge("three_bounds.mjs", "out_0008.glb --against clip.glb --tolerance 1e-3", 1);
+}
+
+TEST_F(GltfJudges, ThreadsDoNotChangeTheBytes) {
+  write_clip(test::swinging_clip(human(), 5, 25));
+  write_model(test::tube_model(human(), 4, 24, 16));  // several tiles of the kernel
+  for (const char* as : {"clip", "pose", "rig"}) {
+    tool(fmt::format("krok-skin in.model in.anim --as {} -j 1 -o one.glb", as));
+    tool(fmt::format("krok-skin in.model in.anim --as {} -j 4 -o four.glb", as));
+    EXPECT_EQ(content("one.glb"), content("four.glb")) << as;
+    EXPECT_GT(content("one.glb").size(), 10000u);
+  }
+}
+
+TEST_F(GltfJudges, AClipTooLongToBakeSaysWhatToDo) {
+  write_clip(test::swinging_clip(human(), 2200, 30));
+  write_model(test::tube_model(human(), 1, 2, 4));
+  tool("krok-skin in.model in.anim -o clip.glb", 2);
+  EXPECT_THAT(content("log.txt"), testing::HasSubstr("[skin-clip-too-long]"));
+  EXPECT_THAT(content("log.txt"), testing::HasSubstr("--every 2"));
+  EXPECT_FALSE(fs::exists(path("clip.glb")));
+  tool("krok-skin in.model in.anim --every 2 -o clip.glb");
+  EXPECT_THAT(content("log.txt"), testing::HasSubstr("[skin-many-targets]"));
+  valid("clip.glb");
 }
 
 TEST_F(GltfJudges, OddFilesAreValid) {

@@ -74,8 +74,8 @@ void name_end_sites(Skeleton& skeleton) {
     if (skeleton.end_sites[j] == 0) continue;
     const auto parent = static_cast<std::size_t>(skeleton.parents[j]);
     const int number = ++count[parent];
-    skeleton.names[j] = skeleton.names[parent] + "_end" +
-                        (number == 1 ? "" : "_" + std::to_string(number));
+    skeleton.names[j] =
+        skeleton.names[parent] + "_end" + (number == 1 ? "" : "_" + std::to_string(number));
   }
 }
 
@@ -96,9 +96,9 @@ TEST(RoundTrip, RandomSkeletonsAndMotionsSurvive) {
     ASSERT_EQ(clip.frame_count(), back.clip.frame_count());
     EXPECT_DOUBLE_EQ(clip.rate, back.clip.rate);
     for (std::size_t j = 0; j < clip.skeleton.names.size(); ++j) {
-      EXPECT_LT((clip.skeleton.reference[j].position - back.clip.skeleton.reference[j].position)
-                    .norm(),
-                1e-6);
+      EXPECT_LT(
+          (clip.skeleton.reference[j].position - back.clip.skeleton.reference[j].position).norm(),
+          1e-6);
     }
     for (std::size_t i = 0; i < clip.positions.size(); ++i) {
       ASSERT_LT((clip.positions[i] - back.clip.positions[i]).norm(), 2e-5f);

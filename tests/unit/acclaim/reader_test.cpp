@@ -328,7 +328,7 @@ TEST(AcclaimReader, takes_any_line_ends_case_of_names_and_comments) {
     EXPECT_TRUE(capture->clip.positions == expected->clip.positions);
     const auto error = read(asf, with(amc, "shin 90", "shin 9x"));
     ASSERT_FALSE(error.ok());
-    EXPECT_EQ(error.error().where.line, 11);
+    EXPECT_EQ(error.error().where.line, 12);
   }
   const auto upper = read(kAsf, with(kAmc, "thigh 0 90", "\tTHIGH  0 +9.0e1  # knee"));
   ASSERT_TRUE(upper.ok()) << upper.error().message;
@@ -380,6 +380,10 @@ struct Faulty {
   const char* message;
 };
 
+void PrintTo(const Faulty& faulty, std::ostream* out) {
+  *out << faulty.what;
+}
+
 class AcclaimErrors : public testing::TestWithParam<Faulty> {};
 
 TEST_P(AcclaimErrors, tell_file_line_and_column) {
@@ -408,16 +412,16 @@ INSTANTIATE_TEST_SUITE_P(
                "thigh has no length"},
         Faulty{"no_name", with(kAsf, "name thigh", "name"), kAmc, "acclaim-bone", 17, 3,
                "has no name"},
-        Faulty{"same_name", with(kAsf, "name tip", "name tail"), kAmc, "acclaim-bone", 47, 10,
+        Faulty{"same_name", with(kAsf, "name tip", "name tail"), kAmc, "acclaim-bone", 48, 10,
                "second bone is named tail"},
         Faulty{"no_end", with(kAsf, "  end\n  begin\n    id 2", "  begin\n    id 2"), kAmc,
                "acclaim-syntax", 27, 3, "the end of the bone thigh is missing"},
         Faulty{"order", with(kAsf, "axis 0 90 0 XYZ", "axis 0 90 0 XXZ"), kAmc, "acclaim-syntax",
                33, 17, "'XXZ'"},
         Faulty{"unknown_child", with(kAsf, "thigh shin", "thigh shim"), kAmc, "acclaim-hierarchy",
-               55, 11, "shim"},
+               56, 11, "shim"},
         Faulty{"two_parents", with(kAsf, "tail tip", "tail tip shin"), kAmc, "acclaim-hierarchy",
-               56, 14, "second parent"},
+               57, 14, "second parent"},
         Faulty{"unit", with(kAsf, "length 1.0", "length 0"), kAmc, "acclaim-number", 6, 10,
                "not positive"},
         Faulty{"angle", with(kAsf, "angle deg", "angle grad"), kAmc, "acclaim-syntax", 7, 9,

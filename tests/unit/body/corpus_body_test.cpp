@@ -32,8 +32,7 @@ TEST(CorpusBody, EverySkeletonGetsAValidBody) {
     const Skeleton& skeleton = capture->clip.skeleton;
     std::string signature;
     for (int j = 0; j < skeleton.joint_count(); ++j) {
-      signature += skeleton.names[static_cast<std::size_t>(j)];
-      signature += std::to_string(std::lround(100 * skeleton.reference_local(j).position.norm()));
+      signature += skeleton.names[static_cast<std::size_t>(j)] + " ";
     }
     if (!seen.insert(signature).second) continue;
     const auto body = make_body(capture->clip, {.detail = BodyDetail::low});

@@ -1,5 +1,5 @@
-// Bodies of figures that are no humans: if these fail, some skeleton gives no body, a broken one, or
-// hangs.
+// Bodies of figures that are no humans: if these fail, some skeleton gives no body, a broken one,
+// or hangs.
 
 #include <string>
 
@@ -16,7 +16,8 @@ int add(Skeleton& skeleton, const std::string& name, int parent, const Vec3& off
         bool end = false) {
   Transform transform;
   transform.position = offset;
-  if (parent >= 0) transform.position += skeleton.reference[static_cast<std::size_t>(parent)].position;
+  if (parent >= 0)
+    transform.position += skeleton.reference[static_cast<std::size_t>(parent)].position;
   return skeleton.add(name, parent, transform, end);
 }
 
@@ -67,7 +68,8 @@ TEST(GeneralBody, OfAChainBelongsToTheJointAtEachBonesStart) {
   Skeleton chain;
   int parent = -1;
   for (int i = 0; i < 5; ++i) {
-    parent = add(chain, "link" + std::to_string(i), parent, parent < 0 ? Vec3::Zero() : Vec3(0, 0.5, 0));
+    parent =
+        add(chain, "link" + std::to_string(i), parent, parent < 0 ? Vec3::Zero() : Vec3(0, 0.5, 0));
   }
   const Body body = build(chain);
   expect_valid_body(body);

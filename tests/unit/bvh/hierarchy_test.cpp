@@ -1,5 +1,5 @@
-// If these fail, skeletons come in with joints lost, misnamed or misplaced, or a broken hierarchy is
-// taken for a good one.
+// If these fail, skeletons come in with joints lost, misnamed or misplaced, or a broken hierarchy
+// is taken for a good one.
 
 #include "unit/bvh/bvh_text.h"
 
@@ -19,9 +19,8 @@ TEST(Hierarchy, JointsEndSitesAndReferencePose) {
 }
 
 TEST(Hierarchy, NamesAreTakenAsTheyAre) {
-  for (const std::string name :
-       {"Left Arm", "mixamorig:Hips", "a.b#1", "\"quoted\"", "\xC3\xA9paule", "LeftEnd", "Joint{1",
-        "MOTION", "End", "-"}) {
+  for (const std::string name : {"Left Arm", "mixamorig:Hips", "a.b#1", "\"quoted\"",
+                                 "\xC3\xA9paule", "LeftEnd", "Joint{1", "MOTION", "End", "-"}) {
     const std::string text = "HIERARCHY\nROOT " + name +
                              " \r\n{\r\nOFFSET 0 0 0\r\nCHANNELS 1 Xrotation\r\n}\r\n" +
                              motion(1, "1\n");

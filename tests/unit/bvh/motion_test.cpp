@@ -1,5 +1,5 @@
-// If these fail, frames come in turned or placed wrongly, damaged rows pass unnoticed, or whole ones
-// are lost.
+// If these fail, frames come in turned or placed wrongly, damaged rows pass unnoticed, or whole
+// ones are lost.
 
 #include <cmath>
 
@@ -47,8 +47,8 @@ TEST(Motion, EachJointKeepsItsOwnOrderAndNumberOfChannels) {
                         axis_rotation(Axis::y, kPi / 3);
   EXPECT_TRUE(clip.positions[0].isApprox(Vec3f(2, 0, 0)));
   EXPECT_LT(clip.orientations[0].cast<double>().angularDistance(expected), 1e-6);
-  EXPECT_TRUE(clip.positions[1].isApprox((expected * Vec3::UnitY()).cast<float>() + Vec3f(2, 0, 0),
-                                         1e-6f));
+  EXPECT_TRUE(
+      clip.positions[1].isApprox((expected * Vec3::UnitY()).cast<float>() + Vec3f(2, 0, 0), 1e-6f));
   const Quat second = expected * axis_rotation(Axis::z, kPi / 2);
   EXPECT_TRUE((clip.positions[2] - clip.positions[1])
                   .isApprox((second * Vec3::UnitY()).cast<float>(), 1e-5f));
@@ -89,11 +89,12 @@ TEST(Motion, TheReadingOfPositionsIsWorkedOut) {
   const auto choice = [](const std::string& rows, int frames) {
     ReadOptions options = plain_options();
     options.positions = Positions::automatic;
-    return read_ok("HIERARCHY\nROOT a\n{\nOFFSET 0 90 0\n"
-                   "CHANNELS 3 Xposition Yposition Zposition\n"
-                   "JOINT b\n{\nOFFSET 0 10 0\n}\n}\n" +
-                       motion(frames, rows),
-                   options)
+    return read_ok(
+               "HIERARCHY\nROOT a\n{\nOFFSET 0 90 0\n"
+               "CHANNELS 3 Xposition Yposition Zposition\n"
+               "JOINT b\n{\nOFFSET 0 10 0\n}\n}\n" +
+                   motion(frames, rows),
+               options)
         .positions;
   };
   EXPECT_EQ(choice("300 91 0\n310 89 5\n", 2).choice, "absolute");
@@ -106,7 +107,8 @@ TEST(Motion, RowsMayGoOverLinesAndExponentsAndSignsAreNumbers) {
   const Clip expected = read_ok(kArm + motion(2, "1 2 3 4 5 6 7 8 9\n9 8 7 6 5 4 3 2 1\n")).clip;
   for (const std::string rows :
        {"1 2 3 4 5\n6 7 8 9\n9 8 7 6 5\n4 3 2 1", "1 2 3 4 5 6 7 8 9 9 8 7 6 5 4 3 2 1\n",
-        "1\n2\n3\n4\n5\n6\n7\n8\n9\n9\n8\n7\n6\n5\n4\n3\n2\n1\n", "1 2 3 4\n5 6 7 8\n9 9 8 7\n6 5 4 3\n2 1",
+        "1\n2\n3\n4\n5\n6\n7\n8\n9\n9\n8\n7\n6\n5\n4\n3\n2\n1\n",
+        "1 2 3 4\n5 6 7 8\n9 9 8 7\n6 5 4 3\n2 1",
         "\t+1 2.0 30e-1 .4e1 5. 6 7 8 9\n\n\n9 8 7 6 5 4 3 2 1 \n\n"}) {
     const Capture capture = read_ok(kArm + motion(2, rows), with(Strictness::strict));
     EXPECT_EQ(capture.clip.positions, expected.positions) << rows;
@@ -127,8 +129,8 @@ TEST(Motion, HeadersMayBeSpacedInAnyWay) {
 TEST(Motion, NoFramesAndOneFrame) {
   EXPECT_EQ(read_ok(kArm + motion(0, "")).clip.frame_count(), 0);
   EXPECT_EQ(read_ok(kArm + motion(1, row_of(3))).clip.frame_count(), 1);
-  const Capture without_channels = read_ok(
-      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\nMOTION\nFrames: 3\nFrame Time: 1\n");
+  const Capture without_channels =
+      read_ok("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\nMOTION\nFrames: 3\nFrame Time: 1\n");
   EXPECT_EQ(without_channels.clip.frame_count(), 0);
   EXPECT_NE(find(without_channels.diagnostics, "bvh-frame-count"), nullptr);
 }
@@ -229,8 +231,8 @@ TEST(Motion, AFrameWhoseLastNumberMayBeCutIsLeftOut) {
 
 TEST(Motion, CountsBeyondAllMeasureTakeNoMemory) {
   EXPECT_EQ(read_error(kArm + motion(2000000000, "")).code, "bvh-frame-count");
-  const Capture capture = read_ok(kArm + "MOTION\nFrames: 9223372036854775807\nFrame Time: 1\n" +
-                                  row_of(1));
+  const Capture capture =
+      read_ok(kArm + "MOTION\nFrames: 9223372036854775807\nFrame Time: 1\n" + row_of(1));
   EXPECT_EQ(capture.clip.frame_count(), 1);
 }
 

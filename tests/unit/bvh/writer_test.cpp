@@ -171,7 +171,8 @@ TEST(BvhWriter, RootOffsetIsZeroUnlessAskedFor) {
 
 TEST(BvhWriter, RatesReadBackExactly) {
   Clip clip = arm_clip(2);
-  for (const double rate : {24.0, 25.0, 30.0, 60.0, 120.0, 240.0, 30.0 / 1.001, 17.3, 1000.0, 1.0}) {
+  for (const double rate :
+       {24.0, 25.0, 30.0, 60.0, 120.0, 240.0, 30.0 / 1.001, 17.3, 1000.0, 1.0}) {
     clip.rate = rate;
     EXPECT_DOUBLE_EQ(read_back(written(clip)).clip.rate, rate);
   }

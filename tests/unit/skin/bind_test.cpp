@@ -8,6 +8,7 @@
 
 #include <numeric>
 
+#include "motion/cut.h"
 #include "skin/linear_blend.h"
 #include "support/test_scenes.h"
 
@@ -90,13 +91,33 @@ TEST(BindTo, AMissingJointThatMovesVerticesIsNamed) {
   EXPECT_THAT(bound.error().message, HasSubstr("LeftArm"));
 }
 
-TEST(ReferenceDifferences, OtherProportionsAndPosesAreTold) {
+TEST(ReferenceDifferences, AnyPoseOfTheSkeletonWillDo) {
+  const Skeleton skeleton = test::with_turned_joints(test::human_skeleton());
+  const Clip clip = test::swinging_clip(skeleton, 4, 3);
+  EXPECT_THAT(reference_differences(skeleton, clip), IsEmpty());
+  Skeleton posed = skeleton;
+  clip.get_pose(2, posed.reference);
+  EXPECT_THAT(reference_differences(posed, clip), IsEmpty());
+}
+
+TEST(ReferenceDifferences, APlaceThatTheJointTakesInSomeFrameWillDo) {
+  Clip clip = test::swinging_clip(test::human_skeleton(), 4, 3);
+  const int head = clip.skeleton.find("Head_end");
+  clip.frame_positions(3)[head].y() += 0.05f;
+  Skeleton posed = clip.skeleton;
+  clip.get_pose(3, posed.reference);
+  EXPECT_THAT(reference_differences(posed, clip), IsEmpty());
+  clip = cut(clip, 0, 2);
+  EXPECT_THAT(reference_differences(posed, clip), SizeIs(1));
+}
+
+TEST(ReferenceDifferences, OtherProportionsAndOtherFramesAreTold) {
   const Skeleton skeleton = test::human_skeleton();
-  EXPECT_THAT(reference_differences(skeleton, skeleton), IsEmpty());
-  const auto taller = reference_differences(skeleton, test::human_skeleton(1.9));
+  const Clip clip = test::swinging_clip(skeleton, 4, 3);
+  const auto taller = reference_differences(test::human_skeleton(1.9), clip);
   ASSERT_THAT(taller, SizeIs(1));
   EXPECT_EQ(taller[0].code, "skin-proportions");
-  const auto turned = reference_differences(skeleton, test::with_turned_joints(skeleton));
+  const auto turned = reference_differences(test::with_turned_joints(skeleton), clip);
   ASSERT_THAT(turned, SizeIs(1));
   EXPECT_EQ(turned[0].code, "skin-reference");
 }

@@ -69,7 +69,7 @@ class AnyWalk : public testing::TestWithParam<Case> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Kinds, AnyWalk, testing::ValuesIn(cases()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& kind) { return std::string(kind.param.name); });
 
 TEST_P(AnyWalk, IsAValidClip) {
   EXPECT_TRUE(check(walk_.clip).ok());

@@ -1,0 +1,154 @@
+// If these fail, krok-import takes its options wrongly, hides its choices, or leaves one of two
+// outputs behind when the other fails.
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+#include "core/file.h"
+#include "formats/anim/anim.h"
+#include "formats/model/model_format.h"
+
+namespace krok::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class ImportTest : public CliTest {
+ protected:
+  Clip imported(const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {path("in.bvh"), "-o", path("out.anim")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ToolRun run = run_tool("krok-import", arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const auto file = InputFile::open(path("out.anim"));
+    EXPECT_TRUE(file.ok());
+    if (!file.ok()) return {};
+    auto clip = anim::read(file->bytes());
+    EXPECT_TRUE(clip.ok());
+    return clip.ok() ? std::move(*clip) : Clip();
+  }
+};
+
+TEST_F(ImportTest, AxesMayBeginWithAMinus) {
+  put("in.bvh", capture(5));
+  const Clip apart = imported({"--unit", "m", "--up", "-x", "--forward", "y"});
+  const Clip joined = imported({"--unit=m", "--up=-x", "--forward=y"});
+  EXPECT_EQ(apart.positions, joined.positions);
+  // The root stands at y = 1 in the file, which is forward.
+  EXPECT_EQ(apart.positions[0], Vec3f(0, 0, 1));
+}
+
+TEST_F(ImportTest, NumbersPassThroughUnconverted) {
+  put("in.bvh", capture(5));
+  const Clip clip = imported({"--unit", "m", "--up", "y", "--forward", "z"});
+  EXPECT_EQ(clip.positions[0], Vec3f(0, 1, 0));
+  EXPECT_TRUE(clip.provenance.conversions.empty());
+  EXPECT_EQ(clip.provenance.sources.at(0).name, "in.bvh");
+  const Clip feet = imported({"--unit", "ft", "--up", "y", "--forward", "z"});
+  EXPECT_EQ(feet.positions[0], Vec3f(0, 0.3048f, 0));
+  EXPECT_EQ(feet.provenance.conversions.size(), 1u);
+}
+
+TEST_F(ImportTest, RatesAreTakenAndResampled) {
+  put("in.bvh", capture(11));
+  EXPECT_EQ(imported({}).rate, 30.0);
+  const Clip faster = imported({"--fps", "60"});
+  EXPECT_EQ(faster.rate, 60.0);
+  EXPECT_EQ(faster.frame_count(), 11);
+  const Clip resampled = imported({"--resample", "60"});
+  EXPECT_EQ(resampled.rate, 60.0);
+  EXPECT_EQ(resampled.frame_count(), 21);
+  for (const std::string rate : {"0", "-5", "nan", "inf", "1e999", "30x", ""}) {
+    const ToolRun run =
+        run_tool("krok-import", {path("in.bvh"), "-o", path("no.anim"), "--fps", rate});
+    EXPECT_EQ(run.exit_code, 2) << rate;
+  }
+}
+
+TEST_F(ImportTest, TheModelIsTheSkeleton) {
+  put("in.bvh", capture(5));
+  const Clip clip = imported({"--model", path("out.model")});
+  const auto file = InputFile::open(path("out.model"));
+  ASSERT_TRUE(file.ok());
+  const auto model = model::read(file->bytes());
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  EXPECT_EQ(model->skeleton.names, clip.skeleton.names);
+  EXPECT_EQ(model->vertex_count(), 0);
+}
+
+TEST_F(ImportTest, BothOutputsAppearOrNone) {
+  put("in.bvh", capture(5));
+  for (const auto& [motion, model] :
+       {std::pair<std::string, std::string>{"out.anim", "none/out.model"},
+        {"none/out.anim", "out.model"},
+        {"out.anim", "out.anim"}}) {
+    const ToolRun run =
+        run_tool("krok-import", {path("in.bvh"), "-o", path(motion), "--model", path(model)});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(listing(), (std::vector<std::string>{"in.bvh"}));
+  }
+}
+
+TEST_F(ImportTest, TheReportTellsEveryChoice) {
+  put("in.bvh", capture(5));
+  const ToolRun run =
+      run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--json", "--up", "y"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json result = Json::parse(run.out)["result"];
+  EXPECT_EQ(result["joints"], 4);
+  EXPECT_EQ(result["frames"], 5);
+  EXPECT_EQ(result["rate"], 30.0);
+  EXPECT_EQ(result["up"]["choice"], "y");
+  EXPECT_EQ(result["up"]["confidence"], "certain");
+  EXPECT_EQ(result["up"]["reason"], "as given");
+  for (const char* key : {"name", "metres", "confidence", "reason"}) {
+    EXPECT_TRUE(result["unit"].contains(key)) << key;
+  }
+  for (const char* key : {"forward", "positions", "source_rate"}) {
+    EXPECT_FALSE(result[key]["reason"].get<std::string>().empty()) << key;
+  }
+  EXPECT_EQ(result["repairs"], Json::array());
+}
+
+TEST_F(ImportTest, GuessesAreWarnings) {
+  put("in.bvh", capture(5));  // no human figure, so nothing shows its axes
+  const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim")});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_TRUE(has_code(run.err, "bvh-up")) << run.err;
+  EXPECT_TRUE(has_code(run.err, "bvh-forward")) << run.err;
+  EXPECT_EQ(run.out, "");
+}
+
+TEST_F(ImportTest, RepairsAreListed) {
+  put("in.bvh", capture(5, "nan"));
+  const ToolRun plain = run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim")});
+  EXPECT_EQ(plain.exit_code, 2);
+  EXPECT_TRUE(has_code(plain.err, "bvh-number")) << plain.err;
+  const ToolRun repaired =
+      run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--repair", "--json"});
+  ASSERT_EQ(repaired.exit_code, 0) << repaired.err;
+  const Json result = Json::parse(repaired.out)["result"];
+  EXPECT_EQ(result["frames"], 5);
+  EXPECT_EQ(result["repairs"].size(), 1u);
+  const ToolRun both =
+      run_tool("krok-import", {path("in.bvh"), "-o", path("o.anim"), "--repair", "--strict"});
+  EXPECT_EQ(both.exit_code, 2);
+}
+
+TEST_F(ImportTest, WrongValuesAreUsageErrors) {
+  put("in.bvh", capture(5));
+  const std::vector<std::vector<std::string>> cases = {
+      {"--unit", "furlong"}, {"--up", "w"},          {"--up", "z", "--forward", "-z"},
+      {"--positions", "x"},  {"--orientation", "q"}, {"--skip-rest-frame", "perhaps"}};
+  for (const auto& options : cases) {
+    std::vector<std::string> arguments = {path("in.bvh"), "-o", path("out.anim")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ToolRun run = run_tool("krok-import", arguments);
+    EXPECT_EQ(run.exit_code, 2) << options[0];
+    EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
+  }
+  EXPECT_EQ(listing(), (std::vector<std::string>{"in.bvh"}));
+}
+
+}  // namespace
+}  // namespace krok::test
