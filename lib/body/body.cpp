@@ -44,7 +44,7 @@ double cell_size(const Field& field, std::size_t target) {
   const double finest =
       std::sqrt(4 * field.area_estimate() /
                 static_cast<double>(std::clamp<std::size_t>(
-                    16 * target, 70000, std::max<std::size_t>(160000, 5 * target))));
+                    16 * target, 120000, std::max<std::size_t>(160000, 5 * target))));
   const double coarsest = std::sqrt(4 * field.area_estimate() / static_cast<double>(4 * target));
   return std::clamp(0.8 * field.smallest_radius(), finest, coarsest);
 }

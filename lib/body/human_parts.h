@@ -52,7 +52,7 @@ class HumanBuilder {
   Shape shape_;
 
   Vec3 trunk_base_ = Vec3::Zero(), trunk_axis_ = Vec3::UnitY();
-  double trunk_scale_ = 1, chest_scale_ = 1;
+  double trunk_scale_ = 1, chest_scale_ = 1, hip_scale_ = 1;
   int trunk_ = 0, neck_ = 0, skull_ = 0, face_ = 0, nose_ = 0;
   std::array<int, 2> glutes_{}, chest_{}, legs_{}, feet_{}, arms_{}, ridges_{}, palms_{}, ears_{};
   std::array<std::vector<int>, 2> fingers_;

@@ -100,12 +100,18 @@ void HumanBuilder::build_trunk() {
   const double half_breadth =
       0.5 * (position(figure_.arms[0].shoulder) - position(figure_.arms[1].shoulder)).norm();
   // Narrow shoulders get a narrow chest, so that the arms stand off it.
-  chest_scale_ = std::clamp(half_breadth / (0.105 * unit_), 0.8, 1.2);
+  chest_scale_ = std::clamp(half_breadth / (0.105 * unit_), 0.8, 1.3);
+  // Hip joints far apart get wide hips and thighs, or the thighs would stand out as lumps.
+  const double half_hips =
+      0.5 * (position(figure_.legs[0].hip) - position(figure_.legs[1].hip)).norm();
+  hip_scale_ = std::clamp((half_hips / unit_ + 0.045) / 0.097, 0.95, 1.4);
 
   Tube tube;
   for (const TrunkRow& row : kTrunk) {
     const double part = std::clamp((row.height - 0.10) / 0.10, 0.0, 1.0);
-    const double widen = 1 + part * (chest_scale_ - 1);
+    // At the waist a compromise of both.
+    const double widen = 1 + part * (chest_scale_ - 1) +
+                         (1 - part) * (hip_scale_ - 1) * (row.height < 0.06 ? 1.0 : 0.6);
     Station station;
     station.center = trunk_point(row.height, 0, row.forward);
     station.width = row.width * widen * unit_;
@@ -170,7 +176,7 @@ void HumanBuilder::build_leg(std::size_t side) {
     Station station;
     const Vec3 bone = to - from;
     station.center = from + row.at * bone + Vec3(row.outward * out * unit_, 0, -row.back * unit_);
-    station.width = row.width * unit_;
+    station.width = row.width * unit_ * (arc > 0 ? 1.0 : 1 + (hip_scale_ - 1) * 0.6 * (1 - row.at));
     station.depth = row.depth * unit_;
     // The inside of a thigh stays on its own half of the body.
     const double room = out * (station.center.x() - trunk_base_.x()) - 0.004 * unit_;

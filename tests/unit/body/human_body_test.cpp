@@ -191,7 +191,7 @@ TEST(HumanBody, HangingArmsAreTurnedAsideAndNotBoundToTheTrunk) {
   Skeleton skeleton = human_skeleton();
   turn(skeleton, "LeftArm", Quat(Eigen::AngleAxisd(-1.5, Vec3::UnitZ())));
   turn(skeleton, "RightArm", Quat(Eigen::AngleAxisd(1.5, Vec3::UnitZ())));
-  const Body body = build(skeleton, {.detail = BodyDetail::low});
+  const Body body = build(skeleton);
   expect_valid_body(body);
   EXPECT_EQ(mesh_facts(body.model).euler, 2);
   EXPECT_EQ(body.pose, "reference, limbs turned aside");
