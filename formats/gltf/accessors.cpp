@@ -1,4 +1,4 @@
-#include "formats/gltf/accessors.h"
+#include "formats/gltf/accessors_internal.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "formats/gltf/buffers.h"
+#include "formats/gltf/buffers_internal.h"
 
 #include <fmt/format.h>
 

@@ -7,11 +7,11 @@
 #include <filesystem>
 
 #include "core/file.h"
-#include "formats/gltf/accessors.h"
-#include "formats/gltf/buffers.h"
+#include "formats/gltf/accessors_internal.h"
+#include "formats/gltf/buffers_internal.h"
 #include "formats/gltf/glb_container.h"
-#include "formats/gltf/json_text.h"
-#include "formats/gltf/mesh_reader.h"
+#include "formats/gltf/json_text_internal.h"
+#include "formats/gltf/mesh_reader_internal.h"
 #include "math/quaternion.h"
 
 namespace krok::gltf {

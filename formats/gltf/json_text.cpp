@@ -1,4 +1,4 @@
-#include "formats/gltf/json_text.h"
+#include "formats/gltf/json_text_internal.h"
 
 #include <fmt/format.h>
 

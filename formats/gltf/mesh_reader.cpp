@@ -1,4 +1,4 @@
-#include "formats/gltf/mesh_reader.h"
+#include "formats/gltf/mesh_reader_internal.h"
 
 #include <fmt/format.h>
 

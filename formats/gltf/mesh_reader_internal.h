@@ -3,9 +3,9 @@
 #include <cstddef>
 
 #include "core/result.h"
-#include "formats/gltf/accessors.h"
+#include "formats/gltf/accessors_internal.h"
 #include "formats/gltf/gltf_asset.h"
-#include "formats/gltf/json_text.h"
+#include "formats/gltf/json_text_internal.h"
 
 // Private to this folder: meshes with their primitives, influences and morph targets.
 

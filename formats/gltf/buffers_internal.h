@@ -8,7 +8,7 @@
 #include "core/result.h"
 #include "formats/gltf/glb_container.h"
 #include "formats/gltf/gltf_reader.h"
-#include "formats/gltf/json_text.h"
+#include "formats/gltf/json_text_internal.h"
 
 // Private to this folder: the bytes of a file's buffers.
 
