@@ -49,6 +49,17 @@ HandLayout hand_layout(const Skeleton& skeleton, const HumanFigure& figure, std:
       hand.fingers.push_back(std::move(chain));
     }
   }
+  if (hand.thumb.empty() && hand.fingers.size() >= 5) {  // by where it points
+    auto widest = hand.fingers.begin();
+    const auto aside = [&](const std::vector<int>& chain) {
+      return turn_angle(at(chain.back()) - wrist, forearm);
+    };
+    for (auto it = hand.fingers.begin(); it != hand.fingers.end(); ++it) {
+      if (aside(*it) > aside(*widest)) widest = it;
+    }
+    hand.thumb = std::move(*widest);
+    hand.fingers.erase(widest);
+  }
   Vec3 knuckles = Vec3::Zero();
   for (const auto& chain : hand.fingers) {
     const Vec3 offset = at(chain.front()) - wrist;
@@ -99,12 +110,12 @@ std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanFigur
     const auto count = static_cast<double>(hand.fingers.size());
     for (std::size_t i = 0; i < hand.fingers.size(); ++i) {
       const auto& chain = hand.fingers[i];
-      const double aside = 0.22 * (1 - 2 * static_cast<double>(i) / (count - 1));
+      const double aside = 0.34 * (1 - 2 * static_cast<double>(i) / (count - 1));
       const Vec3 direction = hand.along + aside * hand.across;
       for (std::size_t k = 0; k + 1 < chain.size(); ++k) turn(chain[k], chain[k + 1], direction);
     }
     if (hand.thumb.size() >= 2) {
-      const Vec3 direction = hand.along + 0.8 * hand.across;
+      const Vec3 direction = hand.along + 0.9 * hand.across;
       for (std::size_t k = 0; k + 1 < hand.thumb.size(); ++k) {
         turn(hand.thumb[k], hand.thumb[k + 1], direction);
       }

@@ -43,7 +43,8 @@ made() {
 }
 
 say "1. The capture becomes a motion"
-"$bin/krok-import" -o "$base.anim" -- "$capture"
+# A T-pose in front of the motion, as many captures have it, would flash up in a viewer.
+"$bin/krok-import" --skip-rest-frame auto -o "$base.anim" -- "$capture"
 made "$base.anim" "the motion: skeleton and frames"
 "$bin/krok-info" -- "$base.anim"
 

@@ -64,7 +64,7 @@ std::string help_footer(const ToolSpec& spec) {
   for (const auto& example : spec.examples) {
     text += fmt::format("  {}\n      {}\n", example.command, example.does);
   }
-  text += "\nExit codes:\n  0  done\n";
+  text += fmt::format("\nExit codes:\n  0  {}\n", spec.exit_done);
   if (!spec.exit_no.empty()) text += fmt::format("  1  {}\n", spec.exit_no);
   text += "  2  trouble: usage, input or output; nothing is left half-written\n";
   return text;

@@ -92,6 +92,7 @@ int main(int argc, char** argv) {
        "Largest and RMS difference of joints, with joint and frame; exit code 1 if beyond."},
       {"krok-diff walk_rig.glb walk_clip.glb --json=diff.json",
        "A skinned rig against the same motion baked into morph targets; all figures as JSON."}};
+  spec.exit_done = "the same within the tolerance";
   spec.exit_no = "the files differ: beyond tolerance, or in skeleton, topology, frames or rate";
   spec.has_output = false;
   spec.declare = [&](CLI::App& app) { krok::diff::declare(app, arguments); };
