@@ -124,18 +124,34 @@ class HelpFormatter : public CLI::Formatter {
   std::string usage_;
 };
 
-Json given_options(const CLI::App& app) {
+// What the user gave for each option, as it was written.
+using GivenValues = std::map<const CLI::Option*, std::vector<std::string>>;
+
+// CLI11 replaces what was written ("xyzw") by what it stands for ("1") before anybody can ask for
+// it; a transform that is added last sees the values first.
+void remember_values(CLI::App& app, GivenValues& values) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_type_size() == 0 || option->get_positional()) continue;
+    option->transform([option, &values](const std::string& value) {
+      values[option].push_back(value);
+      return value;
+    });
+  }
+}
+
+Json given_options(const CLI::App& app, const GivenValues& values) {
   Json options = Json::object();
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0 || option->get_positional()) continue;
     const std::string name = option->get_single_name();
     if (is_silent(name)) continue;
-    if (option->get_type_size() == 0) {
+    const auto given = values.find(option);
+    if (given == values.end()) {
       options[name] = true;
-    } else if (option->count() == 1) {
-      options[name] = option->results().front();
+    } else if (given->second.size() == 1) {
+      options[name] = given->second.front();
     } else {
-      options[name] = option->results();
+      options[name] = given->second;
     }
   }
   return options;
@@ -257,6 +273,8 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
       fmt::format("{} [options] {}{}", spec.name, spec.inputs,
                   spec.has_output ? (spec.needs_output ? " -o OUTPUT" : " [-o OUTPUT]") : "")));
   spec.declare(app);
+  GivenValues given_values;
+  remember_values(app, given_values);
   app.set_help_flag("-h,--help", "This text")->group("Common options");
   app.set_version_flag("--version", fmt::format("{} {}", spec.name, version()), "The version")
       ->group("Common options");
@@ -309,7 +327,7 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
   if (context.report_on_standard_output && context.output == "-") {
     return usage_error(spec.name, "the report and the output cannot both go to standard output");
   }
-  context.report.options = given_options(app);
+  context.report.options = given_options(app, given_values);
   if (context.quiet && style == ProgressStyle::automatic) style = ProgressStyle::none;
   const auto progress = console_progress(style);
   context.progress = progress.get();

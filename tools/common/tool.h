@@ -64,13 +64,14 @@ struct ToolSpec {
     std::string command;
     std::string does;
   };
-  std::string name;               // "krok-import"
-  std::string summary;            // a sentence without a full stop
-  std::string inputs;             // for the usage line: "IN.bvh"
-  std::vector<Example> examples;  // at least two
-  std::string exit_no;            // what exit code 1 means here; empty where it does not happen
-  bool has_output = true;         // takes -o
-  bool needs_output = true;       // -o must be given
+  std::string name;                // "krok-import"
+  std::string summary;             // a sentence without a full stop
+  std::string inputs;              // for the usage line: "IN.bvh"
+  std::vector<Example> examples;   // at least two
+  std::string exit_done = "done";  // what exit code 0 means here
+  std::string exit_no;             // what exit code 1 means here; empty where it does not happen
+  bool has_output = true;          // takes -o
+  bool needs_output = true;        // -o must be given
 
   // Adds the tool's own options and positionals.
   std::function<void(CLI::App&)> declare;

@@ -16,11 +16,11 @@
 
 namespace {
 
+using krok::Strictness;
 using krok::Vec3;
 using krok::acclaim::Capture;
 using krok::acclaim::DegreeOfFreedom;
 using krok::acclaim::ReadOptions;
-using krok::acclaim::Strictness;
 using small_files::kAmc;
 using small_files::kAsf;
 using small_files::with;

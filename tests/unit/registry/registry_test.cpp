@@ -21,6 +21,12 @@ TEST(Registry, ContentTellsTheKind) {
   EXPECT_EQ(kind_of_content(samples::bytes_of(samples::camera())), Kind::cam);
   EXPECT_EQ(kind_of_content(bytes_of("HIERARCHY\r\nROOT")), Kind::bvh);
   EXPECT_EQ(kind_of_content(bytes_of("\xEF\xBB\xBF \n\tHierarchy\r")), Kind::bvh);
+  EXPECT_EQ(kind_of_content(bytes_of("# AST/ASF file\n#\n:version 1.10\n")), Kind::asf);
+  EXPECT_EQ(kind_of_content(bytes_of("\r\n:UNITS\r\n")), Kind::asf);
+  EXPECT_EQ(kind_of_content(bytes_of("#!OML:ASF F:\\a.ASF\n:FULLY-SPECIFIED\n")), Kind::amc);
+  EXPECT_EQ(kind_of_content(bytes_of(":degrees")), Kind::amc);
+  EXPECT_EQ(kind_of_content(bytes_of(":unheard-of\n")), Kind::unknown);
+  EXPECT_EQ(kind_of_content(bytes_of("# a comment alone")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("glTF\2")), Kind::glb);
   EXPECT_EQ(kind_of_content(bytes_of(" {\n \"asset\": {\"version\": \"2.0\"}}")), Kind::gltf);
   EXPECT_EQ(kind_of_content(bytes_of("{\"a\":1}")), Kind::unknown);
@@ -40,6 +46,8 @@ TEST(Registry, NameTellsTheKindInAnyCase) {
   EXPECT_EQ(kind_of_name("b.MODEL"), Kind::model);
   EXPECT_EQ(kind_of_name("b.x.cam"), Kind::cam);
   EXPECT_EQ(kind_of_name("Walk.BVH"), Kind::bvh);
+  EXPECT_EQ(kind_of_name("01.ASF"), Kind::asf);
+  EXPECT_EQ(kind_of_name("01_01.amc"), Kind::amc);
   EXPECT_EQ(kind_of_name("b.glb"), Kind::glb);
   EXPECT_EQ(kind_of_name("b.gltf"), Kind::gltf);
   EXPECT_EQ(kind_of_name("b.fbx"), Kind::unknown);
@@ -65,7 +73,9 @@ TEST(Registry, ForeignFilesAreDescribed) {
 }
 
 TEST(Registry, AdviceIsGivenWhereThereIsSome) {
-  EXPECT_EQ(advice(Kind::bvh, Kind::anim), "import it with krok-import");
+  for (const Kind capture : {Kind::bvh, Kind::asf, Kind::amc}) {
+    EXPECT_EQ(advice(capture, Kind::anim), "import it with krok-import");
+  }
   EXPECT_EQ(advice(Kind::anim, Kind::model), "krok-body makes a model for a motion");
   EXPECT_NE(advice(Kind::model, Kind::anim), "");
   EXPECT_EQ(advice(Kind::anim, Kind::anim), "");

@@ -53,6 +53,17 @@ class WalkToGltf : public testing::Test {
     }
   }
 
+  // Every glTF below `base` before the Khronos validator, which `make test` installs.
+  void expect_valid(const std::string& base) {
+    const fs::path tests = fs::path(KROK_SOURCE_DIR) / "tests";
+    if (!fs::exists(tests / "node_modules/gltf-validator")) {
+      GTEST_SKIP() << "skipped: no gltf-validator in " << tests << "; run npm ci there";
+    }
+    const Outcome judged = shell("node '" + (tests / "golden/validate_gltf.mjs").string() + "' " +
+                                 base + "_rig.glb " + base + "_clip.glb " + base + "_motion.glb");
+    EXPECT_EQ(judged.exit_code, 0) << judged.out << judged.err;
+  }
+
   fs::path folder_;
 };
 
@@ -62,6 +73,7 @@ TEST_F(WalkToGltf, RunsOnTheSampleWithoutArguments) {
   expect_result("out/demo/walk");
   EXPECT_THAT(run.out, HasSubstr("out/demo/walk_rig.glb"));
   EXPECT_THAT(run.out, HasSubstr("the same within 0.01 mm"));
+  expect_valid("out/demo/walk");
 }
 
 TEST_F(WalkToGltf, TakesNamesWithSpaces) {
@@ -78,6 +90,7 @@ TEST_F(WalkToGltf, ALongCaptureIsBakedInPartAndSaysSo) {
   expect_result("result/long");
   EXPECT_THAT(run.out, HasSubstr("too long to be baked whole: the first"));
   EXPECT_TRUE(fs::exists(folder_ / "result/long_rig_part.glb"));
+  expect_valid("result/long");
 }
 
 TEST_F(WalkToGltf, TheFirstFailureEndsItWithTheToolsOwnMessage) {
