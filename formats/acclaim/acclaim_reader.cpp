@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "core/numbers.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "formats/acclaim/kinematics.h"
 #include "formats/acclaim/motion_file.h"
 #include "formats/acclaim/skeleton_file.h"
@@ -27,11 +27,6 @@ constexpr double kUsualRate = 120.0;
 constexpr std::size_t kMostSamples = 200;
 constexpr std::size_t kFramesAtOnce = 64;
 
-std::string_view without_byte_order_mark(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  return text;
-}
-
 class Reader {
  public:
   Reader(std::string_view asf_text, const std::string& asf_name, std::string_view amc_text,
@@ -39,8 +34,7 @@ class Reader {
       : asf_(without_byte_order_mark(asf_text), asf_name, options.strictness, capture_.diagnostics),
         amc_(without_byte_order_mark(amc_text), amc_name, options.strictness, capture_.diagnostics),
         has_motion_(!amc_text.empty() || !amc_name.empty()),
-        options_(options),
-        given_{options.unit, options.up, options.forward} {}
+        options_(options) {}
 
   Result<Capture> read() {
     if (Status kind = check_kind(asf_.text(), asf_.file_name(), true); !kind) return kind.error();
@@ -87,7 +81,7 @@ class Reader {
   Status choose_conventions(const Kinematics& kinematics) {
     Conventions& conventions = capture_.conventions;
     const Skeleton in_file = kinematics.skeleton();
-    if (!given_.complete()) {
+    if (!options_.complete()) {
       std::vector<Vec3> samples;
       std::vector<Transform> pose(kinematics.joint_count());
       const std::size_t count = std::min(motion_.frame_count(), kMostSamples);
@@ -99,12 +93,12 @@ class Reader {
       conventions = detect_conventions(in_file, find_roles(in_file), samples);
       take_unit_of_file(in_file);
     }
-    apply_given(given_, conventions);
+    apply_given(options_, conventions);
     auto conversion = Conversion::make(conventions);
     if (!conversion) return std::move(conversion).error().in_file(asf_.file_name());
     conversion_ = *conversion;
-    report_conventions(conventions, given_, "acclaim", asf_.file_name(), capture_.diagnostics);
-    capture_.clip.provenance.conversions = describe_conversions(conventions, given_);
+    report_conventions(conventions, options_, "acclaim", asf_.file_name(), capture_.diagnostics);
+    capture_.clip.provenance.conversions = describe_conversions(conventions, options_);
     return {};
   }
 
@@ -295,7 +289,6 @@ class Reader {
   SourceText asf_, amc_;
   bool has_motion_;
   const ReadOptions& options_;
-  GivenConventions given_;
   SkeletonFile file_;
   MotionFile motion_;
   Conversion conversion_;
@@ -308,10 +301,7 @@ class Reader {
 Result<Capture> read(std::string_view asf_text, const std::string& asf_name,
                      std::string_view amc_text, const std::string& amc_name,
                      const ReadOptions& options) {
-  if (options.rate && !(*options.rate > 0 && std::isfinite(*options.rate))) {
-    return Error("acclaim-rate",
-                 fmt::format("a rate of {} frames a second is not positive", *options.rate));
-  }
+  if (Status rate = check_rate(options.rate, "acclaim-rate"); !rate) return rate.error();
   return Reader(asf_text, asf_name, amc_text, amc_name, options).read();
 }
 

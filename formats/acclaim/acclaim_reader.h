@@ -1,16 +1,12 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/progress.h"
 #include "core/result.h"
 #include "math/types.h"
-#include "scene/clip.h"
-#include "scene/convention_choice.h"
-#include "scene/conventions.h"
+#include "scene/capture.h"
 
 // Acclaim skeletons (ASF) and motions (AMC), the form in which the CMU collection was recorded. The
 // format: M. Schafer, "Acclaim Skeleton File Definition V1.10", Acclaim, 1995, which describes the
@@ -18,36 +14,15 @@
 
 namespace krok::acclaim {
 
-// What to do with a file that is not quite right. normal: bones that a frame leaves out stay as
-// they were, a frame that the end of the file cuts short is left out, gaps between frame numbers
-// close; each is a warning. A line that cannot be read is an error. strict: all of these are
-// errors. repair: lines that cannot be read are left out, gaps are filled by interpolation; each
-// repair is listed.
-enum class Strictness { normal, strict, repair };
-
-struct ReadOptions {
-  // What the files are written in; unset is worked out from :units and the data. A given unit is
-  // that of the numbers as printed, whatever :units says. With metres, up +y and forward +z given,
-  // numbers pass through unconverted.
-  std::optional<Unit> unit;
-  std::optional<Direction> up;
-  std::optional<Direction> forward;
-
-  Strictness strictness = Strictness::normal;
-
-  // Frames a second. Unset: what the AMC says, which few do, or 120, the rate of most of the CMU
-  // collection.
-  std::optional<double> rate;
-
-  int jobs = 0;  // threads, as in parallel_for; the result does not depend on it
-  Progress* progress = nullptr;
-
-  // Limits against files that are made to exhaust memory.
-  int max_joints = 65536;
-  // The largest ratio of the memory for the motion to the size of its text; real files stay
-  // under 4.
-  double max_expansion = 64.0;
-};
+// strictness normal: bones that a frame leaves out stay as they were, a frame that the end of the
+// file cuts short is left out, gaps between frame numbers close; each is a warning. A line that
+// cannot be read is an error. strict: all of these are errors. repair: lines that cannot be read
+// are left out, gaps are filled by interpolation; each repair is listed.
+//
+// A given unit is that of the numbers as printed, whatever :units says. With metres, up +y and
+// forward +z given, numbers pass through unconverted. Where no rate is given and the AMC says none,
+// as few do, it is 120, the rate of most of the CMU collection.
+using ReadOptions = CaptureOptions;
 
 // What a joint can do, as `dof` and `limits` have it.
 struct DegreeOfFreedom {
@@ -65,26 +40,15 @@ struct JointFreedom {
   std::vector<DegreeOfFreedom> degrees;
 };
 
-struct Capture {
-  // In Krok's frame. A joint stands at the beginning of its bone, where the bone turns, and has the
-  // bone's name; leaves end in a joint named <bone>_end. The root comes first, then the bones depth
-  // first in the order of :hierarchy. In the reference pose all orientations are the root's
-  // `orientation`, as a rule the identity: the frames that `axis` gives are the motion's, not the
-  // joints'. provenance.conversions tells unit and axes; the rest of it is left to the caller.
-  Clip clip;
-
-  // Notes and warnings: every choice, every oddity, every repair.
-  Diagnostics diagnostics;
-
-  // What the files were taken to be written in.
-  Conventions conventions;
-
-  Choice rate;                         // where the rate comes from
+// A joint of the clip stands at the beginning of its bone, where the bone turns, and has the bone's
+// name; leaves end in a joint named <bone>_end. The root comes first, then the bones depth first in
+// the order of :hierarchy. In the reference pose all orientations are the root's `orientation`, as
+// a rule the identity: the frames that `axis` gives are the motion's, not the joints'.
+struct Capture : krok::Capture {
   std::vector<JointFreedom> freedoms;  // [joints]
   std::string name;                    // of the skeleton
   std::string documentation;
   long long first_frame_number = 0;  // of the first frame in the AMC; 0 without frames
-  std::vector<std::string> repairs;  // what was left out or filled, a line each
 };
 
 // Reads a skeleton and a motion for it. Texts need not outlive the call; names are for messages.

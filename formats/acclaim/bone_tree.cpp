@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <unordered_set>
-
-#include "core/text_reading.h"
+#include "core/text.h"
+#include "scene/unique_names.h"
 
 namespace krok::acclaim {
 
@@ -78,7 +77,7 @@ class BoneTree {
   void place_bones() {
     joint_of_.assign(bones_.size() + 1, SkeletonFile::kLeftOut);
     joint_of_[kRoot] = kRoot;
-    names_.insert(std::string(kRootName));
+    names_.claim(std::string(kRootName));
     struct Visit {
       int bone, parent_joint;
     };
@@ -111,11 +110,7 @@ class BoneTree {
 
   // Names differ as bytes; read as Latin-1 two may be the same.
   std::string unique_name(const LooseBone& bone) {
-    const std::string name = to_utf8(bone.name);
-    std::string candidate = name;
-    for (int number = 2; !names_.insert(candidate).second; ++number) {
-      candidate = fmt::format("{}_{}", name, number);
-    }
+    std::string candidate = names_.make(to_utf8(bone.name));
     if (candidate != bone.name) {
       source_.warn(bone.offset, "acclaim-name",
                    fmt::format("the name of a bone is not UTF-8; it is called {}", candidate), {},
@@ -144,7 +139,7 @@ class BoneTree {
   std::vector<std::vector<int>> children_;
   std::vector<bool> hangs_;
   std::vector<int> joint_of_;
-  std::unordered_set<std::string> names_;
+  UniqueNames names_;
 };
 
 }  // namespace

@@ -1,11 +1,9 @@
 #include "formats/acclaim/kinematics.h"
 
-#include <fmt/format.h>
-
 #include <string>
-#include <unordered_set>
 
 #include "math/euler.h"
+#include "scene/unique_names.h"
 
 namespace krok::acclaim {
 
@@ -62,8 +60,8 @@ Vec3 Kinematics::bone_end(int file_joint, double length) const {
 }
 
 Skeleton Kinematics::skeleton() const {
-  std::unordered_set<std::string> names;
-  for (const auto& joint : file_.joints) names.insert(joint.name);
+  UniqueNames names;
+  for (const auto& joint : file_.joints) names.claim(joint.name);
   Skeleton skeleton;
   for (const Joint& joint : joints_) {
     const SkeletonFile::Joint& source = file_.joints[static_cast<std::size_t>(joint.source)];
@@ -76,10 +74,7 @@ Skeleton Kinematics::skeleton() const {
           skeleton.reference[static_cast<std::size_t>(joint.parent)] * bone_end(bone, length);
     }
     if (joint.is_end) {
-      name += "_end";
-      for (int number = 2; !names.insert(name).second; ++number) {
-        name = fmt::format("{}_end_{}", source.name, number);
-      }
+      name = names.make(name + "_end");
     }
     skeleton.add(std::move(name), joint.parent, world, joint.is_end);
   }

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "core/numbers.h"
-#include "core/text_reading.h"
+#include "core/text.h"
 
 namespace krok::acclaim {
 

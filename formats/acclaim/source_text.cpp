@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <span>
 
-#include "core/text_reading.h"
+#include "formats/registry/registry.h"
 
 namespace krok::acclaim {
 
@@ -90,68 +90,31 @@ void TokenCursor::skip_line() {
   while (position_ < text_.size() && !is_line_end(text_[position_])) ++position_;
 }
 
-namespace {
-
-struct KnownBeginning {
-  std::string_view begins;
-  std::string_view what;
-};
-
-constexpr std::array kOthers = {
-    KnownBeginning{"HIERARCHY", "a BVH file"},
-    KnownBeginning{"KROK", "a file of Krok's own"},
-    KnownBeginning{"glTF", "a binary glTF file"},
-    KnownBeginning{"\x89PNG", "a PNG image"},
-    KnownBeginning{"PK\x03\x04", "a ZIP archive"},
-    KnownBeginning{"\x1F\x8B", "gzip-compressed"},
-    KnownBeginning{"<", "an XML file or a web page"},
-    KnownBeginning{"%PDF", "a PDF document"},
-    KnownBeginning{"Kaydara", "an FBX file"},
-    KnownBeginning{"\xFF\xFE", "UTF-16 text"},
-    KnownBeginning{"\xFE\xFF", "UTF-16 text"},
-};
-
-// The first section keyword says which of the two a file is: only an AMC names its format.
-bool begins_as_motion(std::string_view text) {
-  TokenCursor cursor(text);
-  const std::string word = ascii_lower(cursor.next().text);
-  return word.starts_with(":fully") || word == ":degrees" || word == ":radians" ||
-         word == ":samples-per-second" || word == ":frame-range" || word.starts_with(":asf-");
-}
-
-bool begins_as_skeleton(std::string_view text) {
-  TokenCursor cursor(text);
-  const std::string word = ascii_lower(cursor.next().text);
-  return word == ":version" || word == ":name" || word == ":units" || word == ":root" ||
-         word == ":bonedata" || word == ":documentation";
-}
-
-}  // namespace
-
 Status check_kind(std::string_view text, const std::string& file_name, bool is_asf) {
+  using registry::Kind;
   const char* wanted = is_asf ? "an Acclaim skeleton (ASF)" : "an Acclaim motion (AMC)";
   const auto refuse = [&](std::string message, std::string hint) {
     return Error("acclaim-kind", std::move(message), std::move(hint)).in_file(file_name);
   };
   if (text.empty()) return refuse("the file is empty", "export or copy it again");
-  for (const KnownBeginning& other : kOthers) {
-    if (text.starts_with(other.begins)) {
-      return refuse(fmt::format("is {}, not {}", other.what, wanted),
-                    fmt::format("give {}", wanted));
-    }
+  const auto content = std::as_bytes(std::span(text));
+  const Kind kind = registry::kind_of_content(content);
+  if (kind == (is_asf ? Kind::asf : Kind::amc)) return {};
+  if (kind == Kind::asf || kind == Kind::amc) {
+    return refuse(
+        fmt::format("is {}, where {} is expected", registry::describe_content(content), wanted),
+        "perhaps the two files are in the wrong order");
   }
-  if (text.substr(0, 512).find('\0') != std::string_view::npos) {
-    return refuse(fmt::format("is a binary file, not {}", wanted), fmt::format("give {}", wanted));
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    return refuse("is UTF-16 text", "save it as UTF-8");
   }
   if (TokenCursor(text).next().end()) {
     return refuse("the file holds nothing but white space and comments", "export or copy it again");
   }
-  if (is_asf ? begins_as_motion(text) : begins_as_skeleton(text)) {
-    return refuse(fmt::format("is an Acclaim {}, where {} is expected",
-                              is_asf ? "motion (AMC)" : "skeleton (ASF)", wanted),
-                  "perhaps the two files are in the wrong order");
-  }
-  return {};
+  // A section that is not known yet may still be Acclaim's.
+  const std::string_view what = registry::describe_content(content);
+  if (kind == Kind::unknown && what == registry::kUnknownText) return {};
+  return refuse(fmt::format("is {}, not {}", what, wanted), fmt::format("give {}", wanted));
 }
 
 }  // namespace krok::acclaim

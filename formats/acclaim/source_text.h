@@ -7,21 +7,19 @@
 #include <string_view>
 
 #include "core/result.h"
+#include "core/text.h"
 #include "formats/acclaim/acclaim_reader.h"
 
 namespace krok::acclaim {
 
 // White space; the format counts commas and parentheses as such.
 inline constexpr std::array<bool, 256> kIsSeparator = [] {
-  std::array<bool, 256> table{};
-  for (const unsigned char c : {' ', '\t', '\r', '\n', '\v', '\f', ',', '(', ')'}) table[c] = true;
+  std::array<bool, 256> table = kIsSpace;
+  for (const unsigned char c : {',', '(', ')'}) table[c] = true;
   return table;
 }();
 inline bool is_separator(char c) {
   return kIsSeparator[static_cast<unsigned char>(c)];
-}
-inline bool is_line_end(char c) {
-  return c == '\n' || c == '\r';
 }
 
 // A file's text and what is told about it.

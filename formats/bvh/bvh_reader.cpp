@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
-#include <cmath>
 
 #include "core/numbers.h"
 #include "core/parallel.h"
@@ -16,7 +16,7 @@
 #include "formats/bvh/position_choice.h"
 #include "formats/bvh/rest_frame.h"
 #include "formats/bvh/text_cursor.h"
-#include "math/quaternion.h"
+#include "scene/fill_frames.h"
 
 namespace krok::bvh {
 
@@ -33,6 +33,7 @@ class Reader {
     auto hierarchy = parse_hierarchy(text_, file_name_, options_, capture_.diagnostics);
     if (!hierarchy) return std::move(hierarchy).error();
     hierarchy_ = std::move(*hierarchy);
+    recognise_exporter();
     auto header =
         parse_motion_header(text_, hierarchy_.end, file_name_, options_, capture_.diagnostics);
     if (!header) return std::move(header).error();
@@ -78,6 +79,21 @@ class Reader {
     capture_.diagnostics.push_back(std::move(told));
   }
 
+  // iPi Mocap Studio's own names; it writes MotionBuilder's as well, which many others do.
+  void recognise_exporter() {
+    const std::array<std::string_view, 4> spine = {"Hip", "LowerSpine", "MiddleSpine", "Chest"};
+    const auto& joints = hierarchy_.joints;
+    if (joints.size() < spine.size()) return;
+    for (std::size_t j = 0; j < spine.size(); ++j) {
+      if (joints[j].name != spine[j] || joints[j].parent != static_cast<int>(j) - 1) return;
+    }
+    const auto ends = std::count_if(joints.begin(), joints.end(),
+                                    [](const Hierarchy::Joint& joint) { return joint.end_site; });
+    tell(Severity::note, "bvh-exporter",
+         fmt::format("{} joints with the names that iPi Mocap Studio gives",
+                     static_cast<std::ptrdiff_t>(joints.size()) - ends));
+  }
+
   // From the places of the rows to the clip.
   Status convert() {
     choose_rate();
@@ -102,7 +118,7 @@ class Reader {
     tell(doubtful ? Severity::warning : Severity::note, "bvh-rate",
          fmt::format("{} frames a second: {}", readable(rate), printed.reason),
          doubtful ? "say the rate with --fps N if it is another" : "",
-         doubtful ? Locator(text_, file_name_)(header_.frame_time_offset) : Location());
+         doubtful ? locate(text_, header_.frame_time_offset, file_name_) : Location());
   }
 
   // Up to kMostSamples whole rows, evenly over the file.
@@ -160,7 +176,7 @@ class Reader {
   // Unit and axes, from the options and, where they say nothing, from the data.
   Status detect(const SampleRows& samples, Positions positions) {
     Conventions& conventions = capture_.conventions;
-    if (!options_.unit || !options_.up || !options_.forward) {
+    if (!options_.complete()) {
       const Kinematics in_file(hierarchy_, positions, {});
       const Skeleton skeleton = skeleton_of(in_file);
       std::vector<Vec3> sample_positions;
@@ -171,86 +187,18 @@ class Reader {
       }
       conventions = detect_conventions(skeleton, find_roles(skeleton), sample_positions);
     }
-    if (options_.unit) {
-      conventions.unit = *options_.unit;
-      conventions.unit_confidence = Confidence::certain;
-      conventions.unit_reason = "as given";
-    }
-    if (options_.up) {
-      conventions.up = *options_.up;
-      conventions.up_confidence = Confidence::certain;
-      conventions.up_reason = "as given";
-    }
-    if (options_.forward) {
-      conventions.forward = *options_.forward;
-      conventions.forward_confidence = Confidence::certain;
-      conventions.forward_reason = "as given";
-    }
-    settle_parallel_axes();
+    apply_given(options_, conventions);
     return {};
-  }
-
-  // An axis that was given may lie along one that was worked out.
-  void settle_parallel_axes() {
-    Conventions& conventions = capture_.conventions;
-    const Vec3 up = direction_vector(conventions.up);
-    const Vec3 forward = direction_vector(conventions.forward);
-    if (up.dot(forward) == 0) return;
-    if (!options_.forward) {
-      conventions.forward = std::abs(up.z()) > 0.5 ? Direction::minus_y : Direction::plus_z;
-      conventions.forward_confidence = Confidence::guess;
-      conventions.forward_reason = "what the data show lies along the axis given as up";
-    } else if (!options_.up) {
-      conventions.up = std::abs(forward.y()) > 0.5 ? Direction::plus_z : Direction::plus_y;
-      conventions.up_confidence = Confidence::guess;
-      conventions.up_reason = "what the data show lies along the axis given as forward";
-    }
   }
 
   Status make_conversion() {
     const Conventions& conventions = capture_.conventions;
-    const auto rotation = rotation_to_krok(conventions.up, conventions.forward);
-    if (!rotation) return Error(rotation.error()).in_file(file_name_);
-    conversion_.metres = conventions.unit.metres;
-    conversion_.to_krok = rotation->toRotationMatrix().array().round().matrix();
-    report_conventions();
+    auto conversion = Conversion::make(conventions);
+    if (!conversion) return std::move(conversion).error().in_file(file_name_);
+    conversion_ = *conversion;
+    report_conventions(conventions, options_, "bvh", file_name_, capture_.diagnostics);
+    capture_.clip.provenance.conversions = describe_conversions(conventions, options_);
     return {};
-  }
-
-  void report_conventions() {
-    const Conventions& c = capture_.conventions;
-    const auto report = [&](bool given, const char* code, const std::string& what,
-                            Confidence confidence, const std::string& reason, const char* option) {
-      if (given) return;
-      const bool guess = confidence == Confidence::guess;
-      tell(guess ? Severity::warning : Severity::note, code,
-           fmt::format("{} ({}): {}", what, confidence_name(confidence), reason),
-           guess ? fmt::format("say it with {} if it is otherwise", option) : "");
-    };
-    report(options_.unit.has_value(), "bvh-unit", fmt::format("the unit is {}", c.unit.name),
-           c.unit_confidence, c.unit_reason, "--unit");
-    report(options_.up.has_value(), "bvh-up", fmt::format("up is {}", direction_name(c.up)),
-           c.up_confidence, c.up_reason, "--up");
-    report(options_.forward.has_value(), "bvh-forward",
-           fmt::format("forward is {}", direction_name(c.forward)), c.forward_confidence,
-           c.forward_reason, "--forward");
-
-    auto& conversions = capture_.clip.provenance.conversions;
-    const auto how = [](bool given, Confidence confidence) {
-      return given ? std::string("given")
-                   : fmt::format("detected, {}", confidence_name(confidence));
-    };
-    if (c.unit.metres != 1.0) {
-      conversions.push_back(fmt::format("unit: {} ({} m) to metres ({})", c.unit.name,
-                                        readable(c.unit.metres),
-                                        how(options_.unit.has_value(), c.unit_confidence)));
-    }
-    if (c.up != Direction::plus_y || c.forward != Direction::plus_z) {
-      conversions.push_back(
-          fmt::format("axes: up {} ({}), forward {} ({}) to up y, forward z", direction_name(c.up),
-                      how(options_.up.has_value(), c.up_confidence), direction_name(c.forward),
-                      how(options_.forward.has_value(), c.forward_confidence)));
-    }
   }
 
   Status fill_clip() {
@@ -282,12 +230,13 @@ class Reader {
           return;
         }
         kinematics.pose(values, pose);
+        // Zero times a number is zero, but not if it is infinite or NaN.
+        float zero = 0;
         for (const Transform& joint : pose) {
-          if (!joint.position.cast<float>().allFinite() ||
-              !joint.orientation.coeffs().allFinite()) {
-            finite = false;
-          }
+          zero += 0.0f * (joint.position.cast<float>().sum() +
+                          joint.orientation.coeffs().cast<float>().sum());
         }
+        if (zero != 0) finite = false;
         clip.set_pose(static_cast<int>(row), pose);
       }
       if (options_.progress != nullptr) options_.progress->advance(end - begin);
@@ -312,29 +261,13 @@ class Reader {
     return after == end;
   }
 
-  // Interpolates the frames without a row, which stand between whole ones, relative to parents.
+  // Frames without a row stand between whole ones.
   void fill_faulty_frames() {
-    Clip& clip = capture_.clip;
-    const std::size_t joints = clip.skeleton.names.size();
-    std::vector<Transform> world(joints), before(joints), after(joints), local(joints);
     for (std::size_t row = 0; row < rows_.size(); ++row) {
       if (rows_[row] != RowIndex::kFaulty) continue;
       const std::size_t first = row - 1;
-      std::size_t next = row;
-      while (rows_[next] == RowIndex::kFaulty) ++next;
-      clip.get_pose(static_cast<int>(first), world);
-      world_to_local(clip.skeleton.parents, world, before);
-      clip.get_pose(static_cast<int>(next), world);
-      world_to_local(clip.skeleton.parents, world, after);
-      for (; row < next; ++row) {
-        const double t = static_cast<double>(row - first) / static_cast<double>(next - first);
-        for (std::size_t j = 0; j < joints; ++j) {
-          local[j].position = before[j].position + t * (after[j].position - before[j].position);
-          local[j].orientation = slerp(before[j].orientation, after[j].orientation, t);
-        }
-        local_to_world(clip.skeleton.parents, local, world);
-        clip.set_pose(static_cast<int>(row), world);
-      }
+      while (rows_[row] == RowIndex::kFaulty) ++row;
+      fill_frames_between(capture_.clip, static_cast<int>(first), static_cast<int>(row));
     }
   }
 
@@ -381,10 +314,7 @@ class Reader {
 
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options) {
-  if (options.rate && !(*options.rate > 0 && std::isfinite(*options.rate))) {
-    return Error("bvh-frame-time",
-                 fmt::format("a rate of {} frames a second is not positive", *options.rate));
-  }
+  if (Status rate = check_rate(options.rate, "bvh-frame-time"); !rate) return rate.error();
   return Reader(text, file_name, options).read();
 }
 

@@ -1,15 +1,10 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "core/progress.h"
 #include "core/result.h"
-#include "scene/clip.h"
-#include "scene/conventions.h"
+#include "scene/capture.h"
 
 // Biovision hierarchy files (BVH) as they are found: M. Meredith and S. Maddock, "Motion capture
 // file formats explained", University of Sheffield, 2001, describes the format; what exporters make
@@ -21,67 +16,29 @@ namespace krok::bvh {
 // to it. Files do not say; most are absolute.
 enum class Positions { automatic, absolute, additive };
 
-// What to do with a file that is not quite right. normal: rows that are not whole are left out and
-// reported, a number that is no number is an error. strict: whatever would be a fault in the data
-// is an error. repair: faulty frames are filled from their neighbours, or left out at the ends;
-// each repair is listed.
-enum class Strictness { normal, strict, repair };
-
 // Many captures begin with a frame that holds a rest pose and is no part of the motion. keep: it
 // stays, and is reported. automatic: it is dropped where it is recognised. drop: the first frame is
 // dropped whatever it is.
 enum class RestFrame { keep, automatic, drop };
 
-struct ReadOptions {
-  // What the file is written in; unset is worked out from the data. With metres, up +y and forward
-  // +z given, numbers pass through unconverted.
-  std::optional<Unit> unit;
-  std::optional<Direction> up;
-  std::optional<Direction> forward;
-
+struct ReadOptions : CaptureOptions {
+  // strictness normal: rows that are not whole are left out and reported, a number that is no
+  // number is an error. strict: whatever would be a fault in the data is an error. repair: faulty
+  // frames are filled from their neighbours, or left out at the ends; each repair is listed. With
+  // metres, up +y and forward +z given, numbers pass through unconverted.
   Positions positions = Positions::automatic;
-  Strictness strictness = Strictness::normal;
   RestFrame rest_frame = RestFrame::keep;
-
-  // Frames a second, whatever the file's Frame Time says.
-  std::optional<double> rate;
-
-  int jobs = 0;  // threads, as in parallel_for; the result does not depend on it
-  Progress* progress = nullptr;
-
-  // Limits against files that are made to exhaust memory.
-  int max_joints = 65536;
-  // The largest ratio of the memory for the clip to the size of the text; real files stay under 15.
-  double max_expansion = 64.0;
 };
 
-// A choice that the reader made for want of a word in the file, and why.
-struct Choice {
-  std::string choice;  // "absolute"
-  std::string reason;  // a sentence without a full stop
-  Confidence confidence = Confidence::guess;
-};
-
-struct Capture {
-  // In Krok's frame. The reference pose has the OFFSETs with zero rotations, and identity
-  // orientations: joint frames are turned together with the axes, so that each joint's frame in the
-  // reference pose is Krok's. End Sites are joints named <parent>_end. Joints stand in the file's
-  // order. provenance.conversions tells unit and axes; the rest of it is left to the caller.
-  Clip clip;
-
-  // Notes and warnings: every choice, every oddity, every repair.
-  Diagnostics diagnostics;
-
-  // What the file was taken to be written in.
-  Conventions conventions;
+// The clip's reference pose has the OFFSETs with zero rotations, and identity orientations: joint
+// frames are turned together with the axes, so that each joint's frame in the reference pose is
+// Krok's. End Sites are joints named <parent>_end. Joints stand in the file's order.
+struct Capture : krok::Capture {
   Choice positions;
-
   double frame_time = 0;           // seconds, as printed; 0 where there is none
-  Choice rate;                     // how the rate came out of it
   long long frames_announced = 0;  // what Frames: says
   bool rest_frame_found = false;   // the first frame is a rest pose
   bool rest_frame_dropped = false;
-  std::vector<std::string> repairs;  // what was left out or filled, a line each
 };
 
 // Reads a whole file. `text` need not outlive the call; `file_name` is for messages.
@@ -94,7 +51,7 @@ struct Capture {
 // bvh-channel-count, bvh-frame-count, bvh-frame-time, bvh-no-motion, bvh-limit, direction-parallel.
 // Of warnings and notes besides these: bvh-name, bvh-name-duplicate, bvh-roots, bvh-offset,
 // bvh-text-after, bvh-positions, bvh-rate, bvh-unit, bvh-up, bvh-forward, bvh-rest-frame,
-// bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones.
+// bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones, bvh-exporter.
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options = {});
 

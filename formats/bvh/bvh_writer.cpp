@@ -9,9 +9,9 @@
 #include <limits>
 #include <vector>
 
-#include "formats/bvh/names.h"
 #include "formats/bvh/text_cursor.h"
 #include "math/quaternion.h"
+#include "scene/unique_names.h"
 
 namespace krok::bvh {
 

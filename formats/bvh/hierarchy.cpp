@@ -93,7 +93,7 @@ class HierarchyParser {
   }
 
   Status parse_start() {
-    if (text_.starts_with("\xEF\xBB\xBF")) cursor_.seek(3);
+    cursor_.seek(text_.size() - without_byte_order_mark(text_).size());
     if (Status kind = check_file_kind(text_, file_name_); !kind) return kind;
     if (!same_word(cursor_.word(), "HIERARCHY")) {
       return fail("bvh-kind", "does not begin with HIERARCHY, as a BVH file does",

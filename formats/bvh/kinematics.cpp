@@ -1,5 +1,7 @@
 #include "formats/bvh/kinematics.h"
 
+#include <cmath>
+
 namespace krok::bvh {
 
 namespace {
@@ -17,10 +19,28 @@ SignedAxis converted(Axis axis, const Mat3& to_krok) {
   return {static_cast<Axis>(index), direction[index] < 0 ? -1.0 : 1.0};
 }
 
+// q times the rotation by `angle` about an axis, which has two components only.
+Quat turned(const Quat& q, Axis axis, double angle) {
+  const double c = std::cos(0.5 * angle);
+  const double s = std::sin(0.5 * angle);
+  const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
+  switch (axis) {
+    case Axis::x:
+      return {w * c - x * s, x * c + w * s, y * c + z * s, z * c - y * s};
+    case Axis::y:
+      return {w * c - y * s, x * c - z * s, y * c + w * s, z * c + x * s};
+    case Axis::z:
+      break;
+  }
+  return {w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s};
+}
+
 }  // namespace
 
 Kinematics::Kinematics(const Hierarchy& hierarchy, Positions positions,
-                       const Conversion& conversion) {
+                       const Conversion& conversion)
+    : reference_to_motion_(conversion.reference_to_motion()) {
+  const Mat3& to_krok = conversion.reference_axes();
   step_begins_.push_back(0);
   for (const Hierarchy::Joint& joint : hierarchy.joints) {
     parents_.push_back(joint.parent);
@@ -33,33 +53,37 @@ Kinematics::Kinematics(const Hierarchy& hierarchy, Positions positions,
       if (is_position && positions != Positions::additive) {
         kept[static_cast<int>(channel.axis)] = 0;
       }
-      const SignedAxis axis = converted(channel.axis, conversion.to_krok);
+      const SignedAxis axis = converted(channel.axis, to_krok);
       steps_.push_back({index, channel.kind, axis.axis,
-                        axis.sign * (is_position ? conversion.metres : kRadiansPerDegree)});
+                        axis.sign * (is_position ? conversion.metres() : kRadiansPerDegree)});
     }
-    offsets_.push_back(conversion.to_krok * (joint.offset * conversion.metres));
-    base_.push_back(conversion.to_krok * (kept * conversion.metres));
+    offsets_.push_back(to_krok * (joint.offset * conversion.metres()));
+    base_.push_back(to_krok * (kept * conversion.metres()));
     step_begins_.push_back(steps_.size());
   }
 }
 
 void Kinematics::pose(std::span<const double> values, std::span<Transform> joint_to_world) const {
   for (std::size_t j = 0; j < parents_.size(); ++j) {
-    Transform local;
-    local.position = base_[j];
+    const Transform& parent = parents_[j] < 0
+                                  ? reference_to_motion_
+                                  : joint_to_world[static_cast<std::size_t>(parents_[j])];
+    Vec3 position = base_[j];
+    Quat orientation = parent.orientation;
+    bool has_turned = parents_[j] < 0;
     for (std::size_t s = step_begins_[j]; s < step_begins_[j + 1]; ++s) {
       const Step& step = steps_[s];
       const double value = values[step.channel] * step.factor;
       if (step.kind == ChannelKind::position) {
-        local.position[static_cast<int>(step.axis)] += value;
+        position[static_cast<int>(step.axis)] += value;
       } else if (value != 0) {  // many channels are never used
-        local.orientation = local.orientation * axis_rotation(step.axis, value);
+        orientation = turned(orientation, step.axis, value);
+        has_turned = true;
       }
     }
-    joint_to_world[j] =
-        parents_[j] < 0 ? local : joint_to_world[static_cast<std::size_t>(parents_[j])] * local;
     // Products of many unit quaternions drift by rounding; deep chains would notice.
-    joint_to_world[j].orientation.normalize();
+    if (has_turned) orientation.normalize();
+    joint_to_world[j] = {parent * position, orientation};
   }
 }
 

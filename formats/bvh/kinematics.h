@@ -5,17 +5,13 @@
 
 #include "formats/bvh/hierarchy.h"
 #include "math/transform.h"
+#include "scene/convention_choice.h"
 
 namespace krok::bvh {
 
-// How the numbers of a file become Krok's: first scaled to metres, then turned.
-struct Conversion {
-  double metres = 1.0;
-  Mat3 to_krok = Mat3::Identity();  // a rotation whose entries are 0, 1 and -1
-};
-
 // The joints of a file with their offsets and channels converted once, so that a row of numbers
-// becomes a pose without further conversion.
+// becomes a pose without further conversion. All of a joint turns with the axes of the reference
+// pose; where the motion's are others, the root carries the whole figure over.
 class Kinematics {
  public:
   // `positions` is absolute or additive.
@@ -38,8 +34,9 @@ class Kinematics {
     double factor;  // to metres or radians, with the axis's sign
   };
   std::vector<int> parents_;
-  std::vector<Vec3> offsets_;             // metres, Krok's axes
-  std::vector<Vec3> base_;                // the offset's part that position channels leave
+  std::vector<Vec3> offsets_;  // metres, Krok's axes
+  std::vector<Vec3> base_;     // the offset's part that position channels leave
+  Transform reference_to_motion_;
   std::vector<Step> steps_;               // joint by joint
   std::vector<std::size_t> step_begins_;  // [joints + 1]
 };

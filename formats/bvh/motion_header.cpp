@@ -31,7 +31,7 @@ Result<MotionHeader> parse_motion_header(std::string_view text, std::size_t begi
   const auto error_at = [&](std::size_t offset, const char* code, std::string message,
                             std::string hint = {}) {
     Error error(code, std::move(message), std::move(hint));
-    error.where = Locator(text, file_name)(offset);
+    error.where = locate(text, offset, file_name);
     return error;
   };
   while (!has_frames || !has_time) {

@@ -2,48 +2,6 @@
 
 namespace krok::bvh {
 
-namespace {
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-}  // namespace
-
-bool same_word(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (lower(a[i]) != lower(b[i])) return false;
-  }
-  return true;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-Location Locator::operator()(std::size_t offset) {
-  if (offset < at_) {
-    at_ = 0;
-    line_begin_ = 0;
-    line_ = 1;
-  }
-  for (; at_ < offset && at_ < text_.size(); ++at_) {
-    const bool ends = text_[at_] == '\n' ||
-                      (text_[at_] == '\r' && (at_ + 1 == text_.size() || text_[at_ + 1] != '\n'));
-    if (!ends) continue;
-    ++line_;
-    line_begin_ = at_ + 1;
-  }
-  Location where;
-  where.file = file_name_;
-  where.line = line_;
-  where.column = static_cast<std::int64_t>(offset - line_begin_) + 1;
-  return where;
-}
-
 void TextCursor::skip_space() {
   while (position_ < text_.size() && is_space(text_[position_])) ++position_;
 }

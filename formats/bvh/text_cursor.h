@@ -1,50 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <optional>
-#include <string>
 #include <string_view>
 
-#include "core/result.h"
+#include "core/text.h"
 
 namespace krok::bvh {
-
-inline constexpr std::array<bool, 256> kIsSpace = [] {
-  std::array<bool, 256> table{};
-  for (const unsigned char c : {' ', '\t', '\r', '\n', '\v', '\f'}) table[c] = true;
-  return table;
-}();
-
-inline bool is_space(char c) {
-  return kIsSpace[static_cast<unsigned char>(c)];
-}
-inline bool is_line_end(char c) {
-  return c == '\n' || c == '\r';
-}
-
-// Whether two ASCII texts are the same but for case.
-bool same_word(std::string_view a, std::string_view b);
-
-// `text` without white space at its ends.
-std::string_view trimmed(std::string_view text);
-
-// Lines and columns of bytes, lines ended by LF, CR LF or a lone CR. Going forward costs one look
-// at each byte in all, going back starts anew.
-class Locator {
- public:
-  Locator(std::string_view text, const std::string& file_name)
-      : text_(text), file_name_(file_name) {}
-
-  Location operator()(std::size_t offset);
-
- private:
-  std::string_view text_;
-  const std::string& file_name_;
-  std::size_t at_ = 0;
-  std::size_t line_begin_ = 0;
-  std::int64_t line_ = 1;
-};
 
 // Steps through a text by words. Braces are words of their own wherever they stand.
 class TextCursor {

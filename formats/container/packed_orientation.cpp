@@ -1,9 +1,11 @@
 #include "formats/container/packed_orientation.h"
 
-#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace krok {
 
@@ -39,7 +41,7 @@ constexpr double kGoodEnough = 1e-7 * 1e-7;
 // The smaller w, the more there is to gain, and the finer the steps that it takes. Most
 // orientations of a motion need none or a few.
 std::size_t steps_worth_trying(double w) {
-  const int reach = std::abs(w) > 0.02 ? 1 : std::abs(w) > 0.002 ? 3 : kReach;
+  const int reach = std::abs(w) > 0.02 ? 1 : std::abs(w) > 1e-4 ? 3 : kReach;
   return static_cast<std::size_t>((2 * reach + 1) * (2 * reach + 1));
 }
 
@@ -48,20 +50,33 @@ double rebuilt_w(double x, double y, double z) {
   return square > 0 ? -std::sqrt(square) : 0.0;
 }
 
+// From the size of `value`, finite, to the next larger float.
 double spacing(float value) {
   const float size = std::abs(value);
-  return static_cast<double>(std::nextafter(size, 2.0f)) - static_cast<double>(size);
+  const float next = std::bit_cast<float>(std::bit_cast<std::uint32_t>(size) + 1);
+  return static_cast<double>(next) - static_cast<double>(size);
 }
 
 float rounded(double value) {
-  return static_cast<float>(value) + 0.0f;
-}  // no -0
+  return static_cast<float>(value) + 0.0f;  // no -0
+}
+
+// The places of the largest, the second and the smallest component; the earlier first where they
+// are equal.
+std::array<int, 3> by_size(const Vec4& target) {
+  std::array<int, 3> order = {0, 1, 2};
+  const auto settle = [&](std::size_t i, std::size_t j) {
+    if (std::abs(target[order[i]]) < std::abs(target[order[j]])) std::swap(order[i], order[j]);
+  };
+  settle(0, 1);
+  settle(1, 2);
+  settle(0, 1);
+  return order;
+}
 
 // `target` is a unit quaternion x, y, z, w with w <= 0.
 std::array<float, 3> search(const Vec4& target) {
-  std::array<int, 3> order = {0, 1, 2};
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return std::abs(target[a]) > std::abs(target[b]); });
+  const std::array<int, 3> order = by_size(target);
   const double a = target[order[0]], b = target[order[1]], c = target[order[2]], w = target[3];
   const float nearest_a = rounded(a);
   const double spacing_a = spacing(nearest_a);
@@ -74,6 +89,8 @@ std::array<float, 3> search(const Vec4& target) {
 
   std::array<float, 3> best{};
   double best_distance = std::numeric_limits<double>::infinity();
+  // The squares of w that could still be better: others are further from w alone.
+  double least_square = 0, largest_square = 0;
   const auto consider = [&](float try_a, float try_b, float try_c) {
     const double found_w = rebuilt_w(double{try_a}, double{try_b}, double{try_c});
     const double da = double{try_a} - a, db = double{try_b} - b, dc = double{try_c} - c;
@@ -81,22 +98,39 @@ std::array<float, 3> search(const Vec4& target) {
     const double distance = da * da + db * db + dc * dc + dw * dw;
     if (distance >= best_distance) return;
     best_distance = distance;
+    const double reach = std::sqrt(distance);
+    least_square = -w > reach ? (-w - reach) * (-w - reach) : -1.0;
+    largest_square = (-w + reach) * (-w + reach);
     best[static_cast<std::size_t>(order[0])] = try_a;
     best[static_cast<std::size_t>(order[1])] = try_b;
     best[static_cast<std::size_t>(order[2])] = try_c;
   };
 
+  // What is given to a leaves a sphere for b, c and w, then b a circle for c and w; the closest
+  // points on them. The first depends on the step of a alone.
+  struct AfterA {
+    float try_a, nearest_b;
+    double left, spacing_b;
+    bool known;
+  };
+  std::array<AfterA, kSide> after_a{};
   consider(nearest_a, rounded(b), rounded(c));
   for (const Step& step : std::span(kSteps).first(steps_worth_trying(w))) {
     if (best_distance <= kGoodEnough) break;
-    // What is given to a leaves a sphere for b, c and w, then b a circle for c and w; the closest
-    // points on them.
-    const float try_a = rounded(double{nearest_a} + step.first * spacing_a);
-    const double left_by_a = 1 - double{try_a} * double{try_a};
-    const float nearest_b = rounded(b * scale(left_by_a, rest_of_a));
-    const float try_b = rounded(double{nearest_b} + step.second * spacing(nearest_b));
-    const double left_by_b = left_by_a - double{try_b} * double{try_b};
-    consider(try_a, try_b, rounded(c * scale(left_by_b, rest_of_b)));
+    AfterA& at = after_a[static_cast<std::size_t>(step.first + kReach)];
+    if (!at.known) {
+      at.try_a = rounded(double{nearest_a} + step.first * spacing_a);
+      at.left = 1 - double{at.try_a} * double{at.try_a};
+      at.nearest_b = rounded(b * scale(at.left, rest_of_a));
+      at.spacing_b = spacing(at.nearest_b);
+      at.known = true;
+    }
+    const float try_b = rounded(double{at.nearest_b} + step.second * at.spacing_b);
+    const double left_by_b = at.left - double{try_b} * double{try_b};
+    const float try_c = rounded(c * scale(left_by_b, rest_of_b));
+    const double square = left_by_b - double{try_c} * double{try_c};
+    if (square < least_square || square > largest_square) continue;
+    consider(at.try_a, try_b, try_c);
   }
   return best;
 }

@@ -3,10 +3,13 @@
 #include <algorithm>
 
 #include "core/file.h"
+#include "core/text.h"
 
 namespace krok::registry {
 
 namespace {
+
+constexpr std::string_view kHierarchy = "HIERARCHY";
 
 std::string_view text_of(std::span<const std::byte> content) {
   return {reinterpret_cast<const char*>(content.data()), content.size()};
@@ -18,19 +21,28 @@ std::string_view view(const Magic& magic) {
 
 // The text without a byte-order mark and leading white space.
 std::string_view first_word(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = without_byte_order_mark(text);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   return start == std::string_view::npos ? std::string_view() : text.substr(start);
 }
 
-bool starts_with_word(std::string_view text, std::string_view upper_case_word) {
-  if (text.size() < upper_case_word.size()) return false;
-  for (std::size_t i = 0; i < upper_case_word.size(); ++i) {
-    const char letter = text[i];
-    const char upper = letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 32) : letter;
-    if (upper != upper_case_word[i]) return false;
+// The first section of an Acclaim file, after comments, says which of the two it is.
+Kind acclaim_kind(std::string_view text) {
+  for (text = first_word(text); text.starts_with('#'); text = first_word(text)) {
+    text.remove_prefix(std::min(text.find_first_of("\r\n"), text.size()));
   }
-  return true;
+  if (!text.starts_with(':')) return Kind::unknown;
+  const std::string_view section = text.substr(0, text.find_first_of(" \t\r\n"));
+  for (const std::string_view word : {":version", ":name", ":units", ":root", ":bonedata",
+                                      ":hierarchy", ":documentation", ":skin"}) {
+    if (same_word(section, word)) return Kind::asf;
+  }
+  for (const std::string_view word :
+       {":fully-specified", ":degrees", ":radians", ":samples-per-second", ":frame-range",
+        ":asf-file", ":asf-path"}) {
+    if (same_word(section, word)) return Kind::amc;
+  }
+  return Kind::unknown;
 }
 
 bool is_gltf_json(std::string_view text) {
@@ -61,6 +73,10 @@ std::string_view kind_name(Kind kind) {
       return "cam";
     case Kind::bvh:
       return "bvh";
+    case Kind::asf:
+      return "asf";
+    case Kind::amc:
+      return "amc";
     case Kind::glb:
       return "glb";
     case Kind::gltf:
@@ -77,14 +93,15 @@ Kind kind_of_content(std::span<const std::byte> content) {
   if (text.starts_with(view(kModelMagic))) return Kind::model;
   if (text.starts_with(view(kCamMagic))) return Kind::cam;
   if (text.starts_with("glTF")) return Kind::glb;
-  if (starts_with_word(first_word(text), "HIERARCHY")) return Kind::bvh;
+  if (same_word(first_word(text).substr(0, kHierarchy.size()), kHierarchy)) return Kind::bvh;
   if (is_gltf_json(text)) return Kind::gltf;
-  return Kind::unknown;
+  return acclaim_kind(text);
 }
 
 Kind kind_of_name(const std::string& path) {
   const std::string ending = extension(path);
-  for (const Kind kind : {Kind::anim, Kind::model, Kind::cam, Kind::bvh, Kind::glb, Kind::gltf}) {
+  for (const Kind kind : {Kind::anim, Kind::model, Kind::cam, Kind::bvh, Kind::asf, Kind::amc,
+                          Kind::glb, Kind::gltf}) {
     if (ending.size() > 1 && std::string_view(ending).substr(1) == kind_name(kind)) return kind;
   }
   return Kind::unknown;
@@ -106,6 +123,10 @@ std::string_view describe_content(std::span<const std::byte> content) {
       return "a Krok camera (.cam)";
     case Kind::bvh:
       return "a BVH text file";
+    case Kind::asf:
+      return "an Acclaim skeleton (ASF)";
+    case Kind::amc:
+      return "an Acclaim motion (AMC)";
     case Kind::glb:
       return "a binary glTF file (.glb)";
     case Kind::gltf:
@@ -122,12 +143,13 @@ std::string_view describe_content(std::span<const std::byte> content) {
   if (text.starts_with("\x1F\x8B")) return "a gzip archive";
   if (text.starts_with("\x76\x2F\x31\x01")) return "an OpenEXR picture";
   if (first_word(text).starts_with('<')) return "an XML text file";
-  return is_text(text) ? "a text file of unknown kind" : "a binary file of unknown kind";
+  return is_text(text) ? kUnknownText : "a binary file of unknown kind";
 }
 
 std::string advice(Kind found, Kind wanted) {
   if (found == wanted) return {};
-  if (found == Kind::bvh) return "import it with krok-import";
+  const bool capture = found == Kind::bvh || found == Kind::asf || found == Kind::amc;
+  if (capture) return "import it with krok-import";
   if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";
   const bool own = found == Kind::anim || found == Kind::model || found == Kind::cam;
   if (own) return "perhaps two arguments are in the wrong order";

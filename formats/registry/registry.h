@@ -10,7 +10,7 @@
 
 namespace krok::registry {
 
-enum class Kind : unsigned char { unknown, anim, model, cam, bvh, glb, gltf };
+enum class Kind : unsigned char { unknown, anim, model, cam, bvh, asf, amc, glb, gltf };
 
 // The first bytes of Krok's own binary formats; what follows them is in formats/container.
 using Magic = std::array<char, 8>;
@@ -18,11 +18,12 @@ inline constexpr Magic kAnimMagic = {'K', 'R', 'O', 'K', 'A', 'N', 'I', 'M'};
 inline constexpr Magic kModelMagic = {'K', 'R', 'O', 'K', 'M', 'O', 'D', 'L'};
 inline constexpr Magic kCamMagic = {'K', 'R', 'O', 'K', 'C', 'A', 'M', 'R'};
 
-// "anim", "model", "cam", "bvh", "glb", "gltf" or "unknown".
+// "anim", "model", "cam", "bvh", "asf", "amc", "glb", "gltf" or "unknown".
 std::string_view kind_name(Kind kind);
 
-// What the bytes show, whatever the file is called. glTF's JSON is recognised by an "asset" key in
-// the first or last 64 KiB of a text that begins with a brace.
+// What the bytes show, whatever the file is called. Acclaim's files are known by their first
+// section, such as :version or :fully-specified, after comments. glTF's JSON is recognised by an
+// "asset" key in the first or last 64 KiB of a text that begins with a brace.
 Kind kind_of_content(std::span<const std::byte> content);
 
 // What the name promises, by its extension in any case.
@@ -30,6 +31,8 @@ Kind kind_of_name(const std::string& path);
 
 // The content's kind, or the name's where the content shows none.
 Kind identify(const std::string& path, std::span<const std::byte> content);
+
+inline constexpr std::string_view kUnknownText = "a text file of unknown kind";
 
 // What a file seems to be, for a message: "a BVH text file", "an empty file", "a PNG picture",
 // "a file of unknown kind". Knows some kinds that Krok does not read.

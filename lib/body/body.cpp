@@ -13,6 +13,7 @@
 #include "body/human_shape.h"
 #include "body/polygonise.h"
 #include "body/surface_binding.h"
+#include "core/numbers.h"
 #include "core/parallel.h"
 
 namespace krok {
@@ -62,15 +63,20 @@ void thicken(Shape& shape, double least) {
 
 Mesh build_mesh(const BlockedField& blocked, std::size_t target, int jobs, Progress& progress) {
   progress.begin("shaping the body", 3);
-  Mesh mesh = without_fragments(polygonise(blocked, jobs), 0.02);
+  Lattice lattice(blocked, jobs);
+  Mesh mesh = polygonise(lattice, jobs);
+  if (!is_sphere(mesh)) {
+    lattice.make_ball();
+    mesh = polygonise(lattice, jobs);
+  }
   // Marching leaves slivers that would block the collapses.
   smooth(mesh, jobs);
   progress.advance(1);
   std::vector<double> detail(mesh.positions.size(), 1.0);
   parallel_for(detail.size(), 256, jobs, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const auto places = blocked.places(mesh.positions[v]);
-      if (!places.empty()) detail[v] = blocked.field().station_at(places.front()).detail;
+      const TubePlace place = blocked.nearest_place(mesh.positions[v]);
+      if (place.tube >= 0) detail[v] = blocked.field().detail_at(place);
     }
   });
   mesh = simplify(mesh, detail, target);
@@ -148,7 +154,7 @@ Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
   const Field field(shape);
   const double size = field.bounds().diagonal().norm();
   if (!(size > 1e-9) || !(size < 1e9)) {
-    return Error("body-size", fmt::format("the figure is {} m large", size),
+    return Error("body-size", fmt::format("the figure is {} m large", readable(size, 3)),
                  "import it with its real unit of length");
   }
   const BlockedField blocked(field, cell, options.jobs);

@@ -60,11 +60,13 @@ class GeneralBuilder {
     return std::move(shape_);
   }
 
-  // The radius where `carried` metres of bone hang on.
+  // The radius where `carried` metres of bone hang on. Bushes and single chains are slimmer than
+  // figures with a few limbs.
   double radius(double carried) const {
-    const double share = std::sqrt(carried / total_);
-    return extent_ *
-           std::max(0.012, 0.105 * share * std::min(1.0, 0.45 + std::sqrt(extent_ / total_)));
+    const double share = std::sqrt(carried / total_), stretched = extent_ / total_;
+    const double bush = std::min(1.0, 0.45 + std::sqrt(stretched));
+    const double chain = 1 - 1.1 * std::clamp(stretched - 0.45, 0.0, 0.5);
+    return extent_ * std::max(0.012, 0.105 * share * bush * chain);
   }
 
   // The chain that starts with the bones from `joint`'s parent to `joint` (the root: from itself);

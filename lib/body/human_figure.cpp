@@ -47,6 +47,17 @@ void find_fingers(const Skeleton& skeleton, const std::vector<std::vector<int>>&
   }
 }
 
+// Some skeletons go from the ankle down to the sole first, and from there to the tip of the foot;
+// that joint is no ball of the foot.
+void tell_sole_from_toes(const Skeleton& skeleton, double stature, HumanFigure::Leg& leg) {
+  if (leg.toes < 0 || leg.tip < 0 || leg.tip == leg.toes) return;
+  const auto& pose = skeleton.reference;
+  const double down = distance(pose, leg.ankle, leg.toes);
+  if (down > 0.035 * stature || distance(pose, leg.toes, leg.tip) < 2 * down) return;
+  leg.sole = leg.toes;
+  leg.toes = -1;
+}
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
@@ -113,6 +124,7 @@ std::optional<HumanFigure> find_human(const Skeleton& skeleton, const RoleMap& r
   for (const double estimate : statures) {
     if (estimate < 0.3 * figure.stature || estimate > 2.5 * figure.stature) return std::nullopt;
   }
+  for (auto& leg : figure.legs) tell_sole_from_toes(skeleton, figure.stature, leg);
   const Vec3 hip_middle = 0.5 * (pose[static_cast<std::size_t>(figure.legs[0].hip)].position +
                                  pose[static_cast<std::size_t>(figure.legs[1].hip)].position);
   const Vec3 shoulder_middle =

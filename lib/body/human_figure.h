@@ -23,8 +23,10 @@ struct HumanFigure {
   struct Leg {
     int hip = -1, knee = -1, ankle = -1;
     int toes = -1;  // the ball of the foot, or -1
-    int tip =
-        -1;  // a joint or end site beyond it, or beyond the ankle where there is no ball; or -1
+    // A joint or end site beyond it, or beyond the ankle where there is no ball; or -1.
+    int tip = -1;
+    // A joint right under the ankle that carries the foot, where the skeleton has that; or -1.
+    int sole = -1;
   };
   int hips = -1;
   int neck = -1, head = -1;  // one of them may be -1

@@ -15,8 +15,8 @@ void HumanBuilder::build_hand(std::size_t side) {
   struct Row {
     double ahead, width, thick;
   };
-  constexpr Row kRows[] = {{-0.006, 0.0160, 0.0120},
-                           {0.012, 0.0185, 0.0120},
+  constexpr Row kRows[] = {{-0.016, 0.0120, 0.0090},
+                           {0.010, 0.0175, 0.0115},
                            {0.030, 0.0225, 0.0115},
                            {0.046, 0.0235, 0.0100},
                            {0.055, 0.0215, 0.0080}};

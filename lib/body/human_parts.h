@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -8,7 +9,7 @@
 #include "body/human_hand.h"
 #include "body/implicit.h"
 
-// The parts of the human shape; used by human_shape.cpp and human_extremities.cpp alone.
+// The parts of the human shape; used by the human_*.cpp files that build them alone.
 
 namespace krok::body {
 
@@ -35,7 +36,15 @@ class HumanBuilder {
   int add_ball(const Vec3& center, const Vec3& axes, double detail, int like);
 
   void build_trunk();
-  void build_neck_and_head();
+  struct HeadRow {
+    double left, below_top, forward, width, depth, cap;
+  };
+  void place_head();
+  Vec3 head_point(double left, double below_top, double forward) const;
+  void build_neck();
+  int add_head_tube(std::initializer_list<HeadRow> rows, double detail);
+  void build_head();
+  void build_face();
   void build_leg(std::size_t side);
   void build_foot(std::size_t side);
   void build_arm(std::size_t side);
@@ -53,7 +62,10 @@ class HumanBuilder {
 
   Vec3 trunk_base_ = Vec3::Zero(), trunk_axis_ = Vec3::UnitY();
   double trunk_scale_ = 1, chest_scale_ = 1, hip_scale_ = 1;
-  int trunk_ = 0, neck_ = 0, skull_ = 0, face_ = 0, nose_ = 0;
+  int head_ = 0;               // the joint that moves the head
+  Vec3 crown_ = Vec3::Zero();  // the top of the head
+  int trunk_ = 0, neck_ = 0, skull_ = 0, face_ = 0;
+  std::vector<int> features_;  // of the face
   std::array<int, 2> glutes_{}, chest_{}, legs_{}, feet_{}, arms_{}, ridges_{}, palms_{}, ears_{};
   std::array<std::vector<int>, 2> fingers_;
 };

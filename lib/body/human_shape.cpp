@@ -64,7 +64,9 @@ HumanBuilder::HumanBuilder(const Skeleton& skeleton, const HumanFigure& figure,
 
 Shape HumanBuilder::build() {
   build_trunk();
-  build_neck_and_head();
+  place_head();
+  build_neck();
+  build_head();
   for (std::size_t side = 0; side < 2; ++side) {
     build_leg(side);
     build_foot(side);
@@ -286,8 +288,10 @@ void HumanBuilder::join() {
     }
     shape_.blends.push_back({{skull_, ears_[side]}, 0.006 * u});
   }
-  shape_.blends.push_back({{skull_, face_, neck_}, 0.018 * u});
-  shape_.blends.push_back({{skull_, face_, nose_}, 0.012 * u});
+  shape_.blends.push_back({{skull_, face_, neck_}, 0.022 * u});
+  for (const int feature : features_) {
+    shape_.blends.push_back({{skull_, face_, feature}, 0.009 * u});
+  }
 }
 
 Shape human_shape(const Skeleton& skeleton, const HumanFigure& figure,

@@ -95,7 +95,13 @@ Field::Field(const Shape& shape) : blends_(shape.blends) {
   smallest_radius_ = std::numeric_limits<double>::max();
   const std::size_t count = shape.tubes.size();
   for (const Tube& tube : shape.tubes) {
-    Path path{smooth_path(tube), tube.cuts, tube.joints};
+    Path path{smooth_path(tube), {}, tube.cuts, tube.joints};
+    for (std::size_t i = 0; i + 1 < std::max<std::size_t>(path.stations.size(), 2); ++i) {
+      const Station& a = path.stations[i];
+      const Station& b = path.stations[std::min(i + 1, path.stations.size() - 1)];
+      path.balls.push_back({0.5 * (a.center + b.center),
+                            0.5 * (b.center - a.center).norm() + std::max(reach(a), reach(b))});
+    }
     for (std::size_t i = 0; i < path.stations.size(); ++i) {
       const Station& s = path.stations[i];
       const Vec3 r = Vec3::Constant(reach(s));
@@ -131,15 +137,12 @@ Field::Near Field::near(const Vec3& center, double radius) const {
   Near near;
   std::vector<char> present(paths_.size(), 0);
   for (std::size_t t = 0; t < paths_.size(); ++t) {
-    const auto& stations = paths_[t].stations;
-    const int segments = std::max<int>(1, static_cast<int>(stations.size()) - 1);
+    const auto& balls = paths_[t].balls;
+    const int segments = static_cast<int>(balls.size());
     int first = segments, last = -1;
     for (int s = 0; s < segments; ++s) {
-      const Station& a = stations[static_cast<std::size_t>(s)];
-      const Station& b = stations[std::min(static_cast<std::size_t>(s) + 1, stations.size() - 1)];
-      const Vec3 middle = 0.5 * (a.center + b.center);
-      const double extent = 0.5 * (b.center - a.center).norm() + std::max(reach(a), reach(b));
-      if ((middle - center).norm() > radius + extent + 1.5 * margin_) continue;
+      const Ball& ball = balls[static_cast<std::size_t>(s)];
+      if ((ball.center - center).norm() > radius + ball.radius + 1.5 * margin_) continue;
       first = std::min(first, s);
       last = std::max(last, s);
     }
@@ -176,9 +179,11 @@ double Field::segment_value(const Path& path, int segment, const Vec3& point,
   const double width = a.width + t * (b.width - a.width);
   const double depth = a.depth + t * (b.depth - a.depth);
   const double cap = a.cap + t * (b.cap - a.cap);
-  const Vec3 scaled(q.dot(side) / width, q.dot(front) / depth, q.dot(side.cross(front)) / cap);
+  const Vec3 curved(1 / width, 1 / depth, 1 / cap);
+  const Vec3 scaled =
+      Vec3(q.dot(side), q.dot(front), q.dot(side.cross(front))).cwiseProduct(curved);
   const double k0 = scaled.norm();
-  const double k1 = Vec3(scaled.x() / width, scaled.y() / depth, scaled.z() / cap).norm();
+  const double k1 = scaled.cwiseProduct(curved).norm();
   const double smallest = std::min({width, depth, cap});
   // First-order distance to an ellipsoid; near its centre, where that breaks down, a bound.
   if (k0 < 0.3) return (k0 - 1) * smallest;
@@ -188,15 +193,27 @@ double Field::segment_value(const Path& path, int segment, const Vec3& point,
 double Field::tube_value(int tube, int first, int last, const Vec3& point, int* segment,
                          double* fraction) const {
   const Path& path = paths_[static_cast<std::size_t>(tube)];
-  double best = std::numeric_limits<double>::max();
+  // The segment whose middle is nearest goes first; then most others are seen to lie too far away.
+  int start = first;
+  double shortest = std::numeric_limits<double>::max();
   for (int s = first; s <= last; ++s) {
-    double t = 0;
+    const double away = (path.balls[static_cast<std::size_t>(s)].center - point).squaredNorm();
+    if (away < shortest) shortest = away, start = s;
+  }
+  double t = 0;
+  double best = segment_value(path, start, point, &t);
+  if (segment) *segment = start;
+  if (fraction) *fraction = t;
+  for (int s = first; s <= last; ++s) {
+    if (s == start) continue;
+    const Ball& ball = path.balls[static_cast<std::size_t>(s)];
+    const double bound = ball.radius + std::max(best, 0.0);
+    if ((ball.center - point).squaredNorm() > bound * bound) continue;
     const double value = segment_value(path, s, point, &t);
-    if (value < best) {
-      best = value;
-      if (segment) *segment = s;
-      if (fraction) *fraction = t;
-    }
+    if (value >= best) continue;
+    best = value;
+    if (segment) *segment = s;
+    if (fraction) *fraction = t;
   }
   for (const Cut& cut : path.cuts) {
     const double outside = cut.normal.dot(point) - cut.offset;
@@ -245,15 +262,27 @@ double Field::value(const Vec3& point, const Near& near) const {
   return result;
 }
 
-Vec3 Field::gradient(const Vec3& point, const Near& near, double step) const {
+Vec3 Field::gradient(const Vec3& point, double value_there, const Near& near, double step) const {
   Vec3 result;
   for (int axis = 0; axis < 3; ++axis) {
-    Vec3 ahead = point, behind = point;
+    Vec3 ahead = point;
     ahead[axis] += step;
-    behind[axis] -= step;
-    result[axis] = (value(ahead, near) - value(behind, near)) / (2 * step);
+    result[axis] = (value(ahead, near) - value_there) / step;
   }
   return result;
+}
+
+TubePlace Field::nearest_place(const Vec3& point, const Near& near) const {
+  TubePlace nearest;
+  nearest.tube = -1;
+  for (const Near::Range& range : near.ranges) {
+    TubePlace place;
+    place.tube = range.tube;
+    place.value =
+        tube_value(range.tube, range.first, range.last, point, &place.segment, &place.fraction);
+    if (nearest.tube < 0 || place.value < nearest.value) nearest = place;
+  }
+  return nearest;
 }
 
 std::vector<TubePlace> Field::places(const Vec3& point, const Near& near) const {
@@ -278,6 +307,13 @@ Station Field::station_at(const TubePlace& place) const {
       mix(stations[i], stations[std::min(i + 1, stations.size() - 1)], place.fraction);
   square_up(station);
   return station;
+}
+
+double Field::detail_at(const TubePlace& place) const {
+  const auto& stations = paths_[static_cast<std::size_t>(place.tube)].stations;
+  const auto i = static_cast<std::size_t>(place.segment);
+  const double from = stations[i].detail;
+  return from + place.fraction * (stations[std::min(i + 1, stations.size() - 1)].detail - from);
 }
 
 void Field::bind(const TubePlace& place, double scale,
@@ -309,12 +345,7 @@ double Field::blend_radius(int tube_a, int tube_b) const {
 std::vector<Field::Ball> Field::balls() const {
   std::vector<Ball> balls;
   for (const Path& path : paths_) {
-    for (std::size_t i = 0; i + 1 < std::max<std::size_t>(path.stations.size(), 2); ++i) {
-      const Station& a = path.stations[i];
-      const Station& b = path.stations[std::min(i + 1, path.stations.size() - 1)];
-      balls.push_back({0.5 * (a.center + b.center), 0.5 * (b.center - a.center).norm() +
-                                                        std::max(reach(a), reach(b)) + margin_});
-    }
+    for (const Ball& ball : path.balls) balls.push_back({ball.center, ball.radius + margin_});
   }
   return balls;
 }

@@ -86,12 +86,17 @@ class Field {
 
   // Below zero inside, above outside, about the distance to the surface close to it.
   double value(const Vec3& point, const Near& near) const;
-  Vec3 gradient(const Vec3& point, const Near& near, double step) const;
+  // By differences over `step`; `value` is the one at the point.
+  Vec3 gradient(const Vec3& point, double value, const Near& near, double step) const;
 
   // The places on all tubes of `near`, nearest first.
   std::vector<TubePlace> places(const Vec3& point, const Near& near) const;
 
+  // The first of them, or one with tube -1 where there is none.
+  TubePlace nearest_place(const Vec3& point, const Near& near) const;
+
   Station station_at(const TubePlace& place) const;
+  double detail_at(const TubePlace& place) const;  // of station_at
   // The joints that move the place, with weights that sum to 1; appended to `weights`, times
   // `scale`.
   void bind(const TubePlace& place, double scale,
@@ -112,6 +117,7 @@ class Field {
  private:
   struct Path {
     std::vector<Station> stations;  // after the spline; one station is a ball
+    std::vector<Ball> balls;        // around each segment
     std::vector<Cut> cuts;
     std::vector<TubeJoint> joints;
   };

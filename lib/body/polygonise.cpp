@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <unordered_map>
 
 #include "core/parallel.h"
 
@@ -34,16 +35,9 @@ struct BlockMesh {
 
 class BlockMarcher {
  public:
-  BlockMarcher(const BlockedField& field, const BlockedField::Block& block, BlockMesh& out)
-      : field_(field), block_(block), out_(out) {
-    std::size_t i = 0;
-    for (int z = 0; z < kSide; ++z) {
-      for (int y = 0; y < kSide; ++y) {
-        for (int x = 0; x < kSide; ++x)
-          values_[i++] = field.field().value(point(x, y, z), block.near);
-      }
-    }
-  }
+  BlockMarcher(const BlockedField& field, const BlockedField::Block& block,
+               const Lattice::Cubes& values, BlockMesh& out)
+      : field_(field), block_(block), values_(values), out_(out) {}
 
   void run() {
     for (int z = 0; z + 1 < kSide; ++z) {
@@ -54,7 +48,7 @@ class BlockMarcher {
   }
 
  private:
-  static constexpr int kSide = BlockedField::kCells + 1;
+  static constexpr int kSide = Lattice::kSide;
 
   Vec3 point(int x, int y, int z) const {
     return field_.lattice_point(block_.corner[0] + x, block_.corner[1] + y, block_.corner[2] + z);
@@ -115,91 +109,23 @@ class BlockMarcher {
 
   const BlockedField& field_;
   const BlockedField::Block& block_;
+  const Lattice::Cubes& values_;
   BlockMesh& out_;
-  std::array<double, static_cast<std::size_t>(kSide* kSide* kSide)> values_;
   double corner_[8];
   int x_ = 0, y_ = 0, z_ = 0;
 };
 
 }  // namespace
 
-BlockedField::BlockedField(const Field& field, double cell, int jobs) : field_(field), cell_(cell) {
-  const Eigen::AlignedBox3d bounds = field.bounds();
-  origin_ = bounds.min() - Vec3::Constant(2 * cell);
-  const double block = cell * kCells;
-  std::vector<std::array<std::int64_t, 3>> corners;
-  for (const Field::Ball& ball : field.balls()) {
-    std::array<std::int64_t, 3> low, high;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double at = (ball.center[axis] - origin_[axis]) / block, r = ball.radius / block;
-      low[static_cast<std::size_t>(axis)] =
-          std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(at - r)));
-      high[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(at + r));
-    }
-    for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-        for (std::int64_t x = low[0]; x <= high[0]; ++x) corners.push_back({x, y, z});
-      }
-    }
-  }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-
-  std::vector<Block> all(corners.size());
-  std::vector<char> active(corners.size(), 0);
-  const double half_diagonal = 0.5 * block * std::sqrt(3.0);
-  parallel_for(corners.size(), 16, jobs, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto& c = corners[i];
-      all[i].corner = {c[0] * kCells, c[1] * kCells, c[2] * kCells};
-      const Vec3 center = lattice_point(all[i].corner[0], all[i].corner[1], all[i].corner[2]) +
-                          Vec3::Constant(0.5 * block);
-      all[i].near = field.near(center, half_diagonal);
-      active[i] = all[i].near.ranges.empty() ? 0 : 1;
-    }
-  });
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!active[i]) continue;
-    index_.emplace(pack(corners[i][0], corners[i][1], corners[i][2]), blocks_.size());
-    blocks_.push_back(std::move(all[i]));
-  }
-  everything_ = field.near(bounds.center(), bounds.diagonal().norm());
-}
-
-const Field::Near& BlockedField::near(const Vec3& point) const {
-  const Vec3 at = (point - origin_) / (cell_ * kCells);
-  if ((at.array() >= 0).all()) {
-    const auto found =
-        index_.find(pack(static_cast<std::int64_t>(at.x()), static_cast<std::int64_t>(at.y()),
-                         static_cast<std::int64_t>(at.z())));
-    if (found != index_.end()) return blocks_[found->second].near;
-  }
-  return everything_;
-}
-
-Vec3 BlockedField::onto_surface(const Vec3& point, double limit) const {
-  Vec3 at = point;
-  for (int step = 0; step < 4; ++step) {
-    const double distance = value(at);
-    if (std::abs(distance) < 1e-4 * cell_) break;
-    const Vec3 slope = gradient(at);
-    const double slope2 = slope.squaredNorm();
-    if (slope2 < 1e-4) break;
-    Vec3 move = -distance / std::max(slope2, 0.25) * slope;
-    const double length = move.norm();
-    if (length > limit) move *= limit / length;
-    at += move;
-  }
-  const Vec3 moved = at - point;
-  const double length = moved.norm();
-  return length > limit ? Vec3(point + moved * (limit / length)) : at;
-}
-
-Mesh polygonise(const BlockedField& field, int jobs) {
-  const auto& blocks = field.blocks();
+Mesh polygonise(const Lattice& lattice, int jobs) {
+  const auto& blocks = lattice.field().blocks();
   std::vector<BlockMesh> pieces(blocks.size());
   parallel_for(blocks.size(), 4, jobs, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) BlockMarcher(field, blocks[i], pieces[i]).run();
+    Lattice::Cubes values;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!lattice.cubes(i, values)) continue;
+      BlockMarcher(lattice.field(), blocks[i], values, pieces[i]).run();
+    }
   });
   Mesh mesh;
   std::unordered_map<EdgeKey, std::uint32_t> numbers;
@@ -217,7 +143,7 @@ Mesh polygonise(const BlockedField& field, int jobs) {
   return mesh;
 }
 
-Mesh without_fragments(const Mesh& mesh, double share) {
+bool is_sphere(const Mesh& mesh) {
   const std::size_t count = mesh.positions.size();
   std::vector<std::uint32_t> group(count);
   std::iota(group.begin(), group.end(), 0u);
@@ -225,27 +151,17 @@ Mesh without_fragments(const Mesh& mesh, double share) {
     while (group[v] != v) v = group[v] = group[group[v]];
     return v;
   };
+  std::size_t pieces = count;
   for (const auto& t : mesh.triangles) {
-    for (int k = 1; k < 3; ++k) {
-      const std::uint32_t a = find(t[0]), b = find(t[static_cast<std::size_t>(k)]);
+    for (std::size_t k = 1; k < 3; ++k) {
+      const std::uint32_t a = find(t[0]), b = find(t[k]);
+      if (a == b) continue;
       group[std::max(a, b)] = std::min(a, b);
+      --pieces;
     }
   }
-  std::vector<std::size_t> sizes(count, 0);
-  for (std::uint32_t v = 0; v < count; ++v) ++sizes[find(v)];
-  const auto least = static_cast<std::size_t>(share * static_cast<double>(count));
-  Mesh result;
-  std::vector<std::uint32_t> renumbered(count, 0);
-  for (std::uint32_t v = 0; v < count; ++v) {
-    if (sizes[find(v)] < least) continue;
-    renumbered[v] = static_cast<std::uint32_t>(result.positions.size());
-    result.positions.push_back(mesh.positions[v]);
-  }
-  for (const auto& t : mesh.triangles) {
-    if (sizes[find(t[0])] < least) continue;
-    result.triangles.push_back({renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]});
-  }
-  return result;
+  // Euler's formula; a closed mesh has three edges for every two triangles.
+  return pieces == 1 && count == mesh.triangles.size() / 2 + 2;
 }
 
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
@@ -255,10 +171,8 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh) {
     const Vec3& b = mesh.positions[t[1]];
     const Vec3& c = mesh.positions[t[2]];
     const Vec3 normal = (b - a).cross(c - a);
-    // Weights after Max 1999: the cross product over both squared edge lengths at the corner.
-    const double ab = std::max((b - a).squaredNorm(), 1e-300);
-    const double bc = std::max((c - b).squaredNorm(), 1e-300);
-    const double ca = std::max((a - c).squaredNorm(), 1e-300);
+    const double ab = (b - a).norm(), bc = (c - b).norm(), ca = (a - c).norm();
+    if (!(ab > 0) || !(bc > 0) || !(ca > 0)) continue;
     normals[t[0]] += normal / (ab * ca);
     normals[t[1]] += normal / (ab * bc);
     normals[t[2]] += normal / (bc * ca);

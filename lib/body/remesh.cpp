@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <queue>
+#include <tuple>
 #include <utility>
 
 #include "body/polygonise.h"
@@ -15,158 +15,6 @@ using Triangle = std::array<std::uint32_t, 3>;
 Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a);
 }
-
-// Edge collapses over a mesh with triangle lists at the vertices.
-class Simplifier {
- public:
-  Simplifier(const Mesh& mesh, std::vector<double>& detail)
-      : positions_(mesh.positions),
-        normals_(vertex_normals(mesh)),
-        triangles_(mesh.triangles),
-        detail_(detail),
-        at_vertex_(mesh.positions.size()),
-        version_(mesh.positions.size(), 0),
-        alive_(mesh.positions.size(), 1),
-        triangle_alive_(mesh.triangles.size(), 1) {
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      for (const std::uint32_t v : triangles_[t]) at_vertex_[v].push_back(t);
-    }
-    for (const Triangle& t : triangles_) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (t[k] < t[(k + 1) % 3]) push(t[k], t[(k + 1) % 3]);
-      }
-    }
-  }
-
-  void run(std::size_t target) {
-    std::size_t count = positions_.size();
-    while (count > target && !queue_.empty()) {
-      const Candidate top = queue_.top();
-      queue_.pop();
-      if (!alive_[top.a] || !alive_[top.b]) continue;
-      if (top.versions != version_[top.a] + version_[top.b]) continue;
-      if (collapse(top.a, top.b)) --count;
-    }
-  }
-
-  Mesh result() {
-    Mesh mesh;
-    std::vector<std::uint32_t> renumbered(positions_.size(), 0);
-    std::vector<double> detail;
-    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
-      if (!alive_[v]) continue;
-      renumbered[v] = static_cast<std::uint32_t>(mesh.positions.size());
-      mesh.positions.push_back(positions_[v]);
-      detail.push_back(detail_[v]);
-    }
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      if (!triangle_alive_[t]) continue;
-      const Triangle& old = triangles_[t];
-      mesh.triangles.push_back({renumbered[old[0]], renumbered[old[1]], renumbered[old[2]]});
-    }
-    detail_ = std::move(detail);
-    return mesh;
-  }
-
- private:
-  struct Candidate {
-    double cost;
-    std::uint32_t a, b;
-    std::uint64_t versions;
-    bool operator<(const Candidate& other) const {  // the queue's top is the largest
-      if (cost != other.cost) return cost > other.cost;
-      return std::pair(a, b) > std::pair(other.a, other.b);
-    }
-  };
-
-  void push(std::uint32_t a, std::uint32_t b) {
-    if (a > b) std::swap(a, b);
-    const double cost = (positions_[a] - positions_[b]).squaredNorm() / (detail_[a] * detail_[b]);
-    queue_.push({cost, a, b, version_[a] + version_[b]});
-  }
-
-  std::vector<std::uint32_t> neighbours(std::uint32_t v) const {
-    std::vector<std::uint32_t> result;
-    for (const std::uint32_t t : at_vertex_[v]) {
-      for (const std::uint32_t u : triangles_[t]) {
-        if (u != v) result.push_back(u);
-      }
-    }
-    std::sort(result.begin(), result.end());
-    result.erase(std::unique(result.begin(), result.end()), result.end());
-    return result;
-  }
-
-  // Whether the triangles at v, but those that also hold `other`, stay sound with v at `to`.
-  bool fits(std::uint32_t v, std::uint32_t other, const Vec3& to) const {
-    for (const std::uint32_t t : at_vertex_[v]) {
-      const Triangle& triangle = triangles_[t];
-      if (triangle[0] == other || triangle[1] == other || triangle[2] == other) continue;
-      Vec3 corners[3];
-      for (std::size_t k = 0; k < 3; ++k) corners[k] = positions_[triangle[k]];
-      const Vec3 before = area_normal(corners[0], corners[1], corners[2]);
-      double longest = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (triangle[k] == v) corners[k] = to;
-      }
-      for (std::size_t k = 0; k < 3; ++k) {
-        longest = std::max(longest, (corners[k] - corners[(k + 1) % 3]).squaredNorm());
-      }
-      const Vec3 after = area_normal(corners[0], corners[1], corners[2]);
-      const double length = after.norm();
-      if (length < 0.08 * longest) return false;
-      if (after.dot(before) < 0.3 * length * before.norm()) return false;
-      // Nor may it turn away from where the surface faced at the start, little by little.
-      const Vec3 facing = normals_[triangle[0]] + normals_[triangle[1]] + normals_[triangle[2]];
-      if (after.dot(facing) < 0.3 * length * facing.norm()) return false;
-    }
-    return true;
-  }
-
-  bool collapse(std::uint32_t a, std::uint32_t b) {
-    const auto around_a = neighbours(a), around_b = neighbours(b);
-    std::vector<std::uint32_t> shared;
-    std::set_intersection(around_a.begin(), around_a.end(), around_b.begin(), around_b.end(),
-                          std::back_inserter(shared));
-    // The link condition (Dey et al. 1999): only then does the topology stay.
-    if (shared.size() != 2) return false;
-    if (at_vertex_[shared[0]].size() <= 3 || at_vertex_[shared[1]].size() <= 3) return false;
-    if (at_vertex_[a].size() + at_vertex_[b].size() - 4 > 11) return false;
-    const Vec3 middle = 0.5 * (positions_[a] + positions_[b]);
-    if (!fits(a, b, middle) || !fits(b, a, middle)) return false;
-
-    positions_[a] = middle;
-    detail_[a] = 0.5 * (detail_[a] + detail_[b]);
-    normals_[a] += normals_[b];
-    const double facing = normals_[a].norm();
-    if (facing > 0) normals_[a] /= facing;
-    alive_[b] = 0;
-    for (const std::uint32_t t : at_vertex_[b]) {
-      Triangle& triangle = triangles_[t];
-      if (std::find(triangle.begin(), triangle.end(), a) != triangle.end()) {
-        triangle_alive_[t] = 0;
-        for (const std::uint32_t u : triangle) {
-          if (u != b) std::erase(at_vertex_[u], t);
-        }
-        continue;
-      }
-      std::replace(triangle.begin(), triangle.end(), b, a);
-      at_vertex_[a].push_back(t);
-    }
-    at_vertex_[b].clear();
-    ++version_[a];
-    for (const std::uint32_t u : neighbours(a)) push(a, u);
-    return true;
-  }
-
-  std::vector<Vec3> positions_, normals_;
-  std::vector<Triangle> triangles_;
-  std::vector<double>& detail_;
-  std::vector<std::vector<std::uint32_t>> at_vertex_;
-  std::vector<std::uint64_t> version_;
-  std::vector<char> alive_, triangle_alive_;
-  std::priority_queue<Candidate> queue_;
-};
 
 std::size_t corner_of(const Triangle& triangle, std::uint32_t v) {
   return triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
@@ -261,12 +109,6 @@ void keep_facing(const Mesh& mesh, const std::vector<Vec3>& normals, std::vector
 }
 
 }  // namespace
-
-Mesh simplify(const Mesh& mesh, std::vector<double>& detail, std::size_t target) {
-  Simplifier simplifier(mesh, detail);
-  simplifier.run(target);
-  return simplifier.result();
-}
 
 void smooth(Mesh& mesh, int jobs) {
   const auto neighbours = vertex_neighbours(mesh);

@@ -309,12 +309,14 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
   if (folder.empty()) folder = ".";
   Temporary temporary = create_temporary(folder);
   if (temporary.descriptor < 0) {
-    if (errno == ENOENT || errno == ENOTDIR) {
+    const int why = errno;
+    std::error_code unknown;
+    if (!std::filesystem::is_directory(folder, unknown)) {
       return file_error("file-unwritable", path, fmt::format("there is no folder {}", folder),
                         "create the folder first");
     }
     return file_error("file-unwritable", path,
-                      fmt::format("cannot be created: {}", system_text(errno)));
+                      fmt::format("cannot be created: {}", system_text(why)));
   }
   state->descriptor = temporary.descriptor;
   state->temporary = std::move(temporary.path);

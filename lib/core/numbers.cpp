@@ -58,4 +58,17 @@ std::string readable(double value, int digits) {
   return text == "-0" ? "0" : text;
 }
 
+std::string grouped(long long value) {
+  std::string text = fmt::format("{}", value);
+  const std::size_t sign = value < 0 ? 1 : 0;
+  for (std::size_t i = text.size(); i > sign + 3; i -= 3) text.insert(i - 3, ",");
+  return text;
+}
+
+std::string counted(long long count, std::string_view one, std::string_view many) {
+  if (count == 1) return fmt::format("1 {}", one);
+  return many.empty() ? fmt::format("{} {}s", grouped(count), one)
+                      : fmt::format("{} {}", grouped(count), many);
+}
+
 }  // namespace krok

@@ -23,4 +23,11 @@ std::string shortest(float value);
 // zeros.
 std::string readable(double value, int digits = 6);
 
+// A whole number for people: 1234567 as "1,234,567".
+std::string grouped(long long value);
+
+// How many there are of something, for people: "1 frame", "1,500 frames". `many` is the plural;
+// without it an s is added.
+std::string counted(long long count, std::string_view one, std::string_view many = {});
+
 }  // namespace krok

@@ -1,7 +1,6 @@
 #include "core/text.h"
 
-#include <cstddef>
-#include <cstdint>
+#include <algorithm>
 
 namespace krok {
 
@@ -24,6 +23,53 @@ Lead lead_of(unsigned char byte) {
 
 }  // namespace
 
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return text;
+}
+
+std::string ascii_lower(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = ascii_lower(c);
+  return lower;
+}
+
+bool same_word(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return ascii_lower(x) == ascii_lower(y); });
+}
+
+Location Locator::operator()(std::size_t offset) {
+  offset = std::min(offset, text_.size());
+  if (offset < at_) {
+    at_ = 0;
+    line_begin_ = 0;
+    line_ = 1;
+  }
+  for (; at_ < offset; ++at_) {
+    if (!is_line_end(text_[at_])) continue;
+    // A CR LF counts at its LF, which may stand after `offset`.
+    if (text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n') continue;
+    ++line_;
+    line_begin_ = at_ + 1;
+  }
+  Location where;
+  where.file = file_name_;
+  where.line = line_;
+  where.column = static_cast<std::int64_t>(offset - line_begin_) + 1;
+  return where;
+}
+
+Location locate(std::string_view text, std::size_t offset, const std::string& file_name) {
+  return Locator(text, file_name)(offset);
+}
+
 bool is_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const Lead lead = lead_of(static_cast<unsigned char>(text[i]));
@@ -39,6 +85,37 @@ bool is_utf8(std::string_view text) {
     i += lead.length;
   }
   return true;
+}
+
+std::string to_utf8(std::string_view text) {
+  if (is_utf8(text)) return std::string(text);
+  std::string utf8;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x80) {
+      utf8 += c;
+    } else {
+      utf8 += static_cast<char>(0xC0 | (code >> 6));
+      utf8 += static_cast<char>(0x80 | (code & 0x3F));
+    }
+  }
+  return utf8;
+}
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 40;
+  std::size_t length = std::min(text.size(), kMost);
+  // Not in the middle of a character.
+  while (length < text.size() && length > kMost - 4 &&
+         (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) {
+    --length;
+  }
+  std::string result = to_utf8(text.substr(0, length));
+  for (char& c : result) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7F) c = '?';
+  }
+  return length < text.size() ? result + "..." : result;
 }
 
 }  // namespace krok

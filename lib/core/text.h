@@ -1,11 +1,74 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
 #include <string_view>
 
+#include "core/result.h"
+
+// What readers of text formats need of text, independent of the locale.
+
 namespace krok {
+
+inline constexpr std::array<bool, 256> kIsSpace = [] {
+  std::array<bool, 256> table{};
+  for (const unsigned char c : {' ', '\t', '\r', '\n', '\v', '\f'}) table[c] = true;
+  return table;
+}();
+
+inline bool is_space(char c) {
+  return kIsSpace[static_cast<unsigned char>(c)];
+}
+inline bool is_line_end(char c) {
+  return c == '\n' || c == '\r';
+}
+
+// `text` without white space at its ends.
+std::string_view trimmed(std::string_view text);
+
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+std::string_view without_byte_order_mark(std::string_view text);
+
+// `c` in lower case if it is an ASCII letter, otherwise itself.
+constexpr char ascii_lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+std::string ascii_lower(std::string_view text);
+
+// Whether two texts are the same but for the case of ASCII letters.
+bool same_word(std::string_view a, std::string_view b);
+
+// Lines and columns of bytes, for messages; lines end with LF, CR LF or a lone CR. Going forward
+// costs one look at each byte in all, going back starts anew. An offset beyond the text is its end.
+// Both arguments must outlive the locator.
+class Locator {
+ public:
+  Locator(std::string_view text, const std::string& file_name)
+      : text_(text), file_name_(file_name) {}
+
+  Location operator()(std::size_t offset);
+
+ private:
+  std::string_view text_;
+  const std::string& file_name_;
+  std::size_t at_ = 0;
+  std::size_t line_begin_ = 0;
+  std::int64_t line_ = 1;
+};
+
+// The place of one byte. Takes time with the offset.
+Location locate(std::string_view text, std::size_t offset, const std::string& file_name);
 
 // Whether `text` is well-formed UTF-8 (RFC 3629): no stray or missing continuation bytes, no
 // overlong forms, no surrogates, nothing above U+10FFFF. An empty text is.
 bool is_utf8(std::string_view text);
+
+// `text` itself if it is UTF-8, otherwise its bytes read as Latin-1.
+std::string to_utf8(std::string_view text);
+
+// For messages: UTF-8, without control characters, cut after about 40 bytes.
+std::string shown(std::string_view text);
 
 }  // namespace krok

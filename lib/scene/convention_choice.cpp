@@ -69,6 +69,9 @@ Result<Conversion> Conversion::make(const Conventions& conventions) {
   conversion.reference_turn_ = *reference;
   conversion.to_krok_ = turn->toRotationMatrix().array().round().matrix();
   conversion.reference_to_krok_ = reference->toRotationMatrix().array().round().matrix();
+  if (conversion.to_krok_ != conversion.reference_to_krok_) {
+    conversion.reference_to_motion_.orientation = *turn * reference->conjugate();
+  }
   return conversion;
 }
 
@@ -89,25 +92,27 @@ Quat Conversion::reference_rotation(const Quat& rotation) const {
 void report_conventions(const Conventions& conventions, const GivenConventions& given,
                         const std::string& code_prefix, const std::string& file_name,
                         Diagnostics& diagnostics) {
-  const auto report = [&](bool is_given, const char* name, const std::string& value,
-                          Confidence confidence, const std::string& reason) {
+  const auto report = [&](bool is_given, const char* name, const char* subject,
+                          const std::string& value, Confidence confidence,
+                          const std::string& reason) {
     if (is_given) return;
     const bool guess = confidence == Confidence::guess;
     Diagnostic told;
     told.severity = guess ? Severity::warning : Severity::note;
     told.code = fmt::format("{}-{}", code_prefix, name);
-    told.message = fmt::format("{} is {} ({})", name, value, confidence_name(confidence)) +
+    told.message = fmt::format("{} is {} ({})", subject, value, confidence_name(confidence)) +
                    (reason.empty() ? std::string() : ": " + reason);
     if (guess) told.hint = fmt::format("say it with --{} if it is otherwise", name);
     told.where.file = file_name;
     diagnostics.push_back(std::move(told));
   };
-  report(given.unit.has_value(), "unit", conventions.unit.name, conventions.unit_confidence,
-         conventions.unit_reason);
-  report(given.up.has_value(), "up", std::string(direction_name(conventions.up)),
+  report(given.unit.has_value(), "unit", "the unit", conventions.unit.name,
+         conventions.unit_confidence, conventions.unit_reason);
+  report(given.up.has_value(), "up", "up", std::string(direction_name(conventions.up)),
          conventions.up_confidence, conventions.up_reason);
-  report(given.forward.has_value(), "forward", std::string(direction_name(conventions.forward)),
-         conventions.forward_confidence, conventions.forward_reason);
+  report(given.forward.has_value(), "forward", "forward",
+         std::string(direction_name(conventions.forward)), conventions.forward_confidence,
+         conventions.forward_reason);
 }
 
 std::vector<std::string> describe_conversions(const Conventions& conventions,

@@ -32,8 +32,10 @@ struct GivenConventions {
 // axis lies along a detected one, the detected one gives way to a default with confidence `guess`.
 void apply_given(const GivenConventions& given, Conventions& conventions);
 
-// How transforms in a file's unit and axes become Krok's. Joint frames turn together with the axes,
-// so that an identity orientation in the file's reference pose stays one.
+// How transforms in a file's unit and axes become Krok's. The reference pose is turned by its own
+// axes, and with it the joints' frames: an identity orientation in the file's reference pose stays
+// one. In a frame positions turn by the motion's axes, and an orientation R of the file becomes
+// turn R reference_turn^-1, so that what is bound to a joint in the reference pose follows it.
 class Conversion {
  public:
   // An Error (code direction-parallel) if up and forward lie on one axis.
@@ -47,12 +49,20 @@ class Conversion {
   Quat reference_rotation(const Quat& rotation) const;
   double metres() const { return metres_; }
 
+  // The axes of the reference pose to Krok's, a rotation with entries 0, 1 and -1.
+  const Mat3& reference_axes() const { return reference_to_krok_; }
+
+  // From the turned reference pose's axes to those of the frames, both Krok's; the identity,
+  // exactly, where the file has one set of axes for both.
+  const Transform& reference_to_motion() const { return reference_to_motion_; }
+
  private:
   double metres_ = 1.0;
   Mat3 to_krok_ = Mat3::Identity();  // entries 0, 1 and -1
   Mat3 reference_to_krok_ = Mat3::Identity();
   Quat turn_ = Quat::Identity();
   Quat reference_turn_ = Quat::Identity();
+  Transform reference_to_motion_;
 };
 
 // A note for each convention that was not given, a warning with a hint where it is a guess. Codes:

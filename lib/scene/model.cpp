@@ -74,6 +74,25 @@ bool all_finite(const std::vector<Vector>& values) {
   return true;
 }
 
+bool is_unit(const Vec3f& direction) {
+  return std::abs(direction.norm() - 1.0f) <= 1e-3f;
+}
+
+Status check_directions(const Model& model) {
+  for (std::size_t v = 0; v < model.normals.size(); ++v) {
+    if (is_unit(model.normals[v])) continue;
+    return Error("model-value", fmt::format("the normal of vertex {} has length {}, expected 1", v,
+                                            model.normals[v].norm()));
+  }
+  for (std::size_t v = 0; v < model.tangents.size(); ++v) {
+    const Vec4f& tangent = model.tangents[v];
+    if (is_unit(tangent.head<3>()) && std::abs(tangent.w()) == 1.0f) continue;
+    return Error("model-value",
+                 fmt::format("the tangent of vertex {} is no unit vector with 1 or -1", v));
+  }
+  return {};
+}
+
 }  // namespace
 
 Status check(const Model& model) {
@@ -97,6 +116,7 @@ Status check(const Model& model) {
       !all_finite(model.texture_coordinates) || !all_finite(model.tangents)) {
     return Error("model-value", "a vertex is not finite");
   }
+  if (Status directions_hold = check_directions(model); !directions_hold) return directions_hold;
   if (Status influences_hold = check_influences(model); !influences_hold) return influences_hold;
   return check_triangles(model);
 }

@@ -51,8 +51,9 @@ struct Model {
 };
 
 // Whether what the comments above promise holds (weights in falling order with a sum of 1 within
-// 1e-4, indices in range, finite values, parts cover the triangles). Codes: those of
-// check(Skeleton), model-shape, model-index, model-weight, model-value.
+// 1e-4, indices in range, finite values, normals and tangents of length 1 within 1e-3, parts cover
+// the triangles). Codes: those of check(Skeleton), model-shape, model-index, model-weight,
+// model-value.
 Status check(const Model& model);
 
 }  // namespace krok

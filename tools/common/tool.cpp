@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <new>
@@ -14,6 +15,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "tools/common/console_progress.h"
+#include "tools/common/one_of.h"
 
 namespace krok {
 
@@ -57,6 +59,34 @@ std::vector<std::string> arguments_of(int argc, char** argv) {
     arguments.push_back(std::move(argument));
   }
   return arguments;
+}
+
+// Whether two paths lead to one regular file, which need not exist yet. Devices and standard
+// streams can be read and written at once.
+bool same_file(const std::string& first, const std::string& second) {
+  namespace fs = std::filesystem;
+  if (first == "-" || second == "-") return false;
+  std::error_code error;
+  const auto status = fs::status(first, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return false;
+  if (fs::equivalent(first, second, error)) return true;
+  const fs::path canonical = fs::weakly_canonical(first, error);
+  return !error && canonical == fs::weakly_canonical(second, error) && !error;
+}
+
+// Where the report of a command line goes that could not be parsed: to a file only if no other
+// argument names the same.
+std::string report_path(const std::vector<std::string>& arguments) {
+  const std::string option = "--json=";
+  std::string path;
+  for (const std::string& argument : arguments) {
+    if (argument == "--") break;
+    if (argument.rfind(option, 0) == 0) path = argument.substr(option.size());
+  }
+  for (const std::string& argument : arguments) {
+    if (argument.rfind(option, 0) != 0 && same_file(path, argument)) return {};
+  }
+  return path;
 }
 
 std::string help_footer(const ToolSpec& spec) {
@@ -139,22 +169,47 @@ void remember_values(CLI::App& app, GivenValues& values) {
   }
 }
 
-Json given_options(const CLI::App& app, const GivenValues& values) {
-  Json options = Json::object();
+bool names_output(const CLI::Option& option) {
+  return option.get_type_name().rfind("OUT", 0) == 0;
+}
+
+bool names_input(const CLI::Option& option) {
+  return option.get_type_name().rfind("IN", 0) == 0;
+}
+
+void note_options(const CLI::App& app, const GivenValues& given, ToolContext& context) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0 || option->get_positional()) continue;
     const std::string name = option->get_single_name();
+    const auto found = given.find(option);
+    if (found != given.end() && names_output(*option)) {
+      for (const std::string& path : found->second) context.destinations.push_back(path);
+    }
     if (is_silent(name)) continue;
-    const auto given = values.find(option);
-    if (given == values.end()) {
-      options[name] = true;
-    } else if (given->second.size() == 1) {
-      options[name] = given->second.front();
-    } else {
-      options[name] = given->second;
+    if (found == given.end()) {
+      context.report.options[name] = context.result_options[name] = true;
+      continue;
+    }
+    const auto& values = found->second;
+    context.report.options[name] = values.size() == 1 ? Json(values.front()) : Json(values);
+    if (names_output(*option)) continue;
+    context.result_options[name] =
+        names_input(*option) ? Json(base_name(values.front())) : context.report.options[name];
+  }
+}
+
+// Two results in one file would leave only the last.
+Status check_destinations(const ToolContext& context) {
+  const auto& paths = context.destinations;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (same_file(paths[i], paths[j])) {
+        return Error("usage", fmt::format("{} would be written twice", paths[i]),
+                     "give each result its own file");
+      }
     }
   }
-  return options;
+  return {};
 }
 
 int finish(ToolContext& context, const std::string& json_path, int exit_code) {
@@ -168,8 +223,13 @@ int finish(ToolContext& context, const std::string& json_path, int exit_code) {
   return exit_code;
 }
 
+// A message about no file begins with the tool's name.
+std::string message_of(const std::string& tool, const Diagnostic& diagnostic) {
+  return (diagnostic.where.file.empty() ? tool + ": " : "") + to_text(diagnostic) + "\n";
+}
+
 int fail(ToolContext& context, const std::string& json_path, const Error& error) {
-  put(stderr, (error.where.file.empty() ? context.report.tool + ": " : "") + to_text(error) + "\n");
+  put(stderr, message_of(context.report.tool, error));
   context.report.issues.push_back(error);
   return finish(context, json_path, kExitTrouble);
 }
@@ -188,9 +248,9 @@ int finish_output(const std::string& tool) {
   return kExitTrouble;
 }
 
-int usage_error(const std::string& tool, const std::string& message) {
-  put(stderr, fmt::format("{}: error: {} [usage]\n  hint: see {} --help\n", tool, message, tool));
-  return kExitTrouble;
+int usage_error(ToolContext& context, const std::string& json_path, const std::string& message) {
+  return fail(context, json_path,
+              Error("usage", message, fmt::format("see {} --help", context.report.tool)));
 }
 
 }  // namespace
@@ -202,7 +262,7 @@ std::string version() {
 void ToolContext::tell(Diagnostic diagnostic) {
   const bool shown = diagnostic.severity == Severity::error ||
                      (!quiet && (verbose || diagnostic.severity != Severity::note));
-  if (shown) put(stderr, to_text(diagnostic) + "\n");
+  if (shown) put(stderr, message_of(report.tool, diagnostic));
   report.issues.push_back(std::move(diagnostic));
 }
 
@@ -229,6 +289,17 @@ void ToolContext::print(const std::string& text) {
 }
 
 Result<InputFile> ToolContext::open_input(const std::string& path) {
+  for (const std::string& destination : destinations) {
+    if (same_file(path, destination)) {
+      return Error("usage", "is read and would be replaced by a result", "choose another name")
+          .in_file(path);
+    }
+  }
+  for (const Report::Input& input : report.inputs) {
+    if (path == "-" && input.path == path) {
+      return Error("usage", "standard input can be read only once", "name a file for the other");
+    }
+  }
   auto file = InputFile::open(path);
   if (file) report.inputs.push_back({path, hex(xxh3(file->bytes()))});
   return file;
@@ -245,7 +316,7 @@ Provenance ToolContext::provenance() const {
   for (const auto& input : report.inputs) {
     provenance.sources.push_back({base_name(input.path), input.xxh3});
   }
-  for (const auto& [name, value] : report.options.items()) {
+  for (const auto& [name, value] : result_options.items()) {
     provenance.options.emplace_back(name,
                                     value.is_string() ? value.get<std::string>() : value.dump());
   }
@@ -294,13 +365,11 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
       ->group("Common options");
   app.add_option("--progress", style, "Progress: auto, bar, plain, json or none")
       ->type_name("STYLE")
-      ->transform(CLI::CheckedTransformer(
-                      std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
-                                                           {"bar", ProgressStyle::bar},
-                                                           {"plain", ProgressStyle::plain},
-                                                           {"json", ProgressStyle::json},
-                                                           {"none", ProgressStyle::none}})
-                      .description(""))
+      ->transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
+                                         {"bar", ProgressStyle::bar},
+                                         {"plain", ProgressStyle::plain},
+                                         {"json", ProgressStyle::json},
+                                         {"none", ProgressStyle::none}}))
       ->default_str("auto")
       ->group("Common options");
   app.add_option("-j,--jobs", context.jobs, "Threads; 0 is one a core")
@@ -309,10 +378,9 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
       ->default_str("0")
       ->group("Common options");
 
+  const std::vector<std::string> arguments = arguments_of(argc, argv);
   try {
-    std::vector<std::string> arguments = arguments_of(argc, argv);
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
     put(stdout, tidy_help(app.help()));
     return finish_output(spec.name);
@@ -320,14 +388,18 @@ int run_tool(const ToolSpec& spec, int argc, char** argv) {
     put(stdout, fmt::format("{} {}\n", spec.name, version()));
     return finish_output(spec.name);
   } catch (const CLI::ParseError& error) {
-    return usage_error(spec.name, error.what());
+    return usage_error(context, report_path(arguments), error.what());
   }
 
   context.report_on_standard_output = json_path == "-";
   if (context.report_on_standard_output && context.output == "-") {
-    return usage_error(spec.name, "the report and the output cannot both go to standard output");
+    return usage_error(context, "", "the report and the output cannot both go to standard output");
   }
-  context.report.options = given_options(app, given_values);
+  note_options(app, given_values, context);
+  for (const std::string& path : {context.output, json_path}) {
+    if (!path.empty()) context.destinations.push_back(path);
+  }
+  if (Status apart = check_destinations(context); !apart) return fail(context, "", apart.error());
   if (context.quiet && style == ProgressStyle::automatic) style = ProgressStyle::none;
   const auto progress = console_progress(style);
   context.progress = progress.get();

@@ -32,8 +32,16 @@ class ToolContext {
   Progress* progress = nullptr;
   Report report;
 
+  // The files that this run writes: -o, --json=FILE and every option whose value is named OUT... in
+  // the help. open_input refuses to read one of them.
+  std::vector<std::string> destinations;
+
+  // The options given that change the result, for provenance: without those that name outputs, and
+  // inputs (named IN... in the help) by base name, so that no folder gets into a result.
+  Json result_options = Json::object();
+
   // Prints a diagnostic in the common form on standard error (notes with -v only, with -q errors
-  // only) and keeps it in the report.
+  // only), after the tool's name where it is about no file, and keeps it in the report.
   void tell(Diagnostic diagnostic);
   void tell(const Diagnostics& diagnostics);
   void warn(std::string code, std::string message, std::string hint = {});
@@ -45,7 +53,8 @@ class ToolContext {
   // Data for people or pipes on standard output; suppressed where the report goes there.
   void print(const std::string& text);
 
-  // Opens an input and records its path and checksum in the report.
+  // Opens an input and records its path and checksum in the report. Refuses (code usage) a file
+  // that this run writes too, for a capture would be lost, and standard input for the second time.
   Result<InputFile> open_input(const std::string& path);
 
   // The options for writing a file, and a note of it in the report; call before writing.

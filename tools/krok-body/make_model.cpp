@@ -2,23 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <map>
-
 #include "core/numbers.h"
 #include "formats/anim/anim.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
+#include "tools/common/one_of.h"
 
 namespace krok::body_tool {
 
 namespace {
-
-template <typename Value>
-CLI::CheckedTransformer choice(std::map<std::string, Value> values) {
-  CLI::CheckedTransformer transformer(std::move(values));
-  transformer.description("");
-  return transformer;
-}
 
 Result<BodyOptions> body_options(const Options& options) {
   BodyOptions result;
@@ -79,12 +71,6 @@ Json result_of(const Body& body) {
   return result;
 }
 
-std::string with_commas(std::size_t count) {
-  std::string digits = std::to_string(count);
-  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-  return digits;
-}
-
 }  // namespace
 
 void declare(CLI::App& app, Options& options) {
@@ -95,7 +81,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--detail", options.detail,
                  "Vertices: low (about 2,500), medium (10,000) or high (40,000)")
       ->type_name("LEVEL")
-      ->transform(choice<BodyDetail>(
+      ->transform(one_of<BodyDetail>(
           {{"low", BodyDetail::low}, {"medium", BodyDetail::medium}, {"high", BodyDetail::high}}))
       ->default_str("medium")
       ->group("Body");
@@ -109,7 +95,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--orientation", options.orientation,
                  "Components stored of an orientation: xyz (w is rebuilt) or xyzw")
       ->type_name("HOW")
-      ->transform(choice<OrientationEncoding>(
+      ->transform(one_of<OrientationEncoding>(
           {{"xyz", OrientationEncoding::xyz}, {"xyzw", OrientationEncoding::xyzw}}))
       ->default_str("xyz")
       ->group("Body");
@@ -141,10 +127,11 @@ Result<int> run(const Options& options, ToolContext& context) {
   context.wrote(context.output);
 
   context.report.result = result_of(*body);
-  context.say(fmt::format("body: {} vertices, {} triangles, {} bones, {} m3 -> {}",
-                          with_commas(model.positions.size()), with_commas(model.triangles.size()),
-                          model.skeleton.joint_count() - 1, readable(body->volume, 2),
-                          context.output));
+  context.say(fmt::format("body: {}, {}, {}, {} m3 -> {}",
+                          counted(model.vertex_count(), "vertex", "vertices"),
+                          counted(static_cast<long long>(model.triangles.size()), "triangle"),
+                          counted(model.skeleton.joint_count() - 1, "bone"),
+                          readable(body->volume, 2), context.output));
   return kExitDone;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/numbers.h"
 #include "formats/gltf/gltf_evaluate.h"
 #include "outcome.h"
 

@@ -18,8 +18,14 @@ struct Arguments {
 };
 
 Result<double> not_negative(Result<double> value, const char* option, const std::string& text) {
-  if (value && *value < 0) {
-    return Error("quantity-range", fmt::format("{} {} is less than 0", option, text));
+  if (!value) {
+    Error error = std::move(value).error();
+    error.message = fmt::format("{}: {}", option, error.message);
+    return error;
+  }
+  if (*value < 0) {
+    return Error("quantity-range", fmt::format("{} {} is less than 0", option, text),
+                 "a tolerance is 0 or more");
   }
   return value;
 }

@@ -123,16 +123,6 @@ void Outcome::add_row(std::string what, Unit unit, const compare::Measure& measu
   if (measure.count > 0) rows.push_back({std::move(what), unit, measure});
 }
 
-std::string grouped(std::int64_t number) {
-  std::string digits = std::to_string(number);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
-  return digits;
-}
-
-std::string counted(std::int64_t number, const char* one, const char* many) {
-  return fmt::format("{} {}", grouped(number), number == 1 ? one : many);
-}
-
 std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance) {
   std::string text;
   for (const std::string& line : outcome.summary) text += (text.empty() ? "" : "  ") + line + "\n";

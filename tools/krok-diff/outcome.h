@@ -43,10 +43,4 @@ std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance)
 // All figures, in metres and radians.
 Json to_json(const Outcome& outcome, const compare::Tolerance& tolerance);
 
-// "12,400".
-std::string grouped(std::int64_t number);
-
-// "1 joint", "12,400 vertices".
-std::string counted(std::int64_t number, const char* one, const char* many);
-
 }  // namespace krok::diff

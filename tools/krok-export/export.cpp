@@ -34,24 +34,39 @@ Status write_gltf(const Clip& clip, bool binary, const ExportOptions& options,
   writing.binary = binary;
   writing.provenance = context.provenance();
   writing.name = "skeleton";
-  if (!options.bones) return gltf::write_skeleton(clip, writing, file);
+  if (!options.bones.value_or(true)) return gltf::write_skeleton(clip, writing, file);
   writing.name = "bones";
   return gltf::write_rig(bone_mesh(clip.skeleton), clip, writing, file);
 }
 
 Status write_as(ExportFormat format, const Clip& clip, const ExportOptions& options,
-                const ToolContext& context, OutputFile& file) {
+                double unit_metres, const ToolContext& context, OutputFile& file) {
   if (format == ExportFormat::bvh) {
     bvh::WriteOptions writing;
-    if (!options.unit.empty()) {
-      const auto unit = parse_unit(options.unit);
-      if (!unit) return unit.error();
-      writing.unit_metres = unit->metres;
-    }
+    writing.unit_metres = unit_metres;
     return bvh::write(clip, writing, file);
   }
   if (format == ExportFormat::csv) return csv::write(clip, file);
   return write_gltf(clip, format == ExportFormat::glb, options, context, file);
+}
+
+Result<double> unit_of(const ExportOptions& options, ExportFormat format) {
+  if (options.unit.empty()) return bvh::WriteOptions().unit_metres;
+  if (format != ExportFormat::bvh) {
+    return Error("export-unit", "--unit is for BVH; the other formats hold metres");
+  }
+  const auto unit = parse_unit(options.unit);
+  if (!unit) return Error("usage", "--unit: " + unit.error().message, unit.error().hint);
+  return unit->metres;
+}
+
+Json result_of(const Clip& clip) {
+  Json result;
+  result["joints"] = clip.joint_count();
+  result["frames"] = clip.frame_count();
+  result["rate"] = clip.rate;
+  result["duration"] = clip.duration();
+  return result;
 }
 
 }  // namespace
@@ -59,8 +74,10 @@ Status write_as(ExportFormat format, const Clip& clip, const ExportOptions& opti
 Result<int> run_export(const ExportOptions& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
   if (!format) return format.error();
-  if (!options.unit.empty() && *format != ExportFormat::bvh) {
-    return Error("export-unit", "--unit is for BVH; the other formats hold metres");
+  const auto unit_metres = unit_of(options, *format);
+  if (!unit_metres) return unit_metres.error();
+  if (options.bones && *format != ExportFormat::glb && *format != ExportFormat::gltf) {
+    return Error("usage", "--bones and --no-bones are for glTF");
   }
   const auto input = context.open_input(options.input);
   if (!input) return input.error();
@@ -72,13 +89,14 @@ Result<int> run_export(const ExportOptions& options, ToolContext& context) {
 
   auto file = OutputFile::create(context.output, context.output_options());
   if (!file) return file.error();
-  if (Status written = write_as(*format, *clip, options, context, *file); !written) {
+  if (Status written = write_as(*format, *clip, options, *unit_metres, context, *file); !written) {
     return std::move(written.error()).in_file(context.output);
   }
   if (Status done = file->commit(); !done) return done.error();
   context.wrote(context.output);
-  context.say(fmt::format("{}: {} joints, {} frames, {} s", context.output, clip->joint_count(),
-                          clip->frame_count(), readable(clip->duration())));
+  context.report.result = result_of(*clip);
+  context.say(fmt::format("{}: {}, {}, {} s", context.output, counted(clip->joint_count(), "joint"),
+                          counted(clip->frame_count(), "frame"), readable(clip->duration(), 3)));
   return kExitDone;
 }
 

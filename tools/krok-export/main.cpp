@@ -1,3 +1,4 @@
+#include "tools/common/one_of.h"
 #include "tools/krok-export/export.h"
 
 int main(int argc, char** argv) {
@@ -17,12 +18,10 @@ int main(int argc, char** argv) {
                    "bvh, glb, gltf (text, data inside) or csv; without it the output's extension "
                    "tells")
         ->type_name("FORMAT")
-        ->transform(CLI::CheckedTransformer(
-                        std::map<std::string, ExportFormat>{{"bvh", ExportFormat::bvh},
-                                                            {"glb", ExportFormat::glb},
-                                                            {"gltf", ExportFormat::gltf},
-                                                            {"csv", ExportFormat::csv}})
-                        .description(""));
+        ->transform(krok::one_of<ExportFormat>({{"bvh", ExportFormat::bvh},
+                                                {"glb", ExportFormat::glb},
+                                                {"gltf", ExportFormat::gltf},
+                                                {"csv", ExportFormat::csv}}));
     app.add_option("--unit", options.unit, "BVH: the unit of lengths: m, cm, mm, in, ft")
         ->type_name("UNIT")
         ->default_str("cm");

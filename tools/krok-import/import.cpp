@@ -9,6 +9,7 @@
 #include "formats/model/model_format.h"
 #include "motion/sample.h"
 #include "scene/model.h"
+#include "tools/krok-import/source.h"
 
 namespace krok::import {
 
@@ -46,7 +47,8 @@ Json to_json(const std::string& choice, Confidence confidence, const std::string
   return {{"choice", choice}, {"confidence", confidence_name(confidence)}, {"reason", reason}};
 }
 
-Json result_of(const bvh::Capture& capture, const Clip& clip) {
+Json result_of(const Source& source, const Clip& clip) {
+  const Capture& capture = source.capture;
   const Conventions& c = capture.conventions;
   Json result;
   result["joints"] = clip.joint_count();
@@ -61,13 +63,11 @@ Json result_of(const bvh::Capture& capture, const Clip& clip) {
   result["up"] = to_json(std::string(direction_name(c.up)), c.up_confidence, c.up_reason);
   result["forward"] =
       to_json(std::string(direction_name(c.forward)), c.forward_confidence, c.forward_reason);
-  result["positions"] =
-      to_json(capture.positions.choice, capture.positions.confidence, capture.positions.reason);
+  result["reference_axes"] = {{"up", direction_name(c.reference_up)},
+                              {"forward", direction_name(c.reference_forward)}};
   result["source_rate"] =
       to_json(capture.rate.choice, capture.rate.confidence, capture.rate.reason);
-  result["frames_announced"] = capture.frames_announced;
-  result["rest_frame"] = {{"found", capture.rest_frame_found},
-                          {"left_out", capture.rest_frame_dropped}};
+  result.update(source.details);
   result["repairs"] = capture.repairs;
   return result;
 }
@@ -114,21 +114,14 @@ void say_what_was_done(const Options& options, ToolContext& context, const Clip&
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  auto read_with = read_options(options);
-  if (!read_with) return read_with.error();
   if (!options.model.empty() && options.model == context.output) {
     return Error("usage", "-o and --model name the same file");
   }
-  read_with->jobs = context.jobs;
-  read_with->progress = context.progress;
+  auto source = read_source(options, context);
+  if (!source) return source.error();
+  context.tell(source->capture.diagnostics);
 
-  auto input = context.open_input(options.input);
-  if (!input) return input.error();
-  auto capture = bvh::read(input->text(), input->path(), *read_with);
-  if (!capture) return capture.error();
-  context.tell(capture->diagnostics);
-
-  Clip& clip = capture->clip;
+  Clip& clip = source->capture.clip;
   auto conversions = std::move(clip.provenance.conversions);
   if (options.resample > 0) {
     auto resampled = resample(clip, options.resample);
@@ -141,7 +134,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   clip.provenance.conversions = std::move(conversions);
 
   if (Status written = write_outputs(options, context, clip); !written) return written.error();
-  context.report.result = result_of(*capture, clip);
+  context.report.result = result_of(*source, clip);
   say_what_was_done(options, context, clip);
   return kExitDone;
 }

@@ -47,9 +47,16 @@ Result<std::optional<Direction>> direction_option(const std::string& text, const
 }  // namespace
 
 void declare_options(CLI::App& app, Options& options) {
-  app.add_option("input", options.input, "The capture, a BVH file; - is standard input")
-      ->type_name("IN.bvh")
+  app.add_option(
+         "input", options.input,
+         "The capture: a BVH file, an Acclaim motion (AMC), or an Acclaim skeleton (ASF) alone; - "
+         "is standard input")
+      ->type_name("IN")
       ->required();
+  app.add_option("--skeleton", options.skeleton,
+                 "The skeleton of an Acclaim motion; otherwise the .asf file beside it that its "
+                 "name begins with, or the only one there")
+      ->type_name("IN.asf");
   app.add_option("--model", options.model,
                  "Also write the skeleton with its reference pose as a model without vertices")
       ->type_name("OUT.model");
@@ -75,7 +82,7 @@ void declare_options(CLI::App& app, Options& options) {
                               {"absolute", bvh::Positions::absolute},
                               {"additive", bvh::Positions::additive}},
                              "Whether position channels replace OFFSETs (absolute) or are added to "
-                             "them (additive)",
+                             "them (additive), in BVH",
                              "HOW", "auto")
       ->group(space);
 
@@ -89,7 +96,7 @@ void declare_options(CLI::App& app, Options& options) {
                               {"auto", bvh::RestFrame::automatic},
                               {"yes", bvh::RestFrame::drop}},
                              "Leave out the first frame: auto (where it is a rest pose and no part "
-                             "of the motion), yes or no",
+                             "of the motion), yes or no, in BVH",
                              "WHEN", "no")
       ->group(time);
 
@@ -112,8 +119,8 @@ void declare_options(CLI::App& app, Options& options) {
       ->group("Output");
 }
 
-Result<bvh::ReadOptions> read_options(const Options& options) {
-  bvh::ReadOptions result;
+Result<CaptureOptions> read_options(const Options& options) {
+  CaptureOptions result;
   if (options.unit != "auto") {
     auto unit = parse_unit(options.unit);
     if (!unit) {
@@ -131,12 +138,10 @@ Result<bvh::ReadOptions> read_options(const Options& options) {
     const auto rotation = rotation_to_krok(*result.up, *result.forward);
     if (!rotation) return Error("usage", rotation.error().message, rotation.error().hint);
   }
-  result.positions = options.positions;
-  result.rest_frame = options.rest_frame;
   if (options.fps > 0) result.rate = options.fps;
-  result.strictness = options.strict   ? bvh::Strictness::strict
-                      : options.repair ? bvh::Strictness::repair
-                                       : bvh::Strictness::normal;
+  result.strictness = options.strict   ? Strictness::strict
+                      : options.repair ? Strictness::repair
+                                       : Strictness::normal;
   return result;
 }
 

@@ -6,13 +6,15 @@
 #include "core/result.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/container/packed_orientation.h"
+#include "scene/capture.h"
 
 namespace krok::import {
 
 // What stands on the command line, as text where the library says what it means.
 struct Options {
   std::string input;
-  std::string model;  // --model, empty where none is wanted
+  std::string skeleton;  // --skeleton, empty where it is to be found
+  std::string model;     // --model, empty where none is wanted
   std::string unit = "auto";
   std::string up = "auto";
   std::string forward = "auto";
@@ -27,7 +29,7 @@ struct Options {
 
 void declare_options(CLI::App& app, Options& options);
 
-// The options of the reader; an Error for a unit or an axis that is none.
-Result<bvh::ReadOptions> read_options(const Options& options);
+// The options that all readers share; an Error for a unit or an axis that is none.
+Result<CaptureOptions> read_options(const Options& options);
 
 }  // namespace krok::import

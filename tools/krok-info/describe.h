@@ -16,6 +16,8 @@ Result<Description> describe_anim(const InputFile& file, ToolContext& context);
 Result<Description> describe_model(const InputFile& file, ToolContext& context);
 Result<Description> describe_cam(const InputFile& file, ToolContext& context);
 Result<Description> describe_bvh(const InputFile& file, ToolContext& context);
+// A skeleton, or a motion with the skeleton that stands beside it.
+Result<Description> describe_acclaim(const InputFile& file, ToolContext& context);
 Result<Description> describe_gltf(const InputFile& file, ToolContext& context);
 
 }  // namespace krok::info

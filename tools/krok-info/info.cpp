@@ -18,6 +18,9 @@ Result<Description> describe(const InputFile& file, ToolContext& context) {
       return describe_cam(file, context);
     case Kind::bvh:
       return describe_bvh(file, context);
+    case Kind::asf:
+    case Kind::amc:
+      return describe_acclaim(file, context);
     case Kind::glb:
     case Kind::gltf:
       return describe_gltf(file, context);
@@ -27,7 +30,7 @@ Result<Description> describe(const InputFile& file, ToolContext& context) {
   return Error("info-kind",
                "is " + std::string(registry::describe_content(file.bytes())) +
                    ", which krok-info does not read",
-               "it reads .anim, .model, .cam, .bvh, .glb and .gltf files");
+               "it reads .anim, .model, .cam, .bvh, .asf, .amc, .glb and .gltf files");
 }
 
 Result<Description> describe_path(const std::string& path, ToolContext& context) {

@@ -5,8 +5,8 @@ int main(int argc, char** argv) {
   krok::ToolSpec spec;
   spec.name = "krok-info";
   spec.summary =
-      "What is in a file: motions (.anim), models (.model), cameras (.cam), captures (.bvh), glTF "
-      "(.glb, .gltf)";
+      "What is in a file: motions (.anim), models (.model), cameras (.cam), captures (.bvh, .asf, "
+      ".amc), glTF (.glb, .gltf)";
   spec.inputs = "FILE...";
   spec.examples = {{"krok-info walk.anim", "Frames, rate, duration, joints, size and provenance."},
                    {"krok-info -v capture.bvh",

@@ -1,3 +1,4 @@
+#include "tools/common/one_of.h"
 #include "tools/krok-skin/skin.h"
 
 namespace {
@@ -11,16 +12,16 @@ void declare(CLI::App& app, krok::SkinOptions& options, std::string& method) {
                  "rig: joints, weights and the animation, for the viewer's own skinning. frames: "
                  "one file a frame, OUT_0000.glb, OUT_0001.glb, ... for -o OUT.glb")
       ->type_name("WHAT")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, SkinAs>{{"clip", SkinAs::clip},
-                                                                        {"pose", SkinAs::pose},
-                                                                        {"rig", SkinAs::rig},
-                                                                        {"frames", SkinAs::frames}})
-                      .description(""))
+      ->transform(krok::one_of<SkinAs>({{"clip", SkinAs::clip},
+                                        {"pose", SkinAs::pose},
+                                        {"rig", SkinAs::rig},
+                                        {"frames", SkinAs::frames}}))
       ->default_str("clip");
   app.add_option("--time", options.time, "For --as pose: when, as 1.5s, 250ms or 120f")
       ->type_name("T")
       ->default_str("0");
-  app.add_option("--from", options.from, "Where the part to write begins, as for --time")
+  app.add_option("--from", options.from,
+                 "Where the part to write begins, as for --time; not for pose")
       ->type_name("T");
   app.add_option("--to", options.to, "Where it ends, that frame included")->type_name("T");
   app.add_option("--every", options.every, "Take every Nth frame only")

@@ -90,13 +90,32 @@ Result<Scene> load(const SkinOptions& options, ToolContext& context) {
   if (!bound) return std::move(bound.error()).in_file(options.motion);
   scene.model = std::move(*bound);
   if (scene.model.triangles.empty()) {
-    return Error("skin-empty-model", "the model has no triangles").in_file(options.model);
+    return Error("skin-empty-model", "the model has no triangles",
+                 "krok-body makes a model with a mesh")
+        .in_file(options.model);
   }
-  context.tell(reference_differences(scene.model.skeleton, scene.clip));
+  for (Diagnostic difference : reference_differences(scene.model.skeleton, scene.clip)) {
+    difference.where.file = options.motion;
+    context.tell(std::move(difference));
+  }
   if (Status done = cut_to_range(options, scene); !done) {
     return std::move(done.error()).in_file(options.motion);
   }
   return scene;
+}
+
+// The moment of --as pose in seconds.
+Result<double> pose_time(const SkinOptions& options, const Clip& clip) {
+  if (options.time.empty()) return 0.0;
+  const auto time = parse_clip_time(options.time);
+  if (!time) return at_option("--time", time.error());
+  const double seconds = time->seconds(clip.rate);
+  if (seconds < 0 || seconds > clip.duration() * (1 + 1e-9)) {
+    return Error("skin-time", fmt::format("--time {} lies outside the motion, which lasts {} s",
+                                          options.time, readable(clip.duration())))
+        .in_file(options.motion);
+  }
+  return seconds;
 }
 
 // Skins the model in poses one after the other; owns the working memory.
@@ -257,38 +276,50 @@ Result<int> write_frames(const Scene& scene, ToolContext& context) {
     if (!results[i]) return results[i].error();
     context.wrote(path_of(i));
   }
-  context.say(fmt::format("{} to {}: {} files", path_of(0), path_of(results.size() - 1), frames));
+  context.say(fmt::format("{} to {}: {}", path_of(0), path_of(results.size() - 1),
+                          counted(frames, "file")));
   return kExitDone;
 }
 
-Status write_one(const SkinOptions& options, const Scene& scene, ToolContext& context,
+Status write_one(SkinAs as, const Scene& scene, double seconds, ToolContext& context,
                  OutputFile& file) {
-  switch (options.as) {
-    case SkinAs::pose: {
-      const auto time = parse_clip_time(options.time);
-      if (!time) return at_option("--time", time.error());
-      const double seconds = time->seconds(scene.clip.rate);
-      const double end = scene.clip.duration();
-      if (seconds < 0 || seconds > end * (1 + 1e-9)) {
-        return Error("skin-time", fmt::format("--time {} lies outside the motion, which lasts {} s",
-                                              options.time, readable(end)));
-      }
+  switch (as) {
+    case SkinAs::pose:
       return write_pose_at(scene, seconds, context, file);
-    }
     case SkinAs::rig:
-      if (scene.clip.frame_count() == 0) {
-        context.warn("skin-no-frames", "the motion has no frames, so the rig does not move");
-      }
       return gltf::write_rig(scene.model, scene.clip, write_options(context, context.output), file);
     default:
       return write_clip(scene, context, file);
   }
 }
 
+// An option that the rest of the command line makes void is a mistake to be told of.
+Status check_options(const SkinOptions& options) {
+  const bool pose = options.as == SkinAs::pose;
+  if (!pose && !options.time.empty()) {
+    return Error("usage", "--time is for --as pose", "--from and --to choose a part of the motion");
+  }
+  if (pose && !(options.from.empty() && options.to.empty() && options.every == 1)) {
+    return Error("usage", "--from, --to and --every are not for --as pose", "--time says when");
+  }
+  return {};
+}
+
+Json result_of(const Scene& scene, int frames) {
+  Json result;
+  result["vertices"] = scene.model.vertex_count();
+  result["triangles"] = scene.model.triangles.size();
+  result["joints"] = scene.model.skeleton.joint_count();
+  result["frames"] = frames;
+  result["rate"] = scene.clip.rate;
+  return result;
+}
+
 Status check_output(const SkinOptions& options, const std::string& output) {
   const std::string end = extension(output);
   if (options.as == SkinAs::frames && output == "-") {
-    return Error("skin-output", "--as frames writes many files, which standard output cannot take");
+    return Error("skin-output", "--as frames writes many files, which standard output cannot take",
+                 "give -o OUT.glb for OUT_0000.glb, OUT_0001.glb, ...");
   }
   if (output == "-" || end == ".glb" || end == ".gltf") return {};
   return Error("skin-format",
@@ -301,6 +332,7 @@ Status check_output(const SkinOptions& options, const std::string& output) {
 }  // namespace
 
 Result<int> run_skin(const SkinOptions& options, ToolContext& context) {
+  if (Status fits = check_options(options); !fits) return fits.error();
   if (Status fits = check_output(options, context.output); !fits) return fits.error();
   auto scene = load(options, context);
   if (!scene) return scene.error();
@@ -309,21 +341,29 @@ Result<int> run_skin(const SkinOptions& options, ToolContext& context) {
     return Error("skin-no-frames", "the motion has no frames", "--as pose gives the reference pose")
         .in_file(options.motion);
   }
+  const int frames = options.as == SkinAs::pose ? 1 : scene->clip.frame_count();
+  context.report.result = result_of(*scene, frames);
   if (options.as == SkinAs::frames) return write_frames(*scene, context);
   if (options.as == SkinAs::clip) {
     Status fits = check_bakeable(*scene, context);
     if (!fits) return std::move(fits.error()).in_file(options.motion);
   }
+  const auto seconds = pose_time(options, scene->clip);
+  if (!seconds) return seconds.error();
+  if (options.as == SkinAs::rig && frames == 0) {
+    context.warn("skin-no-frames", "the motion has no frames, so the rig does not move");
+  }
 
   auto file = OutputFile::create(context.output, context.output_options());
   if (!file) return file.error();
-  if (Status written = write_one(options, *scene, context, *file); !written) {
+  if (Status written = write_one(options.as, *scene, *seconds, context, *file); !written) {
     return std::move(written.error()).in_file(context.output);
   }
   if (Status done = file->commit(); !done) return done.error();
   context.wrote(context.output);
-  context.say(fmt::format("{}: {} vertices, {} frames", context.output, scene->model.vertex_count(),
-                          options.as == SkinAs::pose ? 1 : scene->clip.frame_count()));
+  context.say(fmt::format("{}: {}, {}", context.output,
+                          counted(scene->model.vertex_count(), "vertex", "vertices"),
+                          counted(frames, "frame")));
   return kExitDone;
 }
 

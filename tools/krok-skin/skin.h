@@ -12,9 +12,9 @@ enum class SkinAs { clip, pose, rig, frames };
 struct SkinOptions {
   std::string model, motion;
   SkinAs as = SkinAs::clip;
-  std::string time = "0";  // --as pose; a ClipTime
-  std::string from, to;    // the part of the motion; ClipTimes, empty for its ends
-  int every = 1;           // of the frames
+  std::string time;      // --as pose; a ClipTime, empty for the start
+  std::string from, to;  // the part of the motion; ClipTimes, empty for its ends; not --as pose
+  int every = 1;         // of the frames; not --as pose
 };
 
 // Reads a model and a motion, skins, and writes glTF.

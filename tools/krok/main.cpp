@@ -79,6 +79,9 @@ int main(int argc, char** argv) {
     execv(beside.c_str(), arguments.data());
   }
   execvp(program.c_str(), arguments.data());
-  fmt::print(stderr, "krok: error: {} cannot be run: {} [usage]\n", program, std::strerror(errno));
+  fmt::print(stderr,
+             "krok: error: {} cannot be run: {} [usage]\n  hint: the tools belong into the folder "
+             "of krok\n",
+             program, std::strerror(errno));
   return krok::kExitTrouble;
 }

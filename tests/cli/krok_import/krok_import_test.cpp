@@ -3,9 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
-#include "core/file.h"
-#include "formats/anim/anim.h"
+#include "cli/krok_import/imported.h"
 #include "formats/model/model_format.h"
 
 namespace krok::test {
@@ -16,16 +14,9 @@ using Json = nlohmann::json;
 class ImportTest : public CliTest {
  protected:
   Clip imported(const std::vector<std::string>& options) {
-    std::vector<std::string> arguments = {path("in.bvh"), "-o", path("out.anim")};
+    std::vector<std::string> arguments = {path("in.bvh")};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    const ToolRun run = run_tool("krok-import", arguments);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    const auto file = InputFile::open(path("out.anim"));
-    EXPECT_TRUE(file.ok());
-    if (!file.ok()) return {};
-    auto clip = anim::read(file->bytes());
-    EXPECT_TRUE(clip.ok());
-    return clip.ok() ? std::move(*clip) : Clip();
+    return imported_clip(std::move(arguments), path("out.anim"));
   }
 };
 

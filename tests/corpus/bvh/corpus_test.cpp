@@ -165,7 +165,7 @@ TEST_F(Corpus, StrictRefusesJustTheFilesWithFaults) {
   std::vector<std::string> refused;
   for (const Listed& file : files_) {
     bvh::ReadOptions options;
-    options.strictness = bvh::Strictness::strict;
+    options.strictness = Strictness::strict;
     const auto capture = bvh::read(text_of(kFolder + "/" + file.path), file.path, options);
     if (capture.ok()) continue;
     refused.push_back(file.path);
@@ -204,7 +204,7 @@ TEST_F(Corpus, WrittenFilesReadBackAsTheSameMotion) {
     ASSERT_TRUE(output->commit().ok());
     bvh::ReadOptions options = unconverted(false);
     options.unit = Unit{0.01, "cm"};
-    options.strictness = bvh::Strictness::strict;
+    options.strictness = Strictness::strict;
     const auto second = bvh::read(text_of(out), out, options);
     ASSERT_TRUE(second.ok()) << second.error().message;
     const Clip& a = first->clip;

@@ -11,7 +11,7 @@
 namespace {
 
 using std::string_literals::operator""s;
-using krok::acclaim::Strictness;
+using krok::Strictness;
 using small_files::kAmc;
 using small_files::kAsf;
 

@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <string>
+#include <string_view>
 
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
@@ -13,6 +15,19 @@ namespace krok {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The names in the hierarchy of a BVH file, without reading it whole.
+std::string joint_names(std::string_view text) {
+  text = text.substr(0, text.find("MOTION"));
+  std::istringstream words{std::string(text)};
+  std::string names, word;
+  while (words >> word) {
+    if (word != "ROOT" && word != "JOINT") continue;
+    std::getline(words, word);
+    names += word + "\n";
+  }
+  return names;
+}
 
 TEST(CorpusBody, EverySkeletonGetsAValidBody) {
   const fs::path root = fs::path(KROK_CORPUS_DIR) / "bvh";
@@ -27,14 +42,9 @@ TEST(CorpusBody, EverySkeletonGetsAValidBody) {
     SCOPED_TRACE(path.filename().string());
     auto input = InputFile::open(path.string());
     ASSERT_TRUE(input.ok());
+    if (!seen.insert(joint_names(input->text())).second) continue;
     auto capture = bvh::read(input->text(), path.filename().string(), {});
     ASSERT_TRUE(capture.ok()) << capture.error().message;
-    const Skeleton& skeleton = capture->clip.skeleton;
-    std::string signature;
-    for (int j = 0; j < skeleton.joint_count(); ++j) {
-      signature += skeleton.names[static_cast<std::size_t>(j)] + " ";
-    }
-    if (!seen.insert(signature).second) continue;
     const auto body = make_body(capture->clip, {.detail = BodyDetail::low});
     ASSERT_TRUE(body.ok()) << body.error().message;
     test::expect_valid_body(*body);
@@ -45,7 +55,7 @@ TEST(CorpusBody, EverySkeletonGetsAValidBody) {
       EXPECT_LT(relative, 0.11);
     }
   }
-  EXPECT_GT(people, 10);
+  EXPECT_GT(people, 20);
 }
 
 }  // namespace

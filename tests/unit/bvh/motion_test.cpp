@@ -2,6 +2,10 @@
 // ones are lost.
 
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "formats/bvh/motion_rows.h"
 
 #include "unit/bvh/bvh_text.h"
 
@@ -35,6 +39,31 @@ TEST(Motion, RotationsApplyInTheOrderOfTheChannels) {
   // Ry takes x to -z, the root's Rx takes that to y, its Rz that to -x.
   const Vec3f direction = (positions[2] - positions[1]) / 2.0f;
   EXPECT_TRUE(direction.isApprox(Vec3f(-1, 0, 0), 1e-5f)) << direction.transpose();
+}
+
+// strtod rounds correctly too.
+TEST(Motion, NumbersAreTheNearestDoublesToWhatIsPrinted) {
+  for (const char* word :
+       {"0", "-0", "-0.0", "12.345678", "-179.999999", "000.1", "1e-3", "+2.5", ".5", "-.25", "5.",
+        "123456789012345", "1234567890123456", "0.30000000000000004", "2.2250738585072014e-308",
+        "99999999999999999999999", "0.000000000000001", "9007199254740993", "3.14159265358979"}) {
+    for (const char* after : {"\n", " ", ""}) {
+      const std::string text = std::string(word) + after;
+      double value = 1;
+      ASSERT_EQ(parse_row(text, 0, {&value, 1}), std::strlen(word)) << word;
+      const double expected = std::strtod(word, nullptr);
+      EXPECT_EQ(std::memcmp(&value, &expected, sizeof value), 0) << word;
+    }
+  }
+  for (const char* word : {"-", ".", "", "-.", "1.2.3", "1,5", "--1", "+-1", "0x10", "1e999", "nan",
+                           "12345678901234567890x", "1.x"}) {
+    for (const char* after : {"\n", " 1 ", ""}) {
+      double value = 1;
+      const std::string text = std::string(word) + after;
+      if (std::string(word).empty() && *after == ' ') continue;
+      EXPECT_EQ(parse_row(text, 0, {&value, 1}), RowIndex::kFaulty) << text;
+    }
+  }
 }
 
 TEST(Motion, EachJointKeepsItsOwnOrderAndNumberOfChannels) {

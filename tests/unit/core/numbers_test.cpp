@@ -75,6 +75,16 @@ TEST(Readable, RoundsForPeople) {
   EXPECT_EQ(readable(2e-7, 3), "2e-07");
 }
 
+TEST(Counted, SeparatesThousandsAndKnowsOne) {
+  EXPECT_EQ(grouped(0), "0");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(-1000), "-1,000");
+  EXPECT_EQ(grouped(1234567), "1,234,567");
+  EXPECT_EQ(counted(1, "frame"), "1 frame");
+  EXPECT_EQ(counted(0, "frame"), "0 frames");
+  EXPECT_EQ(counted(12400, "vertex", "vertices"), "12,400 vertices");
+}
+
 TEST(Readable, SurvivesWhatIsNoNumber) {
   EXPECT_EQ(readable(std::numeric_limits<double>::quiet_NaN()), "nan");
   EXPECT_EQ(readable(std::numeric_limits<double>::infinity()), "inf");

@@ -149,6 +149,8 @@ TEST(CheckModel, RefusesEachBrokenPromise) {
           m.influence_weights[1] = 0;
         }},
        {"finite", "model-value", [](Model& m) { m.positions[1].x() = kNanF; }},
+       {"normal", "model-value", [](Model& m) { m.normals[1] *= 1.01f; }},
+       {"tangent", "model-value", [](Model& m) { m.tangents[1].w() = 0.5f; }},
        {"finite", "model-value", [](Model& m) { m.normals[1].x() = kNanF; }},
        {"finite", "model-value", [](Model& m) { m.texture_coordinates[1].x() = kNanF; }},
        {"finite", "model-value", [](Model& m) { m.tangents[1].x() = kNanF; }},

@@ -1,0 +1,72 @@
+#include "formats/acclaim/find_skeleton.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "core/file.h"
+#include "core/text.h"
+
+namespace krok::acclaim {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether the motion's name begins with the skeleton's as a whole: not 1.asf for 11_01.amc.
+bool begins_name(const std::string& skeleton, const std::string& motion) {
+  if (skeleton.empty() || !same_word(motion.substr(0, skeleton.size()), skeleton)) return false;
+  if (motion.size() == skeleton.size()) return true;
+  const char next = motion[skeleton.size()];
+  return next == '_' || next == '-' || next == '.' || next == ' ';
+}
+
+// Sorted, so that the order of the folder does not matter.
+std::vector<fs::path> skeletons_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code ignored;
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+       entry.increment(ignored)) {
+    if (extension(entry->path().string()) == ".asf") found.push_back(entry->path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace
+
+Result<FoundSkeleton> find_skeleton(const std::string& amc_path) {
+  const fs::path motion(amc_path);
+  const fs::path folder = motion.has_parent_path() ? motion.parent_path() : fs::path(".");
+  const std::vector<fs::path> skeletons = skeletons_in(folder);
+  const std::string motion_stem = motion.stem().string();
+  std::size_t longest = 0;
+  std::vector<fs::path> named;
+  for (const fs::path& skeleton : skeletons) {
+    const std::string stem = skeleton.stem().string();
+    if (!begins_name(stem, motion_stem) || stem.size() < longest) continue;
+    if (stem.size() > longest) named.clear();
+    longest = stem.size();
+    named.push_back(skeleton);
+  }
+  // As it was written on the command line: without "./".
+  const auto beside = [&](const fs::path& skeleton) {
+    return (motion.parent_path() / skeleton.filename()).string();
+  };
+  if (named.size() == 1) return FoundSkeleton{beside(named[0]), "its name begins the motion's"};
+  if (skeletons.size() == 1) {
+    return FoundSkeleton{beside(skeletons[0]), "it is the only one beside the motion"};
+  }
+  return Error("acclaim-skeleton",
+               skeletons.empty()
+                   ? std::string("a motion in Acclaim's format needs its skeleton, and there is no "
+                                 ".asf file beside it")
+                   : fmt::format("a motion in Acclaim's format needs its skeleton, and it is not "
+                                 "clear which of the {} .asf files beside it that is",
+                                 skeletons.size()))
+      .in_file(amc_path);
+}
+
+}  // namespace krok::acclaim

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "body/implicit.h"
+
+namespace krok::body {
+
+// A field with the tubes that matter looked up block by block of space.
+class BlockedField {
+ public:
+  // Blocks of kCells lattice cells of size `cell`, those that the surface may pass through.
+  static constexpr int kCells = 8;
+  BlockedField(const Field& field, double cell, int jobs);
+
+  double value(const Vec3& point) const { return field_.value(point, near(point)); }
+  std::vector<TubePlace> places(const Vec3& point) const {
+    return field_.places(point, near(point));
+  }
+  // The nearest of them; its tube is -1 where there is none.
+  TubePlace nearest_place(const Vec3& point) const {
+    return field_.nearest_place(point, near(point));
+  }
+  // Moves a point near the surface onto it, by at most `limit`.
+  Vec3 onto_surface(const Vec3& point, double limit) const;
+
+  struct Block {
+    std::array<std::int64_t, 3> corner;  // lattice coordinates of its lowest corner
+    Field::Near near;
+  };
+  // The number of the block with this lowest corner over kCells, or -1.
+  int block_at(std::int64_t x, std::int64_t y, std::int64_t z) const;
+  const std::vector<Block>& blocks() const { return blocks_; }
+  Vec3 lattice_point(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    return origin_ +
+           cell_ * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+  }
+  const Field& field() const { return field_; }
+  double cell() const { return cell_; }
+
+ private:
+  const Field::Near& near(const Vec3& point) const;
+
+  const Field& field_;
+  double cell_;
+  Vec3 origin_;
+  std::vector<Block> blocks_;
+  std::unordered_map<std::uint64_t, std::size_t> index_;
+  Field::Near everything_;
+};
+
+}  // namespace krok::body

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cmath>
+
+#include "body/human_parts.h"
+
+// Neck, head and face of the human shape.
+
+namespace krok::body {
+
+int HumanBuilder::chest_joint() const {
+  const auto path = joint_path(skeleton_, 0, figure_.arms[0].shoulder);
+  const auto other = joint_path(skeleton_, 0, figure_.arms[1].shoulder);
+  int common = path.front();
+  for (std::size_t i = 0; i < std::min(path.size(), other.size()) && path[i] == other[i]; ++i) {
+    common = path[i];
+  }
+  return common;
+}
+
+// The top of the head: the end site where it is plausible, else from the joint at the skull's base.
+void HumanBuilder::place_head() {
+  const double u = unit_;
+  head_ = figure_.head >= 0 ? figure_.head : figure_.neck;
+  const Vec3 joint = position(head_);
+  double top = joint.y() + 0.118 * u;
+  if (figure_.head_top >= 0) {
+    const double above = position(figure_.head_top).y() - joint.y();
+    if (above > 0.085 * u && above < 0.16 * u) top = joint.y() + above;
+  }
+  // Not sunk into the shoulders, not on a stalk.
+  const double shoulder = trunk_point(0.285, 0, 0).y();
+  top = std::clamp(top, shoulder + 0.165 * u, shoulder + 0.205 * u);
+  crown_ = Vec3(joint.x(), top, joint.z() + 0.010 * u);
+}
+
+Vec3 HumanBuilder::head_point(double left, double below_top, double forward) const {
+  return crown_ + Vec3(left, -below_top, forward) * unit_;
+}
+
+void HumanBuilder::build_neck() {
+  const double u = unit_;
+  const Vec3 base = trunk_point(0.285, 0, -0.012);
+  const Vec3 skull_base = head_point(0, 0.100, -0.012);
+  Tube neck;
+  const auto add = [&](const Vec3& center, double width, double depth) {
+    Station station;
+    station.center = center;
+    station.width = width * u;
+    station.depth = depth * u;
+    station.arc = center.y() - base.y();
+    station.along = along_[static_cast<std::size_t>(head_)];
+    station.detail = 0.9;
+    neck.stations.push_back(station);
+  };
+  add(base, 0.0400, 0.0380);
+  add(base + 0.35 * (skull_base - base), 0.0350, 0.0355);
+  add(base + 0.65 * (skull_base - base), 0.0325, 0.0345);
+  add(skull_base, 0.0325, 0.0360);
+  neck.joints =
+      joints_along(joint_path(skeleton_, chest_joint(), head_), base, Vec3::UnitY(), 0.022 * u);
+  neck_ = shape_.add(std::move(neck));
+}
+
+// A tube that moves with the head: rows of a point and the half-axes there, over stature.
+int HumanBuilder::add_head_tube(std::initializer_list<HeadRow> rows, double detail) {
+  Tube tube;
+  for (const HeadRow& row : rows) {
+    Station station;
+    station.center = head_point(row.left, row.below_top, row.forward);
+    station.width = row.width * unit_;
+    station.depth = row.depth * unit_;
+    station.cap = row.cap * unit_;
+    station.along = along_[static_cast<std::size_t>(head_)] +
+                    std::max(0.0, station.center.y() - position(head_).y());
+    station.detail = detail;
+    tube.stations.push_back(station);
+  }
+  tube.joints = {{head_, 0, 0}};
+  return shape_.add(std::move(tube));
+}
+
+void HumanBuilder::build_head() {
+  skull_ = add_head_tube({{0, 0.0510, -0.002, 0.0425, 0.0550, 0.0510}}, 0.75);
+  face_ = add_head_tube({{0, 0.050, 0.017, 0.036, 0.033, 0.030},
+                         {0, 0.080, 0.023, 0.033, 0.030, 0.030},
+                         {0, 0.103, 0.027, 0.026, 0.0245, 0.020},
+                         {0, 0.116, 0.034, 0.016, 0.0160, 0.0135}},
+                        0.60);
+  for (std::size_t side = 0; side < 2; ++side) {
+    const double out = side == 0 ? 1.0 : -1.0;
+    ears_[side] = add_head_tube({{0.0425 * out, 0.070, -0.004, 0.0055, 0.0105, 0.0165}}, 0.40);
+  }
+  build_face();
+}
+
+// A hint of a face. The eyes lie between brow, nose and cheek-bones; nothing is cut out for them.
+void HumanBuilder::build_face() {
+  const double fine = 0.42;
+  const int nose = add_head_tube({{0, 0.058, 0.0510, 0.0050, 0.0060, 0.005},
+                                  {0, 0.069, 0.0540, 0.0055, 0.0060, 0.005},
+                                  {0, 0.079, 0.0575, 0.0080, 0.0068, 0.006}},
+                                 0.40);
+  const int upper_lip = add_head_tube({{0, 0.0920, 0.0505, 0.0110, 0.0050, 0.0040}}, fine);
+  const int lower_lip = add_head_tube({{0, 0.0995, 0.0495, 0.0095, 0.0052, 0.0045}}, fine);
+  const int chin = add_head_tube({{0, 0.1140, 0.0445, 0.0100, 0.0080, 0.0080}}, 0.5);
+  features_ = {nose, upper_lip, lower_lip, chin};
+  for (const double out : {1.0, -1.0}) {
+    const int brow = add_head_tube({{0.006 * out, 0.0550, 0.0520, 0.0050, 0.0050, 0.0045},
+                                    {0.017 * out, 0.0530, 0.0495, 0.0050, 0.0050, 0.0045},
+                                    {0.027 * out, 0.0565, 0.0415, 0.0050, 0.0050, 0.0045}},
+                                   fine);
+    const int cheek = add_head_tube({{0.0220 * out, 0.0785, 0.0345, 0.0130, 0.0110, 0.0100}}, 0.5);
+    features_.insert(features_.end(), {brow, cheek});
+    shape_.blends.push_back({{nose, brow}, 0.008 * unit_});
+  }
+}
+
+}  // namespace krok::body

@@ -1,0 +1,190 @@
+#include "body/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include "core/parallel.h"
+
+namespace krok::body {
+
+namespace {
+
+// The neighbours of a point in Kuhn's subdivision: the corners 1 to 7 of its cube, as bit masks of
+// the axes, and the same backwards (8 to 14).
+constexpr int kNeighbours = 14;
+constexpr std::array<int, 3> offset_of(int neighbour) {
+  const int corner = neighbour < 7 ? neighbour + 1 : neighbour - 6;
+  const int sign = neighbour < 7 ? 1 : -1;
+  return {sign * (corner & 1), sign * ((corner >> 1) & 1), sign * ((corner >> 2) & 1)};
+}
+
+// For each of the 2^14 ways in which neighbours can be inside, whether the point is simple.
+std::vector<char> simple_points() {
+  std::array<unsigned, kNeighbours> adjacent{};
+  for (int a = 0; a < kNeighbours; ++a) {
+    for (int b = 0; b < kNeighbours; ++b) {
+      const auto p = offset_of(a), q = offset_of(b);
+      int low = 2, high = -2;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low = std::min(low, q[axis] - p[axis]);
+        high = std::max(high, q[axis] - p[axis]);
+      }
+      // Two points are neighbours where their difference is a corner, or the opposite of one.
+      if (a != b && (low >= 0 || high <= 0) && high - low <= 1 && low >= -1 && high <= 1) {
+        adjacent[static_cast<std::size_t>(a)] |= 1u << b;
+      }
+    }
+  }
+  const auto together = [&adjacent](unsigned set) {
+    if (set == 0) return false;
+    unsigned reached = set & (~set + 1), before = 0;
+    while (reached != before) {
+      before = reached;
+      for (std::size_t i = 0; i < kNeighbours; ++i) {
+        if (reached & (1u << i)) reached |= adjacent[i] & set;
+      }
+    }
+    return reached == set;
+  };
+  constexpr unsigned kAll = (1u << kNeighbours) - 1;
+  std::vector<char> simple(kAll + 1);
+  for (unsigned set = 0; set <= kAll; ++set) simple[set] = together(set) && together(kAll & ~set);
+  return simple;
+}
+
+}  // namespace
+
+Lattice::Lattice(const BlockedField& field, int jobs)
+    : field_(field), values_(field.blocks().size() * kPoints), beside_(field.blocks().size()) {
+  parallel_for(beside_.size(), 4, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto& corner = field.blocks()[b].corner;
+      std::size_t i = 0;
+      for (int z = -1; z <= 1; ++z) {
+        for (int y = -1; y <= 1; ++y) {
+          for (int x = -1; x <= 1; ++x) {
+            beside_[b][i++] = field.block_at(corner[0] / kCells + x, corner[1] / kCells + y,
+                                             corner[2] / kCells + z);
+          }
+        }
+      }
+      sample(b);
+    }
+  });
+}
+
+void Lattice::sample(std::size_t block) {
+  const auto& [corner, near] = field_.blocks()[block];
+  constexpr int kPart = kCells / 2;
+  double* values = &values_[block * kPoints];
+  for (int part = 0; part < 8; ++part) {
+    const int x0 = (part & 1) * kPart, y0 = ((part >> 1) & 1) * kPart,
+              z0 = ((part >> 2) & 1) * kPart;
+    // From a value in the middle, whether the surface is beyond all points and their neighbours.
+    // Outside, values are distances or less; inside they may be up to twice that.
+    const double half = 0.5 * (kPart - 1);
+    const double middle =
+        field_.field().value(field_.lattice_point(corner[0] + x0, corner[1] + y0, corner[2] + z0) +
+                                 Vec3::Constant(half * field_.cell()),
+                             near);
+    const double reach = std::sqrt(3.0) * (half + 1) * field_.cell();
+    const bool far = middle > 1.2 * reach || middle < -2.2 * reach;
+    for (int z = z0; z < z0 + kPart; ++z) {
+      for (int y = y0; y < y0 + kPart; ++y) {
+        for (int x = x0; x < x0 + kPart; ++x) {
+          values[x + kCells * (y + kCells * z)] =
+              far ? middle
+                  : field_.field().value(
+                        field_.lattice_point(corner[0] + x, corner[1] + y, corner[2] + z), near);
+        }
+      }
+    }
+  }
+}
+
+Lattice::Point Lattice::neighbour(Point point, int dx, int dy, int dz) const {
+  int x = point.at % kCells + dx, y = point.at / kCells % kCells + dy,
+      z = point.at / (kCells * kCells) + dz;
+  const auto wrap = [](int& v) {
+    const int step = v < 0 ? -1 : v >= kCells ? 1 : 0;
+    v -= step * kCells;
+    return step;
+  };
+  const int bx = wrap(x), by = wrap(y), bz = wrap(z);
+  const auto index = static_cast<std::size_t>(bx + 1 + 3 * (by + 1) + 9 * (bz + 1));
+  return {beside_[static_cast<std::size_t>(point.block)][index],
+          static_cast<std::uint16_t>(x + kCells * (y + kCells * z))};
+}
+
+bool Lattice::cubes(std::size_t block, Cubes& values) const {
+  std::size_t i = 0;
+  bool inside = false, outside = false;
+  for (int z = 0; z < kSide; ++z) {
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        const int bx = x / kCells, by = y / kCells, bz = z / kCells;
+        const int at = beside_[block][static_cast<std::size_t>(13 + bx + 3 * by + 9 * bz)];
+        const auto local =
+            static_cast<std::size_t>(x % kCells + kCells * (y % kCells + kCells * (z % kCells)));
+        const double value =
+            at < 0 ? field_.cell() : values_[static_cast<std::size_t>(at) * kPoints + local];
+        values[i++] = value;
+        (value < 0 ? inside : outside) = true;
+      }
+    }
+  }
+  return inside && outside;
+}
+
+void Lattice::make_ball() {
+  static const std::vector<char> simple = simple_points();
+  const auto deepest = std::min_element(values_.begin(), values_.end());
+  if (deepest == values_.end() || *deepest >= 0) return;
+
+  struct Candidate {
+    double value;
+    std::size_t index;
+    bool operator<(const Candidate& other) const {  // the queue's top is the largest
+      return value != other.value ? value > other.value : index > other.index;
+    }
+  };
+  std::priority_queue<Candidate> queue;
+  std::vector<char> grown(values_.size(), 0), queued(values_.size(), 0);
+  const auto point_of = [](std::size_t index) {
+    return Point{static_cast<std::int32_t>(index / kPoints),
+                 static_cast<std::uint16_t>(index % kPoints)};
+  };
+  const auto add = [&](std::size_t index) {
+    grown[index] = 1;
+    for (int n = 0; n < kNeighbours; ++n) {
+      const auto [dx, dy, dz] = offset_of(n);
+      const Point next = neighbour(point_of(index), dx, dy, dz);
+      if (next.block < 0) continue;
+      const std::size_t at = static_cast<std::size_t>(next.block) * kPoints + next.at;
+      if (grown[at] || queued[at] || values_[at] >= 0) continue;
+      queued[at] = 1;
+      queue.push({values_[at], at});
+    }
+  };
+  add(static_cast<std::size_t>(deepest - values_.begin()));
+  while (!queue.empty()) {
+    const std::size_t index = queue.top().index;
+    queue.pop();
+    queued[index] = 0;
+    unsigned around = 0;
+    for (int n = 0; n < kNeighbours; ++n) {
+      const auto [dx, dy, dz] = offset_of(n);
+      const Point next = neighbour(point_of(index), dx, dy, dz);
+      if (next.block < 0) continue;
+      if (grown[static_cast<std::size_t>(next.block) * kPoints + next.at]) around |= 1u << n;
+    }
+    // One that is not simple yet comes back when another neighbour is added.
+    if (simple[around]) add(index);
+  }
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    if (values_[i] < 0 && !grown[i]) values_[i] = 0.3 * field_.cell();
+  }
+}
+
+}  // namespace krok::body

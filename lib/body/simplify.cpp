@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "body/polygonise.h"
+
+namespace krok::body {
+
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b - a).cross(c - a);
+}
+
+// A list in place: of the triangles at a vertex, or of its neighbours.
+struct Ring {
+  static constexpr std::size_t kMost = 16;
+  std::array<std::uint32_t, kMost> items;
+  std::uint32_t count = 0;
+
+  const std::uint32_t* begin() const { return items.data(); }
+  const std::uint32_t* end() const { return items.data() + count; }
+  bool has(std::uint32_t item) const { return std::find(begin(), end(), item) != end(); }
+  void add(std::uint32_t item) {
+    if (count == kMost) throw std::length_error("a vertex of more than 16 triangles");
+    items[count++] = item;
+  }
+  void remove(std::uint32_t item) {
+    const auto at = std::find(items.begin(), items.begin() + count, item);
+    std::copy(at + 1, items.begin() + count, at);
+    --count;
+  }
+};
+
+// Edge collapses over a mesh with triangle lists at the vertices.
+class Simplifier {
+ public:
+  Simplifier(const Mesh& mesh, std::vector<double>& detail)
+      : positions_(mesh.positions),
+        normals_(vertex_normals(mesh)),
+        triangles_(mesh.triangles),
+        detail_(detail),
+        at_vertex_(mesh.positions.size()),
+        alive_(mesh.positions.size(), 1),
+        triangle_alive_(mesh.triangles.size(), 1) {
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      for (const std::uint32_t v : triangles_[t]) at_vertex_[v].add(t);
+    }
+  }
+
+  // In rounds, each over all edges cheaper than a limit that rises from round to round: nearly the
+  // order of a queue, without one.
+  void run(std::size_t target) {
+    constexpr double kRise = 1.25;
+    std::size_t count = positions_.size();
+    double limit = 0.25 * mean_cost();
+    while (count > target) {
+      std::size_t collapsed = 0;
+      double cheapest_left = -1;
+      for (std::uint32_t a = 0; a < positions_.size() && count > target; ++a) {
+        if (!alive_[a]) continue;
+        const Ring around = neighbours(a);
+        for (const std::uint32_t b : around) {
+          if (b < a || !alive_[b]) continue;
+          const double price = cost(a, b);
+          if (price > limit) {
+            if (cheapest_left < 0 || price < cheapest_left) cheapest_left = price;
+            continue;
+          }
+          if (!collapse(a, b)) continue;
+          --count;
+          ++collapsed;
+          break;  // the rest of its neighbours are new
+        }
+      }
+      if (collapsed == 0 && cheapest_left < 0) return;  // no edge can go
+      limit = collapsed == 0 ? std::max(limit * kRise, cheapest_left * 1.01) : limit * kRise;
+    }
+  }
+
+  Mesh result() {
+    Mesh mesh;
+    std::vector<std::uint32_t> renumbered(positions_.size(), 0);
+    std::vector<double> detail;
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+      if (!alive_[v]) continue;
+      renumbered[v] = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.push_back(positions_[v]);
+      detail.push_back(detail_[v]);
+    }
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      if (!triangle_alive_[t]) continue;
+      const Triangle& old = triangles_[t];
+      mesh.triangles.push_back({renumbered[old[0]], renumbered[old[1]], renumbered[old[2]]});
+    }
+    detail_ = std::move(detail);
+    return mesh;
+  }
+
+ private:
+  double cost(std::uint32_t a, std::uint32_t b) const {
+    return (positions_[a] - positions_[b]).squaredNorm() / (detail_[a] * detail_[b]);
+  }
+  double mean_cost() const {
+    double sum = 0;
+    for (const Triangle& t : triangles_) sum += cost(t[0], t[1]);
+    return triangles_.empty() ? 0.0 : sum / static_cast<double>(triangles_.size());
+  }
+
+  // In a closed manifold the triangles at a vertex name each neighbour once as the next corner.
+  Ring neighbours(std::uint32_t v) const {
+    Ring result;
+    for (const std::uint32_t t : at_vertex_[v]) {
+      const Triangle& triangle = triangles_[t];
+      result.add(triangle[0] == v ? triangle[1] : triangle[1] == v ? triangle[2] : triangle[0]);
+    }
+    return result;
+  }
+
+  // Whether the triangles at v, but those that also hold `other`, stay sound with v at `to`.
+  bool fits(std::uint32_t v, std::uint32_t other, const Vec3& to) const {
+    for (const std::uint32_t t : at_vertex_[v]) {
+      const Triangle& triangle = triangles_[t];
+      if (triangle[0] == other || triangle[1] == other || triangle[2] == other) continue;
+      Vec3 corners[3];
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = positions_[triangle[k]];
+      const Vec3 before = area_normal(corners[0], corners[1], corners[2]);
+      double longest = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (triangle[k] == v) corners[k] = to;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        longest = std::max(longest, (corners[k] - corners[(k + 1) % 3]).squaredNorm());
+      }
+      const Vec3 after = area_normal(corners[0], corners[1], corners[2]);
+      const double length = after.norm();
+      if (length < 0.08 * longest) return false;
+      if (after.dot(before) < 0.3 * length * before.norm()) return false;
+      // Nor may it turn away from where the surface faced at the start, little by little.
+      const Vec3 facing = normals_[triangle[0]] + normals_[triangle[1]] + normals_[triangle[2]];
+      if (after.dot(facing) < 0.3 * length * facing.norm()) return false;
+    }
+    return true;
+  }
+
+  bool collapse(std::uint32_t a, std::uint32_t b) {
+    if (at_vertex_[a].count + at_vertex_[b].count > 15) return false;
+    const Ring around_a = neighbours(a), around_b = neighbours(b);
+    Ring shared;
+    for (const std::uint32_t u : around_a) {
+      if (around_b.has(u)) shared.add(u);
+    }
+    // The link condition (Dey et al. 1999): only then does the topology stay.
+    if (shared.count != 2) return false;
+    if (at_vertex_[shared.items[0]].count <= 3 || at_vertex_[shared.items[1]].count <= 3) {
+      return false;
+    }
+    const Vec3 middle = 0.5 * (positions_[a] + positions_[b]);
+    if (!fits(a, b, middle) || !fits(b, a, middle)) return false;
+
+    positions_[a] = middle;
+    detail_[a] = 0.5 * (detail_[a] + detail_[b]);
+    normals_[a] += normals_[b];
+    const double facing = normals_[a].norm();
+    if (facing > 0) normals_[a] /= facing;
+    alive_[b] = 0;
+    const Ring at_b = at_vertex_[b];
+    for (const std::uint32_t t : at_b) {
+      Triangle& triangle = triangles_[t];
+      if (std::find(triangle.begin(), triangle.end(), a) != triangle.end()) {
+        triangle_alive_[t] = 0;
+        for (const std::uint32_t u : triangle) at_vertex_[u].remove(t);
+      }
+    }
+    for (const std::uint32_t t : at_vertex_[b]) {  // those that live on
+      Triangle& triangle = triangles_[t];
+      std::replace(triangle.begin(), triangle.end(), b, a);
+      at_vertex_[a].add(t);
+    }
+    at_vertex_[b].count = 0;
+    return true;
+  }
+
+  std::vector<Vec3> positions_, normals_;
+  std::vector<Triangle> triangles_;
+  std::vector<double>& detail_;
+  std::vector<Ring> at_vertex_;
+  std::vector<char> alive_, triangle_alive_;
+};
+
+}  // namespace
+
+Mesh simplify(const Mesh& mesh, std::vector<double>& detail, std::size_t target) {
+  Simplifier simplifier(mesh, detail);
+  simplifier.run(target);
+  return simplifier.result();
+}
+
+}  // namespace krok::body

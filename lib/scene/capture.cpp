@@ -1,0 +1,14 @@
+#include "scene/capture.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace krok {
+
+Status check_rate(const std::optional<double>& rate, const std::string& code) {
+  if (!rate || (*rate > 0 && std::isfinite(*rate))) return {};
+  return Error(code, fmt::format("a rate of {} frames a second is not positive", *rate));
+}
+
+}  // namespace krok

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace krok {
+
+// Names that were given out already.
+class UniqueNames {
+ public:
+  // Claims a name that must stay as it is; false if it is taken.
+  bool claim(const std::string& name) { return taken_.insert(name).second; }
+
+  // Claims the first free one of name, name_2, name_3, ...
+  std::string make(const std::string& name);
+
+ private:
+  std::unordered_set<std::string> taken_;
+  std::unordered_map<std::string, int> numbers_;
+};
+
+}  // namespace krok

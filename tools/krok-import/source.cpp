@@ -1,0 +1,108 @@
+#include "tools/krok-import/source.h"
+
+#include <fmt/format.h>
+
+#include "formats/acclaim/acclaim_reader.h"
+#include "formats/acclaim/find_skeleton.h"
+#include "formats/bvh/bvh_reader.h"
+#include "formats/registry/registry.h"
+
+namespace krok::import {
+
+namespace {
+
+using registry::Kind;
+
+Result<Source> read_bvh(const InputFile& input, const Options& options, const CaptureOptions& how) {
+  bvh::ReadOptions read_with;
+  static_cast<CaptureOptions&>(read_with) = how;
+  read_with.positions = options.positions;
+  read_with.rest_frame = options.rest_frame;
+  auto read = bvh::read(input.text(), input.path(), read_with);
+  if (!read) return std::move(read).error();
+  Source source;
+  source.details["positions"] = {{"choice", read->positions.choice},
+                                 {"confidence", confidence_name(read->positions.confidence)},
+                                 {"reason", read->positions.reason}};
+  source.details["frames_announced"] = read->frames_announced;
+  source.details["rest_frame"] = {{"found", read->rest_frame_found},
+                                  {"left_out", read->rest_frame_dropped}};
+  source.capture = std::move(*read);
+  return source;
+}
+
+Result<Source> read_acclaim(const InputFile& skeleton, const InputFile* motion,
+                            const CaptureOptions& how) {
+  auto read = motion == nullptr ? acclaim::read(skeleton.text(), skeleton.path(), {}, {}, how)
+                                : acclaim::read(skeleton.text(), skeleton.path(), motion->text(),
+                                                motion->path(), how);
+  if (!read) return std::move(read).error();
+  Source source;
+  source.details["first_frame_number"] = read->first_frame_number;
+  source.capture = std::move(*read);
+  return source;
+}
+
+// The path of the skeleton for a motion: as given, or found beside it, with a note.
+Result<std::string> skeleton_for(const std::string& motion, const Options& options,
+                                 ToolContext& context) {
+  if (!options.skeleton.empty()) return options.skeleton;
+  constexpr const char* kHint = "name it with --skeleton FILE.asf";
+  if (options.input == "-") {
+    return Error("acclaim-skeleton", "a motion in Acclaim's format needs its skeleton", kHint)
+        .in_file(motion);
+  }
+  auto found = acclaim::find_skeleton(motion);
+  if (!found) {
+    Error error = std::move(found).error();
+    error.hint = kHint;
+    return error;
+  }
+  Diagnostic note;
+  note.severity = Severity::note;
+  note.code = "acclaim-skeleton";
+  note.message = fmt::format("{} is taken as its skeleton: {}", found->path, found->reason);
+  note.hint = "--skeleton FILE.asf names another";
+  note.where.file = motion;
+  context.tell(std::move(note));
+  return found->path;
+}
+
+Status check_options(const Options& options, bool is_bvh, bool is_motion) {
+  if (!is_motion && !options.skeleton.empty()) {
+    return Error("usage", fmt::format("--skeleton is for an Acclaim motion (AMC), which {} is not",
+                                      options.input));
+  }
+  if (is_bvh) return {};
+  if (options.positions != bvh::Positions::automatic) {
+    return Error("usage", "--positions is for BVH; Acclaim's format leaves no choice");
+  }
+  if (options.rest_frame != bvh::RestFrame::keep) {
+    return Error("usage", "--skip-rest-frame is for BVH");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Source> read_source(const Options& options, ToolContext& context) {
+  auto how = read_options(options);
+  if (!how) return how.error();
+  how->jobs = context.jobs;
+  how->progress = context.progress;
+  const auto input = context.open_input(options.input);
+  if (!input) return input.error();
+  const Kind kind = registry::identify(input->path(), input->bytes());
+  const bool is_motion = kind == Kind::amc;
+  const bool is_bvh = !is_motion && kind != Kind::asf;  // what is neither, the BVH reader refuses
+  if (Status fits = check_options(options, is_bvh, is_motion); !fits) return fits.error();
+  if (is_bvh) return read_bvh(*input, options, *how);
+  if (!is_motion) return read_acclaim(*input, nullptr, *how);
+  const auto path = skeleton_for(input->path(), options, context);
+  if (!path) return path.error();
+  const auto skeleton = context.open_input(*path);
+  if (!skeleton) return skeleton.error();
+  return read_acclaim(*skeleton, &*input, *how);
+}
+
+}  // namespace krok::import

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "describe.h"
+#include "formats/acclaim/acclaim_reader.h"
+#include "formats/acclaim/find_skeleton.h"
+#include "formats/bvh/bvh_reader.h"
+#include "formats/registry/registry.h"
+
+namespace krok::info {
+
+namespace {
+
+void add_choice(const std::string& key, const std::string& choice, Confidence confidence,
+                const std::string& reason, Description& out) {
+  const std::string why = reason.empty() ? std::string() : ": " + reason;
+  out.add(key, fmt::format("{} ({}{})", choice, confidence_name(confidence), why));
+  out.json[key] = {
+      {"choice", choice}, {"confidence", confidence_name(confidence)}, {"reason", reason}};
+}
+
+// What all captures have. `measured` says of what pose the size is.
+void add_capture(const Capture& capture, const std::string& measured, const ToolContext& context,
+                 Description& out) {
+  const Clip& clip = capture.clip;
+  const Conventions& conventions = capture.conventions;
+  add_skeleton(clip.skeleton, context.verbose, out);
+  std::vector<Vec3> positions;
+  for (const Transform& joint : clip.skeleton.reference) positions.push_back(joint.position);
+  add_size<Vec3>(positions, measured, out);
+  const Unit& unit = conventions.unit;
+  add_choice(
+      "unit",
+      unit.name == "m" ? unit.name : fmt::format("{}, {} m", unit.name, readable(unit.metres)),
+      conventions.unit_confidence, conventions.unit_reason, out);
+  out.json["unit"]["metres"] = unit.metres;
+  add_choice("up", std::string(direction_name(conventions.up)), conventions.up_confidence,
+             conventions.up_reason, out);
+  add_choice("forward", std::string(direction_name(conventions.forward)),
+             conventions.forward_confidence, conventions.forward_reason, out);
+}
+
+}  // namespace
+
+Result<Description> describe_bvh(const InputFile& file, ToolContext& context) {
+  bvh::ReadOptions options;
+  options.jobs = context.jobs;
+  options.progress = context.progress;
+  const auto capture = bvh::read(file.text(), file.path(), options);
+  if (!capture) return capture.error();
+  context.tell(capture->diagnostics);
+  Description out;
+  out.what = "a capture (BVH), as krok-import takes it";
+  out.json["kind"] = "bvh";
+  add_timing(capture->clip.frame_count(), capture->clip.rate, out);
+  out.json["frames_announced"] = capture->frames_announced;
+  out.json["frame_time"] = capture->frame_time;
+  add_capture(*capture, "joints with all rotations 0", context, out);
+  add_choice("positions", capture->positions.choice, capture->positions.confidence,
+             capture->positions.reason, out);
+  out.json["rest_frame"] = capture->rest_frame_found;
+  if (capture->rest_frame_found) out.add("rest pose", "frame 0, no part of the motion");
+  return out;
+}
+
+Result<Description> describe_acclaim(const InputFile& file, ToolContext& context) {
+  acclaim::ReadOptions options;
+  options.jobs = context.jobs;
+  options.progress = context.progress;
+  Description out;
+  const bool is_motion = registry::identify(file.path(), file.bytes()) == registry::Kind::amc;
+  Result<acclaim::Capture> capture = acclaim::Capture();
+  if (is_motion) {
+    auto found = acclaim::find_skeleton(file.path());
+    if (!found) {
+      Error error = std::move(found).error();
+      error.hint = "put its skeleton beside it";
+      return error;
+    }
+    const auto skeleton = context.open_input(found->path);
+    if (!skeleton) return skeleton.error();
+    capture = acclaim::read(skeleton->text(), skeleton->path(), file.text(), file.path(), options);
+    out.what = "a capture (AMC), as krok-import takes it";
+    out.json["kind"] = "amc";
+    out.add("skeleton", fmt::format("{} ({})", found->path, found->reason));
+    out.json["skeleton_file"] = found->path;
+  } else {
+    capture = acclaim::read(file.text(), file.path(), {}, {}, options);
+    out.what = "a skeleton (ASF), as krok-import takes it";
+    out.json["kind"] = "asf";
+  }
+  if (!capture) return capture.error();
+  context.tell(capture->diagnostics);
+  if (is_motion) add_timing(capture->clip.frame_count(), capture->clip.rate, out);
+  add_capture(*capture, "joints in the reference pose", context, out);
+  return out;
+}
+
+}  // namespace krok::info
