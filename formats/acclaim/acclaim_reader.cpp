@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "capture/fill_frames.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
@@ -12,8 +13,7 @@
 #include "formats/acclaim/motion_file.h"
 #include "formats/acclaim/skeleton_file.h"
 #include "formats/acclaim/source_text.h"
-#include "scene/fill_frames.h"
-#include "scene/roles.h"
+#include "roles/roles.h"
 
 namespace krok::acclaim {
 

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "capture/capture.h"
 #include "core/result.h"
 #include "math/types.h"
-#include "scene/capture.h"
 
 // Acclaim skeletons (ASF) and motions (AMC), the form in which the CMU collection was recorded. The
 // format: M. Schafer, "Acclaim Skeleton File Definition V1.10", Acclaim, 1995, which describes the

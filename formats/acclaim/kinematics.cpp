@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "capture/unique_names.h"
 #include "math/euler.h"
-#include "scene/unique_names.h"
 
 namespace krok::acclaim {
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cassert>
 
+#include "capture/fill_frames.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/bvh/frame_rate.h"
@@ -16,7 +17,6 @@
 #include "formats/bvh/position_choice.h"
 #include "formats/bvh/rest_frame.h"
 #include "formats/bvh/text_cursor.h"
-#include "scene/fill_frames.h"
 
 namespace krok::bvh {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "capture/capture.h"
 #include "core/result.h"
-#include "scene/capture.h"
 
 // Biovision hierarchy files (BVH) as they are found: M. Meredith and S. Maddock, "Motion capture
 // file formats explained", University of Sheffield, 2001, describes the format; what exporters make

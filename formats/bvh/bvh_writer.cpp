@@ -9,9 +9,9 @@
 #include <limits>
 #include <vector>
 
+#include "capture/unique_names.h"
 #include "formats/bvh/text_cursor.h"
 #include "math/quaternion.h"
-#include "scene/unique_names.h"
 
 namespace krok::bvh {
 

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "capture/convention_choice.h"
 #include "formats/bvh/hierarchy.h"
 #include "math/transform.h"
-#include "scene/convention_choice.h"
 
 namespace krok::bvh {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "capture/unique_names.h"
 #include "core/text.h"
-#include "scene/unique_names.h"
 
 namespace krok::bvh {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "math/quaternion.h"
-#include "scene/roles.h"
+#include "roles/roles.h"
 
 namespace krok::bvh {
 

@@ -104,11 +104,8 @@ void move_to(const Skeleton& skeleton, std::span<const Transform> built,
   }
 }
 
-}  // namespace
-
-Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
-  if (Status sound = check(clip); !sound) return std::move(sound).error();
-  const Skeleton& skeleton = clip.skeleton;
+Status check_request(const Clip& clip, const BodyOptions& options) {
+  if (Status sound = check(clip); !sound) return sound;
   if (options.pose == BodyPose::frame &&
       (options.frame < 0 || options.frame >= clip.frame_count())) {
     return Error(
@@ -116,45 +113,64 @@ Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
         fmt::format("there is no frame {}, the clip has {}", options.frame, clip.frame_count()),
         "frames count from 0");
   }
-  if (skeleton.names.size() > 65536) {
-    return Error("body-joints",
-                 fmt::format("{} joints, at most 65,536 fit in a model", skeleton.names.size()));
+  const std::size_t joints = clip.skeleton.names.size();
+  if (joints > 65536) {
+    return Error("body-joints", fmt::format("{} joints, at most 65,536 fit in a model", joints));
   }
-  Progress silent;
-  Progress& progress = options.progress ? *options.progress : silent;
+  return {};
+}
 
-  Body body;
+// What to build, and where.
+struct Plan {
+  std::vector<Transform> built;   // joint_to_world, the pose that the surface is made in
+  std::vector<Transform> wanted;  // the pose it is then moved to; empty where that is the same
+  Shape shape;
+};
+
+Plan make_plan(const Clip& clip, const BodyOptions& options, Body& body) {
+  const Skeleton& skeleton = clip.skeleton;
   const auto figure = find_human(skeleton, find_roles(skeleton));
   body.human = figure.has_value();
-  std::vector<Transform> wanted;  // where another pose is asked for than a body can be built in
-  if (options.pose == BodyPose::reference) wanted = skeleton.reference;
-  if (options.pose == BodyPose::frame) wanted = clip_pose(clip, options.frame);
-  BuildPose pose;
-  Shape shape;
-  if (figure) {
-    body.stature = figure->stature;
-    pose = human_build_pose(clip, *figure);
-    // Built with fanned fingers, so that the surface does not grow together between them.
-    if (wanted.empty()) wanted = pose.joint_to_world;
-    pose.joint_to_world = spread_fingers(skeleton, *figure, pose.joint_to_world);
-    shape = human_shape(skeleton, *figure, pose.joint_to_world);
-  } else {
-    pose = general_build_pose(clip);
-    if (!wanted.empty()) pose.joint_to_world = std::move(wanted);
-    wanted.clear();
-    shape = general_shape(skeleton, pose.joint_to_world);
-  }
+  Plan plan;
+  if (options.pose == BodyPose::reference) plan.wanted = skeleton.reference;
+  if (options.pose == BodyPose::frame) plan.wanted = clip_pose(clip, options.frame);
+  BuildPose pose = figure ? human_build_pose(clip, *figure) : general_build_pose(clip);
   body.pose = options.pose == BodyPose::automatic   ? pose.name
               : options.pose == BodyPose::reference ? "reference"
                                                     : fmt::format("frame {}", options.frame);
+  if (figure) {
+    body.stature = figure->stature;
+    // Built with fanned fingers, so that the surface does not grow together between them.
+    plan.built = spread_fingers(skeleton, *figure, pose.joint_to_world);
+    if (plan.wanted.empty()) plan.wanted = std::move(pose.joint_to_world);
+    plan.shape = human_shape(skeleton, *figure, plan.built);
+  } else {
+    plan.built = std::move(plan.wanted.empty() ? pose.joint_to_world : plan.wanted);
+    plan.wanted.clear();
+    plan.shape = general_shape(skeleton, plan.built);
+  }
+  return plan;
+}
+
+}  // namespace
+
+Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
+  if (Status possible = check_request(clip, options); !possible) {
+    return std::move(possible).error();
+  }
+  Progress silent;
+  Progress& progress = options.progress ? *options.progress : silent;
+  const Skeleton& skeleton = clip.skeleton;
+  Body body;
+  Plan plan = make_plan(clip, options, body);
 
   const Level level = level_of(options.detail);
-  const double cell = cell_size(Field(shape), level.vertices);
-  thicken(shape, 0.8 * cell);
-  const Field field(shape);
+  const double cell = cell_size(Field(plan.shape), level.vertices);
+  thicken(plan.shape, 0.8 * cell);
+  const Field field(plan.shape);
   const double size = field.bounds().diagonal().norm();
   if (!(size > 1e-9) || !(size < 1e9)) {
-    return Error("body-size", fmt::format("the figure is {} m large", readable(size, 3)),
+    return Error("body-size", fmt::format("the figure is {} m large", size),
                  "import it with its real unit of length");
   }
   const BlockedField blocked(field, cell, options.jobs);
@@ -162,11 +178,11 @@ Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
 
   Model& model = body.model;
   model.skeleton = skeleton;
-  model.skeleton.reference = wanted.empty() ? pose.joint_to_world : wanted;
+  model.skeleton.reference = plan.wanted.empty() ? plan.built : plan.wanted;
   model.positions.resize(mesh.positions.size());
   bind_surface(mesh, blocked, level.smoothing, options.jobs, model);
   map_surface(mesh, blocked, options.jobs, model);
-  if (!wanted.empty()) move_to(skeleton, pose.joint_to_world, wanted, model, mesh);
+  if (!plan.wanted.empty()) move_to(skeleton, plan.built, plan.wanted, model, mesh);
 
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     model.positions[v] = mesh.positions[v].cast<float>();

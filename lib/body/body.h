@@ -27,11 +27,11 @@ struct BodyOptions {
 };
 
 struct Body {
-  // One part, "body", of material "body". The mesh is a closed, oriented 2-manifold without
-  // duplicated vertices, normals point out. Four influences a vertex. Texture coordinates lie in
-  // [0, 1]: u runs around a limb from its front (0) to its back (1), the same on the left and on
-  // the right, so that no seam is needed; v is the distance from the root along the bones, 0 at the
-  // root and 1 at the farthest tip.
+  // One part, "body", of material "body". The mesh is one closed, oriented 2-manifold without
+  // handles (a topological sphere) or duplicated vertices; normals point out. Four influences a
+  // vertex. Texture coordinates lie in [0, 1]: u runs around a limb from its front (0) to its back
+  // (1), the same on the left and on the right, so that no seam is needed; v is the distance from
+  // the root along the bones, 0 at the root and 1 at the farthest tip.
   Model model;
   bool human = false;       // shaped by human proportions; otherwise by the lengths of the bones
   double volume = 0;        // cubic metres enclosed by the mesh
@@ -45,8 +45,9 @@ struct Body {
 // measurements scaled to its bones (human_shape.h), any other figure by the lengths of its bones
 // and of what hangs on them (general_shape.h).
 //
-// Codes: those of check(Clip); body-frame for a frame that the clip does not have; body-size for a
-// figure so large or small that its coordinates overflow.
+// Codes: those of check(Clip); body-frame for a frame that the clip does not have; body-joints for
+// more joints than a model's influences can name (65,536); body-size for a figure so large or small
+// that its coordinates overflow.
 Result<Body> make_body(const Clip& clip, const BodyOptions& options = {});
 
 // The same without frames to choose from.

@@ -58,6 +58,23 @@ void tell_sole_from_toes(const Skeleton& skeleton, double stature, HumanFigure::
   leg.toes = -1;
 }
 
+// Lengths of segments over stature: Drillis and Contini 1966, in Winter, Biomechanics and Motor
+// Control of Human Movement, figure 4.1.
+std::vector<double> stature_estimates(std::span<const Transform> pose, const HumanFigure& figure) {
+  std::vector<double> statures;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const auto& arm = figure.arms[side];
+    const auto& leg = figure.legs[side];
+    const double thigh = distance(pose, leg.hip, leg.knee) / 0.245;
+    const double shank = distance(pose, leg.knee, leg.ankle) / 0.246;
+    const double upper_arm = distance(pose, arm.shoulder, arm.elbow) / 0.186;
+    const double forearm = distance(pose, arm.elbow, arm.wrist) / 0.146;
+    for (const double estimate : {thigh, shank, upper_arm, forearm}) statures.push_back(estimate);
+    statures.push_back(distance(pose, leg.hip, leg.ankle) / 0.491);
+  }
+  return statures;
+}
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
@@ -105,20 +122,8 @@ std::optional<HumanFigure> find_human(const Skeleton& skeleton, const RoleMap& r
   }
   if (figure.hips < 0 || (figure.neck < 0 && figure.head < 0)) return std::nullopt;
 
-  // Lengths of segments over stature: Drillis and Contini 1966, in Winter, Biomechanics and Motor
-  // Control of Human Movement, figure 4.1.
   const auto& pose = skeleton.reference;
-  std::vector<double> statures;
-  for (std::size_t side = 0; side < 2; ++side) {
-    const auto& arm = figure.arms[side];
-    const auto& leg = figure.legs[side];
-    const double thigh = distance(pose, leg.hip, leg.knee) / 0.245;
-    const double shank = distance(pose, leg.knee, leg.ankle) / 0.246;
-    const double upper_arm = distance(pose, arm.shoulder, arm.elbow) / 0.186;
-    const double forearm = distance(pose, arm.elbow, arm.wrist) / 0.146;
-    for (const double estimate : {thigh, shank, upper_arm, forearm}) statures.push_back(estimate);
-    statures.push_back(distance(pose, leg.hip, leg.ankle) / 0.491);
-  }
+  const auto statures = stature_estimates(pose, figure);
   figure.stature = median(statures);
   if (!(figure.stature > 0)) return std::nullopt;
   for (const double estimate : statures) {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/roles.h"
+#include "roles/roles.h"
 #include "scene/skeleton.h"
 
 // Where the landmarks of a human body are in a skeleton.

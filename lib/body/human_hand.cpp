@@ -32,18 +32,18 @@ HandLayout hand_layout(const Skeleton& skeleton, const HumanFigure& figure, std:
 
   for (std::vector<int> chain : arm.fingers) {
     // Joints between wrist and knuckle, and those that step back from where the finger goes, are
-    // parts of the palm.
+    // parts of the palm. A thumb starts near the wrist, and its first bone may go aside.
+    const bool thumb = named_thumb(skeleton.names[static_cast<std::size_t>(chain.back())]);
     while (chain.size() > 2) {
       const Vec3 first = at(chain[1]) - at(chain[0]), whole = at(chain.back()) - at(chain[0]);
-      const bool palm = (at(chain[0]) - wrist).norm() < 0.030 * u;
-      const bool aside = turn_angle(first, whole) > 50 * kRadiansPerDegree;
+      const bool palm = !thumb && (at(chain[0]) - wrist).norm() < 0.030 * u;
+      const bool aside = turn_angle(first, whole) > (thumb ? 80 : 50) * kRadiansPerDegree;
       const bool short_bone = first.norm() < 1e-3 * u;
       if (!palm && !aside && !short_bone) break;
-      if (named_thumb(skeleton.names[static_cast<std::size_t>(chain[0])]) && !short_bone) break;
       chain.erase(chain.begin());
     }
     if (chain.size() < 2) continue;
-    if (hand.thumb.empty() && named_thumb(skeleton.names[static_cast<std::size_t>(chain.back())])) {
+    if (hand.thumb.empty() && thumb) {
       hand.thumb = std::move(chain);
     } else {
       hand.fingers.push_back(std::move(chain));

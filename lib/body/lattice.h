@@ -40,9 +40,6 @@ class Lattice {
   void sample(std::size_t block);
   // The point at an offset of -1, 0 or 1 along each axis; block -1 if there is none.
   Point neighbour(Point point, int dx, int dy, int dz) const;
-  double& value(Point point) {
-    return values_[static_cast<std::size_t>(point.block) * kPoints + point.at];
-  }
 
   const BlockedField& field_;
   std::vector<double> values_;                        // [blocks x kPoints]

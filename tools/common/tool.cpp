@@ -214,6 +214,9 @@ Status check_destinations(const ToolContext& context) {
 
 int finish(ToolContext& context, const std::string& json_path, int exit_code) {
   if (json_path.empty()) return exit_code;
+  for (const std::string& input : context.refused_inputs) {
+    if (same_file(input, json_path)) return kExitTrouble;
+  }
   const std::string text =
       context.report.to_json().dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (const Status written = write_file(json_path, text); !written) {
@@ -291,6 +294,7 @@ void ToolContext::print(const std::string& text) {
 Result<InputFile> ToolContext::open_input(const std::string& path) {
   for (const std::string& destination : destinations) {
     if (same_file(path, destination)) {
+      refused_inputs.push_back(path);
       return Error("usage", "is read and would be replaced by a result", "choose another name")
           .in_file(path);
     }

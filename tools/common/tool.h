@@ -35,6 +35,8 @@ class ToolContext {
   // The files that this run writes: -o, --json=FILE and every option whose value is named OUT... in
   // the help. open_input refuses to read one of them.
   std::vector<std::string> destinations;
+  // What open_input refused for that. No report is written there either.
+  std::vector<std::string> refused_inputs;
 
   // The options given that change the result, for provenance: without those that name outputs, and
   // inputs (named IN... in the help) by base name, so that no folder gets into a result.

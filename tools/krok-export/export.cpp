@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "capture/conventions.h"
 #include "core/numbers.h"
 #include "formats/anim/anim.h"
 #include "formats/bvh/bvh_writer.h"
 #include "formats/csv/csv_writer.h"
 #include "formats/gltf/gltf_writer.h"
-#include "scene/conventions.h"
 #include "skin/bone_mesh.h"
 
 namespace krok {

@@ -25,9 +25,10 @@ int main(int argc, char** argv) {
     app.add_option("--unit", options.unit, "BVH: the unit of lengths: m, cm, mm, in, ft")
         ->type_name("UNIT")
         ->default_str("cm");
-    app.add_flag("--bones,!--no-bones", options.bones,
-                 "glTF: add a thin mesh for each bone, so that viewers show the skeleton (the "
-                 "default; --no-bones leaves joints alone)");
+    app.add_flag_function(
+        "--bones,!--no-bones", [&](std::int64_t sign) { options.bones = sign > 0; },
+        "glTF: add a thin mesh for each bone, so that viewers show the skeleton (the "
+        "default; --no-bones leaves joints alone)");
   };
   spec.run = [&](krok::ToolContext& context) { return krok::run_export(options, context); };
   return krok::run_tool(spec, argc, argv);

@@ -3,10 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "capture/capture.h"
 #include "core/result.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/container/packed_orientation.h"
-#include "scene/capture.h"
 
 namespace krok::import {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "capture/capture.h"
 #include "core/result.h"
-#include "scene/capture.h"
 #include "tools/common/tool.h"
 #include "tools/krok-import/options.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/numbers.h"
-#include "scene/roles.h"
+#include "roles/roles.h"
 
 namespace krok::info {
 

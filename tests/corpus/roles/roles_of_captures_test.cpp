@@ -8,7 +8,7 @@
 
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
-#include "scene/roles.h"
+#include "roles/roles.h"
 
 namespace krok {
 namespace {

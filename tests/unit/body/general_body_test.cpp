@@ -168,6 +168,14 @@ TEST(GeneralBody, FiguresOutOfBoundsAreRefused) {
   ASSERT_FALSE(body.ok());
   EXPECT_EQ(body.error().code, "body-size");
   EXPECT_FALSE(make_body(Skeleton(), {}).ok());
+
+  Skeleton crowd;
+  for (int j = 0; j <= 65536; ++j) {
+    crowd.add("j" + std::to_string(j), j - 1, Transform(), false);
+  }
+  const auto many = make_body(crowd, {});
+  ASSERT_FALSE(many.ok());
+  EXPECT_EQ(many.error().code, "body-joints");
 }
 
 }  // namespace

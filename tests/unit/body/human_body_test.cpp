@@ -231,6 +231,30 @@ TEST(HumanBody, AReferencePoseThatIsNoneGivesWayToAFrame) {
   EXPECT_EQ(body->pose, "frame 0");
 }
 
+TEST(HumanBody, AFootThatHangsOnAJointUnderTheAnkleStaysLevel) {
+  // From the ankle straight down to the sole, from there to the tip: no ball of the foot.
+  Skeleton skeleton = human_skeleton();
+  for (const std::string side : {"Left", "Right"}) {
+    const auto foot = static_cast<std::size_t>(skeleton.find(side + "Foot"));
+    const auto toes = static_cast<std::size_t>(skeleton.find(side + "ToeBase"));
+    skeleton.reference[toes].position = skeleton.reference[foot].position - Vec3(0, 0.04, 0);
+    Transform tip = skeleton.reference[toes];
+    tip.position.z() += 0.2;
+    skeleton.add(side + "Tip", static_cast<int>(toes), tip, true);
+  }
+  const Body body = build(skeleton, {.detail = BodyDetail::low});
+  expect_valid_body(body);
+  EXPECT_EQ(body.pose, "reference");  // nothing was turned
+  const int carrier = skeleton.find("LeftToeBase");
+  bool carried = false;
+  for (std::size_t v = 0; v < body.model.positions.size(); ++v) {
+    const Vec3f& p = body.model.positions[v];
+    carried = carried || (p.z() > 0.1f && p.x() > 0 && p.y() < 0.08f &&
+                          body.model.influence_joints[4 * v] == carrier);
+  }
+  EXPECT_TRUE(carried);
+}
+
 TEST(HumanBody, TheNumberOfThreadsDoesNotMatter) {
   const Body one = build(human_skeleton(), {.jobs = 1}),
              three = build(human_skeleton(), {.jobs = 3});

@@ -92,7 +92,7 @@ inline void expect_valid_body(const Body& body) {
   EXPECT_EQ(facts.euler, 2);  // a sphere: no handles
   EXPECT_GT(facts.volume, 0);
   EXPECT_NEAR(facts.volume / body.volume, 1, 1e-3);
-  EXPECT_LT(facts.turned_normals, 0.005);
+  EXPECT_LT(facts.turned_normals, 0.001);
   ASSERT_EQ(model.normals.size(), model.positions.size());
   for (const Vec3f& normal : model.normals) ASSERT_NEAR(normal.norm(), 1, 1e-4);
   ASSERT_EQ(model.texture_coordinates.size(), model.positions.size());

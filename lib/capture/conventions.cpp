@@ -1,4 +1,4 @@
-#include "scene/conventions.h"
+#include "capture/conventions.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // If these fail, two joints get one name, and what goes by names mixes them up.
 
-#include "scene/unique_names.h"
+#include "capture/unique_names.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/joint_names.h"
+#include "roles/joint_names.h"
 #include "scene/skeleton.h"
 
 namespace krok {

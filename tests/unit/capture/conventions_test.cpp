@@ -1,5 +1,5 @@
 // If these fail, captures arrive too large, lying on their back or facing sideways.
-#include "scene/conventions.h"
+#include "capture/conventions.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scene/fill_frames.h"
+#include "capture/fill_frames.h"
 
 #include <vector>
 

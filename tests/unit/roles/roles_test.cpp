@@ -1,6 +1,6 @@
 // If these fail, limbs of captures of a well-known exporter are mistaken or not found, and with
 // them everything that works on limbs: bodies, retargeting, inverse kinematics.
-#include "scene/roles.h"
+#include "roles/roles.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "scene/joint_names.h"
+#include "roles/joint_names.h"
 #include "support/skeleton_text.h"
 
 namespace krok {

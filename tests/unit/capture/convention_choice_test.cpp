@@ -1,7 +1,7 @@
 // If these fail, what the user says of a file is not followed, a figure comes in turned, mirrored
 // or in a wrong size, or a mesh that was bound in the reference pose does not follow the motion.
 
-#include "scene/convention_choice.h"
+#include "capture/convention_choice.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/result.h"
-#include "scene/roles.h"
+#include "roles/roles.h"
 #include "scene/skeleton.h"
 
 // Working out in which unit and which axes a capture was written, and bringing it into Krok's frame

@@ -1,4 +1,4 @@
-#include "scene/body_shape.h"
+#include "roles/body_shape.h"
 
 #include <algorithm>
 #include <array>

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "capture/conventions.h"
 #include "core/result.h"
 #include "math/transform.h"
-#include "scene/conventions.h"
 
 // From what the user said and what the data show to the conversion into Krok's frame, with the
 // words that tell the user. Readers of foreign formats share this.

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "capture/convention_choice.h"
+#include "capture/conventions.h"
 #include "core/progress.h"
 #include "core/result.h"
 #include "scene/clip.h"
-#include "scene/convention_choice.h"
-#include "scene/conventions.h"
 
 // What readers of motion captures have in common, whatever the format.
 

@@ -1,4 +1,4 @@
-#include "scene/convention_choice.h"
+#include "capture/convention_choice.h"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
-#include "scene/roles.h"
+#include "roles/roles.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "scene/body_shape.h"
-#include "scene/joint_names.h"
+#include "roles/body_shape.h"
+#include "roles/joint_names.h"
 
 namespace krok {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "scene/conventions.h"
+#include "capture/conventions.h"
 
 namespace krok {
 

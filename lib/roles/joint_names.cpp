@@ -1,4 +1,4 @@
-#include "scene/joint_names.h"
+#include "roles/joint_names.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "scene/unique_names.h"
+#include "capture/unique_names.h"
 
 #include <fmt/format.h>
 

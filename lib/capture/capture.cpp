@@ -1,4 +1,4 @@
-#include "scene/capture.h"
+#include "capture/capture.h"
 
 #include <fmt/format.h>
 
