@@ -219,7 +219,7 @@ class Reader {
     }
     clip.resize(static_cast<int>(rows_.size()));
     if (options_.progress != nullptr) options_.progress->begin("reading frames", rows_.size());
-    std::atomic<bool> finite = true;
+    std::atomic<std::size_t> first_overflow = rows_.size();
     parallel_for(rows_.size(), kRowsAtOnce, options_.jobs, [&](std::size_t begin, std::size_t end) {
       std::vector<double> values(hierarchy_.channels.size());
       std::vector<Transform> pose(kinematics.joint_count());
@@ -236,15 +236,22 @@ class Reader {
           zero += 0.0f * (joint.position.cast<float>().sum() +
                           joint.orientation.coeffs().cast<float>().sum());
         }
-        if (zero != 0) finite = false;
+        if (zero != 0) {
+          std::size_t first = first_overflow;
+          while (row < first && !first_overflow.compare_exchange_weak(first, row)) {
+          }
+        }
         clip.set_pose(static_cast<int>(row), pose);
       }
       if (options_.progress != nullptr) options_.progress->advance(end - begin);
     });
     if (row_is_faulty_) return {};
-    if (!finite) {
-      return Error("bvh-number", "the numbers are so large that positions overflow")
-          .in_file(file_name_);
+    if (first_overflow < rows_.size()) {
+      Error overflow("bvh-number", "the numbers are so large that positions overflow",
+                     "look at the frame's position channels, and at the unit if --unit was given");
+      overflow.where = locate(text_, rows_[first_overflow], file_name_);
+      overflow.frame = static_cast<std::int64_t>(first_overflow);
+      return overflow;
     }
     if (options_.progress != nullptr) options_.progress->end();
     fill_faulty_frames();

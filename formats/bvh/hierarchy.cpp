@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "core/numbers.h"
 #include "formats/bvh/file_kind.h"
@@ -26,6 +29,9 @@ constexpr std::array kChannelNames = {ChannelName{"Xposition", ChannelKind::posi
                                       ChannelName{"Yrotation", ChannelKind::rotation, Axis::y},
                                       ChannelName{"Zrotation", ChannelKind::rotation, Axis::z}};
 
+constexpr const char* kChannelsHint =
+    "after CHANNELS write how many channel names follow, and these";
+
 class HierarchyParser {
  public:
   HierarchyParser(std::string_view text, const std::string& file_name, const ReadOptions& options,
@@ -45,7 +51,8 @@ class HierarchyParser {
       if (same_word(word, "MOTION")) {
         if (!open_.empty()) {
           return fail("bvh-syntax",
-                      fmt::format("MOTION, but {} is not closed: a '}}' is missing", open_name()));
+                      fmt::format("MOTION, but {} is not closed: a '}}' is missing", open_name()),
+                      "write the '}' that ends the joint");
         }
         break;
       }
@@ -139,9 +146,13 @@ class HierarchyParser {
     if (word == "}") {
       return close_joint();
     }
+    const bool channel =
+        std::any_of(kChannelNames.begin(), kChannelNames.end(),
+                    [&](const ChannelName& candidate) { return same_word(word, candidate.name); });
     return fail("bvh-syntax",
                 fmt::format("'{}' where OFFSET, CHANNELS, JOINT, End Site or '}}' is expected",
-                            shown(word)));
+                            shown(word)),
+                channel ? kChannelsHint : "");
   }
 
   Status open_joint(bool end_site) {
@@ -149,7 +160,8 @@ class HierarchyParser {
       return fail("bvh-syntax", "a joint inside of an End Site");
     }
     if (static_cast<int>(result_.joints.size()) >= options_.max_joints) {
-      return fail("bvh-limit", fmt::format("more than {} joints", options_.max_joints));
+      return fail("bvh-limit", fmt::format("more than {} joints", options_.max_joints),
+                  "no figure has so many; look whether the file is what it should be");
     }
     const std::size_t keyword = cursor_.word_begin();
     // What follows "End" is "Site", and with some exporters a name that is no joint's.
@@ -161,14 +173,18 @@ class HierarchyParser {
     if (!end_site) {
       joint.name = std::string(name);
       if (name.empty()) {
-        if (Status told = warn_at(keyword, "bvh-name", "a joint without a name", {}); !told) {
-          return told;
+        if (options_.strictness == Strictness::strict) {
+          return fail_at(keyword, "bvh-name", "a joint without a name",
+                         "without --strict it is given one");
         }
+        name_places_.back() = keyword;  // the warning comes with the name that it gets
       }
     }
     if (cursor_.word() != "{") {
-      return fail("bvh-syntax", fmt::format("a '{{' is expected after {}",
-                                            end_site ? "End Site" : readable_name(joint.name)));
+      return fail("bvh-syntax",
+                  fmt::format("a '{{' is expected after {}",
+                              end_site ? "End Site" : readable_name(joint.name)),
+                  "write the '{' that begins the joint");
     }
     open_.push_back(static_cast<int>(result_.joints.size()));
     result_.joints.push_back(std::move(joint));
@@ -200,6 +216,11 @@ class HierarchyParser {
                                 open_name()),
                     "OFFSET takes three numbers");
       }
+      if (std::abs(*value) > std::numeric_limits<float>::max()) {
+        return fail("bvh-number",
+                    fmt::format("'{}' in the OFFSET of {} is too large", shown(word), open_name()),
+                    "no bone is so long; look whether the file is what it should be");
+      }
       result_.joints[index].offset[axis] = *value;
     }
     return {};
@@ -213,7 +234,8 @@ class HierarchyParser {
     const auto count = parse_integer(count_word);
     if (!count || *count < 0) {
       return fail("bvh-channels",
-                  fmt::format("'{}' is not a number of channels", shown(count_word)));
+                  fmt::format("'{}' is not a number of channels", shown(count_word)),
+                  kChannelsHint);
     }
     const std::size_t count_place = cursor_.word_begin();
     result_.joints[index].first_channel = result_.channels.size();
@@ -222,9 +244,9 @@ class HierarchyParser {
       const std::string_view word = cursor_.peek();
       if (word.empty() || word == "{" || word == "}" || same_word(word, "JOINT") ||
           same_word(word, "End") || same_word(word, "OFFSET")) {
-        return fail_at(
-            count_place, "bvh-channels",
-            fmt::format("{} announces {} channels and names {}", open_name(), *count, i));
+        return fail_at(count_place, "bvh-channels",
+                       fmt::format("{} announces {} channels and names {}", open_name(), *count, i),
+                       kChannelsHint);
       }
       cursor_.word();
       if (Status added = add_channel(word, index, has_position); !added) return added;

@@ -50,14 +50,16 @@ inline bool parse_plain_number(const char*& at, double& value) {
   return true;
 }
 
-// Reads one number and steps over it; false if it is not whole and finite.
+// Reads one number and steps over it; false if it is not whole, or beyond what a float holds.
 inline bool parse_number(const char*& at, const char* end, double& value) {
   const char* begin = at;
   if (begin != end && *begin == '+' && end - begin > 1 && begin[1] != '-' && begin[1] != '+') {
     ++begin;
   }
   const auto parsed = fast_float::from_chars(begin, end, value);
-  if (parsed.ec != std::errc() || !std::isfinite(value)) return false;
+  if (parsed.ec != std::errc() || !(std::abs(value) <= std::numeric_limits<float>::max())) {
+    return false;
+  }
   if (parsed.ptr != end && !is_space(*parsed.ptr)) return false;
   at = parsed.ptr;
   return true;

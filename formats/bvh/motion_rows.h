@@ -36,7 +36,7 @@ struct RowIndex {
 };
 
 // Parses `values.size()` numbers from byte `begin` on. Returns the offset after the last one, or
-// kFaulty if they are not all there, whole and finite.
+// kFaulty if they are not all there, whole and within what a float holds.
 std::size_t parse_row(std::string_view text, std::size_t begin, std::span<double> values);
 
 // Where rows begin if each line that is not empty is a row: a search for line ends alone, so rows

@@ -12,6 +12,18 @@ namespace {
 // More than these would drown what else there is to say.
 constexpr int kMostWarnings = 20;
 
+// Puts a _ for each control character but the tab; true if there was one.
+bool replace_control_characters(std::string& name) {
+  bool found = false;
+  for (char& c : name) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code >= 32 && code != 127) || c == '\t') continue;
+    c = '_';
+    found = true;
+  }
+  return found;
+}
+
 }  // namespace
 
 void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
@@ -19,6 +31,8 @@ void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
   Locator locate(text, file_name);
   int duplicates = 0;
   int recoded = 0;
+  int cleaned = 0;
+  int nameless = 0;
   const auto warn = [&](const NamedPlace& place, const char* code, std::string message) {
     Diagnostic warning;
     warning.severity = Severity::warning;
@@ -42,12 +56,19 @@ void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
              fmt::format("the name of joint {} is not UTF-8 and was read as Latin-1", *place.name));
       }
     }
+    if (replace_control_characters(*place.name) && ++cleaned <= kMostWarnings) {
+      warn(place, "bvh-name",
+           fmt::format("a joint's name has control characters; it is called {}", *place.name));
+    }
     if (place.name->empty() || !names.claim(*place.name)) renamed.push_back(i);
   }
   for (const std::size_t i : renamed) {
     NamedPlace& place = places[i];
     const std::string given = *place.name;
     *place.name = names.make(given.empty() ? "joint" : given);
+    if (given.empty() && ++nameless <= kMostWarnings) {
+      warn(place, "bvh-name", fmt::format("a joint without a name is called {}", *place.name));
+    }
     if (!given.empty() && ++duplicates <= kMostWarnings) {
       warn(place, "bvh-name-duplicate",
            fmt::format("another joint is named {} already; this one is called {}", given,

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/numbers.h"
 #include "formats/bvh/motion_rows.h"
 #include "formats/bvh/names.h"
 #include "formats/bvh/text_cursor.h"
@@ -199,7 +200,8 @@ class CarefulIndexer {
 
   Error number_fault_at(std::string_view word, std::size_t at, std::size_t channel) {
     Error error = error_at(at, "bvh-number",
-                           fmt::format("'{}' is not a finite number ({})", shown(word),
+                           fmt::format("'{}' is {} ({})", shown(word),
+                                       parse_finite(word) ? "too large" : "not a finite number",
                                        hierarchy_.channel_name(channel)));
     error.hint = word.find(',') != std::string_view::npos
                      ? "numbers are written with a decimal point"

@@ -365,6 +365,11 @@ Unit unit_named(const char* name) {
   return *parse_unit(name);
 }
 
+// Whether a captured figure may be as large as that.
+bool is_sensible(double metres) {
+  return metres >= 0.01 && metres <= 1000.0;
+}
+
 void detect_unit_of_figure(double height, bool cmu_names, Conventions& found) {
   constexpr double kUsualHeight = 1.72;
   double best = INFINITY;
@@ -386,6 +391,12 @@ void detect_unit_of_figure(double height, bool cmu_names, Conventions& found) {
     found.unit_confidence = Confidence::certain;
   } else if (metres >= 1.25 && metres <= 2.4 && clear) {
     found.unit_confidence = Confidence::likely;
+  }
+  if (!is_sensible(metres)) {
+    found.unit_reason = fmt::format(
+        "the figure would be {:.3g} m tall, and no common unit brings it near a usual height",
+        metres);
+    return;
   }
   found.unit_reason = fmt::format("the bones are those of a figure about {:.2f} m tall", metres);
   if (found.unit.name == "cmu" && cmu_names && metres > 1.2 && metres < 2.2) {
@@ -429,9 +440,18 @@ void detect_unit(const Evidence& evidence, Conventions& found) {
     found.unit = unit_named(name);
     if (extent * found.unit.metres <= kLargest) break;
   }
-  found.unit_reason =
-      fmt::format("no legs or arms to go by; a size of {:.3g} m is taken as sensible",
-                  extent * found.unit.metres);
+  const double metres = extent * found.unit.metres;
+  if (!(extent > 0)) {
+    found.unit_reason = "all joints stand at one place, which shows no size to go by";
+  } else if (!is_sensible(metres)) {
+    found.unit_reason = fmt::format(
+        "no legs or arms to go by, and in none of m, cm and mm is the size a sensible one; in {} "
+        "it is {:.3g} m",
+        found.unit.name, metres);
+  } else {
+    found.unit_reason =
+        fmt::format("no legs or arms to go by; a size of {:.3g} m is taken as sensible", metres);
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
 #include "tools/common/one_of.h"
+#include "tools/common/output_kind.h"
 
 namespace krok::body_tool {
 
@@ -109,6 +110,9 @@ Result<int> run(const Options& options, ToolContext& context) {
 
   auto input = context.open_input(options.input);
   if (!input) return input.error();
+  if (Status fits = check_output_kind(context.output, "-o", registry::Kind::model); !fits) {
+    return fits.error();
+  }
   auto clip = read_skeleton(*input);
   if (!clip) return clip.error();
   auto body = make_body(*clip, *how);

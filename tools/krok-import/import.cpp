@@ -9,6 +9,7 @@
 #include "formats/model/model_format.h"
 #include "motion/sample.h"
 #include "scene/model.h"
+#include "tools/common/output_kind.h"
 #include "tools/krok-import/source.h"
 
 namespace krok::import {
@@ -119,6 +120,11 @@ Result<int> run(const Options& options, ToolContext& context) {
   }
   auto source = read_source(options, context);
   if (!source) return source.error();
+  using registry::Kind;
+  if (Status fits = check_output_kind(context.output, "-o", Kind::anim); !fits) return fits.error();
+  if (Status fits = check_output_kind(options.model, "--model", Kind::model); !fits) {
+    return fits.error();
+  }
   context.tell(source->capture.diagnostics);
 
   Clip& clip = source->capture.clip;

@@ -3,19 +3,21 @@
 #include <fmt/format.h>
 
 #include "core/numbers.h"
+#include "tools/common/one_of.h"
 
 namespace krok::import {
 
 namespace {
 
-// An option whose value is one of a list of words. CLI11 would list words and numbers in the help.
+// An option whose value is one of a list of words.
 template <typename T>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
-                        const std::map<std::string, T>& words, const std::string& description,
-                        const std::string& type_name, const std::string& default_word) {
+                        std::vector<std::pair<std::string, T>> words,
+                        const std::string& description, const std::string& type_name,
+                        const std::string& default_word) {
   return app.add_option(name, value, description)
       ->type_name(type_name)
-      ->transform(CLI::CheckedTransformer(words).description(""))
+      ->transform(one_of(std::move(words)))
       ->default_str(default_word);
 }
 

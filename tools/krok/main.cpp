@@ -54,7 +54,7 @@ bool is_verb(std::string_view name) {
 
 int main(int argc, char** argv) {
   const std::string verb = argc > 1 ? argv[1] : "";
-  if (verb == "--help" || verb == "-h") {
+  if (verb == "--help" || verb == "-h" || verb == "help") {
     fmt::print("{}", help());
     return krok::kExitDone;
   }

@@ -126,6 +126,23 @@ TEST_F(ImportTest, RepairsAreListed) {
   EXPECT_EQ(both.exit_code, 2);
 }
 
+TEST_F(ImportTest, OutputsNamedAfterAnotherFormatAreRefused) {
+  put("in.bvh", capture(5));
+  for (const std::string name : {"x.glb", "x.gltf", "x.bvh", "x.GLB"}) {
+    const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path(name)});
+    EXPECT_EQ(run.exit_code, 2) << name;
+    EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
+    EXPECT_NE(run.err.find("krok-export"), std::string::npos) << run.err;
+  }
+  const ToolRun model =
+      run_tool("krok-import", {path("in.bvh"), "-o", path("x.anim"), "--model", path("x.glb")});
+  EXPECT_EQ(model.exit_code, 2);
+  EXPECT_NE(model.err.find("krok-skin"), std::string::npos) << model.err;
+  EXPECT_EQ(listing(), (std::vector<std::string>{"in.bvh"}));
+  // A name that promises nothing is the user's choice.
+  EXPECT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("x.out")}).exit_code, 0);
+}
+
 TEST_F(ImportTest, WrongValuesAreUsageErrors) {
   put("in.bvh", capture(5));
   const std::vector<std::vector<std::string>> cases = {

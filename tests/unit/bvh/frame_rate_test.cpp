@@ -64,6 +64,10 @@ TEST(FrameRate, AGivenRateStandsAboveTheFile) {
   EXPECT_EQ(read_ok(kArm + motion(1, row), options).clip.rate, 60.0);
   // Also where the file has none that can be used.
   EXPECT_EQ(read_ok(kArm + motion(1, row, "0"), options).clip.rate, 60.0);
+  const Capture without = read_ok(kArm + "MOTION\nFrames: 1\n" + row, options);
+  EXPECT_EQ(without.clip.rate, 60.0);
+  EXPECT_EQ(without.clip.frame_count(), 1);
+  EXPECT_NE(find(without.diagnostics, "bvh-frame-time"), nullptr);
   options.rate = -1;
   EXPECT_FALSE(read(kArm + motion(1, row), "test.bvh", options).ok());
 }

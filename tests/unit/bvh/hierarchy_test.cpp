@@ -148,7 +148,8 @@ TEST(Hierarchy, FaultsAreToldWithTheirPlace) {
       {kArm + "MOTION\n", "bvh-syntax", 17, 1},
       {kArm + "MOTION\nFrames: x\n", "bvh-frame-count", 17, 9},
       {kArm + "MOTION\nFrames: -1\nFrame Time: 1\n", "bvh-frame-count", 17, 9},
-      {kArm + "MOTION\nFrames: 1\n1 2 3\n", "bvh-syntax", 18, 1},
+      {kArm + "MOTION\nFrames: 1\n1 2 3\n", "bvh-frame-time", 18, 1},
+      {"HIERARCHY\nROOT a\n{\nOFFSET 0 0 1e39\n}\n" + rest, "bvh-number", 4, 12},
       {kArm + "MOTION\nFrames: 0\nFrame Time: 0\n", "bvh-frame-time", 18, 13},
       {kArm + "MOTION\nFrames: 0\nFrame Time: -0.1\n", "bvh-frame-time", 18, 13},
   };
@@ -159,6 +160,51 @@ TEST(Hierarchy, FaultsAreToldWithTheirPlace) {
     EXPECT_EQ(error.where.column, broken.column) << broken.text << "\n" << error.message;
     EXPECT_EQ(error.where.file, "test.bvh");
   }
+}
+
+TEST(Hierarchy, FaultsThatAHandCanMendComeWithAHint) {
+  const std::string rest = motion(1, "1\n");
+  ReadOptions two_joints = plain_options();
+  two_joints.max_joints = 2;
+  const auto hint = [](const std::string& text) { return read_error(text).hint; };
+  EXPECT_NE(hint(kArm + "MOTION\n0 0 0\n").find("Frames: 120"), std::string::npos);
+  EXPECT_NE(hint(kArm + "MOTION\nFrames: 3.0\n").find("Frames: 120"), std::string::npos);
+  EXPECT_NE(hint(kArm + "MOTION\nFrames: -3\n").find("Frames: 120"), std::string::npos);
+  EXPECT_NE(hint(kArm + "MOTION\nFrames: 1\n" + kRow).find("--fps"), std::string::npos);
+  EXPECT_NE(hint(kArm + motion(1, kRow, "0")).find("--fps"), std::string::npos);
+  EXPECT_NE(hint(kArm + motion(1, kRow, "-0.1")).find("--fps"), std::string::npos);
+  for (const std::string channels : {"x", "2 Xrotation", "1 Xrotation Yrotation"}) {
+    EXPECT_NE(hint("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS " + channels + "\n}\n" + rest)
+                  .find("how many channel names"),
+              std::string::npos)
+        << channels;
+  }
+  EXPECT_NE(hint("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n" + rest).find("'}'"), std::string::npos);
+  EXPECT_NE(read_error(kArm + motion(1, kRow), two_joints).hint, "");
+}
+
+TEST(Hierarchy, ControlCharactersInANameAreReplacedWithTheirPlace) {
+  for (const char c : {'\0', '\x01', '\x1B', '\x7F'}) {
+    const std::string text = "HIERARCHY\nROOT a" + std::string(1, c) +
+                             "b\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\n" + motion(1, "1\n");
+    const Capture capture = read_ok(text);
+    EXPECT_EQ(capture.clip.skeleton.names[0], "a_b");
+    const Diagnostic* warning = find(capture.diagnostics, "bvh-name");
+    ASSERT_NE(warning, nullptr);
+    EXPECT_EQ(warning->where.line, 2);
+  }
+}
+
+TEST(Hierarchy, AJointWithoutANameIsToldItsNewOne) {
+  const Capture capture = read_ok(
+      "HIERARCHY\nROOT joint\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nJOINT\n{\nOFFSET 0 0 "
+      "0\n}\n}\n" +
+      motion(1, "1\n"));
+  EXPECT_EQ(capture.clip.skeleton.names[1], "joint_2");
+  const Diagnostic* warning = find(capture.diagnostics, "bvh-name");
+  ASSERT_NE(warning, nullptr);
+  EXPECT_NE(warning->message.find("joint_2"), std::string::npos);
+  EXPECT_EQ(warning->where.line, 6);
 }
 
 TEST(Hierarchy, OddButHarmlessFilesAreTakenWithAWarningAndRefusedByStrict) {

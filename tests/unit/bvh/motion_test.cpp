@@ -324,5 +324,27 @@ TEST(Motion, AnAxisGivenAlongTheWorkedOutOneIsSettled) {
   EXPECT_TRUE(check(capture.clip).ok());
 }
 
+TEST(Motion, NumbersBeyondAFloatAreFaultsWithTheirPlace) {
+  const std::string good = "0 0 0 0 0 0 0 0 0\n";
+  const std::string text = kArm + motion(3, good + "0 1e39 0 0 0 0 0 0 0\n" + good);
+  ReadOptions options = plain_options();
+  options.unit = Unit{0.01, "cm"};
+  const Error error = read_error(text, options);
+  EXPECT_EQ(error.code, "bvh-number");
+  EXPECT_NE(error.message.find("too large"), std::string::npos) << error.message;
+  EXPECT_EQ(error.where.line, 20);
+  EXPECT_EQ(error.where.column, 3);
+  options.strictness = Strictness::repair;
+  const Capture repaired = read_ok(text, options);
+  EXPECT_EQ(repaired.clip.frame_count(), 3);
+  EXPECT_EQ(repaired.repairs.size(), 1u);
+  // Each number fits, but not what becomes of them.
+  options = plain_options();
+  options.unit = Unit{1000, "1000m"};
+  const Error sum = read_error(kArm + motion(2, good + "0 3e38 0 0 0 0 0 0 0\n"), options);
+  EXPECT_EQ(sum.code, "bvh-number");
+  EXPECT_EQ(sum.where.line, 20);
+}
+
 }  // namespace
 }  // namespace krok::bvh

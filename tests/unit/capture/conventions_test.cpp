@@ -216,5 +216,26 @@ TEST(Units, AreParsed) {
   }
 }
 
+TEST(Conventions, SizesThatAreNoneAreNotCalledSensible) {
+  const auto reason = [](double length) {
+    Skeleton rod;
+    rod.add("a", -1, Transform());
+    rod.add("b", 0, {Vec3(0, length, 0), Quat::Identity()});
+    return detect_conventions(rod, find_roles(rod), {}).unit_reason;
+  };
+  EXPECT_NE(reason(2).find("taken as sensible"), std::string::npos);
+  for (const double length : {0.0, 2e-10, 1e9}) {
+    EXPECT_EQ(reason(length).find("taken as sensible"), std::string::npos) << reason(length);
+  }
+  EXPECT_NE(reason(0).find("at one place"), std::string::npos);
+  for (const double metres_per_unit : {1e-8, 1e8}) {
+    const Skeleton figure = person(metres_per_unit, Direction::plus_y, Direction::plus_z);
+    const Conventions found = detect_conventions(figure, find_roles(figure), {});
+    EXPECT_EQ(found.unit_confidence, Confidence::guess);
+    EXPECT_NE(found.unit_reason.find("no common unit"), std::string::npos) << found.unit_reason;
+    EXPECT_EQ(found.unit_reason.find("about"), std::string::npos) << found.unit_reason;
+  }
+}
+
 }  // namespace
 }  // namespace krok
