@@ -202,6 +202,8 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
       return InputFile(path, std::move(content));
     }
   }
+  // What cannot be mapped takes memory byte by byte, and a device may never end.
+  limit = std::min(limit, InputFile::kStreamLimit);
   std::array<std::byte, 1 << 16> buffer;
   for (;;) {
     const ssize_t count = ::read(descriptor, buffer.data(), buffer.size());

@@ -19,7 +19,11 @@ namespace krok {
 // otherwise (a pipe, standard input). The view lives as long as this object.
 class InputFile {
  public:
-  // "-" is standard input. A file of more than `limit` bytes is refused (code file-too-large).
+  // The most that is read from a pipe, a device or standard input.
+  static constexpr std::uint64_t kStreamLimit = std::uint64_t{1} << 30;
+
+  // "-" is standard input. A file of more than `limit` bytes is refused (code file-too-large), a
+  // stream at kStreamLimit too.
   // An empty file is no error here.
   static Result<InputFile> open(const std::string& path,
                                 std::uint64_t limit = std::uint64_t{64} << 30);
