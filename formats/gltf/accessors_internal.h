@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "core/result.h"
-#include "formats/gltf/gltf_asset.h"
+#include "nodes/scene.h"
 
 // Private to this folder: bounds-checked reading of accessors.
 
 namespace krok::gltf {
+
+using nodes::Shared;
 
 // Reads accessors of a parsed file out of its buffers. Nothing in `model` is trusted: every index,
 // offset, stride and count is checked against the bytes that are there; values must be finite.

@@ -16,6 +16,8 @@
 
 namespace krok::gltf {
 
+using namespace nodes;
+
 namespace {
 
 std::string label(const char* kind, std::size_t index, const std::string& name) {
@@ -27,7 +29,7 @@ bool exists(int index, std::size_t count) {
   return index >= 0 && static_cast<std::size_t>(index) < count;
 }
 
-void warn(Asset& asset, std::string code, std::string message, std::string hint = {}) {
+void warn(Scene& asset, std::string code, std::string message, std::string hint = {}) {
   Diagnostic diagnostic;
   diagnostic.severity = Severity::warning;
   diagnostic.code = std::move(code);
@@ -42,14 +44,14 @@ class Builder {
   Builder(const ParsedJson& parsed, Accessors& accessors)
       : parsed_(parsed), model_(parsed.model), accessors_(accessors) {}
 
-  Result<Asset> build() {
-    asset_.generator = model_.asset.generator;
+  Result<Scene> build() {
+    scene_.generator = model_.asset.generator;
     for (auto step : {&Builder::read_nodes, &Builder::link_nodes, &Builder::read_scene,
                       &Builder::read_all_meshes, &Builder::read_skins, &Builder::check_instances,
                       &Builder::read_animations}) {
       if (auto done = (this->*step)(); !done) return done.error();
     }
-    return std::move(asset_);
+    return std::move(scene_);
   }
 
  private:
@@ -69,13 +71,13 @@ class Builder {
   const ParsedJson& parsed_;
   const tinygltf::Model& model_;
   Accessors& accessors_;
-  Asset asset_;
+  Scene scene_;
 };
 
 Status Builder::read_nodes() {
   for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
     const tinygltf::Node& source = model_.nodes[i];
-    Node& node = asset_.nodes.emplace_back();
+    Node& node = scene_.nodes.emplace_back();
     node.name = source.name;
     node.children = source.children;
     node.mesh = source.mesh;
@@ -125,7 +127,7 @@ Status Builder::read_transform(const tinygltf::Node& source, std::size_t index, 
 
 // Parents; nodes must form trees.
 Status Builder::link_nodes() {
-  auto& nodes = asset_.nodes;
+  auto& nodes = scene_.nodes;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (const int child : nodes[i].children) {
       const std::string name = label("node", i, nodes[i].name);
@@ -164,14 +166,14 @@ Status Builder::link_nodes() {
 }
 
 Status Builder::read_scene() {
-  auto& nodes = asset_.nodes;
+  auto& nodes = scene_.nodes;
   if (model_.defaultScene != -1 && !exists(model_.defaultScene, model_.scenes.size())) {
     return Error("gltf-node",
                  fmt::format("the default scene is {}, which does not exist", model_.defaultScene));
   }
   if (model_.scenes.empty()) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (nodes[i].parent == -1) asset_.roots.push_back(static_cast<int>(i));
+      if (nodes[i].parent == -1) scene_.roots.push_back(static_cast<int>(i));
     }
   } else {
     const std::size_t shown =
@@ -185,12 +187,12 @@ Status Builder::read_scene() {
                      fmt::format("the scene has node {}, which is another's child", root),
                      "a scene lists root nodes only");
       }
-      if (std::find(asset_.roots.begin(), asset_.roots.end(), root) == asset_.roots.end()) {
-        asset_.roots.push_back(root);
+      if (std::find(scene_.roots.begin(), scene_.roots.end(), root) == scene_.roots.end()) {
+        scene_.roots.push_back(root);
       }
     }
   }
-  std::vector<int> reached = asset_.roots;
+  std::vector<int> reached = scene_.roots;
   for (std::size_t k = 0; k < reached.size(); ++k) {
     Node& node = nodes[static_cast<std::size_t>(reached[k])];
     node.in_scene = true;
@@ -201,9 +203,9 @@ Status Builder::read_scene() {
 
 Status Builder::read_all_meshes() {
   for (std::size_t i = 0; i < model_.meshes.size(); ++i) {
-    auto mesh = read_mesh(parsed_, i, accessors_, asset_.diagnostics);
+    auto mesh = read_mesh(parsed_, i, accessors_, scene_.diagnostics);
     if (!mesh) return mesh.error();
-    asset_.meshes.push_back(std::move(*mesh));
+    scene_.meshes.push_back(std::move(*mesh));
   }
   return {};
 }
@@ -211,13 +213,13 @@ Status Builder::read_all_meshes() {
 Status Builder::read_skins() {
   for (std::size_t i = 0; i < model_.skins.size(); ++i) {
     const tinygltf::Skin& source = model_.skins[i];
-    Skin& skin = asset_.skins.emplace_back();
+    Skin& skin = scene_.skins.emplace_back();
     skin.name = source.name;
     skin.joints = source.joints;
     const std::string name = label("skin", i, skin.name);
     if (skin.joints.empty()) return Error("gltf-skin", fmt::format("{} has no joints", name));
     for (const int joint : skin.joints) {
-      if (exists(joint, asset_.nodes.size())) continue;
+      if (exists(joint, scene_.nodes.size())) continue;
       return Error("gltf-skin", fmt::format("{} has joint {}, which does not exist", name, joint));
     }
     if (source.inverseBindMatrices < 0) {
@@ -239,25 +241,25 @@ Status Builder::read_skins() {
 // What nodes, meshes and skins promise each other.
 Status Builder::check_instances() {
   // The largest joint that a mesh's vertices refer to.
-  std::vector<int> largest_joint(asset_.meshes.size(), -1);
-  for (std::size_t m = 0; m < asset_.meshes.size(); ++m) {
-    for (const Primitive& primitive : asset_.meshes[m].primitives) {
+  std::vector<int> largest_joint(scene_.meshes.size(), -1);
+  for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+    for (const Primitive& primitive : scene_.meshes[m].primitives) {
       for (const std::uint16_t joint : primitive.influence_joints) {
         largest_joint[m] = std::max(largest_joint[m], static_cast<int>(joint));
       }
     }
   }
-  for (std::size_t i = 0; i < asset_.nodes.size(); ++i) {
-    const Node& node = asset_.nodes[i];
+  for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+    const Node& node = scene_.nodes[i];
     if (node.mesh < 0) continue;
-    const Mesh& mesh = asset_.meshes[static_cast<std::size_t>(node.mesh)];
+    const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(node.mesh)];
     const std::string name = label("node", i, node.name);
     if (!node.weights.empty() && node.weights.size() != mesh.target_count()) {
       return Error("gltf-node", fmt::format("{} has {} weights for {} morph targets", name,
                                             node.weights.size(), mesh.target_count()));
     }
     if (node.skin < 0) continue;
-    const Skin& skin = asset_.skins[static_cast<std::size_t>(node.skin)];
+    const Skin& skin = scene_.skins[static_cast<std::size_t>(node.skin)];
     const int largest = largest_joint[static_cast<std::size_t>(node.mesh)];
     if (largest >= static_cast<int>(skin.joints.size())) {
       return Error("gltf-skin",
@@ -270,7 +272,7 @@ Status Builder::check_instances() {
 
 Status Builder::read_animations() {
   for (std::size_t i = 0; i < model_.animations.size(); ++i) {
-    Animation& animation = asset_.animations.emplace_back();
+    Animation& animation = scene_.animations.emplace_back();
     animation.name = model_.animations[i].name;
     for (std::size_t c = 0; c < model_.animations[i].channels.size(); ++c) {
       if (auto read = read_channel(model_.animations[i], i, c, animation); !read) return read;
@@ -285,7 +287,7 @@ Status Builder::read_channel(const tinygltf::Animation& source, std::size_t inde
   const std::string name =
       fmt::format("{}, channel {}", label("animation", index, source.name), channel_index);
   if (from.target_node < 0) return {};  // to be ignored, says the specification
-  if (!exists(from.target_node, asset_.nodes.size())) {
+  if (!exists(from.target_node, scene_.nodes.size())) {
     return Error("gltf-animation",
                  fmt::format("{} moves node {}, which does not exist", name, from.target_node));
   }
@@ -295,7 +297,7 @@ Status Builder::read_channel(const tinygltf::Animation& source, std::size_t inde
   }
   Channel channel;
   channel.node = from.target_node;
-  const Node& node = asset_.nodes[static_cast<std::size_t>(channel.node)];
+  const Node& node = scene_.nodes[static_cast<std::size_t>(channel.node)];
   if (from.target_path == "translation") {
     channel.path = Path::translation;
   } else if (from.target_path == "rotation") {
@@ -306,14 +308,14 @@ Status Builder::read_channel(const tinygltf::Animation& source, std::size_t inde
   } else if (from.target_path == "weights") {
     channel.path = Path::weights;
     const std::size_t targets =
-        node.mesh < 0 ? 0 : asset_.meshes[static_cast<std::size_t>(node.mesh)].target_count();
+        node.mesh < 0 ? 0 : scene_.meshes[static_cast<std::size_t>(node.mesh)].target_count();
     if (targets == 0) {
       return Error("gltf-animation",
                    fmt::format("{} moves weights of a node without morph targets", name));
     }
     channel.width = static_cast<int>(targets);
   } else {
-    warn(asset_, "gltf-animation-path",
+    warn(scene_, "gltf-animation-path",
          fmt::format("{} moves '{}', which is left aside", name, from.target_path.substr(0, 40)));
     return {};
   }
@@ -322,7 +324,7 @@ Status Builder::read_channel(const tinygltf::Animation& source, std::size_t inde
     return read;
   }
   if (node.has_matrix && channel.path != Path::weights) {
-    warn(asset_, "gltf-animation-matrix",
+    warn(scene_, "gltf-animation-matrix",
          fmt::format("{} moves a node that is given by a matrix; the matrix is taken apart", name));
   }
   animation.channels.push_back(std::move(channel));
@@ -371,7 +373,7 @@ std::uint64_t unpacking_limit(std::uint64_t input_bytes) {
 
 }  // namespace
 
-Result<Asset> read(std::span<const std::byte> bytes, const ReadOptions& options) {
+Result<Scene> read(std::span<const std::byte> bytes, const ReadOptions& options) {
   if (bytes.size() > std::min<std::uint64_t>(options.most_bytes, 0xFFFFFFFFu)) {
     return Error("gltf-too-large", fmt::format("the file has {} bytes", bytes.size()));
   }
@@ -387,7 +389,7 @@ Result<Asset> read(std::span<const std::byte> bytes, const ReadOptions& options)
   return Builder(*parsed, accessors).build();
 }
 
-Result<Asset> read_file(const std::string& path) {
+Result<Scene> read_file(const std::string& path) {
   const auto file = InputFile::open(path);
   if (!file) return file.error();
   ReadOptions options;

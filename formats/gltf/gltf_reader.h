@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/result.h"
-#include "formats/gltf/gltf_asset.h"
+#include "nodes/scene.h"
 
 // Reads glTF 2.0, as JSON (.gltf) or binary (.glb), from anyone: every offset, count and index is
 // checked before it is used, memory stays in proportion to the input, and no input crashes it.
@@ -25,10 +25,10 @@ struct ReadOptions {
   std::uint64_t most_bytes = std::uint64_t{4} << 30;  // of the input and all its buffers together
 };
 
-Result<Asset> read(std::span<const std::byte> bytes, const ReadOptions& options = {});
+Result<nodes::Scene> read(std::span<const std::byte> bytes, const ReadOptions& options = {});
 
 // Opens `path` and reads it with its own folder as ReadOptions::folder. Also the codes of
 // InputFile.
-Result<Asset> read_file(const std::string& path);
+Result<nodes::Scene> read_file(const std::string& path);
 
 }  // namespace krok::gltf

@@ -6,6 +6,8 @@
 
 namespace krok::gltf {
 
+using namespace nodes;
+
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;

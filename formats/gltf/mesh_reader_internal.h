@@ -4,15 +4,15 @@
 
 #include "core/result.h"
 #include "formats/gltf/accessors_internal.h"
-#include "formats/gltf/gltf_asset.h"
 #include "formats/gltf/json_text_internal.h"
+#include "nodes/scene.h"
 
 // Private to this folder: meshes with their primitives, influences and morph targets.
 
 namespace krok::gltf {
 
 // Codes gltf-mesh and those of Accessors.
-Result<Mesh> read_mesh(const ParsedJson& parsed, std::size_t index, Accessors& accessors,
-                       Diagnostics& diagnostics);
+Result<nodes::Mesh> read_mesh(const ParsedJson& parsed, std::size_t index, Accessors& accessors,
+                              Diagnostics& diagnostics);
 
 }  // namespace krok::gltf

@@ -16,6 +16,7 @@ ALLOWED = {
     "lib/math": {"lib/core"},
     "lib/scene": {"lib/core", "lib/math"},
     "lib/roles": BASE,
+    "lib/nodes": BASE,
     "lib/capture": BASE | {"lib/roles"},
     "lib/motion": BASE,
     "lib/ik": BASE,
@@ -29,7 +30,7 @@ ALLOWED = {
     "formats/anim": BASE | {"formats/container", "formats/registry"},
     "formats/model": BASE | {"formats/container", "formats/registry"},
     "formats/cam": BASE | {"formats/container", "formats/registry"},
-    "formats/gltf": BASE,
+    "formats/gltf": BASE | {"lib/nodes"},
     "formats/csv": BASE,
 }
 TOP = {

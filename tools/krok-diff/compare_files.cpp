@@ -131,7 +131,7 @@ Result<Outcome> compare_cameras(const InputFile& first, const InputFile& second,
   return outcome;
 }
 
-Result<gltf::Asset> read_gltf(const InputFile& file, ToolContext& context) {
+Result<nodes::Scene> read_gltf(const InputFile& file, ToolContext& context) {
   gltf::ReadOptions options;
   const std::filesystem::path folder = std::filesystem::path(file.path()).parent_path();
   options.folder = folder.empty() ? "." : folder.string();
@@ -146,7 +146,7 @@ Result<gltf::Asset> read_gltf(const InputFile& file, ToolContext& context) {
 
 Result<Outcome> compare_gltf(const InputFile& first, const InputFile& second,
                              const compare::Tolerance& tolerance, ToolContext& context) {
-  auto assets = read_both<gltf::Asset>(
+  auto assets = read_both<nodes::Scene>(
       first, second, [&](const InputFile& file) { return read_gltf(file, context); });
   if (!assets) return assets.error();
   const auto a = scene_of(assets->first);

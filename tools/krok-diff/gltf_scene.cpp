@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/numbers.h"
-#include "formats/gltf/gltf_evaluate.h"
+#include "nodes/evaluate.h"
 #include "outcome.h"
 
 namespace krok::diff {
@@ -11,15 +11,15 @@ namespace krok::diff {
 namespace {
 
 template <typename T>
-std::span<const T> view(const gltf::Shared<T>& values) {
+std::span<const T> view(const nodes::Shared<T>& values) {
   return values ? std::span<const T>(*values) : std::span<const T>();
 }
 
 // What people call the mesh: its node's name, or else its own; with the primitive where there are
 // several.
-std::string name_of(const gltf::Asset& asset, const gltf::Instance& instance) {
-  const gltf::Node& node = asset.nodes[static_cast<std::size_t>(instance.node)];
-  const gltf::Mesh& mesh = asset.meshes[static_cast<std::size_t>(instance.mesh)];
+std::string name_of(const nodes::Scene& asset, const nodes::Instance& instance) {
+  const nodes::Node& node = asset.nodes[static_cast<std::size_t>(instance.node)];
+  const nodes::Mesh& mesh = asset.meshes[static_cast<std::size_t>(instance.mesh)];
   std::string name = node.name.empty() ? mesh.name : node.name;
   if (mesh.primitives.size() > 1) {
     name += fmt::format("{}primitive {}", name.empty() ? "" : ", ", instance.primitive);
@@ -28,8 +28,8 @@ std::string name_of(const gltf::Asset& asset, const gltf::Instance& instance) {
 }
 
 // The scene's mesh; `joint_of_skin` receives the influences' joints as places in the scene's list.
-compare::SceneMesh mesh_of(const gltf::Asset& asset, const gltf::Instance& instance,
-                           const gltf::Primitive& primitive,
+compare::SceneMesh mesh_of(const nodes::Scene& asset, const nodes::Instance& instance,
+                           const nodes::Primitive& primitive,
                            const std::vector<int>& scene_joint_of_node,
                            std::vector<std::uint16_t>& scene_joints) {
   compare::SceneMesh mesh;
@@ -38,7 +38,7 @@ compare::SceneMesh mesh_of(const gltf::Asset& asset, const gltf::Instance& insta
   mesh.has_normals = primitive.normals != nullptr;
   mesh.triangles = primitive.triangles;
   mesh.texture_coordinates = view(primitive.texture_coordinates);
-  for (const gltf::MorphTarget& target : primitive.targets) {
+  for (const nodes::MorphTarget& target : primitive.targets) {
     mesh.targets.push_back({target.name, view(target.positions), view(target.normals)});
   }
   const int skin = asset.nodes[static_cast<std::size_t>(instance.node)].skin;
@@ -55,13 +55,13 @@ compare::SceneMesh mesh_of(const gltf::Asset& asset, const gltf::Instance& insta
 
 // What the scene's evaluate function keeps.
 struct Player {
-  const gltf::Asset* asset;
-  gltf::Evaluator evaluator;
+  const nodes::Scene* asset;
+  nodes::Evaluator evaluator;
   std::vector<std::vector<std::uint16_t>> scene_joints;  // [instances]
 
   void evaluate(int animation, double time, compare::SceneState& state) const {
     // Vectors of vertices move between the two so that their memory is used again.
-    gltf::Evaluation evaluation;
+    nodes::Evaluation evaluation;
     evaluation.positions = std::move(state.positions);
     evaluation.normals = std::move(state.normals);
     evaluator.evaluate(animation, time, evaluation);
@@ -70,18 +70,18 @@ struct Player {
     state.joints.clear();
     for (const int joint : evaluator.joints()) {
       state.joints.push_back(
-          gltf::rigid_part(evaluation.node_to_world[static_cast<std::size_t>(joint)]));
+          nodes::rigid_part(evaluation.node_to_world[static_cast<std::size_t>(joint)]));
     }
   }
 };
 
 }  // namespace
 
-Result<compare::Scene> scene_of(const gltf::Asset& asset) {
-  auto evaluator = gltf::Evaluator::create(asset);
+Result<compare::Scene> scene_of(const nodes::Scene& asset) {
+  auto evaluator = nodes::Evaluator::create(asset);
   if (!evaluator) return evaluator.error();
   const auto player = std::make_shared<Player>(Player{&asset, std::move(*evaluator), {}});
-  const gltf::Evaluator& from = player->evaluator;
+  const nodes::Evaluator& from = player->evaluator;
 
   compare::Scene scene;
   std::vector<int> scene_joint_of_node(asset.nodes.size(), -1);
@@ -97,7 +97,7 @@ Result<compare::Scene> scene_of(const gltf::Asset& asset) {
 
   player->scene_joints.resize(from.instances().size());
   for (std::size_t i = 0; i < from.instances().size(); ++i) {
-    const gltf::Instance& instance = from.instances()[i];
+    const nodes::Instance& instance = from.instances()[i];
     scene.meshes.push_back(mesh_of(asset, instance, from.primitive(instance), scene_joint_of_node,
                                    player->scene_joints[i]));
   }

@@ -5,12 +5,12 @@
 
 #include "compare/scene_difference.h"
 #include "core/result.h"
-#include "formats/gltf/gltf_asset.h"
+#include "nodes/scene.h"
 
 namespace krok::diff {
 
 // A glTF asset as lib/compare sees scenes. The scene refers to `asset`, which must outlive it.
-Result<compare::Scene> scene_of(const gltf::Asset& asset);
+Result<compare::Scene> scene_of(const nodes::Scene& asset);
 
 // "1 mesh, 10,120 vertices, 20,236 triangles; 31 joints; 1 animation".
 std::string summary_of(const compare::Scene& scene);

@@ -5,8 +5,8 @@
 
 #include "core/numbers.h"
 #include "describe.h"
-#include "formats/gltf/gltf_evaluate.h"
 #include "formats/gltf/gltf_reader.h"
+#include "nodes/evaluate.h"
 
 namespace krok::info {
 
@@ -16,13 +16,13 @@ std::string named(const std::string& name, std::size_t index) {
   return name.empty() ? fmt::format("number {}", index) : name;
 }
 
-void add_meshes(const gltf::Asset& asset, Description& out) {
+void add_meshes(const nodes::Scene& asset, Description& out) {
   std::vector<std::string> lines;
   out.json["meshes"] = Json::array();
   for (std::size_t i = 0; i < asset.meshes.size(); ++i) {
-    const gltf::Mesh& mesh = asset.meshes[i];
+    const nodes::Mesh& mesh = asset.meshes[i];
     std::size_t vertices = 0, triangles = 0;
-    for (const gltf::Primitive& primitive : mesh.primitives) {
+    for (const nodes::Primitive& primitive : mesh.primitives) {
       vertices += primitive.vertex_count();
       triangles += primitive.triangles.size();
     }
@@ -42,11 +42,11 @@ void add_meshes(const gltf::Asset& asset, Description& out) {
   out.add("meshes", std::move(lines));
 }
 
-void add_skins(const gltf::Asset& asset, Description& out) {
+void add_skins(const nodes::Scene& asset, Description& out) {
   std::vector<std::string> lines;
   out.json["skins"] = Json::array();
   for (std::size_t i = 0; i < asset.skins.size(); ++i) {
-    const gltf::Skin& skin = asset.skins[i];
+    const nodes::Skin& skin = asset.skins[i];
     lines.push_back(
         fmt::format("{}: {}", named(skin.name, i), count_of(skin.joints.size(), "joint")));
     out.json["skins"].push_back({{"name", skin.name}, {"joints", skin.joints.size()}});
@@ -54,14 +54,14 @@ void add_skins(const gltf::Asset& asset, Description& out) {
   out.add("skins", std::move(lines));
 }
 
-void add_animations(const gltf::Asset& asset, Description& out) {
+void add_animations(const nodes::Scene& asset, Description& out) {
   std::vector<std::string> lines;
   out.json["animations"] = Json::array();
   for (std::size_t i = 0; i < asset.animations.size(); ++i) {
-    const gltf::Animation& animation = asset.animations[i];
+    const nodes::Animation& animation = asset.animations[i];
     double end = 0;
     std::size_t keys = 0;
-    for (const gltf::Channel& channel : animation.channels) {
+    for (const nodes::Channel& channel : animation.channels) {
       if (!channel.times || channel.times->empty()) continue;
       end = std::max(end, static_cast<double>(channel.times->back()));
       keys = std::max(keys, channel.times->size());
@@ -78,10 +78,10 @@ void add_animations(const gltf::Asset& asset, Description& out) {
 }
 
 // What a viewer shows before it plays an animation.
-Status add_shown_size(const gltf::Asset& asset, Description& out) {
-  const auto evaluator = gltf::Evaluator::create(asset);
+Status add_shown_size(const nodes::Scene& asset, Description& out) {
+  const auto evaluator = nodes::Evaluator::create(asset);
   if (!evaluator) return evaluator.error();
-  gltf::Evaluation shown;
+  nodes::Evaluation shown;
   evaluator->evaluate(-1, 0, shown);
   Eigen::AlignedBox3d box;
   for (const auto& positions : shown.positions) {

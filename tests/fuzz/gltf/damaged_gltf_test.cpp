@@ -6,8 +6,8 @@
 #include <memory>
 #include <random>
 
-#include "formats/gltf/gltf_evaluate.h"
 #include "formats/gltf/gltf_reader.h"
+#include "nodes/evaluate.h"
 #include "support/glb_builder.h"
 
 namespace krok {
@@ -16,18 +16,18 @@ namespace {
 using Bytes = std::vector<std::byte>;
 
 // All that gltf_asset.h says of indices and sizes, for whoever uses an asset relies on it.
-void expect_consistent(const gltf::Asset& asset) {
+void expect_consistent(const nodes::Scene& asset) {
   const auto in = [](int index, std::size_t count) {
     return index >= 0 && static_cast<std::size_t>(index) < count;
   };
-  for (const gltf::Node& node : asset.nodes) {
+  for (const nodes::Node& node : asset.nodes) {
     ASSERT_TRUE(node.parent == -1 || in(node.parent, asset.nodes.size()));
     ASSERT_TRUE(node.mesh == -1 || in(node.mesh, asset.meshes.size()));
     ASSERT_TRUE(node.skin == -1 || in(node.skin, asset.skins.size()));
   }
-  for (const gltf::Mesh& mesh : asset.meshes) {
+  for (const nodes::Mesh& mesh : asset.meshes) {
     ASSERT_EQ(mesh.weights.size(), mesh.target_count());
-    for (const gltf::Primitive& primitive : mesh.primitives) {
+    for (const nodes::Primitive& primitive : mesh.primitives) {
       const std::size_t vertices = primitive.vertex_count();
       ASSERT_TRUE(!primitive.normals || primitive.normals->size() == vertices);
       ASSERT_EQ(primitive.influence_weights.size(),
@@ -52,9 +52,9 @@ bool survive(const Bytes& bytes) {
     return false;
   }
   expect_consistent(*asset);
-  const auto evaluator = gltf::Evaluator::create(*asset);
+  const auto evaluator = nodes::Evaluator::create(*asset);
   if (!evaluator) return true;
-  gltf::Evaluation state;
+  nodes::Evaluation state;
   for (int animation = -1; animation < static_cast<int>(asset->animations.size()); ++animation) {
     evaluator->evaluate(animation, 0.3, state);
     if (animation < 0) continue;

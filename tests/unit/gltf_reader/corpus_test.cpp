@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
-#include "formats/gltf/gltf_evaluate.h"
 #include "formats/gltf/gltf_reader.h"
+#include "nodes/evaluate.h"
 
 namespace krok {
 namespace {
@@ -56,9 +56,9 @@ TEST(GltfCorpus, VerticesStandWhereThreeJsPutsThem) {
   for (const Known& one : known) {
     const auto asset = gltf::read_file(corpus + one.file);
     ASSERT_TRUE(asset.ok()) << one.file << ": " << asset.error().message;
-    const auto evaluator = gltf::Evaluator::create(*asset);
+    const auto evaluator = nodes::Evaluator::create(*asset);
     ASSERT_TRUE(evaluator.ok()) << one.file;
-    gltf::Evaluation state;
+    nodes::Evaluation state;
     evaluator->evaluate(one.animation, one.time, state);
     ASSERT_EQ(state.positions.size(), 1u) << one.file;
     const Vec3& vertex = state.positions[0].at(one.vertex);

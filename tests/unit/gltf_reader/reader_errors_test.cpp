@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "formats/gltf/gltf_evaluate.h"
 #include "formats/gltf/gltf_reader.h"
+#include "nodes/evaluate.h"
 #include "support/glb_builder.h"
 
 namespace krok {
@@ -17,7 +17,7 @@ namespace {
 using test::GlbBuilder;
 using Json = nlohmann::ordered_json;
 
-Result<gltf::Asset> read_text(std::string_view text) {
+Result<nodes::Scene> read_text(std::string_view text) {
   return gltf::read(std::as_bytes(std::span(text)));
 }
 
@@ -308,9 +308,9 @@ TEST(GltfFaults, TooManyCopiesOfAMeshAreRefused) {
   }
   const auto asset = gltf::read(builder.glb());
   ASSERT_TRUE(asset.ok()) << asset.error().message;
-  const auto evaluator = gltf::Evaluator::create(*asset);
+  const auto evaluator = nodes::Evaluator::create(*asset);
   ASSERT_FALSE(evaluator.ok());
-  EXPECT_EQ(evaluator.error().code, "gltf-too-large");
+  EXPECT_EQ(evaluator.error().code, "scene-too-large");
 }
 
 TEST(GltfFaults, AContainerWhoseChunkReachesBeyondTheFileIsRefused) {

@@ -17,11 +17,11 @@ using test::GlbBuilder;
 using testing::ElementsAre;
 using Json = nlohmann::ordered_json;
 
-gltf::Asset read_good(const GlbBuilder& builder) {
+nodes::Scene read_good(const GlbBuilder& builder) {
   const auto bytes = builder.glb();
   auto asset = gltf::read(bytes);
   EXPECT_TRUE(asset.ok()) << asset.error().message;
-  return asset.ok() ? std::move(*asset) : gltf::Asset();
+  return asset.ok() ? std::move(*asset) : nodes::Scene();
 }
 
 Json& primitive_of(GlbBuilder& builder) {
@@ -29,14 +29,14 @@ Json& primitive_of(GlbBuilder& builder) {
 }
 
 TEST(GltfReader, ReadsARig) {
-  const gltf::Asset asset = read_good(test::rig());
+  const nodes::Scene asset = read_good(test::rig());
   ASSERT_EQ(asset.nodes.size(), 3u);
   EXPECT_EQ(asset.nodes[2].name, "Tip");
   EXPECT_EQ(asset.nodes[2].parent, 1);
   EXPECT_EQ(asset.nodes[0].parent, -1);
   EXPECT_TRUE(asset.nodes[2].in_scene);
   EXPECT_THAT(asset.roots, ElementsAre(0, 1));
-  const gltf::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
+  const nodes::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
   EXPECT_EQ(primitive.vertex_count(), 4u);
   EXPECT_EQ((*primitive.positions)[2], Vec3f(1, 1, 0));
   EXPECT_EQ((*primitive.normals)[0], Vec3f(0, 0, 1));
@@ -44,14 +44,14 @@ TEST(GltfReader, ReadsARig) {
   EXPECT_EQ(primitive.influences_per_vertex, 4);
   EXPECT_EQ(primitive.influence_joints[8], 1);
   EXPECT_EQ(asset.skins.at(0).inverse_binds.at(1)(1, 3), -1.0);
-  const gltf::Channel& channel = asset.animations.at(0).channels.at(0);
+  const nodes::Channel& channel = asset.animations.at(0).channels.at(0);
   EXPECT_EQ(channel.node, 2);
-  EXPECT_EQ(channel.path, gltf::Path::rotation);
+  EXPECT_EQ(channel.path, nodes::Path::rotation);
   EXPECT_THAT(*channel.times, ElementsAre(0.0f, 0.5f, 1.0f));
 }
 
 TEST(GltfReader, ReadsMorphTargetsWithTheirNames) {
-  const gltf::Asset asset = read_good(test::baked_rig());
+  const nodes::Scene asset = read_good(test::baked_rig());
   const auto& targets = asset.meshes.at(0).primitives.at(0).targets;
   ASSERT_EQ(targets.size(), 2u);
   EXPECT_EQ(targets[1].name, "full");
@@ -100,8 +100,8 @@ TEST(GltfReader, ReadsInterleavedVertices) {
   const int normal = builder.add_accessor(view, "VEC3", 5126, 4);
   builder.json["accessors"][static_cast<std::size_t>(normal)]["byteOffset"] = 12;
   primitive_of(builder)["attributes"] = {{"POSITION", position}, {"NORMAL", normal}};
-  const gltf::Asset asset = read_good(builder);
-  const gltf::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
+  const nodes::Scene asset = read_good(builder);
+  const nodes::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
   EXPECT_EQ((*primitive.positions)[3], Vec3f(0, 1, 0));
   EXPECT_EQ((*primitive.normals)[3], Vec3f(1, 0, 0));
 }
@@ -119,8 +119,8 @@ TEST(GltfReader, ReadsNormalisedIntegersAndTwoSetsOfInfluences) {
   attributes["WEIGHTS_0"] = builder.add(first, "VEC4", true);
   attributes["WEIGHTS_1"] = builder.add(second, "VEC4", true);
   attributes["JOINTS_1"] = builder.add(joints, "VEC4");
-  const gltf::Asset asset = read_good(builder);
-  const gltf::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
+  const nodes::Scene asset = read_good(builder);
+  const nodes::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
   ASSERT_EQ(primitive.influences_per_vertex, 8);
   EXPECT_NEAR(primitive.influence_weights[0], 127.0 / 255.0, 1e-6);
   EXPECT_NEAR(primitive.influence_weights[4], 128.0 / 255.0, 1e-6);
@@ -146,7 +146,7 @@ TEST(GltfReader, ReadsSparseValuesOverZerosAndOverAView) {
   accessor["sparse"] = sparse(1);
   builder.json["accessors"][primitive_of(builder)["targets"][1]["POSITION"].get<std::size_t>()]
               ["sparse"] = sparse(1);
-  const gltf::Asset asset = read_good(builder);
+  const nodes::Scene asset = read_good(builder);
   const auto& targets = asset.meshes.at(0).primitives.at(0).targets;
   EXPECT_EQ((*targets[0].positions)[2], Vec3f(0, 0, 0));
   EXPECT_EQ((*targets[0].positions)[3], Vec3f(7, 8, 9));
@@ -158,7 +158,7 @@ TEST(GltfReader, VerticesWithoutWeightsHangOnTheirFirstJointWithAWarning) {
   GlbBuilder builder = test::rig();
   primitive_of(builder)["attributes"]["WEIGHTS_0"] =
       builder.add(std::vector<float>(16, 0.0f), "VEC4");
-  const gltf::Asset asset = read_good(builder);
+  const nodes::Scene asset = read_good(builder);
   EXPECT_EQ(asset.meshes.at(0).primitives.at(0).influence_weights[8], 1.0f);
   ASSERT_EQ(asset.diagnostics.size(), 1u);
   EXPECT_EQ(asset.diagnostics[0].code, "gltf-mesh-weights");
@@ -168,19 +168,19 @@ TEST(GltfReader, WithoutScenesAllRootsAreShown) {
   GlbBuilder builder = test::rig();
   builder.json.erase("scenes");
   builder.json.erase("scene");
-  const gltf::Asset asset = read_good(builder);
+  const nodes::Scene asset = read_good(builder);
   EXPECT_THAT(asset.roots, ElementsAre(0, 1));
 }
 
 TEST(GltfReader, AFileWithoutAnythingIsRead) {
-  const gltf::Asset asset = read_good(GlbBuilder());
+  const nodes::Scene asset = read_good(GlbBuilder());
   EXPECT_TRUE(asset.nodes.empty());
 }
 
 TEST(GltfReader, ChannelsOfUnknownPathsAreLeftAsideWithAWarning) {
   GlbBuilder builder = test::rig();
   builder.json["animations"][0]["channels"][0]["target"]["path"] = "pointer";
-  const gltf::Asset asset = read_good(builder);
+  const nodes::Scene asset = read_good(builder);
   EXPECT_TRUE(asset.animations.at(0).channels.empty());
   ASSERT_EQ(asset.diagnostics.size(), 1u);
   EXPECT_EQ(asset.diagnostics[0].code, "gltf-animation-path");
@@ -212,7 +212,7 @@ class GltfFiles : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   // The square as JSON whose buffer is at `uri`.
-  Result<gltf::Asset> read_with_buffer(const std::string& uri) {
+  Result<nodes::Scene> read_with_buffer(const std::string& uri) {
     GlbBuilder builder = test::square();
     builder.json["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", uri}}};
     std::ofstream(folder_ / "inner" / "square.gltf") << builder.json.dump(1);

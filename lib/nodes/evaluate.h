@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "core/result.h"
-#include "formats/gltf/gltf_asset.h"
 #include "math/transform.h"
+#include "nodes/scene.h"
 
-// A glTF asset at a moment of one of its animations, in doubles: what a viewer would show.
+// A scene at a moment of one of its animations, in doubles: what a viewer would show.
 // Nodes are placed by their (animated) transforms, then morph targets are added, then vertices are
 // skinned with up to 8 influences each. Source: glTF 2.0 Specification, sections 3.5, 3.7 and
 // appendix C (interpolation).
 
-namespace krok::gltf {
+namespace krok::nodes {
 
 // A primitive of a mesh at a node of the scene that is shown.
 struct Instance {
@@ -34,13 +34,13 @@ struct Evaluation {
   std::vector<Eigen::Matrix<double, 3, 4>> palette;
 };
 
-// Evaluates one asset, which must outlive it. Const functions may be called from many threads,
+// Evaluates one scene, which must outlive it. Const functions may be called from many threads,
 // each with an Evaluation of its own (which is reused to save allocations).
 class Evaluator {
  public:
-  // An Error (code gltf-too-large) if the scene shows so many vertices, because many nodes have the
-  // same mesh, that they could not be held.
-  static Result<Evaluator> create(const Asset& asset);
+  // An Error (code scene-too-large) if the scene shows so many vertices, because many nodes have
+  // the same mesh, that they could not be held.
+  static Result<Evaluator> create(const Scene& scene);
 
   const std::vector<Instance>& instances() const { return instances_; }
   const Primitive& primitive(const Instance& instance) const;
@@ -59,14 +59,14 @@ class Evaluator {
   void evaluate(int animation, double time, Evaluation& out) const;
 
  private:
-  explicit Evaluator(const Asset& asset) : asset_(&asset) {}
+  explicit Evaluator(const Scene& scene) : scene_(&scene) {}
   void order_nodes();
   Status find_instances();
   void find_joints();
   void place_nodes(int animation, double time, Evaluation& out) const;
   void evaluate_instance(std::size_t index, Evaluation& out) const;
 
-  const Asset* asset_;
+  const Scene* scene_;
   std::vector<int> order_;  // all nodes, parents before children
   std::vector<Instance> instances_;
   std::vector<int> joints_, joint_parents_;
@@ -79,4 +79,4 @@ void sample(const Channel& channel, double time, std::span<double> values);
 // its linear part (mirrored back where it mirrors).
 Transform rigid_part(const Mat4& matrix);
 
-}  // namespace krok::gltf
+}  // namespace krok::nodes

@@ -3,18 +3,20 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
 #include "math/types.h"
 
-// What the project uses of a glTF 2.0 file: nodes, meshes with morph targets, skins, animations.
-// Materials are known by name; images, cameras and lights are left aside. Indices between the parts
-// are checked by the reader and always in range.
+// A character file as other programs write it: a tree of nodes with meshes, morph targets, skins,
+// cameras, and animations whose keys are at times of their own. It has the shape of glTF 2.0, into
+// which the other formats fit too. Materials are known by name; images and lights are left aside.
+// Indices between the parts are checked by the reader and always in range.
 // Source: Khronos Group, glTF 2.0 Specification (ISO/IEC 12113).
 
-namespace krok::gltf {
+namespace krok::nodes {
 
 // Values of an accessor, shared by all that refer to it; null where the file has none.
 template <typename T>
@@ -32,6 +34,7 @@ struct Node {
   Vec3 scale = Vec3::Ones();
   int mesh = -1;
   int skin = -1;
+  int camera = -1;
   std::vector<double> weights;  // of the mesh's targets; empty: the mesh's own
   bool in_scene = false;        // reached from the scene that is shown
 };
@@ -74,6 +77,20 @@ struct Skin {
   std::vector<Mat4> inverse_binds;  // mesh_to_joint in the bind pose, [joints]
 };
 
+// Looks along its node's -Z with +Y up.
+struct Camera {
+  std::string name;            // may be empty
+  bool perspective = true;     // otherwise orthographic, without a field of view
+  double field_of_view = 0.0;  // vertical, radians, in (0, pi) for a perspective camera
+};
+
+// What a file says of the space its nodes are in. Where it says nothing, whoever imports it must
+// find out. glTF prescribes both.
+struct Space {
+  std::optional<double> metres;      // that one unit of length has
+  std::optional<Quat> file_to_krok;  // turns its axes to +Y up and the figure facing +Z
+};
+
 enum class Path : unsigned char { translation, rotation, scale, weights };
 enum class Interpolation : unsigned char { linear, step, cubic_spline };
 
@@ -93,14 +110,16 @@ struct Animation {
   std::vector<Channel> channels;
 };
 
-struct Asset {
+struct Scene {
   std::string generator;
   std::vector<Node> nodes;
   std::vector<int> roots;  // of the scene that is shown: the default one, else the first, else all
   std::vector<Mesh> meshes;
   std::vector<Skin> skins;
+  std::vector<Camera> cameras;
   std::vector<Animation> animations;
+  Space space;
   Diagnostics diagnostics;  // what was left aside or is doubtful
 };
 
-}  // namespace krok::gltf
+}  // namespace krok::nodes

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/gltf/gltf_evaluate.h"
 #include "math/quaternion.h"
+#include "nodes/evaluate.h"
 
-namespace krok::gltf {
+namespace krok::nodes {
 
 namespace {
 
@@ -83,4 +83,4 @@ void sample(const Channel& channel, double time, std::span<double> values) {
   }
 }
 
-}  // namespace krok::gltf
+}  // namespace krok::nodes

@@ -1,4 +1,4 @@
-#include "formats/gltf/gltf_evaluate.h"
+#include "nodes/evaluate.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "math/quaternion.h"
 
-namespace krok::gltf {
+namespace krok::nodes {
 
 namespace {
 
@@ -104,8 +104,8 @@ Transform rigid_part(const Mat4& matrix) {
   return {matrix.topRightCorner<3, 1>(), normalized_or_identity(Quat(rotation))};
 }
 
-Result<Evaluator> Evaluator::create(const Asset& asset) {
-  Evaluator evaluator(asset);
+Result<Evaluator> Evaluator::create(const Scene& scene) {
+  Evaluator evaluator(scene);
   evaluator.order_nodes();
   if (auto found = evaluator.find_instances(); !found) return found.error();
   evaluator.find_joints();
@@ -113,15 +113,15 @@ Result<Evaluator> Evaluator::create(const Asset& asset) {
 }
 
 const Primitive& Evaluator::primitive(const Instance& instance) const {
-  return asset_->meshes[static_cast<std::size_t>(instance.mesh)]
+  return scene_->meshes[static_cast<std::size_t>(instance.mesh)]
       .primitives[static_cast<std::size_t>(instance.primitive)];
 }
 
 // Depth first through the scene, so that instances come in the order that people see in an outline;
 // nodes outside of it after.
 void Evaluator::order_nodes() {
-  const auto& nodes = asset_->nodes;
-  std::vector<int> pending(asset_->roots.rbegin(), asset_->roots.rend());
+  const auto& nodes = scene_->nodes;
+  std::vector<int> pending(scene_->roots.rbegin(), scene_->roots.rend());
   const auto visit = [&] {
     while (!pending.empty()) {
       const int node = pending.back();
@@ -141,15 +141,15 @@ void Evaluator::order_nodes() {
 Status Evaluator::find_instances() {
   std::size_t vertices = 0;
   for (const int index : order_) {
-    const Node& node = asset_->nodes[static_cast<std::size_t>(index)];
+    const Node& node = scene_->nodes[static_cast<std::size_t>(index)];
     if (!node.in_scene || node.mesh < 0) continue;
-    const Mesh& mesh = asset_->meshes[static_cast<std::size_t>(node.mesh)];
+    const Mesh& mesh = scene_->meshes[static_cast<std::size_t>(node.mesh)];
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       instances_.push_back({index, node.mesh, static_cast<int>(p)});
       vertices += mesh.primitives[p].vertex_count();
     }
     if (vertices > kMostVertices) {
-      return Error("gltf-too-large",
+      return Error("scene-too-large",
                    fmt::format("the scene shows more than {} vertices", kMostVertices));
     }
   }
@@ -157,12 +157,12 @@ Status Evaluator::find_instances() {
 }
 
 void Evaluator::find_joints() {
-  const auto& nodes = asset_->nodes;
+  const auto& nodes = scene_->nodes;
   std::vector<char> is_joint(nodes.size(), 0);
-  for (const Skin& one : asset_->skins) {
+  for (const Skin& one : scene_->skins) {
     for (const int joint : one.joints) is_joint[static_cast<std::size_t>(joint)] = 1;
   }
-  if (asset_->skins.empty() && instances_.empty()) {
+  if (scene_->skins.empty() && instances_.empty()) {
     for (std::size_t i = 0; i < nodes.size(); ++i) is_joint[i] = nodes[i].in_scene ? 1 : 0;
   }
   // The place in joints_ of each node or of its nearest ancestor that is a joint.
@@ -182,7 +182,7 @@ void Evaluator::find_joints() {
 std::vector<double> Evaluator::key_times(int animation) const {
   std::vector<double> times;
   std::vector<const std::vector<float>*> seen;  // channels mostly share their times
-  for (const Channel& channel : asset_->animations[static_cast<std::size_t>(animation)].channels) {
+  for (const Channel& channel : scene_->animations[static_cast<std::size_t>(animation)].channels) {
     if (std::find(seen.begin(), seen.end(), channel.times.get()) != seen.end()) continue;
     seen.push_back(channel.times.get());
     const std::size_t middle = times.size();
@@ -195,7 +195,7 @@ std::vector<double> Evaluator::key_times(int animation) const {
 }
 
 void Evaluator::place_nodes(int animation, double time, Evaluation& out) const {
-  const auto& nodes = asset_->nodes;
+  const auto& nodes = scene_->nodes;
   out.node_translations.resize(nodes.size());
   out.node_rotations.resize(nodes.size());
   out.node_scales.resize(nodes.size());
@@ -209,7 +209,7 @@ void Evaluator::place_nodes(int animation, double time, Evaluation& out) const {
     out.node_scales[i] = node.scale;
     if (node.mesh >= 0) {
       out.node_weights[i] = node.weights.empty()
-                                ? asset_->meshes[static_cast<std::size_t>(node.mesh)].weights
+                                ? scene_->meshes[static_cast<std::size_t>(node.mesh)].weights
                                 : node.weights;
     }
     if (node.has_matrix) {
@@ -222,7 +222,7 @@ void Evaluator::place_nodes(int animation, double time, Evaluation& out) const {
   }
   if (animation >= 0) {
     for (const Channel& channel :
-         asset_->animations[static_cast<std::size_t>(animation)].channels) {
+         scene_->animations[static_cast<std::size_t>(animation)].channels) {
       const auto i = static_cast<std::size_t>(channel.node);
       out.values.resize(static_cast<std::size_t>(channel.width));
       sample(channel, time, out.values);
@@ -258,7 +258,7 @@ void Evaluator::place_nodes(int animation, double time, Evaluation& out) const {
 void Evaluator::evaluate_instance(std::size_t index, Evaluation& out) const {
   const Instance& instance = instances_[index];
   const Primitive& shape = primitive(instance);
-  const Node& node = asset_->nodes[static_cast<std::size_t>(instance.node)];
+  const Node& node = scene_->nodes[static_cast<std::size_t>(instance.node)];
   std::vector<Vec3>& positions = out.positions[index];
   std::vector<Vec3>& normals = out.normals[index];
   load_vectors(shape.positions, positions);
@@ -269,7 +269,7 @@ void Evaluator::evaluate_instance(std::size_t index, Evaluation& out) const {
 
   if (node.skin >= 0 && shape.influences_per_vertex > 0) {
     // A skinned mesh stands where its joints are; its own node does not matter.
-    const Skin& one = asset_->skins[static_cast<std::size_t>(node.skin)];
+    const Skin& one = scene_->skins[static_cast<std::size_t>(node.skin)];
     out.palette.resize(one.joints.size());
     for (std::size_t j = 0; j < one.joints.size(); ++j) {
       out.palette[j] =
@@ -290,4 +290,4 @@ void Evaluator::evaluate(int animation, double time, Evaluation& out) const {
   for (std::size_t i = 0; i < instances_.size(); ++i) evaluate_instance(i, out);
 }
 
-}  // namespace krok::gltf
+}  // namespace krok::nodes

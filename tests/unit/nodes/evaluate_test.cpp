@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "formats/gltf/gltf_evaluate.h"
 #include "formats/gltf/gltf_reader.h"
 #include "math/quaternion.h"
+#include "nodes/evaluate.h"
 #include "support/glb_builder.h"
 
 namespace krok {
@@ -17,8 +17,8 @@ using test::GlbBuilder;
 using Json = nlohmann::ordered_json;
 
 struct Played {
-  gltf::Asset asset;
-  gltf::Evaluation state;
+  nodes::Scene asset;
+  nodes::Evaluation state;
 };
 
 Played play(const GlbBuilder& builder, int animation, double time) {
@@ -26,7 +26,7 @@ Played play(const GlbBuilder& builder, int animation, double time) {
   auto asset = gltf::read(builder.glb());
   EXPECT_TRUE(asset.ok()) << asset.error().message;
   played.asset = std::move(*asset);
-  const auto evaluator = gltf::Evaluator::create(played.asset);
+  const auto evaluator = nodes::Evaluator::create(played.asset);
   EXPECT_TRUE(evaluator.ok());
   evaluator->evaluate(animation, time, played.state);
   return played;
@@ -177,7 +177,7 @@ TEST(GltfEvaluate, FindsJointsWithTheirNearestJointAbove) {
   builder.json["nodes"].push_back({{"name", "Between"}, {"children", {2}}});
   const auto asset = gltf::read(builder.glb());
   ASSERT_TRUE(asset.ok());
-  const auto evaluator = gltf::Evaluator::create(*asset);
+  const auto evaluator = nodes::Evaluator::create(*asset);
   ASSERT_TRUE(evaluator.ok());
   EXPECT_EQ(evaluator->joints(), (std::vector<int>{1, 2}));
   EXPECT_EQ(evaluator->joint_parents(), (std::vector<int>{-1, 0}));
@@ -193,13 +193,13 @@ TEST(GltfEvaluate, RigidPartIsTheNearestRotation) {
     return m;
   };
   for (const Vec3& scale : {Vec3(1, 1, 1), Vec3(1e-3, 1, 1e3), Vec3(2, 2, 0)}) {
-    const Transform rigid = gltf::rigid_part(matrix(scale));
+    const Transform rigid = nodes::rigid_part(matrix(scale));
     EXPECT_LT(angle_between(rigid.orientation, turn), 1e-6) << scale.transpose();
     expect_near(rigid.position, Vec3(1, 2, 3));
   }
-  const Transform none = gltf::rigid_part(matrix(Vec3::Zero()));
+  const Transform none = nodes::rigid_part(matrix(Vec3::Zero()));
   EXPECT_NEAR(none.orientation.norm(), 1.0, 1e-12);
-  const Transform mirrored = gltf::rigid_part(matrix(Vec3(-1, -1, -1)));
+  const Transform mirrored = nodes::rigid_part(matrix(Vec3(-1, -1, -1)));
   EXPECT_LT(angle_between(mirrored.orientation, turn), 1e-6);
 }
 
