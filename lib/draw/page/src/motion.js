@@ -1,0 +1,170 @@
+// A motion as the page holds it: packed local rotations, sampled at any time.
+
+import { Matrix4, Quaternion, Vector3 } from 'three';
+
+const ROTATION_WORDS = 3; // of 16 bits a joint and frame
+const COMPONENT_LIMIT = Math.SQRT1_2; // the three smaller components of a unit quaternion stay below
+
+// The bytes of a script element that holds base64.
+export function blobBytes(id) {
+  const element = document.getElementById(id);
+  const text = atob(element.textContent.trim());
+  element.textContent = ''; // or the page would hold the data twice
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes;
+}
+
+// Arrays lie in a blob at multiples of four.
+export const view = (bytes, Type, place) =>
+  new Type(bytes.buffer, bytes.byteOffset + place.offset, place.count);
+
+// Unpacks 48 bits: 2 bits tell which component is left out (the largest, taken as positive), 15
+// bits each of the others in the order x, y, z, w.
+export function unpackRotation(words, at, into) {
+  const a = words[at];
+  const b = words[at + 1];
+  const c = words[at + 2];
+  const left = (a >> 15) | ((b >> 15) << 1);
+  const unpack = (word) => ((word & 0x7fff) / 32767) * 2 * COMPONENT_LIMIT - COMPONENT_LIMIT;
+  const p = unpack(a);
+  const q = unpack(b);
+  const r = unpack(c);
+  const rest = Math.sqrt(Math.max(0, 1 - p * p - q * q - r * r));
+  if (left === 0) into.set(rest, p, q, r);
+  else if (left === 1) into.set(p, rest, q, r);
+  else if (left === 2) into.set(p, q, rest, r);
+  else into.set(p, q, r, rest);
+  return into;
+}
+
+export class Motion {
+  constructor(item, bytes) {
+    this.names = item.joints;
+    this.parents = item.parents;
+    this.endSites = new Set(item.endSites);
+    this.rate = item.rate;
+    this.frames = item.frames;
+    this.offsets = view(bytes, Float32Array, item.offsets);
+    this.referenceRotations = view(bytes, Float32Array, item.referenceRotations);
+    // Joints whose rotation changes, in the order of the packed rotations.
+    this.turning = item.turning;
+    this.rotations = view(bytes, Uint16Array, item.rotations);
+    // Joints whose place in their parent changes, the root first.
+    this.moving = item.moving;
+    this.translations = view(bytes, Float32Array, item.translations);
+
+    const count = this.names.length;
+    this.local = Array.from({ length: count }, (_, joint) => ({
+      position: new Vector3().fromArray(this.offsets, joint * 3),
+      rotation: new Quaternion().fromArray(this.referenceRotations, joint * 4),
+    }));
+    this.positions = Array.from({ length: count }, () => new Vector3());
+    this.orientations = Array.from({ length: count }, () => new Quaternion());
+    this.from = new Quaternion();
+    this.to = new Quaternion();
+    this.there = new Vector3();
+  }
+
+  get duration() {
+    return this.frames > 1 ? (this.frames - 1) / this.rate : 0;
+  }
+
+  // Places all joints as they are at `time` seconds: positions and orientations in the world.
+  pose(time) {
+    if (this.frames > 0) this.readFrames(time);
+    for (let joint = 0; joint < this.names.length; ++joint) {
+      const parent = this.parents[joint];
+      const { position, rotation } = this.local[joint];
+      if (parent < 0) {
+        this.positions[joint].copy(position);
+        this.orientations[joint].copy(rotation);
+        continue;
+      }
+      this.positions[joint]
+        .copy(position)
+        .applyQuaternion(this.orientations[parent])
+        .add(this.positions[parent]);
+      this.orientations[joint].multiplyQuaternions(this.orientations[parent], rotation);
+    }
+  }
+
+  readFrames(time) {
+    const at = Math.min(Math.max(time * this.rate, 0), this.frames - 1);
+    // A time that was worked out from a frame's number is that frame.
+    const frame = Math.min(Math.floor(at + 1e-6), this.frames - 1);
+    const fraction = Math.max(at - frame, 0);
+    const next = Math.min(frame + 1, this.frames - 1);
+    const words = this.turning.length * ROTATION_WORDS;
+    this.turning.forEach((joint, i) => {
+      const { rotation } = this.local[joint];
+      unpackRotation(this.rotations, frame * words + i * ROTATION_WORDS, rotation);
+      if (fraction > 0) {
+        unpackRotation(this.rotations, next * words + i * ROTATION_WORDS, this.to);
+        rotation.slerp(this.to, fraction);
+      }
+    });
+    const numbers = this.moving.length * 3;
+    this.moving.forEach((joint, i) => {
+      const { position } = this.local[joint];
+      position.fromArray(this.translations, frame * numbers + i * 3);
+      if (fraction > 0) {
+        position.lerp(this.there.fromArray(this.translations, next * numbers + i * 3), fraction);
+      }
+    });
+  }
+
+  // Where one joint is at each of the frames, three numbers a frame.
+  path(joint) {
+    const chain = [];
+    for (let at = joint; at >= 0; at = this.parents[at]) chain.push(at);
+    const path = new Float32Array(Math.max(this.frames, 1) * 3);
+    const position = new Vector3();
+    for (let frame = 0; frame < Math.max(this.frames, 1); ++frame) {
+      if (this.frames > 0) this.readFrames(frame / this.rate);
+      position.set(0, 0, 0);
+      for (const at of chain) {
+        position.applyQuaternion(this.local[at].rotation).add(this.local[at].position);
+      }
+      position.toArray(path, frame * 3);
+    }
+    return path;
+  }
+
+  // joint_to_world of a joint after pose().
+  matrix(joint, into = new Matrix4()) {
+    return into.compose(this.positions[joint], this.orientations[joint], new Vector3(1, 1, 1));
+  }
+}
+
+export class CameraTrack {
+  constructor(item, bytes) {
+    this.rate = item.rate;
+    this.frames = item.frames;
+    this.positions = view(bytes, Float32Array, item.positions);
+    this.rotations = view(bytes, Float32Array, item.orientations);
+    this.fields = view(bytes, Float32Array, item.fieldsOfView);
+    this.position = new Vector3();
+    this.orientation = new Quaternion();
+    this.fieldOfView = 0.7;
+    this.to = new Quaternion();
+    this.there = new Vector3();
+  }
+
+  get duration() {
+    return this.frames > 1 ? (this.frames - 1) / this.rate : 0;
+  }
+
+  pose(time) {
+    if (this.frames === 0) return;
+    const at = Math.min(Math.max(time * this.rate, 0), this.frames - 1);
+    const frame = Math.min(Math.floor(at + 1e-6), this.frames - 1);
+    const fraction = Math.max(at - frame, 0);
+    const next = Math.min(frame + 1, this.frames - 1);
+    this.position.fromArray(this.positions, frame * 3);
+    this.position.lerp(this.there.fromArray(this.positions, next * 3), fraction);
+    this.orientation.fromArray(this.rotations, frame * 4);
+    this.orientation.slerp(this.to.fromArray(this.rotations, next * 4), fraction);
+    this.fieldOfView = this.fields[frame] * (1 - fraction) + this.fields[next] * fraction;
+  }
+}

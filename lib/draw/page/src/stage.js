@@ -1,0 +1,193 @@
+// The room in which figures stand: light, ground, camera, drawing.
+
+import {
+  AmbientLight,
+  CanvasTexture,
+  Color,
+  DirectionalLight,
+  Fog,
+  HemisphereLight,
+  Mesh,
+  MeshBasicMaterial,
+  PCFShadowMap,
+  PerspectiveCamera,
+  PlaneGeometry,
+  RepeatWrapping,
+  Scene,
+  ShadowMaterial,
+  Vector3,
+  WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+const GROUND_SIZE = 400; // metres
+
+export class Stage {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.setPixelRatio(Math.min(globalThis.devicePixelRatio ?? 1, 2));
+
+    this.scene = new Scene();
+    this.scene.add(new HemisphereLight(0xffffff, 0x8d8d8d, 1.4), new AmbientLight(0xffffff, 0.3));
+    this.sun = new DirectionalLight(0xffffff, 2.2);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.bias = -0.0005;
+    this.sun.shadow.normalBias = 0.02;
+    this.scene.add(this.sun, this.sun.target);
+
+    this.camera = new PerspectiveCamera(40, 1, 0.01, 1000);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener('change', () => this.redraw());
+    this.flown = null; // a recorded camera that is looked through
+
+    this.makeGround();
+    this.dark = globalThis.matchMedia?.('(prefers-color-scheme: dark)');
+    this.dark?.addEventListener('change', () => this.applyColours());
+    this.applyColours();
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.resize();
+  }
+
+  // A grid of metres, every fifth line stronger, and what catches the shadows.
+  makeGround() {
+    this.gridCanvas = document.createElement('canvas');
+    this.gridCanvas.width = this.gridCanvas.height = 640; // five metres
+    this.gridTexture = new CanvasTexture(this.gridCanvas);
+    this.gridTexture.wrapS = this.gridTexture.wrapT = RepeatWrapping;
+    this.gridTexture.repeat.setScalar(GROUND_SIZE / 5);
+    this.gridTexture.anisotropy = this.renderer.capabilities.getMaxAnisotropy();
+    const plane = new PlaneGeometry(GROUND_SIZE, GROUND_SIZE).rotateX(-Math.PI / 2);
+    this.grid = new Mesh(
+      plane,
+      new MeshBasicMaterial({ map: this.gridTexture, transparent: true, depthWrite: false }),
+    );
+    this.grid.renderOrder = -2;
+    this.shadow = new Mesh(plane, new ShadowMaterial({ opacity: 0.28, depthWrite: false }));
+    this.shadow.receiveShadow = true;
+    this.shadow.renderOrder = -1;
+    this.scene.add(this.grid, this.shadow);
+  }
+
+  applyColours() {
+    const dark = Boolean(this.dark?.matches);
+    const ground = new Color(dark ? '#15181c' : '#f4f5f7');
+    this.scene.background = ground;
+    this.scene.fog = new Fog(ground, 20, 90);
+    const pen = this.gridCanvas.getContext('2d');
+    const size = this.gridCanvas.width;
+    pen.clearRect(0, 0, size, size);
+    const line = (at, width, colour) => {
+      pen.strokeStyle = colour;
+      pen.lineWidth = width;
+      pen.beginPath();
+      pen.moveTo(at, 0);
+      pen.lineTo(at, size);
+      pen.moveTo(0, at);
+      pen.lineTo(size, at);
+      pen.stroke();
+    };
+    const ink = dark ? '190,205,220' : '60,72,86';
+    for (let metre = 1; metre < 5; ++metre) line((metre * size) / 5, 2, `rgba(${ink},0.28)`);
+    line(0, 5, `rgba(${ink},0.55)`);
+    line(size, 5, `rgba(${ink},0.55)`);
+    this.gridTexture.needsUpdate = true;
+    this.redraw();
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.redraw();
+  }
+
+  redraw() {
+    this.stale = true;
+  }
+
+  // Puts the camera where it sees `box` from the front, a little from the figure's left and above.
+  frame(box) {
+    const centre = box.getCenter(new Vector3());
+    const size = box.getSize(new Vector3());
+    const high = Math.max(size.y, 0.05);
+    const wide = Math.max(Math.hypot(size.x, size.z), 0.05);
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const distance = 1.25 * Math.max(high / (2 * half), wide / (2 * half * this.camera.aspect));
+    const from = new Vector3(0.55, 0.28, 1).normalize();
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(from, distance + wide / 4);
+    this.camera.near = distance / 200;
+    this.camera.far = Math.max(distance * 60, 200);
+    this.scene.fog.near = Math.max(20, distance * 3);
+    this.scene.fog.far = Math.max(90, distance * 14);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.aimSun(centre, Math.max(high, wide));
+  }
+
+  aimSun(centre, extent) {
+    const reach = Math.max(extent, 1) * 0.9;
+    this.sun.target.position.copy(centre);
+    this.sun.position.copy(centre).add(new Vector3(0.5, 1.4, 0.7).multiplyScalar(reach * 2));
+    Object.assign(this.sun.shadow.camera, {
+      left: -reach, right: reach, top: reach, bottom: -reach, near: 0.01, far: reach * 6,
+    });
+    this.sun.shadow.camera.updateProjectionMatrix();
+  }
+
+  // Moves camera and light along with the figure.
+  follow(step) {
+    this.controls.target.add(step);
+    this.camera.position.add(step);
+    this.sun.position.add(step);
+    this.sun.target.position.add(step);
+    this.controls.update();
+    this.redraw();
+  }
+
+  // Looks through a recorded camera, or with null through one's own again.
+  fly(track) {
+    this.flown = track;
+    this.controls.enabled = !track;
+    if (!track && this.own) {
+      this.camera.position.copy(this.own.position);
+      this.camera.fov = this.own.fov;
+      this.camera.updateProjectionMatrix();
+      this.controls.update();
+      this.own = null;
+    } else if (track && !this.own) {
+      this.own = { position: this.camera.position.clone(), fov: this.camera.fov };
+    }
+    this.redraw();
+  }
+
+  draw() {
+    if (this.flown) {
+      this.camera.position.copy(this.flown.position);
+      this.camera.quaternion.copy(this.flown.orientation);
+      this.camera.fov = (this.flown.fieldOfView * 180) / Math.PI;
+      this.camera.updateProjectionMatrix();
+    }
+    if (!this.stale) return false;
+    this.stale = false;
+    this.renderer.render(this.scene, this.camera);
+    return true;
+  }
+
+  // Where a point of the world is on the canvas, in CSS pixels; null behind the camera.
+  project(point) {
+    const seen = point.clone().project(this.camera);
+    if (seen.z > 1) return null;
+    return {
+      x: ((seen.x + 1) / 2) * this.canvas.clientWidth,
+      y: ((1 - seen.y) / 2) * this.canvas.clientHeight,
+    };
+  }
+}

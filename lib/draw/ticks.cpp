@@ -1,0 +1,54 @@
+#include <algorithm>
+#include <cmath>
+
+#include "draw/plot.h"
+
+namespace krok::draw {
+
+namespace {
+
+// The smallest 1, 2 or 5 times a power of ten that is not below `step`.
+double round_step(double step) {
+  const double power = std::pow(10.0, std::floor(std::log10(step)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= step * (1 - 1e-9)) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+std::vector<double> linear_ticks(double low, double high, int wanted) {
+  const double step = round_step((high - low) / std::max(wanted, 1));
+  std::vector<double> result;
+  const double first = std::ceil(low / step - 1e-9);
+  const double last = std::floor(high / step + 1e-9);
+  // Counted, not added up, so that 0 is 0 and no tick drifts.
+  for (double k = first; k <= last && result.size() < 1000; ++k) {
+    result.push_back(k == 0 ? 0.0 : k * step);
+  }
+  return result;
+}
+
+std::vector<double> logarithmic_ticks(double low, double high, int wanted) {
+  const double first = std::floor(std::log10(low) + 1e-9);
+  const double last = std::ceil(std::log10(high) - 1e-9);
+  const double decades = last - first;
+  std::vector<double> result;
+  const double every = std::max(1.0, std::ceil(decades / std::max(wanted, 1)));
+  for (double power = first; power <= last; power += every) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      if (factor > 1 && decades > 2) continue;
+      const double value = factor * std::pow(10.0, power);
+      if (value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9)) result.push_back(value);
+    }
+  }
+  return result.size() < 2 ? linear_ticks(low, high, wanted) : result;
+}
+
+}  // namespace
+
+std::vector<double> ticks(double low, double high, int wanted, Scale scale) {
+  return scale == Scale::linear ? linear_ticks(low, high, wanted)
+                                : logarithmic_ticks(low, high, wanted);
+}
+
+}  // namespace krok::draw

@@ -1,0 +1,124 @@
+#include "draw/viewer_page.h"
+
+#include <fmt/format.h>
+
+#include "draw/pack_motion_internal.h"
+#include "draw/page_text_internal.h"
+
+namespace krok::draw {
+
+namespace {
+
+// The page so far: the JSON that describes it and the script elements with the arrays.
+struct Parts {
+  Json items = Json::array();
+  std::string scripts;
+
+  Json start(const char* kind, const std::string& name, const std::string& facts) const {
+    Json item;
+    item["kind"] = kind;
+    item["name"] = name;
+    if (!facts.empty()) item["facts"] = facts;
+    return item;
+  }
+
+  void finish(Json item, const std::string& base64) {
+    const std::string id = fmt::format("krok-blob-{}", items.size());
+    item["blob"] = id;
+    items.push_back(std::move(item));
+    scripts += fmt::format("<script type=\"application/octet-stream\" id=\"{}\">", id);
+    scripts += base64;
+    scripts += "</script>\n";
+  }
+};
+
+Status add_motion(const ViewedMotion& viewed, Parts& parts) {
+  const Clip& clip = *viewed.clip;
+  if (Status good = check(clip); !good) return good;
+  Json item = parts.start("motion", viewed.name, viewed.facts);
+  item["visible"] = viewed.visible;
+  Blob blob;
+  pack_motion(clip, item, blob);
+  if (viewed.body != nullptr) {
+    if (Status good = check(*viewed.body); !good) return good;
+    const std::string difference = difference_in_structure(clip.skeleton, viewed.body->skeleton);
+    if (!difference.empty()) {
+      return Error("viewer-body",
+                   fmt::format("the body is not of the motion's skeleton: {}", difference));
+    }
+    item["body"] = pack_body(*viewed.body, blob);
+  }
+  Json contacts = Json::array();
+  for (const Contact& contact : viewed.contacts) {
+    if (contact.joint < 0 || contact.joint >= clip.joint_count()) {
+      return Error("viewer-index", fmt::format("a contact is of joint {}, which {} lacks",
+                                               contact.joint, viewed.name));
+    }
+    contacts.push_back({{"joint", contact.joint}, {"start", contact.start}, {"end", contact.end}});
+  }
+  if (!contacts.empty()) item["contacts"] = std::move(contacts);
+  Json keytimes = Json::array();
+  for (const Mark& mark : viewed.keytimes) {
+    keytimes.push_back({{"time", mark.time}, {"name", mark.name}});
+  }
+  if (!keytimes.empty()) item["keytimes"] = std::move(keytimes);
+  parts.finish(std::move(item), blob.base64());
+  return {};
+}
+
+// JSON inside a script element: "</script" and "<!--" must not appear, whatever the names hold.
+std::string script_safe(std::string text) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace
+
+Result<std::string> write_viewer_page(const ViewerPage& page) {
+  Parts parts;
+  for (const ViewedMotion& motion : page.motions) {
+    if (Status added = add_motion(motion, parts); !added) return added.error();
+  }
+  for (const ViewedGlb& file : page.files) {
+    Json item = parts.start("gltf", file.name, file.facts);
+    item["visible"] = file.visible;
+    item["animation"] = file.animation;
+    item["rate"] = file.rate;
+    parts.finish(std::move(item), to_base64(file.bytes));
+  }
+  for (const ViewedCamera& viewed : page.cameras) {
+    if (Status good = check(*viewed.camera); !good) return good.error();
+    Json item = parts.start("camera", viewed.name, viewed.facts);
+    Blob blob;
+    pack_camera(*viewed.camera, item, blob);
+    parts.finish(std::move(item), blob.base64());
+  }
+  Json data;
+  data["schema"] = "krok.view/1";
+  data["title"] = page.title;
+  data["apart"] = page.apart;
+  data["difference"] = page.difference;
+  data["items"] = std::move(parts.items);
+
+  constexpr std::string_view kPlace = "<!--krok-data-->";
+  const std::string_view text = page_text();
+  const std::size_t place = text.find(kPlace);
+  std::string html(text.substr(0, place));
+  html += "<script type=\"application/json\" id=\"krok-data\">";
+  // Names that are no UTF-8 are shown with replacement characters.
+  html += script_safe(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  html += "</script>\n";
+  html += parts.scripts;
+  html += text.substr(place + kPlace.size());
+  return html;
+}
+
+}  // namespace krok::draw

@@ -1,0 +1,116 @@
+// If these fail, krok-view leaves its user with a page that shows nothing, or without knowing why
+// there is none. What the page does in a browser is tested in tests/page.
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+
+namespace krok::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
+const std::string kMotion = kFrozen + "motion.anim";
+const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
+
+class KrokView : public CliTest {
+ protected:
+  ToolRun view(std::vector<std::string> arguments) const {
+    arguments.push_back("-o");
+    arguments.push_back(path("page.html"));
+    return run_tool("krok-view", arguments);
+  }
+  // The description that the page carries of what it shows.
+  json data() const {
+    const std::string page = get(path("page.html"));
+    const std::string start = "id=\"krok-data\">";
+    const auto at = page.find(start) + start.size();
+    return json::parse(page.substr(at, page.find("</script>", at) - at));
+  }
+};
+
+TEST_F(KrokView, ShowsAMotionWithABodyMadeForIt) {
+  const ToolRun run = view({kMotion});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, HasSubstr("1 figure"));
+  EXPECT_THAT(listing(), ElementsAre("page.html"));
+  const json shown = data();
+  EXPECT_EQ(shown["schema"], "krok.view/1");
+  EXPECT_EQ(shown["title"], "motion.anim");
+  ASSERT_EQ(shown["items"].size(), 1U);
+  EXPECT_EQ(shown["items"][0]["kind"], "motion");
+  EXPECT_TRUE(shown["items"][0].contains("body"));
+}
+
+TEST_F(KrokView, TakesACaptureAsItIs) {
+  ASSERT_EQ(view({kWalk, "--body", "none"}).exit_code, 0);
+  const json item = data()["items"][0];
+  EXPECT_EQ(item["frames"], 264);
+  EXPECT_EQ(item["rate"], 60.0);
+  EXPECT_FALSE(item.contains("body"));
+}
+
+TEST_F(KrokView, GivesAModelToTheMotionOfItsSkeleton) {
+  ASSERT_EQ(run_tool("krok-body", {kMotion, "--detail", "low", "-o", path("own.model")}).exit_code,
+            0);
+  ASSERT_EQ(view({path("own.model"), kMotion}).exit_code, 0);
+  const json items = data()["items"];
+  ASSERT_EQ(items.size(), 1U);
+  EXPECT_GT(items[0]["body"]["positions"]["count"].get<int>(), 3 * 2000);
+  EXPECT_LT(items[0]["body"]["positions"]["count"].get<int>(), 3 * 3000);
+}
+
+TEST_F(KrokView, ShowsAModelAloneInItsReferencePose) {
+  ASSERT_EQ(view({kFrozen + "full.model"}).exit_code, 0);
+  const json items = data()["items"];
+  ASSERT_EQ(items.size(), 1U);
+  EXPECT_EQ(items[0]["frames"], 0);
+}
+
+TEST_F(KrokView, ShowsACamera) {
+  ASSERT_EQ(view({kMotion, kFrozen + "camera.cam", "--body", "none"}).exit_code, 0);
+  const json items = data()["items"];
+  ASSERT_EQ(items.size(), 2U);
+  EXPECT_EQ(items[1]["kind"], "camera");
+}
+
+TEST_F(KrokView, ListsManyFilesOneAtATime) {
+  std::vector<std::string> files(6, kMotion);
+  ASSERT_EQ(view(files).exit_code, 0);
+  const json items = data()["items"];
+  ASSERT_EQ(items.size(), 6U);
+  EXPECT_EQ(items[0]["visible"], true);
+  EXPECT_EQ(items[5]["visible"], false);
+}
+
+TEST_F(KrokView, GivesTheSameBytesAgain) {
+  ASSERT_EQ(view({kMotion, "-j", "1"}).exit_code, 0);
+  const std::string first = get(path("page.html"));
+  ASSERT_EQ(view({kMotion, "-j", "2"}).exit_code, 0);
+  EXPECT_EQ(get(path("page.html")), first);
+}
+
+TEST_F(KrokView, SaysWhatItCannotShow) {
+  const std::string text = put("notes.txt", "no motion at all\n");
+  const ToolRun run = view({text});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("notes.txt"));
+  EXPECT_THAT(listing(), ElementsAre("notes.txt"));
+}
+
+TEST_F(KrokView, SaysThatADifferenceNeedsTwo) {
+  const ToolRun run = view({kMotion, "--difference"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--difference needs two motions"));
+  EXPECT_THAT(listing(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace krok::test

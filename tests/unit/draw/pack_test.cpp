@@ -1,0 +1,141 @@
+// If these fail, the viewer page shows joints elsewhere than where the motion has them, or its data
+// is larger than it may be.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "draw/pack_motion_internal.h"
+#include "draw/viewer_page.h"
+#include "math/quaternion.h"
+#include "support/test_scenes.h"
+
+namespace krok::draw {
+namespace {
+
+ViewedMotion viewed(const Clip& clip, std::string name = "a") {
+  ViewedMotion motion;
+  motion.name = std::move(name);
+  motion.clip = &clip;
+  return motion;
+}
+
+std::string base64(std::string_view text) {
+  return to_base64(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+TEST(Base64, GivesTheVectorsOfRfc4648) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foob"), "Zm9vYg==");
+  EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+}
+
+TEST(PackedRotation, ComesBackWithinTheRoundingOfItsBits) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> number;
+  double largest = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Quat q = normalized_or_identity(
+        Quat(number(random), number(random), number(random), number(random)));
+    largest = std::max(largest, angle_between(q, unpack_rotation(pack_rotation(q))));
+  }
+  EXPECT_LT(largest, 1.5e-4);
+  EXPECT_GT(largest, 1e-6);  // it does round
+}
+
+TEST(PackedRotation, TakesEachComponentAsTheLargest) {
+  for (int i = 0; i < 4; ++i) {
+    for (const double sign : {1.0, -1.0}) {
+      Quat q(0, 0, 0, 0);
+      q.coeffs()[i] = sign;
+      EXPECT_LT(angle_between(q, unpack_rotation(pack_rotation(q))), 1.5e-4) << i << " " << sign;
+    }
+  }
+  const Quat even(0.5, 0.5, -0.5, 0.5);  // no single largest
+  EXPECT_LT(angle_between(even, unpack_rotation(pack_rotation(even))), 1.5e-4);
+}
+
+TEST(PackedMotion, LeavesOutWhatDoesNotMove) {
+  Clip clip = test::swinging_clip(test::human_skeleton(), 50, 60);
+  Json item;
+  Blob blob;
+  pack_motion(clip, item, blob);
+  EXPECT_EQ(item["moving"], Json({0}));  // bones keep their length, the root walks
+  EXPECT_EQ(item["turning"].size(), static_cast<std::size_t>(clip.joint_count()));
+
+  for (int f = 1; f < clip.frame_count(); ++f) {
+    std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
+    clip.get_pose(0, pose);
+    clip.set_pose(f, pose);
+  }
+  Json still;
+  Blob still_blob;
+  pack_motion(clip, still, still_blob);
+  EXPECT_TRUE(still["moving"].empty());
+  EXPECT_TRUE(still["turning"].empty());
+  EXPECT_LT(still_blob.base64().size(), 3000U);
+}
+
+// A chain of sixty joints that all turn, a minute at 60 frames a second.
+TEST(ViewerPage, AMinuteOfSixtyJointsStaysUnderThreeMegabytes) {
+  Skeleton chain;
+  for (int j = 0; j < 60; ++j) {
+    Transform transform;
+    transform.position = Vec3(0, 0.02 * j, 0);
+    chain.add("joint " + std::to_string(j), j - 1, transform);
+  }
+  const Clip clip = test::swinging_clip(chain, 3600, 60);
+  ViewerPage empty, page;
+  Clip nothing;
+  nothing.skeleton = chain;
+  empty.motions.push_back(viewed(nothing));
+  page.motions.push_back(viewed(clip));
+  const auto without = write_viewer_page(empty);
+  const auto with = write_viewer_page(page);
+  ASSERT_TRUE(without.ok() && with.ok());
+  EXPECT_LT(with->size() - without->size(), 2'000'000U);
+  EXPECT_LT(with->size(), 3'000'000U);
+  EXPECT_EQ(*with, *write_viewer_page(page));  // the same bytes again
+}
+
+TEST(ViewerPage, NamesCannotEndTheScript) {
+  Clip clip = test::swinging_clip(test::human_skeleton(), 2, 60);
+  clip.skeleton.names[1] = "</script><script>alert(1)</script>";
+  ViewerPage page;
+  page.title = "<!--<script>";
+  page.motions.push_back(viewed(clip, "</script>"));
+  const auto html = write_viewer_page(page);
+  ASSERT_TRUE(html.ok());
+  EXPECT_EQ(html->find("</script><script>alert"), std::string::npos);
+  EXPECT_EQ(html->find("<!--<script>"), std::string::npos);
+}
+
+TEST(ViewerPage, RefusesABodyOfAnotherSkeleton) {
+  const Clip clip = test::swinging_clip(test::human_skeleton(), 2, 60);
+  Skeleton other = test::human_skeleton();
+  other.names[3] = "Other";
+  const Model body = test::tube_model(other);
+  ViewerPage page;
+  page.motions.push_back(viewed(clip));
+  page.motions[0].body = &body;
+  const auto html = write_viewer_page(page);
+  ASSERT_FALSE(html.ok());
+  EXPECT_EQ(html.error().code, "viewer-body");
+}
+
+TEST(ViewerPage, RefusesAContactOfNoJoint) {
+  const Clip clip = test::swinging_clip(test::human_skeleton(), 2, 60);
+  ViewerPage page;
+  page.motions.push_back(viewed(clip));
+  page.motions[0].contacts.push_back({clip.joint_count(), 0, 1});
+  const auto html = write_viewer_page(page);
+  ASSERT_FALSE(html.ok());
+  EXPECT_EQ(html.error().code, "viewer-index");
+}
+
+}  // namespace
+}  // namespace krok::draw

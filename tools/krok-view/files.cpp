@@ -1,0 +1,117 @@
+#include "tools/krok-view/files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "body/body.h"
+#include "formats/cam/cam.h"
+#include "formats/gltf/gltf_reader.h"
+#include "formats/model/model_format.h"
+#include "formats/registry/registry.h"
+#include "tools/common/motion_input.h"
+
+namespace krok::view {
+
+namespace {
+
+using registry::Kind;
+
+std::string name_of(const std::string& path) {
+  return path == "-" ? "standard input" : base_name(path);
+}
+
+Status add_file(const std::string& path, ToolContext& context, Files& files) {
+  auto input = context.open_input(path);
+  if (!input) return input.error();
+  switch (registry::identify(input->path(), input->bytes())) {
+    case Kind::model: {
+      auto model = model::read(input->bytes());
+      if (!model) return std::move(model).error().in_file(path);
+      files.models.push_back({path, name_of(path), std::move(*model), false});
+      return {};
+    }
+    case Kind::cam: {
+      auto camera = cam::read(input->bytes());
+      if (!camera) return std::move(camera).error().in_file(path);
+      files.cameras.push_back({name_of(path), std::move(*camera)});
+      return {};
+    }
+    case Kind::glb: {
+      // Read for its faults alone; the page shows the file as it is.
+      if (auto scene = gltf::read(input->bytes()); !scene) {
+        return std::move(scene).error().in_file(path);
+      }
+      const auto bytes = input->bytes();
+      files.glbs.push_back({name_of(path), {bytes.begin(), bytes.end()}});
+      return {};
+    }
+    case Kind::gltf:
+      return Error("view-input", "a .gltf may refer to other files, which a page cannot",
+                   "convert it to a .glb, which holds them")
+          .in_file(path);
+    default: {
+      auto clip = read_motion(*input, context);
+      if (!clip) return std::move(clip).error().in_file(path);
+      files.motions.push_back({path, name_of(path), std::move(*clip), nullptr});
+      return {};
+    }
+  }
+}
+
+void share_models(Files& files) {
+  for (Files::Character& character : files.models) {
+    for (Files::Motion& motion : files.motions) {
+      if (motion.body != nullptr || character.model.triangles.empty()) continue;
+      if (!difference_in_structure(motion.clip.skeleton, character.model.skeleton).empty())
+        continue;
+      motion.body = &character.model;
+      character.used = true;
+    }
+  }
+  for (Files::Character& character : files.models) {
+    if (character.used) continue;
+    Files::Motion still{character.path, character.name, {}, nullptr};
+    still.clip.skeleton = character.model.skeleton;
+    if (!character.model.triangles.empty()) still.body = &character.model;
+    files.motions.push_back(std::move(still));
+  }
+}
+
+Status build_bodies(const Options& options, ToolContext& context, Files& files) {
+  const auto bare = std::count_if(files.motions.begin(), files.motions.end(),
+                                  [](const Files::Motion& motion) { return !motion.body; });
+  BodyChoice choice = options.body;
+  if (choice == BodyChoice::automatic) {
+    choice = bare <= 2 ? BodyChoice::medium : bare <= 4 ? BodyChoice::low : BodyChoice::none;
+  }
+  if (choice == BodyChoice::none) return {};
+  BodyOptions how;
+  how.detail = choice == BodyChoice::low      ? BodyDetail::low
+               : choice == BodyChoice::medium ? BodyDetail::medium
+                                              : BodyDetail::high;
+  how.jobs = context.jobs;
+  how.progress = context.progress;
+  for (Files::Motion& motion : files.motions) {
+    if (motion.body != nullptr) continue;
+    auto body = make_body(motion.clip, how);
+    if (!body) return std::move(body).error().in_file(motion.path);
+    files.bodies.push_back(std::move(body->model));
+    motion.body = &files.bodies.back();
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Files> read_files(const Options& options, ToolContext& context) {
+  Files files;
+  for (const std::string& path : options.inputs) {
+    if (Status added = add_file(path, context, files); !added) return added.error();
+  }
+  share_models(files);
+  if (Status built = build_bodies(options, context, files); !built) return built.error();
+  return files;
+}
+
+}  // namespace krok::view

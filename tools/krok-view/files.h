@@ -1,0 +1,48 @@
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "draw/viewer_page.h"
+#include "scene/camera_track.h"
+#include "scene/clip.h"
+#include "scene/model.h"
+#include "tools/common/tool.h"
+#include "tools/krok-view/view.h"
+
+namespace krok::view {
+
+// What the input files hold, kept for as long as the page is made of it.
+struct Files {
+  struct Motion {
+    std::string path, name;
+    Clip clip;
+    const Model* body = nullptr;  // of `models` or `bodies`
+  };
+  struct Glb {
+    std::string name;
+    std::vector<std::byte> bytes;
+  };
+  struct Camera {
+    std::string name;
+    CameraTrack track;
+  };
+  struct Character {
+    std::string path, name;
+    Model model;
+    bool used = false;
+  };
+  std::deque<Motion> motions;
+  std::deque<Character> models;
+  std::deque<Model> bodies;
+  std::deque<Glb> glbs;
+  std::deque<Camera> cameras;
+};
+
+// Reads all inputs, gives each model to the motions of its skeleton, and builds bodies for motions
+// that have none. A model that no motion moves stands in its reference pose.
+Result<Files> read_files(const Options& options, ToolContext& context);
+
+}  // namespace krok::view

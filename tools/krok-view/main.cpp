@@ -1,0 +1,17 @@
+#include "tools/krok-view/view.h"
+
+int main(int argc, char** argv) {
+  krok::view::Options options;
+  krok::ToolSpec spec;
+  spec.name = "krok-view";
+  spec.summary = "Makes a page that plays motions in any browser, from disk, without a network";
+  spec.inputs = "IN...";
+  spec.examples = {{"krok-view walk.bvh -o walk.html", "a capture, with a body made for it"},
+                   {"krok-view before.anim after.anim --difference -o change.html",
+                    "two motions in one place, joints coloured by how far apart they are"},
+                   {"krok-view hero.model walk.anim shot.cam -o shot.html",
+                    "a character, moved, seen by the recorded camera"}};
+  spec.declare = [&options](CLI::App& app) { krok::view::declare(app, options); };
+  spec.run = [&options](krok::ToolContext& context) { return krok::view::run(options, context); };
+  return krok::run_tool(spec, argc, argv);
+}

@@ -1,0 +1,134 @@
+#include "tools/krok-view/view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/numbers.h"
+#include "draw/viewer_page.h"
+#include "tools/common/one_of.h"
+#include "tools/krok-view/files.h"
+
+namespace krok::view {
+
+namespace {
+
+std::string facts_of(const Clip& clip) {
+  if (clip.frame_count() == 0) return fmt::format("{} joints, no motion", clip.joint_count());
+  return fmt::format("{} joints, {} frames, {} a second, {} s", clip.joint_count(),
+                     clip.frame_count(), readable(clip.rate),
+                     fmt::format("{:.2f}", clip.duration()));
+}
+
+draw::ViewerPage page_of(const Files& files, const Options& options, Layout layout) {
+  draw::ViewerPage page;
+  page.apart = layout == Layout::apart;
+  page.difference = options.difference;
+  // In a list one file is shown at a time, the first to begin with.
+  const auto visible = [&](std::size_t place) { return layout != Layout::list || place == 0; };
+  for (const Files::Motion& motion : files.motions) {
+    draw::ViewedMotion viewed;
+    viewed.name = motion.name;
+    viewed.facts = facts_of(motion.clip);
+    viewed.visible = visible(page.motions.size());
+    viewed.clip = &motion.clip;
+    viewed.body = motion.body;
+    page.motions.push_back(std::move(viewed));
+  }
+  for (const Files::Glb& glb : files.glbs) {
+    draw::ViewedGlb viewed;
+    viewed.name = glb.name;
+    viewed.visible = visible(page.motions.size() + page.files.size());
+    viewed.bytes = glb.bytes;
+    page.files.push_back(std::move(viewed));
+  }
+  for (const Files::Camera& camera : files.cameras) {
+    page.cameras.push_back({camera.name,
+                            fmt::format("{} frames, {} a second", camera.track.frame_count(),
+                                        readable(camera.track.rate)),
+                            &camera.track});
+  }
+  page.title = options.title;
+  if (page.title.empty()) {
+    page.title = !page.motions.empty() ? page.motions.front().name
+                 : !page.files.empty() ? page.files.front().name
+                                       : page.cameras.front().name;
+    const std::size_t all = page.motions.size() + page.files.size() + page.cameras.size();
+    if (all > 1) page.title += fmt::format(" and {} more", all - 1);
+  }
+  return page;
+}
+
+}  // namespace
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("inputs", options.inputs,
+                 "Motions (.anim, or a capture such as BVH), models (.model, moved by the motions "
+                 "of their skeleton), cameras (.cam), GLB files")
+      ->type_name("IN")
+      ->required();
+  app.add_option("--layout", options.layout,
+                 "Several figures: apart (side by side), together (each where its file puts it), "
+                 "list (one at a time), or auto: apart up to four, a list of more")
+      ->type_name("HOW")
+      ->transform(one_of<Layout>({{"auto", Layout::automatic},
+                                  {"apart", Layout::apart},
+                                  {"together", Layout::together},
+                                  {"list", Layout::list}}))
+      ->default_str("auto");
+  app.add_flag("--difference", options.difference,
+               "Put the first two figures together and colour their joints by how far apart those "
+               "of the same name are");
+  app.add_option("--body", options.body,
+                 "A body for motions without a model: none, low (2,500 vertices), medium (10,000), "
+                 "high (40,000), or auto: fewer for more files, none for more than four")
+      ->type_name("DETAIL")
+      ->transform(one_of<BodyChoice>({{"auto", BodyChoice::automatic},
+                                      {"none", BodyChoice::none},
+                                      {"low", BodyChoice::low},
+                                      {"medium", BodyChoice::medium},
+                                      {"high", BodyChoice::high}}))
+      ->default_str("auto");
+  app.add_option("--title", options.title, "The page's title; otherwise the first file's name")
+      ->type_name("WORDS");
+}
+
+Result<int> run(const Options& options, ToolContext& context) {
+  const auto files = read_files(options, context);
+  if (!files) return files.error();
+  const std::size_t figures = files->motions.size() + files->glbs.size();
+  if (options.difference && files->motions.size() < 2) {
+    return Error("usage", "--difference needs two motions");
+  }
+  Layout layout = options.layout;
+  if (options.difference && layout == Layout::automatic) layout = Layout::together;
+  if (layout == Layout::automatic) layout = figures > 4 ? Layout::list : Layout::apart;
+  if (figures < 2) layout = Layout::together;
+
+  auto html = draw::write_viewer_page(page_of(*files, options, layout));
+  if (!html) return html.error();
+  auto file = OutputFile::create(context.output, context.output_options());
+  if (!file) return file.error();
+  if (Status written = file->write(*html); !written) return written.error();
+  if (Status done = file->commit(); !done) return done.error();
+  context.wrote(context.output);
+
+  Json shown = Json::array();
+  for (const Files::Motion& motion : files->motions) {
+    shown.push_back({{"name", motion.name},
+                     {"joints", motion.clip.joint_count()},
+                     {"frames", motion.clip.frame_count()},
+                     {"rate", motion.clip.rate},
+                     {"vertices", motion.body ? motion.body->vertex_count() : 0}});
+  }
+  context.report.result["motions"] = std::move(shown);
+  context.report.result["files"] = files->glbs.size();
+  context.report.result["cameras"] = files->cameras.size();
+  context.report.result["bytes"] = html->size();
+  context.say(fmt::format("{}: {}, {:.1f} MB; open it in a browser", context.output,
+                          figures == 1 ? "1 figure" : fmt::format("{} figures", figures),
+                          static_cast<double>(html->size()) / 1e6));
+  return kExitDone;
+}
+
+}  // namespace krok::view

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "tools/common/tool.h"
+
+namespace krok::view {
+
+enum class Layout : unsigned char { automatic, apart, together, list };
+enum class BodyChoice : unsigned char { automatic, none, low, medium, high };
+
+struct Options {
+  std::vector<std::string> inputs;
+  Layout layout = Layout::automatic;
+  BodyChoice body = BodyChoice::automatic;
+  bool difference = false;
+  std::string title;
+};
+
+void declare(CLI::App& app, Options& options);
+
+// Reads the files and writes one page that shows them.
+Result<int> run(const Options& options, ToolContext& context);
+
+}  // namespace krok::view
