@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+
+// Small JSON files that people write by hand, with the place of each value kept, so that what is
+// wrong with one can be said by line and column.
+
+namespace krok::json {
+
+struct Value {
+  enum class Kind : unsigned char { null, boolean, number, string, array, object };
+  struct Member;
+
+  Kind kind = Kind::null;
+  std::size_t offset = 0;  // of its first byte in the text
+  bool truth = false;      // boolean
+  double number = 0;
+  std::string text;             // string, UTF-8
+  std::vector<Value> items;     // array
+  std::vector<Member> members;  // object, in the file's order, keys unique
+
+  // The member's value, or nullptr.
+  const Value* find(std::string_view key) const;
+};
+
+struct Value::Member {
+  std::string key;
+  std::size_t key_offset = 0;
+  Value value;
+};
+
+// "a number", for messages.
+std::string_view kind_name(Value::Kind kind);
+
+// One JSON value (RFC 8259) and nothing after it; a byte order mark is passed over. At most 32
+// levels deep, 1000 keys an object and `largest` bytes long; a key twice in one object is an error.
+// Codes json-syntax, json-limit, with line and column.
+Result<Value> parse(std::string_view text, std::size_t largest = std::size_t{16} << 20);
+
+// An error about the value that begins at `offset` of `text`, with its line and column.
+Error error_at(std::string_view text, std::size_t offset, std::string code, std::string message,
+               std::string hint = {});
+
+}  // namespace krok::json

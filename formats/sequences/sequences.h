@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+// Named parts of one long take, as a text file that people write; formats/sequences/SPEC.md
+// describes it.
+
+namespace krok::sequences {
+
+struct Sequence {
+  std::string name;
+  int first = 0, last = 0;  // frames, counted from 0, both belonging to it; first <= last
+  double speed = 1;         // > 0; 2 plays it twice as fast
+  bool loop = false;        // whether it repeats
+};
+
+struct SequenceFile {
+  double rate = 0;  // the frame rate that the frames are counted at; 0 for that of the motion
+  std::vector<Sequence> sequences;  // names unique
+
+  const Sequence* find(std::string_view name) const;
+};
+
+// Codes: json-syntax, json-limit, sequences-structure, sequences-value, each with line and column.
+Result<SequenceFile> read(std::string_view text);
+
+}  // namespace krok::sequences

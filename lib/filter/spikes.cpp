@@ -1,0 +1,249 @@
+#include "filter/spikes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.h"
+#include "math/quaternion.h"
+#include "motion/local_motion.h"
+
+namespace krok::filter {
+
+namespace {
+
+Vec3 difference(const Vec3& from, const Vec3& to) {
+  return to - from;
+}
+Vec3 difference(const Quat& from, const Quat& to) {
+  return rotation_vector(from.conjugate() * to);
+}
+Vec3 moved(const Vec3& from, const Vec3& by) {
+  return from + by;
+}
+Quat moved(const Quat& from, const Vec3& by) {
+  return from * from_rotation_vector(by);
+}
+
+constexpr int kPair = 3;  // frames of two spikes with a sound one between them
+
+struct Run {
+  int first, last;
+  double size;
+};
+
+// One joint's rotations or positions over time.
+template <typename Value>
+class SpikeFinder {
+ public:
+  SpikeFinder(std::span<Value> series, double threshold, double least, int longest, int around)
+      : series_(series),
+        count_(static_cast<int>(series.size())),
+        threshold_(threshold),
+        least_(least),
+        longest_(longest),
+        around_(around) {}
+
+  // Replaces spikes in the series. Short ones first: a long one may seem to be there only because
+  // of a short one.
+  std::vector<Run> remove() {
+    std::vector<Run> runs;
+    if (count_ < 5) return runs;
+    for (int f = 0; f < count_; ++f) deviations_.push_back(deviation(f, 1));
+    for (int length = 1; length <= std::min(std::max(longest_, kPair), count_ - 4); ++length) {
+      set_limits(length);
+      for (int first = 0; first + length <= count_; ++first) {
+        const Run run{first, first + length - 1, 0};
+        if (suspicious(first) && is_spike(run)) runs.push_back(replace(run));
+      }
+    }
+    std::ranges::sort(runs, {}, &Run::first);
+    return runs;
+  }
+
+ private:
+  static std::size_t at(int frame) { return static_cast<std::size_t>(frame); }
+  const Value& value(int frame) const { return series_[at(frame)]; }
+  double limit(int frame) const { return limits_[at(frame)]; }
+
+  // The frames that a guess at `frame` stands on when `run` is not to be believed: two on each
+  // side, where the clip has them; only two in all if one side has none.
+  struct Support {
+    std::array<int, 4> frames{};
+    int count = 0;
+    bool both_sides = false;
+  };
+  Support support(int frame, const Run& run) const {
+    Support found;
+    const auto walk = [&](int step) {
+      int taken = 0;
+      for (int f = frame + step; taken < 2 && f >= 0 && f < count_; f += step) {
+        if (f >= run.first && f <= run.last) continue;
+        found.frames[at(found.count++)] = f;
+        ++taken;
+      }
+      return taken;
+    };
+    const int before = walk(-1), after = walk(1);
+    found.both_sides = before > 0 && after > 0;
+    return found;
+  }
+
+  // Lagrange's polynomial through the support, in the tangent space of its first frame.
+  Value guess(int frame, const Support& support) const {
+    const Value& base = value(support.frames[0]);
+    Vec3 sum = Vec3::Zero();
+    for (int i = 1; i < support.count; ++i) {
+      double weight = 1;
+      for (int k = 0; k < support.count; ++k) {
+        if (k == i) continue;
+        weight *= static_cast<double>(frame - support.frames[at(k)]) /
+                  (support.frames[at(i)] - support.frames[at(k)]);
+      }
+      sum += weight * difference(base, value(support.frames[at(i)]));
+    }
+    return moved(base, sum);
+  }
+
+  // How far the frame lies from the guess, and what is allowed, as a ratio; over 1 is too far.
+  double excess(int frame, const Run& run) const {
+    const Support from = support(frame, run);
+    if (from.count < 2) return 0;
+    const double distance = difference(guess(frame, from), value(frame)).norm();
+    return distance / (from.both_sides ? limit(frame) : 2 * limit(frame));
+  }
+
+  // Of the first frame of a run from a guess without the run.
+  double deviation(int frame, int length) const {
+    const Run run{frame, std::min(count_, frame + length) - 1, 0};
+    return difference(guess(frame, support(frame, run)), value(frame)).norm();
+  }
+
+  // What is usual depends on how far the guess must reach.
+  void set_limits(int length) {
+    std::vector<double> usual;
+    for (int f = 0; f < count_; ++f) usual.push_back(deviation(f, length));
+    limits_.resize(usual.size());
+    std::vector<double> near;
+    for (int f = 0; f < count_; ++f) {
+      near.assign(usual.begin() + std::max(0, f - around_),
+                  usual.begin() + std::min(count_, f + around_ + 1));
+      const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
+      std::nth_element(near.begin(), middle, near.end());
+      limits_[at(f)] = std::max(least_, threshold_ * *middle);
+    }
+  }
+
+  // A jump between a frame and the one before shows in the deviation of at least one of them.
+  bool suspicious(int frame) const {
+    const auto shows = [&](int f) {
+      return f >= 0 && f < count_ && deviations_[at(f)] > 0.2 * limit(f);
+    };
+    return shows(frame) || shows(frame - 1);
+  }
+
+  bool is_spike(const Run& run) const {
+    if (excess(run.first, run) <= 1 || excess(run.last, run) <= 1) return false;
+    const int before = run.first - 1, after = run.last + 1;
+    if (before < 0 || after >= count_) return run.first == run.last && jumps_at_end(run.first);
+    if (!is_abrupt(run)) return false;
+    // Two spikes with a sound frame between them look like a longer one.
+    for (int f = run.first + 1; f < run.last && run.last - run.first >= longest_; ++f) {
+      if (excess(f, run) > 1) return false;
+    }
+    // What stands beside a spike is sound without it.
+    return excess(before, run) <= 1 && excess(after, run) <= 1;
+  }
+
+  // Whether the steps into the run and out of it are large beside those just before and after, and
+  // beside the way that is made meanwhile. A quick gesture gathers speed; a spike does not.
+  bool is_abrupt(const Run& run) const {
+    const auto step = [&](int from, int to) {
+      return from < 0 || to >= count_ ? 0 : difference(value(from), value(to)).norm();
+    };
+    const int before = run.first - 1, after = run.last + 1;
+    const double calm = std::max(
+        {2 * step(before - 1, before), 2 * step(after, after + 1), 0.5 * step(before, after)});
+    return step(before, run.first) > calm && step(run.last, after) > calm;
+  }
+
+  // The clip's first or last frame by itself, reached by a step many times as large as those
+  // beside.
+  bool jumps_at_end(int frame) const {
+    const int inwards = frame == 0 ? 1 : -1;
+    const auto step = [&](int k) {
+      return difference(value(frame + k * inwards), value(frame + (k + 1) * inwards)).norm();
+    };
+    return step(0) > threshold_ * std::max({step(1), step(2), step(3), least_ / threshold_});
+  }
+
+  Run replace(Run run) {
+    std::vector<Value> better;
+    for (int f = run.first; f <= run.last; ++f) {
+      better.push_back(guess(f, support(f, run)));
+      run.size = std::max(run.size, difference(better.back(), value(f)).norm());
+    }
+    for (int f = run.first; f <= run.last; ++f) series_[at(f)] = better[at(f - run.first)];
+    for (int f = std::max(0, run.first - 2); f <= std::min(count_ - 1, run.last + 2); ++f) {
+      deviations_[at(f)] = deviation(f, 1);
+    }
+    return run;
+  }
+
+  std::span<Value> series_;
+  int count_;
+  double threshold_, least_;
+  int longest_, around_;
+  std::vector<double> deviations_, limits_;
+};
+
+}  // namespace
+
+Result<SpikeRemoval> remove_spikes(const Clip& clip, const SpikeOptions& options,
+                                   std::span<const std::uint8_t> joints, int jobs) {
+  for (const double value :
+       {options.threshold, options.least_angle, options.least_distance, options.longest}) {
+    if (!(value > 0) || !std::isfinite(value)) {
+      return Error("filter-threshold", "what counts as a spike must be given by positive numbers");
+    }
+  }
+  LocalMotion motion = local_motion(clip);
+  const std::vector<std::uint8_t> moving = moving_joints(motion);
+  const auto frames_of = [&](double seconds) {
+    return static_cast<int>(std::min(1e6, std::round(seconds * clip.rate)));
+  };
+  const int longest = std::max(1, frames_of(options.longest));
+  const int around = std::max(10, frames_of(0.5));
+
+  std::vector<std::vector<Spike>> found(clip.skeleton.names.size());
+  parallel_for(found.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+      if (!joints.empty() && joints[j] == 0) continue;
+      const int joint = static_cast<int>(j);
+      const auto note = [&](const std::vector<Run>& runs, bool of_position) {
+        for (const Run& run : runs) {
+          found[j].push_back({joint, run.first, run.last, of_position, run.size});
+        }
+      };
+      note(SpikeFinder<Quat>(motion.joint_orientations(joint), options.threshold,
+                             options.least_angle, longest, around)
+               .remove(),
+           false);
+      if (moving[j] == 0) continue;
+      note(SpikeFinder<Vec3>(motion.joint_positions(joint), options.threshold,
+                             options.least_distance, longest, around)
+               .remove(),
+           true);
+    }
+  });
+
+  SpikeRemoval result{clip, {}};
+  for (const auto& spikes : found) {
+    result.spikes.insert(result.spikes.end(), spikes.begin(), spikes.end());
+  }
+  if (!result.spikes.empty()) set_local_motion(motion, result.clip);
+  return result;
+}
+
+}  // namespace krok::filter

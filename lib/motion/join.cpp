@@ -1,0 +1,130 @@
+#include "motion/join.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "math/quaternion.h"
+#include "motion/ground_place.h"
+#include "motion/local_motion.h"
+#include "motion/place.h"
+#include "motion/sample.h"
+
+namespace krok {
+
+namespace {
+
+constexpr const char* kRetarget = "bring it on the same skeleton with krok-retarget";
+
+Status same_skeleton(const Skeleton& first, const Skeleton& second) {
+  const std::string difference = difference_in_structure(first, second);
+  if (!difference.empty()) {
+    return Error("motion-skeleton", "the skeletons differ: " + difference, kRetarget);
+  }
+  const double allowed = 0.01 * std::max(reference_extent(first), reference_extent(second));
+  for (int j = 1; j < first.joint_count(); ++j) {
+    const Vec3 a = first.reference_local(j).position;
+    const Vec3 b = second.reference_local(j).position;
+    if ((a - b).norm() <= allowed) continue;
+    const std::string& name = first.names[static_cast<std::size_t>(j)];
+    const bool length = std::abs(a.norm() - b.norm()) > allowed;
+    Error error("motion-skeleton",
+                length
+                    ? fmt::format("the bone to {} is {} m long in the first and {} m in the second",
+                                  name, readable(a.norm(), 4), readable(b.norm(), 4))
+                    : fmt::format("{} stands elsewhere in its parent's frame in the second: the "
+                                  "reference poses differ",
+                                  name),
+                kRetarget);
+    error.joint = name;
+    return error;
+  }
+  return {};
+}
+
+// Takes the second's figure to where the first's is.
+Transform alignment(const Clip& first, int first_frame, const Clip& second, int second_frame,
+                    int carrier, bool match_height) {
+  Transform move = ground_place(first, carrier, first_frame).to_world() *
+                   ground_place(second, carrier, second_frame).to_world().inverse();
+  if (match_height) {
+    const auto c = static_cast<std::size_t>(carrier);
+    move.position.y() = static_cast<double>(first.frame_positions(first_frame)[c].y()) -
+                        second.frame_positions(second_frame)[c].y();
+  }
+  return move;
+}
+
+}  // namespace
+
+Result<Joined> join(const Clip& first, const Clip& second, int carrier,
+                    const JoinOptions& options) {
+  if (Status same = same_skeleton(first.skeleton, second.skeleton); !same) return same.error();
+  if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
+    return Error("motion-blend", "the time that two motions share is 0 or more");
+  }
+  if (first.frame_count() == 0) {
+    Joined all{second};
+    all.clip.skeleton = first.skeleton;
+    all.clip.provenance = first.provenance;
+    return all;
+  }
+  if (second.frame_count() == 0) return Joined{first, first.frame_count() - 1};
+  auto resampled = resample(second, first.rate);
+  if (!resampled) return resampled.error();
+  Clip& next = *resampled;
+  const int n = first.frame_count(), m = next.frame_count();
+  const double wanted = std::round(options.blend * first.rate);
+  if (wanted > std::min(n, m) - 1) {
+    return Error(
+        "motion-blend",
+        fmt::format("motions of {} and {} s cannot share {} s", readable(first.duration(), 4),
+                    readable(next.duration(), 4), readable(options.blend, 4)),
+        "choose a shorter --blend");
+  }
+  const int shared = static_cast<int>(wanted);
+  const int begin = n - 1 - shared;  // the frame of the first in which the second begins
+  const int middle = shared / 2;
+  move_clip(alignment(first, begin + middle, next, middle, carrier, options.match_height), next);
+
+  const LocalMotion a = local_motion(first), b = local_motion(next);
+  LocalMotion whole;
+  whole.joints = a.joints;
+  whole.frames = begin + m;
+  whole.orientations.resize(static_cast<std::size_t>(whole.joints) *
+                            static_cast<std::size_t>(whole.frames));
+  whole.positions.resize(whole.orientations.size());
+  Joined result;
+  result.joint_frame = begin + middle;
+  result.shared_frames = shared + 1;
+  for (int j = 0; j < whole.joints; ++j) {
+    for (int f = 0; f < whole.frames; ++f) {
+      const int k = f - begin;
+      if (k <= 0 || f >= n) {
+        whole.set(j, f, k <= 0 ? a.at(j, f) : b.at(j, k));
+        continue;
+      }
+      const double u = static_cast<double>(k) / shared;
+      const double weight = u * u * (3 - 2 * u);
+      const Transform from = a.at(j, f), to = b.at(j, k);
+      whole.set(j, f,
+                {from.position + weight * (to.position - from.position),
+                 slerp(from.orientation, to.orientation, weight)});
+    }
+    const double angle =
+        angle_between(a.at(j, result.joint_frame).orientation, b.at(j, middle).orientation);
+    if (angle > result.largest_angle) {
+      result.largest_angle = angle;
+      result.largest_joint = j;
+    }
+  }
+  result.clip.skeleton = first.skeleton;
+  result.clip.rate = first.rate;
+  result.clip.provenance = first.provenance;
+  set_local_motion(whole, result.clip);
+  return result;
+}
+
+}  // namespace krok

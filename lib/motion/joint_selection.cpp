@@ -1,0 +1,64 @@
+#include "motion/joint_selection.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "core/text.h"
+#include "motion/ground_place.h"
+
+namespace krok {
+
+namespace {
+
+// Goes back to the last star on a mismatch, so that time stays below the product of the lengths.
+bool matches(std::string_view name, std::string_view pattern) {
+  std::size_t n = 0, p = 0, star = std::string_view::npos, taken = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      taken = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p;
+      ++n;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++taken;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+Error no_such_joint(const std::string& text) {
+  return Error("motion-joint", fmt::format("no joint is called '{}'", shown(text)),
+               "krok-info lists the joints; * stands for any characters");
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> select_joints(const Skeleton& skeleton,
+                                                const JointSelection& selection) {
+  const bool all = selection.patterns.empty() && selection.below.empty();
+  std::vector<std::uint8_t> selected(skeleton.names.size(), all ? 1 : 0);
+  for (const std::string& pattern : selection.patterns) {
+    bool any = false;
+    for (std::size_t j = 0; j < selected.size(); ++j) {
+      if (!matches(skeleton.names[j], pattern)) continue;
+      selected[j] = 1;
+      any = true;
+    }
+    if (!any) return no_such_joint(pattern);
+  }
+  for (const std::string& name : selection.below) {
+    const int joint = skeleton.find(name);
+    if (joint < 0) return no_such_joint(name);
+    const auto within = subtree(skeleton, joint);
+    for (std::size_t j = 0; j < selected.size(); ++j) selected[j] |= within[j];
+  }
+  return selected;
+}
+
+}  // namespace krok

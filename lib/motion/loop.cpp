@@ -1,0 +1,340 @@
+#include "motion/loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "math/euler.h"
+#include "math/quaternion.h"
+#include "motion/ground_place.h"
+#include "motion/local_motion.h"
+#include "motion/seam_curves.h"
+
+namespace krok {
+
+namespace {
+
+constexpr double kDrift = 10 * kRadiansPerDegree;
+constexpr double kLevel = 0.05;  // of the figure's extent
+
+Quat turn_about_vertical(double angle) {
+  return axis_rotation(Axis::y, angle);
+}
+
+// A way on the ground and a turn, a share of it: along the arc that leads there evenly.
+Transform share_of(const Transform& displacement, double turn, double share) {
+  Transform part{share * displacement.position, turn_about_vertical(share * turn)};
+  if (std::abs(turn) < 1e-9) return part;
+  // The fixed point c of x -> R x + d in the plane; the arc turns about it.
+  const double half_cotangent = 0.5 / std::tan(turn / 2);
+  const Vec3 d(displacement.position.x(), 0, displacement.position.z());
+  const Vec3 centre = 0.5 * d + half_cotangent * Vec3(d.z(), 0, -d.x());
+  part.position = centre - part.orientation * centre;
+  part.position.y() = share * displacement.position.y();
+  return part;
+}
+
+std::size_t at(int joint) {
+  return static_cast<std::size_t>(joint);
+}
+
+class Looper {
+ public:
+  Looper(const Clip& clip, int carrier, const LoopOptions& options)
+      : clip_(clip), carrier_(carrier), options_(options), motion_(local_motion(clip)) {}
+
+  Looped loop() {
+    carry_still_root();
+    if (needs_closing_frame()) add_closing_frame();
+    straighten();
+    choose_displacement();
+    result_.blended_frames =
+        std::clamp(static_cast<int>(std::min(1e6, std::round(options_.blend * clip_.rate))), 1,
+                   std::max(1, last() / 2));
+    moving_ = moving_joints(motion_);
+    measure_usual();
+    result_.before = seam();
+    close();
+    result_.after = seam();
+    result_.clip = Clip{clip_.skeleton, clip_.rate, {}, {}, clip_.provenance};
+    set_local_motion(motion_, result_.clip);
+    return std::move(result_);
+  }
+
+ private:
+  int last() const { return motion_.frames - 1; }
+
+  Transform carrier_to_world(int frame) const {
+    Transform sum;
+    for (int j = carrier_; j >= 0; j = clip_.skeleton.parents[at(j)]) {
+      sum = motion_.at(j, frame) * sum;
+    }
+    return sum;
+  }
+  GroundPlace place(int frame) const {
+    return ground_place(clip_.skeleton, carrier_, carrier_to_world(frame));
+  }
+  Transform way(int from, int to) const {
+    return place(to).to_world() * place(from).to_world().inverse();
+  }
+
+  // Root sum of squares of the angles that the joints' rotations are apart, after `steps` (0 or 1)
+  // more of the last step from the last frame. The root counts without its heading.
+  double distance_to_first(int steps) const {
+    double sum = 0;
+    const Quat root_turn = way(last(), 0).orientation;
+    for (int j = 0; j < motion_.joints; ++j) {
+      const auto q = motion_.joint_orientations(j);
+      Quat end = q.back();
+      if (steps > 0) end = end * (q[q.size() - 2].conjugate() * end);
+      if (j == 0) end = root_turn * end;
+      const double angle = angle_between(end, q.front());
+      sum += angle * angle;
+    }
+    return std::sqrt(sum);
+  }
+
+  bool needs_closing_frame() const {
+    if (options_.end != LoopEnd::automatic) return options_.end == LoopEnd::open;
+    return distance_to_first(1) < 0.5 * distance_to_first(0);
+  }
+
+  void add_closing_frame() {
+    // The way of the missing step: half of the one before and half of the one after.
+    const Transform before = place(last() - 1).to_world().inverse() * place(last()).to_world();
+    const Transform after = place(0).to_world().inverse() * place(1).to_world();
+    const Transform step{0.5 * (before.position + after.position),
+                         slerp(before.orientation, after.orientation, 0.5)};
+    const Transform move = place(last()).to_world() * step * place(0).to_world().inverse();
+    const double climb = motion_.at(0, last()).position.y() - motion_.at(0, 0).position.y();
+    LocalMotion longer = motion_;
+    longer.frames += 1;
+    longer.orientations.clear();
+    longer.positions.clear();
+    for (int j = 0; j < motion_.joints; ++j) {
+      Transform closing = motion_.at(j, 0);
+      if (j == 0) {
+        closing = move * closing;
+        if (std::abs(climb) > kLevel * reference_extent(clip_.skeleton))
+          closing.position.y() += climb;
+      }
+      const auto q = motion_.joint_orientations(j);
+      const auto p = motion_.joint_positions(j);
+      longer.orientations.insert(longer.orientations.end(), q.begin(), q.end());
+      longer.orientations.push_back(closing.orientation);
+      longer.positions.insert(longer.positions.end(), p.begin(), p.end());
+      longer.positions.push_back(closing.position);
+    }
+    motion_ = std::move(longer);
+    result_.added_frames = 1;
+  }
+
+  // Where the hips travel below a root that stands still, the root is given the even part of the
+  // way; otherwise the figure could not be moved on by moving all of it.
+  void carry_still_root() {
+    if (carrier_ == 0) return;
+    const Vec3 root_way = motion_.at(0, last()).position - motion_.at(0, 0).position;
+    const Transform displacement = way(0, last());
+    const Vec3 carrier_way =
+        displacement * carrier_to_world(0).position - carrier_to_world(0).position;
+    constexpr double kStill = 1e-3;
+    if (Vec2(root_way.x(), root_way.z()).norm() > kStill) return;
+    if (Vec2(carrier_way.x(), carrier_way.z()).norm() <= kStill) return;
+    const double turn = wrapped(place(last()).heading - place(0).heading);
+    // Joints that hang on the root, the carrier's branch aside, go along with it.
+    std::vector<int> children;
+    for (int j = 1; j < motion_.joints; ++j) {
+      const bool leads = subtree(clip_.skeleton, j)[static_cast<std::size_t>(carrier_)] != 0;
+      if (clip_.skeleton.parents[at(j)] == 0 && leads) children.push_back(j);
+    }
+    for (int f = 0; f < motion_.frames; ++f) {
+      const Transform part = share_of(displacement, turn, static_cast<double>(f) / last());
+      const Transform root = motion_.at(0, f);
+      const Transform carried = part * root;
+      for (const int j : children) {
+        motion_.set(j, f, carried.inverse() * root * motion_.at(j, f));
+      }
+      motion_.set(0, f, carried);
+    }
+    result_.carried = true;
+  }
+
+  void straighten() {
+    const double drift = wrapped(place(last()).heading - place(0).heading);
+    const bool take_out = options_.turn == LoopTurn::straighten ||
+                          (options_.turn == LoopTurn::automatic && std::abs(drift) <= kDrift);
+    if (!take_out || drift == 0) return;
+    result_.straightened = drift;
+    std::vector<GroundPlace> places;
+    for (int f = 0; f <= last(); ++f) places.push_back(place(f));
+    Vec3 now(places[0].x, 0, places[0].z);
+    for (int f = 0; f <= last(); ++f) {
+      const GroundPlace& old = places[static_cast<std::size_t>(f)];
+      if (f > 0) {
+        const GroundPlace& before = places[static_cast<std::size_t>(f) - 1];
+        now += turn_about_vertical(-drift * (f - 0.5) / last()) *
+               Vec3(old.x - before.x, 0, old.z - before.z);
+      }
+      const Quat back = turn_about_vertical(-drift * f / last());
+      motion_.set(0, f, Transform{now - back * Vec3(old.x, 0, old.z), back} * motion_.at(0, f));
+    }
+  }
+
+  void choose_displacement() {
+    result_.turn = wrapped(place(last()).heading - place(0).heading);
+    if (result_.straightened != 0) result_.turn = 0;
+    const GroundPlace from = place(0), to = place(last());
+    Transform& displacement = result_.displacement;
+    displacement.orientation = turn_about_vertical(result_.turn);
+    displacement.position =
+        Vec3(to.x, 0, to.z) - displacement.orientation * Vec3(from.x, 0, from.z);
+    const double climb = carrier_to_world(last()).position.y() - carrier_to_world(0).position.y();
+    const bool keep = options_.climb == LoopClimb::keep ||
+                      (options_.climb == LoopClimb::automatic &&
+                       std::abs(climb) > kLevel * reference_extent(clip_.skeleton));
+    if (keep) {
+      displacement.position.y() = climb;
+    } else {
+      result_.levelled = climb;
+    }
+  }
+
+  // A joint's frame on the end's side, brought to where the beginning is.
+  Transform brought_back(int joint, int frame) const {
+    const Transform local = motion_.at(joint, frame);
+    return joint == 0 ? result_.displacement.inverse() * local : local;
+  }
+
+  // The frames about the seam, those of the end brought back.
+  SeamSides sides(int joint) const {
+    SeamSides about;
+    for (int k = 0; k < 3; ++k) {
+      about.before[static_cast<std::size_t>(k)] = brought_back(joint, last() - k);
+      about.after[static_cast<std::size_t>(k)] = motion_.at(joint, k);
+    }
+    return about;
+  }
+
+  // The same about a frame within, where nothing is missing.
+  SeamSides sides_within(int joint, int frame) const {
+    SeamSides about;
+    for (int k = 0; k < 3; ++k) {
+      about.before[static_cast<std::size_t>(k)] = motion_.at(joint, frame - k);
+      about.after[static_cast<std::size_t>(k)] = motion_.at(joint, frame + k);
+    }
+    return about;
+  }
+
+  // What 19 of 20 frames' jumps of velocity stay below, per frame.
+  double usual_jump(int joint, SeamGap (*gap)(const SeamSides&)) const {
+    std::vector<double> jumps;
+    for (int f = 2; f + 2 <= last(); ++f) jumps.push_back(gap(sides_within(joint, f)).jump());
+    if (jumps.empty()) return 0;
+    const auto place = jumps.begin() + static_cast<std::ptrdiff_t>((jumps.size() - 1) * 19 / 20);
+    std::ranges::nth_element(jumps, place);
+    return *place;
+  }
+
+  void measure_usual() {
+    for (int j = 0; j < motion_.joints; ++j) {
+      usual_turn_.push_back(usual_jump(j, rotation_gap));
+      usual_shift_.push_back(moving_[at(j)] != 0 ? usual_jump(j, position_gap) : 0);
+    }
+  }
+
+  Seam seam() const {
+    Seam worst;
+    for (int j = 0; j < motion_.joints; ++j) {
+      const SeamSides about = sides(j);
+      const SeamGap rotation = rotation_gap(about);
+      if (rotation.value.norm() > worst.angle) {
+        worst.angle = rotation.value.norm();
+        worst.angle_joint = j;
+      }
+      const double spin = rotation.jump() * clip_.rate;
+      if (spin > worst.angular_velocity) {
+        worst.angular_velocity = spin;
+        worst.angular_velocity_joint = j;
+        worst.usual_angular_velocity = usual_turn_[at(j)] * clip_.rate;
+      }
+      if (moving_[at(j)] == 0) continue;
+      const SeamGap position = position_gap(about);
+      worst.distance = std::max(worst.distance, position.value.norm());
+      worst.velocity = std::max(worst.velocity, position.jump() * clip_.rate);
+    }
+    return worst;
+  }
+
+  void close() {
+    const int width = result_.blended_frames;
+    for (int j = 0; j < motion_.joints; ++j) {
+      const SeamSides about = sides(j);
+      SeamGap turn_gap = rotation_gap(about);
+      turn_gap.forgive(usual_turn_[at(j)]);
+      const SeamCurve turn = rotation_curve(turn_gap, width);
+      std::optional<SeamCurve> shift;
+      if (moving_[at(j)] != 0) {
+        SeamGap shift_gap = position_gap(about);
+        shift_gap.forgive(usual_shift_[at(j)]);
+        shift = position_curve(shift_gap, width);
+      }
+      const auto corrected = [&](Transform local, bool before, int from_seam) {
+        local.orientation = local.orientation * from_rotation_vector(turn.at(before, from_seam));
+        if (shift) local.position += shift->at(before, from_seam);
+        return local;
+      };
+      for (int k = 0; k < width; ++k) {
+        const Transform end = corrected(brought_back(j, last() - k), true, k);
+        const Transform begin = corrected(motion_.at(j, k), false, k);
+        motion_.set(j, k, begin);
+        motion_.set(j, last() - k, j == 0 ? result_.displacement * end : end);
+      }
+      // Equal up to rounding already; exactly so from here on.
+      const Transform first = motion_.at(j, 0);
+      motion_.set(j, last(), j == 0 ? result_.displacement * first : first);
+    }
+  }
+
+  const Clip& clip_;
+  int carrier_;
+  const LoopOptions& options_;
+  LocalMotion motion_;
+  std::vector<std::uint8_t> moving_;
+  std::vector<double> usual_turn_, usual_shift_;  // [joints], per frame
+  Looped result_;
+};
+
+}  // namespace
+
+Result<Looped> loop(const Clip& clip, int carrier, const LoopOptions& options) {
+  if (clip.frame_count() < 4) {
+    return Error("motion-loop",
+                 "a motion of fewer than four frames has nothing to loop: there is no telling how "
+                 "it goes on");
+  }
+  if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
+    return Error("motion-blend", "the time blended about the seam is 0 or more");
+  }
+  return Looper(clip, carrier, options).loop();
+}
+
+Result<Clip> repeated(const Clip& looped, const Transform& displacement, int rounds) {
+  const int period = looped.frame_count() - 1;
+  if (period < 1 || rounds <= 1) return looped;
+  if (static_cast<double>(period) * rounds * looped.joint_count() > 1e8) {
+    return Error("clip-too-long", "the motion repeated so often would be too long");
+  }
+  Clip result{looped.skeleton, looped.rate, {}, {}, looped.provenance};
+  result.resize(period * rounds + 1);
+  std::vector<Transform> pose(looped.skeleton.names.size());
+  Transform moved;
+  for (int f = 0; f < result.frame_count(); ++f) {
+    if (f > 0 && f % period == 0) moved = displacement * moved;
+    looped.get_pose(f % period, pose);
+    for (Transform& joint : pose) joint = moved * joint;
+    result.set_pose(f, pose);
+  }
+  return result;
+}
+
+}  // namespace krok

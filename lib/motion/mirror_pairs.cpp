@@ -1,0 +1,200 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "motion/mirror.h"
+#include "roles/joint_names.h"
+
+namespace krok {
+
+namespace {
+
+bool is_middle_role(Role role) {
+  return role == Role::root || role == Role::hips || role == Role::spine || role == Role::chest ||
+         role == Role::neck || role == Role::head;
+}
+
+constexpr std::pair<Role, Role> kSides[] = {{Role::left_collar, Role::right_collar},
+                                            {Role::left_upper_arm, Role::right_upper_arm},
+                                            {Role::left_lower_arm, Role::right_lower_arm},
+                                            {Role::left_hand, Role::right_hand},
+                                            {Role::left_upper_leg, Role::right_upper_leg},
+                                            {Role::left_lower_leg, Role::right_lower_leg},
+                                            {Role::left_foot, Role::right_foot}};
+
+// The words of a name with the sides exchanged; nothing where it names no side.
+std::optional<std::vector<std::string>> other_side(std::vector<std::string> words) {
+  bool any = false;
+  for (std::string& word : words) {
+    for (const auto& [left, right] : {std::pair("left", "right"), std::pair("l", "r")}) {
+      if (word != left && word != right) continue;
+      word = word == left ? right : left;
+      any = true;
+      break;
+    }
+  }
+  if (!any) return std::nullopt;
+  return words;
+}
+
+class PairFinder {
+ public:
+  PairFinder(const Skeleton& skeleton, const RoleMap& roles)
+      : skeleton_(skeleton), roles_(roles), children_(skeleton.children()) {
+    pairs_.partners.assign(skeleton.names.size(), MirrorPairs::kNone);
+  }
+
+  MirrorPairs find() {
+    if (skeleton_.empty()) return pairs_;
+    pair(0, 0);
+    pair_by_roles();
+    pair_by_names();
+    find_plane();
+    near_ = 0.02 * reference_extent(skeleton_);
+    // Parents stand before their children, so the parents of a round are paired already.
+    for (int j = 0; j < skeleton_.joint_count(); ++j) {
+      const int other = partner(j);
+      if (other == j) pair_children_of_middle(j);
+      if (other > j) pair_children_of_sides(j, other);
+    }
+    return pairs_;
+  }
+
+ private:
+  static std::size_t at(int joint) { return static_cast<std::size_t>(joint); }
+  int partner(int joint) const { return pairs_.partners[at(joint)]; }
+  bool open(int joint) const { return partner(joint) == MirrorPairs::kNone; }
+  Role role(int joint) const { return roles_.roles[at(joint)]; }
+  void pair(int a, int b) {
+    pairs_.partners[at(a)] = b;
+    pairs_.partners[at(b)] = a;
+  }
+
+  // Only the topmost joint of a role: find_roles gives these to one joint each, a user's map may
+  // not.
+  void pair_by_roles() {
+    for (const auto& [left, right] : kSides) {
+      const int a = roles_.joint(left), b = roles_.joint(right);
+      if (a > 0 && b > 0) pair(a, b);
+    }
+    for (int j = 1; j < skeleton_.joint_count(); ++j) {
+      if (is_middle_role(role(j))) pair(j, j);
+    }
+  }
+
+  void pair_by_names() {
+    std::vector<std::vector<std::string>> words;
+    for (const std::string& name : skeleton_.names) words.push_back(name_tokens(name));
+    for (int j = 1; j < skeleton_.joint_count(); ++j) {
+      if (!open(j)) continue;
+      const auto wanted = other_side(words[at(j)]);
+      if (!wanted) continue;
+      int found = MirrorPairs::kNone, count = 0;
+      for (int k = 1; k < skeleton_.joint_count(); ++k) {
+        if (k == j || words[at(k)] != *wanted) continue;
+        found = k;
+        ++count;
+      }
+      if (count == 1 && open(found)) pair(j, found);
+    }
+  }
+
+  void find_plane() {
+    std::vector<double> middles;
+    for (int j = 0; j < skeleton_.joint_count(); ++j) {
+      if (partner(j) > j) middles.push_back(0.5 * (x(j) + x(partner(j))));
+    }
+    if (middles.empty()) {
+      pairs_.plane = x(0);
+      return;
+    }
+    const auto half = middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2);
+    std::nth_element(middles.begin(), half, middles.end());
+    pairs_.plane = *half;
+    // The usual case to the bit, whatever the rounding of the offsets was.
+    if (std::abs(pairs_.plane) < 1e-6) pairs_.plane = 0;
+  }
+  double x(int joint) const { return skeleton_.reference[at(joint)].position.x(); }
+
+  // From a joint's mirror image to another joint, in the reference pose, as seen from their
+  // parents, so that a lopsided parent does not count.
+  double apart(int joint, int other) const {
+    const auto from_parent = [&](int j) -> Vec3 {
+      return skeleton_.reference[at(j)].position -
+             skeleton_.reference[at(skeleton_.parents[at(j)])].position;
+    };
+    Vec3 image = from_parent(joint);
+    image.x() = -image.x();
+    return (image - from_parent(other)).norm();
+  }
+
+  int nearest(int joint, const std::vector<int>& among, double within) const {
+    int best = MirrorPairs::kNone;
+    for (const int k : among) {
+      if (k == joint || !open(k)) continue;
+      if (skeleton_.end_sites[at(k)] != skeleton_.end_sites[at(joint)]) continue;
+      const double distance = apart(joint, k);
+      if (distance < within) {
+        within = distance;
+        best = k;
+      }
+    }
+    return best;
+  }
+
+  void pair_children_of_middle(int parent) {
+    for (const int j : children_[at(parent)]) {
+      if (!open(j)) continue;
+      if (std::abs(x(j) - pairs_.plane) < near_) {
+        pair(j, j);
+        continue;
+      }
+      const int other = nearest(j, children_[at(parent)], 2.5 * near_);
+      if (other != MirrorPairs::kNone) pair(j, other);
+    }
+    // In a reference pose that holds its head aslant, jaw and tongue stand beside the plane.
+    for (const int j : children_[at(parent)]) {
+      const bool sided = other_side(name_tokens(skeleton_.names[at(j)])).has_value();
+      if (open(j) && !sided && std::abs(x(j) - pairs_.plane) < 5 * near_) pair(j, j);
+    }
+  }
+
+  void pair_children_of_sides(int left, int right) {
+    std::vector<int> mine, theirs;
+    for (const int j : children_[at(left)]) {
+      if (open(j)) mine.push_back(j);
+    }
+    for (const int j : children_[at(right)]) {
+      if (open(j)) theirs.push_back(j);
+    }
+    const bool only = mine.size() == 1 && theirs.size() == 1;
+    for (const int j : mine) {
+      const int other =
+          nearest(j, theirs, only ? std::numeric_limits<double>::infinity() : 5 * near_);
+      if (other != MirrorPairs::kNone) pair(j, other);
+    }
+  }
+
+  const Skeleton& skeleton_;
+  const RoleMap& roles_;
+  std::vector<std::vector<int>> children_;
+  MirrorPairs pairs_;
+  double near_ = 0;
+};
+
+}  // namespace
+
+std::vector<int> MirrorPairs::unpaired() const {
+  std::vector<int> list;
+  for (std::size_t j = 0; j < partners.size(); ++j) {
+    if (partners[j] == kNone) list.push_back(static_cast<int>(j));
+  }
+  return list;
+}
+
+MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles) {
+  return PairFinder(skeleton, roles).find();
+}
+
+}  // namespace krok

@@ -1,0 +1,243 @@
+// If these fail, a mirrored figure limps, twists its joints, or is not mirrored at all.
+
+#include "motion/mirror.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "math/quaternion.h"
+#include "motion/local_motion.h"
+#include "support/test_scenes.h"
+
+namespace krok {
+namespace {
+
+Vec3 image(const Vec3& p) {
+  return {-p.x(), p.y(), p.z()};
+}
+
+Vec3 place(const Clip& clip, int frame, int joint) {
+  return clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>();
+}
+
+MirrorPairs pairs_of(const Skeleton& skeleton) {
+  return find_mirror_pairs(skeleton, find_roles(skeleton));
+}
+
+// Every joint of the mirrored motion stands where its partner's image stands.
+void expect_mirrored(const Clip& clip, const Clip& mirrored, const MirrorPairs& pairs,
+                     double within) {
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    for (int j = 0; j < clip.joint_count(); ++j) {
+      const int other = pairs.partners[static_cast<std::size_t>(j)];
+      ASSERT_GE(other, 0) << clip.skeleton.names[static_cast<std::size_t>(j)];
+      EXPECT_LT((place(mirrored, f, j) - image(place(clip, f, other))).norm(), within)
+          << clip.skeleton.names[static_cast<std::size_t>(j)] << ", frame " << f;
+    }
+  }
+}
+
+double largest_angle(const Clip& a, const Clip& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.orientations.size(); ++i) {
+    most = std::max(
+        most, angle_between(a.orientations[i].cast<double>(), b.orientations[i].cast<double>()));
+  }
+  return most;
+}
+
+double largest_distance(const Clip& a, const Clip& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.positions.size(); ++i) {
+    most = std::max<double>(most, (a.positions[i] - b.positions[i]).norm());
+  }
+  return most;
+}
+
+void expect_twice_is_nothing(const Clip& clip, const MirrorPairs& pairs) {
+  const Clip twice = mirror(mirror(clip, pairs), pairs);
+  EXPECT_LT(largest_angle(twice, clip), 2e-6);
+  EXPECT_LT(largest_distance(twice, clip), 5e-6);
+}
+
+TEST(MirrorPairs, OfAHumanByRolesAndNames) {
+  const Skeleton skeleton = test::human_skeleton();
+  const MirrorPairs pairs = pairs_of(skeleton);
+  EXPECT_TRUE(pairs.unpaired().empty());
+  EXPECT_EQ(pairs.plane, 0);
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const std::string& name = skeleton.names[static_cast<std::size_t>(j)];
+    std::string other = name;
+    if (name.starts_with("Left")) other = "Right" + name.substr(4);
+    if (name.starts_with("Right")) other = "Left" + name.substr(5);
+    EXPECT_EQ(skeleton.names[static_cast<std::size_t>(pairs.partners[static_cast<std::size_t>(j)])],
+              other);
+  }
+}
+
+TEST(MirrorPairs, NamesNeedNotBeAlikeOnBothSides) {
+  Skeleton skeleton = test::human_skeleton();
+  const auto rename = [&](const char* from, const char* to) {
+    skeleton.names[static_cast<std::size_t>(skeleton.find(from))] = to;
+  };
+  rename("LeftForeArm", "elbow_l");
+  rename("LeftHand_end", "tip");
+  rename("RightToeBase_end", "nub");
+  const MirrorPairs pairs = pairs_of(skeleton);
+  EXPECT_TRUE(pairs.unpaired().empty());
+  const auto partner = [&](const char* name) {
+    const auto j = static_cast<std::size_t>(skeleton.find(name));
+    return skeleton.names[static_cast<std::size_t>(pairs.partners[j])];
+  };
+  EXPECT_EQ(partner("elbow_l"), "RightForeArm");
+  EXPECT_EQ(partner("tip"), "RightHand_end");
+  EXPECT_EQ(partner("LeftToeBase_end"), "nub");
+}
+
+TEST(MirrorPairs, ByPlacesWhereNamesTellNothing) {
+  Skeleton skeleton = test::human_skeleton();
+  for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
+    skeleton.names[j] = "joint" + std::to_string(j);
+  }
+  EXPECT_TRUE(pairs_of(skeleton).unpaired().empty());
+  RoleMap nothing;
+  nothing.roles.assign(skeleton.names.size(), Role::none);
+  const MirrorPairs pairs = find_mirror_pairs(skeleton, nothing);
+  EXPECT_TRUE(pairs.unpaired().empty());
+  EXPECT_EQ(pairs.partners, pairs_of(test::human_skeleton()).partners);
+}
+
+TEST(MirrorPairs, WhatOneSideAloneHasIsUnpaired) {
+  Skeleton skeleton = test::human_skeleton();
+  const int hand = skeleton.find("RightHand");
+  const int sword = skeleton.add("Sword", hand, {Vec3(-0.9, 1.4, 0.3), Quat::Identity()});
+  const MirrorPairs pairs = pairs_of(skeleton);
+  EXPECT_EQ(pairs.unpaired(), std::vector<int>{sword});
+}
+
+TEST(MirrorPairs, AHeadHeldAslantIsStillOfTheMiddle) {
+  Skeleton skeleton = test::human_skeleton();
+  const auto head = static_cast<std::size_t>(skeleton.find("Head"));
+  const int jaw = skeleton.add("Jaw", static_cast<int>(head),
+                               {skeleton.reference[head].position + Vec3(0.06, 0.02, 0.05)});
+  const MirrorPairs pairs = pairs_of(skeleton);
+  EXPECT_EQ(pairs.partners[static_cast<std::size_t>(jaw)], jaw);
+  expect_mirrored(test::swinging_clip(skeleton, 3, 30),
+                  mirror(test::swinging_clip(skeleton, 3, 30), pairs), pairs, 0.13);
+}
+
+TEST(Mirror, IsTheImageOfASymmetricFigure) {
+  const Clip clip = test::swinging_clip(test::human_skeleton(), 12, 30);
+  const MirrorPairs pairs = pairs_of(clip.skeleton);
+  const Clip mirrored = mirror(clip, pairs);
+  expect_mirrored(clip, mirrored, pairs, 2e-6);
+  expect_twice_is_nothing(clip, pairs);
+  EXPECT_TRUE(check(mirrored).ok());
+}
+
+TEST(Mirror, JointsOwnAxesDoNotMatter) {
+  const Skeleton plain = test::human_skeleton();
+  const Clip clip = test::swinging_clip(test::with_turned_joints(plain), 12, 30);
+  const MirrorPairs pairs = pairs_of(clip.skeleton);
+  const Clip mirrored = mirror(clip, pairs);
+  expect_mirrored(clip, mirrored, pairs, 2e-6);
+  expect_twice_is_nothing(clip, pairs);
+  // The turn of each joint from the reference pose is its partner's, mirrored.
+  for (int j = 0; j < clip.joint_count(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const auto other = static_cast<std::size_t>(pairs.partners[at]);
+    const Quat mine = mirrored.frame_orientations(7)[at].cast<double>() *
+                      clip.skeleton.reference[at].orientation.conjugate();
+    const Quat theirs = clip.frame_orientations(7)[other].cast<double>() *
+                        clip.skeleton.reference[other].orientation.conjugate();
+    const Quat expected(theirs.w(), theirs.x(), -theirs.y(), -theirs.z());
+    EXPECT_LT(angle_between(mine, expected), 2e-6);
+  }
+}
+
+// One arm of the reference pose hangs down, the other points aside: the bones of the result are
+// images of each other all the same.
+TEST(Mirror, ALopsidedReferencePoseDoesNotMatter) {
+  Skeleton skeleton = test::human_skeleton();
+  const int arm = skeleton.find("LeftArm");
+  const Transform at_arm{skeleton.reference[static_cast<std::size_t>(arm)].position,
+                         Quat::Identity()};
+  const Transform down =
+      at_arm * Transform{Vec3::Zero(), from_rotation_vector(Vec3(0, 0, -1.3))} * at_arm.inverse();
+  for (const char* name : {"LeftForeArm", "LeftHand", "LeftHand_end"}) {
+    Transform& joint = skeleton.reference[static_cast<std::size_t>(skeleton.find(name))];
+    joint.position = down * joint.position;
+  }
+  const Clip clip = test::swinging_clip(skeleton, 10, 30);
+  const MirrorPairs pairs = pairs_of(skeleton);
+  expect_mirrored(clip, mirror(clip, pairs), pairs, 2e-6);
+  expect_twice_is_nothing(clip, pairs);
+}
+
+TEST(Mirror, AFigureThatStandsBesideTheOriginInItsReferencePose) {
+  Skeleton skeleton = test::human_skeleton();
+  const Clip centred = test::swinging_clip(skeleton, 6, 30);
+  for (Transform& joint : skeleton.reference) joint.position.x() += 0.8;
+  Clip clip = centred;
+  clip.skeleton = skeleton;
+  const MirrorPairs pairs = pairs_of(skeleton);
+  EXPECT_NEAR(pairs.plane, 0.8, 1e-12);
+  // The reference pose says nothing of where the motion is.
+  EXPECT_LT(largest_distance(mirror(clip, pairs), mirror(centred, pairs_of(centred.skeleton))),
+            1e-6);
+  expect_twice_is_nothing(clip, pairs);
+}
+
+TEST(Mirror, BonesKeepTheirOwnLengths) {
+  Skeleton skeleton = test::human_skeleton();
+  const int shank = skeleton.find("LeftFoot");
+  skeleton.reference[static_cast<std::size_t>(shank)].position.y() -= 0.05;
+  const Clip clip = test::swinging_clip(skeleton, 5, 30);
+  const MirrorPairs pairs = pairs_of(skeleton);
+  const Clip mirrored = mirror(clip, pairs);
+  for (int j = 1; j < clip.joint_count(); ++j) {
+    const int parent = skeleton.parents[static_cast<std::size_t>(j)];
+    EXPECT_NEAR((place(mirrored, 3, j) - place(mirrored, 3, parent)).norm(),
+                (place(clip, 3, j) - place(clip, 3, parent)).norm(), 1e-6);
+  }
+  expect_twice_is_nothing(clip, pairs);
+}
+
+TEST(Mirror, JointsThatMoveInTheirParentsAndThoseWithoutPartner) {
+  Skeleton skeleton = test::human_skeleton();
+  const int sword = skeleton.add("Sword", skeleton.find("RightHand"),
+                                 {Vec3(-0.9, 1.4, 0.3), from_rotation_vector(Vec3(1, 0, 2))});
+  Clip clip = test::swinging_clip(skeleton, 8, 30);
+  LocalMotion motion = local_motion(clip);
+  for (int f = 0; f < 8; ++f) {
+    for (const char* name : {"LeftHand", "Spine1"}) {
+      Transform local = motion.at(skeleton.find(name), f);
+      local.position += 0.02 * f * Vec3(1, 0.5, 0.2);
+      motion.set(skeleton.find(name), f, local);
+    }
+  }
+  set_local_motion(motion, clip);
+  const MirrorPairs pairs = pairs_of(skeleton);
+  const Clip mirrored = mirror(clip, pairs);
+  for (const char* name : {"RightHand", "Spine1", "Head"}) {
+    const int j = skeleton.find(name);
+    const int other = pairs.partners[static_cast<std::size_t>(j)];
+    EXPECT_LT((place(mirrored, 7, j) - image(place(clip, 7, other))).norm(), 2e-6) << name;
+  }
+  const LocalMotion after = local_motion(mirrored);
+  EXPECT_LT(angle_between(after.at(sword, 5).orientation, motion.at(sword, 5).orientation), 2e-6);
+  expect_twice_is_nothing(clip, pairs);
+}
+
+TEST(Mirror, OneJointAndNoFrames) {
+  Skeleton single;
+  single.add("root", -1, {Vec3(0.1, 1, 0), from_rotation_vector(Vec3(1, 2, 3))});
+  const Clip clip = test::swinging_clip(single, 4, 30);
+  expect_twice_is_nothing(clip, pairs_of(single));
+  const Clip empty = test::swinging_clip(test::human_skeleton(), 0, 30);
+  EXPECT_EQ(mirror(empty, pairs_of(empty.skeleton)).frame_count(), 0);
+}
+
+}  // namespace
+}  // namespace krok

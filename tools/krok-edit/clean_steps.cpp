@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "filter/spikes.h"
+#include "motion/displacement.h"
+#include "motion/ground_place.h"
+#include "tools/krok-edit/steps.h"
+
+namespace krok::edit {
+
+namespace {
+
+std::string in_millimetres(double metres) {
+  return readable(metres * 1000, 3) + " mm";
+}
+std::string in_degrees(double radians) {
+  return readable(radians / kRadiansPerDegree, 3) + " deg";
+}
+
+// How far feet were moved from where they stood: what a filter costs in contact with the ground.
+Json foot_change(const Clip& before, const Edit& edit, std::string& line) {
+  const auto feet = foot_joints(edit.clip.skeleton, edit.roles);
+  const Displacement change = largest_displacement(before, edit.clip, feet);
+  const std::string& name = edit.clip.skeleton.names[static_cast<std::size_t>(change.joint)];
+  const bool known = feet.size() < edit.clip.skeleton.names.size();
+  line += change.distance == 0
+              ? fmt::format("; {} did not move", known ? "feet" : "joints")
+              : fmt::format("; {} moved by at most {} ({}, frame {})", known ? "feet" : "joints",
+                            in_millimetres(change.distance), name, change.frame);
+  Json json;
+  json["distance"] = change.distance;
+  json["joint"] = name;
+  json["frame"] = change.frame;
+  return json;
+}
+
+Diagnostic spike_note(const filter::Spike& spike, const Edit& edit, const std::string& file) {
+  Diagnostic note;
+  note.severity = Severity::note;
+  note.code = "edit-spike";
+  note.where.file = file;
+  note.joint = edit.clip.skeleton.names[static_cast<std::size_t>(spike.joint)];
+  note.frame = spike.first_frame;
+  const std::string frames =
+      spike.first_frame == spike.last_frame
+          ? fmt::format("frame {}", spike.first_frame)
+          : fmt::format("frames {} to {}", spike.first_frame, spike.last_frame);
+  note.message =
+      fmt::format("{}, {}: the {} jumped by {} and back; replaced", note.joint, frames,
+                  spike.of_position ? "position" : "rotation",
+                  spike.of_position ? in_millimetres(spike.size) : in_degrees(spike.size));
+  return note;
+}
+
+Status remove_spikes(const Options& options, ToolContext& context,
+                     std::span<const std::uint8_t> joints, Edit& edit) {
+  if (!options.spike_threshold) return {};
+  filter::SpikeOptions finding;
+  finding.threshold = *options.spike_threshold;
+  auto removal = filter::remove_spikes(edit.clip, finding, joints, thread_count(context.jobs));
+  if (!removal) return removal.error();
+  Json list = Json::array();
+  int frames = 0;
+  for (const filter::Spike& spike : removal->spikes) {
+    context.tell(spike_note(spike, edit, options.input));
+    Json entry;
+    entry["joint"] = edit.clip.skeleton.names[static_cast<std::size_t>(spike.joint)];
+    entry["first_frame"] = spike.first_frame;
+    entry["last_frame"] = spike.last_frame;
+    entry["of"] = spike.of_position ? "position" : "rotation";
+    entry["size"] = spike.size;
+    list.push_back(std::move(entry));
+    frames += spike.last_frame - spike.first_frame + 1;
+  }
+  std::swap(edit.clip, removal->clip);
+  std::string line =
+      removal->spikes.empty()
+          ? std::string("no spikes found")
+          : fmt::format("{} removed, {} replaced",
+                        counted(static_cast<long long>(removal->spikes.size()), "spike"),
+                        counted(frames, "joint's frame", "joints' frames"));
+  Json figures;
+  figures["threshold"] = finding.threshold;
+  figures["spikes"] = std::move(list);
+  if (!removal->spikes.empty()) figures["feet_moved"] = foot_change(removal->clip, edit, line);
+  edit.note("spikes", std::move(figures), std::move(line));
+  return {};
+}
+
+Status filter_jitter(const Options& options, ToolContext& context,
+                     std::span<const std::uint8_t> joints, Edit& edit) {
+  if (!options.smoothing) return {};
+  auto smoothed = filter::smooth(edit.clip, *options.smoothing, joints, thread_count(context.jobs));
+  if (!smoothed) return smoothed.error();
+  std::swap(edit.clip, *smoothed);
+  long long count = 0;
+  for (const std::uint8_t selected : joints) count += selected;
+  Json figures;
+  std::string line;
+  if (const auto* low_pass = std::get_if<filter::Butterworth>(&*options.smoothing)) {
+    figures["kind"] = "butterworth";
+    figures["cutoff"] = low_pass->cutoff;
+    figures["order"] = low_pass->order;
+    line = fmt::format("filtered: Butterworth, {} Hz, order {} without shift",
+                       readable(low_pass->cutoff), low_pass->order);
+  } else {
+    const auto& polynomial = std::get<filter::SavitzkyGolay>(*options.smoothing);
+    figures["kind"] = "savgol";
+    figures["window"] = polynomial.window;
+    figures["degree"] = polynomial.degree;
+    line = fmt::format("filtered: Savitzky-Golay, {} frames, degree {}", polynomial.window,
+                       polynomial.degree);
+    if (edit.clip.frame_count() < polynomial.window) {
+      context.warn("edit-short",
+                   fmt::format("the motion's {} are fewer than the window's {}: not filtered",
+                               counted(edit.clip.frame_count(), "frame"), polynomial.window),
+                   "choose a smaller --window");
+      line += " (too short: unchanged)";
+    }
+  }
+  figures["joints"] = count;
+  line += fmt::format(", {}", counted(count, "joint"));
+  figures["feet_moved"] = foot_change(*smoothed, edit, line);
+  edit.note("filter", std::move(figures), std::move(line));
+  return {};
+}
+
+}  // namespace
+
+Status clean(const Options& options, ToolContext& context, Edit& edit) {
+  const auto joints = select_joints(edit.clip.skeleton, options.joints);
+  if (!joints) return joints.error();
+  if (Status done = remove_spikes(options, context, *joints, edit); !done) return done;
+  return filter_jitter(options, context, *joints, edit);
+}
+
+}  // namespace krok::edit

@@ -1,0 +1,257 @@
+#include "tools/krok-edit/edit.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string_view>
+
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "formats/anim/anim.h"
+#include "formats/role_map/role_map.h"
+#include "formats/sequences/sequences.h"
+#include "motion/ground_place.h"
+#include "tools/common/motion_input.h"
+#include "tools/common/output_kind.h"
+#include "tools/krok-edit/steps.h"
+
+namespace krok::edit {
+
+namespace {
+
+constexpr std::string_view kSequencePlace = "{sequence}";
+
+Json summary_of(const Clip& clip) {
+  Json json;
+  json["joints"] = clip.joint_count();
+  json["frames"] = clip.frame_count();
+  json["rate"] = clip.rate;
+  json["duration"] = clip.duration();
+  return json;
+}
+
+std::string summary_text(const Clip& clip) {
+  return fmt::format("{} at {} /s ({} s)", counted(clip.frame_count(), "frame"),
+                     readable(clip.rate), readable(clip.duration(), 4));
+}
+
+// What the motion went through before stays on record, the newest last.
+Provenance extended(const Provenance& before, Provenance now,
+                    const std::vector<std::string>& done) {
+  std::vector<Provenance::Source> sources = before.sources;
+  sources.insert(sources.end(), now.sources.begin(), now.sources.end());
+  now.sources = std::move(sources);
+  std::vector<std::string> conversions = before.conversions;
+  if (!before.tool.empty()) {
+    std::string made = fmt::format("made by {} {}", before.tool, before.version);
+    for (const auto& [name, value] : before.options) {
+      made += value == "true" ? fmt::format(" --{}", name) : fmt::format(" --{} {}", name, value);
+    }
+    conversions.push_back(std::move(made));
+  }
+  conversions.insert(conversions.end(), done.begin(), done.end());
+  now.conversions = std::move(conversions);
+  std::vector<std::string> warnings = before.warnings;
+  warnings.insert(warnings.end(), now.warnings.begin(), now.warnings.end());
+  now.warnings = std::move(warnings);
+  return now;
+}
+
+Result<sequences::SequenceFile> read_sequences(const std::string& path, ToolContext& context) {
+  const auto input = context.open_input(path);
+  if (!input) return input.error();
+  auto file = sequences::read(input->text());
+  if (!file) return std::move(file.error()).in_file(path);
+  return file;
+}
+
+Result<int> list_sequences(const Options& options, ToolContext& context) {
+  const auto file = read_sequences(options.sequences, context);
+  if (!file) return file.error();
+  Json list = Json::array();
+  std::string text;
+  for (const sequences::Sequence& sequence : file->sequences) {
+    text += fmt::format("{}: frames {} to {}", sequence.name, sequence.first, sequence.last);
+    if (sequence.speed != 1) text += fmt::format(", speed {}", readable(sequence.speed));
+    if (sequence.loop) text += ", loop";
+    text += "\n";
+    Json entry;
+    entry["name"] = sequence.name;
+    entry["first"] = sequence.first;
+    entry["last"] = sequence.last;
+    entry["speed"] = sequence.speed;
+    entry["loop"] = sequence.loop;
+    list.push_back(std::move(entry));
+  }
+  context.report.result["rate"] = file->rate > 0 ? Json(file->rate) : Json();
+  context.report.result["sequences"] = std::move(list);
+  context.print(text);
+  return kExitDone;
+}
+
+Result<RoleMap> read_roles(const Skeleton& skeleton, const Options& options, ToolContext& context) {
+  if (options.map.empty()) return find_roles(skeleton);
+  const auto input = context.open_input(options.map);
+  if (!input) return input.error();
+  return role_map::read(input->text(), options.map, skeleton);
+}
+
+// All inputs, each opened once.
+Result<Edit> read_inputs(const Options& options, ToolContext& context) {
+  Edit edit;
+  auto clip = read_motion(options.input, context);
+  if (!clip) return clip.error();
+  edit.clip = std::move(*clip);
+  auto roles = read_roles(edit.clip.skeleton, options, context);
+  if (!roles) return roles.error();
+  edit.roles = std::move(*roles);
+  edit.carrier = carrying_joint(edit.roles);
+  edit.sequence = options.sequence;
+  if (!options.sequences.empty()) {
+    auto file = read_sequences(options.sequences, context);
+    if (!file) return file.error();
+    edit.sequences = std::move(*file);
+  }
+  for (const std::string& path : options.append) {
+    auto next = read_motion(path, context);
+    if (!next) return next.error();
+    edit.appended.push_back(std::move(*next));
+  }
+  return edit;
+}
+
+Status write(const Clip& clip, const std::string& path, ToolContext& context) {
+  anim::WriteOptions writing;
+  writing.jobs = thread_count(context.jobs);
+  auto file = OutputFile::create(path, context.output_options());
+  if (!file) return file.error();
+  if (Status written = anim::write(clip, writing, *file); !written) {
+    return std::move(written.error()).in_file(path);
+  }
+  if (Status done = file->commit(); !done) return done.error();
+  context.wrote(path);
+  return {};
+}
+
+// Does the steps and writes the result; gives what the report says of it.
+Result<Json> edit_and_write(const Options& options, Edit edit, const std::string& output,
+                            ToolContext& context) {
+  const std::string before = summary_text(edit.clip);
+  // The order that the help promises.
+  for (const auto step : {clean, cut_out, mirror_sides, change_timing, append_motions, make_loop,
+                          take_out_travel, change_size, change_place}) {
+    if (Status done = step(options, context, edit); !done) {
+      return std::move(done.error()).in_file(options.input);
+    }
+  }
+  edit.clip.provenance = extended(edit.clip.provenance, context.provenance(), edit.lines);
+  if (Status written = write(edit.clip, output, context); !written) return written.error();
+  context.say(fmt::format("{}: {} -> {}: {}",
+                          options.input == "-" ? "standard input" : base_name(options.input),
+                          before, output, summary_text(edit.clip)));
+  for (const std::string& line : edit.lines) context.say("  " + line);
+  Json result = summary_of(edit.clip);
+  result["steps"] = std::move(edit.steps);
+  return result;
+}
+
+// One file for each sequence; cleaning is done once for all.
+Status edit_all_sequences(const Options& options, Edit source, ToolContext& context) {
+  const std::string& pattern = context.output;
+  const std::size_t place = pattern.rfind(kSequencePlace);
+  if (place == std::string::npos) {
+    return Error("usage", "several sequences need names of their own",
+                 "choose one with --sequence NAME, or put {sequence} where their names go: -o "
+                 "'take_{sequence}.anim'");
+  }
+  if (Status cleaned = clean(options, context, source); !cleaned) {
+    return std::move(cleaned.error()).in_file(options.input);
+  }
+  Options cleaned_already = options;
+  cleaned_already.spike_threshold.reset();
+  cleaned_already.smoothing.reset();
+  cleaned_already.joints = {};
+  context.report.result["sequences"] = Json::array();
+  for (const sequences::Sequence& sequence : source.sequences->sequences) {
+    Edit edit = source;
+    edit.sequence = sequence.name;
+    std::string output = pattern;
+    output.replace(place, kSequencePlace.size(), sequence.name);
+    auto result = edit_and_write(cleaned_already, std::move(edit), output, context);
+    if (!result) return result.error();
+    Json entry;
+    entry["name"] = sequence.name;
+    entry["output"] = output;
+    entry.update(*result);
+    context.report.result["sequences"].push_back(std::move(entry));
+  }
+  return {};
+}
+
+Result<int> run_typed(const Arguments& arguments, ToolContext& context) {
+  const auto options = understand(arguments);
+  if (!options) return options.error();
+  return run(*options, context);
+}
+
+}  // namespace
+
+void Edit::note(const char* step, Json figures, std::string line) {
+  Json entry;
+  entry["step"] = step;
+  entry["did"] = line;
+  for (auto& [key, value] : figures.items()) entry[key] = std::move(value);
+  steps.push_back(std::move(entry));
+  lines.push_back(std::move(line));
+}
+
+Result<int> run(const Options& options, ToolContext& context) {
+  if (options.list_sequences) return list_sequences(options, context);
+  if (context.output.empty()) return Error("usage", "-o is missing: where shall the result go?");
+  if (Status fits = check_output_kind(context.output, "-o", registry::Kind::anim); !fits) {
+    return fits.error();
+  }
+  auto source = read_inputs(options, context);
+  if (!source) return source.error();
+  const Json input_summary = summary_of(source->clip);
+  if (source->sequences && source->sequence.empty()) {
+    if (Status done = edit_all_sequences(options, std::move(*source), context); !done) {
+      return done.error();
+    }
+  } else {
+    auto result = edit_and_write(options, std::move(*source), context.output, context);
+    if (!result) return result.error();
+    context.report.result = std::move(*result);
+  }
+  context.report.result["input"] = input_summary;
+  return kExitDone;
+}
+
+ToolSpec make_spec() {
+  const auto arguments = std::make_shared<Arguments>();
+  ToolSpec spec;
+  spec.name = "krok-edit";
+  spec.summary =
+      "Cleans, cuts, mirrors, retimes, joins, loops, scales and places a motion. Steps are done in "
+      "the order in which they stand here, whatever the order of the options";
+  spec.inputs = "IN.anim|IN.bvh|IN.amc";
+  spec.examples = {
+      {"krok-edit take.anim -o clean.anim --spikes --filter butterworth --cutoff 8Hz",
+       "lost frames replaced and jitter taken out; nothing shifts in time"},
+      {"krok-edit take.anim -o walk.anim --from 1.5s --to 187f --loop --treadmill",
+       "one cycle that repeats without a seam, on the spot"},
+      {"krok-edit take.anim -o 'take_{sequence}.anim' --sequences take.json",
+       "every part that a file names, at its speed, looped if the file says so"},
+      {"krok-edit walk.anim -o both.anim --append turn.anim --blend 0.3s --at-origin --heading 0",
+       "one motion after the other, from the origin towards +Z"}};
+  spec.needs_output = false;  // --list-sequences writes nothing
+  spec.batch = {{".anim", ".bvh", ".amc"}, [arguments]() -> Result<std::string> {
+                  const bool several = !arguments->sequences.empty() && arguments->sequence.empty();
+                  return std::string(several ? "_{sequence}.anim" : ".anim");
+                }};
+  spec.declare = [arguments](CLI::App& app) { declare(app, *arguments); };
+  spec.run = [arguments](ToolContext& context) { return run_typed(*arguments, context); };
+  return spec;
+}
+
+}  // namespace krok::edit

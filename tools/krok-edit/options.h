@@ -1,0 +1,102 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/quantity.h"
+#include "core/result.h"
+#include "filter/smooth_clip.h"
+#include "motion/joint_selection.h"
+#include "motion/loop.h"
+#include "motion/travel.h"
+
+namespace krok::edit {
+
+// The options as they were typed.
+struct Arguments {
+  enum class Filter { none, butterworth, savgol };
+
+  std::string input;
+  std::string map;
+  // 1. clean
+  bool spikes = false;
+  double spike_threshold = 6;
+  Filter filter = Filter::none;
+  std::string cutoff = "6Hz";
+  std::optional<int> order;
+  int window = 9;
+  std::vector<std::string> joints, below;
+  // 2. cut
+  std::string from, to, sequences, sequence;
+  bool list_sequences = false;
+  // 3. mirror
+  bool mirror = false;
+  // 4. timing
+  double speed = 1;
+  std::optional<double> resample;
+  // 5. append
+  std::vector<std::string> append;
+  std::string blend = "0.2s";
+  bool match_height = false;
+  // 6. loop
+  bool loop = false;
+  std::string loop_blend = "0.2s";
+  LoopEnd loop_end = LoopEnd::automatic;
+  LoopTurn loop_turn = LoopTurn::automatic;
+  LoopClimb loop_climb = LoopClimb::automatic;
+  std::optional<int> rounds;
+  // 7. travel
+  bool in_place = false, treadmill = false;
+  // 8. size
+  std::optional<double> scale;
+  std::string height;
+  // 9. place
+  bool at_origin = false, re_orient = false, ground = false;
+  std::string heading, turn, move;
+};
+
+// The same, understood.
+struct Options {
+  std::string input;
+  std::string map;  // a file that tells joints' roles, or empty
+
+  std::optional<double> spike_threshold;
+  std::optional<filter::Smoothing> smoothing;
+  JointSelection joints;
+
+  std::optional<ClipTime> from, to;
+  std::string sequences, sequence;
+  bool list_sequences = false;
+
+  bool mirror = false;
+
+  double speed = 1;
+  std::optional<double> resample;
+
+  std::vector<std::string> append;
+  ClipTime append_blend;
+  bool match_height = false;
+
+  bool loop = false;
+  ClipTime loop_blend;
+  LoopOptions looping;
+  std::optional<int> rounds;
+
+  std::optional<Travel> removed_travel;
+
+  std::optional<double> scale, height;
+
+  bool at_origin = false, ground = false;
+  std::optional<double> heading;
+  double turn = 0;
+  Vec3 move = Vec3::Zero();
+};
+
+void declare(CLI::App& app, Arguments& arguments);
+
+// Errors carry the option's name. Code usage for options that do not go together.
+Result<Options> understand(const Arguments& arguments);
+
+}  // namespace krok::edit

@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/numbers.h"
+#include "motion/ground_place.h"
+#include "motion/place.h"
+#include "tools/krok-edit/steps.h"
+
+namespace krok::edit {
+
+Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
+  if (!options.removed_travel) return {};
+  const int last = edit.clip.frame_count() - 1;
+  double way = 0;
+  if (last > 0) {
+    const GroundPlace from = ground_place(edit.clip, edit.carrier, 0);
+    const GroundPlace to = ground_place(edit.clip, edit.carrier, last);
+    way = Vec2(to.x - from.x, to.z - from.z).norm();
+  }
+  edit.clip = in_place(edit.clip, edit.carrier, *options.removed_travel);
+  const bool all = *options.removed_travel == Travel::all;
+  Json figures;
+  figures["removed"] = all ? "all" : "trend";
+  figures["way"] = way;
+  edit.note("travel", std::move(figures),
+            fmt::format("{} of {} m from first to last frame taken out",
+                        all ? "all travel" : "the even part of a travel", readable(way, 3)));
+  return {};
+}
+
+Status change_size(const Options& options, ToolContext&, Edit& edit) {
+  if (!options.scale && !options.height) return {};
+  const double height = reference_height(edit.clip.skeleton);
+  if (options.height && !(height > 0)) {
+    return Error("motion-scale", "the reference pose has no height that could be scaled",
+                 "use --scale")
+        .in_file(options.input);
+  }
+  const double factor = options.scale ? *options.scale : *options.height / height;
+  if (Status scaled = scale_clip(factor, edit.clip); !scaled) return scaled;
+  Json figures;
+  figures["factor"] = factor;
+  figures["height_before"] = height;
+  figures["height"] = reference_height(edit.clip.skeleton);
+  edit.note("scale", std::move(figures),
+            fmt::format("scaled by {}: height {} m instead of {} m", readable(factor),
+                        readable(reference_height(edit.clip.skeleton), 4), readable(height, 4)));
+  return {};
+}
+
+Status change_place(const Options& options, ToolContext&, Edit& edit) {
+  Transform move;
+  std::string line;
+  Clip& clip = edit.clip;
+  const auto apply = [&](const Transform& step, std::string done) {
+    move_clip(step, clip);
+    move = step * move;
+    line += (line.empty() ? "" : ", ") + done;
+  };
+  const auto degrees = [](double angle) { return readable(angle / kRadiansPerDegree, 4); };
+  if (options.at_origin) apply(to_origin(clip, edit.carrier), "begins over the origin");
+  if (options.heading) {
+    apply(facing_at_start(clip, edit.carrier, *options.heading),
+          fmt::format("begins facing {} deg", degrees(*options.heading)));
+  }
+  if (options.turn != 0) {
+    apply(turned_about_start(clip, edit.carrier, options.turn),
+          fmt::format("turned by {} deg", degrees(options.turn)));
+  }
+  if (options.move != Vec3::Zero()) {
+    apply({options.move, Quat::Identity()},
+          fmt::format("moved by {}, {}, {} m", readable(options.move.x()),
+                      readable(options.move.y()), readable(options.move.z())));
+  }
+  if (options.ground) {
+    const Transform lift = onto_ground(clip, foot_joints(clip.skeleton, edit.roles));
+    apply(lift, fmt::format("lifted by {} m onto the ground", readable(lift.position.y(), 4)));
+  }
+  if (line.empty()) return {};
+  Json figures;
+  figures["moved"] = {move.position.x(), move.position.y(), move.position.z()};
+  figures["turned"] = 2 * std::atan2(move.orientation.y(), move.orientation.w());
+  edit.note("place", std::move(figures), std::move(line));
+  return {};
+}
+
+}  // namespace krok::edit

@@ -1,0 +1,302 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "motion/cut.h"
+#include "motion/ground_place.h"
+#include "motion/join.h"
+#include "motion/loop.h"
+#include "motion/mirror.h"
+#include "motion/retime.h"
+#include "tools/krok-edit/steps.h"
+
+namespace krok::edit {
+
+namespace {
+
+std::string in_degrees(double radians) {
+  const double degrees = radians / kRadiansPerDegree;
+  return std::abs(degrees) < 1e-4 ? "0 deg" : readable(degrees, 3) + " deg";
+}
+
+std::string seconds(double value) {
+  return readable(value, 4) + " s";
+}
+
+const std::string& joint_name(const Edit& edit, int joint) {
+  return edit.clip.skeleton.names[static_cast<std::size_t>(joint)];
+}
+
+std::string extent_of(const Clip& clip) {
+  return fmt::format("the motion has {}, 0 to {}, {}", counted(clip.frame_count(), "frame"),
+                     clip.frame_count() - 1, seconds(clip.duration()));
+}
+
+struct Range {
+  double first = 0, last = 0;  // frames, perhaps between two
+};
+
+// A part that the sequences' file names.
+Result<Range> named_range(const Options& options, Edit& edit) {
+  const sequences::SequenceFile& file = *edit.sequences;
+  const sequences::Sequence* sequence = file.find(edit.sequence);
+  if (sequence == nullptr) {
+    return Error("edit-sequence", fmt::format("no sequence is called '{}'", edit.sequence),
+                 "--list-sequences shows which there are")
+        .in_file(options.sequences);
+  }
+  edit.speed *= sequence->speed;
+  edit.loop = edit.loop || sequence->loop;
+  const double scale = file.rate > 0 ? edit.clip.rate / file.rate : 1;
+  const Range range{sequence->first * scale, sequence->last * scale};
+  if (range.last > edit.clip.frame_count() - 1 + 1e-3) {
+    return Error(
+               "edit-sequence",
+               fmt::format(
+                   "'{}' ends with frame {}{}, but {}", sequence->name, sequence->last,
+                   file.rate > 0 ? fmt::format(" at {} frames a second", readable(file.rate)) : "",
+                   extent_of(edit.clip)))
+        .in_file(options.sequences);
+  }
+  return range;
+}
+
+Result<Range> typed_range(const Options& options, const Edit& edit) {
+  const double end = edit.clip.frame_count() - 1;
+  const auto frame_of = [&](const ClipTime& time) {
+    return time.seconds(edit.clip.rate) * edit.clip.rate;
+  };
+  const Range range{options.from ? frame_of(*options.from) : 0,
+                    options.to ? frame_of(*options.to) : end};
+  if (range.first > range.last) {
+    return Error(
+        "edit-range",
+        fmt::format("--from ({}) lies behind {} ({})", seconds(range.first / edit.clip.rate),
+                    options.to ? "--to" : "the end", seconds(range.last / edit.clip.rate)),
+        extent_of(edit.clip));
+  }
+  // A printed duration may be a little longer than the real one.
+  if (range.last >= end + 1) {
+    return Error("edit-range",
+                 fmt::format("--to {} lies behind the end", seconds(range.last / edit.clip.rate)),
+                 extent_of(edit.clip));
+  }
+  return range;
+}
+
+Json seam_json(const Seam& seam, const Edit& edit) {
+  Json json;
+  json["angle"] = seam.angle;
+  json["angle_joint"] = joint_name(edit, seam.angle_joint);
+  json["distance"] = seam.distance;
+  json["angular_velocity"] = seam.angular_velocity;
+  json["angular_velocity_joint"] = joint_name(edit, seam.angular_velocity_joint);
+  json["usual_angular_velocity"] = seam.usual_angular_velocity;
+  json["velocity"] = seam.velocity;
+  return json;
+}
+
+// The pose's error goes to nothing; of the velocity's, what is usual within the motion stays.
+std::string seam_text(const Looped& looped, const Edit& edit) {
+  const Seam &before = looped.before, &after = looped.after;
+  return fmt::format(
+      "; at the seam poses differed by at most {} ({}), now {}; velocities jumped by {}/s, now "
+      "{}/s ({}, usual {}/s)",
+      in_degrees(before.angle), joint_name(edit, before.angle_joint), in_degrees(after.angle),
+      in_degrees(before.angular_velocity), in_degrees(after.angular_velocity),
+      joint_name(edit, after.angular_velocity_joint), in_degrees(after.usual_angular_velocity));
+}
+
+Json loop_json(const Looped& looped, const Edit& edit) {
+  Json json;
+  json["period"] = looped.clip.duration();
+  json["added_frames"] = looped.added_frames;
+  json["blended_frames"] = looped.blended_frames;
+  const Vec3& way = looped.displacement.position;
+  json["displacement"] = {way.x(), way.y(), way.z()};
+  json["turn"] = looped.turn;
+  json["straightened"] = looped.straightened;
+  json["levelled"] = looped.levelled;
+  json["root_carried"] = looped.carried;
+  json["seam_before"] = seam_json(looped.before, edit);
+  json["seam_after"] = seam_json(looped.after, edit);
+  return json;
+}
+
+std::string loop_text(const Looped& looped, const Edit& edit) {
+  const Vec3& way = looped.displacement.position;
+  std::string line = fmt::format(
+      "looped: a round of {} ({}{}) moves by {} m", counted(looped.clip.frame_count() - 1, "frame"),
+      seconds(looped.clip.duration()), looped.added_frames > 0 ? ", closing frame added" : "",
+      readable(Vec2(way.x(), way.z()).norm(), 3));
+  if (way.y() != 0) line += fmt::format(", climbs {} m", readable(way.y(), 3));
+  if (looped.turn != 0) line += fmt::format(", turns {}", in_degrees(looped.turn));
+  if (looped.straightened != 0) {
+    line += fmt::format("; a drift of {} straightened", in_degrees(looped.straightened));
+  }
+  if (looped.carried) line += fmt::format("; {} now travels along", joint_name(edit, 0));
+  return line + seam_text(looped, edit);
+}
+
+}  // namespace
+
+Status cut_out(const Options& options, ToolContext&, Edit& edit) {
+  edit.speed = options.speed;
+  edit.loop = options.loop;
+  const bool named = !edit.sequence.empty();
+  if (!named && !options.from && !options.to) return {};
+  if (edit.clip.frame_count() == 0) {
+    return Error("edit-range", "the motion has no frames to cut from").in_file(options.input);
+  }
+  const auto range = named ? named_range(options, edit) : typed_range(options, edit);
+  if (!range) return range.error();
+  constexpr double kSameFrame = 1e-3;
+  const int end = edit.clip.frame_count() - 1;
+  const int first = static_cast<int>(std::ceil(range->first - kSameFrame));
+  const int last = std::min(end, static_cast<int>(std::floor(range->last + kSameFrame)));
+  if (first > last) {
+    return Error("edit-range",
+                 fmt::format("no frame stands between {} and {}",
+                             seconds(range->first / edit.clip.rate),
+                             seconds(range->last / edit.clip.rate)),
+                 extent_of(edit.clip))
+        .in_file(options.input);
+  }
+  edit.clip = cut(edit.clip, first, last);
+  Json figures;
+  if (named) figures["sequence"] = edit.sequence;
+  figures["first_frame"] = first;
+  figures["last_frame"] = last;
+  figures["frames_cut"] = end + 1 - edit.clip.frame_count();
+  edit.note("cut", std::move(figures),
+            fmt::format("cut: {}frames {} to {}, {} left out",
+                        named ? fmt::format("sequence '{}', ", edit.sequence) : "", first, last,
+                        end + 1 - edit.clip.frame_count()));
+  return {};
+}
+
+Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
+  if (!options.mirror) return {};
+  const MirrorPairs pairs = find_mirror_pairs(edit.clip.skeleton, edit.roles);
+  Json pair_list = Json::array(), middle = Json::array(), unpaired = Json::array();
+  for (int j = 0; j < edit.clip.joint_count(); ++j) {
+    const int other = pairs.partners[static_cast<std::size_t>(j)];
+    if (other == j) middle.push_back(joint_name(edit, j));
+    if (other > j) pair_list.push_back({joint_name(edit, j), joint_name(edit, other)});
+  }
+  for (const int j : pairs.unpaired()) {
+    unpaired.push_back(joint_name(edit, j));
+    if (edit.clip.skeleton.end_sites[static_cast<std::size_t>(j)] != 0) continue;
+    Diagnostic warning;
+    warning.severity = Severity::warning;
+    warning.code = "edit-unpaired";
+    warning.where.file = options.input;
+    warning.joint = joint_name(edit, j);
+    warning.message =
+        fmt::format("{} has no joint on the other side; it keeps to its parent", warning.joint);
+    context.tell(std::move(warning));
+  }
+  if (pair_list.empty()) {
+    context.warn("edit-unpaired",
+                 "no joints were recognised as left and right, so only the figure's way and its "
+                 "turns are mirrored",
+                 "krok-info shows which roles the joints have");
+  }
+  edit.clip = mirror(edit.clip, pairs);
+  std::string line = fmt::format("mirrored: {}, {} of the middle",
+                                 counted(static_cast<long long>(pair_list.size()), "pair"),
+                                 counted(static_cast<long long>(middle.size()), "joint"));
+  Json figures;
+  figures["pairs"] = std::move(pair_list);
+  figures["middle"] = std::move(middle);
+  figures["unpaired"] = std::move(unpaired);
+  edit.note("mirror", std::move(figures), std::move(line));
+  return {};
+}
+
+Status change_timing(const Options& options, ToolContext&, Edit& edit) {
+  const double rate = options.resample.value_or(edit.clip.rate);
+  if (!options.resample && edit.speed == 1) return {};
+  const int frames = edit.clip.frame_count();
+  const double old_rate = edit.clip.rate, old_duration = edit.clip.duration();
+  auto retimed =
+      retime(edit.clip, rate, edit.speed, edit.loop ? LastFrame::kept : LastFrame::within);
+  if (!retimed) return retimed.error();
+  edit.clip = std::move(*retimed);
+  Json figures;
+  figures["speed"] = edit.speed;
+  figures["rate_before"] = old_rate;
+  figures["rate"] = rate;
+  figures["frames_before"] = frames;
+  figures["frames"] = edit.clip.frame_count();
+  std::string line;
+  if (edit.speed != 1) {
+    line = fmt::format("speed {}: {} become {}", readable(edit.speed), seconds(old_duration),
+                       seconds(edit.clip.duration()));
+  }
+  if (options.resample) {
+    line += fmt::format("{}resampled from {} to {} frames a second", line.empty() ? "" : ", ",
+                        readable(old_rate), readable(rate));
+  }
+  edit.note("timing", std::move(figures), std::move(line));
+  return {};
+}
+
+Status append_motions(const Options& options, ToolContext&, Edit& edit) {
+  for (std::size_t i = 0; i < edit.appended.size(); ++i) {
+    const std::string& path = options.append[i];
+    const Clip& next = edit.appended[i];
+    const JoinOptions joining{options.append_blend.seconds(edit.clip.rate), options.match_height};
+    auto joined = join(edit.clip, next, edit.carrier, joining);
+    if (!joined) return std::move(joined.error()).in_file(path);
+    const int frames = edit.clip.frame_count();
+    edit.clip = std::move(joined->clip);
+    Json figures;
+    figures["file"] = base_name(path);
+    figures["frames_before"] = frames;
+    figures["frames"] = edit.clip.frame_count();
+    figures["joint_frame"] = joined->joint_frame;
+    figures["shared_frames"] = joined->shared_frames;
+    figures["largest_angle"] = joined->largest_angle;
+    figures["largest_angle_joint"] = joint_name(edit, joined->largest_joint);
+    std::string line = fmt::format("appended {}: {} shared about frame {}", base_name(path),
+                                   counted(joined->shared_frames, "frame"), joined->joint_frame);
+    if (joined->largest_angle > 0) {
+      line +=
+          fmt::format(", poses there differ by at most {} ({})", in_degrees(joined->largest_angle),
+                      joint_name(edit, joined->largest_joint));
+    }
+    if (next.rate != edit.clip.rate) {
+      line += fmt::format(", resampled from {} frames a second", readable(next.rate));
+    }
+    edit.note("append", std::move(figures), std::move(line));
+  }
+  return {};
+}
+
+Status make_loop(const Options& options, ToolContext&, Edit& edit) {
+  if (!edit.loop) {
+    if (!options.rounds) return {};
+    return Error("usage", "--rounds repeats a loop, and none is asked for", "add --loop");
+  }
+  LoopOptions looping = options.looping;
+  looping.blend = options.loop_blend.seconds(edit.clip.rate);
+  auto looped = loop(edit.clip, edit.carrier, looping);
+  if (!looped) return std::move(looped.error()).in_file(options.input);
+  Json figures = loop_json(*looped, edit);
+  std::string line = loop_text(*looped, edit);
+  edit.clip = std::move(looped->clip);
+  if (options.rounds) {
+    auto all = repeated(edit.clip, looped->displacement, *options.rounds);
+    if (!all) return all.error();
+    edit.clip = std::move(*all);
+    figures["rounds"] = *options.rounds;
+    line += fmt::format("; {}", counted(*options.rounds, "round"));
+  }
+  edit.note("loop", std::move(figures), std::move(line));
+  return {};
+}
+
+}  // namespace krok::edit
