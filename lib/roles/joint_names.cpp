@@ -171,11 +171,24 @@ std::pair<Side, std::string> split_side(const std::string& text) {
   return {Side::middle, text};
 }
 
+// "Skeleton_arm_joint_L": words that say no more than that it is a joint. A hip joint is one of its
+// own (CMU's LHipJoint only leads from the hips to the thigh).
+void drop_filler_words(Tokens& tokens) {
+  constexpr std::array<std::string_view, 6> kFillers = {"joint", "jnt",      "bone",
+                                                        "bn",    "skeleton", "armature"};
+  for (std::size_t i = tokens.size(); i-- > 0 && tokens.size() > 1;) {
+    const bool filler = std::find(kFillers.begin(), kFillers.end(), tokens[i]) != kFillers.end();
+    const bool hip_joint = i > 0 && tokens[i - 1] == "hip";
+    if (filler && !hip_joint) tokens.erase(tokens.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 JointName read_name(Tokens tokens) {
   JointName name;
   if (tokens.size() > 1 && (tokens.front() == "c" || tokens.front() == "center")) {
     tokens.erase(tokens.begin());
   }
+  drop_filler_words(tokens);
   const auto is_helper_token = [](const std::string& token) {
     return std::find(kHelperTokens.begin(), kHelperTokens.end(), token) != kHelperTokens.end();
   };
@@ -222,6 +235,34 @@ void strip_common_prefix(std::vector<Tokens>& names) {
     for (Tokens& tokens : names) {
       if (!tokens.empty() && tokens.front() == most->first) tokens.erase(tokens.begin());
     }
+  }
+}
+
+// Rigs that only number the joints of a limb ("leg_joint_L_1" to "leg_joint_L_5"): three or more in
+// a row with one word, on a side that has no other names, are the limb from its root to its end.
+void read_numbered_limb(const Skeleton& skeleton, Part word, std::span<const Part> others,
+                        std::span<const Part> limb, Side side, std::vector<JointName>& names) {
+  std::vector<std::size_t> chain;
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    if (names[j].side != side) continue;
+    if (std::find(others.begin(), others.end(), names[j].part) != others.end()) return;
+    if (names[j].part != word) continue;
+    if (!chain.empty() && skeleton.parents[j] != static_cast<int>(chain.back())) return;
+    chain.push_back(j);
+  }
+  if (chain.size() < 3) return;
+  for (std::size_t i = 0; i < chain.size() && i < limb.size(); ++i) names[chain[i]].part = limb[i];
+}
+
+void read_numbered_limbs(const Skeleton& skeleton, std::vector<JointName>& names) {
+  constexpr std::array kArm = {Part::upper_arm, Part::lower_arm, Part::hand};
+  constexpr std::array kOtherArm = {Part::collar, Part::shoulder, Part::upper_arm, Part::lower_arm,
+                                    Part::hand};
+  constexpr std::array kLeg = {Part::upper_leg, Part::lower_leg, Part::foot, Part::toes};
+  constexpr std::array kOtherLeg = {Part::hip, Part::upper_leg, Part::lower_leg, Part::foot};
+  for (const Side side : {Side::left, Side::right}) {
+    read_numbered_limb(skeleton, Part::arm, kOtherArm, kArm, side, names);
+    read_numbered_limb(skeleton, Part::leg, kOtherLeg, kLeg, side, names);
   }
 }
 
@@ -291,6 +332,7 @@ std::vector<JointName> read_joint_names(const Skeleton& skeleton) {
       names[static_cast<std::size_t>(above)].part = Part::helper;
     }
   }
+  read_numbered_limbs(skeleton, names);
   return names;
 }
 

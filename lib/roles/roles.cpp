@@ -6,39 +6,11 @@
 
 #include "roles/body_shape.h"
 #include "roles/joint_names.h"
+#include "roles/role_finder.h"
 
 namespace krok {
 
 namespace {
-
-constexpr std::array<std::string_view, 27> kRoleNames = {"none",
-                                                         "root",
-                                                         "hips",
-                                                         "spine",
-                                                         "chest",
-                                                         "neck",
-                                                         "head",
-                                                         "left_collar",
-                                                         "left_upper_arm",
-                                                         "left_lower_arm",
-                                                         "left_hand",
-                                                         "left_fingers",
-                                                         "right_collar",
-                                                         "right_upper_arm",
-                                                         "right_lower_arm",
-                                                         "right_hand",
-                                                         "right_fingers",
-                                                         "left_upper_leg",
-                                                         "left_lower_leg",
-                                                         "left_foot",
-                                                         "left_toes",
-                                                         "right_upper_leg",
-                                                         "right_lower_leg",
-                                                         "right_foot",
-                                                         "right_toes",
-                                                         "end",
-                                                         "helper"};
-static_assert(kRoleNames.size() == static_cast<std::size_t>(Role::helper) + 1);
 
 struct ArmRoles {
   Role collar, upper, lower, hand, fingers;
@@ -87,7 +59,8 @@ class RoleFinder {
     for (std::size_t j = 0; j < map_.roles.size(); ++j) {
       if (skeleton_.end_sites[j] != 0) map_.roles[j] = Role::end;
     }
-    map_.humanoid = is_humanoid(map_);
+    assign_fingers();
+    map_.humanoid = missing_roles(map_).empty();
     return std::move(map_);
   }
 
@@ -177,6 +150,7 @@ class RoleFinder {
       int last = neck_;
       while (main_child(last) >= 0 && part(main_child(last)) == Part::neck) last = main_child(last);
       head_ = main_child(last);
+      if (head_ < 0 && last != neck_) head_ = last;  // the last of several necks holds the head
     }
   }
 
@@ -331,14 +305,36 @@ class RoleFinder {
     // Parents come first, so a joint inherits from what its parent became.
     for (int j = 0; j < skeleton_.joint_count(); ++j) {
       if (placed(j)) continue;
-      const int above = parent(j);
+      int above = parent(j);
+      if (part(j) == Part::toes) {
+        while (above >= 0 && role(above) == Role::helper) above = parent(above);
+      }
       const Role from = above >= 0 ? role(above) : Role::none;
       const Role inherited = beyond(from);
-      if (is_helper(j) || part(j) == Part::hips) {
+      const bool metatarsal = (from == Role::left_foot || from == Role::right_foot) &&
+                              part(j) == Part::unknown && leads_to_toes(j);
+      if (is_helper(j) || part(j) == Part::hips || metatarsal) {
         role(j) = Role::helper;
       } else if (inherited != Role::none) {
         role(j) = inherited;
       }
+    }
+  }
+
+  // Whether a joint below is named as toes: the rotation at the ball of the foot is that one's.
+  bool leads_to_toes(int joint) const {
+    for (const int child : children_[at(joint)]) {
+      if (part(child) == Part::toes) return true;
+    }
+    return false;
+  }
+
+  void assign_fingers() {
+    map_.fingers.assign(map_.roles.size(), {});
+    for (const Role fingers : {Role::left_fingers, Role::right_fingers}) {
+      const std::vector<int> joints = map_.joints(fingers);
+      const std::vector<FingerPlace> places = find_fingers(skeleton_, joints);
+      for (std::size_t i = 0; i < joints.size(); ++i) map_.fingers[at(joints[i])] = places[i];
     }
   }
 
@@ -368,17 +364,6 @@ class RoleFinder {
     }
   }
 
-  static bool is_humanoid(const RoleMap& map) {
-    const auto has = [&](Role role) { return map.joint(role) >= 0; };
-    for (const Role role :
-         {Role::hips, Role::left_upper_leg, Role::right_upper_leg, Role::left_lower_leg,
-          Role::right_lower_leg, Role::left_foot, Role::right_foot, Role::left_upper_arm,
-          Role::right_upper_arm, Role::left_hand, Role::right_hand}) {
-      if (!has(role)) return false;
-    }
-    return has(Role::head) || has(Role::neck);
-  }
-
   const Skeleton& skeleton_;
   std::vector<JointName> names_;
   std::vector<std::vector<int>> children_;
@@ -395,26 +380,19 @@ class RoleFinder {
 
 }  // namespace
 
-std::string_view role_name(Role role) {
-  return kRoleNames[static_cast<std::size_t>(role)];
-}
-
-int RoleMap::joint(Role role) const {
-  for (std::size_t i = 0; i < roles.size(); ++i) {
-    if (roles[i] == role) return static_cast<int>(i);
-  }
-  return -1;
+RoleMap roles_from_names(const Skeleton& skeleton, std::vector<JointName> names) {
+  return RoleFinder(skeleton, std::move(names)).find();
 }
 
 RoleMap find_roles(const Skeleton& skeleton) {
-  RoleMap map = RoleFinder(skeleton, read_joint_names(skeleton)).find();
+  RoleMap map = roles_from_names(skeleton, read_joint_names(skeleton));
   const bool nothing_found = std::all_of(map.roles.begin(), map.roles.end(), [](Role role) {
     return role == Role::none || role == Role::end;
   });
   if (!nothing_found) return map;
   auto names = names_from_shape(skeleton);
   if (!names) return map;
-  RoleMap by_shape = RoleFinder(skeleton, std::move(*names)).find();
+  RoleMap by_shape = roles_from_names(skeleton, std::move(*names));
   return by_shape.humanoid ? by_shape : map;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "core/result.h"
+#include "describe_skeleton.h"
 #include "description.h"
 #include "tools/common/tool.h"
 
@@ -12,12 +13,16 @@
 
 namespace krok::info {
 
-Result<Description> describe_anim(const InputFile& file, ToolContext& context);
-Result<Description> describe_model(const InputFile& file, ToolContext& context);
+Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how,
+                                  ToolContext& context);
+Result<Description> describe_model(const InputFile& file, const SkeletonOptions& how,
+                                   ToolContext& context);
 Result<Description> describe_cam(const InputFile& file, ToolContext& context);
-Result<Description> describe_bvh(const InputFile& file, ToolContext& context);
+Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& how,
+                                 ToolContext& context);
 // A skeleton, or a motion with the skeleton that stands beside it.
-Result<Description> describe_acclaim(const InputFile& file, ToolContext& context);
+Result<Description> describe_acclaim(const InputFile& file, const SkeletonOptions& how,
+                                     ToolContext& context);
 Result<Description> describe_gltf(const InputFile& file, ToolContext& context);
 
 }  // namespace krok::info

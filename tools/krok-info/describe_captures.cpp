@@ -20,11 +20,11 @@ void add_choice(const std::string& key, const std::string& choice, Confidence co
 }
 
 // What all captures have. `measured` says of what pose the size is.
-void add_capture(const Capture& capture, const std::string& measured, const ToolContext& context,
-                 Description& out) {
+Status add_capture(const Capture& capture, const std::string& measured, const SkeletonOptions& how,
+                   Description& out) {
   const Clip& clip = capture.clip;
   const Conventions& conventions = capture.conventions;
-  add_skeleton(clip.skeleton, context.verbose, out);
+  if (Status added = add_skeleton(clip.skeleton, how, out); !added) return added.error();
   std::vector<Vec3> positions;
   for (const Transform& joint : clip.skeleton.reference) positions.push_back(joint.position);
   add_size<Vec3>(positions, measured, out);
@@ -38,11 +38,13 @@ void add_capture(const Capture& capture, const std::string& measured, const Tool
              conventions.up_reason, out);
   add_choice("forward", std::string(direction_name(conventions.forward)),
              conventions.forward_confidence, conventions.forward_reason, out);
+  return {};
 }
 
 }  // namespace
 
-Result<Description> describe_bvh(const InputFile& file, ToolContext& context) {
+Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& how,
+                                 ToolContext& context) {
   bvh::ReadOptions options;
   options.jobs = context.jobs;
   options.progress = context.progress;
@@ -55,7 +57,8 @@ Result<Description> describe_bvh(const InputFile& file, ToolContext& context) {
   add_timing(capture->clip.frame_count(), capture->clip.rate, out);
   out.json["frames_announced"] = capture->frames_announced;
   out.json["frame_time"] = capture->frame_time;
-  add_capture(*capture, "joints with all rotations 0", context, out);
+  if (Status added = add_capture(*capture, "joints with all rotations 0", how, out); !added)
+    return added.error();
   add_choice("positions", capture->positions.choice, capture->positions.confidence,
              capture->positions.reason, out);
   out.json["rest_frame"] = capture->rest_frame_found;
@@ -63,7 +66,8 @@ Result<Description> describe_bvh(const InputFile& file, ToolContext& context) {
   return out;
 }
 
-Result<Description> describe_acclaim(const InputFile& file, ToolContext& context) {
+Result<Description> describe_acclaim(const InputFile& file, const SkeletonOptions& how,
+                                     ToolContext& context) {
   acclaim::ReadOptions options;
   options.jobs = context.jobs;
   options.progress = context.progress;
@@ -92,7 +96,8 @@ Result<Description> describe_acclaim(const InputFile& file, ToolContext& context
   if (!capture) return capture.error();
   context.tell(capture->diagnostics);
   if (is_motion) add_timing(capture->clip.frame_count(), capture->clip.rate, out);
-  add_capture(*capture, "joints in the reference pose", context, out);
+  if (Status added = add_capture(*capture, "joints in the reference pose", how, out); !added)
+    return added.error();
   return out;
 }
 

@@ -12,6 +12,8 @@ namespace krok::info {
 
 namespace {
 
+constexpr std::size_t kMostNames = 12;
+
 std::string named(const std::string& name, std::size_t index) {
   return name.empty() ? fmt::format("number {}", index) : name;
 }
@@ -29,15 +31,24 @@ void add_meshes(const nodes::Scene& asset, Description& out) {
     std::string line =
         fmt::format("{}: {}, {}", named(mesh.name, i), count_of(vertices, "vertex", "vertices"),
                     count_of(triangles, "triangle"));
+    Json targets = Json::array();
+    std::string names;
     if (mesh.target_count() > 0) {
       line += ", " + count_of(mesh.target_count(), "morph target");
+      for (const nodes::MorphTarget& target : mesh.primitives[0].targets) {
+        targets.push_back(target.name);
+        if (targets.size() <= kMostNames) names += (names.empty() ? "" : ", ") + target.name;
+      }
+      const bool named = names.find_first_not_of(", ") != std::string::npos;
+      if (named) line += ": " + names + (targets.size() > kMostNames ? ", ..." : "");
     }
     lines.push_back(std::move(line));
     out.json["meshes"].push_back({{"name", mesh.name},
                                   {"vertices", vertices},
                                   {"triangles", triangles},
                                   {"primitives", mesh.primitives.size()},
-                                  {"morph_targets", mesh.target_count()}});
+                                  {"morph_targets", mesh.target_count()},
+                                  {"target_names", std::move(targets)}});
   }
   out.add("meshes", std::move(lines));
 }
@@ -75,6 +86,25 @@ void add_animations(const nodes::Scene& asset, Description& out) {
                                       {"keys", keys}});
   }
   out.add("animations", std::move(lines));
+}
+
+// The cameras at nodes of the scene that is shown.
+void add_cameras(const nodes::Scene& asset, Description& out) {
+  std::vector<std::string> lines;
+  out.json["cameras"] = Json::array();
+  for (const nodes::Node& node : asset.nodes) {
+    if (node.camera < 0 || !node.in_scene) continue;
+    const nodes::Camera& camera = asset.cameras[static_cast<std::size_t>(node.camera)];
+    const std::string& name = node.name.empty() ? camera.name : node.name;
+    const double degrees = camera.field_of_view / kRadiansPerDegree;
+    lines.push_back(fmt::format("{}: {}", named(name, lines.size()),
+                                camera.perspective
+                                    ? fmt::format("{} deg field of view", readable(degrees, 4))
+                                    : "orthographic"));
+    out.json["cameras"].push_back({{"name", name}, {"perspective", camera.perspective}});
+    if (camera.perspective) out.json["cameras"].back()["field_of_view"] = degrees;
+  }
+  out.add("cameras", std::move(lines));
 }
 
 // What a viewer shows before it plays an animation.
@@ -117,6 +147,7 @@ Result<Description> describe_gltf(const InputFile& file, ToolContext& context) {
   add_meshes(*asset, out);
   add_skins(*asset, out);
   add_animations(*asset, out);
+  add_cameras(*asset, out);
   if (Status sized = add_shown_size(*asset, out); !sized) return sized.error();
   if (!asset->generator.empty()) out.add("made by", asset->generator);
   out.json["generator"] = asset->generator;

@@ -44,21 +44,22 @@ void add_parts(const Model& model, Description& out) {
 
 }  // namespace
 
-Result<Description> describe_anim(const InputFile& file, ToolContext& context) {
+Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how, ToolContext&) {
   const auto clip = anim::read(file.bytes());
   if (!clip) return clip.error();
   Description out;
   out.what = "a motion (.anim)";
   out.json["kind"] = "anim";
   add_timing(clip->frame_count(), clip->rate, out);
-  add_skeleton(clip->skeleton, context.verbose, out);
+  if (Status added = add_skeleton(clip->skeleton, how, out); !added) return added.error();
   add_reference_size(clip->skeleton, out);
   add_orientations(file, out);
   add_provenance(clip->provenance, out);
   return out;
 }
 
-Result<Description> describe_model(const InputFile& file, ToolContext& context) {
+Result<Description> describe_model(const InputFile& file, const SkeletonOptions& how,
+                                   ToolContext&) {
   const auto model = model::read(file.bytes());
   if (!model) return model.error();
   Description out;
@@ -82,7 +83,7 @@ Result<Description> describe_model(const InputFile& file, ToolContext& context) 
   out.json["attributes"] = with;
   out.json["influences_per_vertex"] = model->influences_per_vertex;
   add_parts(*model, out);
-  add_skeleton(model->skeleton, context.verbose, out);
+  if (Status added = add_skeleton(model->skeleton, how, out); !added) return added.error();
   if (vertices > 0) {
     add_size<Vec3f>(model->positions, "mesh in the reference pose", out);
   } else {

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/numbers.h"
-#include "roles/roles.h"
 
 namespace krok::info {
 
@@ -29,14 +28,6 @@ std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
   for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
   return digits;
-}
-
-std::vector<int> depths_of(const Skeleton& skeleton) {
-  std::vector<int> depths;
-  for (const int parent : skeleton.parents) {
-    depths.push_back(parent < 0 ? 0 : depths[static_cast<std::size_t>(parent)] + 1);
-  }
-  return depths;
 }
 
 }  // namespace
@@ -76,39 +67,6 @@ void add_timing(int frames, double rate, Description& out) {
   out.json["frames"] = frames;
   out.json["rate"] = rate;
   out.json["duration"] = duration;
-}
-
-void add_skeleton(const Skeleton& skeleton, bool verbose, Description& out) {
-  const auto ends = std::count(skeleton.end_sites.begin(), skeleton.end_sites.end(), 1);
-  const RoleMap roles = find_roles(skeleton);
-  const auto placed = std::count_if(roles.roles.begin(), roles.roles.end(), [](Role role) {
-    return role != Role::none && role != Role::end && role != Role::helper;
-  });
-  std::string joints = grouped(skeleton.names.size());
-  if (ends > 0) joints += fmt::format(", {} of them end sites", ends);
-  out.add("joints", joints);
-  out.add("figure", roles.humanoid
-                        ? fmt::format("humanoid, {} with a role in the body",
-                                      count_of(static_cast<std::uint64_t>(placed), "joint"))
-                        : std::string("not recognised as a humanoid"));
-  out.json["joints"] = skeleton.joint_count();
-  out.json["end_sites"] = ends;
-  out.json["humanoid"] = roles.humanoid;
-  out.json["skeleton"] = Json::array();
-  std::vector<std::string> lines;
-  const std::vector<int> depths = depths_of(skeleton);
-  for (std::size_t i = 0; i < skeleton.names.size(); ++i) {
-    const Role role = roles.roles[i];
-    const std::string_view role_text = role == Role::none ? "-" : role_name(role);
-    lines.push_back(fmt::format("{:<16} {:>{}}{}", role_text, "", 2 * std::min(depths[i], 40),
-                                skeleton.names[i]));
-    const int parent = skeleton.parents[i];
-    out.json["skeleton"].push_back(
-        {{"joint", skeleton.names[i]},
-         {"parent", parent < 0 ? Json() : Json(skeleton.names[static_cast<std::size_t>(parent)])},
-         {"role", role == Role::none ? Json() : Json(role_name(role))}});
-  }
-  if (verbose) out.add("roles", std::move(lines));
 }
 
 void add_size(const Eigen::AlignedBox3d& box, const std::string& measured, Description& out) {

@@ -7,7 +7,6 @@
 
 #include "math/types.h"
 #include "scene/provenance.h"
-#include "scene/skeleton.h"
 #include "tools/common/report.h"
 
 // What is said of a file, once for people and once for programs, and the parts of it that several
@@ -38,10 +37,6 @@ std::string count_of(std::uint64_t count, const std::string& noun, std::string p
 
 // Frames, rate and duration.
 void add_timing(int frames, double rate, Description& out);
-
-// Joints, end sites, whether it is a humanoid; each joint with its role in JSON, and in the text
-// too with `verbose`.
-void add_skeleton(const Skeleton& skeleton, bool verbose, Description& out);
 
 // Extents over the axes, and as the height that on Y. `measured` says of what: "joints in the
 // reference pose". Nothing for no points.

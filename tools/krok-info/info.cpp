@@ -1,5 +1,7 @@
 #include "info.h"
 
+#include <optional>
+
 #include "describe.h"
 #include "formats/registry/registry.h"
 
@@ -7,24 +9,25 @@ namespace krok::info {
 
 namespace {
 
-Result<Description> describe(const InputFile& file, ToolContext& context) {
+Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
+                             ToolContext& context) {
   using registry::Kind;
   switch (registry::identify(file.path(), file.bytes())) {
     case Kind::anim:
-      return describe_anim(file, context);
+      return describe_anim(file, how, context);
     case Kind::model:
-      return describe_model(file, context);
+      return describe_model(file, how, context);
     case Kind::cam:
       return describe_cam(file, context);
     case Kind::bvh:
-      return describe_bvh(file, context);
+      return describe_bvh(file, how, context);
     case Kind::asf:
     case Kind::amc:
-      return describe_acclaim(file, context);
+      return describe_acclaim(file, how, context);
     case Kind::glb:
     case Kind::gltf:
       return describe_gltf(file, context);
-    case Kind::unknown:
+    default:
       break;
   }
   return Error("info-kind",
@@ -33,10 +36,11 @@ Result<Description> describe(const InputFile& file, ToolContext& context) {
                "it reads .anim, .model, .cam, .bvh, .asf, .amc, .glb and .gltf files");
 }
 
-Result<Description> describe_path(const std::string& path, ToolContext& context) {
+Result<Description> describe_path(const std::string& path, const SkeletonOptions& how,
+                                  ToolContext& context) {
   const auto file = context.open_input(path);
   if (!file) return file.error();
-  auto description = describe(*file, context);
+  auto description = describe(*file, how, context);
   if (!description) return std::move(description).error().in_file(path);
   description->json["bytes"] = file->bytes().size();
   return description;
@@ -45,11 +49,19 @@ Result<Description> describe_path(const std::string& path, ToolContext& context)
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
+  SkeletonOptions how;
+  how.verbose = context.verbose;
+  std::optional<InputFile> map;
+  if (!options.map.empty()) {
+    auto opened = context.open_input(options.map);
+    if (!opened) return opened.error();
+    how.map = &map.emplace(std::move(*opened));
+  }
   Json files = Json::array();
   bool failed = false;
   bool first = true;
   for (const std::string& path : options.files) {
-    auto description = describe_path(path, context);
+    auto description = describe_path(path, how, context);
     Json entry = {{"path", path}};
     if (description) {
       entry.update(description->json);

@@ -9,6 +9,7 @@ namespace krok::info {
 
 struct Options {
   std::vector<std::string> files;
+  std::string map;  // a role map; empty: none
 };
 
 // Describes each file on standard output and in the report. A file that cannot be read gets its

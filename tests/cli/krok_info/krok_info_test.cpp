@@ -12,6 +12,7 @@
 
 #include "core/file.h"
 #include "golden/samples/samples.h"
+#include "support/human_skeleton.h"
 
 namespace krok {
 namespace {
@@ -137,6 +138,50 @@ TEST_F(KrokInfo, VerboseShowsJointsAndRoles) {
   EXPECT_THAT(run("-v " + kFrozen + "motion.anim").out, HasSubstr("roles"));
   EXPECT_THAT(run("-v " + kFrozen + "motion.anim").out, HasSubstr("  Kn\xC3\xA4"
                                                                   "chel 2\n"));
+}
+
+TEST_F(KrokInfo, ShowsWhatTheJointsAre) {
+  Clip clip;
+  clip.skeleton = test::human_skeleton();
+  clip.skeleton.add("LeftHandIndex1", clip.skeleton.find("LeftHand"), {});
+  ASSERT_TRUE(write_file(path("human.anim"), samples::bytes_of(clip)).ok());
+  const Outcome result = run(path("human.anim"));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const char* text :
+       {"humanoid, ", "hips Hips, spine Spine Spine1, chest Spine2, neck Neck, head Head",
+        "collar LeftShoulder, upper arm LeftArm, lower arm LeftForeArm, hand LeftHand",
+        "index 1 joints", "upper leg RightUpLeg, lower leg RightLeg, foot RightFoot, toes"}) {
+    EXPECT_THAT(result.out, HasSubstr(text));
+  }
+  EXPECT_THAT(result.out, Not(HasSubstr("missing")));
+  const json file = json::parse(run("--json " + path("human.anim")).out)["result"]["files"][0];
+  EXPECT_EQ(file["roles"]["hips"], "Hips");
+  EXPECT_EQ(file["roles"]["spine"], (json{"Spine", "Spine1"}));
+  EXPECT_EQ(file["roles"]["left_index_1"], "LeftHandIndex1");
+  EXPECT_EQ(file["missing_roles"], json::array());
+}
+
+TEST_F(KrokInfo, TellsWhatAHumanoidLacks) {
+  const Outcome result = run("--json " + make("walk.bvh", kBvh));
+  const json file = json::parse(result.out)["result"]["files"][0];
+  EXPECT_EQ(file["humanoid"], false);
+  EXPECT_EQ(file["missing_roles"].size(), 12u);
+  EXPECT_THAT(run(path("walk.bvh")).out, HasSubstr("missing"));
+}
+
+TEST_F(KrokInfo, AMapOverridesWhatNamesSay) {
+  Clip clip;
+  clip.skeleton = test::human_skeleton();
+  ASSERT_TRUE(write_file(path("human.anim"), samples::bytes_of(clip)).ok());
+  make("map.json", "{\"joints\": {\"Spine1\": \"chest\", \"Neck\": \"none\"}}");
+  const Outcome result = run(path("human.anim") + " --map " + path("map.json"));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("spine Spine Spine2, chest Spine1, head Head"));
+  make("bad.json", "{\"joints\": {\"Spine1\": \"chst\"}}");
+  const Outcome bad = run(path("human.anim") + " --map " + path("bad.json"));
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("bad.json:1:23: error: there is no role \"chst\""));
+  EXPECT_THAT(bad.err, HasSubstr("[role-map-role]"));
 }
 
 TEST_F(KrokInfo, GoesOnAfterAFileThatFails) {

@@ -187,7 +187,7 @@ const Scheme kSchemes[] = {
      "...........rCarpal1 .....neckLower ......neckUpper .......head",
      "hips=hip spine=abdomenLower chest=chestUpper neck=neckLower head=head left_collar=lCollar "
      "left_upper_arm=lShldrBend left_lower_arm=lForearmBend left_hand=lHand left_fingers=lCarpal1 "
-     "left_upper_leg=lThighBend left_lower_leg=lShin left_foot=lFoot left_toes=lMetatarsals"},
+     "left_upper_leg=lThighBend left_lower_leg=lShin left_foot=lFoot left_toes=lToe"},
     {"iclone",
      "RL_BoneRoot .CC_Base_Hip ..CC_Base_Pelvis ...CC_Base_L_Thigh ....CC_Base_L_Calf "
      ".....CC_Base_L_Foot ......CC_Base_L_ToeBaseShareBone ......CC_Base_L_ToeBase "
@@ -286,6 +286,18 @@ const Scheme kSchemes[] = {
      "left_collar=clavicle_l left_upper_arm=upperarm_l left_lower_arm=lowerarm_l left_hand=hand_l "
      "left_fingers=index_01_l left_upper_leg=thigh_l left_lower_leg=calf_l left_foot=foot_l "
      "left_toes=ball_l"},
+    {"numbered_limbs",
+     "Armature .Skeleton_torso_joint_1 ..leg_joint_R_1 ...leg_joint_R_2 ....leg_joint_R_3 "
+     ".....leg_joint_R_5 ..leg_joint_L_1 ...leg_joint_L_2 ....leg_joint_L_3 .....leg_joint_L_5 "
+     "..Skeleton_torso_joint_2 ...torso_joint_3 ....Skeleton_arm_joint_R "
+     ".....Skeleton_arm_joint_R__2_ ......Skeleton_arm_joint_R__3_ ....Skeleton_arm_joint_L__4_ "
+     ".....Skeleton_arm_joint_L__3_ ......Skeleton_arm_joint_L__2_ ....Skeleton_neck_joint_1 "
+     ".....Skeleton_neck_joint_2",
+     "root=Armature hips=Skeleton_torso_joint_1 spine=Skeleton_torso_joint_2 chest=torso_joint_3 "
+     "neck=Skeleton_neck_joint_1 head=Skeleton_neck_joint_2 "
+     "left_upper_arm=Skeleton_arm_joint_L__4_ left_lower_arm=Skeleton_arm_joint_L__3_ "
+     "left_hand=Skeleton_arm_joint_L__2_ left_upper_leg=leg_joint_L_1 "
+     "left_lower_leg=leg_joint_L_2 left_foot=leg_joint_L_3 left_toes=leg_joint_L_5"},
     {"no_collars_no_neck",
      "hips .spine ..head ..left_arm ...left_forearm ....left_hand ..right_arm ...right_forearm "
      "....right_hand .left_leg ..left_knee ...left_ankle .right_leg ..right_knee ...right_ankle",

@@ -1,0 +1,137 @@
+#include "formats/role_map/role_map.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "core/text.h"
+#include "formats/json/located_json.h"
+#include "formats/role_map/nearest_name.h"
+
+namespace krok::role_map {
+
+namespace {
+
+constexpr std::string_view kSchema = "krok.role-map/1";
+constexpr const char* kForm =
+    "write {\"joints\": {\"Bone_012\": \"left_hand\", ...}}; see formats/role_map/SPEC.md";
+
+// Every word that may stand as a role.
+std::vector<std::string> all_labels() {
+  std::vector<std::string> labels;
+  for (int r = 0; r <= static_cast<int>(Role::helper); ++r) {
+    const auto role = static_cast<Role>(r);
+    if (role != Role::end) labels.emplace_back(role_name(role));
+  }
+  for (const char* side : {"left_", "right_"}) {
+    for (int f = static_cast<int>(Finger::thumb); f <= static_cast<int>(Finger::all); ++f) {
+      for (int phalanx = FingerPlace::kMetacarpal; phalanx <= FingerPlace::kTip; ++phalanx) {
+        labels.push_back(side + finger_place_name({static_cast<Finger>(f), phalanx}));
+      }
+    }
+  }
+  return labels;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, const Skeleton& skeleton) : text_(text), skeleton_(skeleton) {}
+
+  Result<RoleMap> read() {
+    auto root = json::parse(text_);
+    if (!root) return root.error();
+    const json::Value* joints = nullptr;
+    if (Status shape = check_shape(*root, joints); !shape) return shape.error();
+    for (const json::Value::Member& member : joints->members) {
+      if (Status added = add(member); !added) return added.error();
+    }
+    auto map = find_roles(skeleton_, given_);
+    if (!map) return located(std::move(map).error(), *joints);
+    return map;
+  }
+
+ private:
+  Status check_shape(const json::Value& root, const json::Value*& joints) const {
+    if (root.kind != json::Value::Kind::object) {
+      return json::error_at(text_, root.offset, "role-map-shape",
+                            fmt::format("expected an object, found {}", json::kind_name(root.kind)),
+                            kForm);
+    }
+    for (const json::Value::Member& member : root.members) {
+      if (member.key == "joints") {
+        joints = &member.value;
+      } else if (member.key == "schema") {
+        if (member.value.text != kSchema) {
+          return json::error_at(text_, member.value.offset, "role-map-shape",
+                                fmt::format("the schema is not \"{}\"", kSchema),
+                                "leave the line out, or write that");
+        }
+      } else if (member.key != "comment") {
+        return json::error_at(text_, member.key_offset, "role-map-shape",
+                              fmt::format("\"{}\" is not known here", shown(member.key)), kForm);
+      }
+    }
+    if (joints == nullptr || joints->kind != json::Value::Kind::object) {
+      return json::error_at(text_, joints == nullptr ? root.offset : joints->offset,
+                            "role-map-shape", "there is no object \"joints\"", kForm);
+    }
+    return {};
+  }
+
+  Status add(const json::Value::Member& member) {
+    const int joint = skeleton_.find(member.key);
+    if (joint < 0) {
+      const std::string nearest = nearest_name(member.key, skeleton_.names);
+      return json::error_at(
+          text_, member.key_offset, "role-map-joint",
+          fmt::format("the skeleton has no joint \"{}\"", shown(member.key)),
+          nearest.empty()
+              ? "krok-info -v lists the joints"
+              : fmt::format("did you mean \"{}\"? krok-info -v lists the joints", nearest));
+    }
+    if (member.value.kind != json::Value::Kind::string) {
+      return json::error_at(
+          text_, member.value.offset, "role-map-role",
+          fmt::format("a role is a text, this is {}", json::kind_name(member.value.kind)),
+          "\"none\" takes a joint's role away");
+    }
+    auto given = parse_role_label(member.value.text);
+    if (!given || given->role == Role::end) {
+      const std::string nearest = nearest_name(member.value.text, all_labels());
+      return json::error_at(text_, member.value.offset, "role-map-role",
+                            fmt::format("there is no role \"{}\"", shown(member.value.text)),
+                            nearest.empty() ? "formats/role_map/SPEC.md lists the roles"
+                                            : fmt::format("did you mean \"{}\"?", nearest));
+    }
+    given->joint = joint;
+    given_.push_back(*given);
+    return {};
+  }
+
+  // The place of the joint that an error of find_roles names.
+  Error located(Error error, const json::Value& joints) const {
+    std::size_t offset = joints.offset;
+    for (const json::Value::Member& member : joints.members) {
+      if (member.key == error.joint) offset = member.key_offset;
+    }
+    const Error place = json::error_at(text_, offset, error.code, error.message, error.hint);
+    error.where = place.where;
+    return error;
+  }
+
+  std::string_view text_;
+  const Skeleton& skeleton_;
+  std::vector<GivenRole> given_;
+};
+
+}  // namespace
+
+Result<RoleMap> read(std::string_view text, const std::string& path, const Skeleton& skeleton) {
+  auto map = Reader(text, skeleton).read();
+  if (!map) return std::move(map).error().in_file(path);
+  return map;
+}
+
+}  // namespace krok::role_map

@@ -1,0 +1,437 @@
+#include "retarget/pose_alignment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "math/quaternion.h"
+
+namespace krok::retarget {
+
+namespace {
+
+const Vec3 kUp = Vec3::UnitY();
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+double smooth_step(double from, double to, double x) {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+double degrees(double angle) {
+  return angle * kRadiansPerDegree;
+}
+
+// The unit part of v perpendicular to the unit vector `axis`; nothing where there is none.
+std::optional<Vec3> across(const Vec3& v, const Vec3& axis) {
+  const Vec3 part = v - axis * axis.dot(v);
+  const double length = part.norm();
+  if (!(length > 1e-6 * v.norm()) || !(length > 0)) return std::nullopt;
+  return Vec3(part / length);
+}
+
+// The rotation that takes unit `x` to `x_to` and, as far as it can, `y` to `y_to`.
+Quat frame_turn(const Vec3& x, const Vec3& y, const Vec3& x_to, const Vec3& y_to) {
+  const auto from = across(y, x);
+  const auto to = across(y_to, x_to);
+  if (!from || !to) return shortest_arc(x, x_to);
+  Mat3 before, after;
+  before << x, *from, x.cross(*from);
+  after << x_to, *to, x_to.cross(*to);
+  return normalized_or_identity(Quat(Mat3(after * before.transpose())));
+}
+
+// The smallest turn of direction `from` to `to`; of nearly opposite ones half a turn about
+// `axis` comes first, so that the way round is not left to chance.
+Quat swing(const Vec3& from, const Vec3& to, const Vec3& axis) {
+  if (from.normalized().dot(to.normalized()) > std::cos(degrees(150))) {
+    return shortest_arc(from, to);
+  }
+  const auto square = across(axis, from.normalized());
+  if (!square) return shortest_arc(from, to);
+  const Quat half = from_rotation_vector(kPi * *square);
+  return shortest_arc(half * from, to) * half;
+}
+
+struct ArmRoles {
+  Role upper, lower, hand, fingers;
+};
+struct LegRoles {
+  Role upper, lower, foot;
+};
+constexpr std::array kArms = {
+    ArmRoles{Role::left_upper_arm, Role::left_lower_arm, Role::left_hand, Role::left_fingers},
+    ArmRoles{Role::right_upper_arm, Role::right_lower_arm, Role::right_hand, Role::right_fingers}};
+constexpr std::array kLegs = {
+    LegRoles{Role::left_upper_leg, Role::left_lower_leg, Role::left_foot},
+    LegRoles{Role::right_upper_leg, Role::right_lower_leg, Role::right_foot}};
+
+class View {
+ public:
+  explicit View(const Figure& figure) : figure_(figure), children_(figure.skeleton.children()) {}
+
+  const RoleMap& roles() const { return figure_.roles; }
+  const Skeleton& skeleton() const { return figure_.skeleton; }
+  int joint(Role role) const { return figure_.roles.joint(role); }
+  Vec3 place(int joint) const { return figure_.pose[at(joint)].position; }
+
+  // The unit direction between two joints, nothing where one is absent or they are in one place.
+  std::optional<Vec3> direction(int from, int to) const {
+    if (from < 0 || to < 0) return std::nullopt;
+    const Vec3 along = place(to) - place(from);
+    const double length = along.norm();
+    if (!(length > 1e-9)) return std::nullopt;
+    return Vec3(along / length);
+  }
+
+  Vec3 middle(int a, int b) const {
+    if (a < 0 || b < 0) return place(std::max(a, b));
+    return 0.5 * (place(a) + place(b));
+  }
+
+  // To the figure's left at the legs or the arms.
+  std::optional<Vec3> left(Role left_role, Role right_role) const {
+    return direction(joint(right_role), joint(left_role));
+  }
+
+  int neck() const {
+    const int neck = joint(Role::neck);
+    return neck >= 0 ? neck : joint(Role::head);
+  }
+
+  std::optional<Vec3> hips_up() const {
+    const int chest = joint(Role::chest);
+    const int top = chest >= 0 ? chest : neck();
+    if (top < 0) return std::nullopt;
+    const Vec3 along =
+        place(top) - middle(joint(Role::left_upper_leg), joint(Role::right_upper_leg));
+    return along.norm() > 1e-9 ? std::optional<Vec3>(along.normalized()) : std::nullopt;
+  }
+
+  std::optional<Vec3> chest_up() const {
+    const int chest = joint(Role::chest);
+    return direction(chest >= 0 ? chest : joint(Role::hips), neck());
+  }
+
+  // Where a joint's bone leads: the one child that is no helper.
+  int only_child(int joint) const {
+    int only = -1;
+    for (const int child : children_[at(joint)]) {
+      if (roles().roles[at(child)] == Role::helper) continue;
+      if (only >= 0) return -1;
+      only = child;
+    }
+    return only;
+  }
+
+  const std::vector<int>& children(int joint) const { return children_[at(joint)]; }
+
+  // The first joint of a finger beyond the palm, its metacarpal where it has no more.
+  int knuckle(Role fingers, Finger finger) const {
+    for (const int phalanx : {1, FingerPlace::kMetacarpal}) {
+      const int joint = roles().finger_joint(fingers, {finger, phalanx});
+      if (joint >= 0) return joint;
+    }
+    return -1;
+  }
+
+  // From the wrist to the middle of the knuckles, or to the end of the hand where there are none
+  // and it lies along the forearm.
+  std::optional<Vec3> hand_direction(const ArmRoles& arm) const {
+    const int wrist = joint(arm.hand);
+    if (wrist < 0) return std::nullopt;
+    Vec3 sum = Vec3::Zero();
+    int count = 0;
+    for (const Finger finger : {Finger::index, Finger::middle, Finger::ring, Finger::little}) {
+      const int found = knuckle(arm.fingers, finger);
+      if (found < 0) continue;
+      sum += place(found) - place(wrist);
+      ++count;
+    }
+    if (count > 0 && sum.norm() > 1e-9) return Vec3(sum.normalized());
+    const auto forearm = direction(joint(arm.lower), wrist);
+    for (const int child : children(wrist)) {
+      if (roles().fingers[at(child)].finger == Finger::thumb) continue;
+      const auto along = direction(wrist, child);
+      if (along && forearm && along->dot(*forearm) > std::cos(degrees(40))) return along;
+    }
+    return std::nullopt;
+  }
+
+  // From the little finger's side of the hand to the index finger's.
+  std::optional<Vec3> knuckle_line(const ArmRoles& arm) const {
+    for (const Finger outer : {Finger::little, Finger::ring}) {
+      const auto line = direction(knuckle(arm.fingers, outer), knuckle(arm.fingers, Finger::index));
+      if (line) return line;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Vec3> thumb_line(const ArmRoles& arm) const {
+    const int wrist = joint(arm.hand);
+    int last = -1;
+    for (const int phalanx : {1, 2, 3}) {
+      const int found = roles().finger_joint(arm.fingers, {Finger::thumb, phalanx});
+      if (found >= 0) last = found;
+    }
+    return direction(wrist, last);
+  }
+
+ private:
+  const Figure& figure_;
+  std::vector<std::vector<int>> children_;
+};
+
+class Aligner {
+ public:
+  Aligner(const Figure& source, const Figure& target, const JointMapping& mapping)
+      : source_(source), target_(target), mapping_(mapping), turns_(mapping.size()) {
+    set_.assign(mapping.size(), 0);
+  }
+
+  std::vector<Quat> align() {
+    hips_ = trunk_turn(Role::left_upper_leg, Role::right_upper_leg, source_.hips_up(),
+                       target_.hips_up());
+    chest_ = trunk_turn(Role::left_upper_arm, Role::right_upper_arm, source_.chest_up(),
+                        target_.chest_up());
+    set(target_.joint(Role::hips), hips_);
+    for (std::size_t k = 0; k < mapping_.size(); ++k) {
+      if (mapping_[k].along > 0) set(static_cast<int>(k), slerp(hips_, chest_, mapping_[k].along));
+    }
+    for (const Role role : {Role::chest, Role::head, Role::left_collar, Role::right_collar}) {
+      set(target_.joint(role), chest_);
+    }
+    for (const int neck : target_.roles().joints(Role::neck)) set(neck, chest_);
+    for (const ArmRoles& arm : kArms) align_arm(arm);
+    for (const LegRoles& leg : kLegs) align_leg(leg);
+    hand_down();
+    return std::move(turns_);
+  }
+
+ private:
+  void set(int joint, const Quat& turn) {
+    if (joint < 0) return;
+    turns_[at(joint)] = turn;
+    set_[at(joint)] = 1;
+  }
+
+  // Left to left; then up to up as far as the difference is a bend and not the body's build.
+  Quat trunk_turn(Role left, Role right, const std::optional<Vec3>& source_up,
+                  const std::optional<Vec3>& target_up) const {
+    const auto from = target_.left(left, right);
+    const auto to = source_.left(left, right);
+    if (!from || !to) return Quat::Identity();
+    const bool lying = std::abs(from->dot(kUp)) > 0.9 || std::abs(to->dot(kUp)) > 0.9;
+    if (lying && source_up && target_up) return frame_turn(*from, *target_up, *to, *source_up);
+    const Quat level = frame_turn(*from, kUp, *to, kUp);
+    if (!source_up || !target_up) return level;
+    const auto now = across(level * *target_up, *to);
+    const auto wanted = across(*source_up, *to);
+    if (!now || !wanted) return level;
+    const double lean = std::atan2(now->cross(*wanted).dot(*to), now->dot(*wanted));
+    const double taken = lean * smooth_step(degrees(15), degrees(35), std::abs(lean));
+    return from_rotation_vector(taken * *to) * level;
+  }
+
+  // Turns joint `upper` so that its bone to `lower` points as the source's.
+  Quat bone_turn(const Quat& above, Role upper, Role lower, const Vec3& axis) {
+    return bone_turn(above, source_.direction(source_.joint(upper), source_.joint(lower)),
+                     target_.direction(target_.joint(upper), target_.joint(lower)), axis);
+  }
+
+  static Quat bone_turn(const Quat& above, const std::optional<Vec3>& to,
+                        const std::optional<Vec3>& from, const Vec3& axis) {
+    if (!from || !to) return above;
+    return swing(above * *from, *to, axis) * above;
+  }
+
+  void align_arm(const ArmRoles& arm) {
+    const Vec3 forward = source_forward(Role::left_upper_arm, Role::right_upper_arm);
+    const bool elbow = source_.joint(arm.lower) >= 0 && target_.joint(arm.lower) >= 0;
+    const Quat upper = bone_turn(chest_, arm.upper, elbow ? arm.lower : arm.hand, forward);
+    set(target_.joint(arm.upper), upper);
+    Quat lower = elbow ? bone_turn(upper, arm.lower, arm.hand, forward) : upper;
+    const Quat straight = straight_hand(arm, lower, forward);
+    const double twist = palm_twist(arm, straight);
+    const auto forearm = source_.direction(source_.joint(arm.lower), source_.joint(arm.hand));
+    const auto along = source_.hand_direction(arm) ? source_.hand_direction(arm) : forearm;
+    const Quat hand = along ? from_rotation_vector(twist * *along) * straight : straight;
+    // Palms turn by the twist of the forearm, which has half of it before the wrist.
+    if (elbow && forearm) lower = from_rotation_vector(0.5 * twist * *forearm) * lower;
+    set(target_.joint(arm.lower), lower);
+    set(target_.joint(arm.hand), hand);
+    const int palm = palm_joint(target_.skeleton(), target_.roles(), arm.hand);
+    set(palm, hand);
+    align_fingers(arm, hand, palm, forward);
+  }
+
+  Vec3 source_forward(Role left, Role right) const {
+    const auto side = source_.left(left, right);
+    if (!side) return Vec3::UnitZ();
+    return across(side->cross(kUp), kUp).value_or(Vec3::UnitZ());
+  }
+
+  Quat straight_hand(const ArmRoles& arm, const Quat& lower, const Vec3& axis) const {
+    const auto from = target_.hand_direction(arm);
+    const auto to = source_.hand_direction(arm);
+    return from && to ? swing(lower * *from, *to, axis) * lower : lower;
+  }
+
+  // The angle about the hand's direction that brings the palm the way the source's faces.
+  double palm_twist(const ArmRoles& arm, const Quat& straight) const {
+    auto from = target_.knuckle_line(arm);
+    auto to = source_.knuckle_line(arm);
+    if (!from || !to) {
+      from = target_.thumb_line(arm);
+      to = source_.thumb_line(arm);
+    }
+    auto along = source_.hand_direction(arm);
+    if (!along) along = source_.direction(source_.joint(arm.lower), source_.joint(arm.hand));
+    if (!from || !to || !along) return 0;
+    const auto now = across(straight * *from, *along);
+    const auto wanted = across(*to, *along);
+    if (!now || !wanted) return 0;
+    return std::atan2(now->cross(*wanted).dot(*along), now->dot(*wanted));
+  }
+
+  void align_fingers(const ArmRoles& arm, const Quat& hand, int palm, const Vec3& axis) {
+    for (const int joint : target_.roles().joints(arm.fingers)) {
+      const int from = mapping_[at(joint)].first;
+      if (joint == palm) continue;
+      const int parent = target_.skeleton().parents[at(joint)];
+      const Quat above = set_[at(parent)] != 0 ? turns_[at(parent)] : hand;
+      if (from < 0) {
+        set(joint, above);
+        continue;
+      }
+      const int next_source = source_.only_child(from);
+      const int next_target = target_.only_child(joint);
+      set(joint, bone_turn(above, source_.direction(from, next_source),
+                           target_.direction(joint, next_target), axis));
+    }
+  }
+
+  void align_leg(const LegRoles& leg) {
+    const Vec3 side =
+        source_.left(Role::left_upper_leg, Role::right_upper_leg).value_or(Vec3::UnitX());
+    const Quat upper = bone_turn(hips_, leg.upper, leg.lower, side);
+    const Quat lower = bone_turn(upper, leg.lower, leg.foot, side);
+    const Quat foot = foot_turn(leg, side);
+    set(target_.joint(leg.upper), upper);
+    set(target_.joint(leg.lower), lower);
+    set(target_.joint(leg.foot), foot);
+    for (const int toe : first_toes(target_.skeleton(), target_.roles(), leg.foot)) set(toe, foot);
+  }
+
+  Quat foot_turn(const LegRoles& leg, const Vec3& side) const {
+    const int from_foot = target_.joint(leg.foot);
+    const int to_foot = source_.joint(leg.foot);
+    const auto from =
+        target_.direction(from_foot, foot_front(target_.skeleton(), target_.roles(), leg.foot));
+    const auto to =
+        source_.direction(to_foot, foot_front(source_.skeleton(), source_.roles(), leg.foot));
+    if (!from || !to) return hips_;
+    const Vec3 now = hips_ * *from;
+    const Vec3 flat_now = now - now.dot(kUp) * kUp;
+    const Vec3 flat_to = *to - to->dot(kUp) * kUp;
+    if (flat_now.norm() < 0.25 || flat_to.norm() < 0.25) return hips_;
+    const double yaw = std::atan2(flat_now.cross(flat_to).dot(kUp), flat_now.dot(flat_to));
+    if (std::abs(yaw) > degrees(90)) return hips_;
+    // A foot that points down (or up) so much more than the other is not flat on the floor.
+    const double pitch = std::asin(std::clamp(to->dot(kUp), -1.0, 1.0)) -
+                         std::asin(std::clamp(now.dot(kUp), -1.0, 1.0));
+    const double taken = pitch * smooth_step(degrees(30), degrees(50), std::abs(pitch));
+    const Vec3 hinge = across(side, flat_to.normalized()).value_or(side);
+    return from_rotation_vector(-taken * hinge) * from_rotation_vector(yaw * kUp) * hips_;
+  }
+
+  // Joints that were not set follow their parents.
+  void hand_down() {
+    for (std::size_t k = 0; k < turns_.size(); ++k) {
+      if (set_[k] != 0) continue;
+      const int parent = target_.skeleton().parents[k];
+      turns_[k] = parent >= 0 ? turns_[at(parent)] : hips_;
+    }
+  }
+
+  View source_;
+  View target_;
+  const JointMapping& mapping_;
+  std::vector<Quat> turns_;
+  std::vector<char> set_;
+  Quat hips_ = Quat::Identity();
+  Quat chest_ = Quat::Identity();
+};
+
+// The rotation that takes one set of directions closest to another (Kabsch, by the signed polar
+// decomposition of their correlation).
+Quat best_turn(const std::vector<Vec3>& from, const std::vector<Vec3>& to, const Quat& fallback) {
+  if (from.empty()) return fallback;
+  if (from.size() == 1) return shortest_arc(fallback * from[0], to[0]) * fallback;
+  Mat3 correlation = Mat3::Zero();
+  for (std::size_t i = 0; i < from.size(); ++i) correlation += to[i] * from[i].transpose();
+  const Eigen::JacobiSVD<Mat3> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  // Directions in one line leave the turn about it open.
+  if (!(svd.singularValues()[1] > 1e-3 * svd.singularValues()[0])) {
+    return shortest_arc(fallback * from[0], to[0]) * fallback;
+  }
+  Mat3 sign = Mat3::Identity();
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) sign(2, 2) = -1;
+  return normalized_or_identity(Quat(Mat3(svd.matrixU() * sign * svd.matrixV().transpose())));
+}
+
+}  // namespace
+
+std::vector<Quat> align_by_roles(const Figure& source, const Figure& target,
+                                 const JointMapping& mapping) {
+  return Aligner(source, target, mapping).align();
+}
+
+std::vector<Quat> align_by_names(const Figure& source, const Figure& target,
+                                 const JointMapping& mapping) {
+  const View from(target);
+  const View to(source);
+  const auto children = target.skeleton.children();
+  std::vector<Quat> turns(mapping.size(), Quat::Identity());
+  for (int k = 0; k < target.skeleton.joint_count(); ++k) {
+    const int parent = target.skeleton.parents[at(k)];
+    const Quat above = parent >= 0 ? turns[at(parent)] : Quat(Quat::Identity());
+    turns[at(k)] = above;
+    if (mapping[at(k)].first < 0) continue;
+    std::vector<Vec3> now, wanted;
+    for (const int child : children[at(k)]) {
+      if (mapping[at(child)].first < 0) continue;
+      const auto a = from.direction(k, child);
+      const auto b = to.direction(mapping[at(k)].first, mapping[at(child)].first);
+      if (!a || !b) continue;
+      now.push_back(*a);
+      wanted.push_back(*b);
+    }
+    turns[at(k)] = best_turn(now, wanted, above);
+  }
+  return turns;
+}
+
+int foot_front(const Skeleton& skeleton, const RoleMap& roles, Role foot) {
+  const int ankle = roles.joint(foot);
+  if (ankle < 0) return -1;
+  const std::vector<int> toes = first_toes(skeleton, roles, foot);
+  if (!toes.empty()) return toes[toes.size() / 2];
+  int front = -1;
+  double furthest = 0;
+  for (int j = ankle + 1; j < skeleton.joint_count(); ++j) {
+    if (skeleton.parents[at(j)] != ankle || skeleton.end_sites[at(j)] == 0) continue;
+    const double distance =
+        (skeleton.reference[at(j)].position - skeleton.reference[at(ankle)].position).norm();
+    if (distance <= furthest) continue;
+    front = j;
+    furthest = distance;
+  }
+  return front;
+}
+
+}  // namespace krok::retarget

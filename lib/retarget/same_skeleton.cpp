@@ -1,0 +1,54 @@
+#include "retarget/same_skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace krok::retarget {
+
+namespace {
+
+constexpr double kScaleTolerance = 1e-6;
+constexpr double kOffsetTolerance = 1e-5;  // of the sum of all bones' root mean square
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+}  // namespace
+
+std::optional<SameSkeleton> same_skeleton(const Skeleton& source, const Skeleton& target) {
+  if (source.joint_count() != target.joint_count()) return std::nullopt;
+  std::unordered_map<std::string_view, int> by_name;
+  for (int j = 0; j < source.joint_count(); ++j) by_name.emplace(source.names[at(j)], j);
+  SameSkeleton same;
+  for (int k = 0; k < target.joint_count(); ++k) {
+    const auto found = by_name.find(target.names[at(k)]);
+    if (found == by_name.end()) return std::nullopt;
+    const int parent = target.parents[at(k)];
+    const int source_parent = source.parents[at(found->second)];
+    const int expected = parent < 0 ? -1 : same.source_joint[at(parent)];
+    if (source_parent != expected) return std::nullopt;
+    same.source_joint.push_back(found->second);
+  }
+
+  std::vector<Vec3> from, to;
+  double product = 0;
+  double square = 0;
+  for (int k = 1; k < target.joint_count(); ++k) {
+    from.push_back(source.reference_local(same.source_joint[at(k)]).position);
+    to.push_back(target.reference_local(k).position);
+    product += from.back().dot(to.back());
+    square += from.back().squaredNorm();
+  }
+  if (square > 0) same.scale = product / square;
+  if (!(same.scale > 0) || !std::isfinite(same.scale)) return std::nullopt;
+  const double tolerance = kOffsetTolerance * same.scale * std::sqrt(square);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if ((to[i] - same.scale * from[i]).norm() > tolerance) return std::nullopt;
+  }
+  if (std::abs(same.scale - 1) < kScaleTolerance) same.scale = 1;
+  return same;
+}
+
+}  // namespace krok::retarget

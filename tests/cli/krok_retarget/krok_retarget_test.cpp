@@ -1,0 +1,248 @@
+// If these fail, krok-retarget writes another motion than its library makes, or its user is not
+// told which joint went where and what went wrong.
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+#include "core/file.h"
+#include "formats/anim/anim.h"
+#include "formats/model/model_format.h"
+#include "samples/generator/walk.h"
+#include "support/human_skeleton.h"
+#include "support/skeleton_text.h"
+#include "support/test_scenes.h"
+
+namespace krok {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+class KrokRetarget : public test::CliTest {
+ protected:
+  void SetUp() override {
+    samples::WalkOptions options;
+    options.steps = 2;
+    options.rate = 30;
+    walk_ = samples::make_walk(options)->clip;
+    write("walk.anim", walk_);
+  }
+
+  void write(const std::string& name, const Clip& clip) const {
+    auto file = OutputFile::create(path(name));
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE(anim::write(clip, {}, *file).ok());
+    ASSERT_TRUE(file->commit().ok());
+  }
+  void write(const std::string& name, const Model& model) const {
+    auto file = OutputFile::create(path(name));
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE(model::write(model, {}, *file).ok());
+    ASSERT_TRUE(file->commit().ok());
+  }
+
+  Clip read(const std::string& name) const {
+    const auto file = InputFile::open(path(name));
+    EXPECT_TRUE(file.ok()) << name;
+    auto clip = anim::read(file->bytes());
+    EXPECT_TRUE(clip.ok()) << name;
+    return std::move(*clip);
+  }
+
+  test::ToolRun retarget(std::vector<std::string> arguments) const {
+    test::ToolOptions options;
+    options.folder = folder_.string();
+    return test::run_tool("krok-retarget", std::move(arguments), options);
+  }
+
+  // The figure of the walk under names that tell nothing, with so many things on its belt that its
+  // shape does not tell either.
+  static Skeleton nameless(const Skeleton& from) {
+    Skeleton skeleton = from;
+    for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
+      skeleton.names[j] = "n" + std::to_string(j);
+    }
+    for (int i = 0; i < 9; ++i) skeleton.add("m" + std::to_string(i), 0, from.reference[0]);
+    return skeleton;
+  }
+
+  Clip walk_;
+};
+
+TEST_F(KrokRetarget, OntoItsOwnSkeletonAMotionComesBack) {
+  const auto run = retarget({"walk.anim", "--onto", "walk.anim", "-o", "out.anim"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("mapped by same skeleton, scale 1"));
+  const Clip before = read("walk.anim");
+  const Clip after = read("out.anim");
+  EXPECT_EQ(after.rate, before.rate);
+  ASSERT_EQ(after.positions.size(), before.positions.size());
+  for (std::size_t i = 0; i < after.positions.size(); ++i) {
+    ASSERT_EQ(after.positions[i], before.positions[i]);
+    ASSERT_EQ(after.orientations[i].coeffs(), before.orientations[i].coeffs());
+  }
+}
+
+TEST_F(KrokRetarget, OntoAModelItTellsWhatItDid) {
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  const auto run = retarget({"walk.anim", "--onto", "hero.model", "-o", "out.anim", "-v"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  for (const char* text : {"out.anim: ", "mapped by roles, scale 0.6", "feet moved by up to ",
+                           "left_upper_arm", "LeftForeArm"}) {
+    EXPECT_THAT(run.err, HasSubstr(text));
+  }
+  const Clip clip = read("out.anim");
+  EXPECT_EQ(clip.skeleton.names, test::human_skeleton().names);
+  EXPECT_EQ(clip.frame_count(), walk_.frame_count());
+  EXPECT_EQ(clip.provenance.tool, "krok-retarget");
+  ASSERT_EQ(clip.provenance.sources.size(), 2u);
+  EXPECT_EQ(clip.provenance.sources[1].name, "hero.model");
+}
+
+TEST_F(KrokRetarget, TheReportHoldsTheSame) {
+  Clip target;
+  target.skeleton = test::human_skeleton(2);
+  target.skeleton.names[1] = "Lumbar";
+  target.skeleton.add("Tail", 0, {});
+  write("target.anim", target);
+  const auto run = retarget({"walk.anim", "--onto", "target.anim", "-o", "out.anim", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json result = json::parse(run.out)["result"];
+  EXPECT_EQ(result["method"], "roles");
+  EXPECT_NEAR(result["scale"].get<double>(), 2 / 1.75, 0.02);
+  EXPECT_EQ(result["following"], json{"Tail"});
+  EXPECT_GE(result["feet"]["left"]["largest_correction"].get<double>(), 0);
+  bool found = false;
+  for (const json& joint : result["joints"]) {
+    if (joint["joint"] != "LeftHand") continue;
+    found = true;
+    EXPECT_EQ(joint["role"], "left_hand");
+    EXPECT_EQ(joint["from"], "LeftHand");
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST_F(KrokRetarget, FeetCanBeLeftFree) {
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  const auto run =
+      retarget({"walk.anim", "--onto", "hero.model", "--feet", "free", "-o", "out.anim", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(json::parse(run.out)["result"]["feet"]["left"].is_null());
+  EXPECT_EQ(
+      retarget({"walk.anim", "--onto", "hero.model", "--feet", "maybe", "-o", "x.anim"}).exit_code,
+      2);
+}
+
+TEST_F(KrokRetarget, AMapTellsWhatTheJointsAre) {
+  Clip target;
+  target.skeleton = nameless(walk_.skeleton);
+  write("target.anim", target);
+  const auto without = retarget({"walk.anim", "--onto", "target.anim", "-o", "out.anim"});
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_THAT(without.err, HasSubstr("the target lacks "));
+  EXPECT_THAT(without.err, HasSubstr("[retarget-roles]"));
+  EXPECT_FALSE(std::filesystem::exists(path("out.anim")));
+
+  const std::pair<const char*, const char*> roles[] = {{"Hips", "hips"},
+                                                       {"Head", "head"},
+                                                       {"LeftArm", "left_upper_arm"},
+                                                       {"LeftHand", "left_hand"},
+                                                       {"RightArm", "right_upper_arm"},
+                                                       {"RightHand", "right_hand"},
+                                                       {"LeftUpLeg", "left_upper_leg"},
+                                                       {"LeftFoot", "left_foot"},
+                                                       {"RightUpLeg", "right_upper_leg"},
+                                                       {"RightFoot", "right_foot"}};
+  json map;
+  for (const auto& [joint, role] : roles) {
+    map["joints"]["n" + std::to_string(walk_.skeleton.find(joint))] = role;
+  }
+  put("map.json", map.dump());
+  const auto run =
+      retarget({"walk.anim", "--onto", "target.anim", "--onto-map", "map.json", "-o", "out.anim"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("mapped by roles"));
+  const Clip clip = read("out.anim");
+  const auto hand = at(walk_.skeleton.find("LeftHand"));
+  EXPECT_LT((clip.frame_positions(9)[hand] - walk_.frame_positions(9)[hand]).norm(), 1e-4);
+
+  test::ToolOptions here;
+  here.folder = folder_.string();
+  const auto info =
+      test::run_tool("krok-info", {"target.anim", "--map", "map.json", "--json"}, here);
+  ASSERT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_TRUE(json::parse(info.out)["result"]["files"][0]["humanoid"].get<bool>());
+}
+
+TEST_F(KrokRetarget, AFaultyMapIsToldWithItsPlace) {
+  put("map.json", "{\"joints\": {\n  \"LeftHandd\": \"left_hand\"\n}}");
+  const auto run =
+      retarget({"walk.anim", "--map", "map.json", "--onto", "walk.anim", "-o", "out.anim"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("map.json:2:3: error: the skeleton has no joint \"LeftHandd\""));
+  EXPECT_THAT(run.err, HasSubstr("did you mean \"LeftHand\"?"));
+}
+
+TEST_F(KrokRetarget, WrongKindsOfFilesAreRefused) {
+  put("text.bvh", "HIERARCHY\n");
+  put("walk.cam", "KROKCAMR");
+  const auto target = retarget({"walk.anim", "--onto", "walk.cam", "-o", "out.anim"});
+  EXPECT_EQ(target.exit_code, 2);
+  EXPECT_THAT(target.err, HasSubstr("walk.cam: error: "));
+  EXPECT_THAT(target.err, HasSubstr("a Krok camera (.cam)"));
+  const auto name = retarget({"walk.anim", "--onto", "walk.anim", "-o", "out.model"});
+  EXPECT_EQ(name.exit_code, 2);
+  const auto none = retarget({"walk.anim", "--onto", "none.model", "-o", "out.anim"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("none.model: error: no such file"));
+  for (const auto& [option, value] :
+       {std::pair("--scale", "0"), std::pair("--scale", "1.5x"), std::pair("--reference-pose", "T"),
+        std::pair("--reference-pose", "99999")}) {
+    const auto run =
+        retarget({"walk.anim", "--onto", "walk.anim", option, value, "-o", "out.anim"});
+    EXPECT_EQ(run.exit_code, 2) << option << value;
+    EXPECT_THAT(run.err, HasSubstr("error: "));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("out.anim")));
+}
+
+TEST_F(KrokRetarget, ASecondRunGivesTheSameBytesWhateverTheThreads) {
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  ASSERT_EQ(retarget({"walk.anim", "--onto", "hero.model", "-j", "1", "-o", "a.anim"}).exit_code,
+            0);
+  ASSERT_EQ(retarget({"walk.anim", "--onto", "hero.model", "-j", "3", "-o", "b.anim"}).exit_code,
+            0);
+  EXPECT_EQ(get(path("a.anim")), get(path("b.anim")));
+}
+
+TEST_F(KrokRetarget, CapturesAreTakenAsTheyAre) {
+  const std::string capture = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  const auto run = retarget({capture, "--onto", "hero.model", "-o", "out.anim"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("mapped by roles"));
+  const auto onto = retarget({"walk.anim", "--onto", capture, "-o", "onto.anim"});
+  EXPECT_EQ(onto.exit_code, 0) << onto.err;
+  EXPECT_THAT(read("out.anim").provenance.conversions.front(), HasSubstr("unit: "));
+}
+
+TEST_F(KrokRetarget, ManyMotionsGoOntoOneFigure) {
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  write("second.anim", walk_);
+  const auto run =
+      retarget({"walk.anim", "second.anim", "--onto", "hero.model", "--out-dir", "out"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(path("out/walk.anim")));
+  EXPECT_TRUE(std::filesystem::exists(path("out/second.anim")));
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,186 @@
+// If these fail, feet of a retargeted walk slide, float or sink, or knees bend the wrong way.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "samples/generator/walk.h"
+#include "tests/unit/retarget/figures.h"
+
+namespace krok {
+namespace {
+
+using namespace test;
+
+samples::Walk walk_of(samples::WalkOptions options) {
+  options.steps = 6;
+  auto walk = samples::make_walk(options);
+  EXPECT_TRUE(walk.ok());
+  return std::move(*walk);
+}
+
+// A figure of other proportions: `thigh`, `shank`, `foot` and `width` times those of a human.
+Skeleton figure_of(double stature, double thigh, double shank, double foot, double width) {
+  Skeleton skeleton = human_skeleton(stature);
+  const auto place = [&](const std::string& name) -> Vec3& {
+    return skeleton.reference[at(skeleton.find(name))].position;
+  };
+  for (const std::string side : {"Left", "Right"}) {
+    const Vec3 hip = place(side + "UpLeg"), knee = place(side + "Leg"),
+               ankle = place(side + "Foot"), ball = place(side + "ToeBase"),
+               tip = place(side + "ToeBase_end");
+    place(side + "UpLeg").x() *= width;
+    place(side + "Leg") = place(side + "UpLeg") + thigh * (knee - hip);
+    place(side + "Foot") = place(side + "Leg") + shank * (ankle - knee);
+    place(side + "ToeBase") = place(side + "Foot") + Vec3(1, 1, foot).cwiseProduct(ball - ankle);
+    place(side + "ToeBase_end") =
+        place(side + "ToeBase") + Vec3(1, 1, foot).cwiseProduct(tip - ball);
+  }
+  return with_other_axes(skeleton, 11);
+}
+
+// How far a joint of the foot moves over the ground while it should stand there, the first and last
+// hundredth of a second of each contact apart.
+double slide_of(const Clip& clip, const std::string& joint,
+                const std::vector<samples::Contact>& contacts) {
+  const int j = clip.skeleton.find(joint);
+  double most = 0;
+  for (const samples::Contact& contact : contacts) {
+    Eigen::AlignedBox3d box;
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      const double time = f / clip.rate;
+      if (time < contact.from + 0.01 || time > contact.to - 0.01) continue;
+      Vec3 place = clip.frame_positions(f)[at(j)].cast<double>();
+      place.y() = 0;
+      box.extend(place);
+    }
+    if (!box.isEmpty()) most = std::max(most, box.diagonal().norm());
+  }
+  return most;
+}
+
+double lowest_of(const Clip& clip) {
+  double lowest = 1e9;
+  for (const Vec3f& position : clip.positions) lowest = std::min<double>(lowest, position.y());
+  return lowest;
+}
+
+// Largest angle in degrees by which a knee bends against its sense, the figure facing its toes.
+double backward_bend(const Clip& clip, const std::string& prefix = "rig:") {
+  double most = 0;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    for (const std::string side : {"Left", "Right"}) {
+      const Vec3 thigh = bone(clip, f, prefix + side + "UpLeg", prefix + side + "Leg");
+      const Vec3 shank = bone(clip, f, prefix + side + "Leg", prefix + side + "Foot");
+      const Vec3 left = bone(clip, f, prefix + "RightUpLeg", prefix + "LeftUpLeg");
+      const double bend = std::atan2(thigh.cross(shank).dot(left), thigh.dot(shank));
+      most = std::max(most, -bend / kRadiansPerDegree);
+    }
+  }
+  return most;
+}
+
+struct Proportions {
+  const char* name;
+  double stature, thigh, shank, foot, width;
+};
+constexpr Proportions kFigures[] = {{"tall", 1.95, 1, 1, 1, 1},
+                                    {"small_with_long_thighs", 1.3, 1.12, 0.95, 1, 1},
+                                    {"long_shanks_and_feet", 1.75, 0.92, 1.1, 1.35, 1},
+                                    {"broad_with_short_feet", 1.7, 1, 1, 0.7, 1.5},
+                                    {"narrow", 1.8, 1.05, 0.97, 1.1, 0.7}};
+
+class FeetOf : public testing::TestWithParam<Proportions> {};
+
+TEST_P(FeetOf, StandWhereTheSourceStands) {
+  const Proportions& p = GetParam();
+  const Skeleton target = figure_of(p.stature, p.thigh, p.shank, p.foot, p.width);
+  samples::WalkOptions turning;
+  turning.turn = 0.2;
+  samples::WalkOptions stairs;
+  stairs.rise = 0.12;
+  for (const samples::WalkOptions& options : {samples::WalkOptions(), turning, stairs}) {
+    const samples::Walk walk = walk_of(options);
+    const auto result = transfer(walk.clip, target);
+    ASSERT_TRUE(result.ok());
+    EXPECT_EQ(result->report.method, retarget::Method::roles);
+    for (const int side : {0, 1}) {
+      const std::string name = side == 0 ? "Left" : "Right";
+      const auto& contacts = walk.feet[at(side)];
+      // The ball stands while the tip of the toes does, the ankle while heel and toes do.
+      std::vector<samples::Contact> flat;
+      for (const samples::Contact& heel : contacts.heel) {
+        for (const samples::Contact& toe : contacts.toe) {
+          samples::Contact both = heel;
+          both.from = std::max(heel.from, toe.from);
+          both.to = std::min(heel.to, toe.to);
+          if (both.to > both.from) flat.push_back(both);
+        }
+      }
+      ASSERT_FALSE(flat.empty());
+      EXPECT_LT(slide_of(result->clip, "rig:" + name + "Foot", flat), 0.005);
+      // Over its tip the ball rolls in the source too.
+      const double rolls = slide_of(walk.clip, name + "ToeBase", contacts.toe);
+      EXPECT_LT(slide_of(result->clip, "rig:" + name + "ToeBase", contacts.toe),
+                result->report.scale * rolls + 0.005);
+    }
+    // No deeper than the source itself, whose toes bend over the floor.
+    const double scale = result->report.scale;
+    EXPECT_GT(lowest_of(result->clip), scale * std::min(0.0, lowest_of(walk.clip)) - 0.003);
+    EXPECT_LT(lowest_of(result->clip), 0.03);
+    EXPECT_LT(backward_bend(result->clip), std::max(1.0, backward_bend(walk.clip, "") + 1));
+    ASSERT_TRUE(result->report.left_foot && result->report.right_foot);
+    EXPECT_LT(result->report.left_foot->largest_miss, 0.02);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Figures, FeetOf, testing::ValuesIn(kFigures),
+                         [](const auto& test_case) { return std::string(test_case.param.name); });
+
+TEST(Feet, LeftFreeTheySlideWhichShowsThatTheTestCanFail) {
+  const samples::Walk walk = walk_of({});
+  const Skeleton target = figure_of(1.75, 0.92, 1.1, 1.35, 1);
+  const auto result = transfer(walk.clip, target, {.feet = retarget::Feet::free});
+  ASSERT_TRUE(result.ok());
+  EXPECT_FALSE(result->report.left_foot.has_value());
+  EXPECT_GT(slide_of(result->clip, "rig:LeftToeBase", walk.feet[0].toe),
+            slide_of(walk.clip, "LeftToeBase", walk.feet[0].toe) + 0.01);
+}
+
+TEST(Feet, TheMotionHasNoJumps) {
+  const samples::Walk walk = walk_of({});
+  const auto result = transfer(walk.clip, figure_of(1.75, 0.92, 1.1, 1.35, 1));
+  ASSERT_TRUE(result.ok());
+  // Accelerations of ankles and knees stay near those of the source.
+  const auto largest_jerk = [](const Clip& clip, const std::string& joint) {
+    const int j = clip.skeleton.find(joint);
+    double most = 0;
+    for (int f = 1; f + 1 < clip.frame_count(); ++f) {
+      const Vec3f second = clip.frame_positions(f - 1)[at(j)] - 2 * clip.frame_positions(f)[at(j)] +
+                           clip.frame_positions(f + 1)[at(j)];
+      most = std::max<double>(most, second.norm());
+    }
+    return most;
+  };
+  for (const std::string joint : {"LeftLeg", "LeftFoot", "RightLeg", "RightToeBase"}) {
+    EXPECT_LT(largest_jerk(result->clip, "rig:" + joint),
+              1.6 * largest_jerk(walk.clip, joint) + 0.002)
+        << joint;
+  }
+}
+
+TEST(Feet, AMeshThatReachesBelowTheJointsOfTheFeetStandsOnTheFloor) {
+  const samples::Walk walk = walk_of({});
+  Skeleton target = figure_of(1.75, 1, 1, 1, 1);
+  const double lowest = target.reference[at(target.find("rig:LeftToeBase_end"))].position.y();
+  retarget::Options options;
+  options.target_floor = lowest - 0.05;  // thick soles
+  const auto result = transfer(walk.clip, target, options);
+  ASSERT_TRUE(result.ok());
+  EXPECT_NEAR(result->report.floor, 0, 1e-9);
+  EXPECT_GT(lowest_of(result->clip), 0.035);
+  EXPECT_LT(lowest_of(result->clip), 0.06);
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,126 @@
+// If these fail, a motion that is brought onto the skeleton it was made for comes back changed.
+#include "retarget/same_skeleton.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/unit/retarget/figures.h"
+
+namespace krok {
+namespace {
+
+using namespace test;
+using retarget::Method;
+
+bool same_bits(const Clip& a, const Clip& b) {
+  return a.positions.size() == b.positions.size() &&
+         std::memcmp(a.positions.data(), b.positions.data(), a.positions.size() * sizeof(Vec3f)) ==
+             0 &&
+         std::memcmp(a.orientations.data(), b.orientations.data(),
+                     a.orientations.size() * sizeof(Quatf)) == 0;
+}
+
+TEST(SameSkeleton, OntoItselfAMotionIsUnchangedToTheBit) {
+  for (const Skeleton& skeleton : {human_skeleton(), with_turned_joints(human_skeleton()),
+                                   with_other_axes(human_skeleton(), 3)}) {
+    const Clip clip = swinging_clip(skeleton, 20, 30);
+    const auto result = transfer(clip, skeleton);
+    ASSERT_TRUE(result.ok());
+    EXPECT_EQ(result->report.method, Method::same_skeleton);
+    EXPECT_EQ(result->report.scale, 1.0);
+    EXPECT_TRUE(same_bits(result->clip, clip));
+    EXPECT_EQ(result->clip.rate, clip.rate);
+  }
+}
+
+TEST(SameSkeleton, BonesThatStretchInTheMotionKeepStretching) {
+  Clip clip = swinging_clip(human_skeleton(), 10, 30);
+  for (Vec3f& position : clip.positions) position.x() *= 1.3f;
+  const auto result = transfer(clip, human_skeleton());
+  ASSERT_TRUE(result.ok());
+  EXPECT_TRUE(same_bits(result->clip, clip));
+}
+
+TEST(SameSkeleton, OntoAScaledCopyAMotionIsScaled) {
+  const Skeleton skeleton = with_turned_joints(human_skeleton());
+  const Clip clip = swinging_clip(skeleton, 20, 30);
+  for (const double scale : {0.01, 0.7, 1.9, 100.0}) {
+    const auto result = transfer(clip, scaled(skeleton, scale));
+    ASSERT_TRUE(result.ok());
+    EXPECT_EQ(result->report.method, Method::same_skeleton);
+    EXPECT_NEAR(result->report.scale / scale, 1, 1e-9);
+    EXPECT_LT(largest_distance(result->clip, clip, scale), 1e-5 * scale);
+    EXPECT_EQ(result->clip.orientations[7].coeffs(), clip.orientations[7].coeffs());
+  }
+}
+
+TEST(SameSkeleton, AnotherReferencePoseOfTheSameBonesChangesNothing) {
+  const Skeleton skeleton = with_turned_joints(human_skeleton());
+  const Clip clip = swinging_clip(skeleton, 10, 30);
+  Skeleton other = posed(skeleton, "LeftArm", from_rotation_vector(Vec3(0.2, 0.3, -1)));
+  other = posed(other, "RightUpLeg", from_rotation_vector(Vec3(0.7, 0, 0.3)));
+  other = posed(other, "Hips", from_rotation_vector(Vec3(0.1, 2, 0)));
+  const auto result = transfer(clip, other);
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->report.method, Method::same_skeleton);
+  EXPECT_TRUE(same_bits(result->clip, clip));
+}
+
+TEST(SameSkeleton, TheOrderOfJointsMayDiffer) {
+  const Skeleton skeleton = human_skeleton();
+  const Clip clip = swinging_clip(skeleton, 5, 30);
+  Skeleton other;
+  // Legs before the trunk.
+  std::vector<int> order = {0};
+  for (int j = 1; j < skeleton.joint_count(); ++j) {
+    if (skeleton.names[at(j)].find("Leg") != std::string::npos ||
+        skeleton.names[at(j)].find("Foot") != std::string::npos ||
+        skeleton.names[at(j)].find("Toe") != std::string::npos) {
+      order.push_back(j);
+    }
+  }
+  for (int j = 1; j < skeleton.joint_count(); ++j) {
+    if (std::find(order.begin(), order.end(), j) == order.end()) order.push_back(j);
+  }
+  for (const int j : order) {
+    const int parent = skeleton.parents[at(j)];
+    other.add(skeleton.names[at(j)], parent < 0 ? -1 : other.find(skeleton.names[at(parent)]),
+              skeleton.reference[at(j)], skeleton.end_sites[at(j)] != 0);
+  }
+  const auto result = transfer(clip, other);
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->report.method, Method::same_skeleton);
+  const int to = other.find("LeftHand");
+  const int from = skeleton.find("LeftHand");
+  EXPECT_EQ(result->clip.frame_positions(3)[at(to)], clip.frame_positions(3)[at(from)]);
+}
+
+TEST(SameSkeleton, OneLongerBoneMakesAnotherSkeleton) {
+  const Skeleton skeleton = human_skeleton();
+  EXPECT_TRUE(retarget::same_skeleton(skeleton, skeleton).has_value());
+  Skeleton longer = skeleton;
+  longer.reference[at(longer.find("LeftHand_end"))].position.x() += 0.01;
+  EXPECT_FALSE(retarget::same_skeleton(skeleton, longer).has_value());
+  Skeleton renamed = skeleton;
+  renamed.names.back() += "x";
+  EXPECT_FALSE(retarget::same_skeleton(skeleton, renamed).has_value());
+}
+
+TEST(SameSkeleton, SkeletonsWithoutLengthsAreTheSameAtScaleOne) {
+  Skeleton point;
+  point.add("a", -1, {});
+  point.add("b", 0, {});
+  const auto same = retarget::same_skeleton(point, point);
+  ASSERT_TRUE(same.has_value());
+  EXPECT_EQ(same->scale, 1.0);
+}
+
+TEST(SameSkeleton, AMotionWithoutFramesGivesOne) {
+  const auto result = transfer(resting(human_skeleton()), human_skeleton());
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->clip.frame_count(), 0);
+}
+
+}  // namespace
+}  // namespace krok

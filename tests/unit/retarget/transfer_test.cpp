@@ -1,0 +1,396 @@
+// If these fail, limbs of a retargeted motion point elsewhere than the source's, or joints that the
+// source knows nothing of move by themselves.
+#include "retarget/retarget.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "support/skeleton_text.h"
+#include "tests/unit/retarget/figures.h"
+
+namespace krok {
+namespace {
+
+using namespace test;
+using retarget::Method;
+
+constexpr std::pair<const char*, const char*> kLimbs[] = {
+    {"LeftArm", "LeftForeArm"},    {"LeftForeArm", "LeftHand"}, {"RightArm", "RightForeArm"},
+    {"RightForeArm", "RightHand"}, {"LeftUpLeg", "LeftLeg"},    {"LeftLeg", "LeftFoot"},
+    {"RightUpLeg", "RightLeg"},    {"RightLeg", "RightFoot"}};
+
+// The largest angle in degrees between limbs of two motions of skeletons with the same names but
+// for a prefix of the second's.
+double largest_limb_angle(const Clip& a, const Clip& b, const std::string& prefix = "rig:") {
+  double largest = 0;
+  for (int f = 0; f < a.frame_count(); ++f) {
+    for (const auto& [from, to] : kLimbs) {
+      largest = std::max(
+          largest, degrees_between(bone(a, f, from, to), bone(b, f, prefix + from, prefix + to)));
+    }
+  }
+  return largest;
+}
+
+TEST(Retarget, TheAxesOfJointsDoNotMatter) {
+  const Clip clip = lively_clip(with_turned_joints(human_skeleton()));
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const auto result = transfer(clip, with_other_axes(clip.skeleton, seed));
+    ASSERT_TRUE(result.ok());
+    EXPECT_EQ(result->report.method, Method::roles);
+    EXPECT_NEAR(result->report.scale, 1, 1e-9);
+    EXPECT_LT(largest_distance(result->clip, clip), 2e-6);
+  }
+}
+
+TEST(Retarget, AScaledFigureMovesScaled) {
+  const Clip clip = lively_clip(human_skeleton());
+  const auto result = transfer(clip, scaled(with_other_axes(clip.skeleton, 5), 0.5));
+  ASSERT_TRUE(result.ok());
+  EXPECT_NEAR(result->report.scale, 0.5, 1e-9);
+  EXPECT_LT(largest_distance(result->clip, clip, 0.5), 2e-6);
+}
+
+// A T-pose, an A-pose, arms forward, arms down, a sitting pose, turned round: one motion.
+TEST(Retarget, TheReferencePoseDoesNotMatter) {
+  const Skeleton skeleton = human_skeleton();
+  const Clip clip = lively_clip(skeleton);
+  const Quat a_pose = from_rotation_vector(Vec3(0, 0, -0.8));
+  const Quat down = from_rotation_vector(Vec3(0, 0, -1.5));
+  const Quat forward = from_rotation_vector(Vec3(0, -kPi / 2, 0));
+  const auto arms = [&](const Quat& left) {
+    const Quat right(left.w(), left.x(), -left.y(), -left.z());  // mirrored in x
+    return posed(posed(skeleton, "LeftArm", left), "RightArm", right);
+  };
+  Skeleton sitting = posed(skeleton, "LeftUpLeg", from_rotation_vector(Vec3(-1.2, 0, 0)));
+  sitting = posed(sitting, "LeftLeg", from_rotation_vector(Vec3(1.2, 0, 0)));
+  const Skeleton variants[] = {
+      arms(a_pose),
+      arms(down),
+      arms(forward),
+      posed(arms(a_pose), "LeftForeArm", from_rotation_vector(Vec3(0, -0.9, 0))),
+      posed(skeleton, "Hips", from_rotation_vector(Vec3(0, 2.5, 0))),
+      sitting};
+  for (std::size_t i = 0; i < std::size(variants); ++i) {
+    const auto result = transfer(clip, with_other_axes(variants[i], 8));
+    ASSERT_TRUE(result.ok());
+    EXPECT_LT(largest_distance(result->clip, clip), 1e-5) << "variant " << i;
+  }
+}
+
+// Random reference poses of all limbs, on both sides of the transfer.
+TEST(Retarget, RandomReferencePosesGiveTheSameMotion) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  const auto turn = [&](double size) {
+    return from_rotation_vector(size * Vec3(normal(random), normal(random), normal(random)));
+  };
+  const Clip clip = lively_clip(human_skeleton(), 12);
+  for (int round = 0; round < 10; ++round) {
+    Skeleton target = human_skeleton();
+    for (const char* joint : {"LeftArm", "LeftForeArm", "RightArm", "RightForeArm"}) {
+      target = posed(target, joint, turn(0.4));
+    }
+    for (const char* joint : {"LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg"}) {
+      target = posed(target, joint, turn(0.15));
+    }
+    const Quat whole = from_rotation_vector(Vec3(0, 3 * normal(random), 0));
+    target = with_other_axes(posed(target, "Hips", whole), static_cast<unsigned>(round));
+    const auto result = transfer(clip, target, {.feet = retarget::Feet::free});
+    ASSERT_TRUE(result.ok());
+    EXPECT_LT(largest_limb_angle(clip, result->clip), 0.01) << "round " << round;
+  }
+}
+
+TEST(Retarget, LimbsOfOtherLengthsPointTheSameWay) {
+  const Clip clip = lively_clip(human_skeleton());
+  Skeleton target = with_other_axes(human_skeleton(1.6), 4);
+  // Longer forearms and thighs, broader hips.
+  const auto move = [&](const char* joint, const Vec3& by) {
+    const int root = target.find(joint);
+    std::vector<char> inside(target.names.size(), 0);
+    for (int j = root; j < target.joint_count(); ++j) {
+      const int parent = target.parents[at(j)];
+      inside[at(j)] = j == root || inside[at(parent)] != 0 ? 1 : 0;
+      if (inside[at(j)] != 0) target.reference[at(j)].position += by;
+    }
+  };
+  move("rig:LeftHand", Vec3(0.05, 0, 0));
+  move("rig:RightHand", Vec3(-0.05, 0, 0));
+  move("rig:LeftUpLeg", Vec3(0.02, 0, 0));
+  move("rig:RightUpLeg", Vec3(-0.02, 0, 0));
+  move("rig:LeftLeg", Vec3(0, -0.03, 0));
+  move("rig:RightLeg", Vec3(0, -0.03, 0));
+  const auto free = transfer(clip, target, {.feet = retarget::Feet::free});
+  ASSERT_TRUE(free.ok());
+  EXPECT_LT(largest_limb_angle(clip, free->clip), 0.01);
+  const auto kept = transfer(clip, target);
+  ASSERT_TRUE(kept.ok());
+  EXPECT_LT(largest_limb_angle(clip, kept->clip), 5);
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    for (const char* end : {"rig:LeftHand", "rig:LeftHand_end", "rig:LeftLeg"}) {
+      const int joint = target.find(end);
+      const int parent = target.parents[at(joint)];
+      const auto positions = kept->clip.frame_positions(f);
+      EXPECT_NEAR((positions[at(joint)] - positions[at(parent)]).norm(),
+                  target.reference_local(joint).position.norm(), 1e-5);
+    }
+  }
+}
+
+// Turns since the reference pose, as the world sees them.
+Quat turn_of(const Clip& clip, int frame, const std::string& joint) {
+  const int j = clip.skeleton.find(joint);
+  return clip.frame_orientations(frame)[at(j)].cast<double>().normalized() *
+         clip.skeleton.reference[at(j)].orientation.conjugate();
+}
+
+TEST(Retarget, SpinesOfOtherNumbersOfJointsBendAlongTheirLength) {
+  const Clip clip = lively_clip(human_skeleton());
+  for (const int joints : {0, 1, 2, 5}) {
+    // Hips, `joints` of spine, chest, and the rest as before.
+    Skeleton target;
+    const Skeleton human = human_skeleton();
+    std::map<std::string, int> made;
+    for (int j = 0; j < human.joint_count(); ++j) {
+      const std::string& name = human.names[at(j)];
+      if (name == "Spine" || name == "Spine1") continue;
+      int parent = human.parents[at(j)] < 0 ? -1 : made[human.names[at(human.parents[at(j)])]];
+      if (name == "Spine2") {
+        for (int i = 0; i < joints; ++i) {
+          const double place = (i + 1.0) / (joints + 1);
+          Transform between = human.reference[0];
+          between.position += place * (human.reference[at(j)].position - between.position);
+          parent =
+              target.add("Back" + std::to_string(i), parent == 0 || i > 0 ? parent : 0, between);
+        }
+      }
+      made[name] = target.add(name == "Spine2" ? "Chest" : name, parent, human.reference[at(j)],
+                              human.end_sites[at(j)] != 0);
+    }
+    const auto result = transfer(clip, target);
+    ASSERT_TRUE(result.ok());
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      EXPECT_LT(angle_between(turn_of(clip, f, "Spine2"), turn_of(result->clip, f, "Chest")), 1e-5);
+      EXPECT_LT(angle_between(turn_of(clip, f, "Hips"), turn_of(result->clip, f, "Hips")), 1e-5);
+      EXPECT_LT(angle_between(turn_of(clip, f, "Head"), turn_of(result->clip, f, "Head")), 1e-5);
+      // Each joint of the back bends a part of the whole, none more than all of it.
+      double whole = angle_between(turn_of(clip, f, "Hips"), turn_of(clip, f, "Spine")) +
+                     angle_between(turn_of(clip, f, "Spine"), turn_of(clip, f, "Spine1")) +
+                     angle_between(turn_of(clip, f, "Spine1"), turn_of(clip, f, "Spine2"));
+      std::string before = "Hips";
+      for (int i = 0; i < joints; ++i) {
+        const std::string name = "Back" + std::to_string(i);
+        EXPECT_LE(angle_between(turn_of(result->clip, f, before), turn_of(result->clip, f, name)),
+                  whole + 1e-5);
+        before = name;
+      }
+    }
+  }
+}
+
+// A figure without a joint: what hung on it hangs on its parent.
+Skeleton without(const Skeleton& from, const std::string& name) {
+  Skeleton skeleton;
+  std::vector<int> index(from.names.size(), -1);
+  for (int j = 0; j < from.joint_count(); ++j) {
+    int parent = from.parents[at(j)];
+    if (from.names[at(j)] == name) {
+      index[at(j)] = index[at(parent)];
+      continue;
+    }
+    index[at(j)] = skeleton.add(from.names[at(j)], parent < 0 ? -1 : index[at(parent)],
+                                from.reference[at(j)], from.end_sites[at(j)] != 0);
+  }
+  return skeleton;
+}
+
+TEST(Retarget, ACollarBoneMayBeMissingOnEitherSide) {
+  const Clip clip = lively_clip(human_skeleton());
+  const Skeleton one = without(human_skeleton(), "LeftShoulder");
+  const auto onto = transfer(clip, one, {.feet = retarget::Feet::free});
+  ASSERT_TRUE(onto.ok());
+  EXPECT_LT(largest_limb_angle(clip, onto->clip, ""), 0.01);
+  const Clip short_clip = lively_clip(one);
+  const auto from = transfer(short_clip, human_skeleton(), {.feet = retarget::Feet::free});
+  ASSERT_TRUE(from.ok());
+  EXPECT_LT(largest_limb_angle(short_clip, from->clip, ""), 0.01);
+  // The collar that has no partner rests on the chest.
+  EXPECT_LT(angle_between(turn_of(from->clip, 9, "LeftShoulder"), turn_of(from->clip, 9, "Spine2")),
+            1e-5);
+}
+
+TEST(Retarget, NeckToesAndLowerArmMayBeMissing) {
+  const Clip clip = lively_clip(human_skeleton());
+  for (const char* name : {"Neck", "LeftToeBase", "RightForeArm", "Spine2"}) {
+    const Skeleton fewer = without(human_skeleton(), name);
+    EXPECT_TRUE(transfer(clip, fewer).ok()) << name;
+    EXPECT_TRUE(transfer(lively_clip(fewer), human_skeleton()).ok()) << name;
+  }
+}
+
+TEST(Retarget, ExtraJointsKeepTheirPlaceOnTheirParents) {
+  const Clip clip = lively_clip(human_skeleton());
+  Skeleton target = human_skeleton();
+  target.names[0] = "Pelvis";
+  Transform tail;
+  tail.position = Vec3(0, 0.9, -0.3);
+  tail.orientation = from_rotation_vector(Vec3(0.4, 0.1, 0));
+  target.add("Tail", 0, tail);
+  Transform twist = target.reference[at(target.find("LeftForeArm"))];
+  twist.position.x() += 0.1;
+  target.add("LeftForeArmTwist", target.find("LeftForeArm"), twist);
+  const auto result = transfer(clip, target);
+  ASSERT_TRUE(result.ok());
+  std::vector<Transform> world(target.names.size()), local(target.names.size());
+  for (const int f : {0, 13, 39}) {
+    result->clip.get_pose(f, world);
+    world_to_local(target.parents, world, local);
+    for (const char* name : {"Tail", "LeftForeArmTwist", "Head_end", "LeftHand_end"}) {
+      const int joint = target.find(name);
+      const Transform rest = target.reference_local(joint);
+      EXPECT_LT((local[at(joint)].position - rest.position).norm(), 1e-5) << name;
+      EXPECT_LT(angle_between(local[at(joint)].orientation, rest.orientation), 1e-5) << name;
+    }
+  }
+  EXPECT_EQ(result->report.following_target,
+            (std::vector<int>{target.find("Tail"), target.find("LeftForeArmTwist")}));
+}
+
+TEST(Retarget, ARootAboveTheHipsStaysAndOneAtTheirPlaceGoesAlong) {
+  const Clip clip = lively_clip(human_skeleton());
+  const Skeleton human = human_skeleton();
+  for (const double height : {0.0, 0.55 * 1.75}) {
+    Skeleton target;
+    Transform root;
+    root.position.y() = height;
+    target.add("Root", -1, root);
+    for (int j = 0; j < human.joint_count(); ++j) {
+      target.add(human.names[at(j)], human.parents[at(j)] + 1, human.reference[at(j)],
+                 human.end_sites[at(j)] != 0);
+    }
+    const auto result = transfer(clip, target);
+    ASSERT_TRUE(result.ok());
+    double most = 0;
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      const auto positions = result->clip.frame_positions(f);
+      for (int j = 0; j < human.joint_count(); ++j) {
+        most =
+            std::max<double>(most, (positions[at(j + 1)] - clip.frame_positions(f)[at(j)]).norm());
+      }
+      const double away = (positions[0] - positions[1]).norm();
+      if (height > 0)
+        EXPECT_LT(away, 1e-5);
+      else
+        EXPECT_LT(positions[0].norm(), 1e-6);
+    }
+    EXPECT_LT(most, 1e-5);
+  }
+}
+
+TEST(Retarget, SkeletonsThatAreNoHumansAreMappedByNames) {
+  const Skeleton dog =
+      skeleton_from_text("body .chest ..head .tail1 ..tail2 .leg_a1 ..leg_a2 .leg_b1 ..leg_b2");
+  Skeleton from = dog;
+  for (int j = 0; j < dog.joint_count(); ++j) {
+    from.reference[at(j)].position = Vec3(std::sin(j), std::cos(2 * j), j);
+  }
+  const Clip clip = swinging_clip(from, 10, 30);
+  Skeleton to = scaled(from, 2);
+  for (int j = 0; j < to.joint_count(); ++j) {
+    to.reference[at(j)].orientation = from_rotation_vector(Vec3(0.3 * j, 1, -0.2 * j));
+  }
+  to.add("ear", to.find("head"), to.reference[at(to.find("head"))]);
+  const auto result = transfer(clip, to);
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->report.method, Method::names);
+  EXPECT_NEAR(result->report.scale, 2, 1e-9);
+  for (int f = 0; f < 10; ++f) {
+    for (int j = 0; j < dog.joint_count(); ++j) {
+      EXPECT_LT(
+          (result->clip.frame_positions(f)[at(j)] - 2 * clip.frame_positions(f)[at(j)]).norm(),
+          1e-4);
+    }
+  }
+}
+
+TEST(Retarget, WhatIsMissingIsSaid) {
+  const Skeleton snake = skeleton_from_text("a .b ..c ...d");
+  const auto result = transfer(lively_clip(human_skeleton(), 2), snake);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, "retarget-roles");
+  EXPECT_NE(result.error().message.find("the target lacks every part of a human body"),
+            std::string::npos)
+      << result.error().message;
+  const auto empty = transfer(lively_clip(human_skeleton(), 2), Skeleton());
+  ASSERT_FALSE(empty.ok());
+  EXPECT_EQ(empty.error().code, "retarget-empty");
+  const auto scale = transfer(lively_clip(human_skeleton(), 2), human_skeleton(), {.scale = -1.0});
+  ASSERT_FALSE(scale.ok());
+  EXPECT_EQ(scale.error().code, "retarget-scale");
+  const auto frame =
+      transfer(lively_clip(human_skeleton(), 2), human_skeleton(), {.source_frame = 2});
+  ASSERT_FALSE(frame.ok());
+  EXPECT_EQ(frame.error().code, "retarget-frame");
+}
+
+TEST(Retarget, BonesWithoutLengthAreNoTrouble) {
+  Skeleton flat = human_skeleton();
+  flat.names[0] = "Pelvis";
+  for (const char* name : {"LeftHand_end", "Neck", "LeftShoulder", "RightToeBase", "LeftLeg"}) {
+    const int joint = flat.find(name);
+    flat.reference[at(joint)] = flat.reference[at(flat.parents[at(joint)])];
+  }
+  const Clip clip = lively_clip(human_skeleton(), 5);
+  for (const auto& result :
+       {transfer(clip, flat), transfer(lively_clip(flat, 5), human_skeleton())}) {
+    ASSERT_TRUE(result.ok());
+    EXPECT_TRUE(check(result->clip).ok());
+  }
+  Skeleton point = human_skeleton();
+  point.names[0] = "Pelvis";
+  for (Transform& joint : point.reference) joint = {};
+  EXPECT_FALSE(transfer(clip, point).ok());
+}
+
+TEST(Retarget, OneFrameOrNoneIsNoTrouble) {
+  const Skeleton target = with_other_axes(human_skeleton(), 2);
+  const auto one = transfer(lively_clip(human_skeleton(), 1), target);
+  ASSERT_TRUE(one.ok());
+  EXPECT_EQ(one->clip.frame_count(), 1);
+  const auto none = transfer(resting(human_skeleton()), target);
+  ASSERT_TRUE(none.ok());
+  EXPECT_EQ(none->clip.frame_count(), 0);
+}
+
+TEST(Retarget, ThreadsDoNotChangeTheResult) {
+  const Clip clip = lively_clip(human_skeleton(), 200);
+  const Skeleton target = with_other_axes(human_skeleton(1.9), 2);
+  const auto one = transfer(clip, target, {.jobs = 1});
+  const auto four = transfer(clip, target, {.jobs = 4});
+  ASSERT_TRUE(one.ok() && four.ok());
+  EXPECT_EQ(std::memcmp(one->clip.positions.data(), four->clip.positions.data(),
+                        one->clip.positions.size() * sizeof(Vec3f)),
+            0);
+}
+
+// Bones that all lie along one axis, as some exporters have them: the reference pose is no stance,
+// and a frame takes its place.
+TEST(Retarget, AReferencePoseThatDoesNotStandIsReplacedByAFrame) {
+  const Clip clip = lively_clip(human_skeleton());
+  Skeleton heap = human_skeleton();
+  for (const char* name : {"LeftUpLeg", "RightUpLeg"}) {
+    heap = posed(heap, name, from_rotation_vector(Vec3(3, 0, 0)));
+  }
+  Clip same_motion = clip;
+  same_motion.skeleton = heap;
+  const auto result =
+      transfer(same_motion, with_other_axes(human_skeleton(), 6), {.feet = retarget::Feet::free});
+  ASSERT_TRUE(result.ok());
+  EXPECT_TRUE(result->report.source_frame.has_value());
+  EXPECT_LT(largest_limb_angle(clip, result->clip), 0.01);
+}
+
+}  // namespace
+}  // namespace krok

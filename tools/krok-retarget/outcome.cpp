@@ -1,0 +1,163 @@
+#include "tools/krok-retarget/outcome.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/numbers.h"
+
+namespace krok::retarget_tool {
+
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+std::string method_name(retarget::Method method) {
+  switch (method) {
+    case retarget::Method::same_skeleton:
+      return "same skeleton";
+    case retarget::Method::roles:
+      return "roles";
+    case retarget::Method::names:
+      break;
+  }
+  return "names";
+}
+
+std::string label_of(const RoleMap& roles, int joint) {
+  const std::string label = role_label(roles, joint);
+  return label == "none" ? "-" : label;
+}
+
+std::string millimetres(double metres) {
+  return readable(metres * 1000, 3) + " mm";
+}
+
+std::string names_of(const Skeleton& skeleton, const std::vector<int>& joints) {
+  std::string text;
+  for (const int joint : joints) {
+    text += (text.empty() ? "" : ", ") + skeleton.names[at(joint)];
+  }
+  return text;
+}
+
+// The source's joints that had a role and lent nothing: what people may miss.
+std::vector<int> with_a_role(const std::vector<int>& joints, const RoleMap& roles) {
+  std::vector<int> found;
+  for (const int joint : joints) {
+    const Role role = roles.roles[at(joint)];
+    if (role != Role::none && role != Role::helper && role != Role::root) found.push_back(joint);
+  }
+  return found;
+}
+
+std::string source_text(const Outcome& outcome, const retarget::MappedJoint& joint) {
+  const std::string& first = outcome.source.names[at(joint.source)];
+  if (joint.second_source < 0) return first;
+  return fmt::format("{} + {} ({} %)", first, outcome.source.names[at(joint.second_source)],
+                     readable(100 * joint.share, 2));
+}
+
+Json foot_json(const std::optional<retarget::FootReport>& foot) {
+  if (!foot) return {};
+  const auto frame = [](int number) { return number < 0 ? Json() : Json(number); };
+  return {{"largest_correction", foot->largest_correction},
+          {"largest_correction_frame", frame(foot->largest_correction_frame)},
+          {"largest_miss", foot->largest_miss},
+          {"largest_miss_frame", frame(foot->largest_miss_frame)}};
+}
+
+}  // namespace
+
+std::string summary(const Outcome& outcome) {
+  const retarget::Report& report = outcome.report;
+  std::string text =
+      fmt::format("{} of {} joints mapped by {}, scale {}", report.mapped.size(),
+                  std::count(outcome.target.end_sites.begin(), outcome.target.end_sites.end(), 0),
+                  method_name(report.method), readable(report.scale, 4));
+  const auto& left = report.left_foot;
+  const auto& right = report.right_foot;
+  if (left || right) {
+    const double left_most = left ? left->largest_correction : 0;
+    const double right_most = right ? right->largest_correction : 0;
+    text += fmt::format(", feet moved by up to {}", millimetres(std::max(left_most, right_most)));
+    const double miss = std::max(left ? left->largest_miss : 0, right ? right->largest_miss : 0);
+    if (report.largest_drop > 0.001) {
+      text += fmt::format(", hips lowered by up to {}", millimetres(report.largest_drop));
+    }
+    if (miss > 0.005) text += fmt::format(" (legs too short for it by {})", millimetres(miss));
+  }
+  return text;
+}
+
+std::string table(const Outcome& outcome) {
+  const retarget::Report& report = outcome.report;
+  std::size_t role_width = 4, target_width = 6;
+  for (const retarget::MappedJoint& joint : report.mapped) {
+    role_width = std::max(role_width, label_of(outcome.target_roles, joint.target).size());
+    target_width = std::max(target_width, outcome.target.names[at(joint.target)].size());
+  }
+  std::string text =
+      fmt::format("  {:<{}}  {:<{}}  from\n", "role", role_width, "target", target_width);
+  for (const retarget::MappedJoint& joint : report.mapped) {
+    text += fmt::format("  {:<{}}  {:<{}}  {}", label_of(outcome.target_roles, joint.target),
+                        role_width, outcome.target.names[at(joint.target)], target_width,
+                        source_text(outcome, joint));
+    if (joint.alignment > 0.5 * kRadiansPerDegree) {
+      text += fmt::format(", reference pose turned {} deg",
+                          readable(joint.alignment / kRadiansPerDegree, 2));
+    }
+    text += "\n";
+  }
+  if (!report.following_target.empty()) {
+    text += fmt::format("  follow their parents: {}\n",
+                        names_of(outcome.target, report.following_target));
+  }
+  if (!report.unused_source.empty()) {
+    text += fmt::format("  not used of the input: {}\n",
+                        names_of(outcome.source, report.unused_source));
+  }
+  return text;
+}
+
+Json to_json(const Outcome& outcome) {
+  const retarget::Report& report = outcome.report;
+  Json json;
+  json["method"] = method_name(report.method);
+  json["scale"] = report.scale;
+  json["floor"] = report.floor;
+  json["reference_frame"] = report.source_frame ? Json(*report.source_frame) : Json();
+  json["target_reference_frame"] = report.target_frame ? Json(*report.target_frame) : Json();
+  json["joints"] = Json::array();
+  for (const retarget::MappedJoint& joint : report.mapped) {
+    Json entry;
+    entry["joint"] = outcome.target.names[at(joint.target)];
+    const std::string label = role_label(outcome.target_roles, joint.target);
+    entry["role"] = label == "none" ? Json() : Json(label);
+    entry["from"] = outcome.source.names[at(joint.source)];
+    if (joint.second_source >= 0) {
+      entry["and_from"] = outcome.source.names[at(joint.second_source)];
+      entry["share"] = joint.share;
+    }
+    entry["reference_turned"] = joint.alignment;
+    json["joints"].push_back(std::move(entry));
+  }
+  const auto names = [](const Skeleton& skeleton, const std::vector<int>& joints) {
+    Json list = Json::array();
+    for (const int joint : joints) list.push_back(skeleton.names[at(joint)]);
+    return list;
+  };
+  json["following"] = names(outcome.target, report.following_target);
+  json["not_used"] = names(outcome.source, report.unused_source);
+  json["not_used_with_role"] =
+      names(outcome.source, with_a_role(report.unused_source, outcome.source_roles));
+  json["fingers_at_rest"] = {{"left", report.left_fingers_at_rest},
+                             {"right", report.right_fingers_at_rest}};
+  json["largest_drop_of_hips"] = report.largest_drop;
+  json["feet"] = {{"left", foot_json(report.left_foot)}, {"right", foot_json(report.right_foot)}};
+  return json;
+}
+
+}  // namespace krok::retarget_tool

@@ -1,0 +1,219 @@
+#include "tools/krok-retarget/retarget_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/numbers.h"
+#include "formats/anim/anim.h"
+#include "formats/model/model_format.h"
+#include "formats/registry/registry.h"
+#include "formats/role_map/role_map.h"
+#include "tools/common/motion_input.h"
+#include "tools/common/one_of.h"
+#include "tools/common/output_kind.h"
+#include "tools/krok-retarget/outcome.h"
+
+namespace krok::retarget_tool {
+
+namespace {
+
+// What is moved: a skeleton, and the floor that its mesh stands on if it has one.
+struct Target {
+  Clip clip;  // without frames if it is a model
+  std::optional<double> floor;
+};
+
+Result<Target> read_target(const std::string& path, ToolContext& context) {
+  const auto file = context.open_input(path);
+  if (!file) return file.error();
+  const registry::Kind kind = registry::identify(path, file->bytes());
+  Target target;
+  if (kind == registry::Kind::model) {
+    auto model = model::read(file->bytes());
+    if (!model) return std::move(model).error().in_file(path);
+    for (const Vec3f& position : model->positions) {
+      const double height = position.y();
+      target.floor = std::min(target.floor.value_or(height), height);
+    }
+    target.clip.skeleton = std::move(model->skeleton);
+    return target;
+  }
+  auto clip = read_motion(*file, context);
+  if (!clip) return clip.error();
+  target.clip = std::move(*clip);
+  return target;
+}
+
+Result<RoleMap> roles_of(const Skeleton& skeleton, const std::string& map_path,
+                         ToolContext& context) {
+  if (map_path.empty()) return find_roles(skeleton);
+  const auto file = context.open_input(map_path);
+  if (!file) return file.error();
+  return role_map::read(file->text(), map_path, skeleton);
+}
+
+Result<std::optional<int>> parse_frame(const char* option, const std::string& text) {
+  if (text == "auto") return std::optional<int>();
+  const auto frame = parse_integer(text);
+  if (!frame || *frame < 0 || *frame > 2'000'000'000) {
+    return Error("usage", fmt::format("{} {} is neither auto nor a frame number", option, text),
+                 "frames count from 0");
+  }
+  return std::optional<int>(static_cast<int>(*frame));
+}
+
+Result<retarget::Options> parse(const Options& options) {
+  retarget::Options parsed;
+  parsed.feet = options.feet;
+  if (!options.scale.empty()) {
+    const auto scale = parse_finite(options.scale);
+    if (!scale || !(*scale > 0)) {
+      return Error("usage", fmt::format("--scale {} is not a number over 0", options.scale));
+    }
+    parsed.scale = *scale;
+  }
+  const auto source_frame = parse_frame("--reference-pose", options.reference_pose);
+  if (!source_frame) return source_frame.error();
+  const auto target_frame = parse_frame("--onto-reference-pose", options.onto_reference_pose);
+  if (!target_frame) return target_frame.error();
+  parsed.source_frame = *source_frame;
+  parsed.target_frame = *target_frame;
+  return parsed;
+}
+
+// A mesh far above or below the feet stands on no floor of theirs.
+std::optional<double> believable_floor(const Target& target, const RoleMap& roles) {
+  if (!target.floor || !roles.humanoid) return std::nullopt;
+  double lowest = 0;
+  bool found = false;
+  for (std::size_t j = 0; j < roles.roles.size(); ++j) {
+    const double height = target.clip.skeleton.reference[j].position.y();
+    if (!found || height < lowest) lowest = height;
+    found = true;
+  }
+  const double under = lowest - *target.floor;
+  const bool near = under > -0.02 && under < 0.06 * reference_extent(target.clip.skeleton);
+  return near ? target.floor : std::nullopt;
+}
+
+void tell_choices(const Outcome& outcome, ToolContext& context) {
+  const retarget::Report& report = outcome.report;
+  const auto note = [&](std::string code, std::string message) {
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::note;
+    diagnostic.code = std::move(code);
+    diagnostic.message = std::move(message);
+    context.tell(std::move(diagnostic));
+  };
+  const auto note_frame = [&](const std::optional<int>& frame, const char* whose) {
+    if (!frame) return;
+    note("retarget-reference",
+         fmt::format("frame {} of the {} serves as its reference pose", *frame, whose));
+  };
+  note_frame(report.source_frame, "input");
+  note_frame(report.target_frame, "target");
+  if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
+    note("retarget-fingers",
+         "the input's fingers never move; the target's keep their reference pose on the hand");
+  }
+  if (report.method == retarget::Method::names) {
+    note("retarget-names", "joints were mapped by their names; feet were left free");
+  }
+}
+
+}  // namespace
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("input", options.input,
+                 "The motion, or a capture as krok-import takes it (- is standard input)")
+      ->type_name("IN.anim")
+      ->required();
+  app.add_option("--onto", options.onto,
+                 "The skeleton to move: a model, or any motion or capture of it")
+      ->type_name("IN.model|IN.anim")
+      ->required();
+  app.add_option("--map", options.map,
+                 "What the input's joints are, where their names do not tell: a role map (JSON)")
+      ->type_name("IN.json")
+      ->group("Joints");
+  app.add_option("--onto-map", options.onto_map, "The same for the target's joints")
+      ->type_name("IN.json")
+      ->group("Joints");
+  app.add_option("--reference-pose", options.reference_pose,
+                 "The input's pose that is set beside the target's reference pose: a frame, or "
+                 "auto: its own reference pose, or if that does not stand, the frame nearest to a "
+                 "T-pose")
+      ->type_name("POSE")
+      ->default_str("auto")
+      ->group("Joints");
+  app.add_option("--onto-reference-pose", options.onto_reference_pose,
+                 "The same for a target that is a motion")
+      ->type_name("POSE")
+      ->default_str("auto")
+      ->group("Joints");
+  app.add_option("--feet", options.feet,
+                 "keep: feet stand where the input's stand, scaled, and not in the floor; free: "
+                 "as the legs' rotations bring them")
+      ->type_name("HOW")
+      ->transform(
+          one_of<retarget::Feet>({{"keep", retarget::Feet::keep}, {"free", retarget::Feet::free}}))
+      ->default_str("keep")
+      ->group("Motion");
+  app.add_option("--scale", options.scale,
+                 "How much larger the motion's ways become; by default the ratio of the legs")
+      ->type_name("NUMBER")
+      ->group("Motion");
+  app.add_option("--orientation", options.orientation,
+                 "Components stored of an orientation: xyz (w is rebuilt) or xyzw")
+      ->type_name("HOW")
+      ->transform(one_of<OrientationEncoding>(
+          {{"xyz", OrientationEncoding::xyz}, {"xyzw", OrientationEncoding::xyzw}}))
+      ->default_str("xyz")
+      ->group("Motion");
+}
+
+Result<int> run(const Options& options, ToolContext& context) {
+  auto how = parse(options);
+  if (!how) return how.error();
+  how->jobs = context.jobs;
+  how->progress = context.progress;
+  if (Status fits = check_output_kind(context.output, "-o", registry::Kind::anim); !fits) {
+    return fits.error();
+  }
+  const auto source = read_motion(options.input, context);
+  if (!source) return source.error();
+  const auto target = read_target(options.onto, context);
+  if (!target) return target.error();
+  const auto source_roles = roles_of(source->skeleton, options.map, context);
+  if (!source_roles) return source_roles.error();
+  const auto target_roles = roles_of(target->clip.skeleton, options.onto_map, context);
+  if (!target_roles) return target_roles.error();
+  how->target_floor = believable_floor(*target, *target_roles);
+
+  auto result = retarget::transfer(*source, *source_roles, target->clip, *target_roles, *how);
+  if (!result) return std::move(result).error().in_file(options.input);
+  const Outcome outcome{source->skeleton, *source_roles, target->clip.skeleton, *target_roles,
+                        result->report};
+  tell_choices(outcome, context);
+
+  Clip& clip = result->clip;
+  clip.provenance = context.provenance();
+  clip.provenance.conversions = source->provenance.conversions;
+  clip.provenance.conversions.push_back("retargeted: " + summary(outcome));
+  auto file = OutputFile::create(context.output, context.output_options());
+  if (!file) return file.error();
+  anim::WriteOptions writing;
+  writing.orientation = options.orientation;
+  writing.jobs = context.jobs;
+  if (Status written = anim::write(clip, writing, *file); !written) return written.error();
+  if (Status done = file->commit(); !done) return done.error();
+  context.wrote(context.output);
+
+  context.report.result = to_json(outcome);
+  context.say(fmt::format("{}: {}", context.output, summary(outcome)));
+  if (context.verbose) context.say(table(outcome));
+  return kExitDone;
+}
+
+}  // namespace krok::retarget_tool
