@@ -10,7 +10,28 @@
 
 namespace krok::registry {
 
-enum class Kind : unsigned char { unknown, anim, model, cam, bvh, asf, amc, glb, gltf };
+enum class Kind : unsigned char {
+  unknown,
+  // Krok's own
+  anim,
+  model,
+  cam,
+  // captures
+  bvh,
+  asf,
+  amc,
+  // scenes: glTF, and what formats/assimp reads
+  glb,
+  gltf,
+  fbx,
+  collada,
+  smd,
+  ms3d,
+  max_3ds,  // .3ds
+  ase,
+  md5mesh,
+  md5anim,
+};
 
 // The first bytes of Krok's own binary formats; what follows them is in formats/container.
 using Magic = std::array<char, 8>;
@@ -18,12 +39,17 @@ inline constexpr Magic kAnimMagic = {'K', 'R', 'O', 'K', 'A', 'N', 'I', 'M'};
 inline constexpr Magic kModelMagic = {'K', 'R', 'O', 'K', 'M', 'O', 'D', 'L'};
 inline constexpr Magic kCamMagic = {'K', 'R', 'O', 'K', 'C', 'A', 'M', 'R'};
 
-// "anim", "model", "cam", "bvh", "asf", "amc", "glb", "gltf" or "unknown".
+// The extension that files of this kind have, without its dot: "anim", "dae", "3ds" and so on;
+// "unknown".
 std::string_view kind_name(Kind kind);
+
+// Whether such files are read through Assimp: FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5.
+bool is_read_through_assimp(Kind kind);
 
 // What the bytes show, whatever the file is called. Acclaim's files are known by their first
 // section, such as :version or :fully-specified, after comments. glTF's JSON is recognised by an
-// "asset" key in the first or last 64 KiB of a text that begins with a brace.
+// "asset" key in the first or last 64 KiB of a text that begins with a brace, COLLADA by its root
+// element, SMD by its version and nodes, MD5 by its version and what it counts.
 Kind kind_of_content(std::span<const std::byte> content);
 
 // What the name promises, by its extension in any case.

@@ -35,6 +35,42 @@ TEST(Registry, ContentTellsTheKind) {
   EXPECT_EQ(kind_of_content({}), Kind::unknown);
 }
 
+TEST(Registry, ContentTellsTheKindOfScenes) {
+  EXPECT_EQ(kind_of_content(bytes_of("Kaydara FBX Binary  ")), Kind::fbx);
+  EXPECT_EQ(kind_of_content(bytes_of("; FBX 7.4.0 project file\n")), Kind::fbx);
+  EXPECT_EQ(kind_of_content(bytes_of("FBXHeaderExtension:  {\n")), Kind::fbx);
+  EXPECT_EQ(kind_of_content(bytes_of("<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"\">")),
+            Kind::collada);
+  EXPECT_EQ(kind_of_content(bytes_of("<?xml version=\"1.0\"?>\n<html>")), Kind::unknown);
+  EXPECT_EQ(kind_of_content(bytes_of("// a comment\nversion 1\r\nnodes\r\n")), Kind::smd);
+  EXPECT_EQ(kind_of_content(bytes_of("version 1\n")), Kind::unknown);
+  EXPECT_EQ(kind_of_content(bytes_of("MS3D000000\4")), Kind::ms3d);
+  EXPECT_EQ(kind_of_content(bytes_of("*3DSMAX_ASCIIEXPORT 200\n")), Kind::ase);
+  EXPECT_EQ(kind_of_content(bytes_of("MD5Version 10\nnumJoints 1\nnumMeshes 1\n")), Kind::md5mesh);
+  EXPECT_EQ(kind_of_content(bytes_of("MD5Version 10\nnumAnimatedComponents 6\n")), Kind::md5anim);
+  EXPECT_EQ(kind_of_content(bytes_of("MD5Version 10\nnumCuts 0\n")), Kind::unknown);
+  const std::string_view sized("MM\x10\0\0\0\0\0\0\0\0\0\0\0\0\0", 16);
+  const std::string_view versioned("MM\xFF\0\0\0\2\0\0\0\0\0\0\0\0\0", 16);
+  const std::string_view letters("MMMMMMMMMMMMMMMM", 16);
+  EXPECT_EQ(kind_of_content(bytes_of(sized)), Kind::max_3ds);
+  EXPECT_EQ(kind_of_content(bytes_of(versioned)), Kind::max_3ds);
+  EXPECT_EQ(kind_of_content(bytes_of(letters)), Kind::unknown);
+  EXPECT_EQ(kind_of_content(bytes_of(versioned.substr(0, 15))), Kind::unknown);
+}
+
+TEST(Registry, ScenesOfOtherProgramsGoThroughAssimp) {
+  for (const Kind kind : {Kind::fbx, Kind::collada, Kind::smd, Kind::ms3d, Kind::max_3ds, Kind::ase,
+                          Kind::md5mesh, Kind::md5anim}) {
+    EXPECT_TRUE(is_read_through_assimp(kind)) << kind_name(kind);
+    EXPECT_EQ(kind_of_name("a." + std::string(kind_name(kind))), kind);
+    EXPECT_EQ(advice(kind, Kind::anim), "import it with krok-import");
+  }
+  for (const Kind kind : {Kind::unknown, Kind::anim, Kind::model, Kind::cam, Kind::bvh, Kind::asf,
+                          Kind::amc, Kind::glb, Kind::gltf}) {
+    EXPECT_FALSE(is_read_through_assimp(kind)) << kind_name(kind);
+  }
+}
+
 TEST(Registry, GltfIsRecognisedWhereTheAssetStandsLast) {
   const std::string text =
       "{\"buffers\": [{\"uri\": \"" + std::string(300000, 'A') + "\"}], \"asset\": {}}";
@@ -50,7 +86,15 @@ TEST(Registry, NameTellsTheKindInAnyCase) {
   EXPECT_EQ(kind_of_name("01_01.amc"), Kind::amc);
   EXPECT_EQ(kind_of_name("b.glb"), Kind::glb);
   EXPECT_EQ(kind_of_name("b.gltf"), Kind::gltf);
-  EXPECT_EQ(kind_of_name("b.fbx"), Kind::unknown);
+  EXPECT_EQ(kind_of_name("b.FBX"), Kind::fbx);
+  EXPECT_EQ(kind_of_name("b.dae"), Kind::collada);
+  EXPECT_EQ(kind_of_name("b.smd"), Kind::smd);
+  EXPECT_EQ(kind_of_name("b.ms3d"), Kind::ms3d);
+  EXPECT_EQ(kind_of_name("b.3DS"), Kind::max_3ds);
+  EXPECT_EQ(kind_of_name("b.ase"), Kind::ase);
+  EXPECT_EQ(kind_of_name("b.md5mesh"), Kind::md5mesh);
+  EXPECT_EQ(kind_of_name("b.md5anim"), Kind::md5anim);
+  EXPECT_EQ(kind_of_name("b.obj"), Kind::unknown);
   EXPECT_EQ(kind_of_name("anim"), Kind::unknown);
   EXPECT_EQ(kind_of_name("b."), Kind::unknown);
   EXPECT_EQ(kind_of_name(""), Kind::unknown);

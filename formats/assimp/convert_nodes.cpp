@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/text.h"
+#include "formats/assimp/conversion_internal.h"
+#include "math/quaternion.h"
+#include "nodes/evaluate.h"
+
+namespace krok::assimp {
+
+using namespace nodes;
+
+namespace {
+
+constexpr std::string_view kHelperTag = "_$AssimpFbx$_";
+
+bool is_helper(std::string_view name) {
+  return name.find(kHelperTag) != std::string_view::npos;
+}
+
+std::string_view component_of(std::string_view name) {
+  return name.substr(name.rfind(kHelperTag) + kHelperTag.size());
+}
+
+int add_node(Conversion& to, const std::string& name, int parent, const Mat4& matrix) {
+  Node node;
+  node.name = name;
+  node.parent = parent;
+  node.has_matrix = !take_apart(matrix, node.translation, node.rotation, node.scale);
+  node.matrix = node.has_matrix ? matrix : Mat4::Identity();
+  const int index = static_cast<int>(to.scene.nodes.size());
+  to.scene.nodes.push_back(std::move(node));
+  to.node_by_name.emplace(name, index);
+  return index;
+}
+
+// FBX: T Roff Rp Rpre R Rpost Rp^-1 Soff Sp S Sp^-1 [geometry's own] node [its inverse] children.
+// All of it up to the geometry's own is the node's transform; the geometry's own moves the node's
+// meshes but not its children.
+struct Chain {
+  std::vector<ChainPart> parts;
+  Mat4 node_to_parent = Mat4::Identity();
+  Mat4 geometry_to_node = Mat4::Identity();
+  bool has_geometry = false;
+  const aiNode* end = nullptr;  // the node itself
+};
+
+Chain follow_chain(const aiNode* node) {
+  Chain chain;
+  while (is_helper(node->mName.C_Str()) && node->mNumChildren == 1) {
+    ChainPart part;
+    part.name = node->mName.C_Str();
+    part.component = component_of(part.name);
+    part.matrix = to_matrix(node->mTransformation);
+    if (part.component.starts_with("Geometric")) {
+      chain.has_geometry = true;
+      chain.geometry_to_node = chain.geometry_to_node * part.matrix;
+    } else {
+      chain.node_to_parent = chain.node_to_parent * part.matrix;
+      chain.parts.push_back(std::move(part));
+    }
+    node = node->mChildren[0];
+  }
+  chain.end = node;
+  return chain;
+}
+
+// The nodes below, past the helpers that undo a geometry's own transform.
+const aiNode* holder_of_children(const aiNode* node) {
+  while (node->mNumChildren == 1 && is_helper(node->mChildren[0]->mName.C_Str()) &&
+         component_of(node->mChildren[0]->mName.C_Str()).starts_with("Geometric") &&
+         component_of(node->mChildren[0]->mName.C_Str()).ends_with("Inverse")) {
+    node = node->mChildren[0];
+  }
+  return node;
+}
+
+}  // namespace
+
+Mat4 to_matrix(const aiMatrix4x4& m) {
+  Mat4 matrix;
+  for (unsigned r = 0; r < 4; ++r) {
+    for (unsigned c = 0; c < 4; ++c) matrix(r, c) = static_cast<double>(m[r][c]);
+  }
+  if (!matrix.allFinite()) throw ConversionError("a joint's transform has numbers that are none");
+  return matrix;
+}
+
+Vec3 to_vector(const aiVector3D& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+std::string to_text(const aiString& text) {
+  const std::size_t size = std::min<std::size_t>(text.length, sizeof(text.data) - 1);
+  return to_utf8(std::string_view(text.data, size));
+}
+
+Mat4 put_together(const Vec3& translation, const Quat& rotation, const Vec3& scale) {
+  Mat4 matrix = Mat4::Identity();
+  matrix.topLeftCorner<3, 3>() = rotation.toRotationMatrix() * scale.asDiagonal();
+  matrix.topRightCorner<3, 1>() = translation;
+  return matrix;
+}
+
+bool take_apart(const Mat4& matrix, Vec3& translation, Quat& rotation, Vec3& scale) {
+  translation = matrix.topRightCorner<3, 1>();
+  rotation = rigid_part(matrix).orientation;
+  const Mat3 stretch = rotation.toRotationMatrix().transpose() * matrix.topLeftCorner<3, 3>();
+  scale = stretch.diagonal();
+  if (matrix.topLeftCorner<3, 3>().determinant() < 0) {
+    // rigid_part mirrors back through the origin; one axis is what people expect to see.
+    rotation = rotation * Quat(Eigen::AngleAxisd(kPi, Vec3::UnitX()));
+    const Mat3 again = rotation.toRotationMatrix().transpose() * matrix.topLeftCorner<3, 3>();
+    scale = again.diagonal();
+  }
+  const double size = std::max(matrix.topLeftCorner<3, 3>().norm(), 1e-30);
+  const double off = (put_together(translation, rotation, scale) - matrix).norm();
+  constexpr double kFloatRounding = 2e-5;
+  return off <= kFloatRounding * size;
+}
+
+void convert_nodes(Conversion& to) {
+  struct Pending {
+    const aiNode* node;
+    int parent;
+  };
+  std::vector<Pending> pending{{to.source.mRootNode, -1}};
+  while (!pending.empty()) {
+    const auto [node, parent] = pending.back();
+    pending.pop_back();
+    const Chain chain = follow_chain(node);
+    const Mat4 own = to_matrix(chain.end->mTransformation);
+    const std::string name = to_text(chain.end->mName);
+    const int index = add_node(to, name, parent, chain.node_to_parent * own);
+    if (!chain.parts.empty()) {
+      for (const ChainPart& part : chain.parts) to.node_of_chain_part.emplace(part.name, index);
+      to.chain_of[index] = chain.parts;
+    }
+    to.node_of[chain.end] = index;
+    if (chain.has_geometry && chain.end->mNumMeshes > 0) {
+      to.node_of[chain.end] = add_node(to, name + "_geometry", index, chain.geometry_to_node);
+    }
+    const aiNode* holder = holder_of_children(chain.end);
+    for (unsigned c = holder->mNumChildren; c-- > 0;) {
+      pending.push_back({holder->mChildren[c], index});
+    }
+  }
+}
+
+}  // namespace krok::assimp

@@ -1,0 +1,46 @@
+#include "formats/assimp/fbx_text_internal.h"
+
+#include <cstring>
+
+#include "core/numbers.h"
+#include "core/text.h"
+
+namespace krok::assimp {
+
+std::vector<double> fbx_target_weights(std::string_view text) {
+  constexpr std::string_view kName = "DeformPercent";
+  std::vector<double> weights;
+  for (std::size_t at = text.find(kName); at != std::string_view::npos;
+       at = text.find(kName, at + 1)) {
+    std::string_view after = text.substr(at + kName.size());
+    if (after.starts_with(':')) {
+      after = trimmed(after.substr(1, 64));
+      const auto value = parse_finite(after.substr(0, after.find_first_of(" \t\r\n,}")));
+      if (value) weights.push_back(*value / 100);
+    } else if (after.size() > sizeof(double) && after[0] == 'D') {
+      // A node's name is followed by its properties, each a letter and a value.
+      double value = 0;
+      std::memcpy(&value, after.data() + 1, sizeof(value));
+      if (value > -1e6 && value < 1e6) weights.push_back(value / 100);
+    }
+  }
+  return weights;
+}
+
+std::size_t fbx_object_count(std::string_view text, std::string_view kind) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(kind); at != std::string_view::npos;
+       at = text.find(kind, at + kind.size())) {
+    const std::string_view after = text.substr(at + kind.size());
+    // ASCII: its name, a colon and its number; binary: its name's length, its name and its
+    // properties, the first of which is its number.
+    const bool ascii =
+        after.size() > 2 && after.starts_with(": ") && after[2] >= '0' && after[2] <= '9';
+    const bool binary =
+        at > 0 && static_cast<unsigned char>(text[at - 1]) == kind.size() && after.starts_with('L');
+    count += ascii || binary ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace krok::assimp

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "formats/assimp/collada_text_internal.h"
+#include "formats/assimp/conversion_internal.h"
+#include "formats/assimp/fbx_text_internal.h"
+
+namespace krok::assimp {
+
+using namespace nodes;
+using registry::Kind;
+
+namespace {
+
+bool has_skin(const Scene& scene) {
+  return !scene.skins.empty();
+}
+
+std::string list_of(const std::vector<std::string>& things) {
+  std::string list;
+  for (std::size_t k = 0; k < things.size(); ++k) {
+    if (k > 0) list += k + 1 == things.size() ? " and " : ", ";
+    list += things[k];
+  }
+  return list;
+}
+
+// Keys so far apart that what is between them matters.
+bool has_sparse_keys(const Scene& scene) {
+  constexpr float kLongGap = 1.0f / 14;  // seconds
+  constexpr float kChange = 1e-3f;
+  for (const Animation& animation : scene.animations) {
+    for (const Channel& channel : animation.channels) {
+      const std::vector<float>& times = *channel.times;
+      const auto width = static_cast<std::size_t>(channel.width);
+      for (std::size_t k = 1; k < times.size(); ++k) {
+        if (times[k] - times[k - 1] < kLongGap) continue;
+        for (std::size_t i = 0; i < width; ++i) {
+          const float before = (*channel.values)[(k - 1) * width + i];
+          const float after = (*channel.values)[k * width + i];
+          if (std::abs(after - before) > kChange * std::max(1.0f, std::abs(before))) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+// Assimp tells nodes by their names: of several with one name only the first is meant by a bone or
+// a curve.
+void tell_of_same_names(Conversion& to) {
+  std::map<std::string, int> uses;
+  for (const Node& node : to.scene.nodes) ++uses[node.name];
+  std::set<std::string> doubtful;
+  const auto check = [&](const aiString& name) {
+    const auto found = uses.find(to_text(name));
+    if (found != uses.end() && found->second > 1) doubtful.insert(found->first);
+  };
+  for (unsigned m = 0; m < to.source.mNumMeshes; ++m) {
+    const aiMesh& mesh = *to.source.mMeshes[m];
+    for (unsigned b = 0; b < mesh.mNumBones; ++b) check(mesh.mBones[b]->mName);
+  }
+  for (unsigned a = 0; a < to.source.mNumAnimations; ++a) {
+    const aiAnimation& animation = *to.source.mAnimations[a];
+    for (unsigned c = 0; c < animation.mNumChannels; ++c) check(animation.mChannels[c]->mNodeName);
+  }
+  if (doubtful.empty()) return;
+  to.warn("assimp-same-name",
+          fmt::format("{} names belong to several nodes, '{}' for one; Assimp takes the first for "
+                      "all, so that weights and motion may be at the wrong one",
+                      doubtful.size(), *doubtful.begin()),
+          "give the joints different names and export again");
+}
+
+// Assimp calls nodes by their ids, as "Armature_Hips"; people and the tables of joints know names.
+void rename_collada_nodes(Conversion& to) {
+  if (to.kind != Kind::collada) return;
+  const auto names = collada_node_names(to.text);
+  std::map<std::string, int> uses;
+  const auto new_name = [&](const std::string& old) {
+    const auto found = names.find(old);
+    return found == names.end() ? old : found->second;
+  };
+  for (const Node& node : to.scene.nodes) ++uses[new_name(node.name)];
+  for (Node& node : to.scene.nodes) {
+    const std::string name = new_name(node.name);
+    if (uses[name] == 1) node.name = name;
+  }
+}
+
+void tell_of_layers(Conversion& to) {
+  if (to.kind != Kind::fbx) return;
+  const std::size_t layers = fbx_object_count(to.text, "AnimationLayer");
+  const std::size_t takes = fbx_object_count(to.text, "AnimationStack");
+  if (layers <= takes) return;
+  to.warn("assimp-layers",
+          fmt::format("{} animation layers for {} takes; Assimp mixes their curves without the way "
+                      "in which they are blended",
+                      layers, takes),
+          "merge the layers before exporting if the motion looks wrong");
+}
+
+void tell_what_is_missing(Conversion& to) {
+  const Scene& scene = to.scene;
+  std::vector<std::string> missing;
+  if (scene.meshes.empty()) missing.emplace_back("no mesh");
+  if (!has_skin(scene) && !scene.meshes.empty()) missing.emplace_back("no skin weights");
+  if (scene.animations.empty()) missing.emplace_back("no animation");
+  if (scene.cameras.empty()) missing.emplace_back("no camera");
+  if (!missing.empty()) {
+    to.note("assimp-missing", fmt::format("the file holds {}", list_of(missing)));
+  }
+  if (to.kind == Kind::max_3ds || (to.kind == Kind::ase && !has_skin(scene))) {
+    to.note("assimp-no-skeleton",
+            fmt::format("the {} format has no skeletons: its nodes are whole objects",
+                        to.kind == Kind::ase ? "ASE" : "3DS"));
+  }
+  if (to.kind == Kind::smd && !scene.animations.empty()) {
+    to.note("assimp-rate", fmt::format("an SMD file does not say its frame rate; {:g} frames a "
+                                       "second are taken",
+                                       to.frames_per_second));
+  }
+  const bool curves =
+      to.kind == Kind::fbx || (to.kind == Kind::collada && collada_has_curves(to.text)) ||
+      (to.kind == Kind::ase && (to.text.find("_BEZIER_") != std::string_view::npos ||
+                                to.text.find("_TCB_") != std::string_view::npos));
+  if (curves && has_sparse_keys(scene)) {
+    to.warn("assimp-curves",
+            "keys are far apart, and Assimp reads the keys without the curves between them: "
+            "motion between keys is made straight",
+            "export with the motion baked to every frame if it looks stiff");
+  }
+}
+
+}  // namespace krok::assimp

@@ -1,0 +1,182 @@
+#include "formats/assimp/mend_input_internal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <span>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/assimp/ms3d_file_internal.h"
+
+namespace krok::assimp {
+
+using registry::Kind;
+
+namespace {
+
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find_first_of("\r\n");
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end, text.size()));
+  if (text.starts_with("\r\n")) {
+    text.remove_prefix(2);
+  } else if (!text.empty()) {
+    text.remove_prefix(1);
+  }
+  return line;
+}
+
+std::string_view take_word(std::string_view& text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  std::size_t end = 0;
+  while (end < text.size() && !is_space(text[end])) ++end;
+  const std::string_view word = text.substr(0, end);
+  text.remove_prefix(end);
+  return word;
+}
+
+std::size_t count_words(std::string_view text) {
+  std::size_t count = 0;
+  while (!take_word(text).empty()) ++count;
+  return count;
+}
+
+// ---- SMD ----
+
+// Assimp takes a material's name up to the first space, and what follows for a vertex. It takes
+// comments for data. Where a part has no end it searches for one for ever.
+Result<std::string> mend_smd(std::string_view text) {
+  std::string mended;
+  mended.reserve(text.size() + 1);
+  bool in_triangles = false;
+  std::string_view part;  // that has begun and not ended
+  int vertices_left = 0;
+  while (!text.empty()) {
+    const std::string_view line = trimmed(take_line(text));
+    const bool comment = line.starts_with("//") || line.starts_with('#') || line.starts_with(';');
+    if (line.empty() || comment) continue;
+    if (in_triangles && vertices_left == 0 && line != "end") {
+      for (const char c : line) mended += is_space(c) ? '_' : c;
+      vertices_left = 3;
+    } else {
+      mended += line;
+      if (vertices_left > 0) --vertices_left;
+    }
+    if (line == "triangles") in_triangles = true;
+    if (line == "end") in_triangles = false;
+    const bool begins =
+        line == "nodes" || line == "skeleton" || line == "triangles" || line == "vertexanimation";
+    if (begins) part = line;
+    if (line == "end") part = {};
+    mended += '\n';
+  }
+  if (!part.empty()) {
+    return Error("assimp-refused", fmt::format("the part '{}' has no end", part),
+                 "the file is cut short; export or copy it again");
+  }
+  return mended;
+}
+
+// ---- MD5 ----
+
+// Assimp gives no keys to joints that do not move if no numbers of moving ones follow theirs, and
+// they then fall back to the mesh's pose: one number more at the end of each frame, which nobody
+// reads, cures that. It also reads frames with too few numbers.
+Result<std::string> mend_md5anim(std::string_view text) {
+  std::string mended;
+  mended.reserve(text.size() + 1024);
+  std::size_t components = 0;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::string_view line = take_line(rest);
+    mended += line;
+    mended += '\n';
+    std::string_view words = line;
+    const std::string_view first = take_word(words);
+    if (first == "numAnimatedComponents") {
+      components =
+          static_cast<std::size_t>(std::max(parse_integer(take_word(words)).value_or(0), 0LL));
+    }
+    if (first != "frame") continue;
+    const std::string_view number = take_word(words);
+    if (line.find('{') == std::string_view::npos) continue;
+    const std::size_t end = rest.find('}');
+    if (end == std::string_view::npos) {
+      return Error("assimp-refused",
+                   fmt::format("frame {} of the motion has no end", shown(number)),
+                   "the file is cut short; export or copy it again");
+    }
+    const std::string_view numbers = rest.substr(0, end);
+    const std::size_t found = count_words(numbers);
+    if (found != components) {
+      return Error("assimp-refused",
+                   fmt::format("frame {} of the motion has {} numbers, expected {} "
+                               "(numAnimatedComponents)",
+                               shown(number), found, components),
+                   "the file is damaged; export or copy it again");
+    }
+    mended += numbers;
+    mended += "\n0\n}\n";
+    rest.remove_prefix(end + 1);
+  }
+  return mended;
+}
+
+// ---- MS3D ----
+
+// Assimp reads what follows the joints wrongly; it is read by read_ms3d. Keys are in seconds, and
+// are lost where the frame rate is nought.
+std::string mend_ms3d(std::string_view text) {
+  const auto file = read_ms3d(std::as_bytes(std::span(text)));
+  if (!file) return {};
+  std::string mended(text.substr(0, file->end_of_joints));
+  if (!(file->rate > 0) || !std::isfinite(file->rate)) {
+    const float usual = 25.0f;
+    std::memcpy(mended.data() + file->place_of_rate, &usual, sizeof(usual));
+  }
+  return mended;
+}
+
+}  // namespace
+
+Result<std::string> mend_input(Kind kind, std::string_view text) {
+  switch (kind) {
+    case Kind::smd:
+      return mend_smd(text);
+    case Kind::md5anim:
+      return mend_md5anim(text);
+    case Kind::ms3d:
+      return mend_ms3d(text);
+    default:
+      return std::string();
+  }
+}
+
+std::string md5_joints(std::string_view text) {
+  std::string joints;
+  bool inside = false;
+  while (!text.empty()) {
+    const std::string_view line = trimmed(take_line(text));
+    std::string_view words = line;
+    const std::string_view first = take_word(words);
+    if (first == "joints" || first == "hierarchy") {
+      inside = true;
+    } else if (inside && first.starts_with('}')) {
+      break;
+    } else if (inside && line.starts_with('"')) {
+      const std::size_t end = line.find('"', 1);
+      if (end == std::string_view::npos) continue;
+      std::string_view after = line.substr(end + 1);
+      joints += line.substr(1, end - 1);
+      joints += '\t';
+      joints += take_word(after);
+      joints += '\n';
+    }
+  }
+  return joints;
+}
+
+}  // namespace krok::assimp

@@ -1,0 +1,204 @@
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <new>
+#include <span>
+
+#include "core/text.h"
+#include "formats/assimp/clips_internal.h"
+#include "formats/assimp/conversion_internal.h"
+#include "formats/assimp/mend_input_internal.h"
+#include "formats/assimp/run_assimp_internal.h"
+
+namespace krok::assimp {
+
+using registry::Kind;
+
+namespace {
+
+Diagnostic diagnostic(Severity severity, std::string code, std::string message, std::string hint) {
+  Diagnostic diagnostic;
+  diagnostic.severity = severity;
+  diagnostic.code = std::move(code);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  return diagnostic;
+}
+
+void configure(Assimp::Importer& importer) {
+  // No meshes for show around bare skeletons.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  // Without the helper nodes Assimp 5.2 loses the motion of FBX nodes with pivots; convert_nodes
+  // folds them.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_OPTIMIZE_EMPTY_ANIMATION_CURVES, false);
+  // Joints without weights are joints too.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_REMOVE_EMPTY_BONES, false);
+}
+
+std::size_t meshes_without_normals(const aiScene& scene) {
+  std::size_t count = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) count += scene.mMeshes[m]->HasNormals() ? 0 : 1;
+  return count;
+}
+
+// Assimp's words, without its habit of a full stop and line ends.
+std::string reason(const Assimp::Importer& importer) {
+  std::string text = to_utf8(importer.GetErrorString());
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 32) c = ' ';
+  }
+  constexpr std::size_t kMost = 300;
+  if (text.size() > kMost) text = to_utf8(text.substr(0, kMost)) + "...";
+  while (!text.empty() && (text.back() == '.' || text.back() == ' ')) text.pop_back();
+  return text.empty() ? "no reason given" : text;
+}
+
+// Whether Assimp swallowed the want of memory.
+void throw_on_bad_alloc(const Assimp::Importer& importer) {
+  const std::exception_ptr& exception = importer.GetException();
+  if (!exception) return;
+  try {
+    std::rethrow_exception(exception);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (...) {
+  }
+}
+
+}  // namespace
+
+void Conversion::note(std::string code, std::string message, std::string hint) {
+  scene.diagnostics.push_back(
+      diagnostic(Severity::note, std::move(code), std::move(message), std::move(hint)));
+}
+
+void Conversion::warn(std::string code, std::string message, std::string hint) {
+  scene.diagnostics.push_back(
+      diagnostic(Severity::warning, std::move(code), std::move(message), std::move(hint)));
+}
+
+namespace {
+
+// The animation of the first of COLLADA's clips is there; those of the others are read by turns.
+void convert_further_clips(Conversion& to, const std::vector<ColladaClip>& clips) {
+  constexpr std::size_t kMostClips = 100;
+  if (clips.empty()) return;
+  std::vector<nodes::Animation>& animations = to.scene.animations;
+  if (animations.size() == 1) shape_clip(clips[0], animations[0]);
+  const std::size_t count = std::min(clips.size(), kMostClips);
+  if (count < clips.size()) {
+    to.warn("assimp-clips", fmt::format("of {} clips the first {} are read", clips.size(), count));
+  }
+  for (std::size_t c = 1; c < count; ++c) {
+    const std::string text = collada_with_one_animation(to.text, &clips[c]);
+    if (text.empty()) return;
+    Assimp::Importer importer;
+    configure(importer);
+    importer.SetIOHandler(new MemoryFiles({{"clip.dae", std::as_bytes(std::span(text))}}));
+    const aiScene* source = importer.ReadFile("clip.dae", 0);
+    throw_on_bad_alloc(importer);
+    if (source == nullptr) throw ConversionError(reason(importer));
+    const std::size_t before = animations.size();
+    convert_animations(to, *source);
+    for (std::size_t a = before; a < animations.size(); ++a) shape_clip(clips[c], animations[a]);
+  }
+}
+
+// What Assimp is given to read.
+struct Input {
+  std::vector<MemoryFile> files;
+  std::vector<std::string> mended;  // what some of the files are replaced by
+  std::string name;                 // of the file to open
+  std::string_view text;            // the given file, as it is
+  bool bare_motion = false;         // an MD5 motion without its mesh
+  std::vector<ColladaClip> clips;
+};
+
+std::string_view text_of(const MemoryFile& file) {
+  return {reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()};
+}
+
+Result<Input> prepare(std::vector<MemoryFile> files, Kind kind) {
+  Input input;
+  input.text = text_of(files[0]);
+  if (kind == Kind::collada) input.clips = collada_clips(input.text);
+  input.mended.resize(files.size());
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    std::string& mended = input.mended[f];
+    if (kind == Kind::collada) {
+      const ColladaClip* first = input.clips.empty() ? nullptr : &input.clips[0];
+      mended = collada_with_one_animation(input.text, first);
+    } else {
+      auto mend = mend_input(registry::kind_of_name(files[f].name), text_of(files[f]));
+      if (!mend) return mend.error();
+      mended = std::move(*mend);
+    }
+    if (!mended.empty()) files[f].bytes = std::as_bytes(std::span(mended));
+  }
+  // With its mesh, an MD5 motion is read as the mesh's.
+  const auto mesh = std::find_if(files.begin(), files.end(), [](const MemoryFile& file) {
+    return registry::kind_of_name(file.name) == Kind::md5mesh;
+  });
+  input.bare_motion = kind == Kind::md5anim && mesh == files.end();
+  input.name = kind == Kind::md5anim && !input.bare_motion ? mesh->name : files[0].name;
+  input.files = std::move(files);
+  return input;
+}
+
+Status convert(Conversion& to, const Input& input) {
+  try {
+    convert_nodes(to);
+    if (!input.bare_motion) convert_meshes(to);  // Assimp draws one around bare bones
+    convert_cameras(to);
+    convert_animations(to, to.source);
+    convert_further_clips(to, input.clips);
+    convert_space(to);
+    tell_of_same_names(to);
+    rename_collada_nodes(to);
+  } catch (const ConversionError& error) {
+    return Error("assimp-refused", fmt::format("the file cannot be read: {}", error.what()),
+                 "the file is damaged, or its exporter has a fault");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, Kind kind,
+                                double frames_per_second) {
+  auto input = prepare(std::move(files), kind);
+  if (!input) return input.error();
+  Assimp::Importer importer;
+  configure(importer);
+  importer.SetIOHandler(new MemoryFiles(input->files));  // the importer deletes it
+  const aiScene* source = importer.ReadFile(input->name, 0);
+  throw_on_bad_alloc(importer);
+  std::size_t without_normals = 0;
+  if (source != nullptr && source->mNumMeshes > 0 && !input->bare_motion) {
+    without_normals = meshes_without_normals(*source);
+    source = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
+    throw_on_bad_alloc(importer);
+  }
+  if (source == nullptr || source->mRootNode == nullptr) {
+    return Error("assimp-refused",
+                 fmt::format("the file cannot be read: Assimp says: {}", reason(importer)),
+                 "try to open it in another program and to save it again, best as glTF (.glb)");
+  }
+  Conversion to{*source, kind, input->text, frames_per_second, {}, {}, {}, {}, {}};
+  if (auto done = convert(to, *input); !done) return done.error();
+  if (without_normals > 0) {
+    to.note("assimp-normals",
+            fmt::format("{} meshes have no normals; smooth ones were computed", without_normals));
+  }
+  tell_of_layers(to);
+  tell_what_is_missing(to);
+  return std::move(to.scene);
+}
+
+}  // namespace krok::assimp

@@ -1,0 +1,449 @@
+#include "formats/assimp/scene_transfer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/bytes.h"
+#include "core/text.h"
+
+namespace krok::assimp {
+
+using namespace nodes;
+
+namespace {
+
+// ---- Writing ----
+
+void put_text(ByteWriter& out, std::string_view text) {
+  out.write(static_cast<std::uint64_t>(text.size()));
+  out.append_text(text);
+}
+
+template <typename T>
+void put_array(ByteWriter& out, const std::vector<T>& values) {
+  out.write(static_cast<std::uint64_t>(values.size()));
+  out.append(std::as_bytes(std::span(values)));
+}
+
+template <typename T>
+void put_shared(ByteWriter& out, const Shared<T>& values) {
+  out.write(static_cast<std::uint8_t>(values ? 1 : 0));
+  if (values) put_array(out, *values);
+}
+
+void put_matrix(ByteWriter& out, const Mat4& matrix) {
+  for (int k = 0; k < 16; ++k) out.write(matrix.data()[k]);
+}
+
+void put_node(ByteWriter& out, const Node& node) {
+  put_text(out, node.name);
+  out.write(static_cast<std::int32_t>(node.parent));
+  out.write(static_cast<std::uint8_t>(node.has_matrix));
+  put_matrix(out, node.matrix);
+  for (int k = 0; k < 3; ++k) out.write(node.translation[k]);
+  for (int k = 0; k < 4; ++k) out.write(node.rotation.coeffs()[k]);
+  for (int k = 0; k < 3; ++k) out.write(node.scale[k]);
+  out.write(static_cast<std::int32_t>(node.mesh));
+  out.write(static_cast<std::int32_t>(node.skin));
+  out.write(static_cast<std::int32_t>(node.camera));
+  put_array(out, node.weights);
+}
+
+void put_primitive(ByteWriter& out, const Primitive& primitive) {
+  put_text(out, primitive.material);
+  put_shared(out, primitive.positions);
+  put_shared(out, primitive.normals);
+  put_shared(out, primitive.texture_coordinates);
+  out.write(static_cast<std::int32_t>(primitive.influences_per_vertex));
+  put_array(out, primitive.influence_joints);
+  put_array(out, primitive.influence_weights);
+  put_array(out, primitive.triangles);
+  out.write(static_cast<std::uint64_t>(primitive.targets.size()));
+  for (const MorphTarget& target : primitive.targets) {
+    put_text(out, target.name);
+    put_shared(out, target.positions);
+    put_shared(out, target.normals);
+  }
+}
+
+void put_channel(ByteWriter& out, const Channel& channel) {
+  out.write(static_cast<std::int32_t>(channel.node));
+  out.write(static_cast<std::uint8_t>(channel.path));
+  out.write(static_cast<std::uint8_t>(channel.interpolation));
+  out.write(static_cast<std::int32_t>(channel.width));
+  put_shared(out, channel.times);
+  put_shared(out, channel.values);
+}
+
+void put_diagnostic(ByteWriter& out, const Diagnostic& diagnostic) {
+  out.write(static_cast<std::uint8_t>(diagnostic.severity));
+  put_text(out, diagnostic.code);
+  put_text(out, diagnostic.message);
+  put_text(out, diagnostic.hint);
+  put_text(out, diagnostic.joint);
+}
+
+template <typename T, typename Put>
+void put_list(ByteWriter& out, const std::vector<T>& list, Put put) {
+  out.write(static_cast<std::uint64_t>(list.size()));
+  for (const T& item : list) put(out, item);
+}
+
+// ---- Reading ----
+
+// Reads on after a failure, but gives nothing more: one check at the end is enough.
+class Parser {
+ public:
+  explicit Parser(std::span<const std::byte> bytes) : in_(bytes) {}
+
+  bool ok() const { return in_.ok() && fault_.empty(); }
+  const std::string& fault() const { return fault_; }
+  bool at_end() const { return in_.remaining() == 0; }
+
+  void require(bool holds, const char* what) {
+    if (!holds && fault_.empty()) fault_ = what;
+  }
+
+  template <typename T>
+  T number() {
+    return ok() ? in_.read<T>() : T{};
+  }
+
+  double finite() {
+    const double value = number<double>();
+    require(std::isfinite(value), "a number is not finite");
+    return value;
+  }
+
+  // How many things of at least `bytes_each` follow.
+  std::size_t count(std::size_t bytes_each) {
+    const auto count = number<std::uint64_t>();
+    require(count <= in_.remaining() / bytes_each, "a count is larger than the data");
+    return ok() ? static_cast<std::size_t>(count) : 0;
+  }
+
+  std::string text() {
+    const std::size_t size = count(1);
+    const std::string_view text = in_.take_text(size);
+    return to_utf8(text);
+  }
+
+  template <typename T>
+  std::vector<T> array() {
+    std::vector<T> values(count(sizeof(T)));
+    const auto bytes = in_.take(values.size() * sizeof(T));
+    if (!bytes.empty()) std::memcpy(static_cast<void*>(values.data()), bytes.data(), bytes.size());
+    return values;
+  }
+
+  template <typename T>
+  Shared<T> shared() {
+    if (number<std::uint8_t>() == 0) return nullptr;
+    auto values = std::make_shared<const std::vector<T>>(array<T>());
+    const auto* numbers = reinterpret_cast<const float*>(values->data());
+    const std::size_t size = values->size() * sizeof(T) / sizeof(float);
+    require(std::all_of(numbers, numbers + size, [](float v) { return std::isfinite(v); }),
+            "a number is not finite");
+    return values;
+  }
+
+  Mat4 matrix() {
+    Mat4 matrix;
+    for (int k = 0; k < 16; ++k) matrix.data()[k] = finite();
+    return matrix;
+  }
+
+  Vec3 vector() {
+    Vec3 vector;
+    for (int k = 0; k < 3; ++k) vector[k] = finite();
+    return vector;
+  }
+
+  Quat unit_quaternion() {
+    Quat q;
+    for (int k = 0; k < 4; ++k) q.coeffs()[k] = finite();
+    require(std::abs(q.norm() - 1.0) < 1e-6, "a rotation is not of length 1");
+    return q;
+  }
+
+ private:
+  ByteReader in_;
+  std::string fault_;
+};
+
+Node take_node(Parser& in) {
+  Node node;
+  node.name = in.text();
+  node.parent = in.number<std::int32_t>();
+  node.has_matrix = in.number<std::uint8_t>() != 0;
+  node.matrix = in.matrix();
+  node.translation = in.vector();
+  node.rotation = in.unit_quaternion();
+  node.scale = in.vector();
+  node.mesh = in.number<std::int32_t>();
+  node.skin = in.number<std::int32_t>();
+  node.camera = in.number<std::int32_t>();
+  node.weights = in.array<double>();
+  for (const double weight : node.weights) in.require(std::isfinite(weight), "a weight is not");
+  return node;
+}
+
+MorphTarget take_target(Parser& in, std::size_t vertices) {
+  MorphTarget target;
+  target.name = in.text();
+  target.positions = in.shared<Vec3f>();
+  target.normals = in.shared<Vec3f>();
+  for (const auto& values : {target.positions, target.normals}) {
+    in.require(!values || values->size() == vertices, "a morph target has other vertices");
+  }
+  return target;
+}
+
+Primitive take_primitive(Parser& in) {
+  Primitive primitive;
+  primitive.material = in.text();
+  primitive.positions = in.shared<Vec3f>();
+  in.require(primitive.positions != nullptr, "a mesh has no positions");
+  if (!primitive.positions) primitive.positions = std::make_shared<const std::vector<Vec3f>>();
+  const std::size_t vertices = primitive.vertex_count();
+  primitive.normals = in.shared<Vec3f>();
+  in.require(!primitive.normals || primitive.normals->size() == vertices, "normals are missing");
+  primitive.texture_coordinates = in.shared<Vec2f>();
+  in.require(!primitive.texture_coordinates || primitive.texture_coordinates->size() == vertices,
+             "texture coordinates are missing");
+  primitive.influences_per_vertex = in.number<std::int32_t>();
+  const int each = primitive.influences_per_vertex;
+  in.require(each == 0 || each == 4 || each == 8, "a vertex has an odd number of influences");
+  primitive.influence_joints = in.array<std::uint16_t>();
+  primitive.influence_weights = in.array<float>();
+  if (!in.ok()) return primitive;
+  in.require(primitive.influence_joints.size() == vertices * static_cast<std::size_t>(each) &&
+                 primitive.influence_weights.size() == primitive.influence_joints.size(),
+             "influences are missing");
+  for (const float weight : primitive.influence_weights) {
+    in.require(weight >= 0.0f && weight <= 1.0f, "an influence is out of range");
+  }
+  primitive.triangles = in.array<std::array<std::uint32_t, 3>>();
+  for (const auto& triangle : primitive.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      in.require(corner < vertices, "a triangle has a corner that does not exist");
+    }
+  }
+  const std::size_t targets = in.count(10);
+  for (std::size_t t = 0; t < targets && in.ok(); ++t) {
+    primitive.targets.push_back(take_target(in, vertices));
+  }
+  return primitive;
+}
+
+Mesh take_mesh(Parser& in) {
+  Mesh mesh;
+  mesh.name = in.text();
+  const std::size_t primitives = in.count(16);
+  for (std::size_t p = 0; p < primitives && in.ok(); ++p) {
+    mesh.primitives.push_back(take_primitive(in));
+    in.require(mesh.primitives.back().targets.size() == mesh.target_count(),
+               "parts of a mesh have different morph targets");
+  }
+  mesh.weights = in.array<double>();
+  in.require(mesh.weights.size() == mesh.target_count(), "a mesh lacks weights of morph targets");
+  for (const double weight : mesh.weights) in.require(std::isfinite(weight), "a weight is not");
+  return mesh;
+}
+
+Skin take_skin(Parser& in) {
+  Skin skin;
+  skin.name = in.text();
+  const std::vector<std::int32_t> joints = in.array<std::int32_t>();
+  skin.joints.assign(joints.begin(), joints.end());
+  const std::size_t matrices = in.count(sizeof(double) * 16);
+  in.require(!joints.empty() && matrices == joints.size(), "a skin lacks joints");
+  for (std::size_t k = 0; k < matrices && in.ok(); ++k) skin.inverse_binds.push_back(in.matrix());
+  return skin;
+}
+
+Camera take_camera(Parser& in) {
+  Camera camera;
+  camera.name = in.text();
+  camera.perspective = in.number<std::uint8_t>() != 0;
+  camera.field_of_view = in.finite();
+  in.require(!camera.perspective || (camera.field_of_view > 0 && camera.field_of_view < kPi),
+             "a camera's field of view is out of range");
+  return camera;
+}
+
+Channel take_channel(Parser& in) {
+  Channel channel;
+  channel.node = in.number<std::int32_t>();
+  const auto path = in.number<std::uint8_t>();
+  const auto interpolation = in.number<std::uint8_t>();
+  in.require(path <= static_cast<std::uint8_t>(Path::weights) &&
+                 interpolation <= static_cast<std::uint8_t>(Interpolation::step),
+             "a channel is of no known kind");
+  channel.path = static_cast<Path>(path);
+  channel.interpolation = static_cast<Interpolation>(interpolation);
+  channel.width = in.number<std::int32_t>();
+  channel.times = in.shared<float>();
+  channel.values = in.shared<float>();
+  in.require(channel.times && channel.values && !channel.times->empty(), "a channel has no keys");
+  if (!in.ok()) return channel;
+  const std::vector<float>& times = *channel.times;
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    in.require(times[k] > times[k - 1], "key times do not rise");
+  }
+  in.require(channel.width > 0 &&
+                 channel.values->size() / static_cast<std::size_t>(channel.width) == times.size() &&
+                 channel.values->size() % static_cast<std::size_t>(channel.width) == 0,
+             "a channel lacks values");
+  return channel;
+}
+
+Diagnostic take_diagnostic(Parser& in) {
+  Diagnostic diagnostic;
+  const auto severity = in.number<std::uint8_t>();
+  in.require(severity <= static_cast<std::uint8_t>(Severity::error), "a message is of no kind");
+  diagnostic.severity = static_cast<Severity>(severity);
+  diagnostic.code = in.text();
+  diagnostic.message = in.text();
+  diagnostic.hint = in.text();
+  diagnostic.joint = in.text();
+  return diagnostic;
+}
+
+template <typename T, typename Take>
+void take_list(Parser& in, std::vector<T>& list, Take take) {
+  const std::size_t count = in.count(8);  // each begins with a text or is larger
+  for (std::size_t i = 0; i < count && in.ok(); ++i) list.push_back(take(in));
+}
+
+bool exists(int index, std::size_t count) {
+  return index >= 0 && static_cast<std::size_t>(index) < count;
+}
+
+// Children, roots and what is in the scene follow from the parents, which must form trees.
+void link_nodes(Parser& in, Scene& scene) {
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    Node& node = scene.nodes[i];
+    in.require(node.parent == -1 || exists(node.parent, i), "a node stands before its parent");
+    if (!in.ok()) return;
+    node.in_scene = true;
+    if (node.parent == -1) {
+      scene.roots.push_back(static_cast<int>(i));
+    } else {
+      scene.nodes[static_cast<std::size_t>(node.parent)].children.push_back(static_cast<int>(i));
+    }
+  }
+}
+
+void check_references(Parser& in, const Scene& scene) {
+  for (const Skin& skin : scene.skins) {
+    for (const int joint : skin.joints) {
+      in.require(exists(joint, scene.nodes.size()), "a skin has a joint that does not exist");
+    }
+  }
+  for (const Node& node : scene.nodes) {
+    in.require(node.mesh == -1 || exists(node.mesh, scene.meshes.size()), "a mesh does not exist");
+    in.require(node.skin == -1 || exists(node.skin, scene.skins.size()), "a skin does not exist");
+    in.require(node.camera == -1 || exists(node.camera, scene.cameras.size()),
+               "a camera does not exist");
+    if (!in.ok()) return;
+    if (node.mesh == -1) continue;
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+    in.require(node.weights.empty() || node.weights.size() == mesh.target_count(),
+               "a node lacks weights");
+    for (const Primitive& primitive : mesh.primitives) {
+      const std::size_t joints =
+          node.skin == -1 ? 0 : scene.skins[static_cast<std::size_t>(node.skin)].joints.size();
+      for (const std::uint16_t joint : primitive.influence_joints) {
+        in.require(joint < joints, "a vertex hangs on a joint that does not exist");
+      }
+    }
+  }
+}
+
+void check_channels(Parser& in, const Scene& scene) {
+  for (const Animation& animation : scene.animations) {
+    for (const Channel& channel : animation.channels) {
+      in.require(exists(channel.node, scene.nodes.size()), "a moving node does not exist");
+      if (!in.ok()) return;
+      std::size_t width = channel.path == Path::rotation ? 4 : 3;
+      if (channel.path == Path::weights) {
+        const int mesh = scene.nodes[static_cast<std::size_t>(channel.node)].mesh;
+        width = mesh < 0 ? 0 : scene.meshes[static_cast<std::size_t>(mesh)].target_count();
+      }
+      in.require(width > 0 && static_cast<std::size_t>(channel.width) == width,
+                 "a channel has values of another width");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::byte> pack(const Scene& scene) {
+  ByteWriter out;
+  put_text(out, scene.generator);
+  put_list(out, scene.nodes, put_node);
+  put_list(out, scene.meshes, [](ByteWriter& to, const Mesh& mesh) {
+    put_text(to, mesh.name);
+    put_list(to, mesh.primitives, put_primitive);
+    put_array(to, mesh.weights);
+  });
+  put_list(out, scene.skins, [](ByteWriter& to, const Skin& skin) {
+    put_text(to, skin.name);
+    put_array(to, std::vector<std::int32_t>(skin.joints.begin(), skin.joints.end()));
+    put_list(to, skin.inverse_binds, put_matrix);
+  });
+  put_list(out, scene.cameras, [](ByteWriter& to, const Camera& camera) {
+    put_text(to, camera.name);
+    to.write(static_cast<std::uint8_t>(camera.perspective));
+    to.write(camera.field_of_view);
+  });
+  put_list(out, scene.animations, [](ByteWriter& to, const Animation& animation) {
+    put_text(to, animation.name);
+    put_list(to, animation.channels, put_channel);
+  });
+  out.write(static_cast<std::uint8_t>(scene.space.metres.has_value()));
+  out.write(scene.space.metres.value_or(0.0));
+  out.write(static_cast<std::uint8_t>(scene.space.file_to_krok.has_value()));
+  const Quat turn = scene.space.file_to_krok.value_or(Quat::Identity());
+  for (int k = 0; k < 4; ++k) out.write(turn.coeffs()[k]);
+  put_list(out, scene.diagnostics, put_diagnostic);
+  return std::move(out.buffer());
+}
+
+Result<Scene> unpack(std::span<const std::byte> bytes) {
+  Parser in(bytes);
+  Scene scene;
+  scene.generator = in.text();
+  take_list(in, scene.nodes, take_node);
+  take_list(in, scene.meshes, take_mesh);
+  take_list(in, scene.skins, take_skin);
+  take_list(in, scene.cameras, take_camera);
+  take_list(in, scene.animations, [](Parser& from) {
+    Animation animation;
+    animation.name = from.text();
+    take_list(from, animation.channels, take_channel);
+    return animation;
+  });
+  const bool has_metres = in.number<std::uint8_t>() != 0;
+  const double metres = in.finite();
+  const bool has_turn = in.number<std::uint8_t>() != 0;
+  const Quat turn = in.unit_quaternion();
+  in.require(!has_metres || metres > 0, "a unit is not positive");
+  if (has_metres) scene.space.metres = metres;
+  if (has_turn) scene.space.file_to_krok = turn;
+  take_list(in, scene.diagnostics, take_diagnostic);
+  in.require(in.at_end(), "something follows the end");
+  link_nodes(in, scene);
+  if (in.ok()) check_references(in, scene);
+  if (in.ok()) check_channels(in, scene);
+  if (in.ok()) return scene;
+  return Error("assimp-result",
+               fmt::format("Assimp read the file into nonsense: {}",
+                           in.fault().empty() ? "the data ends early" : in.fault()),
+               "the file is probably damaged; try to open and save it in another program");
+}
+
+}  // namespace krok::assimp

@@ -1,0 +1,465 @@
+// The formats read through Assimp against plain forward kinematics over the same numbers. If these
+// fail, joints stand or turn wrong, move at another speed, or lose weights, keys or names, without
+// anything being said.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "unit/assimp/reading.h"
+#include "unit/assimp/sample_fbx.h"
+#include "unit/assimp/sample_files.h"
+
+namespace krok {
+namespace {
+
+using namespace test;
+
+const std::vector<double> kTimes = {0.0, 0.1, 0.4, 0.6};
+
+// All joints of the rig at all frames, with what the format's axes become put before them.
+void expect_motion(const nodes::Scene& scene, const MovingRig& rig,
+                   const std::vector<double>& times, const Mat4& turn) {
+  ASSERT_FALSE(scene.animations.empty());
+  for (std::size_t f = 0; f < rig.frames.size(); ++f) {
+    const auto world = rig.to_world(rig.frames[f]);
+    for (std::size_t j = 0; j < world.size(); ++j) {
+      expect_near(node_to_world(scene, rig.names[j], 0, times[f]), turn * world[j].matrix(), 1e-5,
+                  fmt::format("joint {} in frame {}", rig.names[j], f));
+    }
+  }
+}
+
+// The rest pose leaves the mesh as it is in the file.
+void expect_mesh(const nodes::Scene& scene, const Mat4& turn) {
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  const auto state = evaluate(scene, -1, 0);
+  ASSERT_EQ(state.positions.size(), 1u);
+  ASSERT_EQ(state.positions[0].size(), 4u);
+  for (const Vec3& corner : corners()) {
+    const Vec3 wanted = (turn * corner.homogeneous()).head<3>();
+    double nearest = 1e9;
+    for (const Vec3& position : state.positions[0]) {
+      nearest = std::min(nearest, (position - wanted).norm());
+    }
+    EXPECT_LT(nearest, 1e-5);
+  }
+}
+
+// Each corner's weights, by its place in the file.
+void expect_weights(const nodes::Scene& scene, const std::vector<std::string>& joints,
+                    const Mat4& file_to_mesh = Mat4::Identity()) {
+  ASSERT_EQ(scene.skins.size(), 1u);
+  const nodes::Primitive& primitive = scene.meshes[0].primitives[0];
+  ASSERT_GT(primitive.influences_per_vertex, 0);
+  const auto each = static_cast<std::size_t>(primitive.influences_per_vertex);
+  for (std::size_t c = 0; c < corners().size(); ++c) {
+    const Vec3 place = (file_to_mesh * corners()[c].homogeneous()).head<3>();
+    for (std::size_t v = 0; v < primitive.vertex_count(); ++v) {
+      if (((*primitive.positions)[v].cast<double>() - place).norm() > 1e-5) continue;
+      std::vector<double> weights(joints.size(), 0.0);
+      for (std::size_t k = 0; k < each; ++k) {
+        const int node = scene.skins[0].joints[primitive.influence_joints[v * each + k]];
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+          if (scene.nodes[static_cast<std::size_t>(node)].name == joints[j]) {
+            weights[j] += static_cast<double>(primitive.influence_weights[v * each + k]);
+          }
+        }
+      }
+      for (const auto& [joint, weight] : corner_weights()[c]) {
+        EXPECT_NEAR(weights[static_cast<std::size_t>(joint)], weight, 1e-5) << "corner " << c;
+      }
+    }
+  }
+}
+
+// The triangles' sides point as the file's do.
+void expect_winding(const nodes::Scene& scene) {
+  const nodes::Primitive& primitive = scene.meshes[0].primitives[0];
+  ASSERT_EQ(primitive.triangles.size(), 2u);
+  const auto side = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return Vec3((b - a).cross(c - a).normalized());
+  };
+  for (std::size_t t = 0; t < 2; ++t) {
+    const auto& triangle = primitive.triangles[t];
+    const auto at = [&](std::size_t k) {
+      return Vec3((*primitive.positions)[triangle[k]].cast<double>());
+    };
+    const auto given = corner_triangles()[t];
+    const auto corner = [&](std::size_t k) {
+      return corners()[static_cast<std::size_t>(given[k])];
+    };
+    EXPECT_GT(side(at(0), at(1), at(2)).dot(side(corner(0), corner(1), corner(2))), 0.999);
+  }
+}
+
+TEST(Smd, MotionAlone) {
+  const MovingRig rig;
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("walk.smd", smd(rig, false, true)));
+  expect_motion(scene, rig, {0.0, 1 / 30.0, 4 / 30.0, 6 / 30.0}, Mat4::Identity());
+  EXPECT_TRUE(scene.meshes.empty());
+  EXPECT_EQ(scene.animations[0].channels[0].times->size(), 4u);
+  EXPECT_TRUE(has_code(scene.diagnostics, "assimp-rate"));
+  EXPECT_FALSE(scene.space.metres || scene.space.file_to_krok);
+
+  assimp::ReadOptions options;
+  options.frames_per_second = 60;
+  const auto fast = assimp::read_file(folder.add("walk.smd", smd(rig, false, true)), options);
+  ASSERT_TRUE(fast.ok());
+  expect_motion(*fast, rig, {0.0, 1 / 60.0, 4 / 60.0, 6 / 60.0}, Mat4::Identity());
+}
+
+TEST(Smd, MeshWithWeights) {
+  const MovingRig rig;
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.smd", smd(rig, true, false)));
+  expect_mesh(scene, Mat4::Identity());
+  expect_weights(scene, rig.names);
+  expect_winding(scene);
+  EXPECT_TRUE(scene.animations.empty()) << "the rest pose is no motion";
+  // A material's name may have spaces, where Assimp would lose its place.
+  EXPECT_EQ(scene.meshes[0].primitives[0].material, "skin_of.bmp");
+  EXPECT_FLOAT_EQ((*scene.meshes[0].primitives[0].texture_coordinates)[0][1], 0.25f);
+}
+
+TEST(Smd, MotionsOfAList) {
+  const MovingRig rig;
+  const Folder folder;
+  const std::string path = folder.add("body.smd", smd(rig, true, false));
+  folder.add("anims/walk.smd", smd(rig, false, true));
+  folder.add("body_animation.txt", "walking anims/walk.smd\n");
+  const auto scene = read_or_fail(path);
+  ASSERT_EQ(scene.animations.size(), 1u);
+  EXPECT_EQ(scene.animations[0].name, "walking");
+  expect_motion(scene, rig, {0.0, 1 / 30.0, 4 / 30.0, 6 / 30.0}, Mat4::Identity());
+  expect_weights(scene, rig.names);
+}
+
+TEST(Smd, OfMoreThanEightJointsTheLargestAreKept) {
+  std::string text = "version 1\nnodes\n";
+  for (int j = 0; j < 10; ++j) text += fmt::format("{} \"b{}\" {}\n", j, j, j - 1);
+  text += "end\nskeleton\ntime 0\n";
+  for (int j = 0; j < 10; ++j) text += fmt::format("{} 0 0 1 0 0 0\n", j);
+  text += "end\ntriangles\nskin\n";
+  for (int corner = 0; corner < 3; ++corner) {
+    text += fmt::format("0 {} {} 0 0 0 1 0 0 10", corner % 2, corner / 2);
+    // 1/55, 2/55 .. 10/55
+    for (int j = 0; j < 10; ++j) text += fmt::format(" {} {:.9f}", j, (j + 1) / 55.0);
+    text += "\n";
+  }
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("many.smd", text + "end\n"));
+  const nodes::Primitive& primitive = scene.meshes[0].primitives[0];
+  ASSERT_EQ(primitive.influences_per_vertex, 8);
+  double sum = 0;
+  for (std::size_t k = 0; k < 8; ++k) {
+    const int node = scene.skins[0].joints[primitive.influence_joints[k]];
+    EXPECT_EQ(scene.nodes[static_cast<std::size_t>(node)].name, fmt::format("b{}", 9 - k));
+    EXPECT_NEAR(static_cast<double>(primitive.influence_weights[k]),
+                static_cast<double>(10 - k) / 52.0, 1e-5);
+    sum += static_cast<double>(primitive.influence_weights[k]);
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-6);
+  EXPECT_TRUE(has_code(scene.diagnostics, "assimp-influences"));
+}
+
+TEST(Smd, JointsOfOneNameAreWarnedOf) {
+  MovingRig rig;
+  rig.names = {"Hips", "Bone", "Bone"};
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("walk.smd", smd(rig, false, true)));
+  EXPECT_TRUE(has_code(scene.diagnostics, "assimp-same-name"));
+}
+
+TEST(Smd, ListsLeadOutOfNoFolder) {
+  const MovingRig rig;
+  const Folder folder;
+  folder.add("walk.smd", smd(rig, false, true));
+  const std::string path = folder.add("deep/body.smd", smd(rig, true, false));
+  folder.add("deep/body_animation.txt", "walking ../walk.smd\n");
+  const auto scene = read_or_fail(path);
+  EXPECT_TRUE(scene.animations.empty());
+  EXPECT_TRUE(has_code(scene.diagnostics, "assimp-companion"));
+}
+
+TEST(Md5, MeshAndMotionFindEachOther) {
+  const MovingRig rig;
+  const Folder folder;
+  const std::vector<double> times = {0.0, 1 / 24.0, 2 / 24.0, 3 / 24.0};
+  MovingRig moved = rig;  // joint 1 only turns
+  for (auto& poses : moved.frames) poses[1].translation = moved.frames[0][1].translation;
+  const std::string mesh = folder.add("body.md5mesh", md5mesh(rig));
+  const std::string motion = folder.add("body.md5anim", md5anim(moved));
+  for (const std::string& path : {mesh, motion}) {
+    const auto scene = read_or_fail(path);
+    // Joint 2 rests, in the motion's base frame and not in the mesh's pose.
+    expect_motion(scene, moved, times, z_up_to_y_up());
+    expect_mesh(scene, z_up_to_y_up());
+    expect_weights(scene, rig.names);
+    expect_winding(scene);
+    EXPECT_TRUE(has_code(scene.diagnostics, "assimp-companion"));
+    EXPECT_TRUE(has_code(scene.diagnostics, "assimp-normals"));
+    EXPECT_EQ(scene.meshes[0].primitives[0].material, "skin");
+    EXPECT_FLOAT_EQ((*scene.meshes[0].primitives[0].texture_coordinates)[0][1], 0.75f);
+  }
+  // A motion of another name takes the only mesh that has its joints.
+  const auto other = read_or_fail(folder.add("walk.md5anim", md5anim(moved)));
+  EXPECT_EQ(other.meshes.size(), 1u);
+  expect_motion(other, moved, times, z_up_to_y_up());
+}
+
+TEST(Md5, MotionAlone) {
+  MovingRig rig;
+  for (auto& poses : rig.frames) poses[1].translation = rig.frames[0][1].translation;
+  const Folder folder;
+  const std::string path = folder.add("walk.md5anim", md5anim(rig));
+  const std::vector<double> times = {0.0, 1 / 24.0, 2 / 24.0, 3 / 24.0};
+  const auto scene = read_or_fail(path);
+  expect_motion(scene, rig, times, z_up_to_y_up());
+  EXPECT_TRUE(scene.meshes.empty()) << "Assimp's mesh for show is no mesh of the file";
+  // A mesh with other joints is not taken.
+  MovingRig stranger;
+  stranger.names = {"pelvis", "chest", "skull"};
+  folder.add("walk.md5mesh", md5mesh(stranger));
+  const auto again = read_or_fail(path);
+  EXPECT_TRUE(again.meshes.empty());
+  EXPECT_TRUE(has_code(again.diagnostics, "assimp-companion"));
+}
+
+TEST(Md5, FramesThatLackNumbersAreRefused) {
+  const MovingRig rig;
+  const Folder folder;
+  std::string text = md5anim(rig);
+  const std::size_t frame = text.find("frame 2 {");
+  text.erase(text.find_first_of("-0123456789", frame + 9), 3);
+  text.insert(frame + 9, " ");
+  const std::size_t begin = text.find("frame 2 {") + 9;
+  const std::size_t number = text.find_first_not_of(" \t\n", begin);
+  text.erase(number, text.find_first_of(" \t\n", number) - number);
+  const auto scene = assimp::read_file(folder.add("walk.md5anim", text));
+  ASSERT_FALSE(scene.ok());
+  EXPECT_EQ(scene.error().code, "assimp-refused");
+  EXPECT_NE(scene.error().message.find("frame 2"), std::string::npos) << scene.error().message;
+}
+
+TEST(Ms3d, KeysAreInTheJointsOwnAxes) {
+  const MovingRig rig;
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.ms3d", ms3d(rig)));
+  expect_motion(scene, rig, kTimes, Mat4::Identity());
+  expect_mesh(scene, Mat4::Identity());
+  expect_winding(scene);
+}
+
+TEST(Ms3d, UpToFourWeightsAVertex) {
+  const MovingRig rig;
+  const Folder folder;
+  expect_weights(read_or_fail(folder.add("body.ms3d", ms3d(rig))), rig.names);
+  // Without the later part each vertex hangs on one joint.
+  const auto single = read_or_fail(folder.add("old.ms3d", ms3d(rig, false)));
+  const nodes::Primitive& primitive = single.meshes[0].primitives[0];
+  for (std::size_t v = 0; v < primitive.vertex_count(); ++v) {
+    EXPECT_FLOAT_EQ(primitive.influence_weights[v * 4], 1.0f);
+  }
+}
+
+TEST(Ms3d, AFrameRateOfNoughtLosesNoKeys) {
+  const MovingRig rig;
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.ms3d", ms3d(rig, true, 0.0f)));
+  expect_motion(scene, rig, kTimes, Mat4::Identity());
+}
+
+TEST(Collada, CurvesOfOneNodeInSeveralAnimations) {
+  MovingRig rig;
+  for (auto& poses : rig.frames) {
+    poses[1].translation = rig.rest[1].translation;
+    poses[2] = rig.rest[2];
+  }
+  rig.frames[3][1].angles[1] = rig.frames[2][1].angles[1];  // that curve ends before
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.dae", collada(rig)));
+  const Mat4 turn = z_up_to_y_up() * (Vec4(0.01, 0.01, 0.01, 1).asDiagonal().toDenseMatrix());
+  ASSERT_EQ(scene.animations.size(), 1u);
+  for (std::size_t f = 0; f < rig.frames.size(); ++f) {
+    const auto world = rig.to_world(rig.frames[f]);
+    for (std::size_t j = 0; j < world.size(); ++j) {
+      expect_near(node_to_world(scene, rig.names[j], 0, kTimes[f]), turn * world[j].matrix(), 1e-6,
+                  fmt::format("joint {} in frame {}", rig.names[j], f));
+    }
+  }
+  expect_mesh(scene, turn);
+  expect_weights(scene, rig.names);
+  expect_winding(scene);
+  EXPECT_EQ(scene.space.metres, 1.0);
+  EXPECT_FALSE(read_or_fail(folder.add("bare.dae", collada(rig, false))).space.metres);
+}
+
+TEST(Collada, CameraWithAVerticalFieldOfViewAlone) {
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("shot.dae", collada(MovingRig())));
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_NEAR(scene.cameras[0].field_of_view, 40 * kRadiansPerDegree, 1e-9);
+  const Mat4 eye = node_to_world(scene, "eye", -1, 0);
+  EXPECT_EQ(scene.nodes[static_cast<std::size_t>(node_named(scene, "eye"))].camera, 0);
+  EXPECT_LT((eye.topRightCorner<3, 1>() - Vec3(0, 0.01, 0.05)).norm(), 1e-6);
+  const Vec3 forward = -eye.block<3, 1>(0, 2).normalized();
+  EXPECT_LT((forward - Vec3(0, 0, -1)).norm(), 1e-6);
+}
+
+TEST(Collada, ClipsStayApart) {
+  std::string text = collada(MovingRig());
+  const std::string clips =
+      "<library_animation_clips><animation_clip id=\"wave\" name=\"wave\"><instance_animation "
+      "url=\"#hips-motion\"/></animation_clip><animation_clip id=\"bend\" start=\"0.1\" "
+      "end=\"0.5\">"
+      "<instance_animation url=\"#spine-X\"/></animation_clip></library_animation_clips>\n";
+  text.insert(text.find("<library_visual_scenes>"), clips);
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("clips.dae", text));
+  ASSERT_EQ(scene.animations.size(), 2u);
+  EXPECT_EQ(scene.animations[0].name, "wave");
+  EXPECT_EQ(scene.animations[1].name, "bend");
+  // Each moves its own joint, the second over its own part of the time.
+  const auto moved = [&](std::size_t animation) {
+    std::set<std::string> joints;
+    for (const nodes::Channel& channel : scene.animations[animation].channels) {
+      joints.insert(scene.nodes[static_cast<std::size_t>(channel.node)].name);
+    }
+    return joints;
+  };
+  EXPECT_EQ(moved(0), std::set<std::string>{"Hips"});
+  EXPECT_EQ(moved(1), std::set<std::string>{"Spine"});
+  const std::vector<float>& times = *scene.animations[1].channels[0].times;
+  ASSERT_EQ(times.size(), 3u);
+  EXPECT_FLOAT_EQ(times[0], 0.0f);
+  EXPECT_FLOAT_EQ(times[1], 0.3f);
+  EXPECT_FLOAT_EQ(times[2], 0.4f);
+}
+
+TEST(Max3ds, ARolledCamera) {
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("rolled.3ds", max_3ds(90.0f)));
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  const Mat4 eye = node_to_world(scene, "eye_camera", -1, 0);
+  EXPECT_LT((eye.block<3, 1>(0, 2) - Vec3(0, 0, 1)).norm(), 1e-5);  // looks the same way
+  EXPECT_NEAR(std::abs(eye(0, 1)), 1.0, 1e-5);                      // on its side
+}
+
+TEST(Max3ds, KeysAndCamera) {
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.3ds", max_3ds()));
+  ASSERT_EQ(scene.animations.size(), 1u);
+  const auto at = [&](double time) {
+    return Vec3(node_to_world(scene, "body", 0, time).topRightCorner<3, 1>());
+  };
+  const nodes::Channel& channel = scene.animations[0].channels[0];
+  ASSERT_EQ(channel.times->size(), 3u);
+  const double frame = static_cast<double>((*channel.times)[2]) / 10;
+  EXPECT_NEAR(static_cast<double>((*channel.times)[1]), 4 * frame, 1e-6);
+  EXPECT_NEAR(at(4 * frame)[0], 0.5, 1e-6);
+  EXPECT_NEAR(at(10 * frame)[0], 2.0, 1e-6);
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  // A lens of 50 mm sees 48 degrees across, a picture of 4:3 36.9 upright.
+  EXPECT_NEAR(scene.cameras[0].field_of_view,
+              2 * std::atan(std::tan(24 * kRadiansPerDegree) * 0.75), 1e-5);
+  const Mat4 eye = node_to_world(scene, "eye_camera", -1, 0);
+  EXPECT_LT((eye.topRightCorner<3, 1>() - Vec3(0, 1, 5)).norm(), 1e-5);
+  EXPECT_LT((eye.block<3, 1>(0, 2) - Vec3(0, 0, 1)).norm(), 1e-5);
+  EXPECT_LT((eye.block<3, 1>(0, 1) - Vec3(0, 1, 0)).norm(), 1e-5);
+  EXPECT_TRUE(has_code(scene.diagnostics, "assimp-no-skeleton"));
+}
+
+TEST(Ase, SamplesAndCamera) {
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.ase", ase()));
+  ASSERT_EQ(scene.animations.size(), 1u);
+  const auto at = [&](double time) { return node_to_world(scene, "body", 0, time); };
+  EXPECT_LT((at(640 / 4800.0).topRightCorner<3, 1>() - Vec3(1, 0, 0)).norm(), 1e-5);
+  EXPECT_LT((at(1.0).topRightCorner<3, 1>() - Vec3(1, 0, -2)).norm(), 1e-5);
+  // Each sample turns on from the one before; 3ds Max counts angles clockwise.
+  for (const auto& [time, angle] : {std::pair(640 / 4800.0, -0.5), std::pair(1.0, -0.75)}) {
+    Mat4 turned = Mat4::Identity();
+    turned.topLeftCorner<3, 3>() = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
+    const Mat4 expected = z_up_to_y_up() * turned;
+    EXPECT_LT((at(time).topLeftCorner<3, 3>() - expected.topLeftCorner<3, 3>()).norm(), 1e-5);
+  }
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_NEAR(scene.cameras[0].field_of_view, 2 * std::atan(std::tan(0.4) * 0.75), 1e-5);
+  const Mat4 eye = node_to_world(scene, "eye", -1, 0);
+  const int camera_node = node_named(scene, "eye");
+  EXPECT_EQ(scene.nodes[static_cast<std::size_t>(camera_node)].camera, 0);
+  EXPECT_LT((eye.topRightCorner<3, 1>() - Vec3(0, 1, 5)).norm(), 1e-5);
+  EXPECT_LT((-eye.block<3, 1>(0, 2) - Vec3(0, 0, -1)).norm(), 1e-5);
+}
+
+TEST(Fbx, PivotsAndPreAndPostRotations) {
+  const FbxSample sample;
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.fbx", sample.text()));
+  ASSERT_EQ(scene.animations.size(), 1u);
+  EXPECT_EQ(scene.animations[0].name, "Take 001");
+  for (int key = -1; key < 3; ++key) {
+    Mat4 world = Mat4::Identity();
+    for (const FbxNode& node : sample.nodes) {
+      const auto k = static_cast<std::size_t>(std::max(key, 0));
+      world = world * node.to_parent(key < 0 ? node.rotation : node.keys[k]);
+      expect_near(node_to_world(scene, node.name, key < 0 ? -1 : 0, sample.times[k]), world, 1e-3,
+                  fmt::format("{} at key {}", node.name, key));
+    }
+  }
+  for (const nodes::Node& node : scene.nodes) {
+    EXPECT_EQ(node.name.find("$AssimpFbx$"), std::string::npos) << node.name;
+  }
+}
+
+TEST(Fbx, LayersThatAreBlendedAreWarnedOf) {
+  std::string text = FbxSample().text();
+  const Folder folder;
+  EXPECT_FALSE(has_code(read_or_fail(folder.add("one.fbx", text)).diagnostics, "assimp-layers"));
+  text.insert(text.find("AnimationLayer: 2001"),
+              "AnimationLayer: 2002, \"AnimLayer::More\", \"\" {\n}\n");
+  text.insert(text.find("Connections:  {\n") + 16, "C: \"OO\",2002,2000\n");
+  EXPECT_TRUE(has_code(read_or_fail(folder.add("two.fbx", text)).diagnostics, "assimp-layers"));
+}
+
+TEST(Fbx, TargetsRestWhereTheFileSays) {
+  const FbxSample sample;
+  const Folder folder;
+  EXPECT_EQ(read_or_fail(folder.add("rest.fbx", sample.text())).meshes[0].weights,
+            std::vector<double>{0.0});
+  std::string text = sample.text();
+  const std::size_t at = text.find("DeformPercent: 0");
+  text.replace(at, 16, "DeformPercent: 25");
+  EXPECT_EQ(read_or_fail(folder.add("lifted.fbx", text)).meshes[0].weights,
+            std::vector<double>{0.25});
+}
+
+TEST(Fbx, SpaceAndMesh) {
+  const FbxSample sample;
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.fbx", sample.text()));
+  EXPECT_EQ(scene.space.metres, 0.0254);
+  ASSERT_TRUE(scene.space.file_to_krok);
+  // Z is up and the figure looks along -Y.
+  EXPECT_LT((*scene.space.file_to_krok * Vec3::UnitZ() - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((*scene.space.file_to_krok * Vec3(0, -1, 0) - Vec3::UnitZ()).norm(), 1e-12);
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  const nodes::Primitive& primitive = scene.meshes[0].primitives[0];
+  EXPECT_EQ(primitive.vertex_count(), 4u) << "corners of a square are shared by its triangles";
+  EXPECT_EQ(primitive.triangles.size(), 2u);
+  ASSERT_EQ(primitive.targets.size(), 1u);
+  Vec3f sum = Vec3f::Zero();
+  for (const Vec3f& moved : *primitive.targets[0].positions) sum += moved;
+  EXPECT_LT((sum - Vec3f(0, 0, 2)).norm(), 1e-5f);
+  // At rest the mesh is as it was bound.
+  const auto state = evaluate(scene, -1, 0);
+  ASSERT_EQ(state.positions.size(), 1u);
+  for (const Vec3& position : state.positions[0]) EXPECT_NEAR(position[2], 0.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace krok
