@@ -26,10 +26,10 @@ struct Evaluation {
   std::vector<Mat4> node_to_world;           // [nodes]
   std::vector<std::vector<Vec3>> positions;  // [instances][vertices], world space
   std::vector<std::vector<Vec3>> normals;    // the same, unit or zero; none where the file has none
-  // Working space.
-  std::vector<Vec3> node_translations, node_scales;
+  std::vector<Vec3> node_translations, node_scales;  // to the parent, [nodes]
   std::vector<Quat> node_rotations;
-  std::vector<std::vector<double>> node_weights;
+  std::vector<std::vector<double>> node_weights;  // of the mesh's targets, [nodes]
+  // Working space.
   std::vector<double> values;
   std::vector<Eigen::Matrix<double, 3, 4>> palette;
 };
@@ -58,12 +58,17 @@ class Evaluator {
   // its first value holds, after the last the last.
   void evaluate(int animation, double time, Evaluation& out) const;
 
+  // The same for the nodes alone: fills node_to_world and the node_ members.
+  void place_nodes(int animation, double time, Evaluation& out) const;
+
+  // All nodes, parents before children: depth first through the scene, then those outside of it.
+  const std::vector<int>& order() const { return order_; }
+
  private:
   explicit Evaluator(const Scene& scene) : scene_(&scene) {}
   void order_nodes();
   Status find_instances();
   void find_joints();
-  void place_nodes(int animation, double time, Evaluation& out) const;
   void evaluate_instance(std::size_t index, Evaluation& out) const;
 
   const Scene* scene_;

@@ -51,6 +51,7 @@ struct Primitive {
   std::string material;     // its name; may be empty
   Shared<Vec3f> positions;  // never null
   Shared<Vec3f> normals;
+  Shared<Vec4f> tangents;  // as glTF has them: unit xyz; w, 1 or -1, is the third axis' side
   Shared<Vec2f> texture_coordinates;  // the first set
   // [vertices x influences_per_vertex]; joints are places in the skin's list. 0, 4 or 8 a vertex.
   int influences_per_vertex = 0;
@@ -119,7 +120,8 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<Animation> animations;
   Space space;
-  Diagnostics diagnostics;  // what was left aside or is doubtful
+  std::vector<std::string> files;  // paths of those that were read besides the one asked for
+  Diagnostics diagnostics;         // what was left aside or is doubtful
 };
 
 }  // namespace krok::nodes

@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+#include "core/bytes.h"
+#include "core/text.h"
+#include "formats/morph_exr/header_scan_internal.h"
+
+// Source: OpenEXR File Layout, https://openexr.com/en/latest/OpenEXRFileLayout.html
+
+namespace krok::morph_exr {
+
+namespace {
+
+constexpr std::uint32_t kMagic = 20000630;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kLongNames = 0x400;
+constexpr std::size_t kLongestName = 255;
+constexpr std::uint32_t kMostAttributes = 1000;
+// What deflate can make of a byte at most, and room for small files.
+constexpr std::uint64_t kMostExpansion = 1040;
+
+// Types whose readers take no more memory than the attribute's bytes; texts are looked at here.
+constexpr std::string_view kTypes[] = {"box2f",       "box2i",    "chlist",       "chromaticities",
+                                       "compression", "double",   "envmap",       "float",
+                                       "int",         "keycode",  "lineOrder",    "m33f",
+                                       "m44f",        "rational", "string",       "v2f",
+                                       "v2i",         "v3f",      "stringvector", "v3i",
+                                       "timecode"};
+
+class Scan {
+ public:
+  explicit Scan(std::span<const std::byte> file) : file_(file), in_(file) {}
+
+  Result<HeaderFacts> run() {
+    if (in_.read<std::uint32_t>() != kMagic) return fail("this is no OpenEXR file");
+    const auto version = in_.read<std::uint32_t>();
+    if ((version & 0xFF) != kVersion || (version & ~(0xFFu | kLongNames)) != 0) {
+      return fail("it is tiled, deep, of several parts or of another version of OpenEXR",
+                  "save it as a single-part scan-line picture");
+    }
+    for (std::uint32_t i = 0; i < kMostAttributes; ++i) {
+      std::string_view name, type;
+      if (!take_name(name)) return fail("its header is cut short");
+      if (name.empty()) return finish();
+      if (!take_name(type)) return fail("its header is cut short");
+      const auto size = in_.read<std::uint32_t>();
+      if (!in_.ok() || size > in_.remaining()) {
+        return fail(fmt::format("attribute {} does not lie within the file", i));
+      }
+      if (auto looked = look_at(name, type, in_.take(size)); !looked) return looked.error();
+    }
+    return fail("its header has more than a thousand attributes");
+  }
+
+ private:
+  Error fail(const std::string& what, std::string hint = "the file is damaged or was cut short") {
+    const auto place = static_cast<std::int64_t>(file_.size() - in_.remaining());
+    return Error("exr-header", what, std::move(hint)).at_byte(place);
+  }
+
+  bool take_name(std::string_view& name) {
+    const std::string_view rest(
+        reinterpret_cast<const char*>(file_.data()) + (file_.size() - in_.remaining()),
+        std::min(in_.remaining(), kLongestName + 1));
+    const std::size_t end = rest.find('\0');
+    if (end == std::string_view::npos) return false;
+    name = rest.substr(0, end);
+    in_.take(end + 1);
+    return in_.ok();
+  }
+
+  Status look_at(std::string_view name, std::string_view type, std::span<const std::byte> value) {
+    ByteReader in(value);
+    if (std::find(std::begin(kTypes), std::end(kTypes), type) == std::end(kTypes)) {
+      return fail(fmt::format("attribute '{}' is of a type that is not read", shown(name)),
+                  "save it without previews and other extras");
+    }
+    while (type == "stringvector" && in.ok() && in.remaining() > 0) {
+      in.take(in.read<std::uint32_t>());
+      if (!in.ok()) return fail(fmt::format("the texts of '{}' are longer than it", shown(name)));
+    }
+    if (name == "compression") {
+      const auto method = in.read<std::uint8_t>();
+      if (in.ok() && method <= 3) return {};
+      return fail("its compression is none of NO, RLE, ZIPS and ZIP", "save it with ZIP");
+    }
+    if (name == "dataWindow") {
+      const auto left = in.read<std::int32_t>(), top = in.read<std::int32_t>();
+      const auto right = in.read<std::int32_t>(), bottom = in.read<std::int32_t>();
+      if (!in.ok() || left != 0 || top != 0 || right < 0 || bottom < 0 || right >= (1 << 20) ||
+          bottom >= (1 << 20)) {
+        return fail("its data window is not one of a texture");
+      }
+      facts_ = {static_cast<std::uint32_t>(right) + 1, static_cast<std::uint32_t>(bottom) + 1};
+    }
+    return {};
+  }
+
+  Result<HeaderFacts> finish() {
+    const std::uint64_t texels = std::uint64_t{facts_.width} * facts_.height;
+    if (texels == 0) return fail("its header has no data window");
+    // Each block of up to 16 lines has an offset and a head of 8 bytes each.
+    const std::uint64_t blocks = (facts_.height + 15) / 16;
+    if (texels * 12 > kMostExpansion * file_.size() || blocks * 16 > file_.size()) {
+      return fail(fmt::format("it says that it is {} by {} texels, which {} bytes cannot hold",
+                              facts_.width, facts_.height, file_.size()));
+    }
+    return facts_;
+  }
+
+  std::span<const std::byte> file_;
+  ByteReader in_;
+  HeaderFacts facts_;
+};
+
+}  // namespace
+
+Result<HeaderFacts> scan_header(std::span<const std::byte> file) {
+  return Scan(file).run();
+}
+
+}  // namespace krok::morph_exr

@@ -1,0 +1,406 @@
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "character/bind_pose_internal.h"
+#include "character/rig.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "math/quaternion.h"
+
+namespace krok::character {
+
+using nodes::Scene;
+
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+void tell(Diagnostics& diagnostics, Severity severity, std::string code, std::string message,
+          std::string joint = {}) {
+  Diagnostic told;
+  told.severity = severity;
+  told.code = std::move(code);
+  told.message = std::move(message);
+  told.joint = std::move(joint);
+  diagnostics.push_back(std::move(told));
+}
+
+// The rotation by quarter turns nearest to another.
+Mat3 nearest_by_quarters(const Mat3& rotation) {
+  Mat3 best = Mat3::Identity();
+  double most = -4;
+  for (int axes = 0; axes < 6; ++axes) {
+    for (int signs = 0; signs < 8; ++signs) {
+      Mat3 turn = Mat3::Zero();
+      const int x = axes / 2, y = (x + 1 + axes % 2) % 3, z = 3 - x - y;
+      turn(x, 0) = signs & 1 ? -1 : 1;
+      turn(y, 1) = signs & 2 ? -1 : 1;
+      turn(z, 2) = signs & 4 ? -1 : 1;
+      const double trace = (turn.transpose() * rotation).trace();
+      if (turn.determinant() > 0 && trace > most) {
+        most = trace;
+        best = turn;
+      }
+    }
+  }
+  return best;
+}
+
+// The rotation that brings points nearest to others, both relative to their means (Kabsch, 1976);
+// `covariance` is the sum of q p^T.
+Mat3 best_rotation(const Mat3& covariance) {
+  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
+  return u * svd.matrixV().transpose();
+}
+
+double angle_of(const Mat3& rotation) {
+  return angle_between(Quat(rotation), Quat::Identity());
+}
+
+class Finder {
+ public:
+  Finder(const Scene& scene, const nodes::Evaluator& evaluator, const Joints& joints,
+         const Mat4& to_axes, Diagnostics& diagnostics)
+      : scene_(scene),
+        evaluator_(evaluator),
+        joints_(joints),
+        to_axes_(to_axes),
+        diagnostics_(diagnostics),
+        reference_(at(joints.count()), Mat4::Identity()),
+        known_(at(joints.count()), 0),
+        weighted_(at(joints.count()), 0) {}
+
+  BindPose find() {
+    evaluator_.place_nodes(-1, 0, rest_);
+    measure();
+    find_weighted();
+    for (const int skin : by_size()) use_skin(skin);
+    follow_nodes();
+    tell_of_binds();
+    return {std::move(reference_), std::move(weighted_)};
+  }
+
+ private:
+  const nodes::Skin& skin_of(int skin) const { return scene_.skins[at(skin)]; }
+  std::size_t joint_of(int skin, std::size_t place) const {
+    return at(joints_.node_to_joint[at(skin_of(skin).joints[place])]);
+  }
+  // Where the joint's node stands without animation.
+  Mat4 rest(int joint) const {
+    const int node = joints_.nodes[at(joint)];
+    return node < 0 ? to_axes_ : Mat4(to_axes_ * rest_.node_to_world[at(node)]);
+  }
+  void measure();
+  void find_weighted();
+  std::vector<int> by_size() const;
+  Mat4 world_of_mesh(int skin) const;
+  Mat4 upright(int skin, const std::vector<std::size_t>& places, const Mat4& by_top) const;
+  Mat4 mesh_to_world(int skin, const std::vector<std::size_t>& places);
+  std::vector<std::size_t> usable_binds(int skin);
+  bool fits_parent(std::size_t joint, const Mat4& place) const;
+  void use_skin(int skin);
+  void follow_nodes();
+  void tell_of_binds();
+
+  const Scene& scene_;
+  const nodes::Evaluator& evaluator_;
+  const Joints& joints_;
+  const Mat4& to_axes_;
+  Diagnostics& diagnostics_;
+  nodes::Evaluation rest_;
+  double size_ = 1.0;  // of the skeleton, in the scene's unit
+  std::vector<Mat4> reference_;
+  std::vector<char> known_;
+  std::vector<char> weighted_;
+  std::size_t unusable_ = 0;
+  std::string first_unusable_;
+};
+
+void Finder::measure() {
+  Eigen::AlignedBox3d box;
+  for (int j = 0; j < joints_.count(); ++j) {
+    const Vec3 position = rest(j).topRightCorner<3, 1>();
+    if (position.allFinite()) box.extend(position);
+  }
+  const double extent = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+  if (extent > 0) size_ = extent;
+}
+
+void Finder::find_weighted() {
+  for (std::size_t n = 0; n < scene_.nodes.size(); ++n) {
+    const nodes::Node& node = scene_.nodes[n];
+    if (node.mesh < 0) continue;
+    if (node.skin < 0) {
+      const int joint = joints_.node_to_joint[n];
+      if (joint >= 0) weighted_[at(joint)] = 1;
+      continue;
+    }
+    const nodes::Skin& skin = skin_of(node.skin);
+    for (const nodes::Primitive& primitive : scene_.meshes[at(node.mesh)].primitives) {
+      for (std::size_t k = 0; k < primitive.influence_joints.size(); ++k) {
+        if (!(primitive.influence_weights[k] > 0)) continue;
+        const int joint = joints_.node_to_joint[at(skin.joints[primitive.influence_joints[k]])];
+        if (joint >= 0) weighted_[at(joint)] = 1;
+      }
+    }
+  }
+}
+
+// The skins, those with most joints first.
+std::vector<int> Finder::by_size() const {
+  std::vector<int> skins = joints_.skins;
+  std::stable_sort(skins.begin(), skins.end(), [&](int a, int b) {
+    return skin_of(a).joints.size() > skin_of(b).joints.size();
+  });
+  return skins;
+}
+
+// The placement of the first node in the scene whose mesh is bound by the skin.
+Mat4 Finder::world_of_mesh(int skin) const {
+  for (const int node : evaluator_.order()) {
+    const nodes::Node& one = scene_.nodes[at(node)];
+    if (one.skin == skin && one.mesh >= 0 && one.in_scene) {
+      return to_axes_ * rest_.node_to_world[at(node)];
+    }
+  }
+  return Mat4::Constant(std::nan(""));
+}
+
+// A mesh_to_world of the bind pose for a figure whose nodes stand in another pose, and whose
+// topmost joint is turned in it: such a pose stands as the whole of the joints does, along axes.
+Mat4 Finder::upright(int skin, const std::vector<std::size_t>& places, const Mat4& by_top) const {
+  const nodes::Skin& one = skin_of(skin);
+  const Mat3 linear = by_top.topLeftCorner<3, 3>();
+  const double scale = std::cbrt(linear.determinant());
+  if (!(scale > 0)) return by_top;
+  const Transform top = nodes::rigid_part(by_top);
+  constexpr double kOnAxis = 1e-3, kNear = 40 * kRadiansPerDegree;
+  const Mat3 top_turn = top.orientation.toRotationMatrix();
+  if (angle_of(nearest_by_quarters(top_turn).transpose() * top_turn) < kOnAxis) return by_top;
+
+  Vec3 bound_mean = Vec3::Zero(), shown_mean = Vec3::Zero();
+  std::vector<std::pair<Vec3, Vec3>> pairs;
+  for (const std::size_t k : places) {
+    if (!weighted_[joint_of(skin, k)]) continue;
+    const Vec3 bound = inverse_or_identity(one.inverse_binds[k]).topRightCorner<3, 1>() * scale;
+    const Vec3 shown = rest(static_cast<int>(joint_of(skin, k))).topRightCorner<3, 1>();
+    if (!bound.allFinite() || !shown.allFinite()) continue;
+    pairs.emplace_back(bound, shown);
+    bound_mean += bound;
+    shown_mean += shown;
+  }
+  if (pairs.size() < 3) return by_top;
+  bound_mean /= static_cast<double>(pairs.size());
+  shown_mean /= static_cast<double>(pairs.size());
+  Mat3 covariance = Mat3::Zero();
+  for (const auto& [bound, shown] : pairs) {
+    covariance += (shown - shown_mean) * (bound - bound_mean).transpose();
+  }
+  if (!covariance.allFinite()) return by_top;
+  Mat3 turn = best_rotation(covariance);
+  const Mat3 quarters = nearest_by_quarters(turn);
+  if (angle_of(quarters.transpose() * turn) < kNear) turn = quarters;
+  Vec3 offset = shown_mean - turn * bound_mean;
+  if (offset.norm() < 0.5 * size_) offset.setZero();  // the mesh's own origin is the better floor
+  Mat4 result = Mat4::Identity();
+  result.topLeftCorner<3, 3>() = turn * scale;
+  result.topRightCorner<3, 1>() = offset;
+  return result;
+}
+
+// X for a skin none of whose joints is placed yet.
+Mat4 Finder::mesh_to_world(int skin, const std::vector<std::size_t>& places) {
+  const nodes::Skin& one = skin_of(skin);
+  const std::size_t top = places.front();
+  const int top_joint = static_cast<int>(joint_of(skin, top));
+  // Hung under joints that are known: as its node hangs there.
+  for (int above = joints_.parents[at(top_joint)]; above >= 0; above = joints_.parents[at(above)]) {
+    if (!known_[at(above)]) continue;
+    const Mat4 local = inverse_or_identity(rest(above)) * rest(top_joint);
+    return reference_[at(above)] * local * one.inverse_binds[top];
+  }
+  const Mat4 by_top = rest(top_joint) * one.inverse_binds[top];
+  const Mat4 by_mesh = world_of_mesh(skin);
+  bool all_agree = true, mesh_agrees = false;
+  for (const std::size_t k : places) {
+    if (!weighted_[joint_of(skin, k)]) continue;
+    const Mat4 shown = rest(static_cast<int>(joint_of(skin, k))) * one.inverse_binds[k];
+    all_agree = all_agree && nearly_same(shown, by_top, size_);
+    mesh_agrees = mesh_agrees || nearly_same(shown, by_mesh, size_);
+  }
+  const Mat4 chosen = all_agree ? by_top : mesh_agrees ? by_mesh : upright(skin, places, by_top);
+  // Any X gives the same motion of the vertices, so the rounding of a file need not tilt the
+  // figure.
+  const bool untouched = (chosen - Mat4::Identity()).cwiseAbs().maxCoeff() < 1e-5;
+  return untouched ? Mat4(Mat4::Identity()) : chosen;
+}
+
+// The places in a skin's list whose matrices can be used, those of joints that carry vertices
+// first, parents before their children.
+std::vector<std::size_t> Finder::usable_binds(int skin) {
+  const nodes::Skin& one = skin_of(skin);
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < one.joints.size(); ++k) {
+    bool works = false;
+    inverse_or_identity(one.inverse_binds[k], &works);
+    if (works) places.push_back(k);
+    if (!works && unusable_++ == 0) first_unusable_ = scene_.nodes[at(one.joints[k])].name;
+  }
+  std::stable_sort(places.begin(), places.end(), [&](std::size_t a, std::size_t b) {
+    const std::size_t joint_a = joint_of(skin, a), joint_b = joint_of(skin, b);
+    if (weighted_[joint_a] != weighted_[joint_b]) return weighted_[joint_a] != 0;
+    return joint_a < joint_b;
+  });
+  return places;
+}
+
+// Whether a bone has the length and scale under its parent that its nodes give it. Some exporters
+// write any matrix for joints that carry no vertices.
+bool Finder::fits_parent(std::size_t joint, const Mat4& place) const {
+  const int parent = joints_.parents[joint];
+  if (parent < 0 || !known_[at(parent)]) return true;
+  const Mat4 bound = inverse_or_identity(reference_[at(parent)]) * place;
+  const Mat4 by_nodes = inverse_or_identity(rest(parent)) * rest(static_cast<int>(joint));
+  const auto differ = [](double a, double b) { return std::abs(a - b) > 0.02 * std::max(a, b); };
+  return !differ(bound.topLeftCorner<3, 3>().norm(), by_nodes.topLeftCorner<3, 3>().norm()) &&
+         !differ(bound.topRightCorner<3, 1>().norm(), by_nodes.topRightCorner<3, 1>().norm());
+}
+
+void Finder::use_skin(int skin) {
+  const nodes::Skin& one = skin_of(skin);
+  const std::vector<std::size_t> places = usable_binds(skin);
+  if (places.empty()) return;
+  const auto shared = std::find_if(places.begin(), places.end(),
+                                   [&](std::size_t k) { return known_[joint_of(skin, k)]; });
+  const Mat4 to_world = shared != places.end()
+                            ? Mat4(reference_[joint_of(skin, *shared)] * one.inverse_binds[*shared])
+                            : mesh_to_world(skin, places);
+  double farthest = 0, widest = 0;
+  int worst = -1;
+  for (const std::size_t k : places) {
+    const std::size_t joint = joint_of(skin, k);
+    const Mat4 place = to_world * inverse_or_identity(one.inverse_binds[k]);
+    if (!weighted_[joint] && !fits_parent(joint, place)) continue;
+    Mat4& reference = reference_[joint];
+    if (!known_[joint]) {
+      reference = place;
+      known_[joint] = 1;
+      continue;
+    }
+    if (nearly_same(place, reference, size_)) continue;
+    const Transform a = nodes::rigid_part(place), b = nodes::rigid_part(reference);
+    const double distance = (a.position - b.position).norm();
+    const double angle = angle_between(a.orientation, b.orientation);
+    if (worst >= 0 && distance / size_ + angle <= farthest / size_ + widest) continue;
+    farthest = distance;
+    widest = angle;
+    worst = one.joints[k];
+  }
+  if (worst < 0) return;
+  const std::string joint = scene_.nodes[at(worst)].name;
+  tell(diagnostics_, Severity::warning, "scene-bind",
+       fmt::format("{} binds {} {} units and {} degrees from where another skin does; the pose of "
+                   "the skin with most joints is kept",
+                   label("skin", skin, one.name), shown(joint), readable(farthest, 3),
+                   readable(widest / kRadiansPerDegree, 3)),
+       joint);
+}
+
+// Joints without inverse bind matrices: ancestors from what hangs under them, then the rest from
+// their parents.
+void Finder::follow_nodes() {
+  const int count = joints_.count();
+  const auto& parents = joints_.parents;
+  for (int j = count - 1; j > 0; --j) {
+    const int parent = parents[at(j)];
+    if (!known_[at(j)] || known_[at(parent)] || joints_.nodes[at(parent)] < 0) continue;
+    bool usable = false;
+    const Mat4 back = inverse_or_identity(rest(j), &usable);
+    if (!usable) continue;
+    reference_[at(parent)] = reference_[at(j)] * (back * rest(parent));
+    known_[at(parent)] = 1;
+  }
+  for (int j = 0; j < count; ++j) {
+    if (known_[at(j)]) continue;
+    known_[at(j)] = 1;
+    const int parent = parents[at(j)];
+    bool usable = parent >= 0;
+    const Mat4 back = usable ? inverse_or_identity(rest(parent), &usable) : Mat4::Identity();
+    reference_[at(j)] = usable ? Mat4(reference_[at(parent)] * (back * rest(j))) : rest(j);
+  }
+}
+
+void Finder::tell_of_binds() {
+  if (unusable_ > 0) {
+    tell(diagnostics_, Severity::warning, "scene-bind",
+         fmt::format("{} cannot be inverted, the first that of {}; such a joint is placed by its "
+                     "node",
+                     counted(static_cast<long long>(unusable_), "inverse bind matrix",
+                             "inverse bind matrices"),
+                     shown(first_unusable_)),
+         first_unusable_);
+  }
+  if (joints_.skins.empty()) return;
+  double widest = 0;
+  int worst = -1;
+  for (int j = 1; j < joints_.count(); ++j) {
+    const int parent = joints_.parents[at(j)];
+    const auto local = [&](const Mat4& above, const Mat4& here) {
+      return nodes::rigid_part(above).inverse() * nodes::rigid_part(here);
+    };
+    const double angle =
+        angle_between(local(rest(parent), rest(j)).orientation,
+                      local(reference_[at(parent)], reference_[at(j)]).orientation);
+    if (angle > std::max(widest, 0.5 * kRadiansPerDegree)) {
+      widest = angle;
+      worst = j;
+    }
+  }
+  if (worst < 0) return;
+  const int node = joints_.nodes[at(worst)];
+  const std::string joint = node < 0 ? std::string() : scene_.nodes[at(node)].name;
+  tell(diagnostics_, Severity::note, "scene-pose",
+       fmt::format("without animation the joints stand in another pose than the one the mesh is "
+                   "bound in ({} is turned by {} degrees); the bind pose is the reference pose",
+                   shown(joint), readable(widest / kRadiansPerDegree, 3)),
+       joint);
+}
+
+}  // namespace
+
+Mat4 inverse_or_identity(const Mat4& matrix, bool* usable) {
+  const Mat3 linear = matrix.topLeftCorner<3, 3>();
+  const double size = linear.norm();
+  const double determinant = linear.determinant();
+  const bool works = matrix.allFinite() && size > 1e-100 && size < 1e100 &&
+                     std::abs(determinant) > 1e-9 * size * size * size;
+  if (usable != nullptr) *usable = works;
+  Mat4 result = Mat4::Identity();
+  if (!works) return result;
+  const Mat3 back = linear.inverse();
+  result.topLeftCorner<3, 3>() = back;
+  result.topRightCorner<3, 1>() = -(back * matrix.topRightCorner<3, 1>());
+  return result;
+}
+
+bool nearly_same(const Mat4& a, const Mat4& b, double size) {
+  constexpr double kTolerance = 1e-4;
+  const Mat3 linear = a.topLeftCorner<3, 3>() - b.topLeftCorner<3, 3>();
+  const Vec3 offset = a.topRightCorner<3, 1>() - b.topRightCorner<3, 1>();
+  return linear.norm() <= kTolerance * b.topLeftCorner<3, 3>().norm() &&
+         offset.norm() <= kTolerance * size;
+}
+
+BindPose find_bind_pose(const Scene& scene, const nodes::Evaluator& evaluator, const Joints& joints,
+                        const Mat4& to_axes, Diagnostics& diagnostics) {
+  return Finder(scene, evaluator, joints, to_axes, diagnostics).find();
+}
+
+}  // namespace krok::character

@@ -1,0 +1,437 @@
+#include "character/mesh.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "capture/unique_names.h"
+#include "character/morph_targets_internal.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "scene/influences.h"
+
+namespace krok::character {
+
+using nodes::Scene;
+
+namespace {
+
+using Affine = Eigen::Matrix<double, 3, 4>;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+void tell(Diagnostics& diagnostics, Severity severity, const char* code, std::string message) {
+  Diagnostic told;
+  told.severity = severity;
+  told.code = code;
+  told.message = std::move(message);
+  diagnostics.push_back(std::move(told));
+}
+
+// The inverse transpose of a linear part up to a positive factor, without a division.
+Mat3 normal_matrix(const Mat3& linear) {
+  Mat3 result;
+  for (int c = 0; c < 3; ++c) {
+    result.col(c) = linear.col((c + 1) % 3).cross(linear.col((c + 2) % 3));
+  }
+  return linear.determinant() < 0 ? Mat3(-result) : result;
+}
+
+// Names, each once, for a message; the first few.
+class NameList {
+ public:
+  void add(const std::string& name) {
+    ++count_;
+    if (names_.size() < 4 && std::find(names_.begin(), names_.end(), name) == names_.end()) {
+      names_.push_back(name);
+    }
+  }
+  bool empty() const { return count_ == 0; }
+  std::string text() const {
+    return fmt::format("{}{}", fmt::join(names_, ", "), names_.size() < count_ ? ", ..." : "");
+  }
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<std::string> names_;
+};
+
+class Builder {
+ public:
+  Builder(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
+          const Conversion& conversion, const FigureOptions& options, Diagnostics& diagnostics)
+      : scene_(scene),
+        evaluator_(evaluator),
+        rig_(rig),
+        options_(options),
+        diagnostics_(diagnostics),
+        targets_(scene, evaluator) {
+    to_krok_ = Affine::Zero();
+    to_krok_.leftCols<3>() = conversion.reference_axes() * conversion.metres();
+  }
+
+  Result<Figure> build() {
+    evaluator_.place_nodes(-1, 0, rest_);
+    for (const nodes::Instance& instance : evaluator_.instances()) {
+      if (is_wanted(instance)) wanted_.push_back(instance);
+    }
+    tell_of_what_is_left();
+    look_at_attributes();
+    for (const nodes::Instance& instance : wanted_) add(instance);
+    if (Status finished = finish(); !finished) return finished.error();
+    if (options_.with_morphs) {
+      if (Status added = add_targets(); !added) return added.error();
+    }
+    return std::move(figure_);
+  }
+
+ private:
+  const nodes::Node& node_of(const nodes::Instance& instance) const {
+    return scene_.nodes[at(instance.node)];
+  }
+  bool is_skinned(const nodes::Instance& instance) const {
+    return node_of(instance).skin >= 0 && evaluator_.primitive(instance).influences_per_vertex > 0;
+  }
+  bool is_wanted(const nodes::Instance& instance);
+  void tell_of_what_is_left();
+  void look_at_attributes();
+  void find_placements(const nodes::Instance& instance);
+  void add(const nodes::Instance& instance);
+  void add_influences(const nodes::Instance& instance, std::size_t vertices);
+  void add_normals(const nodes::Primitive& shape);
+  void add_triangles(const nodes::Instance& instance, std::uint32_t first);
+  void make_normals(std::size_t first_vertex, std::size_t first_triangle);
+  Status finish();
+  Status add_targets();
+  const Affine& placement(std::size_t vertex) const {
+    return placements_.size() == 1 ? placements_[0] : placements_[vertex];
+  }
+
+  const Scene& scene_;
+  const nodes::Evaluator& evaluator_;
+  const Rig& rig_;
+  const FigureOptions& options_;
+  Diagnostics& diagnostics_;
+  Affine to_krok_;
+  nodes::Evaluation rest_;
+  std::vector<nodes::Instance> wanted_;
+  TargetNames targets_;
+  Figure figure_;
+  NameList elsewhere_, other_skeleton_, without_triangles_;
+  bool with_normals_ = false, with_texture_ = false, with_tangents_ = false;
+  int influences_ = 4;
+
+  // Of the primitive being added: mesh_to_reference in Krok's frame, for each vertex or one for
+  // all.
+  std::vector<Affine> placements_;
+};
+
+bool Builder::is_wanted(const nodes::Instance& instance) {
+  const nodes::Node& node = node_of(instance);
+  const std::string name = label("mesh", instance.mesh, scene_.meshes[at(instance.mesh)].name);
+  if (node.skin >= 0) {
+    const auto& skins = rig_.joints.skins;
+    if (std::find(skins.begin(), skins.end(), node.skin) == skins.end()) {
+      other_skeleton_.add(name);
+      return false;
+    }
+  }
+  if (!is_skinned(instance) && rig_.joints.node_to_joint[at(instance.node)] < 0) {
+    elsewhere_.add(name);
+    return false;
+  }
+  if (evaluator_.primitive(instance).triangles.empty()) {
+    without_triangles_.add(name);
+    return false;
+  }
+  return true;
+}
+
+void Builder::tell_of_what_is_left() {
+  const auto left_out = [&](const NameList& names, const char* why) {
+    if (names.empty()) return;
+    tell(diagnostics_, Severity::warning, "scene-mesh",
+         fmt::format("left out, for {}: {}", why, names.text()));
+  };
+  left_out(elsewhere_, "no joint moves it");
+  left_out(other_skeleton_, "it hangs on another skeleton");
+  left_out(without_triangles_, "it has points or lines and no triangles");
+}
+
+void Builder::look_at_attributes() {
+  with_tangents_ = !wanted_.empty();
+  for (const nodes::Instance& instance : wanted_) {
+    const nodes::Primitive& shape = evaluator_.primitive(instance);
+    with_normals_ = with_normals_ || shape.normals;
+    with_texture_ = with_texture_ || shape.texture_coordinates;
+    with_tangents_ = with_tangents_ && shape.tangents;
+    if (is_skinned(instance) && shape.influences_per_vertex > 4) influences_ = 8;
+  }
+  with_tangents_ = with_tangents_ && with_normals_;
+}
+
+// mesh_to_reference of the primitive's vertices: sum_j w_j F_j B_j.
+void Builder::find_placements(const nodes::Instance& instance) {
+  const nodes::Primitive& shape = evaluator_.primitive(instance);
+  const auto in_krok = [&](const Mat4& to_rig) -> Affine {
+    return to_krok_.leftCols<3>() * to_rig.topRows<3>();
+  };
+  placements_.clear();
+  if (!is_skinned(instance)) {
+    const int joint = rig_.joints.node_to_joint[at(instance.node)];
+    const int joint_node = rig_.joints.nodes[at(joint)];
+    const Mat4 node_to_world = rig_.to_axes * rest_.node_to_world[at(instance.node)];
+    bool usable = joint_node >= 0;
+    const Mat4 back =
+        usable ? inverse_or_identity(rig_.to_axes * rest_.node_to_world[at(joint_node)], &usable)
+               : Mat4::Identity();
+    placements_.push_back(
+        in_krok(usable ? Mat4(rig_.reference[at(joint)] * (back * node_to_world)) : node_to_world));
+    return;
+  }
+  const nodes::Skin& skin = scene_.skins[at(node_of(instance).skin)];
+  std::vector<Affine> palette;
+  const Mat4* first = nullptr;
+  std::vector<Mat4> whole;
+  for (std::size_t k = 0; k < skin.joints.size(); ++k) {
+    const int joint = rig_.joints.node_to_joint[at(skin.joints[k])];
+    whole.push_back(rig_.reference[at(joint)] * skin.inverse_binds[k]);
+  }
+  // The joints that agree most often do: then one placement does for all, without its rounding.
+  bool agree = true;
+  const auto per_vertex = static_cast<std::size_t>(shape.influences_per_vertex);
+  for (std::size_t k = 0; k < shape.influence_joints.size() && agree; ++k) {
+    if (!(shape.influence_weights[k] > 0)) continue;
+    const Mat4& one = whole[shape.influence_joints[k]];
+    if (first == nullptr) first = &one;
+    agree = (one - *first).cwiseAbs().maxCoeff() <= 1e-9 * (1 + first->cwiseAbs().maxCoeff());
+  }
+  if (agree && first != nullptr) {
+    placements_.push_back(in_krok(*first));
+    return;
+  }
+  for (const Mat4& one : whole) palette.push_back(in_krok(one));
+  placements_.resize(shape.vertex_count());
+  for (std::size_t v = 0; v < placements_.size(); ++v) {
+    placements_[v].setZero();
+    for (std::size_t k = v * per_vertex; k < (v + 1) * per_vertex; ++k) {
+      placements_[v] +=
+          static_cast<double>(shape.influence_weights[k]) * palette[shape.influence_joints[k]];
+    }
+  }
+}
+
+void Builder::add_influences(const nodes::Instance& instance, std::size_t vertices) {
+  const nodes::Primitive& shape = evaluator_.primitive(instance);
+  Model& model = figure_.model;
+  const std::size_t first = model.influence_joints.size();
+  const auto places = at(influences_);
+  model.influence_joints.resize(first + vertices * places, 0);
+  model.influence_weights.resize(first + vertices * places, 0.0f);
+  if (!is_skinned(instance)) {
+    const int joint = rig_.joints.node_to_joint[at(instance.node)];
+    for (std::size_t v = 0; v < vertices; ++v) {
+      model.influence_joints[first + v * places] = static_cast<std::uint16_t>(joint);
+      model.influence_weights[first + v * places] = 1.0f;
+    }
+    return;
+  }
+  const nodes::Skin& skin = scene_.skins[at(node_of(instance).skin)];
+  const auto per_vertex = static_cast<std::size_t>(shape.influences_per_vertex);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t k = 0; k < per_vertex; ++k) {
+      const int node = skin.joints[shape.influence_joints[v * per_vertex + k]];
+      model.influence_joints[first + v * places + k] =
+          static_cast<std::uint16_t>(rig_.joints.node_to_joint[at(node)]);
+      model.influence_weights[first + v * places + k] = shape.influence_weights[v * per_vertex + k];
+    }
+  }
+}
+
+void Builder::add_normals(const nodes::Primitive& shape) {
+  for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
+    const Mat3 linear = placement(v).leftCols<3>();
+    if (with_normals_) {
+      const Vec3 normal = shape.normals
+                              ? Vec3(normal_matrix(linear) * (*shape.normals)[v].cast<double>())
+                              : Vec3(Vec3::Zero());
+      figure_.model.normals.push_back(normal.stableNormalized().cast<float>());
+    }
+    if (with_tangents_) {
+      const Vec4f& tangent = (*shape.tangents)[v];
+      const Vec3 turned = (linear * tangent.head<3>().cast<double>()).stableNormalized();
+      const bool mirrored = linear.determinant() < 0;
+      const float side = (tangent.w() < 0) != mirrored ? -1.0f : 1.0f;
+      figure_.model.tangents.emplace_back(static_cast<float>(turned.x()),
+                                          static_cast<float>(turned.y()),
+                                          static_cast<float>(turned.z()), side);
+    }
+  }
+}
+
+// Where the placement mirrors, what was counter-clockwise is turned back.
+void Builder::add_triangles(const nodes::Instance& instance, std::uint32_t first) {
+  const nodes::Primitive& shape = evaluator_.primitive(instance);
+  Model& model = figure_.model;
+  const nodes::Mesh& mesh = scene_.meshes[at(instance.mesh)];
+  const std::string& node_name = node_of(instance).name;
+  const std::string& mesh_name = mesh.name.empty() ? node_name : mesh.name;
+  model.parts.push_back({to_utf8(shape.material.empty() ? mesh_name : shape.material),
+                         to_utf8(shape.material),
+                         static_cast<std::uint32_t>(model.triangles.size()),
+                         static_cast<std::uint32_t>(shape.triangles.size())});
+  for (auto triangle : shape.triangles) {
+    if (placement(triangle[0]).leftCols<3>().determinant() < 0) std::swap(triangle[1], triangle[2]);
+    for (std::uint32_t& corner : triangle) corner += first;
+    model.triangles.push_back(triangle);
+  }
+}
+
+// Normals from the triangles for the vertices from `first_vertex` on that have none, each triangle
+// counting by its area.
+void Builder::make_normals(std::size_t first_vertex, std::size_t first_triangle) {
+  Model& model = figure_.model;
+  std::vector<Vec3> sums(model.positions.size() - first_vertex, Vec3::Zero());
+  for (std::size_t t = first_triangle; t < model.triangles.size(); ++t) {
+    const auto& corners = model.triangles[t];
+    const auto corner = [&](int k) -> Vec3 { return model.positions[corners[k]].cast<double>(); };
+    const Vec3 area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    for (const std::uint32_t one : corners) sums[one - first_vertex] += area;
+  }
+  for (std::size_t v = 0; v < sums.size(); ++v) {
+    Vec3f& normal = model.normals[first_vertex + v];
+    if (normal.squaredNorm() > 0.5f) continue;
+    const double length = sums[v].stableNorm();
+    normal = length > 0 && std::isfinite(length) ? Vec3f((sums[v] / length).cast<float>())
+                                                 : Vec3f(Vec3f::UnitY());
+  }
+}
+
+void Builder::add(const nodes::Instance& instance) {
+  const nodes::Primitive& shape = evaluator_.primitive(instance);
+  Model& model = figure_.model;
+  const std::size_t first_vertex = model.positions.size();
+  const std::size_t first_triangle = model.triangles.size();
+  find_placements(instance);
+  for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
+    const Vec3 position = (*shape.positions)[v].cast<double>();
+    model.positions.push_back((placement(v) * position.homogeneous()).cast<float>());
+  }
+  add_normals(shape);
+  if (with_texture_) {
+    if (shape.texture_coordinates) {
+      model.texture_coordinates.insert(model.texture_coordinates.end(),
+                                       shape.texture_coordinates->begin(),
+                                       shape.texture_coordinates->end());
+    } else {
+      model.texture_coordinates.resize(model.positions.size(), Vec2f::Zero());
+    }
+  }
+  add_influences(instance, shape.vertex_count());
+  add_triangles(instance, static_cast<std::uint32_t>(first_vertex));
+  if (with_normals_) make_normals(first_vertex, first_triangle);
+}
+
+Status Builder::finish() {
+  Model& model = figure_.model;
+  const auto finite = [](const auto& value) { return value.allFinite(); };
+  if (!std::all_of(model.positions.begin(), model.positions.end(), finite) ||
+      !std::all_of(model.texture_coordinates.begin(), model.texture_coordinates.end(), finite)) {
+    return Error("scene-value", "the numbers are so large that the mesh's vertices overflow",
+                 "perhaps the unit is another: say it with --unit");
+  }
+  // A tangent that a flat placement swallowed takes the others with it.
+  const auto is_unit = [](const Vec4f& tangent) {
+    return std::abs(tangent.head<3>().norm() - 1) < 1e-3f;
+  };
+  if (!std::all_of(model.tangents.begin(), model.tangents.end(), is_unit)) model.tangents.clear();
+  model.influences_per_vertex = influences_;
+  normalize_influences(model);
+  return {};
+}
+
+Status Builder::add_targets() {
+  for (const nodes::Instance& instance : wanted_) targets_.add(instance);
+  MorphSet& morphs = figure_.morphs;
+  const std::size_t vertices = figure_.model.positions.size();
+  morphs.names = targets_.names();
+  morphs.vertex_count = static_cast<int>(vertices);
+  figure_.weight_sources = targets_.sources();
+  const std::size_t all = morphs.names.size() * vertices;
+  constexpr std::size_t kMost = 50'000'000;
+  if (!morphs.names.empty() && vertices > kMost / morphs.names.size()) {
+    return Error("scene-morphs",
+                 fmt::format("{} morph targets of {} vertices are out of proportion",
+                             morphs.names.size(), vertices));
+  }
+  morphs.positions.reserve(all);
+  for (std::size_t t = 0; t < morphs.names.size(); ++t) {
+    const auto& base = figure_.model;
+    morphs.positions.insert(morphs.positions.end(), base.positions.begin(), base.positions.end());
+    morphs.normals.insert(morphs.normals.end(), base.normals.begin(), base.normals.end());
+  }
+  std::size_t first = 0;
+  for (const nodes::Instance& instance : wanted_) {
+    const nodes::Primitive& shape = evaluator_.primitive(instance);
+    if (!shape.targets.empty()) find_placements(instance);
+    for (std::size_t k = 0; k < shape.targets.size(); ++k) {
+      const int target = targets_.index_of(instance, static_cast<int>(k));
+      const std::size_t offset = at(target) * vertices + first;
+      const nodes::MorphTarget& moved = shape.targets[k];
+      for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
+        const Mat3 linear = placement(v).leftCols<3>();
+        if (moved.positions) {
+          const Vec3 place =
+              (*shape.positions)[v].cast<double>() + (*moved.positions)[v].cast<double>();
+          morphs.positions[offset + v] = (placement(v) * place.homogeneous()).cast<float>();
+        }
+        if (moved.normals && shape.normals && !morphs.normals.empty()) {
+          const Mat3 turn = normal_matrix(linear);
+          const Vec3 base = turn * (*shape.normals)[v].cast<double>();
+          const double length = base.stableNorm();
+          const Vec3 normal = base + turn * (*moved.normals)[v].cast<double>();
+          if (length > 0) morphs.normals[offset + v] = (normal / length).cast<float>();
+        }
+      }
+    }
+    first += shape.vertex_count();
+  }
+  return check(morphs);
+}
+
+}  // namespace
+
+Result<Figure> make_figure(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
+                           const Conversion& conversion, const FigureOptions& options,
+                           Diagnostics& diagnostics) {
+  auto figure = Builder(scene, evaluator, rig, conversion, options, diagnostics).build();
+  if (!figure) return figure;
+  figure->model.skeleton = rig.skeleton;
+  for (Transform& joint : figure->model.skeleton.reference) joint = conversion.reference(joint);
+  if (Status sound = check(figure->model); !sound) return sound.error();
+  return figure;
+}
+
+MorphWeights make_weights(const Figure& figure, const nodes::Evaluator& evaluator, int animation,
+                          const Sampling& sampling) {
+  MorphWeights weights;
+  weights.rate = sampling.rate;
+  weights.names = figure.morphs.names;
+  nodes::Evaluation state;
+  for (int frame = 0; frame < sampling.frames; ++frame) {
+    evaluator.place_nodes(animation, sampling.time(frame), state);
+    for (const Figure::WeightSource& source : figure.weight_sources) {
+      weights.values.push_back(
+          static_cast<float>(state.node_weights[at(source.node)][at(source.target)]));
+    }
+  }
+  return weights;
+}
+
+}  // namespace krok::character

@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "character/morph_targets_internal.h"
+#include "core/text.h"
+
+namespace krok::character {
+
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+// The weight of a node's target without animation.
+double resting(const nodes::Scene& scene, const Figure::WeightSource& source) {
+  const nodes::Node& node = scene.nodes[at(source.node)];
+  const auto& weights = node.weights.empty() ? scene.meshes[at(node.mesh)].weights : node.weights;
+  return weights[at(source.target)];
+}
+
+const nodes::Channel* weights_of(const nodes::Animation& animation, int node) {
+  for (const nodes::Channel& channel : animation.channels) {
+    if (channel.node == node && channel.path == nodes::Path::weights) return &channel;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+// The same at rest, and in each animation the same keys.
+bool TargetNames::same_weights(const Figure::WeightSource& a, const Figure::WeightSource& b) const {
+  if (resting(scene_, a) != resting(scene_, b)) return false;
+  for (const nodes::Animation& animation : scene_.animations) {
+    const nodes::Channel* one = weights_of(animation, a.node);
+    const nodes::Channel* other = weights_of(animation, b.node);
+    if (one == nullptr && other == nullptr) continue;
+    if (one == nullptr || other == nullptr || one->interpolation != other->interpolation ||
+        *one->times != *other->times) {
+      return false;
+    }
+    const auto one_width = at(one->width), other_width = at(other->width);
+    const std::size_t keys = one->values->size() / one_width;
+    for (std::size_t k = 0; k < keys; ++k) {
+      if ((*one->values)[k * one_width + at(a.target)] !=
+          (*other->values)[k * other_width + at(b.target)]) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+void TargetNames::add(const nodes::Instance& instance) {
+  const nodes::Primitive& shape = evaluator_.primitive(instance);
+  const nodes::Mesh& mesh = scene_.meshes[at(instance.mesh)];
+  for (int k = 0; k < static_cast<int>(shape.targets.size()); ++k) {
+    const Figure::WeightSource source{instance.node, k};
+    if (indices_.contains({instance.node, k})) continue;  // an earlier primitive of the mesh
+    std::string name = to_utf8(shape.targets[at(k)].name);
+    if (name.empty()) {
+      name = fmt::format("{}_{}", mesh.name.empty() ? "target" : to_utf8(mesh.name), k);
+    }
+    std::vector<int>& named = by_name_[name];
+    const auto same = std::find_if(named.begin(), named.end(), [&](int target) {
+      return sources_[at(target)].node != instance.node &&
+             same_weights(sources_[at(target)], source);
+    });
+    if (same != named.end()) {
+      indices_[{instance.node, k}] = *same;
+      continue;
+    }
+    const int index = static_cast<int>(names_.size());
+    indices_[{instance.node, k}] = index;
+    named.push_back(index);
+    names_.push_back(unique_.make(name));
+    sources_.push_back(source);
+  }
+}
+
+}  // namespace krok::character

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "capture/unique_names.h"
+#include "character/mesh.h"
+#include "nodes/evaluate.h"
+
+// Private to this folder: which targets of several meshes are one.
+
+namespace krok::character {
+
+class TargetNames {
+ public:
+  TargetNames(const nodes::Scene& scene, const nodes::Evaluator& evaluator)
+      : scene_(scene), evaluator_(evaluator) {}
+
+  void add(const nodes::Instance& instance);
+
+  // The target that the `target`-th of an added instance's mesh became.
+  int index_of(const nodes::Instance& instance, int target) const {
+    return indices_.at({instance.node, target});
+  }
+  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<Figure::WeightSource>& sources() const { return sources_; }
+
+ private:
+  bool same_weights(const Figure::WeightSource& a, const Figure::WeightSource& b) const;
+
+  const nodes::Scene& scene_;
+  const nodes::Evaluator& evaluator_;
+  std::map<std::pair<int, int>, int> indices_;  // by node and the mesh's target
+  std::map<std::string, std::vector<int>> by_name_;
+  UniqueNames unique_;
+  std::vector<std::string> names_;
+  std::vector<Figure::WeightSource> sources_;
+};
+
+}  // namespace krok::character

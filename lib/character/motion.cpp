@@ -1,0 +1,190 @@
+#include "character/motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "core/text.h"
+
+namespace krok::character {
+
+using nodes::Scene;
+
+namespace {
+
+constexpr double kMostTransforms = 1e8;
+constexpr std::size_t kFramesAtOnce = 16;
+constexpr double kStretchTold = 1e-3;  // a tenth of a percent
+constexpr double kUsualFieldOfView = kPi / 4;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+Error overflow() {
+  return Error("scene-value", "the numbers are so large that positions overflow",
+               "perhaps the unit is another: say it with --unit");
+}
+
+// How far a linear part is from a rotation: the largest change of length of an axis, as a share.
+struct Stretch {
+  double size = 0;
+  int joint = -1;
+};
+
+double stretch_of(const Mat3& linear, const Quat& rotation) {
+  const Mat3 rest = linear - rotation.toRotationMatrix();
+  return rest.colwise().norm().maxCoeff();
+}
+
+void tell_of_scale(const std::vector<Stretch>& worst_of_frames, const Rig& rig,
+                   Diagnostics& diagnostics) {
+  Stretch worst;
+  std::size_t frame = 0;
+  for (std::size_t f = 0; f < worst_of_frames.size(); ++f) {
+    if (!(worst_of_frames[f].size > worst.size * (1 + 1e-6))) continue;
+    worst = worst_of_frames[f];
+    frame = f;
+  }
+  if (worst.size < kStretchTold) return;
+  Diagnostic told;
+  told.severity = Severity::warning;
+  told.code = "scene-scale";
+  told.joint = rig.skeleton.names[at(worst.joint)];
+  told.frame = static_cast<std::int64_t>(frame);
+  told.message = fmt::format(
+      "joints are scaled otherwise than in the bind pose, which a motion cannot hold: {} by {}% in "
+      "frame {}, the most; joints keep their places, what hangs on them its size",
+      shown(told.joint), readable(100 * worst.size, 3), frame);
+  diagnostics.push_back(std::move(told));
+}
+
+}  // namespace
+
+Result<Skeleton> skeleton_in_krok(const Rig& rig, const Conversion& conversion) {
+  Skeleton skeleton = rig.skeleton;
+  for (Transform& joint : skeleton.reference) {
+    joint = conversion.reference(joint);
+    if (!joint.position.cast<float>().allFinite()) return overflow();
+  }
+  return skeleton;
+}
+
+Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
+                       const Conversion& conversion, int animation, const Sampling& sampling,
+                       int jobs, Progress* progress, Diagnostics& diagnostics) {
+  auto skeleton = skeleton_in_krok(rig, conversion);
+  if (!skeleton) return skeleton.error();
+  const double transforms = static_cast<double>(sampling.frames) * rig.joints.count();
+  if (transforms > kMostTransforms) {
+    return Error("scene-too-long",
+                 fmt::format("{} frames of {} joints are more than can be held", sampling.frames,
+                             rig.joints.count()),
+                 "--resample takes a lower rate");
+  }
+  Clip clip;
+  clip.skeleton = std::move(*skeleton);
+  clip.rate = sampling.rate;
+  clip.resize(sampling.frames);
+  std::vector<Stretch> stretches(at(sampling.frames));
+  std::atomic<bool> finite = true;
+  if (progress != nullptr) progress->begin("reading frames", stretches.size());
+  parallel_for(stretches.size(), kFramesAtOnce, jobs, [&](std::size_t begin, std::size_t end) {
+    nodes::Evaluation state;
+    std::vector<Transform> pose(at(rig.joints.count()));
+    for (std::size_t frame = begin; frame < end; ++frame) {
+      evaluator.place_nodes(animation, sampling.time(static_cast<int>(frame)), state);
+      Stretch& worst = stretches[frame];
+      for (int j = 0; j < rig.joints.count(); ++j) {
+        const Mat4 placed = rig.joint_to_world(state, j);
+        const Transform rigid = nodes::rigid_part(placed);
+        const double stretch = stretch_of(placed.topLeftCorner<3, 3>(), rigid.orientation);
+        if (stretch > worst.size * (1 + 1e-6)) worst = {stretch, j};
+        pose[at(j)] = conversion.pose(rigid);
+        if (!pose[at(j)].position.cast<float>().allFinite()) finite = false;
+      }
+      clip.set_pose(static_cast<int>(frame), pose);
+    }
+    if (progress != nullptr) progress->advance(end - begin);
+  });
+  if (progress != nullptr) progress->end();
+  if (!finite) return overflow();
+  tell_of_scale(stretches, rig, diagnostics);
+  return clip;
+}
+
+bool moves_rig(const Scene& scene, const Rig& rig, int animation) {
+  std::vector<char> above(scene.nodes.size(), 0);
+  for (const int root : rig.joints.nodes) {
+    if (root < 0) continue;
+    for (int node = root; node >= 0 && !above[at(node)]; node = scene.nodes[at(node)].parent) {
+      above[at(node)] = 1;
+    }
+  }
+  for (const nodes::Channel& channel : scene.animations[at(animation)].channels) {
+    if (channel.path != nodes::Path::weights && above[at(channel.node)]) return true;
+  }
+  return false;
+}
+
+std::vector<Vec3> sample_positions(const nodes::Evaluator& evaluator, const Rig& rig, int animation,
+                                   const Sampling& sampling, int most) {
+  std::vector<Vec3> positions;
+  nodes::Evaluation state;
+  const int step = std::max(1, sampling.frames / std::max(1, most));
+  for (int frame = 0; frame < sampling.frames; frame += step) {
+    evaluator.place_nodes(animation, sampling.time(frame), state);
+    for (int j = 0; j < rig.joints.count(); ++j) {
+      positions.push_back(rig.joint_to_world(state, j).topRightCorner<3, 1>());
+    }
+  }
+  return positions;
+}
+
+std::vector<int> camera_nodes(const Scene& scene, const nodes::Evaluator& evaluator) {
+  std::vector<int> found;
+  for (const int node : evaluator.order()) {
+    const nodes::Node& one = scene.nodes[at(node)];
+    if (one.camera >= 0 && one.in_scene) found.push_back(node);
+  }
+  return found;
+}
+
+Result<CameraTrack> make_camera(const Scene& scene, const nodes::Evaluator& evaluator, int node,
+                                const Conversion& conversion, const Mat4& to_axes, int animation,
+                                const Sampling& sampling, Diagnostics& diagnostics) {
+  const nodes::Camera& lens = scene.cameras[at(scene.nodes[at(node)].camera)];
+  double field_of_view = lens.field_of_view;
+  if (!lens.perspective) {
+    field_of_view = kUsualFieldOfView;
+    Diagnostic told;
+    told.severity = Severity::warning;
+    told.code = "scene-camera";
+    told.message =
+        fmt::format("{} is orthographic and has no field of view; 45 degrees are written",
+                    label("camera", scene.nodes[at(node)].camera, lens.name));
+    diagnostics.push_back(std::move(told));
+  }
+  CameraTrack track;
+  track.rate = sampling.rate;
+  nodes::Evaluation state;
+  // A camera has no reference pose of its own: only the world turns about it.
+  const Quat turn =
+      conversion.reference_to_motion().orientation * Quat(conversion.reference_axes());
+  for (int frame = 0; frame < sampling.frames; ++frame) {
+    evaluator.place_nodes(animation, sampling.time(frame), state);
+    const Transform placed = nodes::rigid_part(to_axes * state.node_to_world[at(node)]);
+    const Transform position = conversion.pose({placed.position, Quat::Identity()});
+    if (!position.position.cast<float>().allFinite()) return overflow();
+    track.positions.push_back(position.position.cast<float>());
+    track.orientations.push_back((turn * placed.orientation).cast<float>().normalized());
+    track.fields_of_view.push_back(static_cast<float>(field_of_view));
+  }
+  return track;
+}
+
+}  // namespace krok::character

@@ -1,0 +1,166 @@
+#include "character/rig.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/unique_names.h"
+#include "character/bind_pose_internal.h"
+#include "character/space.h"
+#include "core/numbers.h"
+#include "core/text.h"
+
+namespace krok::character {
+
+using nodes::Scene;
+
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+void tell(Diagnostics& diagnostics, Severity severity, std::string code, std::string message) {
+  Diagnostic told;
+  told.severity = severity;
+  told.code = std::move(code);
+  told.message = std::move(message);
+  diagnostics.push_back(std::move(told));
+}
+
+// Names that only mark where a bone ends: "Head_end", "HeadTop_End", "L Finger0Nub".
+bool names_an_end(const std::string& name) {
+  const std::string lower = ascii_lower(name);
+  for (const char* ending : {"_end", ".end", " end", "_end_site", " nub", "_nub", "endsite"}) {
+    if (lower.ends_with(ending)) return true;
+  }
+  return name.ends_with("Nub") || name.ends_with("End");
+}
+
+class Builder {
+ public:
+  Builder(const Scene& scene, Diagnostics& diagnostics, Rig rig)
+      : scene_(scene), diagnostics_(diagnostics), rig_(std::move(rig)) {}
+
+  Result<Rig> build(const std::vector<char>& weighted) {
+    if (Status folded = fold_scales(); !folded) return folded.error();
+    name_joints();
+    mark_ends(weighted);
+    return std::move(rig_);
+  }
+
+ private:
+  Status fold_scales();
+  void name_joints();
+  void mark_ends(const std::vector<char>& weighted);
+
+  const Scene& scene_;
+  Diagnostics& diagnostics_;
+  Rig rig_;
+};
+
+Status Builder::fold_scales() {
+  for (int j = 0; j < rig_.joints.count(); ++j) {
+    const Mat4& reference = rig_.reference[at(j)];
+    if (!reference.allFinite() || reference.cwiseAbs().maxCoeff() > 1e30) {
+      return Error("scene-value", "the transforms of the bind pose are so large that they overflow",
+                   "the file is damaged, or its exporter has a fault");
+    }
+    const Transform rigid = nodes::rigid_part(reference);
+    Mat4 scale = Mat4::Identity();
+    scale.topLeftCorner<3, 3>() =
+        rigid.orientation.toRotationMatrix().transpose() * reference.topLeftCorner<3, 3>();
+    rig_.unscale.push_back(inverse_or_identity(scale).topLeftCorner<3, 3>());
+    rig_.skeleton.add({}, rig_.joints.parents[at(j)], rigid);
+  }
+  return {};
+}
+
+void Builder::name_joints() {
+  UniqueNames names;
+  std::vector<std::string> given(at(rig_.joints.count()));
+  std::vector<char> unique(given.size(), 0);
+  for (std::size_t j = 0; j < given.size(); ++j) {
+    const int node = rig_.joints.nodes[j];
+    given[j] = node < 0 ? "Roots" : to_utf8(scene_.nodes[at(node)].name);
+    unique[j] = !given[j].empty() && names.claim(given[j]);
+  }
+  std::vector<std::string> examples;
+  std::size_t unnamed = 0, renamed = 0;
+  for (std::size_t j = 0; j < given.size(); ++j) {
+    std::string& name = rig_.skeleton.names[j];
+    name = given[j];
+    if (unique[j]) continue;
+    const bool empty = name.empty();
+    ++(empty ? unnamed : renamed);
+    name = names.make(empty ? fmt::format("node_{}", rig_.joints.nodes[j]) : name);
+    if (!empty && examples.size() < 3) {
+      examples.push_back(fmt::format("{} to {}", shown(given[j]), shown(name)));
+    }
+  }
+  if (renamed > 0) {
+    tell(diagnostics_, Severity::warning, "scene-joint-names",
+         fmt::format("{} had the name of another and {} renamed: {}{}",
+                     counted(static_cast<long long>(renamed), "joint"), renamed == 1 ? "is" : "are",
+                     fmt::join(examples, ", "), renamed > examples.size() ? ", ..." : ""));
+  }
+  if (unnamed > 0) {
+    tell(diagnostics_, Severity::note, "scene-joint-names",
+         fmt::format("{} had no name and {} called by the node's number",
+                     counted(static_cast<long long>(unnamed), "joint"),
+                     unnamed == 1 ? "is" : "are"));
+  }
+  if (rig_.joints.nodes[0] < 0) {
+    tell(diagnostics_, Severity::warning, "scene-roots",
+         fmt::format("the joints have no node in common; the joint {} at the origin was put above "
+                     "them",
+                     shown(rig_.skeleton.names[0])));
+  }
+}
+
+// Leaves that are named as ends, carry no vertex and never move.
+void Builder::mark_ends(const std::vector<char>& weighted) {
+  std::vector<char> other(rig_.skeleton.names.size(), 0);
+  for (const int parent : rig_.joints.parents) {
+    if (parent >= 0) other[at(parent)] = 1;
+  }
+  for (const nodes::Animation& animation : scene_.animations) {
+    for (const nodes::Channel& channel : animation.channels) {
+      const int joint = rig_.joints.node_to_joint[at(channel.node)];
+      if (joint < 0 || rig_.joints.nodes[at(joint)] != channel.node) continue;
+      if (channel.path != nodes::Path::rotation) continue;
+      const std::vector<float>& values = *channel.values;
+      const auto width = static_cast<std::size_t>(channel.width);
+      for (std::size_t i = width; i < values.size(); ++i) {
+        if (std::abs(values[i] - values[i % width]) > 1e-5f) other[at(joint)] = 1;
+      }
+    }
+  }
+  for (std::size_t j = 1; j < other.size(); ++j) {
+    rig_.skeleton.end_sites[j] = !other[j] && !weighted[j] && names_an_end(rig_.skeleton.names[j]);
+  }
+}
+
+}  // namespace
+
+Mat4 Rig::joint_to_world(const nodes::Evaluation& state, int joint) const {
+  const int node = joints.nodes[at(joint)];
+  if (node < 0) return to_axes;
+  Mat4 result = to_axes * state.node_to_world[at(node)];
+  result.topLeftCorner<3, 3>() = (result.topLeftCorner<3, 3>() * unscale[at(joint)]).eval();
+  return result;
+}
+
+Result<Rig> make_rig(const Scene& scene, const nodes::Evaluator& evaluator, Joints joints,
+                     Diagnostics& diagnostics) {
+  Rig rig;
+  rig.joints = std::move(joints);
+  rig.to_axes = rotation_to_apply(scene.space);
+  BindPose bind = find_bind_pose(scene, evaluator, rig.joints, rig.to_axes, diagnostics);
+  rig.reference = std::move(bind.joint_to_world);
+  return Builder(scene, diagnostics, std::move(rig)).build(bind.weighted);
+}
+
+}  // namespace krok::character

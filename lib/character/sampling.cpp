@@ -1,0 +1,190 @@
+#include "character/sampling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
+
+#include "core/numbers.h"
+
+namespace krok::character {
+
+namespace {
+
+constexpr std::array kCommonRates = {30.0,         24.0,         25.0,          60.0,
+                                     50.0,         48.0,         120.0,         100.0,
+                                     90.0,         240.0,        30.0 / 1.001,  24.0 / 1.001,
+                                     60.0 / 1.001, 48.0 / 1.001, 120.0 / 1.001, 240.0 / 1.001};
+constexpr double kLeastRate = 20.0;  // below it keys are too sparse to be frames
+constexpr double kUsualRate = 30.0;
+constexpr double kUnevenRate = 60.0;
+constexpr double kMostFrames = 1e7;
+
+// How far a time may lie from a frame, in frames: rounding of floats, plus that of printed times
+// where they lie a frame apart.
+double tolerance(double rate, double time, bool printed) {
+  return 0.01 + (printed ? std::min(0.04, 6e-4 * rate) : 0.0) + 2.4e-7 * std::abs(time) * rate;
+}
+
+// The farthest that a time lies from a frame of `rate`, in frames; nothing where one lies too far.
+std::optional<double> misfit(const std::vector<double>& times, double rate, bool printed) {
+  double worst = 0;
+  for (const double time : times) {
+    const double place = (time - times.front()) * rate;
+    const double off = std::abs(place - std::round(place));
+    if (!(off <= tolerance(rate, time, printed))) return std::nullopt;
+    worst = std::max(worst, off);
+  }
+  return worst;
+}
+
+// As misfit, for times that come one a frame.
+std::optional<double> even_misfit(const std::vector<double>& times, double rate) {
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (std::lround((times[i] - times.front()) * rate) != static_cast<long>(i)) return std::nullopt;
+  }
+  return misfit(times, rate, true);
+}
+
+void note(Diagnostics& diagnostics, const char* code, std::string message, std::string hint = {}) {
+  Diagnostic told;
+  told.severity = Severity::note;
+  told.code = code;
+  told.message = std::move(message);
+  told.hint = std::move(hint);
+  diagnostics.push_back(std::move(told));
+}
+
+struct FoundRate {
+  double rate = kUsualRate;
+  bool on_keys = false;  // keys fall on its frames
+  std::string reason;
+  Confidence confidence = Confidence::guess;
+};
+
+FoundRate find_rate(const std::vector<double>& times) {
+  if (times.size() < 2) return {kUsualRate, true, "there is one key alone", Confidence::guess};
+  const auto even = even_rate(times);
+  if (even && *even >= kLeastRate) {
+    return {*even, true, fmt::format("the keys come {} a second", readable(*even)),
+            Confidence::certain};
+  }
+  if (const auto grid = common_grid(times)) {
+    return {*grid, true, fmt::format("all keys fall on the frames of {} a second", readable(*grid)),
+            Confidence::likely};
+  }
+  if (even) {
+    return {kUnevenRate, false,
+            fmt::format("the keys come {} a second, too few to be frames; {} is the default",
+                        readable(*even), readable(kUnevenRate)),
+            Confidence::guess};
+  }
+  return {kUnevenRate, false,
+          fmt::format("the keys come at uneven times; {} is the default", readable(kUnevenRate)),
+          Confidence::guess};
+}
+
+}  // namespace
+
+std::vector<double> distinct_key_times(const nodes::Animation& animation) {
+  std::unordered_set<const std::vector<float>*> seen;  // channels mostly share their times
+  std::vector<double> times;
+  for (const nodes::Channel& channel : animation.channels) {
+    if (!seen.insert(channel.times.get()).second) continue;
+    times.insert(times.end(), channel.times->begin(), channel.times->end());
+  }
+  std::sort(times.begin(), times.end());
+  const auto same = [](double a, double b) { return b - a < 1e-6 + 2e-7 * std::abs(b); };
+  times.erase(std::unique(times.begin(), times.end(), same), times.end());
+  return times;
+}
+
+std::optional<double> even_rate(const std::vector<double>& times) {
+  if (times.size() < 2) return std::nullopt;
+  const double duration = times.back() - times.front();
+  const double average = static_cast<double>(times.size() - 1) / duration;
+  if (!std::isfinite(average) || average > 1e6) return std::nullopt;
+  std::optional<double> best;
+  double least = 0;
+  for (const double rate : kCommonRates) {
+    const auto off = even_misfit(times, rate);
+    // A whole rate goes before one of NTSC's that fits no better.
+    if (off && (!best || *off < least - 2e-3)) {
+      best = rate;
+      least = *off;
+    }
+  }
+  if (best) return best;
+  const double whole = std::round(average);
+  for (const double rate : {whole, average}) {
+    if (rate > 0 && even_misfit(times, rate)) return rate;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> common_grid(const std::vector<double>& times) {
+  if (times.empty()) return std::nullopt;
+  for (const double rate : kCommonRates) {
+    if (misfit(times, rate, false)) return rate;
+  }
+  return std::nullopt;
+}
+
+Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
+                                       const SamplingOptions& options, Diagnostics& diagnostics) {
+  ChosenSampling chosen;
+  const std::vector<double> times = distinct_key_times(animation);
+  if (!times.empty()) {
+    chosen.keys_from = times.front();
+    chosen.keys_to = times.back();
+  }
+  const FoundRate found = find_rate(times);
+  Sampling& sampling = chosen.sampling;
+  sampling.start = chosen.keys_from;
+  sampling.rate = found.rate;
+  chosen.rate = {readable(found.rate), found.reason, found.confidence};
+  double stretch = 1.0;  // seconds of the scene for one of the result
+  if (options.source_rate) {
+    if (!found.on_keys) {
+      return Error("scene-rate",
+                   "--fps counts the keys as frames, but they do not come at even times",
+                   "--resample N says how many frames a second the result should have");
+    }
+    stretch = *options.source_rate / found.rate;
+    sampling.rate = *options.source_rate;
+    chosen.rate = {readable(sampling.rate), "as given", Confidence::certain};
+  } else if (!options.rate) {
+    note(diagnostics, "scene-rate",
+         fmt::format("{} frames a second: {}", readable(found.rate), found.reason),
+         "--resample N takes another rate");
+  }
+  if (options.rate) sampling.rate = *options.rate;
+  sampling.step = stretch / sampling.rate;
+
+  const double steps = (chosen.keys_to - chosen.keys_from) / sampling.step;
+  if (!(steps < kMostFrames)) {
+    return Error("scene-too-long",
+                 fmt::format("{} frames a second over {} s are too many frames",
+                             readable(sampling.rate), readable(chosen.keys_to - chosen.keys_from)));
+  }
+  // A remainder that rounding explains makes no frame.
+  const double rest = 1e-2 + 2.4e-7 * std::abs(chosen.keys_to) / sampling.step;
+  sampling.frames = static_cast<int>(std::ceil(steps - rest)) + 1;
+  sampling.frames = std::max(sampling.frames, 1);
+  if (chosen.keys_from != 0) {
+    note(diagnostics, "scene-start",
+         fmt::format("frame 0 is the file's first key, at {} s", readable(chosen.keys_from)));
+  }
+  const double late = (sampling.frames - 1) - steps;
+  if (late > 0.05) {
+    note(diagnostics, "scene-end",
+         fmt::format("the last key, at {} s, falls between two frames; the last frame holds it, {} "
+                     "frames late",
+                     readable(chosen.keys_to), readable(late, 2)));
+  }
+  return chosen;
+}
+
+}  // namespace krok::character

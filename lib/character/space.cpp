@@ -1,0 +1,102 @@
+#include "character/space.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/numbers.h"
+#include "roles/roles.h"
+
+namespace krok::character {
+
+namespace {
+
+Unit unit_of(double metres) {
+  for (const char* name : {"m", "dm", "cm", "mm", "in", "ft"}) {
+    const Unit unit = *parse_unit(name);
+    if (std::abs(metres / unit.metres - 1) < 1e-6) return unit;
+  }
+  return {metres, readable(metres) + " m"};
+}
+
+Direction nearest(const Vec3& axis) {
+  Direction best = Direction::plus_x;
+  for (const Direction direction : {Direction::minus_x, Direction::plus_y, Direction::minus_y,
+                                    Direction::plus_z, Direction::minus_z}) {
+    if (direction_vector(direction).dot(axis) > direction_vector(best).dot(axis)) best = direction;
+  }
+  return best;
+}
+
+void take_axes(const nodes::Space& space, Conventions& found) {
+  const bool applied = rotation_to_apply(space) != Mat4::Identity();
+  const Quat back = applied ? Quat::Identity() : space.file_to_krok->conjugate();
+  found.up = found.reference_up = nearest(back * Vec3::UnitY());
+  found.forward = found.reference_forward = nearest(back * Vec3::UnitZ());
+  found.up_confidence = found.forward_confidence = Confidence::certain;
+  found.up_reason = found.forward_reason = "the file's format or header says so";
+}
+
+}  // namespace
+
+Mat4 rotation_to_apply(const nodes::Space& space) {
+  Mat4 result = Mat4::Identity();
+  if (!space.file_to_krok) return result;
+  const Mat3 turn = space.file_to_krok->toRotationMatrix();
+  const bool by_quarters = (turn - Mat3(turn.array().round())).cwiseAbs().maxCoeff() < 1e-6;
+  if (!by_quarters) result.topLeftCorner<3, 3>() = turn;
+  return result;
+}
+
+Conventions find_conventions(const nodes::Space& space, const Rig* rig,
+                             std::span<const Vec3> samples, const GivenConventions& given) {
+  Conventions found;
+  const bool all_known =
+      (space.metres || given.unit) && (space.file_to_krok || (given.up && given.forward));
+  if (!all_known && rig != nullptr) {
+    found = detect_conventions(rig->skeleton, find_roles(rig->skeleton), samples);
+  } else if (!all_known) {
+    found.unit_reason = found.up_reason = found.forward_reason =
+        "the file does not say, and there is no figure to go by";
+  }
+  if (space.metres) {
+    found.unit = unit_of(*space.metres);
+    found.unit_confidence = Confidence::certain;
+    found.unit_reason = "the file's format or header says so";
+  }
+  if (space.file_to_krok) take_axes(space, found);
+  apply_given(given, found);
+  return found;
+}
+
+void check_figure(const Skeleton& skeleton, Diagnostics& diagnostics) {
+  const RoleMap roles = find_roles(skeleton);
+  if (!roles.humanoid) return;
+  const Conventions found = detect_conventions(skeleton, roles, {});
+  const auto warn = [&](const char* code, std::string message, std::string hint) {
+    Diagnostic told;
+    told.severity = Severity::warning;
+    told.code = code;
+    told.message = std::move(message);
+    told.hint = std::move(hint);
+    diagnostics.push_back(std::move(told));
+  };
+  const double metres = found.unit.metres;
+  if (found.unit_confidence == Confidence::certain && (metres < 0.2 || metres > 5)) {
+    warn("scene-unit",
+         fmt::format("as the file's unit is taken the figure has an odd size: {} would fit {}",
+                     found.unit.name, "a person"),
+         "say the unit with --unit");
+  }
+  if (found.up_confidence != Confidence::guess && found.up != Direction::plus_y) {
+    warn("scene-up", fmt::format("the figure does not stand along +y: {}", found.up_reason),
+         "if it should, say which of the file's axes points up with --up");
+  } else if (found.forward_confidence != Confidence::guess && found.forward != Direction::plus_z) {
+    warn("scene-forward",
+         fmt::format("the figure does not face +z: {}; it is left as it stands",
+                     found.forward_reason),
+         fmt::format("--forward {} turns it to +z", direction_name(found.forward)));
+  }
+}
+
+}  // namespace krok::character

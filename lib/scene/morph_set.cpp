@@ -1,0 +1,62 @@
+#include "scene/morph_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "core/text.h"
+
+namespace krok {
+
+namespace {
+
+std::span<const Vec3f> part(const std::vector<Vec3f>& values, int target, int vertices) {
+  if (values.empty()) return {};
+  const auto count = static_cast<std::size_t>(vertices);
+  return std::span(values).subspan(static_cast<std::size_t>(target) * count, count);
+}
+
+}  // namespace
+
+int MorphSet::find(const std::string& name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+std::span<const Vec3f> MorphSet::target_positions(int target) const {
+  return part(positions, target, vertex_count);
+}
+
+std::span<const Vec3f> MorphSet::target_normals(int target) const {
+  return part(normals, target, vertex_count);
+}
+
+Status check(const MorphSet& morphs) {
+  const std::size_t expected =
+      morphs.names.size() * static_cast<std::size_t>(std::max(0, morphs.vertex_count));
+  if (morphs.vertex_count < 0 || morphs.positions.size() != expected ||
+      (!morphs.normals.empty() && morphs.normals.size() != expected)) {
+    return Error("morph-shape",
+                 fmt::format("{} targets of {} vertices have {} positions and {} normals",
+                             morphs.names.size(), morphs.vertex_count, morphs.positions.size(),
+                             morphs.normals.size()));
+  }
+  std::unordered_set<std::string> seen;
+  for (const std::string& name : morphs.names) {
+    if (name.empty() || !is_utf8(name)) {
+      return Error("morph-name", "a target's name is empty or not UTF-8");
+    }
+    if (!seen.insert(name).second) {
+      return Error("morph-name", fmt::format("two targets are called {}", shown(name)));
+    }
+  }
+  const auto finite = [](const Vec3f& value) { return value.allFinite(); };
+  if (!std::all_of(morphs.positions.begin(), morphs.positions.end(), finite) ||
+      !std::all_of(morphs.normals.begin(), morphs.normals.end(), finite)) {
+    return Error("morph-value", "a target has a number that is not finite");
+  }
+  return {};
+}
+
+}  // namespace krok

@@ -1,0 +1,124 @@
+// If these fail, an animation is sampled at a rate that is not its own: keys fall between frames,
+// the motion is too fast, or its end is cut off.
+
+#include <gtest/gtest.h>
+
+#include "character/sampling.h"
+#include "scenes.h"
+
+namespace krok::test {
+namespace {
+
+using namespace character;
+
+nodes::Animation keyed(std::vector<float> times) {
+  nodes::Animation animation;
+  std::vector<float> values(times.size() * 3, 0.0f);
+  add_channel(animation, 0, nodes::Path::translation, 3, std::move(times), std::move(values));
+  return animation;
+}
+
+ChosenSampling chosen(const nodes::Animation& animation, const SamplingOptions& options = {}) {
+  Diagnostics diagnostics;
+  const auto result = choose_sampling(animation, options, diagnostics);
+  EXPECT_TRUE(result.ok());
+  return result.ok() ? *result : ChosenSampling();
+}
+
+TEST(Sampling, EvenKeysGiveTheirRate) {
+  for (const double rate : {24.0, 25.0, 30.0, 50.0, 60.0, 120.0, 240.0, 30 / 1.001, 72.0}) {
+    const auto result = chosen(keyed(even_times(2000, rate, 0.5)));
+    EXPECT_DOUBLE_EQ(result.sampling.rate, rate);
+    EXPECT_EQ(result.sampling.frames, 2000) << rate;
+    EXPECT_EQ(result.sampling.start, 0.5);
+    EXPECT_EQ(result.rate.confidence, Confidence::certain);
+  }
+}
+
+TEST(Sampling, LongMotionsKeepTheirRateDespiteFloats) {
+  const auto result = chosen(keyed(even_times(100000, 60, 0)));
+  EXPECT_EQ(result.sampling.rate, 60);
+  EXPECT_EQ(result.sampling.frames, 100000);
+}
+
+TEST(Sampling, TimesOfThreeDecimalsAreUnderstood) {
+  std::vector<float> times;
+  for (int i = 0; i < 50; ++i) times.push_back(static_cast<float>(std::round(i / 0.03) / 1000));
+  const auto result = chosen(keyed(times));
+  EXPECT_EQ(result.sampling.rate, 30);
+  EXPECT_EQ(result.sampling.frames, 50);
+}
+
+TEST(Sampling, SparseKeysFallOnFrames) {
+  const auto result = chosen(keyed({0, 10 / 30.0f, 11 / 30.0f, 2}));
+  EXPECT_EQ(result.sampling.rate, 30);
+  EXPECT_EQ(result.sampling.frames, 61);
+  EXPECT_EQ(result.rate.confidence, Confidence::likely);
+  // A film's sixth and a television's.
+  EXPECT_EQ(chosen(keyed({0, 1 / 24.0f, 1})).sampling.rate, 24);
+  EXPECT_EQ(chosen(keyed({0, 1 / 25.0f, 1})).sampling.rate, 25);
+}
+
+TEST(Sampling, ChannelsOfDifferentTimesAreTakenTogether) {
+  nodes::Animation animation = keyed({0, 0.5f});
+  add_channel(animation, 1, nodes::Path::rotation, 4, {0.25f, 1.0f}, {0, 0, 0, 1, 0, 0, 0, 1});
+  const auto result = chosen(animation);
+  EXPECT_EQ(result.keys_from, 0);
+  EXPECT_EQ(result.keys_to, 1);
+}
+
+TEST(Sampling, UnevenKeysAreSampledAtSixty) {
+  const auto result = chosen(keyed({0, 0.1234f, 0.456f, 0.99991f}));
+  EXPECT_EQ(result.sampling.rate, 60);
+  EXPECT_EQ(result.rate.confidence, Confidence::guess);
+  EXPECT_EQ(result.sampling.frames, 61);  // the last key is reached
+}
+
+TEST(Sampling, TheLastKeyIsReached) {
+  SamplingOptions options;
+  options.rate = 7;
+  const auto result = chosen(keyed(even_times(31, 30)), options);
+  EXPECT_EQ(result.sampling.frames, 8);
+  EXPECT_GE(result.sampling.time(7) + 1e-9, 1.0);
+  options.rate = 10;
+  EXPECT_EQ(chosen(keyed(even_times(31, 30)), options).sampling.frames, 11);
+}
+
+TEST(Sampling, GivenRatesRetime) {
+  SamplingOptions options;
+  options.source_rate = 60;
+  const auto faster = chosen(keyed(even_times(31, 30)), options).sampling;
+  EXPECT_EQ(faster.frames, 31);
+  EXPECT_EQ(faster.rate, 60);
+  EXPECT_NEAR(faster.time(30), 1.0, 1e-12);
+  options.rate = 30;
+  const auto both = chosen(keyed(even_times(31, 30)), options).sampling;
+  EXPECT_EQ(both.frames, 16);
+  EXPECT_EQ(both.rate, 30);
+  EXPECT_NEAR(both.time(15), 1.0, 1e-12);
+
+  Diagnostics diagnostics;
+  options.rate.reset();
+  const auto uneven = choose_sampling(keyed({0, 0.1234f, 0.456f, 0.99991f}), options, diagnostics);
+  ASSERT_FALSE(uneven.ok());
+  EXPECT_EQ(uneven.error().code, "scene-rate");
+}
+
+TEST(Sampling, FewKeys) {
+  EXPECT_EQ(chosen(nodes::Animation()).sampling.frames, 1);
+  const auto one = chosen(keyed({3}));
+  EXPECT_EQ(one.sampling.frames, 1);
+  EXPECT_EQ(one.sampling.start, 3);
+}
+
+TEST(Sampling, EndlessTimesAreAnError) {
+  Diagnostics diagnostics;
+  for (const float end : {1e9f, 1e30f, 3e38f}) {
+    const auto result = choose_sampling(keyed({0, 0.001f, end}), {}, diagnostics);
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.error().code, "scene-too-long");
+  }
+}
+
+}  // namespace
+}  // namespace krok::test

@@ -1,0 +1,263 @@
+// If these fail, an imported character moves otherwise than its file says: the model skinned by the
+// clip does not stand where the file's own nodes and skins put its vertices. The evaluator that
+// these are held against shows what three.js shows (see the tests of gltf_reader).
+
+#include <gtest/gtest.h>
+
+#include "character/mesh.h"
+#include "character/motion.h"
+#include "character/space.h"
+#include "scenes.h"
+#include "skin/linear_blend.h"
+#include "skin/palette.h"
+
+namespace krok::test {
+namespace {
+
+using namespace character;
+
+struct Imported {
+  Rig rig;
+  Conversion conversion;
+  Figure figure;
+  Clip clip;
+  Sampling sampling;
+  Diagnostics diagnostics;
+};
+
+Imported import(const nodes::Scene& scene, const nodes::Evaluator& evaluator, int animation = 0,
+                const GivenConventions& given = {}) {
+  Imported result;
+  Diagnostics& found = result.diagnostics;
+  auto joints = choose_joints(scene, evaluator, "", found);
+  EXPECT_TRUE(joints.ok());
+  auto rig = make_rig(scene, evaluator, std::move(*joints), found);
+  EXPECT_TRUE(rig.ok()) << (rig.ok() ? "" : rig.error().message);
+  result.rig = std::move(*rig);
+  const Conventions conventions = find_conventions(scene.space, &result.rig, {}, given);
+  result.conversion = *Conversion::make(conventions);
+  auto figure =
+      make_figure(scene, evaluator, result.rig, result.conversion, {.with_morphs = true}, found);
+  EXPECT_TRUE(figure.ok()) << (figure.ok() ? "" : figure.error().message);
+  result.figure = std::move(*figure);
+  const auto& keys = scene.animations[static_cast<std::size_t>(animation)];
+  result.sampling = choose_sampling(keys, {}, found)->sampling;
+  auto clip = make_clip(evaluator, result.rig, result.conversion, animation, result.sampling, 1,
+                        nullptr, found);
+  EXPECT_TRUE(clip.ok());
+  result.clip = std::move(*clip);
+  EXPECT_TRUE(check(result.clip).ok()) << check(result.clip).error().message;
+  EXPECT_TRUE(check(result.figure.model).ok()) << check(result.figure.model).error().message;
+  return result;
+}
+
+// The largest distance between the skinned model and what the evaluator shows; `to_krok` is applied
+// to the latter.
+double farthest(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
+                const Imported& imported, const Mat4& to_krok = Mat4::Identity()) {
+  const Model& model = imported.figure.model;
+  const auto reference_to_joint = inverse_reference(model.skeleton);
+  std::vector<SkinMatrix> palette(reference_to_joint.size());
+  std::vector<Transform> pose(reference_to_joint.size());
+  std::vector<Vec3f> positions(model.positions.size()), normals(model.normals.size());
+  nodes::Evaluation state;
+  double worst = 0;
+  (void)scene;
+  for (int frame = 0; frame < imported.clip.frame_count(); ++frame) {
+    imported.clip.get_pose(frame, pose);
+    make_palette(reference_to_joint, pose, palette);
+    linear_blend_parallel(palette, skin_vertices(model), {positions, normals}, 1);
+    evaluator.evaluate(0, imported.sampling.time(frame), state);
+    std::size_t v = 0;
+    for (const auto& instance : state.positions) {
+      for (const Vec3& shown : instance) {
+        const Vec3 wanted = (to_krok * shown.homogeneous()).head<3>();
+        worst = std::max(worst, (positions[v++].cast<double>() - wanted).norm());
+      }
+    }
+    EXPECT_EQ(v, positions.size());
+  }
+  return worst;
+}
+
+TEST(ImportedShape, AScaledArmatureIsFolded) {
+  const nodes::Scene scene = armature_scene();
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Imported imported = import(scene, evaluator);
+  EXPECT_EQ(imported.clip.frame_count(), 13);
+  EXPECT_LT(farthest(scene, evaluator, imported), 2e-6);
+  EXPECT_FALSE(has_code(imported.diagnostics, "scene-scale"));
+  // The bones are those of the nodes, in metres: 30 cm from hips to spine.
+  const Skeleton& skeleton = imported.clip.skeleton;
+  ASSERT_EQ(skeleton.names, (std::vector<std::string>{"Hips", "Spine", "Head", "Head_end"}));
+  EXPECT_NEAR((skeleton.reference[1].position - skeleton.reference[0].position).norm(), 0.3, 1e-9);
+  EXPECT_EQ(skeleton.end_sites[3], 1);
+}
+
+TEST(ImportedShape, TheBindPoseIsTheReferenceAndTheMotionStaysTheSame) {
+  nodes::Scene scene = armature_scene();
+  const auto before = *nodes::Evaluator::create(scene);
+  const Imported bound = import(scene, before);
+  // The same file saved in another pose.
+  scene.nodes[1].rotation = scene.nodes[1].rotation * from_rotation_vector(Vec3(0.4, 0, 0.1));
+  scene.nodes[3].rotation = from_rotation_vector(Vec3(0, 1.2, 0));
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Imported posed = import(scene, evaluator);
+  EXPECT_LT(farthest(scene, evaluator, posed), 2e-6);
+  EXPECT_TRUE(has_code(posed.diagnostics, "scene-pose"));
+  for (std::size_t j = 1; j < 3; ++j) {
+    const Transform a = bound.rig.skeleton.reference_local(static_cast<int>(j));
+    const Transform b = posed.rig.skeleton.reference_local(static_cast<int>(j));
+    EXPECT_LT((a.position - b.position).norm(), 1e-9);
+    EXPECT_LT(angle_between(a.orientation, b.orientation), 1e-7);
+  }
+}
+
+TEST(ImportedShape, UnitAndAxesThatTheUserGives) {
+  nodes::Scene scene = armature_scene();
+  scene.nodes[0].scale = Vec3::Ones();
+  scene.nodes[0].rotation = Quat::Identity();  // z up now, and centimetres
+  scene.skins.clear();
+  scene.meshes.clear();
+  scene.nodes.pop_back();
+  scene.roots.pop_back();
+  const int skin = add_skin(scene, "Body", {1, 2, 3});
+  add_mesh(scene, "Body", -1, skin);
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  GivenConventions given;
+  given.unit = *parse_unit("cm");
+  given.up = Direction::plus_z;
+  given.forward = Direction::minus_y;
+  const Imported imported = import(scene, evaluator, 0, given);
+  Mat4 to_krok = Mat4::Identity();
+  to_krok.topLeftCorner<3, 3>() =
+      0.01 * rotation_to_krok(Direction::plus_z, Direction::minus_y)->toRotationMatrix();
+  EXPECT_LT(farthest(scene, evaluator, imported, to_krok), 2e-6);
+  EXPECT_NEAR(imported.clip.skeleton.reference[0].position.y(), 0.9, 1e-9);
+}
+
+TEST(ImportedShape, MeshesHungOnJointsFollowThem) {
+  nodes::Scene scene = armature_scene();
+  const int holder = add_node(scene, "Hand", 2, Vec3(5, 1, 2), from_rotation_vector(Vec3(1, 0, 0)));
+  const int sword = add_mesh(scene, "Sword", holder, -1, 5);
+  scene.nodes[static_cast<std::size_t>(sword)].scale = Vec3(3, -2, 5);  // mirrored too
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Imported imported = import(scene, evaluator);
+  EXPECT_LT(farthest(scene, evaluator, imported), 2e-6);
+  ASSERT_EQ(imported.figure.model.parts.size(), 2u);
+  // Neither the holder nor the mesh is a joint.
+  EXPECT_EQ(imported.clip.joint_count(), 4);
+}
+
+TEST(ImportedShape, AMirroredMeshKeepsItsOutside) {
+  nodes::Scene scene = armature_scene();
+  add_mesh(scene, "Plain", 2, -1, 5);
+  const int mirrored = add_mesh(scene, "Mirrored", 2, -1, 5);
+  scene.nodes[static_cast<std::size_t>(mirrored)].scale = Vec3(-1, 1, 1);
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Model model = import(scene, evaluator).figure.model;
+  // Volumes against a point outside have the sign of the winding.
+  const auto signed_sum = [&](const Model::Part& part) {
+    double sum = 0;
+    for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count;
+         ++t) {
+      const auto& c = model.triangles[t];
+      const Vec3f normal = (model.positions[c[1]] - model.positions[c[0]])
+                               .cross(model.positions[c[2]] - model.positions[c[0]]);
+      sum += static_cast<double>(normal.dot(model.normals[c[0]]));
+    }
+    return sum;
+  };
+  ASSERT_EQ(model.parts.size(), 3u);
+  ASSERT_EQ(model.parts[0].name, "Plain");
+  ASSERT_EQ(model.parts[1].name, "Mirrored");
+  const double a = signed_sum(model.parts[0]), b = signed_sum(model.parts[1]);
+  ASSERT_GT(std::abs(a), 1e-9);
+  EXPECT_NEAR(a, b, 1e-3 * std::abs(a));
+}
+
+TEST(ImportedShape, MovingScalesAreSaidWithJointAndSize) {
+  nodes::Scene scene = armature_scene();
+  add_channel(scene.animations[0], 2, nodes::Path::scale, 3, {0.1f, 0.5f}, {1, 1, 1, 1.5f, 1, 1});
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Imported imported = import(scene, evaluator);
+  for (const Diagnostic& one : imported.diagnostics) {
+    if (one.code != "scene-scale") continue;
+    EXPECT_EQ(one.joint, "Spine");
+    EXPECT_EQ(one.severity, Severity::warning);
+    EXPECT_NE(one.message.find("50%"), std::string::npos) << one.message;
+  }
+  EXPECT_TRUE(has_code(imported.diagnostics, "scene-scale"));
+}
+
+TEST(ImportedShape, SeveralSkinsShareASkeleton) {
+  nodes::Scene scene = armature_scene();
+  Mat4 shifted = Mat4::Identity();
+  shifted.topRightCorner<3, 1>() = Vec3(3, 2, 1);
+  const int hair = add_skin(scene, "Hair", {3, 2}, shifted);
+  add_mesh(scene, "Hair", 3, hair, 9);
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Imported imported = import(scene, evaluator);
+  EXPECT_LT(farthest(scene, evaluator, imported), 3e-6);
+  EXPECT_FALSE(has_code(imported.diagnostics, "scene-bind"));
+  EXPECT_EQ(imported.clip.joint_count(), 4);
+}
+
+TEST(ImportedShape, SkinsThatDisagreeAreSaid) {
+  nodes::Scene scene = armature_scene();
+  const int hair = add_skin(scene, "Hair", {3, 2});
+  scene.skins[static_cast<std::size_t>(hair)].inverse_binds[0](0, 3) += 7.0;
+  add_mesh(scene, "Hair", 3, hair, 9);
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  EXPECT_TRUE(has_code(import(scene, evaluator).diagnostics, "scene-bind"));
+}
+
+TEST(ImportedShape, MatricesOfJointsWithoutVerticesMayBeAnything) {
+  nodes::Scene scene = armature_scene();
+  scene.skins[0].joints.push_back(4);  // Head_end, with a matrix that an exporter left as it was
+  scene.skins[0].inverse_binds.push_back(Mat4::Identity());
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Imported imported = import(scene, evaluator);
+  EXPECT_LT(farthest(scene, evaluator, imported), 2e-6);
+  EXPECT_FALSE(has_code(imported.diagnostics, "scene-scale"));
+  const Skeleton& skeleton = imported.clip.skeleton;
+  EXPECT_NEAR((skeleton.reference[3].position - skeleton.reference[2].position).norm(), 0.2, 1e-9);
+}
+
+TEST(ImportedShape, TargetsStandInTheReferencePose) {
+  nodes::Scene scene = armature_scene();
+  const auto give_targets = [&](std::size_t mesh, const Vec3f& move) {
+    nodes::Primitive& shape = scene.meshes[mesh].primitives[0];
+    nodes::MorphTarget target;
+    target.name = "Smile";
+    target.positions = shared(std::vector<Vec3f>(shape.vertex_count(), move));
+    shape.targets.push_back(target);
+    target.name.clear();
+    shape.targets.push_back(target);
+    scene.meshes[mesh].weights = {0.0, 0.25};
+  };
+  give_targets(0, Vec3f(0, 0, 2));
+  add_mesh(scene, "Teeth", 3, -1, 7);
+  give_targets(1, Vec3f(1, 0, 0));
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Imported imported = import(scene, evaluator);
+  const MorphSet& morphs = imported.figure.morphs;
+  ASSERT_EQ(morphs.names, (std::vector<std::string>{"Smile", "Teeth_1", "Body_1"}));
+  ASSERT_EQ(morphs.vertex_count, imported.figure.model.vertex_count());
+  const auto& base = imported.figure.model.positions;
+  for (int t = 0; t < 3; ++t) {
+    for (std::size_t v = 0; v < base.size(); ++v) {
+      const bool body = v >= 12;  // after the teeth in the outline
+      const bool moved = t == 0 || (t == 2) == body;
+      const double distance = (morphs.target_positions(t)[v] - base[v]).norm();
+      // The body is bound at half its size, the teeth are in the armature's centimetres.
+      EXPECT_NEAR(distance, !moved ? 0.0 : body ? 1.0 : 0.01, 1e-6) << t << " " << v;
+    }
+  }
+  const MorphWeights weights = make_weights(imported.figure, evaluator, 0, imported.sampling);
+  EXPECT_EQ(weights.frame_count(), 13);
+  EXPECT_EQ(weights.values[1], 0.25f);
+}
+
+}  // namespace
+}  // namespace krok::test
