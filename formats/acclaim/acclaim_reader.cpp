@@ -9,10 +9,10 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "formats/acclaim/kinematics.h"
-#include "formats/acclaim/motion_file.h"
-#include "formats/acclaim/skeleton_file.h"
-#include "formats/acclaim/source_text.h"
+#include "formats/acclaim/kinematics_internal.h"
+#include "formats/acclaim/motion_file_internal.h"
+#include "formats/acclaim/skeleton_file_internal.h"
+#include "formats/acclaim/source_text_internal.h"
 #include "roles/roles.h"
 
 namespace krok::acclaim {

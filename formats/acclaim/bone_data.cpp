@@ -1,4 +1,4 @@
-#include "formats/acclaim/bone_data.h"
+#include "formats/acclaim/bone_data_internal.h"
 
 #include <fmt/format.h>
 

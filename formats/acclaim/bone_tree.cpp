@@ -1,7 +1,8 @@
-#include "formats/acclaim/bone_tree.h"
+#include "formats/acclaim/bone_tree_internal.h"
 
 #include <fmt/format.h>
 
+#include "capture/joint_name.h"
 #include "capture/unique_names.h"
 #include "core/text.h"
 
@@ -108,13 +109,15 @@ class BoneTree {
     }
   }
 
-  // Names differ as bytes; read as Latin-1 two may be the same.
+  // Names differ as bytes; read as Latin-1, or without control characters, two may be the same.
   std::string unique_name(const LooseBone& bone) {
-    std::string candidate = names_.make(to_utf8(bone.name));
+    std::string candidate = names_.make(readable_joint_name(bone.name));
     if (candidate != bone.name) {
-      source_.warn(bone.offset, "acclaim-name",
-                   fmt::format("the name of a bone is not UTF-8; it is called {}", candidate), {},
-                   candidate);
+      source_.warn(
+          bone.offset, "acclaim-name",
+          fmt::format("the name of a bone {}; it is called {}",
+                      is_utf8(bone.name) ? "has control characters" : "is not UTF-8", candidate),
+          {}, candidate);
     }
     return candidate;
   }

@@ -1,4 +1,4 @@
-#include "formats/acclaim/kinematics.h"
+#include "formats/acclaim/kinematics_internal.h"
 
 #include <string>
 

@@ -1,11 +1,11 @@
-#include "formats/acclaim/skeleton_file.h"
+#include "formats/acclaim/skeleton_file_internal.h"
 
 #include <fmt/format.h>
 
 #include "core/text.h"
-#include "formats/acclaim/bone_data.h"
-#include "formats/acclaim/bone_tree.h"
-#include "formats/acclaim/item_parser.h"
+#include "formats/acclaim/bone_data_internal.h"
+#include "formats/acclaim/bone_tree_internal.h"
+#include "formats/acclaim/item_parser_internal.h"
 
 namespace krok::acclaim {
 

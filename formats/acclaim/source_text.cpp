@@ -1,4 +1,4 @@
-#include "formats/acclaim/source_text.h"
+#include "formats/acclaim/source_text_internal.h"
 
 #include <fmt/format.h>
 

@@ -3,19 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cassert>
+#include <memory>
 
+#include "capture/exporter.h"
 #include "capture/fill_frames.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
+#include "formats/bvh/angle_unit_internal.h"
+#include "formats/bvh/decimal_commas_internal.h"
 #include "formats/bvh/frame_rate.h"
 #include "formats/bvh/hierarchy.h"
 #include "formats/bvh/kinematics.h"
 #include "formats/bvh/motion_rows.h"
 #include "formats/bvh/position_choice.h"
 #include "formats/bvh/rest_frame.h"
+#include "formats/bvh/row_frames.h"
 #include "formats/bvh/text_cursor.h"
 
 namespace krok::bvh {
@@ -29,11 +33,11 @@ class Reader {
   Reader(std::string_view text, const std::string& file_name, const ReadOptions& options)
       : text_(text), file_name_(file_name), options_(options) {}
 
-  Result<Capture> read() {
+  // The hierarchy, the header and where the lines are; false where those are not a row each.
+  Result<bool> begin(const std::function<void(std::size_t)>& release = {}) {
     auto hierarchy = parse_hierarchy(text_, file_name_, options_, capture_.diagnostics);
     if (!hierarchy) return std::move(hierarchy).error();
     hierarchy_ = std::move(*hierarchy);
-    recognise_exporter();
     auto header =
         parse_motion_header(text_, hierarchy_.end, file_name_, options_, capture_.diagnostics);
     if (!header) return std::move(header).error();
@@ -43,9 +47,15 @@ class Reader {
 
     // Nearly every file has a row a line and nothing odd; the rows are taken as such, and only if
     // one of them turns out otherwise does the careful search for the rows begin.
+    rows_ = index_lines(text_, header_.end, options_.jobs, release);
+    return !hierarchy_.channels.empty() && static_cast<long long>(rows_.size()) == header_.frames;
+  }
+
+  Result<Capture> read() {
+    const auto one_row_a_line = begin();
+    if (!one_row_a_line) return one_row_a_line.error();
     const Diagnostics before = capture_.diagnostics;
-    rows_ = index_lines(text_, header_.end);
-    if (!hierarchy_.channels.empty() && static_cast<long long>(rows_.size()) == header_.frames) {
+    if (*one_row_a_line) {
       Status done = convert();
       if (!row_is_faulty_) {
         if (!done) return std::move(done).error();
@@ -66,6 +76,30 @@ class Reader {
     return std::move(capture_);
   }
 
+  std::optional<OpenedCapture> open(std::function<void(std::size_t)> release) {
+    const auto one_row_a_line = begin(release);
+    if (!one_row_a_line || !*one_row_a_line) return std::nullopt;
+    choose_rate();
+    if (!choose_conventions() || !check_size()) return std::nullopt;
+    make_frames();
+    // What tells a rest frame stands at the beginning.
+    FrameSource head = source(0, nullptr, {});
+    head.frame_count = std::min(head.frame_count, kFramesOfRestPose);
+    auto clip = load(head, 1);
+    if (!clip) return std::nullopt;
+    auto conversions = std::move(capture_.clip.provenance.conversions);
+    capture_.clip = *std::move(clip);
+    capture_.clip.provenance.conversions = std::move(conversions);
+    report_rest_pose();
+    OpenedCapture opened;
+    opened.frames =
+        source(capture_.rest_frame_dropped ? 1 : 0, options_.progress, std::move(release));
+    capture_.clip.resize(0);
+    static_cast<Capture&>(opened) = std::move(capture_);
+    if (options_.progress != nullptr) options_.progress->begin("frames", opened.frames.frame_count);
+    return opened;
+  }
+
  private:
   void tell(Severity severity, std::string code, std::string message, std::string hint = {},
             Location where = {}) {
@@ -79,19 +113,39 @@ class Reader {
     capture_.diagnostics.push_back(std::move(told));
   }
 
-  // iPi Mocap Studio's own names; it writes MotionBuilder's as well, which many others do.
-  void recognise_exporter() {
-    const std::array<std::string_view, 4> spine = {"Hip", "LowerSpine", "MiddleSpine", "Chest"};
-    const auto& joints = hierarchy_.joints;
-    if (joints.size() < spine.size()) return;
-    for (std::size_t j = 0; j < spine.size(); ++j) {
-      if (joints[j].name != spine[j] || joints[j].parent != static_cast<int>(j) - 1) return;
+  // By the names of the joints, and how the file is written.
+  void tell_exporter(const SampleRows& samples) {
+    Skeleton names;
+    for (const auto& joint : hierarchy_.joints) {
+      names.add(joint.name, joint.parent, {}, joint.end_site);
     }
-    const auto ends = std::count_if(joints.begin(), joints.end(),
-                                    [](const Hierarchy::Joint& joint) { return joint.end_site; });
+    ExporterTraits traits;
+    traits.frame_time = header_.frame_time_text;
+    const std::size_t row = rows_.empty() ? RowIndex::kFaulty : rows_[0];
+    traits.rows_begin_with_tab = row != RowIndex::kFaulty && row > 0 && text_[row - 1] == '\t';
+    traits.starts_unturned = samples.count() > 0;
+    for (std::size_t c = 0; c < samples.channels && traits.starts_unturned; ++c) {
+      const bool rotation = hierarchy_.channels[c].kind == ChannelKind::rotation;
+      traits.starts_unturned = !rotation || samples.row(0)[c] == 0.0;
+    }
+    const auto exporter = recognise_exporter(names, traits);
+    if (!exporter) return;
+    capture_.exporter = {exporter->name, exporter->reason, exporter->confidence};
     tell(Severity::note, "bvh-exporter",
-         fmt::format("{} joints with the names that iPi Mocap Studio gives",
-                     static_cast<std::ptrdiff_t>(joints.size()) - ends));
+         fmt::format("{} ({}): {}", exporter->name, confidence_name(exporter->confidence),
+                     exporter->reason));
+  }
+
+  void choose_angles(const SampleRows& samples) {
+    if (options_.angles == Angles::radians) {
+      hierarchy_.degrees_per_angle = 1.0 / kRadiansPerDegree;
+      return;
+    }
+    const auto reason = looks_like_radians(hierarchy_, samples);
+    if (!reason) return;
+    tell(Severity::warning, "bvh-angles",
+         fmt::format("the angles may be radians, though BVH has degrees: {}", *reason),
+         "--angles radians reads them as such");
   }
 
   // From the places of the rows to the clip.
@@ -112,9 +166,9 @@ class Reader {
     }
     const PrintedRate printed = rate_of_frame_time(header_.frame_time_text, header_.frame_time);
     rate = printed.rate;
+    const bool doubtful = printed.few_digits || printed.unusual;
     capture_.rate = {readable(rate), printed.reason,
-                     printed.few_digits ? Confidence::guess : Confidence::certain};
-    const bool doubtful = printed.few_digits;
+                     doubtful ? Confidence::guess : Confidence::certain};
     tell(doubtful ? Severity::warning : Severity::note, "bvh-rate",
          fmt::format("{} frames a second: {}", readable(rate), printed.reason),
          doubtful ? "say the rate with --fps N if it is another" : "",
@@ -138,6 +192,8 @@ class Reader {
 
   Status choose_conventions() {
     const SampleRows samples = sample_rows();
+    tell_exporter(samples);
+    choose_angles(samples);
     PositionChoice positions;
     if (options_.positions == Positions::automatic) {
       positions = choose_positions(hierarchy_, samples, options_.up);
@@ -201,12 +257,9 @@ class Reader {
     return {};
   }
 
-  Status fill_clip() {
-    const Kinematics kinematics(hierarchy_, positions_, conversion_);
-    Clip& clip = capture_.clip;
-    clip.skeleton = skeleton_of(kinematics);
+  Status check_size() const {
     const double transforms =
-        static_cast<double>(rows_.size()) * static_cast<double>(clip.skeleton.names.size());
+        static_cast<double>(rows_.size()) * static_cast<double>(hierarchy_.joints.size());
     const double bytes = transforms * (sizeof(Vec3f) + sizeof(Quatf));
     constexpr double kSmall = 1 << 26;
     if (bytes > kSmall + options_.max_expansion * static_cast<double>(text_.size()) ||
@@ -214,42 +267,78 @@ class Reader {
       return Error("bvh-limit",
                    fmt::format("{} frames of {} joints are out of proportion to the size of the "
                                "file",
-                               rows_.size(), clip.skeleton.names.size()))
+                               rows_.size(), hierarchy_.joints.size()))
           .in_file(file_name_);
     }
-    clip.resize(static_cast<int>(rows_.size()));
-    if (options_.progress != nullptr) options_.progress->begin("reading frames", rows_.size());
-    std::atomic<std::size_t> first_overflow = rows_.size();
-    parallel_for(rows_.size(), kRowsAtOnce, options_.jobs, [&](std::size_t begin, std::size_t end) {
-      std::vector<double> values(hierarchy_.channels.size());
-      std::vector<Transform> pose(kinematics.joint_count());
-      for (std::size_t row = begin; row < end; ++row) {
-        if (rows_[row] == RowIndex::kFaulty) continue;
-        if (!parse_whole_row(row, values)) {
-          row_is_faulty_ = true;
-          return;
+    return {};
+  }
+
+  // The rows as frames, and the skeleton that they move.
+  void make_frames() {
+    Kinematics kinematics(hierarchy_, positions_, conversion_);
+    capture_.clip.skeleton = skeleton_of(kinematics);
+    frames_ = std::make_shared<const RowFrames>(text_, std::move(rows_), hierarchy_.channels.size(),
+                                                std::move(kinematics), careful_);
+    rows_.clear();
+  }
+
+  // The frames from row `skip` on. It keeps what it needs, but the text, alive.
+  FrameSource source(int skip, Progress* progress, std::function<void(std::size_t)> release) const {
+    FrameSource result;
+    result.skeleton = capture_.clip.skeleton;
+    result.rate = capture_.clip.rate;
+    result.frame_count = static_cast<int>(frames_->rows().size()) - skip;
+    result.read = [frames = frames_, skip, progress](int first, int count,
+                                                     std::span<Vec3f> positions,
+                                                     std::span<Quatf> orientations) -> Status {
+      const auto outcome = frames->read(static_cast<std::size_t>(first + skip),
+                                        static_cast<std::size_t>(count), positions, orientations);
+      if (outcome.row_is_faulty || outcome.overflow) {
+        return Error("bvh-channel-count", "a row is not whole, or its numbers are too large");
+      }
+      if (progress != nullptr) progress->advance(static_cast<std::uint64_t>(count));
+      return {};
+    };
+    if (release) {
+      result.release = [frames = frames_, skip, release = std::move(release)](int frame) {
+        const auto row = static_cast<std::size_t>(frame + skip);
+        if (row < frames->rows().size()) release(frames->rows()[row]);
+      };
+    }
+    return result;
+  }
+
+  Status fill_clip() {
+    if (Status fits = check_size(); !fits) return fits;
+    make_frames();
+    Clip& clip = capture_.clip;
+    const std::size_t count = frames_->rows().size();
+    const auto joints = static_cast<std::size_t>(clip.joint_count());
+    clip.resize(static_cast<int>(count));
+    if (options_.progress != nullptr) options_.progress->begin("reading frames", count);
+    std::atomic<std::size_t> first_overflow = count;
+    parallel_for(count, kRowsAtOnce, options_.jobs, [&](std::size_t begin, std::size_t end) {
+      const auto outcome = frames_->read(
+          begin, end - begin,
+          std::span(clip.positions).subspan(begin * joints, (end - begin) * joints),
+          std::span(clip.orientations).subspan(begin * joints, (end - begin) * joints));
+      if (outcome.row_is_faulty) {
+        row_is_faulty_ = true;
+        return;
+      }
+      if (outcome.overflow) {
+        std::size_t first = first_overflow;
+        while (*outcome.overflow < first &&
+               !first_overflow.compare_exchange_weak(first, *outcome.overflow)) {
         }
-        kinematics.pose(values, pose);
-        // Zero times a number is zero, but not if it is infinite or NaN.
-        float zero = 0;
-        for (const Transform& joint : pose) {
-          zero += 0.0f * (joint.position.cast<float>().sum() +
-                          joint.orientation.coeffs().cast<float>().sum());
-        }
-        if (zero != 0) {
-          std::size_t first = first_overflow;
-          while (row < first && !first_overflow.compare_exchange_weak(first, row)) {
-          }
-        }
-        clip.set_pose(static_cast<int>(row), pose);
       }
       if (options_.progress != nullptr) options_.progress->advance(end - begin);
     });
     if (row_is_faulty_) return {};
-    if (first_overflow < rows_.size()) {
+    if (first_overflow < count) {
       Error overflow("bvh-number", "the numbers are so large that positions overflow",
                      "look at the frame's position channels, and at the unit if --unit was given");
-      overflow.where = locate(text_, rows_[first_overflow], file_name_);
+      overflow.where = locate(text_, frames_->rows()[first_overflow], file_name_);
       overflow.frame = static_cast<std::int64_t>(first_overflow);
       return overflow;
     }
@@ -258,22 +347,13 @@ class Reader {
     return {};
   }
 
-  // False if the row is not all there, or if more than it stands before the next row.
-  bool parse_whole_row(std::size_t row, std::span<double> values) const {
-    std::size_t after = parse_row(text_, rows_[row], values);
-    if (after == RowIndex::kFaulty) return false;
-    if (careful_) return true;
-    const std::size_t end = row + 1 < rows_.size() ? rows_[row + 1] : text_.size();
-    while (after < end && is_space(text_[after])) ++after;
-    return after == end;
-  }
-
   // Frames without a row stand between whole ones.
   void fill_faulty_frames() {
-    for (std::size_t row = 0; row < rows_.size(); ++row) {
-      if (rows_[row] != RowIndex::kFaulty) continue;
+    const auto& rows = frames_->rows();
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (rows[row] != RowIndex::kFaulty) continue;
       const std::size_t first = row - 1;
-      while (rows_[row] == RowIndex::kFaulty) ++row;
+      while (rows[row] == RowIndex::kFaulty) ++row;
       fill_frames_between(capture_.clip, static_cast<int>(first), static_cast<int>(row));
     }
   }
@@ -303,6 +383,7 @@ class Reader {
   }
 
   static constexpr std::size_t kRowsAtOnce = 64;
+  static constexpr int kFramesOfRestPose = 16;
 
   std::string_view text_;
   const std::string& file_name_;
@@ -314,6 +395,7 @@ class Reader {
   std::atomic<bool> row_is_faulty_ = false;
   Positions positions_ = Positions::absolute;
   Conversion conversion_;
+  std::shared_ptr<const RowFrames> frames_;
   Capture capture_;
 };
 
@@ -322,7 +404,26 @@ class Reader {
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options) {
   if (Status rate = check_rate(options.rate, "bvh-frame-time"); !rate) return rate.error();
-  return Reader(text, file_name, options).read();
+  const bool repair = options.strictness == Strictness::repair;
+  const auto pointed = repair ? with_decimal_points(text) : std::nullopt;
+  if (!pointed) return Reader(text, file_name, options).read();
+  auto capture = Reader(pointed->text, file_name, options).read();
+  if (!capture) return capture;
+  Error told("bvh-repair", fmt::format("decimal commas were read as points in {}",
+                                       counted(static_cast<long long>(pointed->count), "number")));
+  told.where = locate(text, pointed->first, file_name);
+  told.severity = Severity::warning;
+  capture->repairs.insert(capture->repairs.begin(),
+                          fmt::format("line {}: {}", told.where.line, told.message));
+  capture->diagnostics.insert(capture->diagnostics.begin(), std::move(told));
+  return capture;
+}
+
+std::optional<OpenedCapture> open(std::string_view text, const std::string& file_name,
+                                  const ReadOptions& options,
+                                  std::function<void(std::size_t)> release) {
+  if (!check_rate(options.rate, "bvh-frame-time")) return std::nullopt;
+  return Reader(text, file_name, options).open(std::move(release));
 }
 
 }  // namespace krok::bvh

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "capture/capture.h"
 #include "core/result.h"
+#include "scene/frame_source.h"
 
 // Biovision hierarchy files (BVH) as they are found: M. Meredith and S. Maddock, "Motion capture
 // file formats explained", University of Sheffield, 2001, describes the format; what exporters make
@@ -21,12 +24,17 @@ enum class Positions { automatic, absolute, additive };
 // dropped whatever it is.
 enum class RestFrame { keep, automatic, drop };
 
+// What rotation channels are in. The format has degrees; a file that looks otherwise gets a
+// warning.
+enum class Angles { degrees, radians };
+
 struct ReadOptions : CaptureOptions {
   // strictness normal: rows that are not whole are left out and reported, a number that is no
   // number is an error. strict: whatever would be a fault in the data is an error. repair: faulty
   // frames are filled from their neighbours, or left out at the ends; each repair is listed. With
   // metres, up +y and forward +z given, numbers pass through unconverted.
   Positions positions = Positions::automatic;
+  Angles angles = Angles::degrees;
   RestFrame rest_frame = RestFrame::keep;
 };
 
@@ -51,8 +59,26 @@ struct Capture : krok::Capture {
 // bvh-channel-count, bvh-frame-count, bvh-frame-time, bvh-no-motion, bvh-limit, direction-parallel.
 // Of warnings and notes besides these: bvh-name, bvh-name-duplicate, bvh-roots, bvh-offset,
 // bvh-text-after, bvh-positions, bvh-rate, bvh-unit, bvh-up, bvh-forward, bvh-rest-frame,
-// bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones, bvh-exporter.
+// bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones, bvh-exporter, bvh-angles, bvh-text-before.
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options = {});
+
+// A capture whose frames are read when they are asked for; `clip` has its skeleton, rate and
+// conversions, but no frames. `frames` views the text and is valid as long as that is.
+struct OpenedCapture : Capture {
+  FrameSource frames;
+};
+
+// The beginning of a file, and a few rows to work out what read() works out, without reading the
+// rest: for files of any length. Gives nothing where the file is not a row a line throughout, as
+// many as announced, or has any other fault: read() tells it then. The same holds where a frame
+// gives an Error: a row there proved not to be whole, so that what was read of the file is worth
+// nothing.
+//
+// `release`, which may be empty, is called by the source's release() with the offset of the text
+// before which nothing is read any more.
+std::optional<OpenedCapture> open(std::string_view text, const std::string& file_name,
+                                  const ReadOptions& options,
+                                  std::function<void(std::size_t offset)> release = {});
 
 }  // namespace krok::bvh

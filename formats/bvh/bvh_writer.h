@@ -18,7 +18,8 @@ struct WriteOptions {
   double unit_metres = 0.01;
 
   // Decimals of angles (degrees), and of lengths in a centimetre; other units get as many more or
-  // fewer as keep the same fineness. 6 keeps positions within a millionth of a figure's size.
+  // fewer as keep the same fineness. With 6, positions come back within 1e-6 m and orientations
+  // within 1e-6 rad, as far as floats hold them.
   int decimals = 6;
 
   // Writes the root's reference position as its OFFSET. Without it the root's OFFSET is 0 0 0,
@@ -29,7 +30,7 @@ struct WriteOptions {
   // Joints other than the root get position channels where their translation in the parent leaves
   // the OFFSET by more than this (metres), or by more than float rounding can explain. The channels
   // replace the OFFSET.
-  double translation_tolerance = 1e-5;
+  double translation_tolerance = 1e-6;
 
   // Spaces in names are written as they are; many readers take only the first word. A character
   // here replaces each ("_").

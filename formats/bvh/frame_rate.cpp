@@ -11,13 +11,16 @@ namespace krok::bvh {
 
 namespace {
 
-constexpr std::array kCommonRates = {24.0,         25.0,         30.0,          48.0,
-                                     50.0,         60.0,         90.0,          100.0,
-                                     120.0,        240.0,        24.0 / 1.001,  30.0 / 1.001,
-                                     48.0 / 1.001, 60.0 / 1.001, 120.0 / 1.001, 240.0 / 1.001};
+constexpr std::array kWholeRates = {24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 240.0};
+constexpr std::array kNtscRates = {24.0 / 1.001, 30.0 / 1.001,  48.0 / 1.001,
+                                   60.0 / 1.001, 120.0 / 1.001, 240.0 / 1.001};
 
 // A change of the rate beyond which the printed digits leave room for other rates.
 constexpr double kFewDigits = 0.005;
+
+// Rates that captures are made at, from time lapse to high speed.
+constexpr double kLowest = 4.0;
+constexpr double kHighest = 1000.0;
 
 // The value of the last printed digit that is not a zero: 1e-7 for 0.0333333000.
 double last_digit(std::string_view text) {
@@ -27,15 +30,22 @@ double last_digit(std::string_view text) {
     exponent = static_cast<int>(parse_integer(text.substr(mark + 1)).value_or(0));
     text = text.substr(0, mark);
   }
-  const std::size_t point = text.find('.');
+  const std::size_t point = text.find_first_of(".,");
   if (point == std::string_view::npos) return std::pow(10.0, exponent);
   while (text.back() == '0') text.remove_suffix(1);
   return std::pow(10.0, exponent - static_cast<int>(text.size() - point - 1));
 }
 
-}  // namespace
+// What a frame time that makes no usual rate may have been meant as; empty for nothing known.
+std::string meant_instead(double frame_time) {
+  for (const double rate : kWholeRates) {
+    if (std::abs(frame_time / rate - 1.0) < 0.01) return "frames a second";
+    if (std::abs(frame_time * rate / 1000.0 - 1.0) < 0.03) return "milliseconds";
+  }
+  return {};
+}
 
-PrintedRate rate_of_frame_time(std::string_view text, double frame_time) {
+PrintedRate printed_rate(std::string_view text, double frame_time) {
   PrintedRate result;
   result.rate = 1.0 / frame_time;
   // Half a unit of the last digit, or a whole one where digits were cut off instead of rounded.
@@ -45,10 +55,17 @@ PrintedRate rate_of_frame_time(std::string_view text, double frame_time) {
     return distance(rate) <= 0.5 * tolerance ||
            (1.0 / rate > frame_time && distance(rate) < tolerance);
   };
-  double best = 0;
-  for (const double rate : kCommonRates) {
-    if (agrees(rate) && (best == 0 || distance(rate) < distance(best))) best = rate;
-  }
+  const auto nearest = [&](const auto& rates) {
+    double best = 0;
+    for (const double rate : rates) {
+      if (agrees(rate) && (best == 0 || distance(rate) < distance(best))) best = rate;
+    }
+    return best;
+  };
+  double best = nearest(kWholeRates);
+  const double ntsc = nearest(kNtscRates);
+  const bool also_ntsc = best != 0 && ntsc != 0;
+  if (best == 0) best = ntsc;
   // Other rates are taken as round as the digits allow: 15, 59.94, 23.976.
   for (const double step : {1.0, 0.01, 0.001}) {
     if (best != 0) break;
@@ -77,6 +94,19 @@ PrintedRate rate_of_frame_time(std::string_view text, double frame_time) {
                       ? fmt::format("the Frame Time {} s is 1 / {} to the digits that are printed",
                                     text, readable(best))
                       : fmt::format("1 / {} s, the Frame Time", text);
+  if (also_ntsc) result.reason += fmt::format("; {} would look the same", readable(ntsc));
+  return result;
+}
+
+}  // namespace
+
+PrintedRate rate_of_frame_time(std::string_view text, double frame_time) {
+  PrintedRate result = printed_rate(text, frame_time);
+  result.unusual = result.rate < kLowest || result.rate > kHighest;
+  if (!result.unusual) return result;
+  const std::string meant = meant_instead(frame_time);
+  result.reason += meant.empty() ? ", which no capture is made at"
+                                 : fmt::format(", though {} looks like {}", text, meant);
   return result;
 }
 

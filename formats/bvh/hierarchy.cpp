@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/numbers.h"
+#include "formats/bvh/channel_name_internal.h"
 #include "formats/bvh/file_kind.h"
 #include "formats/bvh/names.h"
 #include "formats/bvh/text_cursor.h"
@@ -15,19 +16,6 @@
 namespace krok::bvh {
 
 namespace {
-
-struct ChannelName {
-  std::string_view name;
-  ChannelKind kind;
-  Axis axis;
-};
-
-constexpr std::array kChannelNames = {ChannelName{"Xposition", ChannelKind::position, Axis::x},
-                                      ChannelName{"Yposition", ChannelKind::position, Axis::y},
-                                      ChannelName{"Zposition", ChannelKind::position, Axis::z},
-                                      ChannelName{"Xrotation", ChannelKind::rotation, Axis::x},
-                                      ChannelName{"Yrotation", ChannelKind::rotation, Axis::y},
-                                      ChannelName{"Zrotation", ChannelKind::rotation, Axis::z}};
 
 constexpr const char* kChannelsHint =
     "after CHANNELS write how many channel names follow, and these";
@@ -62,6 +50,7 @@ class HierarchyParser {
     if (result_.joints.empty()) {
       return fail("bvh-syntax", "the hierarchy has no ROOT", "the file holds no skeleton");
     }
+    if (Status useful = check_channels(); !useful) return useful.error();
     if (Status joined = join_roots(); !joined) return joined.error();
     if (warnings_ > kMostWarnings) {
       tell_in_file(Severity::warning, "bvh-syntax",
@@ -99,14 +88,31 @@ class HierarchyParser {
     diagnostics_.push_back(std::move(told));
   }
 
+  // The text may begin with a byte-order mark. Lines before HIERARCHY, and a ROOT without it, are
+  // oddities.
   Status parse_start() {
-    cursor_.seek(text_.size() - without_byte_order_mark(text_).size());
-    if (Status kind = check_file_kind(text_, file_name_); !kind) return kind;
-    if (!same_word(cursor_.word(), "HIERARCHY")) {
+    const std::size_t begin = text_.size() - without_byte_order_mark(text_).size();
+    cursor_.seek(begin);
+    if (cursor_.accept("HIERARCHY")) return {};
+    const auto start = find_start(text_.substr(begin));
+    if (!start) {
+      Status kind = check_file_kind(text_, file_name_);
+      if (!kind) return kind;
       return fail("bvh-kind", "does not begin with HIERARCHY, as a BVH file does",
                   "give a BVH capture");
     }
-    return {};
+    cursor_.seek(begin + start->offset);
+    if (start->lines > 0) {
+      Status told =
+          warn_at(begin, "bvh-text-before",
+                  fmt::format("{} before the hierarchy {} left out", counted(start->lines, "line"),
+                              start->lines == 1 ? "is" : "are"),
+                  {});
+      if (!told) return told;
+    }
+    if (cursor_.accept("HIERARCHY")) return {};
+    return warn_at(begin + start->offset, "bvh-syntax", "the word HIERARCHY is missing before ROOT",
+                   {});
   }
 
   std::string open_name() const {
@@ -134,25 +140,29 @@ class HierarchyParser {
       if (open_.empty()) return fail("bvh-syntax", "JOINT outside of any ROOT");
       return open_joint(false);
     }
-    if (same_word(word, "End")) {
+    if (same_word(word, "End") || same_word(word, "EndSite") || same_word(word, "End_Site")) {
       if (open_.empty()) return fail("bvh-syntax", "End Site outside of any ROOT");
       return open_joint(true);
     }
+    if (word.starts_with('#') || word.starts_with("//")) {
+      const std::size_t place = cursor_.word_begin();
+      cursor_.seek(place);
+      return warn_at(place, "bvh-syntax",
+                     fmt::format("the comment '{}' is left out", shown(cursor_.line())), {});
+    }
     if (open_.empty()) {
-      return fail("bvh-syntax", fmt::format("'{}' where ROOT or MOTION is expected", shown(word)));
+      return fail("bvh-syntax", fmt::format("'{}' where ROOT or MOTION is expected", shown(word)),
+                  word == "}" ? "there is one '}' more than there are '{'" : "");
     }
     if (same_word(word, "OFFSET")) return parse_offset();
     if (same_word(word, "CHANNELS")) return parse_channels();
     if (word == "}") {
       return close_joint();
     }
-    const bool channel =
-        std::any_of(kChannelNames.begin(), kChannelNames.end(),
-                    [&](const ChannelName& candidate) { return same_word(word, candidate.name); });
     return fail("bvh-syntax",
                 fmt::format("'{}' where OFFSET, CHANNELS, JOINT, End Site or '}}' is expected",
                             shown(word)),
-                channel ? kChannelsHint : "");
+                channel_meaning(word) ? kChannelsHint : "");
   }
 
   Status open_joint(bool end_site) {
@@ -214,7 +224,9 @@ class HierarchyParser {
         return fail("bvh-number",
                     fmt::format("'{}' in the OFFSET of {} is not a finite number", shown(word),
                                 open_name()),
-                    "OFFSET takes three numbers");
+                    word.find(',') == std::string_view::npos
+                        ? "OFFSET takes three numbers"
+                        : "numbers are written with a decimal point and without commas between");
       }
       if (std::abs(*value) > std::numeric_limits<float>::max()) {
         return fail("bvh-number",
@@ -239,7 +251,13 @@ class HierarchyParser {
     }
     const std::size_t count_place = cursor_.word_begin();
     result_.joints[index].first_channel = result_.channels.size();
-    std::array<bool, 3> has_position{};
+    seen_positions_.fill(false);
+    seen_rotations_.fill(false);
+    if (*count > 0 && result_.joints[index].end_site) {
+      Status told = warn_at(count_place, "bvh-channels",
+                            "an End Site has channels, so that it moves as a joint does", {});
+      if (!told) return told;
+    }
     for (long long i = 0; i < *count; ++i) {
       const std::string_view word = cursor_.peek();
       if (word.empty() || word == "{" || word == "}" || same_word(word, "JOINT") ||
@@ -249,40 +267,78 @@ class HierarchyParser {
                        kChannelsHint);
       }
       cursor_.word();
-      if (Status added = add_channel(word, index, has_position); !added) return added;
+      if (Status added = add_channel(word, index); !added) return added;
     }
     result_.joints[index].channel_count =
         result_.channels.size() - result_.joints[index].first_channel;
     return {};
   }
 
-  Status add_channel(std::string_view word, std::size_t joint, std::array<bool, 3>& has_position) {
+  Status add_channel(std::string_view word, std::size_t joint) {
+    std::string_view name = word;
+    while (!name.empty() && (name.back() == ',' || name.back() == ';')) name.remove_suffix(1);
+    if (name.size() != word.size() && !commas_told_) {
+      commas_told_ = true;
+      Status told = warn_at(cursor_.word_begin(), "bvh-channels",
+                            "the names of channels are divided by commas, which are left out", {});
+      if (!told) return told;
+    }
     Channel channel;
     channel.joint = static_cast<int>(joint);
-    bool known = false;
-    for (const ChannelName& candidate : kChannelNames) {
-      if (!same_word(word, candidate.name)) continue;
-      channel.kind = candidate.kind;
-      channel.axis = candidate.axis;
-      known = true;
+    const auto meaning = channel_meaning(name);
+    Status told;
+    if (meaning) {
+      channel.kind = meaning->kind;
+      channel.axis = meaning->axis;
+      told = check_repeated(channel, name);
+    } else if (same_word(name, "Wrotation")) {
+      told =
+          fail("bvh-channels",
+               fmt::format("{} has a channel Wrotation: its rotation is a quaternion", open_name()),
+               "BVH has Euler angles; export them");
+    } else {
+      told = warn_at(cursor_.word_begin(), "bvh-channels",
+                     fmt::format("the channel '{}' of {} is neither a position nor a rotation, its "
+                                 "values are left out",
+                                 shown(word), open_name()),
+                     open_name());
     }
-    if (!known) {
-      if (Status told = warn_at(cursor_.word_begin(), "bvh-channels",
-                                fmt::format("the channel '{}' of {} is unknown, its values are "
-                                            "left out",
-                                            shown(word), open_name()),
-                                open_name());
-          !told) {
-        return told;
-      }
-    } else if (channel.kind == ChannelKind::position) {
-      bool& seen = has_position[static_cast<std::size_t>(channel.axis)];
-      if (seen) {
-        return fail("bvh-channels", fmt::format("{} has {} twice", open_name(), shown(word)));
-      }
+    if (told.ok()) result_.channels.push_back(channel);
+    return told;
+  }
+
+  // A joint may turn about one axis twice, though hardly any exporter means it.
+  Status check_repeated(const Channel& channel, std::string_view name) {
+    auto& seen_kind = channel.kind == ChannelKind::position ? seen_positions_ : seen_rotations_;
+    bool& seen = seen_kind[static_cast<std::size_t>(channel.axis)];
+    if (!seen) {
       seen = true;
+      return {};
     }
-    result_.channels.push_back(channel);
+    std::string twice = fmt::format("{} has {} twice", open_name(), shown(name));
+    if (channel.kind == ChannelKind::position) return fail("bvh-channels", std::move(twice));
+    return warn_at(cursor_.word_begin(), "bvh-channels",
+                   twice + "; both turns are made, in the order of the channels", open_name());
+  }
+
+  // A figure without any channel that is understood would stand still without a word.
+  Status check_channels() {
+    bool any = false;
+    bool positions = false;
+    for (const Channel& channel : result_.channels) {
+      any = any || channel.kind != ChannelKind::ignored;
+      positions = positions || channel.kind == ChannelKind::position;
+    }
+    if (!any && !result_.channels.empty()) {
+      return fail("bvh-channels",
+                  fmt::format("none of the {} channels is a position or a rotation",
+                              result_.channels.size()),
+                  "channels are named Xposition .. Zrotation");
+    }
+    if (any && !positions) {
+      tell_in_file(Severity::note, "bvh-channels",
+                   "no joint has position channels: the figure turns and bends in place");
+    }
     return {};
   }
 
@@ -336,6 +392,8 @@ class HierarchyParser {
   Diagnostics& diagnostics_;
   Locator locate_;
   int warnings_ = 0;
+  bool commas_told_ = false;
+  std::array<bool, 3> seen_positions_{}, seen_rotations_{};  // of the joint being read
   TextCursor cursor_;
   Hierarchy result_;
   std::vector<int> open_;
@@ -348,12 +406,7 @@ class HierarchyParser {
 std::string Hierarchy::channel_name(std::size_t channel) const {
   const Channel& c = channels[channel];
   const std::string& joint = joints[static_cast<std::size_t>(c.joint)].name;
-  for (const ChannelName& candidate : kChannelNames) {
-    if (candidate.kind == c.kind && candidate.axis == c.axis) {
-      return fmt::format("{}.{}", joint, candidate.name);
-    }
-  }
-  return fmt::format("{}.unknown", joint);
+  return fmt::format("{}.{}", joint, krok::bvh::channel_name(c.kind, c.axis));
 }
 
 Result<Hierarchy> parse_hierarchy(std::string_view text, const std::string& file_name,

@@ -33,8 +33,9 @@ struct Hierarchy {
     std::size_t channel_count = 0;
   };
   std::vector<Joint> joints;
-  std::vector<Channel> channels;  // in the order of a row's values
-  std::size_t end = 0;            // the byte after the word MOTION
+  std::vector<Channel> channels;   // in the order of a row's values
+  std::size_t end = 0;             // the byte after the word MOTION
+  double degrees_per_angle = 1.0;  // the unit of the rotation channels' values
 
   // "LeftToe.Yrotation".
   std::string channel_name(std::size_t channel) const;

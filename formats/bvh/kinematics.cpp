@@ -1,6 +1,7 @@
 #include "formats/bvh/kinematics.h"
 
-#include <cmath>
+#include <algorithm>
+#include <memory>
 
 namespace krok::bvh {
 
@@ -19,27 +20,12 @@ SignedAxis converted(Axis axis, const Mat3& to_krok) {
   return {static_cast<Axis>(index), direction[index] < 0 ? -1.0 : 1.0};
 }
 
-// q times the rotation by `angle` about an axis, which has two components only.
-Quat turned(const Quat& q, Axis axis, double angle) {
-  const double c = std::cos(0.5 * angle);
-  const double s = std::sin(0.5 * angle);
-  const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
-  switch (axis) {
-    case Axis::x:
-      return {w * c - x * s, x * c + w * s, y * c + z * s, z * c - y * s};
-    case Axis::y:
-      return {w * c - y * s, x * c - z * s, y * c + w * s, z * c + x * s};
-    case Axis::z:
-      break;
-  }
-  return {w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s};
-}
-
 }  // namespace
 
 Kinematics::Kinematics(const Hierarchy& hierarchy, Positions positions,
                        const Conversion& conversion)
-    : reference_to_motion_(conversion.reference_to_motion()) {
+    : reference_to_motion_(conversion.reference_to_motion()),
+      degrees_per_angle_(hierarchy.degrees_per_angle) {
   const Mat3& to_krok = conversion.reference_axes();
   step_begins_.push_back(0);
   for (const Hierarchy::Joint& joint : hierarchy.joints) {
@@ -54,8 +40,8 @@ Kinematics::Kinematics(const Hierarchy& hierarchy, Positions positions,
         kept[static_cast<int>(channel.axis)] = 0;
       }
       const SignedAxis axis = converted(channel.axis, to_krok);
-      steps_.push_back({index, channel.kind, axis.axis,
-                        axis.sign * (is_position ? conversion.metres() : kRadiansPerDegree)});
+      steps_.push_back({index, is_position, static_cast<int>(axis.axis),
+                        axis.sign * (is_position ? conversion.metres() : 1.0)});
     }
     offsets_.push_back(to_krok * (joint.offset * conversion.metres()));
     base_.push_back(to_krok * (kept * conversion.metres()));
@@ -63,28 +49,56 @@ Kinematics::Kinematics(const Hierarchy& hierarchy, Positions positions,
   }
 }
 
-void Kinematics::pose(std::span<const double> values, std::span<Transform> joint_to_world) const {
-  for (std::size_t j = 0; j < parents_.size(); ++j) {
-    const Transform& parent = parents_[j] < 0
-                                  ? reference_to_motion_
-                                  : joint_to_world[static_cast<std::size_t>(parents_[j])];
-    Vec3 position = base_[j];
-    Quat orientation = parent.orientation;
-    bool has_turned = parents_[j] < 0;
-    for (std::size_t s = step_begins_[j]; s < step_begins_[j + 1]; ++s) {
-      const Step& step = steps_[s];
-      const double value = values[step.channel] * step.factor;
-      if (step.kind == ChannelKind::position) {
-        position[static_cast<int>(step.axis)] += value;
-      } else if (value != 0) {  // many channels are never used
-        orientation = turned(orientation, step.axis, value);
-        has_turned = true;
-      }
-    }
-    // Products of many unit quaternions drift by rounding; deep chains would notice.
-    if (has_turned) orientation.normalize();
-    joint_to_world[j] = {parent * position, orientation};
+kinematics_detail::Job Kinematics::job(double* scratch) const {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+  const Vec3& p = reference_to_motion_.position;
+  const Quat& q = reference_to_motion_.orientation;
+  return {parents_.data(), parents_.size(),     base_.data()->data(),
+          steps_.data(),   step_begins_.data(), {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()},
+          scratch};
+}
+
+void Kinematics::put_in_degrees(std::span<double> values, std::size_t stride) const {
+  for (const kinematics_detail::Step& step : steps_) {
+    if (step.is_position) continue;
+    for (double& value : values.subspan(step.channel * stride, stride)) value *= degrees_per_angle_;
   }
+}
+
+void Kinematics::pose(std::span<const double> values, std::span<Transform> joint_to_world) const {
+  std::vector<double> joints(7 * parents_.size());
+  std::vector<double> in_degrees;
+  if (degrees_per_angle_ != 1.0) {
+    in_degrees.assign(values.begin(), values.end());
+    put_in_degrees(in_degrees, 1);
+    values = in_degrees;
+  }
+  kinematics_detail::pose_scalar(job(nullptr), values.data(), 1, joints.data());
+  for (std::size_t j = 0; j < parents_.size(); ++j) {
+    const double* at = &joints[7 * j];
+    joint_to_world[j] = {Vec3(at[0], at[1], at[2]), Quat(at[6], at[3], at[4], at[5])};
+  }
+}
+
+bool Kinematics::poses(std::span<const double> values, std::size_t frames,
+                       std::vector<double>& scratch, std::span<Vec3f> positions,
+                       std::span<Quatf> orientations) const {
+  constexpr std::size_t kAlignment = 64 / sizeof(double);
+  const bool other_angles = degrees_per_angle_ != 1.0;
+  const std::size_t for_joints = 7 * kFramesAtOnce * parents_.size();
+  static_assert(kFramesAtOnce % kAlignment == 0);
+  scratch.resize(for_joints + kAlignment + (other_angles ? values.size() : 0));
+  void* aligned = scratch.data();
+  std::size_t space = scratch.size() * sizeof(double);
+  std::align(kAlignment * sizeof(double), 1, aligned, space);
+  if (other_angles) {
+    const std::span in_degrees(static_cast<double*>(aligned) + for_joints, values.size());
+    std::copy(values.begin(), values.end(), in_degrees.begin());
+    put_in_degrees(in_degrees, kFramesAtOnce);
+    values = in_degrees;
+  }
+  return kinematics_detail::poses(job(static_cast<double*>(aligned)), values.data(), frames,
+                                  positions.data()->data(), orientations.data()->coeffs().data());
 }
 
 std::vector<Transform> Kinematics::reference() const {

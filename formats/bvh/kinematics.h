@@ -5,6 +5,7 @@
 
 #include "capture/convention_choice.h"
 #include "formats/bvh/hierarchy.h"
+#include "formats/bvh/kinematics_kernel.h"
 #include "math/transform.h"
 
 namespace krok::bvh {
@@ -14,6 +15,8 @@ namespace krok::bvh {
 // pose; where the motion's are others, the root carries the whole figure over.
 class Kinematics {
  public:
+  static constexpr std::size_t kFramesAtOnce = kinematics_detail::kFramesAtOnce;
+
   // `positions` is absolute or additive.
   Kinematics(const Hierarchy& hierarchy, Positions positions, const Conversion& conversion);
 
@@ -23,22 +26,30 @@ class Kinematics {
   // joint_to_world, shape [joints], from a row's values, shape [channels], in doubles.
   void pose(std::span<const double> values, std::span<Transform> joint_to_world) const;
 
+  // The same for up to kFramesAtOnce frames at a time as floats, vectorised over the frames: the
+  // bits are those of pose(), rounded. `values` has [channels x kFramesAtOnce] doubles on a 64-byte
+  // boundary (what stands in the places of frames that are not asked for must be finite), the
+  // results shape [frames x joints]; `scratch` is resized as needed, and may serve again. False if
+  // the float of some number may be infinite.
+  bool poses(std::span<const double> values, std::size_t frames, std::vector<double>& scratch,
+             std::span<Vec3f> positions, std::span<Quatf> orientations) const;
+
   // joint_to_world with the OFFSETs and zero rotations.
   std::vector<Transform> reference() const;
 
  private:
-  struct Step {
-    std::size_t channel;
-    ChannelKind kind;
-    Axis axis;      // Krok's
-    double factor;  // to metres or radians, with the axis's sign
-  };
+  kinematics_detail::Job job(double* scratch) const;
+
+  // Files in radians are rare; their values are converted here, `stride` frames a channel.
+  void put_in_degrees(std::span<double> values, std::size_t stride) const;
+
   std::vector<int> parents_;
   std::vector<Vec3> offsets_;  // metres, Krok's axes
   std::vector<Vec3> base_;     // the offset's part that position channels leave
   Transform reference_to_motion_;
-  std::vector<Step> steps_;               // joint by joint
-  std::vector<std::size_t> step_begins_;  // [joints + 1]
+  double degrees_per_angle_ = 1.0;
+  std::vector<kinematics_detail::Step> steps_;  // joint by joint
+  std::vector<std::size_t> step_begins_;        // [joints + 1]
 };
 
 }  // namespace krok::bvh

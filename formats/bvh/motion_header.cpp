@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 
 #include "core/numbers.h"
@@ -12,89 +13,225 @@ namespace krok::bvh {
 namespace {
 
 constexpr const char* kRateHint = "say the rate with --fps N, frames a second";
+constexpr const char* kFramesHint =
+    "write the number of rows that follow, such as Frames: 120; --repair counts them";
 
-// The word after a keyword and its colon, which may stand apart from both.
-std::string_view value_after_colon(TextCursor& cursor) {
-  cursor.skip_blanks();
-  cursor.accept(":");
-  cursor.skip_blanks();
-  return cursor.word();
+// A word of letters, which no row of values begins with; nan and inf are values that are no
+// numbers.
+bool is_word(std::string_view word) {
+  if (word.empty() || (ascii_lower(word.front()) < 'a' || ascii_lower(word.front()) > 'z')) {
+    return false;
+  }
+  return !same_word(word.substr(0, 3), "nan") && !same_word(word.substr(0, 3), "inf");
 }
+
+class HeaderParser {
+ public:
+  HeaderParser(std::string_view text, std::size_t begin, const std::string& file_name,
+               const ReadOptions& options, Diagnostics& diagnostics)
+      : text_(text),
+        file_name_(file_name),
+        options_(options),
+        diagnostics_(diagnostics),
+        cursor_(text, begin) {}
+
+  Result<MotionHeader> parse() {
+    while (!has_frames_ || !has_time_) {
+      Status done;
+      if (!has_frames_ && cursor_.accept("Frames")) {
+        done = parse_frames();
+      } else if (!has_time_ && cursor_.accept("Frame")) {
+        done = parse_frame_time();
+      } else {
+        done = something_else();
+      }
+      if (!done) return done.error();
+    }
+    if (Status skipped = skip_other_lines(); !skipped) return skipped.error();
+    header_.end = cursor_.position();
+    if (count_rows_) count_rows();
+    return header_;
+  }
+
+ private:
+  Error error_at(std::size_t offset, const char* code, std::string message, std::string hint = {}) {
+    Error error(code, std::move(message), std::move(hint));
+    error.where = locate(text_, offset, file_name_);
+    return error;
+  }
+
+  // A fault that only strict refuses.
+  Status warn(Error told) {
+    if (options_.strictness == Strictness::strict) return told;
+    told.severity = Severity::warning;
+    told.hint.clear();
+    diagnostics_.push_back(std::move(told));
+    return {};
+  }
+
+  // The word after a keyword and its colon, which may stand apart from both; empty where the line
+  // ends.
+  std::string_view value_after_colon() {
+    cursor_.skip_blanks();
+    if (cursor_.on_line(":")) cursor_.accept(":");
+    cursor_.skip_blanks();
+    return cursor_.word_on_line();
+  }
+
+  // Words after a value, such as its unit; the other of the two may stand there too.
+  Status skip_rest(const char* after) {
+    cursor_.skip_blanks();
+    const TextCursor before = cursor_;
+    const std::string_view first = cursor_.word_on_line();
+    cursor_ = before;
+    const bool keyword = same_word(first.substr(0, 5), "Frame");
+    if (first.empty() || keyword || parse_finite(first)) return {};
+    const std::size_t place = cursor_.position();
+    const std::string_view rest = cursor_.line();
+    return warn(error_at(place, "bvh-syntax",
+                         fmt::format("'{}' after the {} is left out", shown(rest), after)));
+  }
+
+  Status parse_frames() {
+    const std::string_view word = value_after_colon();
+    header_.frames_offset = cursor_.word_begin();
+    has_frames_ = true;
+    const auto count = parse_integer(word);
+    if (count && *count >= 0) {
+      header_.frames = *count;
+      return skip_rest("number of frames");
+    }
+    // "120.0", "1.2e2"
+    const auto number = parse_finite(word);
+    if (number && *number >= 0 && *number < 1e9 && *number == std::floor(*number)) {
+      header_.frames = static_cast<long long>(*number);
+      Status told = warn(error_at(header_.frames_offset, "bvh-frame-count",
+                                  fmt::format("the number of frames is written as '{}', read as {}",
+                                              shown(word), header_.frames)));
+      return told ? skip_rest("number of frames") : told;
+    }
+    Error wrong =
+        error_at(header_.frames_offset, "bvh-frame-count",
+                 word.empty() ? "the number of frames is missing"
+                              : fmt::format("'{}' is not a number of frames", shown(word)),
+                 kFramesHint);
+    if (options_.strictness != Strictness::repair) return wrong;
+    count_rows_ = true;
+    cursor_.line();
+    return warn(std::move(wrong));
+  }
+
+  Status parse_frame_time() {
+    cursor_.skip_blanks();
+    if (!cursor_.accept("Time")) {
+      return error_at(cursor_.position(), "bvh-syntax", "'Frame Time:' is expected",
+                      "write Frame Time: and the seconds from frame to frame, such as 0.0333333");
+    }
+    header_.frame_time_text = value_after_colon();
+    header_.frame_time_offset = cursor_.word_begin();
+    has_time_ = true;
+    if (Status read = read_frame_time(); !read) return read;
+    if (header_.frame_time > 1e-6 && header_.frame_time < 1e6) return skip_rest("Frame Time");
+    header_.frame_time = 0;
+    Error wrong =
+        error_at(header_.frame_time_offset, "bvh-frame-time",
+                 header_.frame_time_text.empty()
+                     ? "the Frame Time has no value"
+                     : fmt::format("the Frame Time '{}' is not a positive number of seconds",
+                                   shown(header_.frame_time_text)),
+                 kRateHint);
+    if (!options_.rate) return wrong;
+    if (Status told = warn(std::move(wrong)); !told) return told;
+    return skip_rest("Frame Time");
+  }
+
+  // A comma alone in the number is a decimal comma.
+  Status read_frame_time() {
+    const std::string_view word = header_.frame_time_text;
+    if (const auto value = parse_finite(word)) {
+      header_.frame_time = *value;
+      return {};
+    }
+    const std::size_t comma = word.find(',');
+    if (comma == std::string_view::npos || word.find('.') != std::string_view::npos) return {};
+    std::string with_point(word);
+    with_point[comma] = '.';
+    const auto value = parse_finite(with_point);
+    if (!value) return {};
+    header_.frame_time = *value;
+    return warn(error_at(header_.frame_time_offset, "bvh-frame-time",
+                         fmt::format("the Frame Time '{}' has a decimal comma, read as {}",
+                                     shown(word), with_point)));
+  }
+
+  // Neither of the two where one of them should stand.
+  Status something_else() {
+    cursor_.skip_space();
+    const std::string_view next = cursor_.peek();
+    if (has_frames_ && !next.empty()) {
+      has_time_ = true;
+      Error missing =
+          error_at(cursor_.position(), "bvh-frame-time",
+                   fmt::format("the Frame Time is missing; '{}' stands in its place", shown(next)),
+                   kRateHint);
+      if (!options_.rate) return missing;
+      return warn(std::move(missing));
+    }
+    return error_at(cursor_.position(), "bvh-syntax",
+                    fmt::format("{} where '{}' is expected",
+                                next.empty() ? "the file ends" : fmt::format("'{}'", shown(next)),
+                                has_frames_ ? "Frame Time:" : "Frames:"),
+                    next.empty() ? "the file is cut short; export or copy it again"
+                                 : "write Frames: and the number of rows, such as Frames: 120");
+  }
+
+  // "Frame Rate: 30" and the like, before the first row.
+  Status skip_other_lines() {
+    if (header_.frames == 0 && !count_rows_) return {};
+    for (;;) {
+      const TextCursor before = cursor_;
+      cursor_.skip_space();
+      const std::size_t place = cursor_.position();
+      if (!is_word(cursor_.peek())) {
+        cursor_ = before;
+        return {};
+      }
+      if (++lines_left_out_ > kMostTold && options_.strictness != Strictness::strict) {
+        cursor_.line();
+        continue;
+      }
+      Status told =
+          warn(error_at(place, "bvh-syntax",
+                        fmt::format("the line '{}' is no part of the format and is left out",
+                                    shown(cursor_.line()))));
+      if (!told) return told;
+    }
+  }
+
+  void count_rows() {
+    header_.frames = static_cast<long long>(index_lines(text_, header_.end).size());
+  }
+
+  std::string_view text_;
+  const std::string& file_name_;
+  const ReadOptions& options_;
+  Diagnostics& diagnostics_;
+  TextCursor cursor_;
+  MotionHeader header_;
+  bool has_frames_ = false;
+  bool has_time_ = false;
+  // Finding a line takes time with its place, and more would drown what else there is to say.
+  static constexpr int kMostTold = 20;
+  int lines_left_out_ = 0;
+  bool count_rows_ = false;  // what Frames: says is no number
+};
 
 }  // namespace
 
 Result<MotionHeader> parse_motion_header(std::string_view text, std::size_t begin,
                                          const std::string& file_name, const ReadOptions& options,
                                          Diagnostics& diagnostics) {
-  MotionHeader header;
-  TextCursor cursor(text, begin);
-  bool has_frames = false;
-  bool has_time = false;
-  const auto error_at = [&](std::size_t offset, const char* code, std::string message,
-                            std::string hint = {}) {
-    Error error(code, std::move(message), std::move(hint));
-    error.where = locate(text, offset, file_name);
-    return error;
-  };
-  while (!has_frames || !has_time) {
-    if (!has_frames && cursor.accept("Frames")) {
-      const std::string_view word = value_after_colon(cursor);
-      header.frames_offset = cursor.word_begin();
-      const auto count = parse_integer(word);
-      if (!count || *count < 0) {
-        return error_at(header.frames_offset, "bvh-frame-count",
-                        fmt::format("'{}' is not a number of frames", shown(word)),
-                        "write the number of rows that follow, such as Frames: 120");
-      }
-      header.frames = *count;
-      has_frames = true;
-    } else if (!has_time && cursor.accept("Frame")) {
-      cursor.skip_blanks();
-      if (!cursor.accept("Time")) {
-        return error_at(cursor.position(), "bvh-syntax", "'Frame Time:' is expected",
-                        "write Frame Time: and the seconds from frame to frame, such as 0.0333333");
-      }
-      header.frame_time_text = value_after_colon(cursor);
-      header.frame_time_offset = cursor.word_begin();
-      const auto value = parse_finite(header.frame_time_text);
-      header.frame_time = value.value_or(0);
-      has_time = true;
-      if (header.frame_time > 1e-6 && header.frame_time < 1e6) continue;
-      Error wrong = error_at(header.frame_time_offset, "bvh-frame-time",
-                             fmt::format("the Frame Time '{}' is not a positive number of seconds",
-                                         shown(header.frame_time_text)),
-                             kRateHint);
-      if (!options.rate) return wrong;
-      if (options.strictness == Strictness::strict) return wrong;
-      wrong.severity = Severity::warning;
-      wrong.hint.clear();
-      header.frame_time = 0;
-      diagnostics.push_back(std::move(wrong));
-    } else {
-      cursor.skip_space();
-      const std::string_view next = cursor.peek();
-      if (has_frames && !next.empty()) {
-        Error missing = error_at(
-            cursor.position(), "bvh-frame-time",
-            fmt::format("the Frame Time is missing; '{}' stands in its place", shown(next)),
-            kRateHint);
-        if (!options.rate || options.strictness == Strictness::strict) return missing;
-        missing.severity = Severity::warning;
-        missing.hint.clear();
-        diagnostics.push_back(std::move(missing));
-        has_time = true;
-        continue;
-      }
-      return error_at(cursor.position(), "bvh-syntax",
-                      fmt::format("{} where '{}' is expected",
-                                  next.empty() ? "the file ends" : fmt::format("'{}'", shown(next)),
-                                  has_frames ? "Frame Time:" : "Frames:"),
-                      next.empty() ? "the file is cut short; export or copy it again"
-                                   : "write Frames: and the number of rows, such as Frames: 120");
-    }
-  }
-  header.end = cursor.position();
-  return header;
+  return HeaderParser(text, begin, file_name, options, diagnostics).parse();
 }
 
 }  // namespace krok::bvh

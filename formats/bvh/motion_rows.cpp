@@ -2,11 +2,13 @@
 
 #include <fast_float/fast_float.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
+#include "core/parallel.h"
 #include "core/text.h"
 
 namespace krok::bvh {
@@ -65,16 +67,43 @@ inline bool parse_number(const char*& at, const char* end, double& value) {
   return true;
 }
 
+// Adds the first character that is no white space of each line that begins in [first, last). Lines
+// begin at `begin` and after line ends.
+void add_lines(std::string_view text, std::size_t begin, std::size_t first, std::size_t last,
+               std::vector<std::size_t>& begins) {
+  const auto line_end = [&](std::size_t from) {
+    const void* found = std::memchr(text.data() + from, '\n', text.size() - from);
+    return found == nullptr
+               ? text.size()
+               : static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
+  };
+  std::size_t line = first;
+  if (first > begin && text[first - 1] != '\n') line = line_end(first) + 1;
+  while (line < last) {
+    const std::size_t end = line_end(line);
+    std::size_t at = line;
+    while (at < end && is_space(text[at])) ++at;
+    if (at < end) begins.push_back(at);
+    line = end + 1;
+  }
+}
+
 }  // namespace
 
 std::size_t parse_row(std::string_view text, std::size_t begin, std::span<double> values) {
+  return parse_row(text, begin, values.data(), values.size(), 1);
+}
+
+std::size_t parse_row(std::string_view text, std::size_t begin, double* values, std::size_t count,
+                      std::size_t stride) {
   const char* at = text.data() + begin;
   const char* const end = text.data() + text.size();
   // White space near the end of the text; what begins before it ends before it.
   const char* last_space = at == end ? at : end - 1;
   for (int i = 0; i < kFarthest && last_space > at && !is_space(*last_space); ++i) --last_space;
   if (last_space != at && !is_space(*last_space)) last_space = at;
-  for (double& value : values) {
+  for (std::size_t i = 0; i < count; ++i) {
+    double& value = values[i * stride];
     while (at != end && is_space(*at)) ++at;
     if (at < last_space && parse_plain_number(at, value)) continue;
     if (at == end || !parse_number(at, end, value)) return RowIndex::kFaulty;
@@ -82,18 +111,25 @@ std::size_t parse_row(std::string_view text, std::size_t begin, std::span<double
   return static_cast<std::size_t>(at - text.data());
 }
 
-std::vector<std::size_t> index_lines(std::string_view text, std::size_t begin) {
+std::vector<std::size_t> index_lines(std::string_view text, std::size_t begin, int jobs,
+                                     const std::function<void(std::size_t offset)>& release) {
+  constexpr std::size_t kStretch = std::size_t{1} << 20;
+  const std::size_t size = text.size() - std::min(begin, text.size());
+  std::vector<std::vector<std::size_t>> found(slots_for(jobs));
   std::vector<std::size_t> begins;
-  for (std::size_t line = begin; line < text.size();) {
-    const void* found = std::memchr(text.data() + line, '\n', text.size() - line);
-    const std::size_t end =
-        found == nullptr ? text.size()
-                         : static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
-    std::size_t first = line;
-    while (first < end && is_space(text[first])) ++first;
-    if (first < end) begins.push_back(first);
-    line = end + 1;
-  }
+  const auto find = [&](std::size_t stretch, std::size_t slot) {
+    const std::size_t first = begin + stretch * kStretch;
+    add_lines(text, begin, first, std::min(first + kStretch, text.size()), found[slot]);
+    return Status();
+  };
+  const auto take = [&](std::size_t stretch, std::size_t slot) {
+    begins.insert(begins.end(), found[slot].begin(), found[slot].end());
+    found[slot].clear();
+    if (release) release(begin + stretch * kStretch);
+    return Status();
+  };
+  // Neither gives an Error.
+  (void)make_in_order((size + kStretch - 1) / kStretch, jobs, find, take).ok();
   return begins;
 }
 

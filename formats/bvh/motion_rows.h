@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -38,10 +39,16 @@ struct RowIndex {
 // Parses `values.size()` numbers from byte `begin` on. Returns the offset after the last one, or
 // kFaulty if they are not all there, whole and within what a float holds.
 std::size_t parse_row(std::string_view text, std::size_t begin, std::span<double> values);
+// The same for `count` numbers, each stored `stride` places behind the one before.
+std::size_t parse_row(std::string_view text, std::size_t begin, double* values, std::size_t count,
+                      std::size_t stride);
 
 // Where rows begin if each line that is not empty is a row: a search for line ends alone, so rows
 // may prove faulty when they are parsed; index_rows_with_care() then says what is wrong.
-std::vector<std::size_t> index_lines(std::string_view text, std::size_t begin);
+// On `jobs` threads, as in parallel_for. `release`, which may be empty, is told which text is done
+// with, as in open().
+std::vector<std::size_t> index_lines(std::string_view text, std::size_t begin, int jobs = 1,
+                                     const std::function<void(std::size_t offset)>& release = {});
 
 // Finds the rows of any file, and tells all faults: rows over several lines, rows too short or too
 // long, numbers that are none, text after the data, a count that disagrees. Goes by strictness.

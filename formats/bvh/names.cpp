@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "capture/joint_name.h"
 #include "capture/unique_names.h"
+#include "core/numbers.h"
 #include "core/text.h"
 
 namespace krok::bvh {
@@ -11,18 +13,6 @@ namespace {
 
 // More than these would drown what else there is to say.
 constexpr int kMostWarnings = 20;
-
-// Puts a _ for each control character but the tab; true if there was one.
-bool replace_control_characters(std::string& name) {
-  bool found = false;
-  for (char& c : name) {
-    const auto code = static_cast<unsigned char>(c);
-    if ((code >= 32 && code != 127) || c == '\t') continue;
-    c = '_';
-    found = true;
-  }
-  return found;
-}
 
 }  // namespace
 
@@ -56,9 +46,13 @@ void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
              fmt::format("the name of joint {} is not UTF-8 and was read as Latin-1", *place.name));
       }
     }
-    if (replace_control_characters(*place.name) && ++cleaned <= kMostWarnings) {
-      warn(place, "bvh-name",
-           fmt::format("a joint's name has control characters; it is called {}", *place.name));
+    std::string cleaned_name = readable_joint_name(*place.name);
+    if (cleaned_name != *place.name) {
+      *place.name = std::move(cleaned_name);
+      if (++cleaned <= kMostWarnings) {
+        warn(place, "bvh-name",
+             fmt::format("a joint's name has control characters; it is called {}", *place.name));
+      }
     }
     if (place.name->empty() || !names.claim(*place.name)) renamed.push_back(i);
   }
@@ -79,8 +73,8 @@ void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
     Diagnostic more;
     more.severity = Severity::warning;
     more.code = "bvh-name-duplicate";
-    more.message =
-        fmt::format("{} more joints with a name that was given before", duplicates - kMostWarnings);
+    more.message = fmt::format("{} with a name that was given before",
+                               counted(duplicates - kMostWarnings, "more joint", "more joints"));
     more.where.file = file_name;
     diagnostics.push_back(std::move(more));
   }

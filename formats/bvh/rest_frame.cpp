@@ -45,19 +45,26 @@ PoseKind kind_of_pose(const RoleMap& roles, std::span<const Transform> pose) {
   return left_drop < 70 && right_drop < 70 ? PoseKind::a_pose : PoseKind::other;
 }
 
-// The largest turn of any joint against its parent between two frames, in degrees.
-double largest_turn(const Clip& clip, int first, int second) {
+// How joints turn against their parents from one frame to another.
+struct Step {
+  double largest = 0;    // degrees
+  int many_degrees = 0;  // joints that turn by 5 degrees or more
+};
+
+Step step_between(const Clip& clip, int first, int second) {
   const auto joints = static_cast<std::size_t>(clip.joint_count());
   std::vector<Transform> world(joints), a(joints), b(joints);
   clip.get_pose(first, world);
   world_to_local(clip.skeleton.parents, world, a);
   clip.get_pose(second, world);
   world_to_local(clip.skeleton.parents, world, b);
-  double largest = 0;
+  Step step;
   for (std::size_t j = 0; j < joints; ++j) {
-    largest = std::max(largest, angle_between(a[j].orientation, b[j].orientation));
+    const double turn = angle_between(a[j].orientation, b[j].orientation) / kRadiansPerDegree;
+    step.largest = std::max(step.largest, turn);
+    if (turn >= 5.0) ++step.many_degrees;
   }
-  return largest / kRadiansPerDegree;
+  return step;
 }
 
 // The share of joints with children that stand unturned against their parents, the root left out.
@@ -99,21 +106,30 @@ RestPose find_rest_pose(const Clip& clip) {
                                  name_of(kind_of_pose(roles, clip.skeleton.reference)));
   constexpr int kFewest = 4;
   if (clip.frame_count() < kFewest) return result;
-  const double first_step = largest_turn(clip, 0, 1);
+  const Step first_step = step_between(clip, 0, 1);
   double later_step = 0;
   const int last = std::min(clip.frame_count() - 1, 11);
   for (int frame = 1; frame < last; ++frame) {
-    later_step = std::max(later_step, largest_turn(clip, frame, frame + 1));
+    later_step = std::max(later_step, step_between(clip, frame, frame + 1).largest);
   }
-  constexpr double kLeastStep = 15.0;  // degrees
-  if (first_step < kLeastStep || first_step < 4.0 * later_step) return result;
   std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
   clip.get_pose(0, pose);
   const bool t_pose = kind_of_pose(roles, pose) == PoseKind::t_pose;
-  if (!t_pose && unturned_share(clip, 0) < 0.6) return result;
+  // A T-pose is half the evidence.
+  constexpr double kLeastStep = 15.0;  // degrees
+  const double factor = t_pose ? 2.5 : 4.0;
+  // One or two joints that jump are a fault of the tracking.
+  const int fewest_joints = std::min(4, clip.joint_count() / 2);
+  const bool apart = first_step.largest >= kLeastStep &&
+                     first_step.largest >= factor * later_step &&
+                     first_step.many_degrees >= fewest_joints;
+  if (!apart || (!t_pose && unturned_share(clip, 0) < 0.6)) {
+    if (t_pose) result.reference += "; the motion begins in a T-pose";
+    return result;
+  }
   result.first_frame_is_rest = true;
   result.reason = fmt::format("frame 0 is a {}, {:.0f} degrees away from frame 1",
-                              t_pose ? "T-pose" : "rest pose", first_step);
+                              t_pose ? "T-pose" : "rest pose", first_step.largest);
   return result;
 }
 

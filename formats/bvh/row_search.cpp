@@ -1,68 +1,16 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "core/numbers.h"
+#include "core/text.h"
 #include "formats/bvh/motion_rows.h"
-#include "formats/bvh/names.h"
-#include "formats/bvh/text_cursor.h"
+#include "formats/bvh/row_faults_internal.h"
+#include "formats/bvh/row_lines_internal.h"
 
 namespace krok::bvh {
 
 namespace {
-
-// A line that is not empty.
-struct Line {
-  std::size_t begin = 0;    // its first word
-  std::uint32_t words = 0;  // how many
-  bool numbers = true;      // all of them whole, finite numbers
-  bool text = false;        // the first one is not even the beginning of a number
-};
-
-// Letters at the start, but not those of nan and inf, show that a line is no row of numbers.
-bool begins_like_text(std::string_view word) {
-  const auto c = static_cast<unsigned char>(word.front());
-  if ((c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+') return false;
-  for (const std::string_view number : {"nan", "inf"}) {
-    if (same_word(word.substr(0, 3), number)) return false;
-  }
-  return true;
-}
-
-// The word at `at` up to white space.
-std::string_view word_at(std::string_view text, std::size_t at) {
-  std::size_t end = at;
-  while (end < text.size() && !is_space(text[end])) ++end;
-  return text.substr(at, end - at);
-}
-
-bool is_number(std::string_view word) {
-  double value = 0;
-  return parse_row(word, 0, {&value, 1}) == word.size();
-}
-
-std::vector<Line> split_lines(std::string_view text, std::size_t begin) {
-  std::vector<Line> lines;
-  std::size_t at = begin;
-  while (at < text.size()) {
-    Line line;
-    while (at < text.size() && !is_line_end(text[at])) {
-      if (is_space(text[at])) {
-        ++at;
-        continue;
-      }
-      const std::string_view word = word_at(text, at);
-      if (line.words == 0) {
-        line.begin = at;
-        line.text = begins_like_text(word);
-      }
-      if (line.words < std::numeric_limits<std::uint32_t>::max()) ++line.words;
-      line.numbers = line.numbers && is_number(word);
-      at += word.size();
-    }
-    if (line.words > 0) lines.push_back(line);
-    while (at < text.size() && is_line_end(text[at])) ++at;
-  }
-  return lines;
-}
 
 class CarefulIndexer {
  public:
@@ -75,7 +23,7 @@ class CarefulIndexer {
         file_name_(file_name),
         options_(options),
         diagnostics_(diagnostics),
-        locate_(text, file_name) {}
+        words_for_(text, hierarchy, file_name) {}
 
   Result<RowIndex> index() {
     lines_ = split_lines(text_, header_.end);
@@ -98,12 +46,6 @@ class CarefulIndexer {
   bool repair() const { return options_.strictness == Strictness::repair; }
   bool enough_rows() const {
     return static_cast<long long>(result_.begins.size()) >= header_.frames;
-  }
-
-  Error error_at(std::size_t offset, std::string code, std::string message) {
-    Error error(std::move(code), std::move(message));
-    error.where = locate_(offset);
-    return error;
   }
 
   void tell(Severity severity, Error told) {
@@ -136,24 +78,117 @@ class CarefulIndexer {
         result_.begins.push_back(line.begin);
         continue;
       }
+      if (begins_another(line)) return another_begins(i);
       // What follows all rows and is none is text; a tail of numbers in a file that has too few
       // rows is a row cut short.
       if (i > last_row && (enough_rows() || line.text)) return text_after(i);
+      if (line.text && 2 * line.words < channels_) {
+        if (Status told = text_between(line); !told) return told;
+        continue;
+      }
       if (too_many_faults(line.words == channels_)) continue;
-      Status kept =
-          add_fault(line.words == channels_ ? number_fault(line.begin) : length_fault(line));
+      Status kept = add_fault(line.words == channels_ ? words_for_.number_fault(line.begin)
+                                                      : words_for_.length_fault(line));
       if (!kept) return kept;
     }
     return {};
   }
 
+  // A second file behind the first, or a second motion.
+  bool begins_another(const Line& line) const {
+    const std::string_view word = word_at(text_, line.begin);
+    return line.text && (same_word(word, "HIERARCHY") || same_word(word, "MOTION"));
+  }
+
+  Status another_begins(std::size_t line) {
+    text_ended_early_ = true;
+    Error another =
+        words_for_.error_at(lines_[line].begin, "bvh-text-after",
+                            fmt::format("a second {} begins here; it is left out with all that "
+                                        "follows",
+                                        shown(word_at(text_, lines_[line].begin))));
+    if (strict()) return another;
+    another.hint = "cut the file in two to read both";
+    tell(Severity::warning, std::move(another));
+    return {};
+  }
+
+  // A comment, or a header line out of place.
+  Status text_between(const Line& line) {
+    std::size_t end = line.begin;
+    while (end < text_.size() && !is_line_end(text_[end])) ++end;
+    Error told = words_for_.error_at(
+        line.begin, "bvh-syntax",
+        fmt::format("the line '{}' stands between the rows and is left out",
+                    shown(trimmed(text_.substr(line.begin, end - line.begin)))));
+    if (strict()) return told;
+    if (++texts_between_ <= kMostTold) tell(Severity::warning, std::move(told));
+    return {};
+  }
+
+  // How many lines make a row where each row takes the same number of them, though some do not
+  // have the values that they should; nothing where the values all are there, or nothing can be
+  // said.
+  std::optional<std::size_t> lines_of_a_row() const {
+    std::size_t count = 0;
+    std::size_t values = 0;
+    for (; count < lines_.size() && !lines_[count].text; ++count) values += lines_[count].words;
+    if (header_.frames < 2 || count < 2) return std::nullopt;
+    const auto frames = static_cast<std::size_t>(header_.frames);
+    if (count % frames != 0 || values == frames * channels_) return std::nullopt;
+    return count / frames;
+  }
+
+  // Rows that take `height` lines each. Such a row that is not whole has no line of its own to tell
+  // the place by but its first.
+  Status index_rows_of_lines(std::size_t height) {
+    std::size_t whole = 0;
+    std::size_t first_words = 0;
+    for (std::size_t i = 0; i + height <= lines_.size() && !lines_[i].text; i += height) {
+      Line row = lines_[i];
+      for (std::size_t k = 1; k < height; ++k) {
+        row.words += lines_[i + k].words;
+        row.numbers = row.numbers && lines_[i + k].numbers;
+      }
+      if (i == 0) first_words = row.words;
+      if (row.words == channels_ && row.numbers) {
+        ++whole;
+        result_.begins.push_back(row.begin);
+        continue;
+      }
+      if (too_many_faults(row.words == channels_)) continue;
+      Error fault = row.words == channels_
+                        ? words_for_.number_fault(row.begin)
+                        : words_for_.error_at(row.begin, "bvh-channel-count",
+                                              fmt::format("{}, expected {}",
+                                                          counted(row.words, "value"), channels_));
+      if (Status kept = add_fault(std::move(fault)); !kept) return kept;
+    }
+    if (whole > 0) return {};
+    Error none = words_for_.error_at(
+        lines_.front().begin, "bvh-channel-count",
+        fmt::format("the first row has {}, but the joints have {}, and no row has as many",
+                    counted(static_cast<long long>(first_words), "value"),
+                    counted(static_cast<long long>(channels_), "channel")));
+    const std::string_view word = word_at(text_, lines_.front().begin);
+    none.hint = is_number(word)
+                    ? "the hierarchy and the rows do not belong together; export the file again"
+                    : RowFaults::hint_for(word);
+    return none;
+  }
+
   // Rows that go over several lines, or several rows on a line: values are counted.
   Status index_rows_over_lines() {
+    if (const auto height = lines_of_a_row()) return index_rows_of_lines(*height);
     std::size_t values = 0;
     bool row_is_whole = true;
     std::size_t row_begin = 0;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       const Line& line = lines_[i];
+      if (line.text && begins_another(line)) {
+        if (Status told = another_begins(i); !told) return told;
+        break;
+      }
       if (line.text && values % channels_ == 0) return text_after(i);
       std::size_t at = line.begin;
       for (std::uint32_t k = 0; k < line.words; ++k) {
@@ -165,7 +200,7 @@ class CarefulIndexer {
         if (row_is_whole && !line.numbers && !is_number(word)) {
           row_is_whole = false;
           if (!too_many_faults(true)) {
-            Status kept = add_fault(number_fault_at(word, at, values % channels_));
+            Status kept = add_fault(words_for_.number_fault_at(word, at, values % channels_));
             if (!kept) return kept;
           }
         }
@@ -177,63 +212,15 @@ class CarefulIndexer {
     const std::size_t rest = values % channels_;
     if (rest == 0) return {};
     if (values / channels_ >= static_cast<std::size_t>(header_.frames)) {
-      Error more = error_at(row_begin, "bvh-channel-count",
-                            fmt::format("{} values after the last frame", rest));
+      Error more = words_for_.error_at(
+          row_begin, "bvh-channel-count",
+          fmt::format("{} after the last frame", counted(static_cast<long long>(rest), "value")));
       if (strict()) return more;
       tell(Severity::warning, std::move(more));
       return {};
     }
-    if (row_is_whole) return add_fault(short_fault(row_begin, text_.size(), rest));
+    if (row_is_whole) return add_fault(words_for_.short_fault(row_begin, text_.size(), rest));
     return {};
-  }
-
-  Error number_fault(std::size_t begin) {
-    std::size_t at = begin;
-    for (std::size_t channel = 0; channel < channels_; ++channel) {
-      const std::string_view word = word_at(text_, at);
-      if (!is_number(word)) return number_fault_at(word, at, channel);
-      at += word.size();
-      while (at < text_.size() && is_space(text_[at])) ++at;
-    }
-    return error_at(begin, "bvh-number", "a value is not a number");
-  }
-
-  Error number_fault_at(std::string_view word, std::size_t at, std::size_t channel) {
-    Error error = error_at(at, "bvh-number",
-                           fmt::format("'{}' is {} ({})", shown(word),
-                                       parse_finite(word) ? "too large" : "not a finite number",
-                                       hierarchy_.channel_name(channel)));
-    error.hint = word.find(',') != std::string_view::npos
-                     ? "numbers are written with a decimal point"
-                     : "--repair fills the frame from its neighbours";
-    error.joint =
-        hierarchy_.joints[static_cast<std::size_t>(hierarchy_.channels[channel].joint)].name;
-    return error;
-  }
-
-  Error length_fault(const Line& line) {
-    if (line.words < channels_) {
-      std::size_t end = line.begin;
-      while (end < text_.size() && !is_line_end(text_[end])) ++end;
-      return short_fault(line.begin, end, line.words);
-    }
-    std::size_t at = line.begin;
-    for (std::size_t i = 0; i < channels_; ++i) {
-      at += word_at(text_, at).size();
-      while (at < text_.size() && is_space(text_[at])) ++at;
-    }
-    return error_at(at, "bvh-channel-count",
-                    fmt::format("{} values, expected {}", line.words, channels_));
-  }
-
-  // `begin` .. `end` holds `values` values, too few; the place told is where the next should stand.
-  Error short_fault(std::size_t begin, std::size_t end, std::size_t values) {
-    while (end > begin && is_space(text_[end - 1])) --end;
-    const std::size_t missing = channels_ - values;
-    return error_at(end, "bvh-channel-count",
-                    fmt::format("{} values, expected {} (missing: {}{})", values, channels_,
-                                hierarchy_.channel_name(values),
-                                missing == 1 ? "" : fmt::format(" and {} more", missing - 1)));
   }
 
   // Marks the next row as faulty; an Error where the strictness does not allow it.
@@ -264,10 +251,11 @@ class CarefulIndexer {
   }
 
   Status text_after(std::size_t line) {
-    Error note = error_at(lines_[line].begin, "bvh-text-after",
-                          fmt::format("{} line{} after the data {} left out", lines_.size() - line,
-                                      lines_.size() - line == 1 ? "" : "s",
-                                      lines_.size() - line == 1 ? "is" : "are"));
+    Error note =
+        words_for_.error_at(lines_[line].begin, "bvh-text-after",
+                            fmt::format("{} line{} after the data {} left out",
+                                        lines_.size() - line, lines_.size() - line == 1 ? "" : "s",
+                                        lines_.size() - line == 1 ? "is" : "are"));
     const bool like_text = lines_[line].text;
     if (strict() && !like_text) return note;
     tell(like_text ? Severity::note : Severity::warning, std::move(note));
@@ -282,7 +270,7 @@ class CarefulIndexer {
     if (result_.begins.back() == RowIndex::kFaulty || text_ended_early_) return {};
     const std::size_t begin = result_.begins.back();
     result_.begins.pop_back();
-    return add_fault(error_at(
+    return add_fault(words_for_.error_at(
         begin, "bvh-cut", "the file ends in the last value of this frame, which may be cut short"));
   }
 
@@ -296,6 +284,12 @@ class CarefulIndexer {
       if (result_.begins[i] == RowIndex::kFaulty) continue;
       first = std::min(first, i);
       last = i;
+    }
+    if (first == result_.begins.size() && !faults_.empty()) {
+      Error none = std::move(faults_.front().error);
+      none.message += "; no row of the file is whole";
+      if (repair()) none.hint = "there is no whole row to repair by";
+      return none;
     }
     for (Fault& fault : faults_) {
       const bool can_fill = fault.row > first && fault.row < last;
@@ -332,7 +326,7 @@ class CarefulIndexer {
 
   Status compare_count() {
     if (channels_ == 0 && header_.frames > 0) {
-      Error nothing = error_at(
+      Error nothing = words_for_.error_at(
           header_.frames_offset, "bvh-frame-count",
           fmt::format("{} frames are announced, but no joint has channels", header_.frames));
       if (strict()) return nothing;
@@ -340,11 +334,16 @@ class CarefulIndexer {
       return {};
     }
     if (static_cast<long long>(rows_found_) == header_.frames) return {};
-    Error differs = error_at(header_.frames_offset, "bvh-frame-count",
-                             fmt::format("{} frames are announced, the file has {}", header_.frames,
-                                         result_.begins.size()));
+    std::string found = fmt::format("the file has {}", rows_found_);
+    if (rows_found_ != result_.begins.size()) {
+      found += fmt::format(", of which {} were taken", result_.begins.size());
+    }
+    Error differs = words_for_.error_at(
+        header_.frames_offset, "bvh-frame-count",
+        fmt::format("{} announced, {}", counted(header_.frames, "frame is", "frames are"), found));
     if (result_.begins.empty() && header_.frames > 0 && !repair()) {
-      differs.message = fmt::format("{} frames are announced, the file has none", header_.frames);
+      differs.message = fmt::format("{} announced, the file has none",
+                                    counted(header_.frames, "frame is", "frames are"));
       differs.hint = "the file is cut short; --repair takes the skeleton alone";
       return differs;
     }
@@ -372,11 +371,12 @@ class CarefulIndexer {
   const std::string& file_name_;
   const ReadOptions& options_;
   Diagnostics& diagnostics_;
-  Locator locate_;
+  RowFaults words_for_;
   std::vector<Line> lines_;
   std::vector<Fault> faults_;
   std::size_t rows_found_ = 0;
   int told_ = 0;
+  int texts_between_ = 0;
   int unlisted_ = 0;
   bool text_ended_early_ = false;  // something that is no data follows the data
   RowIndex result_;

@@ -34,12 +34,30 @@ std::string_view TextCursor::peek() {
   return next;
 }
 
+std::string_view TextCursor::word_on_line() {
+  skip_blanks();
+  word_begin_ = position_;
+  if (at_end() || is_line_end(text_[position_])) return {};
+  return word();
+}
+
+bool TextCursor::on_line(std::string_view start) {
+  skip_blanks();
+  return text_.substr(position_).starts_with(start);
+}
+
 bool TextCursor::accept(std::string_view expected) {
   skip_space();
   if (!same_word(text_.substr(position_, expected.size()), expected)) return false;
   word_begin_ = position_;
   position_ += expected.size();
   return true;
+}
+
+std::string_view TextCursor::line() {
+  word_begin_ = position_;
+  while (position_ < text_.size() && !is_line_end(text_[position_])) ++position_;
+  return trimmed(text_.substr(word_begin_, position_ - word_begin_));
 }
 
 std::string_view TextCursor::to_brace() {

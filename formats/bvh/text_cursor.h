@@ -27,11 +27,18 @@ class TextCursor {
   std::string_view peek();
   std::size_t word_begin() const { return word_begin_; }
 
+  // The next word if it stands on this line, empty otherwise; and whether that begins with `start`.
+  std::string_view word_on_line();
+  bool on_line(std::string_view start);
+
   // Steps over `expected` (any case) if it stands next, after white space.
   bool accept(std::string_view expected);
 
   // The rest of the line as a name: trimmed, up to a '{' that ends the line or follows white space.
   std::string_view name();
+
+  // The rest of the line, without its end.
+  std::string_view line();
 
   // The rest of the line up to any '{'.
   std::string_view to_brace();

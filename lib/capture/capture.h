@@ -49,6 +49,7 @@ struct Capture {
   // What the file was taken to be written in.
   Conventions conventions;
 
+  Choice exporter;                   // which program wrote the file; empty where none is known
   Choice rate;                       // where the rate comes from
   std::vector<std::string> repairs;  // what was left out or filled, a line each
 };

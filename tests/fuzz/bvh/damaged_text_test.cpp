@@ -109,6 +109,25 @@ TEST(DamagedBvh, BytesTakenOutPutInAndRepeated) {
   }
 }
 
+// A file that has what is odd but taken: text before and between, commas, a second motion.
+const std::string kOdd =
+    "made by hand\nHIERARCHY\n# one\nROOT a\n{\nOFFSET 0 1 0\nCHANNELS 3 Xrotation, Xrotation,"
+    " Xscale\nEndSite\n{\nOFFSET 0 1 0\nCHANNELS 1 Yrotation\n}\n}\nMOTION\nFrames: 3.0 in all\n"
+    "Frame Time: 0,04 s\nFrame Rate: 25\n0,5 1\n2 1\n# two\n1 2 3 4\n5\n6 7 8\nMOTION\nFrames: 1\n";
+
+TEST(DamagedBvh, OddTextsCutAndChangedAtEveryByte) {
+  for (std::size_t size = 0; size <= kOdd.size(); ++size) read_and_check(kOdd.substr(0, size));
+  std::string text = kOdd;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char was = text[i];
+    for (const char now : {'\0', '\n', ' ', '{', '}', ',', '#', '9', '\xFF'}) {
+      text[i] = now;
+      read_and_check(text);
+    }
+    text[i] = was;
+  }
+}
+
 // Each of these is a few hundred kilobytes that would take very long, or very much memory, if some
 // loop over the text stood inside of another.
 TEST(DamagedBvh, TextsMadeToBeSlowAreNot) {
@@ -130,6 +149,14 @@ TEST(DamagedBvh, TextsMadeToBeSlowAreNot) {
       head + motion(100000, "1 2\n" + repeated("nan 1\n", 100000) + "1 2\n"),
       head + motion(100000, repeated("nan\n", 100000)),
       head + motion(1000000, repeated("\n", 300000) + repeated("1 ", 100000)),
+      head + "MOTION\nFrames: 1\nFrame Time: 1\n" + repeated("x\n", 100000) + "1 2\n",
+      head + motion(2, "1 2\n" + repeated("# x\n", 100000) + "1 2\n"),
+      head + motion(100000, repeated("1\n2 x\n", 100000)),
+      head + motion(100000, repeated("0,5 1\n", 100000)),
+      "HIERARCHY\nROOT a\n{\nCHANNELS 30000 " + repeated("Xrotation ", 30000) + "}\n" +
+          motion(1, "1\n"),
+      repeated("# x\n", 15000) + "HIERARCHY\n" + repeated("# x\n", 50000),
+      "HIERARCHY\nROOT a\n{\n" + repeated("// x\n", 50000) + "}\n" + motion(1, "1\n"),
       "HIERARCHY\n" + repeated("{", 300000),
       std::string(300000, ' ') + "HIERARCHY",
   };

@@ -350,6 +350,24 @@ TEST(AcclaimReader, names_stay_unique_and_become_utf8) {
   EXPECT_TRUE(told(*capture, "acclaim-name", "UTF-8")) << all(*capture);
 }
 
+TEST(AcclaimReader, control_characters_in_names_are_replaced) {
+  for (const char c : {'\0', '\x1B', '\x7F'}) {
+    const std::string odd = std::string("sh") + c + "in";
+    std::string asf = kAsf;
+    std::string amc = kAmc;
+    for (std::string* text : {&asf, &amc}) {
+      for (std::size_t at = 0; (at = text->find("shin", at)) != std::string::npos;) {
+        text->replace(at, 4, odd);
+      }
+    }
+    const auto capture = read(asf, amc);
+    ASSERT_TRUE(capture.ok()) << capture.error().message;
+    EXPECT_GE(capture->clip.skeleton.find("sh_in"), 0);
+    EXPECT_TRUE(told(*capture, "acclaim-name", "control")) << all(*capture);
+    EXPECT_TRUE(krok::check(capture->clip).ok());
+  }
+}
+
 TEST(AcclaimReader, sections_may_be_unknown_or_in_another_order) {
   const std::size_t hierarchy = kAsf.find(":hierarchy");
   const std::size_t bones = kAsf.find(":bonedata");

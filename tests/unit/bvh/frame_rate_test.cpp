@@ -38,6 +38,27 @@ TEST(FrameRate, NtscRatesAreToldFromWholeOnes) {
   EXPECT_DOUBLE_EQ(rate_of("0.0166833").rate, 60.0 / 1.001);
 }
 
+TEST(FrameRate, AWholeRateIsTakenWhereTheDigitsLeaveBoth) {
+  EXPECT_EQ(rate_of("0.0167").rate, 60.0);
+  EXPECT_EQ(rate_of("0.017").rate, 60.0);
+  EXPECT_EQ(rate_of("0.0417").rate, 24.0);
+  EXPECT_NE(rate_of("0.0417").reason.find("23.976"), std::string::npos) << rate_of("0.0417").reason;
+  EXPECT_DOUBLE_EQ(rate_of("0.0334").rate, 30.0 / 1.001);
+}
+
+TEST(FrameRate, RatesThatNoCaptureIsMadeAtAreUnusual) {
+  EXPECT_TRUE(rate_of("30").unusual);
+  EXPECT_NE(rate_of("30").reason.find("frames a second"), std::string::npos);
+  EXPECT_TRUE(rate_of("120.0").unusual);
+  EXPECT_TRUE(rate_of("33.3333").unusual);
+  EXPECT_NE(rate_of("33.3333").reason.find("milliseconds"), std::string::npos);
+  EXPECT_NE(rate_of("8.33").reason.find("milliseconds"), std::string::npos);
+  EXPECT_TRUE(rate_of("1").unusual);
+  EXPECT_TRUE(rate_of("0.0005").unusual);
+  EXPECT_FALSE(rate_of("0.2").unusual);
+  EXPECT_FALSE(rate_of("0.001").unusual);
+}
+
 TEST(FrameRate, OtherRatesStay) {
   EXPECT_DOUBLE_EQ(rate_of("0.1").rate, 10.0);
   EXPECT_DOUBLE_EQ(rate_of("0.05").rate, 20.0);

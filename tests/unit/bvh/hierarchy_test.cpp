@@ -168,7 +168,7 @@ TEST(Hierarchy, FaultsThatAHandCanMendComeWithAHint) {
   two_joints.max_joints = 2;
   const auto hint = [](const std::string& text) { return read_error(text).hint; };
   EXPECT_NE(hint(kArm + "MOTION\n0 0 0\n").find("Frames: 120"), std::string::npos);
-  EXPECT_NE(hint(kArm + "MOTION\nFrames: 3.0\n").find("Frames: 120"), std::string::npos);
+  EXPECT_NE(hint(kArm + "MOTION\nFrames: 3.5\n").find("Frames: 120"), std::string::npos);
   EXPECT_NE(hint(kArm + "MOTION\nFrames: -3\n").find("Frames: 120"), std::string::npos);
   EXPECT_NE(hint(kArm + "MOTION\nFrames: 1\n" + kRow).find("--fps"), std::string::npos);
   EXPECT_NE(hint(kArm + motion(1, kRow, "0")).find("--fps"), std::string::npos);
@@ -214,7 +214,22 @@ TEST(Hierarchy, OddButHarmlessFilesAreTakenWithAWarningAndRefusedByStrict) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"HIERARCHY\nROOT\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\n" + rest, "bvh-name"},
       {"HIERARCHY\nROOT a\n{\nCHANNELS 1 Xrotation\n}\n" + rest, "bvh-offset"},
-      {"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xscale\n}\n" + rest, "bvh-channels"}};
+      {"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 2 Xrotation Xscale\n}\n" + motion(1, "1 1\n"),
+       "bvh-channels"},
+      {"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation,\n}\n" + rest, "bvh-channels"},
+      {"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation Xrotation\n}\n" +
+           motion(1, "1 2 3\n"),
+       "bvh-channels"},
+      {"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nEnd Site\n{\nOFFSET 0 1 0\n"
+       "CHANNELS 1 Xrotation\n}\n}\n" +
+           motion(1, "1 1\n"),
+       "bvh-channels"},
+      {"HIERARCHY\n# made by hand\nROOT a\n{\nOFFSET 0 0 0\n// bend\nCHANNELS 1 Xrotation\n}\n" +
+           rest,
+       "bvh-syntax"},
+      {"Exported.\nHIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\n" + rest,
+       "bvh-text-before"},
+      {"ROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\n" + rest, "bvh-syntax"}};
   for (const auto& [text, code] : cases) {
     const Capture capture = read_ok(text);
     ASSERT_NE(find(capture.diagnostics, code), nullptr) << text;
@@ -224,10 +239,33 @@ TEST(Hierarchy, OddButHarmlessFilesAreTakenWithAWarningAndRefusedByStrict) {
   }
 }
 
+TEST(Hierarchy, AFigureWithoutAnyChannelThatIsUnderstoodIsRefused) {
+  const auto with = [](const std::string& channels) {
+    return "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS " + channels + "\n}\n" +
+           motion(1, "1 0 0 0\n");
+  };
+  EXPECT_EQ(read_error(with("4 Xrot Yrot Zrot Xpos")).code, "bvh-channels");
+  const Error quaternion = read_error(with("4 Wrotation Xrotation Yrotation Zrotation"));
+  EXPECT_EQ(quaternion.code, "bvh-channels");
+  EXPECT_NE(quaternion.message.find("quaternion"), std::string::npos);
+}
+
+TEST(Hierarchy, AnEndSiteMayBeWrittenAsOneWord) {
+  const Capture capture = read_ok(
+      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nEndSite\n{\nOFFSET 0 1 0\n}\n}\n" +
+      motion(1, "1\n"));
+  ASSERT_EQ(capture.clip.joint_count(), 2);
+  EXPECT_EQ(capture.clip.skeleton.names[1], "a_end");
+  EXPECT_NE(capture.clip.skeleton.end_sites[1], 0);
+}
+
 TEST(Hierarchy, OtherKindsOfFilesAreCalledByTheirName) {
   EXPECT_NE(read_error("\x89PNG\r\n\x1a\n").message.find("PNG"), std::string::npos);
   EXPECT_NE(read_error(std::string("KROKANIM\0\0", 10)).message.find(".anim"), std::string::npos);
   EXPECT_NE(read_error("\xFF\xFEH\0I\0").message.find("UTF-16"), std::string::npos);
+  const std::string wide("H\0I\0E\0R\0A\0R\0", 12);
+  EXPECT_NE(read_error(wide).message.find("UTF-16"), std::string::npos);
+  EXPECT_NE(read_error(std::string(1, '\0') + wide).message.find("UTF-16"), std::string::npos);
 }
 
 }  // namespace

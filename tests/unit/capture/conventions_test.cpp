@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "math/euler.h"
+#include "math/quaternion.h"
 
 namespace krok {
 namespace {
@@ -110,6 +114,65 @@ TEST(DetectConventions, AHandstandDoesNotTurnTheWorldOver) {
   const Quat upside_down(0, 1, 0, 0);
   const Conventions found = detect(skeleton, sample_of(skeleton, upside_down));
   EXPECT_EQ(found.up, Direction::plus_y) << found.up_reason;
+}
+
+// Samples with the figure turned and then lifted, so that its lowest joint is `height` high.
+std::vector<Vec3> lifted(const Skeleton& skeleton, const Quat& turn, const Vec3& up,
+                         double height) {
+  std::vector<Vec3> positions = sample_of(skeleton, turn);
+  double lowest = INFINITY;
+  for (const Vec3& p : positions) lowest = std::min(lowest, p.dot(up));
+  for (Vec3& p : positions) p += (height - lowest) * up;
+  return positions;
+}
+
+TEST(DetectConventions, AFigureThatLiesOnTheGroundIsToldWithAWarning) {
+  const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
+  // On its back and on its belly, hips above the ground.
+  for (const double angle : {-80.0, 80.0}) {
+    const Quat turn = axis_rotation(Axis::x, angle * kRadiansPerDegree);
+    const Conventions found = detect(skeleton, lifted(skeleton, turn, Vec3::UnitY(), 1));
+    EXPECT_EQ(found.up, Direction::plus_y) << found.up_reason;
+    EXPECT_EQ(found.up_confidence, Confidence::guess);
+    EXPECT_EQ(found.forward, Direction::plus_z) << found.forward_reason;
+  }
+}
+
+TEST(DetectConventions, AFigureUprightAlongAnUnusualAxisAwayFromTheGroundIsAGuess) {
+  const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
+  const Quat turn = axis_rotation(Axis::x, -90 * kRadiansPerDegree);  // up along -z
+  const Conventions found = detect(skeleton, lifted(skeleton, turn, Vec3::UnitY(), 700));
+  EXPECT_EQ(found.up_confidence, Confidence::guess) << found.up_reason;
+  EXPECT_EQ(found.up, Direction::plus_y);
+}
+
+TEST(DetectConventions, TheGroundConfirmsAMotionThatStandsOtherwiseThanTheReferencePose) {
+  const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
+  const Quat turn = rotation_to_krok(Direction::plus_z, Direction::minus_y)->conjugate();
+  const Conventions found = detect(skeleton, lifted(skeleton, turn, Vec3::UnitZ(), 2));
+  EXPECT_EQ(found.up, Direction::plus_z);
+  EXPECT_EQ(found.up_confidence, Confidence::certain) << found.up_reason;
+}
+
+TEST(DetectConventions, ATrunkAloneTellsUp) {
+  Skeleton skeleton;
+  const Mat3 to_file =
+      rotation_to_krok(Direction::plus_z, Direction::minus_y)->conjugate().toRotationMatrix();
+  const auto add = [&](const char* name, int parent, double x, double y) {
+    return skeleton.add(name, parent, {to_file * Vec3(x, y, 0), Quat::Identity()});
+  };
+  const int hips = add("Hips", -1, 0, 1);
+  const int chest = add("Chest", hips, 0, 1.3);
+  add("Head", add("Neck", chest, 0, 1.5), 0, 1.6);
+  for (const double side : {1.0, -1.0}) {
+    const std::string lr = side > 0 ? "Left" : "Right";
+    const int arm = add((lr + "Arm").c_str(), chest, 0.2 * side, 1.45);
+    add((lr + "Hand").c_str(), add((lr + "ForeArm").c_str(), arm, 0.5 * side, 1.45), 0.7 * side,
+        1.45);
+  }
+  const Conventions found = detect(skeleton, sample_of(skeleton));
+  EXPECT_EQ(found.up, Direction::plus_z) << found.up_reason;
+  EXPECT_EQ(found.up_confidence, Confidence::likely);
 }
 
 TEST(DetectConventions, TurningOnTheSpotLeavesForwardToTheReferencePose) {

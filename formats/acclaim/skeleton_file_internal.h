@@ -11,7 +11,7 @@
 
 #include "core/result.h"
 #include "formats/acclaim/acclaim_reader.h"
-#include "formats/acclaim/source_text.h"
+#include "formats/acclaim/source_text_internal.h"
 #include "math/euler.h"
 #include "math/types.h"
 

@@ -8,8 +8,8 @@
 
 #include "core/result.h"
 #include "formats/acclaim/acclaim_reader.h"
-#include "formats/acclaim/skeleton_file.h"
-#include "formats/acclaim/source_text.h"
+#include "formats/acclaim/skeleton_file_internal.h"
+#include "formats/acclaim/source_text_internal.h"
 
 namespace krok::acclaim {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/result.h"
-#include "formats/acclaim/skeleton_file.h"
-#include "formats/acclaim/source_text.h"
+#include "formats/acclaim/skeleton_file_internal.h"
+#include "formats/acclaim/source_text_internal.h"
 #include "math/euler.h"
 
 namespace krok::acclaim {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "formats/acclaim/skeleton_file.h"
+#include "formats/acclaim/skeleton_file_internal.h"
 #include "math/transform.h"
 #include "scene/skeleton.h"
 

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "core/result.h"
-#include "formats/acclaim/bone_tree.h"
-#include "formats/acclaim/item_parser.h"
-#include "formats/acclaim/source_text.h"
+#include "formats/acclaim/bone_tree_internal.h"
+#include "formats/acclaim/item_parser_internal.h"
+#include "formats/acclaim/source_text_internal.h"
 
 namespace krok::acclaim {
 

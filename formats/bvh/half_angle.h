@@ -1,0 +1,42 @@
+#pragma once
+
+namespace krok::bvh {
+
+// Sine and cosine of half an angle, which a quaternion holds.
+struct HalfAngle {
+  double sine = 0, cosine = 1;
+};
+
+// Of an angle in degrees, as BVH has them; any finite number. Within 1e-16 or so of the true
+// values: whole quarter turns are taken off in degrees, where that is exact, and what is left, at
+// most 45 degrees of half angle, goes into polynomials. Exact for multiples of 180 degrees. Made of
+// additions and multiplications alone, so that a vectorised form gives the same bits.
+HalfAngle half_angle(double degrees);
+
+// The angle in degrees less whole double turns, which half_angle() does with those beyond
+// kFarthestAngle.
+double near_angle(double degrees);
+
+// Constants that the vectorised form shares.
+namespace half_angle_detail {
+
+inline constexpr double kFarthestAngle = 0x1p40;
+inline constexpr double kHalfTurns = 1.0 / 180.0;
+inline constexpr double kHalfRadians = 0x1.1df46a2529d39p-7;  // pi / 360
+// Added and taken off again, it rounds a number to the nearest integer, whose lowest bits are then
+// those of the sum.
+inline constexpr double kRounder = 0x1.8p52;
+
+// sin(t) = t + t^3 P(t^2) and cos(t) = 1 - t^2 / 2 + t^4 Q(t^2) for |t| <= pi / 4, the highest
+// power first: Chebyshev interpolations (J. Mason and D. Handscomb, "Chebyshev polynomials", 2003,
+// ch. 6) worked out in 60 digits; 2e-17 off P, 1e-18 off Q.
+inline constexpr double kSine[6] = {0x1.5e0b19f38405ap-33, -0x1.ae600b02a7c74p-26,
+                                    0x1.71de37968a024p-19, -0x1.a01a019e83aaep-13,
+                                    0x1.1111111110bb2p-7,  -0x1.5555555555555p-3};
+inline constexpr double kCosine[6] = {-0x1.907da36274fc5p-37, 0x1.1eeb68e934339p-29,
+                                      -0x1.27e4fa17da030p-22, 0x1.a01a019f4eb00p-16,
+                                      -0x1.6c16c16c16967p-10, 0x1.5555555555555p-5};
+
+}  // namespace half_angle_detail
+
+}  // namespace krok::bvh

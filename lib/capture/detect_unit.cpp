@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "capture/figure_internal.h"
+
+namespace krok::figure {
+
+namespace {
+
+struct UnitCandidate {
+  const char* name;
+  double rarity;  // added to the distance from an adult's height, in natural logarithms
+};
+constexpr std::array kUnitCandidates = {UnitCandidate{"m", 0.0},   UnitCandidate{"cm", 0.0},
+                                        UnitCandidate{"mm", 0.05}, UnitCandidate{"in", 0.1},
+                                        UnitCandidate{"cmu", 0.1}, UnitCandidate{"dm", 0.15},
+                                        UnitCandidate{"ft", 0.15}};
+
+Unit unit_named(const char* name) {
+  return *parse_unit(name);
+}
+
+// Whether a captured figure may be as large as that.
+bool is_sensible(double metres) {
+  return metres >= 0.01 && metres <= 1000.0;
+}
+
+void detect_unit_of_figure(double height, bool cmu_names, Conventions& found) {
+  constexpr double kUsualHeight = 1.72;
+  double best = INFINITY;
+  double second = INFINITY;
+  for (const UnitCandidate& candidate : kUnitCandidates) {
+    const Unit unit = unit_named(candidate.name);
+    const double score = std::abs(std::log(height * unit.metres / kUsualHeight)) + candidate.rarity;
+    if (score < best) {
+      second = best;
+      best = score;
+      found.unit = unit;
+    } else {
+      second = std::min(second, score);
+    }
+  }
+  const double metres = height * found.unit.metres;
+  const bool clear = second - best > 0.3;
+  if (metres >= 1.45 && metres <= 2.1 && clear) {
+    found.unit_confidence = Confidence::certain;
+  } else if (metres >= 1.25 && metres <= 2.4 && clear) {
+    found.unit_confidence = Confidence::likely;
+  }
+  if (!is_sensible(metres)) {
+    found.unit_reason = fmt::format(
+        "the figure would be {:.3g} m tall, and no common unit brings it near a usual height",
+        metres);
+    return;
+  }
+  found.unit_reason = fmt::format("the bones are those of a figure about {:.2f} m tall", metres);
+  if (found.unit.name == "cmu" && cmu_names && metres > 1.2 && metres < 2.2) {
+    found.unit_confidence = Confidence::certain;
+    found.unit_reason += ", with the joint names of the CMU collection";
+  }
+  if (found.unit_confidence == Confidence::guess) {
+    found.unit_reason += "; no common unit makes it a usual height";
+  }
+}
+
+// The largest extent over the axes of the reference pose and of each sample.
+double largest_extent(const Evidence& evidence) {
+  const auto extent = [](Positions pose) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : pose) {
+      if (p.allFinite()) box.extend(p);
+    }
+    return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+  };
+  double largest = extent(evidence.reference);
+  for (std::size_t i = 0; i < evidence.sample_count; ++i) {
+    largest = std::max(largest, extent(evidence.sample(i)));
+  }
+  return largest;
+}
+
+// The helper joints that the CMU collection's skeletons have and hardly any other.
+bool has_cmu_names(const Skeleton& skeleton) {
+  const bool lower_back = skeleton.find("LowerBack") >= 0 || skeleton.find("lowerback") >= 0;
+  return lower_back && (skeleton.find("LHipJoint") >= 0 || skeleton.find("lhipjoint") >= 0);
+}
+
+}  // namespace
+
+void detect_unit(const Evidence& evidence, Conventions& found) {
+  const double height = height_of(evidence);
+  if (height > 0) return detect_unit_of_figure(height, has_cmu_names(evidence.skeleton), found);
+  const double extent = largest_extent(evidence);
+  constexpr double kLargest = 10.0;  // metres
+  for (const char* name : {"m", "cm", "mm"}) {
+    found.unit = unit_named(name);
+    if (extent * found.unit.metres <= kLargest) break;
+  }
+  const double metres = extent * found.unit.metres;
+  if (!(extent > 0)) {
+    found.unit_reason = "all joints stand at one place, which shows no size to go by";
+  } else if (!is_sensible(metres)) {
+    found.unit_reason = fmt::format(
+        "no legs or arms to go by, and in none of m, cm and mm is the size a sensible one; in {} "
+        "it is {:.3g} m",
+        found.unit.name, metres);
+  } else {
+    found.unit_reason =
+        fmt::format("no legs or arms to go by; a size of {:.3g} m is taken as sensible", metres);
+  }
+}
+
+}  // namespace krok::figure

@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "capture/figure_internal.h"
+
+namespace krok::figure {
+
+namespace {
+
+// In how many samples the body stands along each axis.
+struct UpVotes {
+  std::array<int, 6> votes{};
+  int valid = 0;
+  Vec3 sum = Vec3::Zero();
+
+  explicit UpVotes(const Evidence& evidence) {
+    constexpr double kUpright = 0.8;  // within 37 degrees
+    for (std::size_t i = 0; i < evidence.sample_count; ++i) {
+      const auto axis = body_axis(evidence.sample(i), evidence.marks);
+      if (!axis) continue;
+      ++valid;
+      sum += *axis;
+      const NearestAxis nearest = nearest_axis(*axis);
+      if (nearest.cosine >= kUpright) ++votes[static_cast<std::size_t>(nearest.direction)];
+    }
+  }
+
+  Direction winner() const {
+    return static_cast<Direction>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+  }
+  double share(Direction d) const {
+    return valid == 0 ? 0 : static_cast<double>(votes[static_cast<std::size_t>(d)]) / valid;
+  }
+};
+
+void detect_up_without_motion(const Evidence& evidence, Conventions& found) {
+  if (evidence.reference_stands) {
+    found.up = evidence.reference_stands->direction;
+    found.up_confidence =
+        evidence.reference_stands->cosine > 0.95 ? Confidence::certain : Confidence::likely;
+    found.up_reason = fmt::format("the reference pose stands along {}", signed_name(found.up));
+    return;
+  }
+  const auto axis = body_axis(evidence.reference, evidence.marks);
+  if (!axis) {
+    found.up_reason = "the figure has no size to tell up from down by; +y is the default";
+    return;
+  }
+  found.up = nearest_axis(*axis).direction;
+  found.up_reason = fmt::format(
+      "in the reference pose, which does not stand, the head is furthest from the {} along {}",
+      evidence.marks.lower_end(), signed_name(found.up));
+}
+
+// The floor of a world is at 0, and a figure that stands in it has its lowest joint there. One that
+// seems to stand along an axis for which this is not so, and whose reference pose does not stand
+// along it either, may lie: then its lowest joint is near 0 along the true one.
+void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
+  constexpr double kNear = 0.08;  // all of the figure's height
+  constexpr double kBelow = -0.03;
+  constexpr double kLeastHips = 0.03;  // flesh is between a body and the ground
+  const auto standing = heights_along(evidence, found.up);
+  if (!standing || std::abs(standing->lowest) <= kNear) return;
+  const auto lies = [&](Direction up) {
+    if (on_one_axis(up, found.up)) return false;
+    const auto lying = heights_along(evidence, up);
+    return lying && lying->lowest >= kBelow && lying->lowest <= kNear && lying->hips >= kLeastHips;
+  };
+  std::optional<Direction> ground;
+  const auto& reference = evidence.reference_stands;
+  if (reference) {
+    if (lies(reference->direction)) ground = reference->direction;
+  } else {
+    for (const Direction up : {Direction::plus_z, Direction::plus_y}) {
+      if (lies(up)) ground = up;
+    }
+  }
+  if (ground) {
+    found.up_reason +=
+        fmt::format("; but its lowest joint is near 0 along {} instead, so it seems to lie{}",
+                    signed_name(*ground), reference ? "" : ", and no reference pose stands");
+    found.up = *ground;
+    found.up_confidence = Confidence::guess;
+    return;
+  }
+  found.up_reason += "; there it is not near the ground";
+  const auto usual = [](Direction up) {
+    return up == Direction::plus_y || up == Direction::plus_z;
+  };
+  const bool other_is_usual = reference && usual(reference->direction);
+  if (!usual(found.up) || other_is_usual) {
+    if (other_is_usual && !usual(found.up)) {
+      found.up = reference->direction;
+      found.up_reason += ", and hardly any file has that axis up; the reference pose's is taken";
+    }
+    found.up_confidence = Confidence::guess;
+  } else if (found.up_confidence == Confidence::certain) {
+    found.up_confidence = Confidence::likely;
+  }
+}
+
+void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Conventions& found) {
+  const auto& reference = evidence.reference_stands;
+  const Direction winner = votes.winner();
+  const double share = votes.share(winner);
+  const int percent = static_cast<int>(std::lround(100 * share));
+  const bool agrees = reference && reference->direction == winner;
+  if (share >= 0.5 && !(reference && reference->direction == opposite(winner))) {
+    found.up = winner;
+    found.up_confidence = agrees || share >= 0.8 ? Confidence::certain : Confidence::likely;
+    found.up_reason =
+        fmt::format("the head is above the {} along {} in {}% of the frames looked at",
+                    evidence.marks.lower_end(), signed_name(winner), percent);
+    if (agrees) {
+      found.up_reason += ", and the reference pose stands so too";
+    } else if (reference) {
+      found.up_reason += fmt::format("; the reference pose stands along {}, the motion decides",
+                                     signed_name(reference->direction));
+      if (found.up_confidence == Confidence::certain && share < 0.95) {
+        found.up_confidence = Confidence::likely;
+      }
+    }
+    if (!agrees) hold_against_the_ground(evidence, found);
+    return;
+  }
+  if (reference) {
+    found.up = reference->direction;
+    found.up_confidence = Confidence::likely;
+    found.up_reason = fmt::format(
+        "the reference pose stands along {}; the motion is upright along "
+        "it in {}% of the frames looked at only",
+        signed_name(found.up), static_cast<int>(std::lround(100 * votes.share(found.up))));
+    return;
+  }
+  found.up = nearest_axis(votes.sum).direction;
+  found.up_reason = fmt::format(
+      "on average the head is furthest from the {} along {}, though the figure seldom stands",
+      evidence.marks.lower_end(), signed_name(found.up));
+}
+
+}  // namespace
+
+void detect_up(const Evidence& evidence, Conventions& found) {
+  const auto& marks = evidence.marks;
+  if (!marks.trunk_known()) {
+    found.up_reason = "without hips and a head up cannot be told from down; +y is the default";
+    return;
+  }
+  const UpVotes votes(evidence);
+  if (votes.valid == 0) {
+    detect_up_without_motion(evidence, found);
+  } else {
+    detect_up_of_motion(evidence, votes, found);
+  }
+  if (marks.upright_known()) return;
+  found.up_reason += "; there are no two feet to hold it against";
+  if (found.up_confidence == Confidence::certain) found.up_confidence = Confidence::likely;
+}
+
+}  // namespace krok::figure

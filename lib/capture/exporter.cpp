@@ -1,0 +1,137 @@
+#include "capture/exporter.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <unordered_set>
+
+#include "core/text.h"
+
+namespace krok {
+
+namespace {
+
+struct NameSet {
+  std::string_view exporter;
+  std::string_view joints;  // lower case, with a space between; all must be there
+  Confidence confidence;
+};
+
+// The first that fits counts, so those with more telling names stand first.
+constexpr std::array kNameSets = {
+    NameSet{"iPi Mocap Studio, own names",
+            "hip lowerspine middlespine chest lclavicle lshoulder lforearm lthigh lshin",
+            Confidence::certain},
+    NameSet{"a conversion of the CMU collection", "hips lhipjoint rhipjoint lowerback lthumb",
+            Confidence::certain},
+    NameSet{"the CMU collection's or another Acclaim skeleton",
+            "lowerback thorax lfemur ltibia lhumerus lradius", Confidence::certain},
+    NameSet{"Perception Neuron, or another with its names",
+            "hips leftupleg leftforearm leftinhandindex rightinhandindex", Confidence::likely},
+    NameSet{"Rokoko Studio", "hips spine1 leftarm leftforearm leftthigh leftshin lefttoe",
+            Confidence::likely},
+    NameSet{"Xsens MVN or the names it uses",
+            "hips chest chest2 chest3 chest4 leftcollar leftelbow leftwrist lefthip leftknee",
+            Confidence::likely},
+    NameSet{"Biovision's names",
+            "hips chest leftcollar leftshoulder leftelbow leftwrist lefthip leftknee leftankle",
+            Confidence::likely},
+    NameSet{"Biovision's names", "hips chest leftuparm leftlowarm leftupleg leftlowleg",
+            Confidence::likely},
+    NameSet{"OptiTrack Motive", "hip ab chest lshoulder luarm lfarm lthigh lshin",
+            Confidence::certain},
+    NameSet{"Daz Studio", "hip abdomenlower chestlower lthighbend lforearmbend",
+            Confidence::certain},
+    NameSet{"Poser or Second Life", "hip abdomen chest lcollar lshldr lforearm lthigh lshin",
+            Confidence::likely},
+    NameSet{"iClone or Character Creator", "cc_base_hip cc_base_l_thigh cc_base_l_upperarm",
+            Confidence::certain},
+    NameSet{"MakeHuman", "root upperleg01.l upperleg02.l lowerleg01.l", Confidence::certain},
+    NameSet{"Unreal Engine's skeleton", "pelvis spine_01 upperarm_l lowerarm_l thigh_l calf_l",
+            Confidence::likely},
+    NameSet{"SMPL's skeleton", "pelvis left_hip left_knee left_ankle spine1 left_collar left_elbow",
+            Confidence::certain},
+    NameSet{"3ds Max Biped", "bip01 bip01_l_thigh bip01_l_calf bip01_l_upperarm",
+            Confidence::certain},
+    NameSet{"Kinect for Windows",
+            "hipcenter shouldercenter shoulderleft elbowleft hipleft kneeleft",
+            Confidence::certain},
+    NameSet{"Bandai Namco Research", "joint_root hips upperleg_l lowerleg_l toes_l upperarm_l",
+            Confidence::certain},
+    NameSet{"DeepMotion", "hips_jnt l_upleg_jnt l_leg_jnt l_arm_jnt l_forearm_jnt",
+            Confidence::certain},
+    NameSet{"Blender's Rigify names", "upper_arm.l forearm.l thigh.l shin.l", Confidence::likely},
+};
+
+constexpr std::string_view kMotionBuilderNames =
+    "hips spine leftupleg leftleg leftfoot leftarm leftforearm lefthand rightupleg rightarm";
+
+// A name in lower case without its name space, blanks as underscores.
+std::string plain_name(std::string_view name) {
+  const std::size_t colon = name.rfind(':');
+  if (colon != std::string_view::npos) name.remove_prefix(colon + 1);
+  std::string result = ascii_lower(name);
+  for (char& c : result) c = c == ' ' ? '_' : c;
+  return result;
+}
+
+using Names = std::unordered_set<std::string>;
+
+// Whether all words of `joints` are names; how many there are.
+std::optional<int> matches(const Names& names, std::string_view joints) {
+  int count = 0;
+  while (!joints.empty()) {
+    const std::size_t space = joints.find(' ');
+    if (!names.contains(std::string(joints.substr(0, space)))) return std::nullopt;
+    joints = space == std::string_view::npos ? std::string_view() : joints.substr(space + 1);
+    ++count;
+  }
+  return count;
+}
+
+// iPi Mocap Studio prints the frame time with ten decimals and begins each row with a tab.
+bool written_as_ipi_does(const ExporterTraits& traits) {
+  const std::size_t point = traits.frame_time.find('.');
+  return traits.rows_begin_with_tab && point != std::string_view::npos &&
+         traits.frame_time.size() - point - 1 == 10;
+}
+
+Exporter motion_builder_names(const Skeleton& skeleton, const ExporterTraits& traits) {
+  for (const std::string& name : skeleton.names) {
+    if (ascii_lower(name).starts_with("mixamorig")) {
+      return {"Mixamo", "the joints' names begin with mixamorig", Confidence::certain};
+    }
+  }
+  const std::string names = "the joints have MotionBuilder's names";
+  if (!traits.starts_unturned) {
+    return {"MotionBuilder's names", names + ", which many programs write", Confidence::likely};
+  }
+  if (written_as_ipi_does(traits)) {
+    return {"iPi Mocap Studio, MotionBuilder's names with a rest pose as frame 0",
+            names + ", frame 0 has no rotations, and rows and frame time are printed as iPi does",
+            Confidence::likely};
+  }
+  return {"MotionBuilder's names with a rest pose as frame 0",
+          names + ", and frame 0 has no rotations; iPi Mocap Studio's second preset is such a one",
+          Confidence::guess};
+}
+
+}  // namespace
+
+std::optional<Exporter> recognise_exporter(const Skeleton& skeleton, const ExporterTraits& traits) {
+  Names names;
+  for (const std::string& name : skeleton.names) names.insert(plain_name(name));
+  for (const NameSet& set : kNameSets) {
+    const auto count = matches(names, set.joints);
+    if (!count) continue;
+    std::string reason = fmt::format("{} of its joints' names are there", *count);
+    if (set.exporter.starts_with("iPi") && written_as_ipi_does(traits)) {
+      reason += ", and rows and frame time are printed as it does";
+    }
+    return Exporter{std::string(set.exporter), std::move(reason), set.confidence};
+  }
+  if (matches(names, kMotionBuilderNames)) return motion_builder_names(skeleton, traits);
+  return std::nullopt;
+}
+
+}  // namespace krok

@@ -1,0 +1,116 @@
+// If these fail, rows that do not fit the hierarchy become a motion of nonsense, or one fault in
+// them spoils all that follow.
+
+#include <cmath>
+
+#include "unit/bvh/bvh_text.h"
+
+namespace krok::bvh {
+namespace {
+
+ReadOptions with(Strictness strictness) {
+  ReadOptions options = plain_options();
+  options.strictness = strictness;
+  return options;
+}
+
+std::string row(int frame, int values = 9) {
+  std::string text;
+  for (int i = 0; i < values; ++i) text += std::to_string(frame) + " ";
+  return text + "\n";
+}
+
+// The root's x in each frame.
+std::vector<int> frames_of(const Capture& capture) {
+  std::vector<int> frames;
+  for (int f = 0; f < capture.clip.frame_count(); ++f) {
+    frames.push_back(static_cast<int>(std::lround(capture.clip.frame_positions(f)[0].x())));
+  }
+  return frames;
+}
+
+TEST(OddRows, RowsThatAllHaveTooManyOrTooFewValuesAreAnError) {
+  for (const int values : {3, 8, 10, 12, 13}) {
+    std::string rows;
+    for (int f = 0; f < 6; ++f) rows += row(f, values);
+    for (const Strictness strictness :
+         {Strictness::normal, Strictness::strict, Strictness::repair}) {
+      const Error error = read_error(kArm + motion(6, rows), with(strictness));
+      EXPECT_EQ(error.code, "bvh-channel-count") << values;
+      EXPECT_EQ(error.where.line, 19) << values;
+    }
+  }
+}
+
+TEST(OddRows, AValueMissingInAWrappedRowCostsThatRowAlone) {
+  std::string rows;
+  for (int f = 0; f < 6; ++f) rows += row(f, 4) + row(f, f == 2 ? 3 : 4) + row(f, 1);
+  EXPECT_EQ(frames_of(read_ok(kArm + motion(6, rows))), (std::vector<int>{0, 1, 3, 4, 5}));
+  EXPECT_EQ(frames_of(read_ok(kArm + motion(6, rows), with(Strictness::repair))),
+            (std::vector<int>{0, 1, 2, 3, 4, 5}));
+  const Error error = read_error(kArm + motion(6, rows), with(Strictness::strict));
+  EXPECT_EQ(error.code, "bvh-channel-count");
+  EXPECT_EQ(error.where.line, 19 + 6);
+}
+
+TEST(OddRows, LinesOfTextBetweenRowsAreNoFrames) {
+  const std::string rows = row(0) + "# note\n" + row(1) + "cut here\n" + row(2);
+  const Capture capture = read_ok(kArm + motion(3, rows));
+  EXPECT_EQ(frames_of(capture), (std::vector<int>{0, 1, 2}));
+  const Diagnostic* told = find(capture.diagnostics, "bvh-syntax");
+  ASSERT_NE(told, nullptr);
+  EXPECT_EQ(told->severity, Severity::warning);
+  EXPECT_EQ(told->where.line, 20);
+  EXPECT_EQ(find(capture.diagnostics, "bvh-frame-count"), nullptr);
+  EXPECT_EQ(read_error(kArm + motion(3, rows), with(Strictness::strict)).code, "bvh-syntax");
+}
+
+TEST(OddRows, ASecondFileBehindTheFirstIsLeftOutWithAWarning) {
+  const std::string once = kArm + motion(2, row(0) + row(1));
+  for (const std::string& rest : {once, motion(2, row(5) + row(6))}) {
+    const Capture capture = read_ok(once + rest);
+    EXPECT_EQ(frames_of(capture), (std::vector<int>{0, 1}));
+    const Diagnostic* told = find(capture.diagnostics, "bvh-text-after");
+    ASSERT_NE(told, nullptr);
+    EXPECT_EQ(told->severity, Severity::warning);
+    EXPECT_NE(told->message.find("a second"), std::string::npos);
+    EXPECT_EQ(read_error(once + rest, with(Strictness::strict)).code, "bvh-text-after");
+  }
+}
+
+TEST(OddRows, WhereNoRowIsWholeRepairHasNothingToGoBy) {
+  const std::string rows = "nan 0 0 0 0 0 0 0 0\nnan 1 1 1 1 1 1 1 1\n";
+  EXPECT_EQ(read_error(kArm + motion(2, rows), with(Strictness::repair)).code, "bvh-number");
+}
+
+TEST(OddRows, TheHintTellsWhatDividesValues) {
+  const auto hint = [](const std::string& first) {
+    return read_error(kArm + motion(2, row(0) + first + " 1 1 1 1 1 1 1 1\n")).hint;
+  };
+  EXPECT_NE(hint("0,5").find("--repair reads decimal commas"), std::string::npos);
+  EXPECT_NE(hint("0.5,").find("blanks"), std::string::npos);
+  EXPECT_NE(hint("1;2").find("blanks"), std::string::npos);
+  EXPECT_NE(hint("-nan(ind)").find("--repair"), std::string::npos);
+}
+
+TEST(OddRows, DecimalCommasAreReadByRepair) {
+  const std::string rows = "0,5 0 0 0 0 0 0 0 0\n1,5 1 1 1 1 1 1 1 -1,25E+1\n";
+  std::string hierarchy = kArm;
+  hierarchy.replace(hierarchy.find("OFFSET 1 0 0"), 12, "OFFSET 1,5 0 0");
+  const std::string text = hierarchy + motion(2, rows, "0,0333333");
+  EXPECT_EQ(read_error(text).code, "bvh-number");
+  const Capture capture = read_ok(text, with(Strictness::repair));
+  EXPECT_EQ(capture.clip.rate, 30.0);
+  EXPECT_FLOAT_EQ(capture.clip.frame_positions(1)[0].x(), 1.5f);
+  EXPECT_DOUBLE_EQ(capture.clip.skeleton.reference[1].position.x(), 1.5);
+  ASSERT_EQ(capture.repairs.size(), 1u);
+  const Diagnostic* told = find(capture.diagnostics, "bvh-repair");
+  ASSERT_NE(told, nullptr);
+  EXPECT_EQ(told->where.line, 8);
+  // A point elsewhere leaves open what a comma means.
+  EXPECT_FALSE(
+      read(kArm + motion(2, rows, "0.0333333"), "test.bvh", with(Strictness::repair)).ok());
+}
+
+}  // namespace
+}  // namespace krok::bvh
