@@ -8,8 +8,10 @@ CMAKE_FLAGS ?=
 
 # Debian packages: to build, and on top of that to test.
 BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev libfast-float-dev \
-  nlohmann-json3-dev libxxhash-dev libhwy-dev libtinygltf-dev libcli11-dev help2man
-TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3
+  nlohmann-json3-dev libxxhash-dev libhwy-dev libtinygltf-dev libassimp-dev libopenexr-dev \
+  libcli11-dev help2man
+TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3 \
+  chromium
 LINT_PACKAGES := clang-tidy
 
 SOURCES = git ls-files --cached --others --exclude-standard '*.cpp' '*.h'
@@ -48,13 +50,13 @@ define install-missing
 	fi
 endef
 
+# Node may come from elsewhere than Debian; npm, too. They bundle the viewer page.
 deps:
 	$(call install-missing,$(BUILD_PACKAGES))
+	$(call install-missing,$(if $(shell command -v node),,nodejs) $(if $(shell command -v npm),,npm))
 
-# Node may come from elsewhere than Debian; npm, too.
 test-deps: deps
 	$(call install-missing,$(TEST_PACKAGES))
-	$(call install-missing,$(if $(shell command -v node),,nodejs) $(if $(shell command -v npm),,npm))
 	cd tests && npm ci --no-audit --no-fund --loglevel=error
 
 lint-deps: test-deps

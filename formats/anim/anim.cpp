@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "core/parallel.h"
 #include "formats/container/sections.h"
@@ -22,26 +24,52 @@ struct Info {
 };
 static_assert(sizeof(Info) == 24);
 
-// Joint transforms that are encoded at a time, so that memory stays bounded.
-constexpr std::size_t kBlock = std::size_t{1} << 16;
-constexpr std::size_t kGrain = std::size_t{1} << 12;
+// Frames are encoded a block at a time. As many as keep a block with what it is made from in a
+// core's cache, but whole groups of those that sources make together.
+constexpr std::size_t kBlockBytes = std::size_t{1} << 17;
+constexpr std::size_t kGroup = 16;
 
-Status write_frames(const Clip& clip, const WriteOptions& options, ContainerWriter& container) {
-  const std::size_t size = transform_size(options.orientation);
-  const std::size_t total = clip.positions.size();
-  std::vector<std::byte> block(std::min(kBlock, total) * size);
+std::size_t frames_a_block(std::size_t frame_size) {
+  return std::max<std::size_t>(kBlockBytes / frame_size / kGroup, 1) * kGroup;
+}
+
+// What one block takes while it is made.
+struct Block {
+  std::vector<Vec3f> positions;
+  std::vector<Quatf> orientations;
+  std::vector<std::byte> bytes;
+};
+
+Status write_frames(const FrameSource& source, const WriteOptions& options,
+                    ContainerWriter& container) {
+  const auto joints = static_cast<std::size_t>(source.joint_count());
+  const auto frames = static_cast<std::size_t>(source.frame_count);
+  const std::size_t frame_size = joints * transform_size(options.orientation);
+  const std::size_t at_once = std::min(frames_a_block(frame_size), frames);
+  std::vector<Block> blocks(slots_for(options.jobs));
+  const auto make = [&](std::size_t item, std::size_t slot) {
+    Block& block = blocks[slot];
+    const std::size_t first = item * at_once;
+    const std::size_t count = std::min(at_once, frames - first);
+    block.positions.resize(at_once * joints);
+    block.orientations.resize(at_once * joints);
+    block.bytes.resize(count * frame_size);
+    const auto positions = std::span(block.positions).first(count * joints);
+    const auto orientations = std::span(block.orientations).first(count * joints);
+    Status done =
+        source.read(static_cast<int>(first), static_cast<int>(count), positions, orientations);
+    if (done) write_transforms(positions, orientations, options.orientation, block.bytes.data());
+    return done;
+  };
+  const auto take = [&](std::size_t item, std::size_t slot) {
+    if (source.release) {
+      source.release(static_cast<int>(std::min((item + 1) * at_once, frames)));
+    }
+    return container.append(blocks[slot].bytes);
+  };
   if (Status done = container.begin("FRAMES"); !done) return done;
-  for (std::size_t first = 0; first < total; first += kBlock) {
-    const std::size_t count = std::min(kBlock, total - first);
-    parallel_for(count, kGrain, options.jobs, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        write_transform(clip.positions[first + i], clip.orientations[first + i].cast<double>(),
-                        options.orientation, &block[i * size]);
-      }
-    });
-    if (Status done = container.append(std::span(block).first(count * size)); !done) return done;
-  }
-  return {};
+  if (frames == 0) return {};
+  return make_in_order((frames + at_once - 1) / at_once, options.jobs, make, take);
 }
 
 // The place of what check(Clip) found wrong.
@@ -61,19 +89,29 @@ Error with_place(Error error, const Clip& clip, const ContainerReader& container
 
 Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
   if (Status holds = check(clip); !holds) return holds;
-  if (Status holds = check_storable(clip.skeleton); !holds) return holds;
-  const auto joints = static_cast<std::uint32_t>(clip.skeleton.names.size());
-  const Info info = {clip.rate, clip.positions.size() / joints, joints, 0};
+  return write(
+      frames_of(clip), [&] { return clip.provenance; }, options, file);
+}
+
+Status write(const FrameSource& source, const std::function<Provenance()>& provenance,
+             const WriteOptions& options, OutputFile& file) {
+  if (Status holds = check_storable(source.skeleton); !holds) return holds;
+  Clip head;
+  head.skeleton = source.skeleton;
+  head.rate = source.rate;
+  if (Status holds = check(head); !holds) return holds;
+  const auto joints = static_cast<std::uint32_t>(source.joint_count());
+  const Info info = {source.rate, static_cast<std::uint64_t>(source.frame_count), joints, 0};
   ContainerWriter container(file, kFormat, orientation_flags(options.orientation),
                             3 + kSkeletonSections);
   if (Status done = container.section("INFO", std::as_bytes(std::span(&info, 1))); !done) {
     return done;
   }
-  if (Status done = write_skeleton(clip.skeleton, options.orientation, container); !done) {
+  if (Status done = write_skeleton(source.skeleton, options.orientation, container); !done) {
     return done;
   }
-  if (Status done = write_frames(clip, options, container); !done) return done;
-  if (Status done = write_provenance(clip.provenance, container); !done) return done;
+  if (Status done = write_frames(source, options, container); !done) return done;
+  if (Status done = write_provenance(provenance(), container); !done) return done;
   return container.finish();
 }
 

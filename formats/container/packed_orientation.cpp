@@ -7,41 +7,18 @@
 #include <span>
 #include <utility>
 
+#include "formats/container/orientation_search_internal.h"
+
 namespace krok {
 
+using namespace orientation_search;
+
 namespace {
-
-// Steps (in units of the last place) by which the two largest components are moved, nearest first;
-// the third is solved for.
-constexpr int kReach = 6;
-constexpr int kSide = 2 * kReach + 1;
-
-struct Step {
-  int first = 0, second = 0;
-};
-
-constexpr std::array<Step, kSide * kSide> make_steps() {
-  std::array<Step, kSide * kSide> steps{};
-  std::size_t count = 0;
-  for (int ring = 0; ring <= kReach; ++ring) {
-    for (int i = -ring; i <= ring; ++i) {
-      for (int j = -ring; j <= ring; ++j) {
-        if (i == ring || i == -ring || j == ring || j == -ring) steps[count++] = {i, j};
-      }
-    }
-  }
-  return steps;
-}
-constexpr auto kSteps = make_steps();
-
-// Good enough to stop searching: 2e-7 rad, a few times what rounding four components costs anyway.
-// Squared distance of quaternions; the angle is twice the distance.
-constexpr double kGoodEnough = 1e-7 * 1e-7;
 
 // The smaller w, the more there is to gain, and the finer the steps that it takes. Most
 // orientations of a motion need none or a few.
 std::size_t steps_worth_trying(double w) {
-  const int reach = std::abs(w) > 0.02 ? 1 : std::abs(w) > 1e-4 ? 3 : kReach;
+  const int reach = std::abs(w) > kOneRing ? 1 : std::abs(w) > kThreeRings ? 3 : kReach;
   return static_cast<std::size_t>((2 * reach + 1) * (2 * reach + 1));
 }
 
@@ -89,8 +66,6 @@ std::array<float, 3> search(const Vec4& target) {
 
   std::array<float, 3> best{};
   double best_distance = std::numeric_limits<double>::infinity();
-  // The squares of w that could still be better: others are further from w alone.
-  double least_square = 0, largest_square = 0;
   const auto consider = [&](float try_a, float try_b, float try_c) {
     const double found_w = rebuilt_w(double{try_a}, double{try_b}, double{try_c});
     const double da = double{try_a} - a, db = double{try_b} - b, dc = double{try_c} - c;
@@ -98,9 +73,6 @@ std::array<float, 3> search(const Vec4& target) {
     const double distance = da * da + db * db + dc * dc + dw * dw;
     if (distance >= best_distance) return;
     best_distance = distance;
-    const double reach = std::sqrt(distance);
-    least_square = -w > reach ? (-w - reach) * (-w - reach) : -1.0;
-    largest_square = (-w + reach) * (-w + reach);
     best[static_cast<std::size_t>(order[0])] = try_a;
     best[static_cast<std::size_t>(order[1])] = try_b;
     best[static_cast<std::size_t>(order[2])] = try_c;
@@ -128,8 +100,6 @@ std::array<float, 3> search(const Vec4& target) {
     const float try_b = rounded(double{at.nearest_b} + step.second * at.spacing_b);
     const double left_by_b = at.left - double{try_b} * double{try_b};
     const float try_c = rounded(c * scale(left_by_b, rest_of_b));
-    const double square = left_by_b - double{try_c} * double{try_c};
-    if (square < least_square || square > largest_square) continue;
     consider(at.try_a, try_b, try_c);
   }
   return best;
@@ -144,9 +114,16 @@ std::array<float, 3> pack_orientation(const Quat& q) {
   const double w = rebuilt_w(double{plain[0]}, double{plain[1]}, double{plain[2]});
   // Comes back as it is: what was unpacked before stays what it was.
   if (static_cast<float>(w) == static_cast<float>(target[3])) return plain;
-  const double length = target.norm();
+  const double length = std::sqrt((target[0] * target[0] + target[1] * target[1]) +
+                                  (target[2] * target[2] + target[3] * target[3]));
   if (!(length > 0) || !std::isfinite(length)) return {};
-  return search(target / length);
+  target /= length;
+  const std::array<float, 3> nearest = {rounded(target[0]), rounded(target[1]), rounded(target[2])};
+  const Vec4 found(double{nearest[0]}, double{nearest[1]}, double{nearest[2]},
+                   rebuilt_w(double{nearest[0]}, double{nearest[1]}, double{nearest[2]}));
+  const Vec4 off = found - target;
+  const double distance = off[0] * off[0] + off[1] * off[1] + off[2] * off[2] + off[3] * off[3];
+  return distance <= kGoodEnough ? nearest : search(target);
 }
 
 Quat unpack_orientation(const std::array<float, 3>& xyz) {

@@ -63,7 +63,7 @@ Json pairs_to_json(const std::vector<std::pair<std::string, std::string>>& pairs
 
 }  // namespace
 
-Status write_provenance(const Provenance& provenance, ContainerWriter& container) {
+Result<std::string> provenance_to_text(const Provenance& provenance) {
   Json json;
   json["schema"] = "krok.provenance/1";
   json["tool"] = provenance.tool;
@@ -76,30 +76,24 @@ Status write_provenance(const Provenance& provenance, ContainerWriter& container
   json["conversions"] = provenance.conversions;
   json["warnings"] = provenance.warnings;
   // A file name may hold bytes that are no UTF-8; they become U+FFFD.
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > kMaxProvenanceBytes) {
     return Error("container-provenance",
                  fmt::format("the provenance takes {} bytes, a file holds up to {}", text.size(),
                              kMaxProvenanceBytes));
   }
-  return container.section("META", std::as_bytes(std::span(text)));
+  return text;
 }
 
-Result<Provenance> read_provenance(const ContainerReader& container) {
+Result<Provenance> provenance_from_text(std::string_view text) {
   Provenance provenance;
-  const auto section = container.find("META");
-  if (!section || section->bytes.empty()) return provenance;
   const auto fail = [&](std::string message) {
     return Error("container-provenance", fmt::format("the provenance {}", message),
-                 "make the file anew")
-        .at_byte(static_cast<std::int64_t>(section->offset));
+                 "make the file anew");
   };
-  if (section->bytes.size() > kMaxProvenanceBytes) {
-    return fail(
-        fmt::format("has {} bytes, the limit is {}", section->bytes.size(), kMaxProvenanceBytes));
+  if (text.size() > kMaxProvenanceBytes) {
+    return fail(fmt::format("has {} bytes, the limit is {}", text.size(), kMaxProvenanceBytes));
   }
-  const std::string_view text(reinterpret_cast<const char*>(section->bytes.data()),
-                              section->bytes.size());
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object()) return fail("is no JSON object");
   JsonTexts reader;
@@ -113,6 +107,21 @@ Result<Provenance> read_provenance(const ContainerReader& container) {
   provenance.warnings = reader.texts(json, "warnings");
   if (!reader.trouble.empty()) return fail(fmt::format("is not as expected: {}", reader.trouble));
   return provenance;
+}
+
+Status write_provenance(const Provenance& provenance, ContainerWriter& container) {
+  const auto text = provenance_to_text(provenance);
+  if (!text) return text.error();
+  return container.section("META", std::as_bytes(std::span(*text)));
+}
+
+Result<Provenance> read_provenance(const ContainerReader& container) {
+  const auto section = container.find("META");
+  if (!section || section->bytes.empty()) return Provenance();
+  auto provenance = provenance_from_text(
+      {reinterpret_cast<const char*>(section->bytes.data()), section->bytes.size()});
+  if (provenance) return provenance;
+  return std::move(provenance.error()).at_byte(static_cast<std::int64_t>(section->offset));
 }
 
 }  // namespace krok

@@ -44,10 +44,19 @@ void write_transform(const Vec3f& position, const Quat& orientation, Orientation
 void read_transform(const std::byte* in, OrientationEncoding encoding, Vec3f& position,
                     Quat& orientation);
 
+// The same for many, stored one after the other; vectorised, the bytes are those of
+// write_transform on every machine. Both spans have the same length.
+void write_transforms(std::span<const Vec3f> positions, std::span<const Quatf> orientations,
+                      OrientationEncoding encoding, std::byte* out);
+
 // Section META: where the data came from, as JSON (schema krok.provenance/1). A file without it has
 // an empty provenance. Codes: container-provenance.
 Status write_provenance(const Provenance& provenance, ContainerWriter& container);
 Result<Provenance> read_provenance(const ContainerReader& container);
+
+// The JSON alone, for formats that are no containers. The same code.
+Result<std::string> provenance_to_text(const Provenance& provenance);
+Result<Provenance> provenance_from_text(std::string_view text);
 
 // A section of `count` texts, each in UTF-8 and ended by a zero byte.
 Result<std::vector<std::string>> read_texts(const ContainerReader& container, std::string_view name,

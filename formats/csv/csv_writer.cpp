@@ -52,4 +52,19 @@ Status write(const Clip& clip, OutputFile& file) {
   return file.write(text);
 }
 
+Status write(const MorphWeights& weights, OutputFile& file) {
+  std::string text = "frame,time";
+  for (const std::string& name : weights.names) text += "," + csv_field(name);
+  text += '\n';
+  for (int frame = 0; frame < weights.frame_count(); ++frame) {
+    text += fmt::format("{},{}", frame, shortest(frame / weights.rate));
+    for (std::size_t t = 0; t < weights.names.size(); ++t) {
+      text += ',';
+      text += shortest(weights.values[static_cast<std::size_t>(frame) * weights.names.size() + t]);
+    }
+    text += '\n';
+  }
+  return file.write(text);
+}
+
 }  // namespace krok::csv

@@ -3,8 +3,9 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "scene/clip.h"
+#include "scene/morph_set.h"
 
-// World positions of joints as text for spreadsheets and scripts.
+// World positions of joints and weights of morph targets as text for spreadsheets and scripts.
 
 namespace krok::csv {
 
@@ -15,5 +16,9 @@ namespace krok::csv {
 // Lines end with LF. A clip without frames gives the header alone. An Error for what check()
 // refuses.
 Status write(const Clip& clip, OutputFile& file);
+
+// Weights of morph targets: the header "frame,time," and the targets' names, then a row a frame.
+// Numbers, names and lines as above.
+Status write(const MorphWeights& weights, OutputFile& file);
 
 }  // namespace krok::csv

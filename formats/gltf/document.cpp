@@ -4,8 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <sstream>
 #include <streambuf>
 
+#include "core/bytes.h"
 #include "formats/gltf/document_internal.h"
 
 namespace krok::gltf {
@@ -81,12 +83,17 @@ Document::Document(const WriteOptions& options) : options_(options) {
   gltf.defaultScene = 0;
 }
 
+std::vector<std::byte>& Document::own_part() {
+  if (parts_.empty() || !parts_.back().view.empty()) parts_.emplace_back();
+  return parts_.back().own;
+}
+
 int Document::add_accessor(std::span<const std::byte> bytes, int component,
-                           std::size_t component_size, int type, Use use) {
+                           std::size_t component_size, int type, Use use, Keep keep) {
   const std::size_t element_size = component_size * static_cast<std::size_t>(components_of(type));
   tinygltf::BufferView view;
   view.buffer = 0;
-  view.byteOffset = buffer_.size();
+  view.byteOffset = size_;
   view.byteLength = bytes.size();
   if (use == Use::vertices) {
     view.target = TINYGLTF_TARGET_ARRAY_BUFFER;
@@ -94,9 +101,16 @@ int Document::add_accessor(std::span<const std::byte> bytes, int component,
   } else if (use == Use::indices) {
     view.target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
   }
-  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  buffer_.insert(buffer_.end(), data, data + bytes.size());
-  buffer_.resize((buffer_.size() + 3) / 4 * 4, 0);
+  if (keep == Keep::view && bytes.size() % 4 == 0) {
+    parts_.push_back({{}, bytes});
+    size_ += bytes.size();
+  } else {
+    std::vector<std::byte>& own = own_part();
+    const std::size_t before = own.size();
+    own.insert(own.end(), bytes.begin(), bytes.end());
+    own.resize((own.size() + 3) / 4 * 4, std::byte{0});
+    size_ += own.size() - before;
+  }
   gltf.bufferViews.push_back(std::move(view));
 
   tinygltf::Accessor accessor;
@@ -109,9 +123,9 @@ int Document::add_accessor(std::span<const std::byte> bytes, int component,
   return static_cast<int>(gltf.accessors.size()) - 1;
 }
 
-int Document::add_floats(std::span<const float> values, int type, Use use, bool bounds) {
-  const int accessor =
-      add_accessor(std::as_bytes(values), TINYGLTF_COMPONENT_TYPE_FLOAT, sizeof(float), type, use);
+int Document::add_floats(std::span<const float> values, int type, Use use, bool bounds, Keep keep) {
+  const int accessor = add_accessor(std::as_bytes(values), TINYGLTF_COMPONENT_TYPE_FLOAT,
+                                    sizeof(float), type, use, keep);
   if (bounds) {
     const auto components = static_cast<std::size_t>(components_of(type));
     std::vector<double> least(values.begin(), values.begin() + static_cast<long>(components));
@@ -208,12 +222,13 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
       const JointTrack& track = tracks.joints[j];
       if (!track.translations.empty()) {
         add_channel(animation, first + j, "translation", times,
-                    add_vectors(track.translations, Use::data));
+                    add_floats({track.translations.data()->data(), track.translations.size() * 3},
+                               TINYGLTF_TYPE_VEC3, Use::data, false, Keep::view));
       }
       if (!track.rotations.empty()) {
         const std::span values(track.rotations.data()->coeffs().data(), track.rotations.size() * 4);
         add_channel(animation, first + j, "rotation", times,
-                    add_floats(values, TINYGLTF_TYPE_VEC4, Use::data, false));
+                    add_floats(values, TINYGLTF_TYPE_VEC4, Use::data, false, Keep::view));
       }
     }
     // A figure that stands still in its reference pose is still a motion of some length.
@@ -295,25 +310,65 @@ void Document::add_morph_motion(int mesh, int node,
 }
 
 Status Document::write(OutputFile& file) {
-  if (buffer_.size() > kMaxBufferBytes) {
-    return Error("gltf-too-large",
-                 fmt::format("the file would hold {} MB, more than glTF's lengths can tell",
-                             buffer_.size() >> 20),
-                 "write fewer frames");
+  if (size_ > kMaxBufferBytes) {
+    return Error(
+        "gltf-too-large",
+        fmt::format("the file would hold {} MB, more than glTF's lengths can tell", size_ >> 20),
+        "write fewer frames");
   }
-  if (!buffer_.empty()) {
-    gltf.buffers.resize(1);
-    gltf.buffers[0].data = std::move(buffer_);
-  }
-  FileBuffer buffer(file);
-  std::ostream stream(&buffer);
   try {
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, !options_.binary, options_.binary);
+    return options_.binary ? write_binary(file) : write_text(file);
   } catch (const nlohmann::json::exception&) {
     // Its serializer throws for one thing alone.
     return Error("gltf-name", "a name is not valid UTF-8, which glTF asks for",
                  "rename the joint or material");
   }
+}
+
+// tinygltf would copy the buffer twice more.
+Status Document::write_binary(OutputFile& file) {
+  std::ostringstream stream;
+  tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, false, false);
+  auto json = nlohmann::json::parse(stream.str());
+  if (size_ > 0) json["buffers"] = {{{"byteLength", size_}}};
+  std::string text = json.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+
+  constexpr std::uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
+  const auto json_size = static_cast<std::uint32_t>(text.size());
+  const auto data_size = static_cast<std::uint32_t>(size_);
+  const std::uint32_t data_chunk = size_ > 0 ? 8 + data_size : 0;
+  ByteWriter head;
+  head.append_text("glTF");
+  head.write(std::uint32_t{2});
+  head.write(12 + 8 + json_size + data_chunk);
+  head.write(json_size);
+  head.write(kJson);
+  head.append_text(text);
+  if (size_ > 0) {
+    head.write(data_size);
+    head.write(kBinary);
+  }
+  if (Status done = file.write(head.bytes()); !done) return done;
+  for (const Part& part : parts_) {
+    if (Status done = file.write(part.bytes()); !done) return done;
+  }
+  return {};
+}
+
+Status Document::write_text(OutputFile& file) {
+  if (size_ > 0) {
+    std::vector<unsigned char>& data = gltf.buffers.emplace_back().data;
+    data.reserve(size_);
+    for (const Part& part : parts_) {
+      const auto* bytes = reinterpret_cast<const unsigned char*>(part.bytes().data());
+      data.insert(data.end(), bytes, bytes + part.bytes().size());
+    }
+    parts_.clear();
+  }
+  FileBuffer buffer(file);
+  std::ostream stream(&buffer);
+  tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, true, false);
   stream.flush();
   if (!buffer.status()) return buffer.status();
   if (!stream) return Error("file-unwritable", "the output cannot be written");

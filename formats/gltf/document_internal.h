@@ -26,9 +26,13 @@ class Document {
 
   enum class Use { vertices, indices, data };
 
+  // Whether values are copied, or must live and stay as they are until write().
+  enum class Keep { copy, view };
+
   // Appends values in their own buffer view; returns the accessor. `Values` are floats, vectors of
   // floats, or unsigned integers, contiguous, and not empty. `bounds` writes min and max.
-  int add_floats(std::span<const float> values, int type, Use use, bool bounds);
+  int add_floats(std::span<const float> values, int type, Use use, bool bounds,
+                 Keep keep = Keep::copy);
   int add_positions(std::span<const Vec3f> values, Use use = Use::vertices);  // with bounds
   int add_vectors(std::span<const Vec3f> values, Use use = Use::vertices);
   int add_integers(std::span<const std::uint32_t> values, int type, std::uint32_t largest, Use use);
@@ -37,7 +41,8 @@ class Document {
   std::string unique_node_name(const std::string& wanted);
 
   // Nodes for all joints, the first a root of the scene; a skin of them with the inverse reference
-  // transforms; an animation, if there are times. Returns the skin.
+  // transforms; an animation, if there are times. The tracks must live until write(). Returns the
+  // skin.
   int add_skeleton(const Skeleton& skeleton, const JointTracks& tracks, const std::string& name);
 
   // The default material under this name, made once.
@@ -56,20 +61,31 @@ class Document {
                         std::span<const float> times, const std::string& name);
 
   // Room for so many bytes of data, to save copies.
-  void reserve(std::size_t bytes) { buffer_.reserve(buffer_.size() + bytes); }
+  void reserve(std::size_t bytes) { own_part().reserve(own_part().size() + bytes); }
 
   Status write(OutputFile& file);
 
   tinygltf::Model gltf;
 
  private:
+  // A stretch of the buffer: bytes of its own, or somebody else's.
+  struct Part {
+    std::vector<std::byte> own;
+    std::span<const std::byte> view;
+    std::span<const std::byte> bytes() const { return own.empty() ? view : own; }
+  };
+
   int add_accessor(std::span<const std::byte> bytes, int component, std::size_t component_size,
-                   int type, Use use);
+                   int type, Use use, Keep keep = Keep::copy);
+  std::vector<std::byte>& own_part();
+  Status write_binary(OutputFile& file);
+  Status write_text(OutputFile& file);
   void add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
                    int values);
 
   const WriteOptions& options_;
-  std::vector<unsigned char> buffer_;
+  std::vector<Part> parts_;
+  std::uint64_t size_ = 0;  // of the parts together
   std::set<std::string> node_names_;
   std::map<std::string, int> materials_;
 };

@@ -20,6 +20,8 @@ using namespace nodes;
 
 namespace {
 
+constexpr double kUsualFieldOfView = kPi / 4;
+
 std::string label(const char* kind, std::size_t index, const std::string& name) {
   return name.empty() ? fmt::format("{} {}", kind, index)
                       : fmt::format("{} {} ({})", kind, index, name);
@@ -46,15 +48,17 @@ class Builder {
 
   Result<Scene> build() {
     scene_.generator = model_.asset.generator;
-    for (auto step : {&Builder::read_nodes, &Builder::link_nodes, &Builder::read_scene,
-                      &Builder::read_all_meshes, &Builder::read_skins, &Builder::check_instances,
-                      &Builder::read_animations}) {
+    scene_.space = {1.0, Quat::Identity()};  // section 3.4 prescribes both
+    for (auto step : {&Builder::read_cameras, &Builder::read_nodes, &Builder::link_nodes,
+                      &Builder::read_scene, &Builder::read_all_meshes, &Builder::read_skins,
+                      &Builder::check_instances, &Builder::read_animations}) {
       if (auto done = (this->*step)(); !done) return done.error();
     }
     return std::move(scene_);
   }
 
  private:
+  Status read_cameras();
   Status read_nodes();
   Status read_transform(const tinygltf::Node& source, std::size_t index, Node& node);
   Status link_nodes();
@@ -74,6 +78,22 @@ class Builder {
   Scene scene_;
 };
 
+Status Builder::read_cameras() {
+  for (std::size_t i = 0; i < parsed_.cameras.size(); ++i) {
+    const CameraEntry& entry = parsed_.cameras[i];
+    scene_.cameras.push_back({entry.name, entry.perspective, 0.0});
+    if (!entry.perspective) continue;
+    Camera& camera = scene_.cameras.back();
+    camera.field_of_view = entry.field_of_view;
+    if (entry.field_of_view > 0 && entry.field_of_view < kPi) continue;
+    camera.field_of_view = kUsualFieldOfView;
+    warn(scene_, "gltf-camera",
+         fmt::format("{} has no field of view between 0 and 180 degrees; 45 degrees are taken",
+                     label("camera", i, entry.name)));
+  }
+  return {};
+}
+
 Status Builder::read_nodes() {
   for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
     const tinygltf::Node& source = model_.nodes[i];
@@ -82,6 +102,7 @@ Status Builder::read_nodes() {
     node.children = source.children;
     node.mesh = source.mesh;
     node.skin = source.skin;
+    node.camera = source.camera;
     node.weights = source.weights;
     const std::string name = label("node", i, node.name);
     if (node.mesh != -1 && !exists(node.mesh, model_.meshes.size())) {
@@ -91,6 +112,10 @@ Status Builder::read_nodes() {
     if (node.skin != -1 && !exists(node.skin, model_.skins.size())) {
       return Error("gltf-node",
                    fmt::format("{} has skin {}, which does not exist", name, node.skin));
+    }
+    if (node.camera != -1 && !exists(node.camera, scene_.cameras.size())) {
+      return Error("gltf-node",
+                   fmt::format("{} has camera {}, which does not exist", name, node.camera));
     }
     if (auto read = read_transform(source, i, node); !read) return read;
   }
@@ -386,7 +411,10 @@ Result<Scene> read(std::span<const std::byte> bytes, const ReadOptions& options)
   std::uint64_t input_bytes = bytes.size();
   for (const InputFile& file : buffers->files) input_bytes += file.bytes().size();
   Accessors accessors(parsed->model, buffers->views, unpacking_limit(input_bytes));
-  return Builder(*parsed, accessors).build();
+  auto scene = Builder(*parsed, accessors).build();
+  if (!scene) return scene;
+  for (const InputFile& file : buffers->files) scene->files.push_back(file.path());
+  return scene;
 }
 
 Result<Scene> read_file(const std::string& path) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "formats/gltf/document_internal.h"
@@ -105,11 +106,18 @@ std::string mesh_name(const WriteOptions& options) {
 
 Status write_skeleton(const Clip& clip, const WriteOptions& options, OutputFile& file) {
   if (Status sound = check(clip); !sound) return sound;
-  if (clip.skeleton.empty()) return Error("gltf-structure", "the motion has no joints");
-  auto tracks = joint_tracks(clip.skeleton, clip);
+  const auto tracks = joint_tracks(clip.skeleton, clip);
   if (!tracks) return tracks.error();
+  return write_skeleton(clip.skeleton, *tracks, options, file);
+}
+
+Status write_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
+                      const WriteOptions& options, OutputFile& file) {
+  if (Status sound = check(skeleton); !sound) return sound;
+  if (skeleton.empty()) return Error("gltf-structure", "the motion has no joints");
+  assert(tracks.joints.size() == skeleton.names.size());
   Document document(options);
-  document.add_skeleton(clip.skeleton, *tracks, options.name);
+  document.add_skeleton(skeleton, tracks, options.name);
   return document.write(file);
 }
 
@@ -121,11 +129,17 @@ Status write_rig(const Model& model, const Clip& clip, const WriteOptions& optio
   if (!difference.empty()) {
     return Error("gltf-structure", "model and motion have different skeletons: " + difference);
   }
-  auto tracks = joint_tracks(model.skeleton, clip);
+  const auto tracks = joint_tracks(model.skeleton, clip);
   if (!tracks) return tracks.error();
+  return write_rig(model, *tracks, options, file);
+}
 
+Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptions& options,
+                 OutputFile& file) {
+  if (Status sound = check_mesh(model); !sound) return sound;
+  assert(tracks.joints.size() == model.skeleton.names.size());
   Document document(options);
-  const int skin = document.add_skeleton(model.skeleton, *tracks, options.name);
+  const int skin = document.add_skeleton(model.skeleton, tracks, options.name);
   auto attributes = add_shape(document, model, {model.positions, model.normals, model.tangents});
   add_influences(document, model, attributes);
   const auto mesh = document.add_mesh(model, attributes, mesh_name(options));

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/progress.h"
 #include "core/result.h"
+#include "formats/gltf/joint_tracks.h"
 #include "scene/clip.h"
 #include "scene/model.h"
 
@@ -36,6 +37,13 @@ Status write_skeleton(const Clip& clip, const WriteOptions& options, OutputFile&
 // pose, and the mesh with joints and weights at the root of the scene. The model's skeleton must
 // have the clip's structure (code gltf-structure); bind_to of lib/skin makes it so.
 Status write_rig(const Model& model, const Clip& clip, const WriteOptions& options,
+                 OutputFile& file);
+
+// The same of tracks that joint_tracks() has made of the motion, for `skeleton` and for the
+// model's.
+Status write_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
+                      const WriteOptions& options, OutputFile& file);
+Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptions& options,
                  OutputFile& file);
 
 // The vertices of a model in some pose; lengths as Model has them.

@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
+#include <span>
 
 #include "core/numbers.h"
+#include "core/parallel.h"
+#include "formats/gltf/track_kernel_internal.h"
 #include "math/quaternion.h"
 
 namespace krok::gltf {
@@ -14,45 +19,166 @@ namespace {
 
 constexpr double kAngleTolerance = 1e-6;  // radians
 
-// What a viewer makes of floats.
-Transform as_viewed(const Vec3f& translation, const Quatf& rotation) {
-  return {translation.cast<double>(), rotation.cast<double>().normalized()};
-}
+constexpr std::size_t kFramesAtOnce = 128;
 
-// The track of one joint. `parents` holds its parent's joint_to_world as viewed for each frame, or
-// nothing for the root; `viewed` receives the joint's own.
-void fill_track(const Clip& clip, int joint, const std::vector<Transform>& parents,
-                double tolerance, JointTrack& track, std::vector<Transform>& viewed) {
-  const int frames = clip.frame_count();
-  const Quat rest = track.rest_rotation.cast<double>().normalized();
-  track.rotations.resize(frames);
-  track.translations.resize(frames);
-  viewed.resize(frames);
+// Works the tracks of all joints out at once, a block of frames at a time. Which joints have tracks
+// can only be said when all frames are known, and matters for their descendants, which follow what
+// a viewer shows; so that is taken from a few frames at first. Where the rest proves it wrong, all
+// is done again with what they showed: then the decisions of one generation more are final.
+class TrackBuilder {
+ public:
+  TrackBuilder(const Skeleton& rest, const FrameSource& source, double tolerance, int jobs,
+               JointTracks& tracks)
+      : rest_(rest),
+        source_(source),
+        tolerance_(tolerance),
+        jobs_(jobs),
+        result_(tracks),
+        joints_(rest.names.size()),
+        frames_(static_cast<std::size_t>(source.frame_count)),
+        blocks_((frames_ + kFramesAtOnce - 1) / kFramesAtOnce),
+        tracks_(joints_, track_detail::kRotates) {
+    for (const JointTrack& joint : tracks.joints) {
+      for (int k = 0; k < 3; ++k) rest_translations_.push_back(joint.rest_translation[k]);
+      for (int k = 0; k < 4; ++k) rest_rotations_.push_back(joint.rest_rotation.coeffs()[k]);
+    }
+  }
 
-  bool rotates = false, moves = false;
-  Quat before = rest;
-  for (int f = 0; f < frames; ++f) {
-    const Transform parent = parents.empty() ? Transform() : parents[f];
-    const Vec3 position = clip.frame_positions(f)[joint].cast<double>();
-    const Quat orientation =
-        normalized_or_identity(clip.frame_orientations(f)[joint].cast<double>());
-    const Quat to_parent = parent.orientation.conjugate();
-    const Quat local = in_hemisphere_of(before, normalized_or_identity(to_parent * orientation));
-    before = local;
-    track.rotations[f] = local.cast<float>();
-    track.translations[f] = (to_parent * (position - parent.position)).cast<float>();
-    rotates = rotates || angle_between(rest, local) > kAngleTolerance;
-    const Vec3 kept = parent * track.rest_translation.cast<double>();
-    moves = moves || (kept - position).norm() > tolerance;
+  Status build() {
+    if (frames_ == 0) return {};
+    if (Status sampled = settle_on_samples(); !sampled) return sampled;
+    for (;;) {
+      take_memory();
+      Seen seen(joints_, 0);
+      if (Status done = fill(seen); !done) return done;
+      if (seen == tracks_) break;
+      tracks_ = std::move(seen);
+    }
+    parallel_for(joints_, 1, jobs_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) join_blocks(result_.joints[j]);
+    });
+    return {};
   }
-  if (!rotates) track.rotations.clear();
-  if (!moves) track.translations.clear();
-  for (int f = 0; f < frames; ++f) {
-    const Transform local = as_viewed(moves ? track.translations[f] : track.rest_translation,
-                                      rotates ? track.rotations[f] : track.rest_rotation);
-    viewed[f] = parents.empty() ? local : parents[f] * local;
+
+ private:
+  using Seen = std::vector<std::uint8_t>;
+
+  // What one block of frames takes while it is worked on.
+  struct Room {
+    std::vector<Vec3f> positions;
+    std::vector<Quatf> orientations;
+    std::vector<double> scratch;
+    std::vector<track_detail::Places> places;
+    Seen seen;
+  };
+
+  track_detail::Nodes nodes() const {
+    return {rest_.parents.data(),   joints_,        rest_translations_.data(),
+            rest_rotations_.data(), tracks_.data(), tolerance_,
+            kAngleTolerance};
   }
-}
+
+  // Adds what the frames of a block ask for to room.seen, and stores them if `keep`.
+  Status do_block(std::size_t block, bool keep, Room& room) {
+    constexpr std::size_t kAlignment = 64;
+    const std::size_t first = block * kFramesAtOnce;
+    const std::size_t count = std::min(kFramesAtOnce, frames_ - first);
+    room.positions.resize(kFramesAtOnce * joints_);
+    room.orientations.resize(kFramesAtOnce * joints_);
+    room.scratch.resize(track_detail::kScratch * joints_ + kAlignment / sizeof(double));
+    room.seen.resize(joints_, 0);
+    Status read = source_.read(static_cast<int>(first), static_cast<int>(count),
+                               std::span(room.positions).first(count * joints_),
+                               std::span(room.orientations).first(count * joints_));
+    if (!read) return read;
+    room.places.assign(joints_, {});
+    for (std::size_t j = 0; keep && j < joints_; ++j) {
+      JointTrack& track = result_.joints[j];
+      if (!track.rotations.empty())
+        room.places[j].rotations = track.rotations[first].coeffs().data();
+      if (!track.translations.empty())
+        room.places[j].translations = track.translations[first].data();
+    }
+    void* scratch = room.scratch.data();
+    std::size_t space = room.scratch.size() * sizeof(double);
+    std::align(kAlignment, 1, scratch, space);
+    track_detail::joint_tracks(nodes(), room.positions.data()->data(),
+                               room.orientations.data()->coeffs().data(), count, room.places.data(),
+                               static_cast<double*>(scratch), room.seen.data());
+    for (std::size_t j = 0; keep && j < joints_; ++j) {
+      if (!result_.joints[j].rotations.empty()) {
+        join_signs(std::span(result_.joints[j].rotations).subspan(first, count));
+      }
+    }
+    return {};
+  }
+
+  Status settle_on_samples() {
+    constexpr std::size_t kSamples = 4;
+    for (std::size_t round = 0; round < kSamples; ++round) {
+      Room room;
+      for (std::size_t i = 0; i < std::min(kSamples, blocks_); ++i) {
+        if (Status done = do_block(i * blocks_ / kSamples % blocks_, false, room); !done)
+          return done;
+      }
+      if (room.seen == tracks_) break;
+      tracks_ = std::move(room.seen);
+    }
+    return {};
+  }
+
+  void take_memory() {
+    for (std::size_t j = 0; j < joints_; ++j) {
+      JointTrack& track = result_.joints[j];
+      track.rotations.resize((tracks_[j] & track_detail::kRotates) != 0 ? frames_ : 0);
+      track.translations.resize((tracks_[j] & track_detail::kMoves) != 0 ? frames_ : 0);
+    }
+  }
+
+  Status fill(Seen& seen) {
+    std::vector<Room> rooms(slots_for(jobs_));
+    const auto make = [&](std::size_t block, std::size_t slot) {
+      return do_block(block, true, rooms[slot]);
+    };
+    const auto take = [](std::size_t, std::size_t) { return Status(); };
+    if (Status done = make_in_order(blocks_, jobs_, make, take); !done) return done;
+    for (const Room& room : rooms) {
+      for (std::size_t j = 0; j < room.seen.size(); ++j) seen[j] |= room.seen[j];
+    }
+    return {};
+  }
+
+  static void turn_over(Quatf& q) { q.coeffs() = -q.coeffs(); }
+
+  // Brings each rotation into the hemisphere of the one before it.
+  static void join_signs(std::span<Quatf> rotations) {
+    for (std::size_t f = 1; f < rotations.size(); ++f) {
+      if (rotations[f - 1].dot(rotations[f]) < 0) turn_over(rotations[f]);
+    }
+  }
+
+  // Turns whole blocks over where they do not follow from the one before, the first from the rest.
+  void join_blocks(JointTrack& track) const {
+    Quatf before = track.rest_rotation;
+    for (std::size_t first = 0; first < track.rotations.size(); first += kFramesAtOnce) {
+      const auto block =
+          std::span(track.rotations).subspan(first, std::min(kFramesAtOnce, frames_ - first));
+      if (before.dot(block.front()) < 0) {
+        for (Quatf& rotation : block) turn_over(rotation);
+      }
+      before = block.back();
+    }
+  }
+
+  const Skeleton& rest_;
+  const FrameSource& source_;
+  const double tolerance_;
+  const int jobs_;
+  JointTracks& result_;
+  const std::size_t joints_, frames_, blocks_;
+  Seen tracks_;  // [joints], which tracks each is taken to have
+  std::vector<float> rest_translations_, rest_rotations_;
+};
 
 }  // namespace
 
@@ -83,25 +209,18 @@ JointTracks rest_tracks(const Skeleton& rest) {
 }
 
 Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip, double tolerance) {
-  assert(rest.joint_count() == clip.joint_count());
-  auto times = key_times(clip.frame_count(), clip.rate);
+  return joint_tracks(rest, frames_of(clip), 1, tolerance);
+}
+
+Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source, int jobs,
+                                 double tolerance) {
+  assert(rest.joint_count() == source.joint_count());
+  auto times = key_times(source.frame_count, source.rate);
   if (!times) return times.error();
   JointTracks tracks = rest_tracks(rest);
   tracks.times = std::move(*times);
-
-  const auto children = rest.children();
-  std::vector<std::vector<Transform>> viewed(rest.names.size());
-  std::vector<std::size_t> waiting(rest.names.size());
-  const std::vector<Transform> none;
-  for (int j = 0; j < rest.joint_count(); ++j) {
-    const int parent = rest.parents[j];
-    waiting[j] = children[j].size();
-    fill_track(clip, j, parent == Skeleton::kNoParent ? none : viewed[parent], tolerance,
-               tracks.joints[j], viewed[j]);
-    if (waiting[j] == 0) viewed[j] = {};
-    // Memory for the frames of a parent whose children are all done is given back.
-    if (parent != Skeleton::kNoParent && --waiting[parent] == 0) viewed[parent] = {};
-  }
+  TrackBuilder builder(rest, source, tolerance, jobs, tracks);
+  if (Status built = builder.build(); !built) return built.error();
   return tracks;
 }
 

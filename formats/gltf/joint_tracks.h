@@ -4,6 +4,7 @@
 
 #include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 // From joint_to_world over time, as a clip has it, to what glTF animates: transforms relative to
 // the parent, as floats, such that a viewer that multiplies them up again puts the joints where the
@@ -38,6 +39,12 @@ struct JointTracks {
 // An Error (code gltf-times) if the rate is so high or the clip so long that two frames would fall
 // on the same time.
 Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip, double tolerance = 1e-6);
+
+// The same of frames that are made when they are asked for, on `jobs` threads (as in parallel_for);
+// the result does not depend on them. The source's frames may be asked for more than once and
+// release() is not called.
+Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source, int jobs,
+                                 double tolerance = 1e-6);
 
 // Only the nodes' own transforms and no times.
 JointTracks rest_tracks(const Skeleton& rest);

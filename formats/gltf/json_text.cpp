@@ -163,6 +163,24 @@ std::vector<std::vector<std::string>> read_target_names(const Json& json) {
   return all;
 }
 
+// Read here and not by tinygltf, which refuses a whole file for a camera without its clipping
+// planes.
+std::vector<CameraEntry> read_cameras(const Json& json) {
+  std::vector<CameraEntry> cameras;
+  const auto list = json.find("cameras");
+  if (list == json.end() || !list->is_array()) return cameras;
+  for (const Json& entry : *list) {
+    CameraEntry& camera = cameras.emplace_back();
+    camera.name = text_member(entry, "name");
+    camera.perspective = text_member(entry, "type") != "orthographic";
+    if (!entry.is_object() || !entry.contains("perspective")) continue;
+    const Json& lens = entry.at("perspective");
+    if (!lens.is_object() || !lens.contains("yfov") || !lens.at("yfov").is_number()) continue;
+    camera.field_of_view = lens.at("yfov").get<double>();
+  }
+  return cameras;
+}
+
 // Removes what is not used. The depth was bounded before.
 void drop_extras(Json& json) {
   if (json.is_object()) {
@@ -247,6 +265,7 @@ Result<ParsedJson> parse_json(const Container& container) {
   result.buffers = std::move(*buffers);
   result.material_names = names_of(json, "materials");
   result.target_names = read_target_names(json);
+  result.cameras = read_cameras(json);
 
   const Json used = used_parts(json);
   json = Json();

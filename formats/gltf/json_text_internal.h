@@ -19,10 +19,17 @@ struct BufferEntry {
   std::string uri;
 };
 
+struct CameraEntry {
+  std::string name;
+  bool perspective = true;
+  double field_of_view = 0;  // vertical, radians; 0 where the file gives none that is a number
+};
+
 struct ParsedJson {
   tinygltf::Model model;  // without buffers, materials, images, cameras, extras and extensions
   std::vector<BufferEntry> buffers;
   std::vector<std::string> material_names;
+  std::vector<CameraEntry> cameras;
   std::vector<std::vector<std::string>> target_names;  // [meshes], each possibly empty
 };
 

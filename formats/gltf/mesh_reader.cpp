@@ -60,6 +60,35 @@ Status read_texture_coordinates(const tinygltf::Primitive& source, Accessors& ac
   return {};
 }
 
+// Tangents of length 1 as the specification asks, w the sign; a vertex whose tangent is none keeps
+// zeros and the mesh loses them.
+Status read_tangents(const tinygltf::Primitive& source, Accessors& accessors,
+                     const std::string& name, Primitive& primitive, Diagnostics& diagnostics) {
+  const int accessor = attribute(source.attributes, "TANGENT");
+  if (accessor == -1) return {};
+  auto read = accessors.vectors4(accessor);
+  if (!read) return read.error();
+  const std::size_t vertices = primitive.vertex_count();
+  if (read->size() != vertices * 4) {
+    return bad_mesh(name, fmt::format("{} TANGENT for {} vertices", read->size() / 4, vertices));
+  }
+  if (auto taken = accessors.reserve(vertices * sizeof(Vec4f)); !taken) return taken;
+  auto tangents = std::make_shared<std::vector<Vec4f>>(vertices);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const Eigen::Map<const Vec4f> tangent(read->data() + 4 * v);
+    const float length = tangent.head<3>().stableNorm();
+    if (!(length > 0)) {
+      warn(diagnostics, "gltf-mesh-tangents",
+           fmt::format("{}: the tangent of vertex {} is zero; its tangents are left out", name, v));
+      return {};
+    }
+    (*tangents)[v].head<3>() = tangent.head<3>() / length;
+    (*tangents)[v].w() = tangent.w() < 0 ? -1.0f : 1.0f;
+  }
+  primitive.tangents = std::move(tangents);
+  return {};
+}
+
 // Weights that sum to 1, as rounding to bytes would not leave them. A vertex without any hangs on
 // its first joint, as common viewers have it.
 void normalize_weights(Primitive& primitive, const std::string& name, Diagnostics& diagnostics) {
@@ -224,6 +253,7 @@ Result<Primitive> read_primitive(const ParsedJson& parsed, const tinygltf::Primi
   for (const Status& read : {read_vectors(source.attributes, "NORMAL", primitive.vertex_count(),
                                           accessors, name, primitive.normals),
                              read_texture_coordinates(source, accessors, name, primitive),
+                             read_tangents(source, accessors, name, primitive, diagnostics),
                              read_influences(source, accessors, name, primitive, diagnostics),
                              read_triangles(source, accessors, name, primitive),
                              read_targets(source, target_names, accessors, name, primitive)}) {

@@ -12,12 +12,17 @@
 #include <atomic>
 #include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <climits>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
+#include <span>
 #include <vector>
+
+#include "core/hash.h"
 
 namespace krok {
 
@@ -33,36 +38,62 @@ std::string system_text(int error_number) {
 }
 
 // Temporary files that a signal must remove. A fixed table, because a signal handler may not
-// allocate or lock: a slot is claimed, filled, then marked ready.
+// allocate or lock: a slot is claimed, filled, and marked ready once its file is there.
+enum SlotState : int { slot_free, slot_changing, slot_opening, slot_ready };
 struct TemporarySlot {
-  std::atomic<int> state{0};  // 0 free, 1 being filled or emptied, 2 ready
+  std::atomic<int> state{slot_free};
   char path[PATH_MAX];
 };
 std::array<TemporarySlot, 256> temporary_slots;
+std::atomic<bool> ending_by_signal{false};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait");
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
 
 int remember_temporary(const std::string& path) {
   if (path.size() >= PATH_MAX) return -1;
   for (std::size_t i = 0; i < temporary_slots.size(); ++i) {
-    int free = 0;
-    if (!temporary_slots[i].state.compare_exchange_strong(free, 1)) continue;
+    int free = slot_free;
+    if (!temporary_slots[i].state.compare_exchange_strong(free, slot_changing)) continue;
     std::memcpy(temporary_slots[i].path, path.c_str(), path.size() + 1);
-    temporary_slots[i].state.store(2);
+    temporary_slots[i].state.store(slot_opening);
     return static_cast<int>(i);
   }
   return -1;
 }
 
+void mark_ready(int slot) {
+  if (slot >= 0) temporary_slots[static_cast<std::size_t>(slot)].state.store(slot_ready);
+}
+
 void forget_temporary(int slot) {
-  if (slot >= 0) temporary_slots[static_cast<std::size_t>(slot)].state.store(0);
+  if (slot >= 0) temporary_slots[static_cast<std::size_t>(slot)].state.store(slot_free);
 }
 
 extern "C" void remove_temporaries_and_end(int signal_number) {
+  // Other threads go on until the process ends. One that is just opening a file is waited for, not
+  // for long: it may be the very thread that this handler interrupted.
+  ending_by_signal.store(true);
+  constexpr int kWaits = 50;
+  for (int i = 0; i < kWaits; ++i) {
+    bool opening = false;
+    for (auto& slot : temporary_slots) opening |= slot.state.load() == slot_opening;
+    if (!opening) break;
+    const timespec millisecond{0, 1'000'000};
+    nanosleep(&millisecond, nullptr);
+  }
   for (auto& slot : temporary_slots) {
-    if (slot.state.load() == 2) unlink(slot.path);
+    const int state = slot.state.load();
+    if (state == slot_opening || state == slot_ready) unlink(slot.path);
   }
   signal(signal_number, SIG_DFL);
   raise(signal_number);
+}
+
+// Once a signal is about to end the program, no new file is begun.
+void stop_if_ending(int slot) {
+  if (!ending_by_signal.load()) return;
+  forget_temporary(slot);
+  for (;;) pause();
 }
 
 // The process's file mode mask. It can only be read by setting it, which would race between
@@ -88,6 +119,20 @@ std::filesystem::path link_target(std::filesystem::path path) {
   return path;
 }
 
+// What the names of temporary files begin with, before the number of their process: which machine
+// and process namespace that number belongs to, for a folder may be shared.
+const std::string& temporary_prefix() {
+  static const std::string prefix = [] {
+    std::array<char, 256> host{};
+    (void)gethostname(host.data(), host.size() - 1);
+    std::error_code unknown;
+    const std::string place = std::string(host.data()) + "/" +
+                              std::filesystem::read_symlink("/proc/self/ns/pid", unknown).string();
+    return fmt::format(".krok-{}-", hex(xxh3(std::as_bytes(std::span(place)))));
+  }();
+  return prefix;
+}
+
 struct Temporary {
   std::string path;
   int descriptor = -1;
@@ -101,11 +146,16 @@ Temporary create_temporary(const std::string& folder) {
   constexpr int kAttempts = 1000;  // names that killed programs left behind
   Temporary temporary;
   for (int i = 0; i < kAttempts; ++i) {
-    temporary.path = fmt::format("{}/.krok-{}-{}", folder, getpid(), counter.fetch_add(1));
+    temporary.path =
+        fmt::format("{}/{}{}-{}", folder, temporary_prefix(), getpid(), counter.fetch_add(1));
     temporary.slot = remember_temporary(temporary.path);
+    stop_if_ending(temporary.slot);
     temporary.descriptor =
         ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (temporary.descriptor >= 0) break;
+    if (temporary.descriptor >= 0) {
+      mark_ready(temporary.slot);
+      break;
+    }
     const int why = errno;
     forget_temporary(temporary.slot);
     errno = why;
@@ -138,6 +188,7 @@ Error exists_error(const std::string& path) {
 struct InputFile::Content {
   void* mapped = nullptr;
   std::size_t mapped_size = 0;
+  std::size_t released = 0;  // what before is given back already
   std::vector<std::byte> owned;
 
   ~Content() {
@@ -161,6 +212,33 @@ std::span<const std::byte> InputFile::bytes() const {
 std::string_view InputFile::text() const {
   const auto all = bytes();
   return {reinterpret_cast<const char*>(all.data()), all.size()};
+}
+
+std::uint64_t InputFile::checksum() const {
+  constexpr std::size_t kStretch = std::size_t{4} << 20;
+  const auto all = bytes();
+  if (all.size() <= kStretch) return xxh3(all);
+  Xxh3Stream stream;
+  for (std::size_t at = 0; at < all.size(); at += kStretch) {
+    stream.update(all.subspan(at, std::min(kStretch, all.size() - at)));
+    release_before(at + kStretch);
+  }
+  return stream.digest();
+}
+
+void InputFile::release_before(std::size_t offset) const {
+  constexpr std::size_t kStretch = std::size_t{4} << 20;  // worth a call; whole pages
+  Content& content = *content_;
+  if (content.mapped == nullptr) return;
+  const std::size_t end = std::min(offset, content.mapped_size) / kStretch * kStretch;
+  // Going back means that the file is read once more from its front.
+  if (end < content.released) content.released = 0;
+  if (end == content.released) return;
+  // The mapping is private and nothing was written to it, so the file's bytes come back. Where the
+  // system does not follow, nothing is lost but memory.
+  (void)madvise(static_cast<std::byte*>(content.mapped) + content.released, end - content.released,
+                MADV_DONTNEED);
+  content.released = end;
 }
 
 Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) {
@@ -226,7 +304,9 @@ struct OutputFile::State {
   int descriptor = -1;
   int slot = -1;
   bool no_clobber = false;
-  std::uint64_t written = 0;
+  std::uint64_t written = 0;  // by the caller
+  std::uint64_t given = 0;    // of these, to the system
+  std::uint64_t storing = 0;  // of these, told to be stored
   std::vector<std::byte> pending;
   Status failure;
 
@@ -259,8 +339,20 @@ struct OutputFile::State {
       if (count < 0 && errno == EINTR) continue;
       if (count < 0) return fail(errno, "cannot be written");
       bytes = bytes.subspan(static_cast<std::size_t>(count));
+      given += static_cast<std::uint64_t>(count);
     }
+    start_storing();
     return {};
+  }
+
+  // Has the disk begin with what was written, so that fsync() at the end has little to wait for.
+  // Only a beginning: what fails here, fsync() tells.
+  void start_storing() {
+    constexpr std::uint64_t kStretch = std::uint64_t{8} << 20;
+    if (temporary.empty() || given - storing < kStretch) return;
+    (void)sync_file_range(descriptor, static_cast<off_t>(storing),
+                          static_cast<off_t>(given - storing), SYNC_FILE_RANGE_WRITE);
+    storing = given;
   }
 
   Status flush_pending() {
@@ -332,12 +424,14 @@ Status OutputFile::write(std::span<const std::byte> bytes) {
   if (!state_->failure) return state_->failure;
   state_->written += bytes.size();
   constexpr std::size_t kBuffer = std::size_t{1} << 18;
-  if (state_->pending.size() + bytes.size() < kBuffer) {
+  // Enough to be worth a call of its own is not copied.
+  constexpr std::size_t kLarge = std::size_t{1} << 16;
+  if (bytes.size() < kLarge && state_->pending.size() + bytes.size() < kBuffer) {
     state_->pending.insert(state_->pending.end(), bytes.begin(), bytes.end());
     return {};
   }
   if (Status flushed = state_->flush_pending(); !flushed) return flushed;
-  if (bytes.size() >= kBuffer) return state_->write_now(bytes);
+  if (bytes.size() >= kLarge) return state_->write_now(bytes);
   state_->pending.assign(bytes.begin(), bytes.end());
   return {};
 }
@@ -435,7 +529,22 @@ Status write_file(const std::string& path, std::string_view text, OutputFile::Op
   return write_file(path, std::as_bytes(std::span(text)), options);
 }
 
+void remove_temporaries_of_killed(const std::string& folder) {
+  std::error_code unreadable;
+  for (std::filesystem::directory_iterator entry(folder, unreadable), end; entry != end;
+       entry.increment(unreadable)) {
+    const std::string name = entry->path().filename().string();
+    if (name.rfind(temporary_prefix(), 0) != 0) continue;
+    const std::string numbers = name.substr(temporary_prefix().size());
+    pid_t process = 0;
+    const auto parsed = std::from_chars(numbers.data(), numbers.data() + numbers.size(), process);
+    if (parsed.ec != std::errc() || process <= 0 || *parsed.ptr != '-') continue;
+    if (::kill(process, 0) != 0 && errno == ESRCH) unlink(entry->path().c_str());
+  }
+}
+
 void remove_temporaries_on_signals() {
+  (void)mode_mask();  // while there is one thread
   struct sigaction action {};
   action.sa_handler = remove_temporaries_and_end;
   sigemptyset(&action.sa_mask);

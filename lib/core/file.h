@@ -36,6 +36,13 @@ class InputFile {
   std::string_view text() const;
   const std::string& path() const { return path_; }
 
+  // The XXH3 checksum of the bytes, without holding all of a mapped file in memory at once.
+  std::uint64_t checksum() const;
+
+  // Gives the memory of a mapped file's bytes before `offset` back to the system. They can still be
+  // read, which brings them in anew; so this is for who reads a long file from front to back.
+  void release_before(std::size_t offset) const;
+
  private:
   struct Content;
   InputFile(std::string path, std::unique_ptr<Content> content);
@@ -44,12 +51,14 @@ class InputFile {
 };
 
 // A file that appears whole or not at all. Bytes go to a temporary file in the folder of `path`;
-// commit() flushes, checks and renames it. If the object dies before commit(), or the program ends
-// by SIGINT, SIGTERM, SIGHUP or SIGPIPE (see remove_temporaries_on_signals), the temporary file is
-// removed and what stood at `path` still stands. The result keeps the permissions of the file that
-// it replaces; a symbolic link stays, what it points to is replaced. "-" is standard output; a path
-// that exists and is no regular file (a device, a pipe) is written directly, for a rename would
-// replace the device.
+// commit() waits until all of them are on the disk, where errors of a delayed write show, and
+// renames it; so that after a power cut, too, either the old file stands or the new one. The disk
+// is told to begin while more is written, which leaves little to wait for. If the object dies
+// before commit(), or the program ends by SIGINT, SIGTERM, SIGHUP or SIGPIPE (see
+// remove_temporaries_on_signals), the temporary file is removed and what stood at `path` still
+// stands. The result keeps the permissions of the file that it replaces; a symbolic link stays,
+// what it points to is replaced. "-" is standard output; a path that exists and is no regular file
+// (a device, a pipe) is written directly, for a rename would replace the device.
 class OutputFile {
  public:
   struct Options {
@@ -98,6 +107,11 @@ Status write_file(const std::string& path, std::string_view text, OutputFile::Op
 // the program was started to ignore (nohup) stays ignored. For programs, called once at their
 // start.
 void remove_temporaries_on_signals();
+
+// Removes the temporary files in `folder` that programs left there which were killed (SIGKILL, a
+// crash) before they could: those whose process ran on this machine and is no more. Others', and a
+// folder that cannot be read, are left alone.
+void remove_temporaries_of_killed(const std::string& folder);
 
 // `path` without its folder; the base name that provenance records.
 std::string base_name(const std::string& path);

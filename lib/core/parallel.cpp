@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -51,6 +52,107 @@ void parallel_for(std::size_t count, std::size_t grain, int jobs,
     work();
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+std::size_t slots_for(int jobs) {
+  const auto threads = static_cast<std::size_t>(thread_count(jobs));
+  return threads == 1 ? 1 : 2 * threads;
+}
+
+namespace {
+
+// Items are begun in order and at most one a slot, so that each keeps the slot i % slots.
+class InOrder {
+ public:
+  using Work = std::function<Status(std::size_t, std::size_t)>;
+  InOrder(std::size_t count, std::size_t slots, const Work& make, const Work& take)
+      : count_(count), slots_(slots), make_(make), take_(take), made_(slots) {}
+
+  void work() noexcept {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      slot_is_free_.wait(lock, [&] { return next_ >= end_ || next_ < taken_ + slots_; });
+      if (next_ >= end_) return;
+      const std::size_t item = next_++;
+      lock.unlock();
+      Outcome outcome = run(make_, item);
+      lock.lock();
+      made_[item % slots_] = std::move(outcome);
+      if (!someone_takes_) take_what_is_made(lock);
+    }
+  }
+
+  Status result() {
+    if (thrown_) std::rethrow_exception(thrown_);
+    return std::move(failure_);
+  }
+
+ private:
+  struct Outcome {
+    bool there = false;
+    Status status;
+    std::exception_ptr thrown;
+    bool good() const { return status.ok() && !thrown; }
+  };
+
+  Outcome run(const Work& work, std::size_t item) {
+    Outcome outcome;
+    outcome.there = true;
+    try {
+      outcome.status = work(item, item % slots_);
+    } catch (...) {
+      outcome.thrown = std::current_exception();
+    }
+    return outcome;
+  }
+
+  // Whoever makes the next item that is due takes it, and all after it that wait.
+  void take_what_is_made(std::unique_lock<std::mutex>& lock) {
+    someone_takes_ = true;
+    while (taken_ < end_ && made_[taken_ % slots_].there) {
+      Outcome outcome = std::move(made_[taken_ % slots_]);
+      made_[taken_ % slots_] = {};
+      lock.unlock();
+      if (outcome.good()) outcome = run(take_, taken_);
+      lock.lock();
+      if (!outcome.good()) {
+        failure_ = std::move(outcome.status);
+        thrown_ = outcome.thrown;
+        end_ = 0;
+      }
+      ++taken_;
+      slot_is_free_.notify_all();
+    }
+    someone_takes_ = false;
+  }
+
+  const std::size_t count_, slots_;
+  const Work &make_, &take_;
+  std::mutex mutex_;
+  std::condition_variable slot_is_free_;
+  std::size_t end_ = count_;  // where to stop; 0 after a failure
+  std::size_t next_ = 0;      // the first item not begun
+  std::size_t taken_ = 0;     // the first item not taken
+  bool someone_takes_ = false;
+  std::vector<Outcome> made_;  // [slots]
+  Status failure_;
+  std::exception_ptr thrown_;
+};
+
+}  // namespace
+
+Status make_in_order(std::size_t count, int jobs,
+                     const std::function<Status(std::size_t, std::size_t)>& make,
+                     const std::function<Status(std::size_t, std::size_t)>& take) {
+  const std::size_t slots = slots_for(jobs);
+  InOrder order(count, slots, make, take);
+  const std::size_t threads = std::min(static_cast<std::size_t>(thread_count(jobs)), count);
+  {
+    std::vector<std::jthread> helpers;
+    for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back([&] { order.work(); });
+    order.work();
+  }
+  return order.result();
 }
 
 }  // namespace krok

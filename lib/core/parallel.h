@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "core/result.h"
+
 // Loops over independent items. Results must not depend on the order: each item writes its own
 // place, so that the same bytes come out for every number of threads.
 
@@ -18,5 +20,16 @@ int thread_count(int jobs);
 // any `jobs`) is rethrown here.
 void parallel_for(std::size_t count, std::size_t grain, int jobs,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+// Makes `count` items on up to `jobs` threads (as in parallel_for) and hands them over in order.
+// make(i, slot) fills what belongs to `slot`, a number from 0 to slots_for(jobs) - 1 that no other
+// item in work has, so that memory for items may be kept there; take(i, slot) is called for 0, 1,
+// 2, ... one after the other, on any thread, while others go on making. The first make or take that
+// is not ok() ends the work; its Error is returned, the same for any `jobs`. What is thrown is
+// thrown on.
+Status make_in_order(std::size_t count, int jobs,
+                     const std::function<Status(std::size_t item, std::size_t slot)>& make,
+                     const std::function<Status(std::size_t item, std::size_t slot)>& take);
+std::size_t slots_for(int jobs);
 
 }  // namespace krok

@@ -57,6 +57,7 @@ constexpr std::array kLengths = {
     NamedUnit{"m", 1.0},   NamedUnit{"dm", 0.1},    NamedUnit{"cm", 0.01},  NamedUnit{"mm", 0.001},
     NamedUnit{"um", 1e-6}, NamedUnit{"in", 0.0254}, NamedUnit{"ft", 0.3048}};
 constexpr std::array kAngles = {NamedUnit{"deg", std::numbers::pi / 180.0}, NamedUnit{"rad", 1.0}};
+constexpr std::array kFrequencies = {NamedUnit{"Hz", 1.0}};
 constexpr std::array kTimes = {NamedUnit{"s", 1.0}, NamedUnit{"ms", 0.001}, NamedUnit{"f", 1.0}};
 
 }  // namespace
@@ -67,6 +68,10 @@ Result<double> parse_length(std::string_view text) {
 
 Result<double> parse_angle(std::string_view text) {
   return parse_with(text, kAngles, std::numbers::pi / 180.0);
+}
+
+Result<double> parse_frequency(std::string_view text) {
+  return parse_with(text, kFrequencies, 1.0);
 }
 
 Result<ClipTime> parse_clip_time(std::string_view text) {

@@ -15,6 +15,9 @@ Result<double> parse_length(std::string_view text);
 // Radians from "15deg", "0.26rad"; a bare number is degrees.
 Result<double> parse_angle(std::string_view text);
 
+// Hertz from "6Hz", "0.5 Hz"; a bare number is hertz.
+Result<double> parse_frequency(std::string_view text);
+
 // A moment in a clip: "1.5s", "250ms" or a bare number are seconds, "120f" is a frame.
 struct ClipTime {
   double value = 0;

@@ -9,8 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kTools[] = {"krok-import", "krok-export", "krok-info",
-                                  "krok-body",   "krok-skin",   "krok-diff"};
+constexpr const char* kTools[] = {"krok-import", "krok-export",   "krok-info",
+                                  "krok-body",   "krok-skin",     "krok-diff",
+                                  "krok-edit",   "krok-retarget", "krok-view"};
 
 class Tools : public CliTest, public testing::WithParamInterface<const char*> {};
 

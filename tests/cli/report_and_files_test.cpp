@@ -40,9 +40,6 @@ TEST_F(ReportAndFiles, AResultNeverReplacesItsInput) {
       part);
   expect_usage_error(run_tool("krok-import", {path("in.bvh"), "-o", path("link.bvh")}), part);
   expect_usage_error(
-      run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--model", path("in.bvh")}),
-      part);
-  expect_usage_error(
       run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--json=" + path("in.bvh")}),
       part);
   expect_usage_error(run_tool("krok-info", {path("in.bvh"), "--json=" + path("in.bvh")}), part);

@@ -16,7 +16,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-class ConsoleProgress : public Progress {
+// Nothing can be done about a message that nobody can be told of, so failures are passed over.
+void put(const std::string& text) {
+  (void)std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+class ConsoleProgress : public Console {
  public:
   explicit ConsoleProgress(ProgressStyle style)
       : style_(style), color_(std::getenv("NO_COLOR") == nullptr && isatty(STDERR_FILENO) == 1) {}
@@ -55,14 +60,21 @@ class ConsoleProgress : public Progress {
 
   void end() override {
     const std::lock_guard lock(mutex_);
-    if (active_ && drawn_) std::fputs("\r\033[K", stderr);
+    clear();
     active_ = false;
-    drawn_ = false;
+  }
+
+  void write(const std::string& text) override {
+    const std::lock_guard lock(mutex_);
+    clear();
+    put(text);
   }
 
  private:
-  // Progress that cannot be shown is no reason to stop.
-  static void put(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }
+  void clear() {
+    if (drawn_) put("\r\033[K");
+    drawn_ = false;
+  }
 
   void show() {
     if (style_ == ProgressStyle::json) {
@@ -98,11 +110,23 @@ class ConsoleProgress : public Progress {
 
 }  // namespace
 
-std::unique_ptr<Progress> console_progress(ProgressStyle style) {
+void Console::write(const std::string& text) {
+  put(text);
+}
+
+void write_message(Console* console, const std::string& text) {
+  if (console != nullptr) {
+    console->write(text);
+  } else {
+    put(text);
+  }
+}
+
+std::unique_ptr<Console> console_progress(ProgressStyle style) {
   if (style == ProgressStyle::automatic) {
     style = isatty(STDERR_FILENO) == 1 ? ProgressStyle::bar : ProgressStyle::none;
   }
-  if (style == ProgressStyle::none) return std::make_unique<Progress>();
+  if (style == ProgressStyle::none) return std::make_unique<Console>();
   return std::make_unique<ConsoleProgress>(style);
 }
 

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
+#include "core/file.h"
+
 namespace krok {
 
 namespace {
@@ -17,6 +21,8 @@ const char* severity_name(Severity severity) {
   }
   return "error";
 }
+
+}  // namespace
 
 Json to_json(const Diagnostic& diagnostic) {
   const Location& where = diagnostic.where;
@@ -34,23 +40,37 @@ Json to_json(const Diagnostic& diagnostic) {
   return json;
 }
 
-}  // namespace
+Json to_json(const Diagnostics& diagnostics) {
+  Json json = Json::array();
+  for (const Diagnostic& diagnostic : diagnostics) json.push_back(to_json(diagnostic));
+  return json;
+}
+
+Json to_json(const std::vector<Report::Input>& inputs) {
+  Json json = Json::array();
+  for (const auto& input : inputs) json.push_back({{"path", input.path}, {"xxh3", input.xxh3}});
+  return json;
+}
 
 Json Report::to_json() const {
   Json json;
   json["schema"] = "krok.report/1";
   json["tool"] = tool;
   json["version"] = version;
-  json["inputs"] = Json::array();
-  for (const Input& input : inputs) {
-    json["inputs"].push_back({{"path", input.path}, {"xxh3", input.xxh3}});
-  }
+  json["inputs"] = krok::to_json(inputs);
   json["options"] = options;
   json["outputs"] = outputs;
-  json["issues"] = Json::array();
-  for (const Diagnostic& issue : issues) json["issues"].push_back(krok::to_json(issue));
+  json["issues"] = krok::to_json(issues);
   json["result"] = result;
   return json;
+}
+
+bool only_a_report_stands_at(const std::string& path) {
+  std::error_code missing;
+  if (path == "-" || !std::filesystem::exists(path, missing)) return true;
+  if (!std::filesystem::is_regular_file(path, missing)) return false;
+  const auto file = InputFile::open(path);
+  return file && file->text().substr(0, 100).find("\"schema\": \"krok.") != std::string::npos;
 }
 
 std::string to_text(const Diagnostic& diagnostic) {
@@ -67,6 +87,10 @@ std::string to_text(const Diagnostic& diagnostic) {
   if (!diagnostic.code.empty()) text += fmt::format(" [{}]", diagnostic.code);
   if (!diagnostic.hint.empty()) text += fmt::format("\n  hint: {}", diagnostic.hint);
   return text;
+}
+
+std::string message_of(const std::string& tool, const Diagnostic& diagnostic) {
+  return (diagnostic.where.file.empty() ? tool + ": " : "") + to_text(diagnostic) + "\n";
 }
 
 }  // namespace krok

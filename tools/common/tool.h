@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,13 @@
 #include "scene/provenance.h"
 #include "tools/common/report.h"
 
-// The frame that all tools share: options, help, messages, exit codes, the report. A tool declares
-// its own options in a function and does its work in another; its main is one call of run_tool.
+// The frame that all tools share: options, help, messages, exit codes, the report, and the same
+// work on many files. A tool declares its own options in a function and does its work in another;
+// its main is one call of run_tool.
 
 namespace krok {
+
+class Console;
 
 inline constexpr int kExitDone = 0;     // done, or "the same"
 inline constexpr int kExitNo = 1;       // the answer is no: a difference, a failed check
@@ -49,7 +53,7 @@ class ToolContext {
   void warn(std::string code, std::string message, std::string hint = {});
 
   // A line for people about what was done, on standard error, not with -q or with --json to
-  // standard output.
+  // standard output. Of many files, with -v only.
   void say(const std::string& line);
 
   // Data for people or pipes on standard output; suppressed where the report goes there.
@@ -57,6 +61,8 @@ class ToolContext {
 
   // Opens an input and records its path and checksum in the report. Refuses (code usage) a file
   // that this run writes too, for a capture would be lost, and standard input for the second time.
+  // Every file that the result depends on is to be opened by this: it is how a batch knows that
+  // nothing changed.
   Result<InputFile> open_input(const std::string& path);
 
   // The options for writing a file, and a note of it in the report; call before writing.
@@ -68,12 +74,31 @@ class ToolContext {
   Provenance provenance() const;
 
   bool report_on_standard_output = false;
+  Console* console = nullptr;  // where messages go; standard error if null
+
+  // One file of many: its messages are kept here, to be told in the order of the list, ...
+  std::string* kept_messages = nullptr;
+  // ... and what is about no file in particular is about this one.
+  Location subject;
+
+ private:
+  void put_message(const std::string& text);
 };
 
 struct ToolSpec {
   struct Example {
     std::string command;
     std::string does;
+  };
+  // For a tool that makes one result of one input: it then takes many, see tools/common/batch.h.
+  // The input is the last positional; those before it, if any, are the same for all files.
+  struct Batch {
+    // Extensions of the files that a folder given as input stands for: {".bvh", ".amc"}.
+    std::vector<std::string> reads;
+    // How the name of a result ends where its input has an extension, ".anim" or "_{clip}.anim";
+    // asked once the options are parsed, and an Error (code
+    // usage) where they do not tell.
+    std::function<Result<std::string>()> ending;
   };
   std::string name;                // "krok-import"
   std::string summary;             // a sentence without a full stop
@@ -83,6 +108,7 @@ struct ToolSpec {
   std::string exit_no;             // what exit code 1 means here; empty where it does not happen
   bool has_output = true;          // takes -o
   bool needs_output = true;        // -o must be given
+  std::optional<Batch> batch;
 
   // Adds the tool's own options and positionals.
   std::function<void(CLI::App&)> declare;
@@ -90,9 +116,21 @@ struct ToolSpec {
   std::function<Result<int>(ToolContext&)> run;
 };
 
+// Gives a ToolSpec whose functions share options of their own (a std::shared_ptr), so that each
+// file of a batch is parsed for and run by itself, several at once.
+using MakeToolSpec = std::function<ToolSpec()>;
+
+// A Batch's `ending` for a tool whose results all have the same one.
+std::function<Result<std::string>()> always(std::string ending);
+
 // Parses, runs, reports. Catches everything that is thrown (memory exhausted, a bug) and turns it
 // into a message and kExitTrouble.
+int run_tool(const MakeToolSpec& make_spec, int argc, char** argv);
+// For a tool that takes no batches.
 int run_tool(const ToolSpec& spec, int argc, char** argv);
+
+// The work alone, with whatever is thrown as an Error (out-of-memory, internal).
+Result<int> run_guarded(const ToolSpec& spec, ToolContext& context);
 
 // The version of the project, "0.1.0".
 std::string version();

@@ -1,7 +1,11 @@
+#include <memory>
+
 #include "tools/krok-body/make_model.h"
 
-int main(int argc, char** argv) {
-  krok::body_tool::Options options;
+namespace {
+
+krok::ToolSpec make_spec() {
+  const auto options = std::make_shared<krok::body_tool::Options>();
   krok::ToolSpec spec;
   spec.name = "krok-body";
   spec.summary =
@@ -12,7 +16,14 @@ int main(int argc, char** argv) {
                     "a body for the figure of a capture, about 10,000 vertices"},
                    {"krok-body dog.anim --detail high -o dog.model",
                     "any other skeleton is shaped by the lengths of its bones"}};
-  spec.declare = [&options](CLI::App& app) { declare(app, options); };
-  spec.run = [&options](krok::ToolContext& context) { return run(options, context); };
-  return krok::run_tool(spec, argc, argv);
+  spec.batch = {{".anim"}, krok::always(".model")};
+  spec.declare = [options](CLI::App& app) { declare(app, *options); };
+  spec.run = [options](krok::ToolContext& context) { return run(*options, context); };
+  return spec;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return krok::run_tool(make_spec, argc, argv);
 }

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "capture/conventions.h"
 #include "core/numbers.h"
-#include "formats/anim/anim.h"
+#include "core/text.h"
 #include "formats/bvh/bvh_writer.h"
 #include "formats/csv/csv_writer.h"
 #include "formats/gltf/gltf_writer.h"
 #include "skin/bone_mesh.h"
+#include "tools/common/motion_input.h"
 
 namespace krok {
 
@@ -28,26 +31,25 @@ Result<ExportFormat> format_of(const ExportOptions& options, const std::string& 
       .in_file(output);
 }
 
-Status write_gltf(const Clip& clip, bool binary, const ExportOptions& options,
-                  const ToolContext& context, OutputFile& file) {
-  gltf::WriteOptions writing;
-  writing.binary = binary;
-  writing.provenance = context.provenance();
-  writing.name = "skeleton";
-  if (!options.bones.value_or(true)) return gltf::write_skeleton(clip, writing, file);
-  writing.name = "bones";
-  return gltf::write_rig(bone_mesh(clip.skeleton), clip, writing, file);
+// "ZXY", in any case; the option's check has seen it.
+EulerOrder order_of(const std::string& letters) {
+  EulerOrder order{};
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = static_cast<Axis>(ascii_lower(letters.at(i)) - 'x');
+  }
+  return order;
 }
 
 Status write_as(ExportFormat format, const Clip& clip, const ExportOptions& options,
-                double unit_metres, const ToolContext& context, OutputFile& file) {
+                double unit_metres, OutputFile& file) {
   if (format == ExportFormat::bvh) {
     bvh::WriteOptions writing;
     writing.unit_metres = unit_metres;
+    if (options.digits) writing.decimals = *options.digits;
+    if (!options.order.empty()) writing.order = order_of(options.order);
     return bvh::write(clip, writing, file);
   }
-  if (format == ExportFormat::csv) return csv::write(clip, file);
-  return write_gltf(clip, format == ExportFormat::glb, options, context, file);
+  return csv::write(clip, file);
 }
 
 Result<double> unit_of(const ExportOptions& options, ExportFormat format) {
@@ -60,43 +62,99 @@ Result<double> unit_of(const ExportOptions& options, ExportFormat format) {
   return unit->metres;
 }
 
-Json result_of(const Clip& clip) {
+MotionFacts facts_of(const Clip& clip) {
+  return {clip.skeleton, clip.rate, clip.frame_count(), clip.duration(), {}};
+}
+
+Error empty_error(const std::string& path) {
+  return Error("export-empty", "the motion has no joints").in_file(path);
+}
+
+// Reads the motion, writes it, and tells what it was.
+Result<MotionFacts> export_gltf(bool binary, const ExportOptions& options, ToolContext& context,
+                                OutputFile& file) {
+  std::optional<gltf::JointTracks> tracks;
+  const auto facts = use_motion(options.input, context, [&](const FrameSource& frames) -> Status {
+    if (frames.skeleton.empty()) return empty_error(options.input);
+    auto made = gltf::joint_tracks(frames.skeleton, frames, context.jobs);
+    if (!made) return made.error();
+    tracks = *std::move(made);
+    return {};
+  });
+  if (!facts) return facts.error();
+  gltf::WriteOptions writing;
+  writing.binary = binary;
+  writing.provenance = context.provenance();
+  writing.provenance.conversions = facts->conversions;
+  const bool bones = options.bones.value_or(true);
+  writing.name = bones ? "bones" : "skeleton";
+  const Status written = bones ? gltf::write_rig(bone_mesh(facts->skeleton), *tracks, writing, file)
+                               : gltf::write_skeleton(facts->skeleton, *tracks, writing, file);
+  if (!written) return Error(written.error()).in_file(context.output);
+  return facts;
+}
+
+Result<MotionFacts> export_others(ExportFormat format, const ExportOptions& options,
+                                  double unit_metres, ToolContext& context, OutputFile& file) {
+  const auto clip = read_motion(options.input, context);
+  if (!clip) return clip.error();
+  if (clip->skeleton.empty()) return empty_error(options.input);
+  const Status written = write_as(format, *clip, options, unit_metres, file);
+  if (!written) return Error(written.error()).in_file(context.output);
+  return facts_of(*clip);
+}
+
+Json result_of(const MotionFacts& motion) {
   Json result;
-  result["joints"] = clip.joint_count();
-  result["frames"] = clip.frame_count();
-  result["rate"] = clip.rate;
-  result["duration"] = clip.duration();
+  result["joints"] = motion.skeleton.joint_count();
+  result["frames"] = motion.frame_count;
+  result["rate"] = motion.rate;
+  result["duration"] = motion.duration;
   return result;
 }
 
 }  // namespace
+
+Result<std::string> extension_of(ExportFormat format) {
+  switch (format) {
+    case ExportFormat::bvh:
+      return std::string(".bvh");
+    case ExportFormat::glb:
+      return std::string(".glb");
+    case ExportFormat::gltf:
+      return std::string(".gltf");
+    case ExportFormat::csv:
+      return std::string(".csv");
+    case ExportFormat::from_extension:
+      break;
+  }
+  return Error("usage", "no format is given for the results", "say --format bvh, glb, gltf or csv");
+}
 
 Result<int> run_export(const ExportOptions& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
   if (!format) return format.error();
   const auto unit_metres = unit_of(options, *format);
   if (!unit_metres) return unit_metres.error();
+  if (*format != ExportFormat::bvh && (options.digits || !options.order.empty())) {
+    return Error("usage", "--digits and --order are for BVH");
+  }
   if (options.bones && *format != ExportFormat::glb && *format != ExportFormat::gltf) {
     return Error("usage", "--bones and --no-bones are for glTF");
   }
-  const auto input = context.open_input(options.input);
-  if (!input) return input.error();
-  auto clip = anim::read(input->bytes());
-  if (!clip) return std::move(clip.error()).in_file(options.input);
-  if (clip->skeleton.empty()) {
-    return Error("export-empty", "the motion has no joints").in_file(options.input);
-  }
-
   auto file = OutputFile::create(context.output, context.output_options());
   if (!file) return file.error();
-  if (Status written = write_as(*format, *clip, options, *unit_metres, context, *file); !written) {
-    return std::move(written.error()).in_file(context.output);
-  }
+  const bool is_glb = *format == ExportFormat::glb;
+  const auto motion = is_glb || *format == ExportFormat::gltf
+                          ? export_gltf(is_glb, options, context, *file)
+                          : export_others(*format, options, *unit_metres, context, *file);
+  if (!motion) return motion.error();
   if (Status done = file->commit(); !done) return done.error();
   context.wrote(context.output);
-  context.report.result = result_of(*clip);
-  context.say(fmt::format("{}: {}, {}, {} s", context.output, counted(clip->joint_count(), "joint"),
-                          counted(clip->frame_count(), "frame"), readable(clip->duration(), 3)));
+  context.report.result = result_of(*motion);
+  context.say(fmt::format("{}: {}, {}, {} s", context.output,
+                          counted(motion->skeleton.joint_count(), "joint"),
+                          counted(motion->frame_count, "frame"), readable(motion->duration, 3)));
   return kExitDone;
 }
 

@@ -13,8 +13,13 @@ struct ExportOptions {
   std::string input;
   ExportFormat format = ExportFormat::from_extension;
   std::string unit;           // BVH: of lengths; empty for centimetres
+  std::optional<int> digits;  // BVH: decimals of degrees and centimetres
+  std::string order;          // BVH: of rotation channels, "ZXY"; empty for the usual one
   std::optional<bool> bones;  // glTF: a thin mesh that shows the skeleton; yes if not said
 };
+
+// The extension of files in a format, ".glb"; an Error (code usage) for from_extension.
+Result<std::string> extension_of(ExportFormat format);
 
 // Reads a motion and writes it in the format of the output's extension or the one asked for.
 Result<int> run_export(const ExportOptions& options, ToolContext& context);

@@ -1,20 +1,32 @@
+#include <memory>
+
 #include "tools/common/one_of.h"
 #include "tools/krok-export/export.h"
 
-int main(int argc, char** argv) {
-  krok::ExportOptions options;
+namespace {
+
+krok::ToolSpec make_spec() {
+  const auto options = std::make_shared<krok::ExportOptions>();
   krok::ToolSpec spec;
   spec.name = "krok-export";
   spec.summary = "Writes a motion as BVH, glTF or a table of world positions";
-  spec.inputs = "IN.anim";
+  spec.inputs = "IN";
   spec.examples = {{"krok-export walk.anim -o walk.glb", "the skeleton moves in any glTF viewer"},
                    {"krok-export walk.anim -o walk.csv",
                     "frame,time,joint,x,y,z: a row a frame and joint, in metres"},
+                   {"krok-export capture.bvh -o capture.glb",
+                    "straight from a capture; what was chosen in reading it is told with -v"},
                    {"krok-export walk.anim --format csv -o - | head", "the first rows"}};
-  spec.declare = [&](CLI::App& app) {
+  spec.batch = {{".anim"}, [options] { return krok::extension_of(options->format); }};
+  spec.declare = [options](CLI::App& app) {
     using krok::ExportFormat;
-    app.add_option("input", options.input, "The motion")->type_name("IN.anim")->required();
-    app.add_option("--format", options.format,
+    app.add_option(
+           "input", options->input,
+           "The motion: a .anim file, or a capture (BVH; AMC with its ASF beside it), which "
+           "is read as krok-import reads it without options")
+        ->type_name("IN")
+        ->required();
+    app.add_option("--format", options->format,
                    "bvh, glb, gltf (text, data inside) or csv; without it the output's extension "
                    "tells")
         ->type_name("FORMAT")
@@ -22,14 +34,33 @@ int main(int argc, char** argv) {
                                                 {"glb", ExportFormat::glb},
                                                 {"gltf", ExportFormat::gltf},
                                                 {"csv", ExportFormat::csv}}));
-    app.add_option("--unit", options.unit, "BVH: the unit of lengths: m, cm, mm, in, ft")
+    app.add_option("--unit", options->unit, "BVH: the unit of lengths: m, cm, mm, in, ft")
         ->type_name("UNIT")
         ->default_str("cm");
+    app.add_option("--digits", options->digits,
+                   "BVH: decimals of angles in degrees, and of lengths in a centimetre; other "
+                   "units get more or fewer of the same fineness. 6 keep the motion to a millionth "
+                   "of a metre and of a radian")
+        ->type_name("1..15")
+        ->check(CLI::Range(1, 15).description(""))
+        ->default_str("6");
+    app.add_option("--order", options->order,
+                   "BVH: the order of the rotation channels: XYZ, XZY, YXZ, YZX, ZXY or ZYX")
+        ->type_name("ORDER")
+        ->check(CLI::IsMember({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}, CLI::ignore_case)
+                    .description(""))
+        ->default_str("ZXY");
     app.add_flag_function(
-        "--bones,!--no-bones", [&](std::int64_t sign) { options.bones = sign > 0; },
+        "--bones,!--no-bones", [options](std::int64_t sign) { options->bones = sign > 0; },
         "glTF: add a thin mesh for each bone, so that viewers show the skeleton (the "
         "default; --no-bones leaves joints alone)");
   };
-  spec.run = [&](krok::ToolContext& context) { return krok::run_export(options, context); };
-  return krok::run_tool(spec, argc, argv);
+  spec.run = [options](krok::ToolContext& context) { return krok::run_export(*options, context); };
+  return spec;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return krok::run_tool(make_spec, argc, argv);
 }

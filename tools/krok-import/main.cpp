@@ -1,11 +1,16 @@
+#include <memory>
+
 #include "tools/krok-import/import.h"
 
-int main(int argc, char** argv) {
-  krok::import::Options options;
+namespace {
+
+krok::ToolSpec make_spec() {
+  const auto options = std::make_shared<krok::import::Options>();
   krok::ToolSpec spec;
   spec.name = "krok-import";
-  spec.summary = "Brings a motion capture into Krok's own format";
+  spec.summary = "Brings captures and characters into Krok's own formats";
   spec.inputs = "IN";
+  spec.needs_output = false;  // --model or --cam alone will do
   spec.examples = {
       {"krok-import walk.bvh -o walk.anim -v",
        "works out unit and axes by itself and says what it chose"},
@@ -13,9 +18,27 @@ int main(int argc, char** argv) {
        "a capture in inches with +Z up, and its skeleton as a model"},
       {"krok-import 01_01.amc --skeleton 01.asf -o walk.anim",
        "an Acclaim motion with its skeleton, as the CMU collection has them"},
+      {"krok-import hero.glb --clip Walk -o walk.anim --model hero.model --cam shot.cam",
+       "an animation of a character, its mesh and skin, and the camera"},
+      {"krok-import hero.glb --clip all -o 'hero_{clip}.anim' --morphs face.exr",
+       "all animations, a file each, and the morph targets"},
       {"krok-import broken.bvh -o broken.anim --repair --json",
-       "fills faulty frames and lists the repairs for a script"}};
-  spec.declare = [&](CLI::App& app) { krok::import::declare_options(app, options); };
-  spec.run = [&](krok::ToolContext& context) { return krok::import::run(options, context); };
-  return krok::run_tool(spec, argc, argv);
+       "fills faulty frames and lists the repairs for a script"},
+      {"krok-import captures --out-dir motions --keep-going",
+       "all captures in a folder; run again, it does what is new, changed or was left"}};
+  // Files that hold motion; an Acclaim skeleton or an MD5 mesh is taken by the motion beside it.
+  spec.batch = {
+      {".bvh", ".amc", ".glb", ".gltf", ".fbx", ".dae", ".smd", ".ms3d", ".ase", ".md5anim"},
+      [options]() -> krok::Result<std::string> {
+        return std::string(options->clip == "all" ? "_{clip}.anim" : ".anim");
+      }};
+  spec.declare = [options](CLI::App& app) { krok::import::declare_options(app, *options); };
+  spec.run = [options](krok::ToolContext& context) { return krok::import::run(*options, context); };
+  return spec;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return krok::run_tool(make_spec, argc, argv);
 }

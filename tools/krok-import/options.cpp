@@ -49,19 +49,49 @@ Result<std::optional<Direction>> direction_option(const std::string& text, const
 }  // namespace
 
 void declare_options(CLI::App& app, Options& options) {
-  app.add_option(
-         "input", options.input,
-         "The capture: a BVH file, an Acclaim motion (AMC), or an Acclaim skeleton (ASF) alone; - "
-         "is standard input")
+  app.add_option("input", options.input,
+                 "A capture: BVH, an Acclaim motion (AMC) or skeleton (ASF) alone; or a character: "
+                 "GLB, glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5; - is standard input")
       ->type_name("IN")
       ->required();
   app.add_option("--skeleton", options.skeleton,
                  "The skeleton of an Acclaim motion; otherwise the .asf file beside it that its "
                  "name begins with, or the only one there")
       ->type_name("IN.asf");
-  app.add_option("--model", options.model,
-                 "Also write the skeleton with its reference pose as a model without vertices")
+  app.add_option(
+         "--model", options.model,
+         "Also, or alone, write the character: skeleton with reference pose, mesh and skin; "
+         "of a capture the skeleton without vertices")
       ->type_name("OUT.model");
+
+  const std::string scene = "Characters";
+  app.add_option("--clip", options.clip,
+                 "Which animation: its name, its number from 0, or all; for all the output's name "
+                 "has {clip} where the animation's goes [the first]")
+      ->type_name("NAME")
+      ->group(scene);
+  app.add_option("--skin", options.skin,
+                 "The skeleton of this skin (name or number), if the file has several [the one "
+                 "with most joints]")
+      ->type_name("NAME")
+      ->group(scene);
+  app.add_option("--cam", options.cam, "Also, or alone, write a camera of the file")
+      ->type_name("OUT.cam")
+      ->group(scene);
+  app.add_option("--camera", options.camera,
+                 "Which camera: its name or its number from 0 [the first]")
+      ->type_name("NAME")
+      ->group(scene);
+
+  app.add_option("--morphs", options.morphs,
+                 "Also, or alone, write the morph targets as a float texture (OpenEXR), for the "
+                 "vertices that --model writes")
+      ->type_name("OUT.exr")
+      ->group(scene);
+  app.add_option("--morph-weights", options.weights,
+                 "Also, or alone, write the targets' weights over time as a table")
+      ->type_name("OUT.csv")
+      ->group(scene);
 
   const std::string space = "What the file is written in";
   app.add_option("--unit", options.unit,
@@ -86,6 +116,11 @@ void declare_options(CLI::App& app, Options& options) {
                              "Whether position channels replace OFFSETs (absolute) or are added to "
                              "them (additive), in BVH",
                              "HOW", "auto")
+      ->group(space);
+  add_choice<bvh::Angles>(
+      app, "--angles", options.angles,
+      {{"degrees", bvh::Angles::degrees}, {"radians", bvh::Angles::radians}},
+      "What rotations are in, in BVH: degrees, as the format has it, or radians", "UNIT", "degrees")
       ->group(space);
 
   const std::string time = "Time";

@@ -15,10 +15,17 @@ struct Options {
   std::string input;
   std::string skeleton;  // --skeleton, empty where it is to be found
   std::string model;     // --model, empty where none is wanted
+  std::string clip;      // --clip, empty for the first
+  std::string skin;      // --skin, empty for the largest skeleton
+  std::string cam;       // --cam, empty where none is wanted
+  std::string camera;    // --camera, empty for the first
+  std::string morphs;    // --morphs, empty where none are wanted
+  std::string weights;   // --morph-weights, likewise
   std::string unit = "auto";
   std::string up = "auto";
   std::string forward = "auto";
   bvh::Positions positions = bvh::Positions::automatic;
+  bvh::Angles angles = bvh::Angles::degrees;
   bvh::RestFrame rest_frame = bvh::RestFrame::keep;
   double fps = 0;       // 0: what the file says
   double resample = 0;  // 0: not at all

@@ -4,8 +4,7 @@
 
 #include "formats/acclaim/acclaim_reader.h"
 #include "formats/acclaim/find_skeleton.h"
-#include "formats/bvh/bvh_reader.h"
-#include "formats/registry/registry.h"
+#include "tools/krok-import/facts.h"
 
 namespace krok::import {
 
@@ -14,19 +13,10 @@ namespace {
 using registry::Kind;
 
 Result<Source> read_bvh(const InputFile& input, const Options& options, const CaptureOptions& how) {
-  bvh::ReadOptions read_with;
-  static_cast<CaptureOptions&>(read_with) = how;
-  read_with.positions = options.positions;
-  read_with.rest_frame = options.rest_frame;
-  auto read = bvh::read(input.text(), input.path(), read_with);
+  auto read = bvh::read(input.text(), input.path(), bvh_options(options, how));
   if (!read) return std::move(read).error();
   Source source;
-  source.details["positions"] = {{"choice", read->positions.choice},
-                                 {"confidence", confidence_name(read->positions.confidence)},
-                                 {"reason", read->positions.reason}};
-  source.details["frames_announced"] = read->frames_announced;
-  source.details["rest_frame"] = {{"found", read->rest_frame_found},
-                                  {"left_out", read->rest_frame_dropped}};
+  source.details = details_of(*read);
   source.capture = std::move(*read);
   return source;
 }
@@ -80,29 +70,47 @@ Status check_options(const Options& options, bool is_bvh, bool is_motion) {
   if (options.rest_frame != bvh::RestFrame::keep) {
     return Error("usage", "--skip-rest-frame is for BVH");
   }
+  if (options.angles != bvh::Angles::degrees) return Error("usage", "--angles is for BVH");
   return {};
 }
 
 }  // namespace
 
-Result<Source> read_source(const Options& options, ToolContext& context) {
+Json details_of(const bvh::Capture& capture) {
+  Json details = Json::object();
+  details["positions"] = to_json(capture.positions);
+  if (!capture.exporter.choice.empty()) details["exporter"] = to_json(capture.exporter);
+  details["frames_announced"] = capture.frames_announced;
+  details["rest_frame"] = {{"found", capture.rest_frame_found},
+                           {"left_out", capture.rest_frame_dropped}};
+  return details;
+}
+
+bvh::ReadOptions bvh_options(const Options& options, const CaptureOptions& how) {
+  bvh::ReadOptions result;
+  static_cast<CaptureOptions&>(result) = how;
+  result.positions = options.positions;
+  result.angles = options.angles;
+  result.rest_frame = options.rest_frame;
+  return result;
+}
+
+Result<Source> read_source(const InputFile& input, Kind kind, const Options& options,
+                           ToolContext& context) {
   auto how = read_options(options);
   if (!how) return how.error();
   how->jobs = context.jobs;
   how->progress = context.progress;
-  const auto input = context.open_input(options.input);
-  if (!input) return input.error();
-  const Kind kind = registry::identify(input->path(), input->bytes());
   const bool is_motion = kind == Kind::amc;
   const bool is_bvh = !is_motion && kind != Kind::asf;  // what is neither, the BVH reader refuses
   if (Status fits = check_options(options, is_bvh, is_motion); !fits) return fits.error();
-  if (is_bvh) return read_bvh(*input, options, *how);
-  if (!is_motion) return read_acclaim(*input, nullptr, *how);
-  const auto path = skeleton_for(input->path(), options, context);
+  if (is_bvh) return read_bvh(input, options, *how);
+  if (!is_motion) return read_acclaim(input, nullptr, *how);
+  const auto path = skeleton_for(input.path(), options, context);
   if (!path) return path.error();
   const auto skeleton = context.open_input(*path);
   if (!skeleton) return skeleton.error();
-  return read_acclaim(*skeleton, &*input, *how);
+  return read_acclaim(*skeleton, &input, *how);
 }
 
 }  // namespace krok::import

@@ -1,3 +1,5 @@
+#include <memory>
+
 #include "tools/common/one_of.h"
 #include "tools/krok-skin/skin.h"
 
@@ -34,11 +36,9 @@ void declare(CLI::App& app, krok::SkinOptions& options, std::string& method) {
       ->default_str("linear");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  krok::SkinOptions options;
-  std::string method = "linear";
+krok::ToolSpec make_spec() {
+  const auto options = std::make_shared<krok::SkinOptions>();
+  const auto method = std::make_shared<std::string>("linear");
   krok::ToolSpec spec;
   spec.name = "krok-skin";
   spec.summary = "Moves a mesh by a skeleton's motion and writes it as glTF";
@@ -47,7 +47,14 @@ int main(int argc, char** argv) {
       {"krok-skin body.model walk.anim -o walk.glb", "the motion baked, for viewers without skins"},
       {"krok-skin body.model walk.anim --as rig -o walk.glb", "a rig for a game engine or Blender"},
       {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one moment"}};
-  spec.declare = [&](CLI::App& app) { declare(app, options, method); };
-  spec.run = [&](krok::ToolContext& context) { return krok::run_skin(options, context); };
-  return krok::run_tool(spec, argc, argv);
+  spec.batch = {{".anim"}, krok::always(".glb")};
+  spec.declare = [options, method](CLI::App& app) { declare(app, *options, *method); };
+  spec.run = [options](krok::ToolContext& context) { return krok::run_skin(*options, context); };
+  return spec;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return krok::run_tool(make_spec, argc, argv);
 }

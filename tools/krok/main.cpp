@@ -27,6 +27,9 @@ constexpr std::array kVerbs = {
     Verb{"info", "what is in a file"},
     Verb{"body", "a smooth skinned body for any skeleton"},
     Verb{"skin", "a model and a motion to glTF: a rig, a baked clip, a pose"},
+    Verb{"retarget", "a motion on another skeleton"},
+    Verb{"edit", "cut, clean, mirror, loop, join, scale and place a motion"},
+    Verb{"view", "a page that plays motions in a browser"},
     Verb{"diff", "how far two files are apart, and where"},
 };
 
@@ -34,7 +37,7 @@ std::string help() {
   std::string text =
       "Usage: krok VERB [options] ...\n       krok VERB --help\n\n"
       "Motion captures to character animation, one verb a job.\n\nVerbs:\n";
-  for (const Verb& verb : kVerbs) text += fmt::format("  {:<8}{}\n", verb.name, verb.does);
+  for (const Verb& verb : kVerbs) text += fmt::format("  {:<10}{}\n", verb.name, verb.does);
   text +=
       "\nExamples:\n"
       "  krok import walk.bvh -o walk.anim\n      a capture to Krok's own format\n"

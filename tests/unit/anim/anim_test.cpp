@@ -205,5 +205,59 @@ TEST(Anim, OtherFilesAreNamed) {
   EXPECT_EQ(model.error().message, "is a Krok model (.model), not a .anim file");
 }
 
+TEST(Anim, FramesMadeWhenAskedForGiveTheSameFile) {
+  Clip clip = turning_chain(20, 700);
+  clip.provenance.tool = "test";
+  for (const auto encoding : {kXyz, kXyzw}) {
+    const auto expected = samples::bytes_of(clip, encoding);
+    for (const int jobs : {1, 2, 5}) {
+      FrameSource source = frames_of(clip);
+      int released = 0;
+      source.release = [&](int frame) {
+        EXPECT_GT(frame, released);
+        released = frame;
+      };
+      const std::string path = testing::TempDir() + "krok-anim-source.anim";
+      auto file = OutputFile::create(path);
+      ASSERT_TRUE(file.ok());
+      bool all_read = false;
+      const auto provenance = [&] {
+        all_read = released == 700;
+        return clip.provenance;
+      };
+      const Status written =
+          anim::write(source, provenance, {.orientation = encoding, .jobs = jobs}, *file);
+      ASSERT_TRUE(written) << written.error().message;
+      ASSERT_TRUE(file->commit());
+      EXPECT_TRUE(all_read);
+      const auto input = InputFile::open(path);
+      EXPECT_THAT(input->bytes(), ElementsAreArray(expected));
+      std::remove(path.c_str());
+    }
+  }
+}
+
+TEST(Anim, PassesOnWhatTheSourceOfFramesSays) {
+  const Clip clip = turning_chain(20, 700);
+  FrameSource source = frames_of(clip);
+  source.read = [](int first, int, std::span<Vec3f> positions, std::span<Quatf> orientations) {
+    std::fill(positions.begin(), positions.end(), Vec3f::Zero());
+    std::fill(orientations.begin(), orientations.end(), Quatf::Identity());
+    return first > 300 ? Status(Error("test", "no such frame")) : Status();
+  };
+  auto file = OutputFile::create("/dev/null");
+  bool asked = false;
+  const Status written = anim::write(
+      source,
+      [&] {
+        asked = true;
+        return Provenance();
+      },
+      {.jobs = 2}, *file);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, "test");
+  EXPECT_FALSE(asked);
+}
+
 }  // namespace
 }  // namespace krok

@@ -16,6 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/hash.h"
+
 namespace krok {
 namespace {
 
@@ -356,6 +358,40 @@ TEST_P(SignalTest, ASignalThatWasIgnoredStaysSo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, SignalTest, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGPIPE));
+
+TEST_F(FileTest, MemoryGivenBackIsReadAgain) {
+  std::string text;
+  for (int i = 0; text.size() < (std::size_t{9} << 20); ++i) text += std::to_string(i) + "\n";
+  put(path("long"), text);
+  const auto file = InputFile::open(path("long"));
+  ASSERT_TRUE(file.ok());
+  EXPECT_EQ(file->checksum(), xxh3(file->bytes()));
+  for (const std::size_t offset : {std::size_t{1}, text.size() / 2, text.size(), text.size() * 2}) {
+    file->release_before(offset);
+    EXPECT_EQ(file->text(), text);
+  }
+  EXPECT_EQ(file->checksum(), xxh3(file->bytes()));
+}
+
+TEST_F(FileTest, ChecksumOfAnEmptyFileIsThatOfNoBytes) {
+  put(path("empty"), "");
+  EXPECT_EQ(InputFile::open(path("empty"))->checksum(), xxh3({}));
+}
+
+TEST_F(FileTest, LargeAndSmallWritesComeInOrder) {
+  std::string expected;
+  auto file = OutputFile::create(path("out"));
+  ASSERT_TRUE(file.ok());
+  for (int i = 0; i < 200; ++i) {
+    const std::string part(static_cast<std::size_t>(i % 5 == 0 ? 300000 : i * 777 % 100000),
+                           static_cast<char>('a' + i % 26));
+    ASSERT_TRUE(file->write(part));
+    expected += part;
+  }
+  EXPECT_EQ(file->size(), expected.size());
+  ASSERT_TRUE(file->commit());
+  EXPECT_EQ(InputFile::open(path("out"))->text(), expected);
+}
 
 }  // namespace
 }  // namespace krok

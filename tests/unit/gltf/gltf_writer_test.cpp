@@ -283,7 +283,7 @@ TEST(GltfWriter, RefusesWhatGltfCannotHold) {
   Model latin = model;
   latin.parts[0].material = "b\xf6rn";
   EXPECT_EQ(rig_error(latin, clip), "gltf-name");
-  EXPECT_NE(error_code([](OutputFile& file) { return gltf::write_skeleton({}, {}, file); }),
+  EXPECT_NE(error_code([](OutputFile& file) { return gltf::write_skeleton(Clip(), {}, file); }),
             "none");
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "support/test_scenes.h"
@@ -145,6 +146,91 @@ TEST(KeyTimes, RefuseFramesThatFloatsCannotTellApart) {
   }
   EXPECT_TRUE(gltf::key_times(1 << 20, 1e9).ok());
   EXPECT_FALSE(gltf::key_times((1 << 24) + 8, 1.0).ok());
+}
+
+// A motion long enough for many blocks, of which the first and a few others are looked at before:
+// a short one again and again, so that it does not walk to where floats are coarse.
+Clip long_clip() {
+  const Clip part = test::swinging_clip(human(), 30, 30);
+  Clip clip = part;
+  clip.resize(1500);
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    std::copy_n(part.frame_positions(f % 30).begin(), part.joint_count(),
+                clip.frame_positions(f).begin());
+    std::copy_n(part.frame_orientations(f % 30).begin(), part.joint_count(),
+                clip.frame_orientations(f).begin());
+  }
+  return clip;
+}
+
+bool same(const JointTracks& a, const JointTracks& b) {
+  for (std::size_t j = 0; j < a.joints.size(); ++j) {
+    if (a.joints[j].translations != b.joints[j].translations) return false;
+    if (a.joints[j].rotations.size() != b.joints[j].rotations.size()) return false;
+    for (std::size_t f = 0; f < a.joints[j].rotations.size(); ++f) {
+      if (a.joints[j].rotations[f].coeffs() != b.joints[j].rotations[f].coeffs()) return false;
+    }
+  }
+  return true;
+}
+
+TEST(JointTracks, DoNotDependOnTheNumberOfThreads) {
+  const Clip clip = long_clip();
+  const auto alone = joint_tracks(clip.skeleton, frames_of(clip), 1);
+  ASSERT_TRUE(alone.ok());
+  expect_shown(*alone, clip);
+  for (const int jobs : {2, 5}) {
+    const auto together = joint_tracks(clip.skeleton, frames_of(clip), jobs);
+    ASSERT_TRUE(together.ok());
+    EXPECT_TRUE(same(*alone, *together)) << jobs;
+  }
+}
+
+TEST(JointTracks, OneFrameFarFromTheStartIsEnoughForATrack) {
+  Clip clip = long_clip();
+  const int late = 1111;
+  // A spine joint that moves once, with all that hangs on it.
+  const int moved = 2;
+  std::vector<bool> below(clip.skeleton.names.size(), false);
+  for (int j = moved; j < clip.joint_count(); ++j) {
+    const int parent = clip.skeleton.parents[j];
+    below[j] = j == moved || (parent >= 0 && below[parent]);
+    if (below[j]) clip.frame_positions(late)[j] += Vec3f(0, 0.01f, 0);
+  }
+  const auto tracks = joint_tracks(clip.skeleton, frames_of(clip), 2);
+  ASSERT_TRUE(tracks.ok());
+  expect_shown(*tracks, clip);
+  EXPECT_EQ(tracks->joints[moved].translations.size(), 1500u);
+  EXPECT_TRUE(tracks->joints[moved + 1].translations.empty());
+}
+
+TEST(JointTracks, SuccessiveRotationsOfLongMotionsLieInOneHemisphere) {
+  Clip clip = long_clip();
+  for (std::size_t i = 0; i < clip.orientations.size(); i += 3) {
+    clip.orientations[i].coeffs() = -clip.orientations[i].coeffs();
+  }
+  const auto tracks = joint_tracks(clip.skeleton, frames_of(clip), 2);
+  ASSERT_TRUE(tracks.ok());
+  expect_shown(*tracks, clip);
+  for (const auto& joint : tracks->joints) {
+    Quatf before = joint.rest_rotation;
+    for (const Quatf& rotation : joint.rotations) {
+      ASSERT_GE(before.dot(rotation), 0);
+      before = rotation;
+    }
+  }
+}
+
+TEST(JointTracks, PassOnWhatTheSourceSays) {
+  const Clip clip = long_clip();
+  FrameSource source = frames_of(clip);
+  source.read = [&](int first, int, std::span<Vec3f>, std::span<Quatf>) -> Status {
+    if (first > 0) return Error("test", "no such frame");
+    return {};
+  };
+  const auto tracks = joint_tracks(clip.skeleton, source, 2);
+  ASSERT_FALSE(tracks.ok());
+  EXPECT_EQ(tracks.error().code, "test");
 }
 
 }  // namespace

@@ -60,6 +60,56 @@ TEST(GltfReader, ReadsMorphTargetsWithTheirNames) {
   EXPECT_EQ(asset.animations.at(0).channels.at(0).width, 2);
 }
 
+TEST(GltfReader, ReadsCamerasAndTheSpaceThatGltfPrescribes) {
+  GlbBuilder builder = test::square();
+  builder.json["cameras"] = {
+      {{"name", "Lens"}, {"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 1}}}},
+      {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}}}},
+      {{"type", "perspective"}, {"perspective", {{"yfov", 9}, {"zfar", 1e300}}}},
+      {{"type", "perspective"}}};
+  builder.json["nodes"][0]["camera"] = 0;
+  auto asset = gltf::read(builder.glb());
+  ASSERT_TRUE(asset.ok()) << asset.error().message;
+  ASSERT_EQ(asset->cameras.size(), 4u);
+  EXPECT_EQ(asset->cameras[0].name, "Lens");
+  EXPECT_EQ(asset->cameras[0].field_of_view, 0.7);
+  EXPECT_EQ(asset->nodes[0].camera, 0);
+  EXPECT_FALSE(asset->cameras[1].perspective);
+  // Fields of view that are none become a usual one, with a warning each.
+  EXPECT_NEAR(asset->cameras[2].field_of_view, kPi / 4, 1e-15);
+  EXPECT_NEAR(asset->cameras[3].field_of_view, kPi / 4, 1e-15);
+  ASSERT_EQ(asset->diagnostics.size(), 2u);
+  EXPECT_EQ(asset->diagnostics[0].code, "gltf-camera");
+  EXPECT_EQ(asset->space.metres, 1.0);
+  ASSERT_TRUE(asset->space.file_to_krok);
+  EXPECT_EQ(asset->space.file_to_krok->w(), 1.0);
+
+  builder.json["nodes"][0]["camera"] = 4;
+  asset = gltf::read(builder.glb());
+  ASSERT_FALSE(asset.ok());
+  EXPECT_EQ(asset.error().code, "gltf-node");
+}
+
+TEST(GltfReader, ReadsTangentsOfLengthOne) {
+  GlbBuilder builder = test::square();
+  auto& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+  std::vector<float> tangents;
+  for (int v = 0; v < 4; ++v) tangents.insert(tangents.end(), {0, 2, 0, v < 2 ? 1.0f : -1.0f});
+  attributes["TANGENT"] = builder.add(tangents, "VEC4");
+  auto asset = gltf::read(builder.glb());
+  ASSERT_TRUE(asset.ok()) << asset.error().message;
+  const auto& read = asset->meshes[0].primitives[0].tangents;
+  ASSERT_TRUE(read);
+  EXPECT_EQ((*read)[0], Vec4f(0, 1, 0, 1));
+  EXPECT_EQ((*read)[3], Vec4f(0, 1, 0, -1));
+  tangents[5] = 0;  // the second vertex has none
+  attributes["TANGENT"] = builder.add(tangents, "VEC4");
+  asset = gltf::read(builder.glb());
+  ASSERT_TRUE(asset.ok());
+  EXPECT_FALSE(asset->meshes[0].primitives[0].tangents);
+  EXPECT_EQ(asset->diagnostics.at(0).code, "gltf-mesh-tangents");
+}
+
 TEST(GltfReader, ReadsIndicesOfEachSize) {
   for (const int bytes : {1, 2, 4}) {
     GlbBuilder builder = test::square();

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+// What pack_orientation and its vectorised form share. Constants only: an inline function that is
+// compiled for several instruction sets might be kept in a form that the machine cannot run.
+
+namespace krok::orientation_search {
+
+// Steps (in units of the last place) by which the two largest components are moved, nearest first;
+// the third is solved for.
+inline constexpr int kReach = 6;
+inline constexpr int kSide = 2 * kReach + 1;
+
+struct Step {
+  int first = 0, second = 0;
+};
+
+inline constexpr std::array<Step, kSide* kSide> kSteps = [] {
+  std::array<Step, kSide * kSide> steps{};
+  std::size_t count = 0;
+  for (int ring = 0; ring <= kReach; ++ring) {
+    for (int i = -ring; i <= ring; ++i) {
+      for (int j = -ring; j <= ring; ++j) {
+        if (i == ring || i == -ring || j == ring || j == -ring) steps[count++] = {i, j};
+      }
+    }
+  }
+  return steps;
+}();
+
+// Good enough to stop searching: 2e-7 rad, a few times what rounding four components costs anyway.
+// Squared distance of quaternions; the angle is twice the distance.
+inline constexpr double kGoodEnough = 1e-7 * 1e-7;
+
+// Sizes of w above which one ring of steps is tried, and three; below, all.
+inline constexpr double kOneRing = 0.02;
+inline constexpr double kThreeRings = 1e-4;
+
+}  // namespace krok::orientation_search

@@ -1,0 +1,249 @@
+// If these fail, a batch takes other files than the user meant, puts results where nobody looks for
+// them, or lets one result replace another or a capture.
+#include <gmock/gmock.h>
+
+#include "cli/batch/batch_fixture.h"
+
+namespace krok::test {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+
+class BatchList : public BatchTest {
+ protected:
+  void expect_usage_error(const ToolRun& run, const std::string& part) {
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(part));
+  }
+};
+
+TEST_F(BatchList, APatternKeepsTheFoldersBelowItsFixedPart) {
+  put_capture("takes/a/x.bvh");
+  put_capture("takes/b/c/x.bvh");
+  put_capture("takes/y.bvh");
+  put_capture("takes/.hidden.bvh");
+  put("takes/notes.txt", "no capture");
+  const ToolRun run = import({"takes/**/*.bvh", "--out-dir", "new/out"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, EndsWith("\nkrok-import: 3 files, 3 done\n"));
+  EXPECT_EQ(files_below("new/out"), (Names{"a/x.anim", "b/c/x.anim", "y.anim"}));
+}
+
+TEST_F(BatchList, PatternsAreExpandedAsShellsDo) {
+  for (const char* name : {"a1.bvh", "a2.bvh", "b1.bvh", "[x].bvh"}) put_capture(name);
+  const auto made = [&](const std::string& pattern) {
+    std::filesystem::remove_all(path("out"));
+    const ToolRun run = import({pattern, "--out-dir", "out"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return files_below("out");
+  };
+  EXPECT_EQ(made("a?.bvh"), (Names{"a1.anim", "a2.anim"}));
+  EXPECT_EQ(made("[!a]1.bvh"), Names{"b1.anim"});
+  EXPECT_EQ(made("[x].bvh"), Names{"[x].anim"}) << "a file of this very name";
+  EXPECT_EQ(made(path("*1.bvh")), (Names{"a1.anim", "b1.anim"}));
+}
+
+TEST_F(BatchList, FilesNamedOneByOneKeepTheFoldersThatTheyDoNotShare) {
+  put_capture("takes/a/x.bvh");
+  put_capture("takes/b/x.bvh");
+  ASSERT_EQ(import({"takes/a/x.bvh", "takes/b/x.bvh", "--out-dir", "out"}).exit_code, 0);
+  EXPECT_EQ(files_below("out"), (Names{"a/x.anim", "b/x.anim"}));
+  ASSERT_EQ(import({"takes/a/x.bvh", "--out-dir", "one"}).exit_code, 0);
+  EXPECT_EQ(files_below("one"), Names{"x.anim"});
+  ASSERT_EQ(import({"takes/a/x.bvh", "--out-dir", "based", "--base", "takes/"}).exit_code, 0);
+  EXPECT_EQ(files_below("based"), Names{"a/x.anim"});
+  expect_usage_error(import({"takes/a/x.bvh", "--out-dir", "q", "--base", "takes/b"}),
+                     "takes/a/x.bvh: error: is not below takes/b");
+}
+
+TEST_F(BatchList, AFolderStandsForTheFilesThatTheToolReads) {
+  put_capture("takes/a/x.bvh");
+  put_capture("takes/Y.BVH");
+  put("takes/notes.txt", "no capture");
+  ASSERT_EQ(import({"takes", "--out-dir", "out"}).exit_code, 0);
+  EXPECT_EQ(files_below("out"), (Names{"Y.anim", "a/x.anim"}));
+  std::filesystem::create_directory(path("empty"));
+  expect_usage_error(import({"empty", "--out-dir", "out"}), "empty: error: no .bvh");
+}
+
+TEST_F(BatchList, AFileGivenTwiceIsDoneOnce) {
+  put_capture("takes/x.bvh");
+  const ToolRun run =
+      import({"takes/x.bvh", "takes/*.bvh", "./takes/../takes/x.bvh", "--out-dir", "out"});
+  EXPECT_THAT(run.err, EndsWith("\nkrok-import: 1 file, 1 done\n"));
+}
+
+TEST_F(BatchList, WhatIsMissingOrDoesNotFitIsSaid) {
+  put_capture("x.bvh");
+  expect_usage_error(import({"none/*.bvh", "--out-dir", "out"}), "none/*.bvh: error: no file fits");
+  expect_usage_error(import({"--out-dir", "out"}), "no input");
+  expect_usage_error(import({"-", "--out-dir", "out"}), "standard input");
+  expect_usage_error(import({"x.bvh", "--out-dir", "out", "-o", "y.anim"}), "-o names one");
+  expect_usage_error(import({"x.bvh", "--out-dir", "out", "--skeleton", "-"}), "only once");
+  expect_usage_error(import({"x.bvh", "--keep-going", "-o", "y.anim"}), "--keep-going");
+  expect_usage_error(import({"x.bvh", "x.bvh", "-o", "y.anim"}), "--out-dir DIR");
+  expect_usage_error(import({"x.bvh", "--out-dir", "out", "--shard", "3/2"}), "--shard: '3/2'");
+  expect_usage_error(import({"x.bvh", "--out-dir", "out", "--strict", "--repair"}), "--repair");
+  EXPECT_EQ(listing(), Names{"x.bvh"});
+}
+
+TEST_F(BatchList, TwoResultsOfOneNameAreRefused) {
+  put_capture("a/x.bvh");
+  put_capture("b/x.bvh");
+  expect_usage_error(import({"a/*.bvh", "b/*.bvh", "--out-dir", "out"}),
+                     "a/x.bvh and b/x.bvh would both be written to out/x.anim");
+  expect_usage_error(import({"a", "b", "--base", ".", "--out-dir", "out", "--model", "m.model"}),
+                     "put {name} into it");
+  EXPECT_EQ(listing(), (Names{"a", "b"}));
+}
+
+TEST_F(BatchList, ResultsNeverReplaceInputs) {
+  put_capture("a.bvh", 4);
+  put_capture("b.bvh", 5);
+  put("list.tsv", "a.bvh\tc.anim\nb.bvh\ta.bvh\n");
+  expect_usage_error(import({"--manifest", "list.tsv"}), "list.tsv:2:1: error: a.bvh is read");
+  std::filesystem::create_hard_link(path("a.bvh"), path("linked.anim"));
+  put("list.tsv", "a.bvh\tlinked.anim\n");
+  expect_usage_error(import({"--manifest", "list.tsv"}), "a.bvh is read");
+  put("list.tsv", "a.bvh\tlist.tsv\n");
+  expect_usage_error(import({"--manifest", "list.tsv"}), "list.tsv is read");
+  expect_usage_error(import({"*.bvh", "--out-dir", "out", "--json=a.bvh"}), "a.bvh is read");
+  EXPECT_EQ(import({"*.bvh", "--nonsense", "--out-dir", "out", "--json=a.bvh"}).exit_code, 2);
+  EXPECT_EQ(import({"*.none", "--out-dir", "out", "--json=a.bvh"}).exit_code, 2);
+  EXPECT_EQ(get(path("a.bvh")), capture(4));
+  EXPECT_EQ(get(path("b.bvh")), capture(5));
+}
+
+TEST_F(BatchList, OtherOutputsAreNamedByThePlaceholder) {
+  put_capture("takes/a/x.bvh");
+  put_capture("takes/y.bvh");
+  const ToolRun run = import({"takes", "--out-dir", "out", "--model", "models/{name}.model"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(files_below("out"),
+            (Names{"a/x.anim", "models/a/x.model", "models/y.model", "y.anim"}));
+  // One that is gone is made again, with the motion that belongs to it.
+  std::filesystem::remove(path("out/models/y.model"));
+  EXPECT_EQ(
+      counts(import({"takes", "--out-dir", "out", "--model", "models/{name}.model", "--json"}).out),
+      (Counts{{"done", 1}, {"unchanged", 1}}));
+  EXPECT_TRUE(std::filesystem::exists(path("out/models/y.model")));
+}
+
+TEST_F(BatchList, AManifestNamesInputsOutputsAndOptions) {
+  put_capture("x.bvh", 40);
+  put_capture("takes/y.bvh", 40);
+  put("list.tsv",
+      "input\toutput\toptions\r\n# a comment\r\n\r\n"
+      "x.bvh\tone.anim\t--fps 60 --unit 'm'\r\nx.bvh\tsub/two.anim\r\ntakes/y.bvh\t\t--fps 24");
+  const ToolRun run = import({"--manifest", "list.tsv", "--out-dir", "out", "--fps", "50", "--up=y",
+                              "--json=report.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(files_below("out"), (Names{"one.anim", "sub/two.anim", "y.anim"}));
+  const Json files = Json::parse(get(path("report.json")))["files"];
+  EXPECT_EQ(files[0]["result"]["rate"], 60.0) << "a line's option goes before";
+  EXPECT_EQ(files[0]["options"], Json({{"unit", "m"}, {"up", "y"}, {"fps", "60"}}));
+  EXPECT_EQ(files[1]["result"]["rate"], 50.0);
+  EXPECT_EQ(files[2]["result"]["rate"], 24.0);
+
+  // From standard input, with outputs where the line says.
+  ToolOptions piped;
+  piped.input = "x.bvh\tpiped.anim\n";
+  EXPECT_EQ(import({"--manifest", "-"}, piped).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("piped.anim")));
+}
+
+TEST_F(BatchList, FaultsOfAManifestAreToldByLineAndColumn) {
+  put_capture("x.bvh");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"x.bvh\ta.anim\t--fps 60\tmore", "list.tsv:1:23: error: there are more than three fields"},
+      {"\n\tb.anim", "list.tsv:2:1: error: there is no input"},
+      {"x.bvh", "list.tsv:1:1: error: there is no output"},
+      {"-\tb.anim", "list.tsv:1:1: error: a list of files does not take standard"},
+      {"x.bvh\t-", "list.tsv:1:7: error: a list of files does not take standard"},
+      {"x.bvh\tb.anim\t--strict  --repair", "list.tsv:1:24: error: --strict excludes --repair"},
+      {"x.bvh\tb.anim\t--strict --fps fast", "list.tsv:1:23: error: --fps: 'fast'"},
+      {"x.bvh\tb.anim\t--fps", "list.tsv:1:14: error: --fps"},
+      {"x.bvh\tb.anim\t--jobs 3", "list.tsv:1:14: error: "},
+      {"x.bvh\tb.anim\tword", "list.tsv:1:14: error: "},
+      {"x.bvh\tb.anim\t--up \"y", "list.tsv:1:19: error: the quote \" is not closed"},
+      {"x.bvh\tb.anim\t--unit furlong", "list.tsv:1:14: error: --unit: 'furlong'"},
+      {"x.bvh\tb.anim\nx.bvh\t./b.anim", "list.tsv:2:1: error: x.bvh and x.bvh would both"},
+      {"# nothing\n", "list.tsv: error: the list holds no file"}};
+  for (const auto& [text, message] : cases) {
+    put("list.tsv", text);
+    const ToolRun run = import({"--manifest", "list.tsv"});
+    EXPECT_EQ(run.exit_code, 2) << text;
+    EXPECT_THAT(run.err, HasSubstr(message)) << text;
+    EXPECT_FALSE(std::filesystem::exists(path("b.anim"))) << text;
+  }
+  // All at once, in the order of the lines.
+  put("list.tsv", "x.bvh\ta.anim\t--jobs 3\n\tb.anim\n");
+  const ToolRun run = import({"--manifest", "list.tsv", "--json"});
+  const Json issues = Json::parse(run.out)["issues"];
+  ASSERT_EQ(issues.size(), 2u);
+  EXPECT_EQ(issues[0]["line"], 1);
+  EXPECT_EQ(issues[1]["line"], 2);
+}
+
+TEST_F(BatchList, EveryFileIsInOneShardAndStaysThere) {
+  for (int i = 0; i < 20; ++i) put_capture("takes/x" + std::to_string(i) + ".bvh", 2);
+  std::map<std::string, int> shard_of;
+  const auto import_shards = [&](const std::string& out) {
+    std::map<std::string, int> result;
+    for (int i = 1; i <= 3; ++i) {
+      const ToolRun run =
+          import({"takes", "--out-dir", out, "--shard", std::to_string(i) + "/3", "--json"});
+      EXPECT_EQ(run.exit_code, 0) << run.err;
+      const Json report = Json::parse(run.out);
+      for (const auto& file : report["files"]) {
+        EXPECT_TRUE(result.emplace(file["input"], i).second) << "in two shards";
+      }
+    }
+    return result;
+  };
+  shard_of = import_shards("out");
+  EXPECT_EQ(shard_of.size(), 20u);
+  // With fewer files the others stay in their shards.
+  std::filesystem::remove(path("takes/x7.bvh"));
+  for (const auto& [file, shard] : import_shards("again")) EXPECT_EQ(shard, shard_of[file]) << file;
+  // What shards did is done.
+  EXPECT_EQ(counts(import({"takes", "--out-dir", "out", "--json"}).out),
+            (Counts{{"unchanged", 19}}));
+}
+
+TEST_F(BatchList, ExportAsksForAFormat) {
+  put_capture("takes/x.bvh");
+  ASSERT_EQ(import({"takes", "--out-dir", "motions"}).exit_code, 0);
+  expect_usage_error(tool("krok-export", {"motions", "--out-dir", "glb"}), "--format");
+  ASSERT_EQ(tool("krok-export", {"motions", "--out-dir", "glb", "--format", "glb", "--no-bones"})
+                .exit_code,
+            0);
+  EXPECT_EQ(files_below("glb"), Names{"x.glb"});
+  ASSERT_EQ(
+      tool("krok-export", {"motions/x.anim", "--format", "glb", "--no-bones", "-o", "single.glb"})
+          .exit_code,
+      0);
+  EXPECT_TRUE(get(path("single.glb")) == get(path("glb/x.glb"))) << "as a run of its own does";
+}
+
+TEST_F(BatchList, OneModelForManyMotions) {
+  put_capture("takes/x.bvh");
+  put_capture("takes/y.bvh", 9);
+  ASSERT_EQ(import({"takes", "--out-dir", "motions"}).exit_code, 0);
+  ASSERT_EQ(tool("krok-body", {"motions/*.anim", "--detail", "low", "--out-dir", "b"}).exit_code,
+            0);
+  EXPECT_EQ(files_below("b"), (Names{"x.model", "y.model"}));
+  const ToolRun skin = tool("krok-skin", {"b/x.model", "motions", "--as", "rig", "--out-dir", "r"});
+  EXPECT_EQ(skin.exit_code, 0) << skin.err;
+  EXPECT_EQ(files_below("r"), (Names{"x.glb", "y.glb"}));
+  // Another model: both are made anew.
+  const std::vector<std::string> again = {"b/y.model", "motions", "--as",  "rig",
+                                          "--out-dir", "r",       "--json"};
+  EXPECT_EQ(counts(tool("krok-skin", again).out), (Counts{{"done", 2}}));
+  EXPECT_EQ(counts(tool("krok-skin", again).out), (Counts{{"unchanged", 2}}));
+}
+
+}  // namespace
+}  // namespace krok::test

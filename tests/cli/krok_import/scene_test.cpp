@@ -1,0 +1,222 @@
+// If these fail, krok-import of a character's file writes something else than asked for, hides what
+// the file lacks, or leaves half of its outputs behind.
+
+#include <nlohmann/json.hpp>
+
+#include "formats/cam/cam.h"
+#include "formats/model/model_format.h"
+#include "imported.h"
+#include "support/glb_builder.h"
+
+namespace krok::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class SceneImportTest : public CliTest {
+ protected:
+  std::string put_glb(const std::string& name, const GlbBuilder& builder) const {
+    const auto bytes = builder.glb();
+    return put(name, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  }
+
+  // The rig with a second animation, a camera that the second joint carries, and a morph target.
+  static GlbBuilder character() {
+    GlbBuilder builder = rig();
+    auto& json = builder.json;
+    Json second = json["animations"][0];
+    second["name"] = "Bend/twice";
+    json["animations"].push_back(second);
+    json["cameras"] = {{{"name", "Lens"},
+                        {"type", "perspective"},
+                        {"perspective", {{"yfov", 0.7}, {"znear", 1}}}}};
+    json["nodes"].push_back({{"name", "Shot"}, {"camera", 0}, {"translation", {0, 0, 2}}});
+    json["nodes"][2]["children"] = {3};
+    auto& primitive = json["meshes"][0]["primitives"][0];
+    primitive["targets"] = {
+        {{"POSITION",
+          builder.add(std::vector<float>{0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3")}}};
+    json["meshes"][0]["extras"] = {{"targetNames", {"Nose"}}};
+    json["meshes"][0]["weights"] = {0.5};
+    return builder;
+  }
+
+  ToolRun import(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), path("in.glb"));
+    return run_tool("krok-import", arguments);
+  }
+};
+
+TEST_F(SceneImportTest, MotionAndModelOfAGlb) {
+  put_glb("in.glb", rig());
+  const ToolRun run = import({"-o", path("a.anim"), "--model", path("a.model")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto motion = InputFile::open(path("a.anim"));
+  const auto clip = anim::read(motion->bytes());
+  ASSERT_TRUE(clip.ok());
+  EXPECT_EQ(clip->skeleton.names, (std::vector<std::string>{"Root", "Tip"}));
+  EXPECT_EQ(clip->rate, 30);  // keys at 0, 0.5 and 1 s
+  EXPECT_EQ(clip->frame_count(), 31);
+  const auto file = InputFile::open(path("a.model"));
+  const auto model = model::read(file->bytes());
+  ASSERT_TRUE(model.ok());
+  EXPECT_EQ(model->vertex_count(), 4);
+  EXPECT_EQ(model->triangles.size(), 2u);
+  EXPECT_EQ(model->skeleton.names, clip->skeleton.names);
+  EXPECT_EQ(model->provenance.sources.at(0).name, "in.glb");
+}
+
+TEST_F(SceneImportTest, OneOutputAloneWillDo) {
+  put_glb("in.glb", character());
+  for (const auto& [option, name] :
+       std::vector<std::pair<std::string, std::string>>{{"--model", "a.model"},
+                                                        {"--cam", "a.cam"},
+                                                        {"--morphs", "a.exr"},
+                                                        {"--morph-weights", "a.csv"}}) {
+    const ToolRun run = import({option, path(name)});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(listing(), (std::vector<std::string>{name, "in.glb"}));
+    std::filesystem::remove(path(name));
+  }
+  const ToolRun nothing = import({});
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_TRUE(has_code(nothing.err, "usage")) << nothing.err;
+}
+
+TEST_F(SceneImportTest, ACameraIsAsLongAsItsAnimation) {
+  put_glb("in.glb", character());
+  ASSERT_EQ(import({"--cam", path("a.cam"), "--resample", "10"}).exit_code, 0);
+  const auto file = InputFile::open(path("a.cam"));
+  const auto camera = cam::read(file->bytes());
+  ASSERT_TRUE(camera.ok());
+  EXPECT_EQ(camera->frame_count(), 11);
+  EXPECT_FLOAT_EQ(camera->fields_of_view[0], 0.7f);
+  EXPECT_LT((camera->positions[0] - Vec3f(0, 1, 2)).norm(), 1e-6f);
+}
+
+TEST_F(SceneImportTest, OfSeveralAnimationsTheFirstWithAWarning) {
+  put_glb("in.glb", character());
+  const ToolRun first = import({"-o", path("a.anim")});
+  EXPECT_EQ(first.exit_code, 0);
+  EXPECT_TRUE(has_code(first.err, "import-clips")) << first.err;
+  EXPECT_NE(first.err.find("Bend/twice"), std::string::npos) << first.err;
+  for (const std::string wanted : {"1", "Bend/twice"}) {
+    const ToolRun run = import({"-o", path("a.anim"), "--clip", wanted, "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_FALSE(has_code(run.err, "import-clips"));
+    EXPECT_EQ(Json::parse(run.out)["result"]["clip"]["name"], "Bend/twice");
+  }
+  const ToolRun unknown = import({"-o", path("b.anim"), "--clip", "Walk"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(has_code(unknown.err, "import-clip")) << unknown.err;
+  EXPECT_NE(unknown.err.find("0 (Bend)"), std::string::npos) << unknown.err;
+}
+
+TEST_F(SceneImportTest, AllAnimationsNeedAPattern) {
+  put_glb("in.glb", character());
+  const ToolRun refused = import({"--clip", "all", "-o", path("walk.anim")});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("{clip}"), std::string::npos) << refused.err;
+  EXPECT_EQ(listing(), std::vector<std::string>{"in.glb"});
+  const ToolRun run = import({"--clip", "all", "-o", path("walk_{clip}.anim"), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(listing(),
+            (std::vector<std::string>{"in.glb", "walk_Bend.anim", "walk_Bend_twice.anim"}));
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["result"]["clips"].size(), 2u);
+  EXPECT_EQ(report["outputs"].size(), 2u);
+  std::filesystem::create_directory(path("out"));
+  EXPECT_EQ(import({"--clip", "all", "-o", path("out")}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("out/Bend_twice.anim")));
+}
+
+TEST_F(SceneImportTest, WhatTheFileDoesNotHoldIsSaid) {
+  put_glb("in.glb", square());
+  for (const auto& [option, what] :
+       std::vector<std::pair<std::string, std::string>>{{"-o", "animation"},
+                                                        {"--cam", "camera"},
+                                                        {"--morphs", "morph target"},
+                                                        {"--morph-weights", "morph target"}}) {
+    const ToolRun run = import({option, path("out")});
+    EXPECT_EQ(run.exit_code, 2) << option;
+    EXPECT_TRUE(has_code(run.err, "import-missing")) << run.err;
+    EXPECT_NE(run.err.find("no " + what), std::string::npos) << run.err;
+    EXPECT_EQ(listing(), std::vector<std::string>{"in.glb"});
+  }
+}
+
+TEST_F(SceneImportTest, ACaptureHasNoCameraAndOneMotion) {
+  put("in.bvh", capture(5));
+  for (const std::string option : {"--cam", "--camera", "--morphs", "--skin", "--clip"}) {
+    const ToolRun run =
+        run_tool("krok-import", {path("in.bvh"), "-o", path("a.anim"), option, path("x")});
+    EXPECT_EQ(run.exit_code, 2) << option;
+    EXPECT_TRUE(has_code(run.err, "import-missing")) << run.err;
+  }
+  EXPECT_EQ(run_tool("krok-import", {path("in.bvh"), "--model", path("a.model")}).exit_code, 0);
+  EXPECT_EQ(listing(), (std::vector<std::string>{"a.model", "in.bvh"}));
+}
+
+TEST_F(SceneImportTest, OptionsForCapturesAreRefused) {
+  put_glb("in.glb", rig());
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--positions", "absolute"},
+        {"--skip-rest-frame", "yes"},
+        {"--repair"},
+        {"--skeleton", "a.asf"}}) {
+    std::vector<std::string> arguments = {"-o", path("a.anim")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ToolRun run = import(arguments);
+    EXPECT_EQ(run.exit_code, 2) << options[0];
+    EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
+  }
+}
+
+TEST_F(SceneImportTest, UnitAndAxesCanBeGiven) {
+  put_glb("in.glb", rig());
+  const ToolRun run =
+      import({"--model", path("a.model"), "--unit", "ft", "--forward", "x", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json result = Json::parse(run.out)["result"];
+  EXPECT_EQ(result["unit"]["reason"], "as given");
+  EXPECT_EQ(result["up"]["choice"], "y");
+  const auto file = InputFile::open(path("a.model"));
+  const auto model = model::read(file->bytes());
+  ASSERT_TRUE(model.ok());
+  EXPECT_FLOAT_EQ(static_cast<float>(model->skeleton.reference[1].position.y()), 0.3048f);
+  EXPECT_EQ(model->provenance.conversions.size(), 2u);
+}
+
+TEST_F(SceneImportTest, WeightsAreATable) {
+  put_glb("in.glb", character());
+  ASSERT_EQ(import({"--morph-weights", path("w.csv"), "--resample", "1"}).exit_code, 0);
+  EXPECT_EQ(get(path("w.csv")), "frame,time,Nose\n0,0,0.5\n1,1,0.5\n");
+}
+
+TEST_F(SceneImportTest, TheOutputsAppearTogetherOrNotAtAll) {
+  put_glb("in.glb", character());
+  const ToolRun run =
+      import({"-o", path("a.anim"), "--model", path("a.model"), "--cam", path("none/a.cam")});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(listing(), std::vector<std::string>{"in.glb"});
+  const ToolRun twice = import({"-o", path("a.x"), "--cam", path("a.x")});
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_EQ(listing(), std::vector<std::string>{"in.glb"});
+}
+
+TEST_F(SceneImportTest, ABufferBesideTheFileIsAnInputToo) {
+  GlbBuilder builder = rig();
+  Json json = builder.json;
+  json["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", "data.bin"}}};
+  put("in.gltf", json.dump());
+  put("data.bin",
+      std::string(reinterpret_cast<const char*>(builder.bin.data()), builder.bin.size()));
+  const ToolRun run = run_tool("krok-import", {path("in.gltf"), "-o", path("a.anim"), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json inputs = Json::parse(run.out)["inputs"];
+  ASSERT_EQ(inputs.size(), 2u);
+  EXPECT_EQ(inputs[1]["path"], path("data.bin"));
+}
+
+}  // namespace
+}  // namespace krok::test

@@ -1,0 +1,369 @@
+#include "tools/common/batch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <optional>
+#include <set>
+
+#include "core/hash.h"
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "tools/common/batch_list.h"
+#include "tools/common/batch_report.h"
+#include "tools/common/in_order.h"
+#include "tools/common/journal.h"
+#include "tools/common/option_sets.h"
+
+namespace krok {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// How far ahead of the first file that is not told of yet others may be done.
+constexpr std::size_t kWindow = 256;
+// How many failed files are named again at the end.
+constexpr std::size_t kNamedAgain = 10;
+
+std::string counted_files(std::size_t count) {
+  return counted(static_cast<long long>(count), "file");
+}
+
+// What became of one file.
+struct Outcome {
+  enum class Kind { done, unchanged, failed };
+  Kind kind = Kind::failed;
+  std::string messages;
+  Json report;
+  Status journal;
+};
+
+const char* name_of(Outcome::Kind kind) {
+  switch (kind) {
+    case Outcome::Kind::done:
+      return "done";
+    case Outcome::Kind::unchanged:
+      return "unchanged";
+    case Outcome::Kind::failed:
+      break;
+  }
+  return "failed";
+}
+
+Json options_of_batch(const CommandLine& line) {
+  Json options = line.context().report.options;
+  const auto note = [&](const char* name, const std::string& value) {
+    if (!value.empty()) options[name] = value;
+  };
+  note("out-dir", line.out_dir);
+  note("base", line.base);
+  note("manifest", line.manifest);
+  note("shard", line.shard);
+  if (line.keep_going) options["keep-going"] = true;
+  if (line.force) options["force"] = true;
+  return options;
+}
+
+std::string journal_suffix(const std::string& shard) {
+  if (shard.empty()) return {};
+  const std::size_t slash = shard.find('/');
+  return "." + shard.substr(0, slash) + "-of-" + shard.substr(slash + 1);
+}
+
+class Batch {
+ public:
+  Batch(const MakeToolSpec& make_spec, const CommandLine& line)
+      : make_spec_(make_spec), line_(line), context_(line.context()) {
+    const bool silent = line.quiet && line.style == ProgressStyle::automatic;
+    console_ = console_progress(silent ? ProgressStyle::none : line.style);
+    context_.console = console_.get();
+  }
+
+  int run() {
+    if (!line_.output.empty()) {
+      return stop({Error("usage", "-o names one result, and here are many",
+                         "--out-dir names the folder for them")});
+    }
+    Diagnostics errors;
+    list_ = list_files(line_, make_spec_, errors);
+    if (!errors.empty()) return stop(errors);
+    if (Status made = prepare(); !made) return stop({made.error()});
+    if (Status begun = begin_report(); !begun) return stop({begun.error()});
+    do_files();
+    return finish();
+  }
+
+ private:
+  Status begin_report() {
+    return report_.begin(line_.json_path, context_.report.tool, context_.report.version,
+                         options_of_batch(line_));
+  }
+
+  // Ends a batch of which no file was begun.
+  int stop(const Diagnostics& errors) {
+    context_.tell(errors);
+    if (only_a_report_stands_at(line_.json_path) && begin_report()) {
+      (void)report_.end(context_.report.issues, result()).ok();
+    }
+    return kExitTrouble;
+  }
+
+  // Folders, and what killed runs left in them.
+  Status prepare() {
+    std::set<std::string> folders = {line_.out_dir,
+                                     fs::path(line_.json_path).parent_path().string()};
+    for (const BatchFile& file : list_.files) {
+      folders.insert(fs::path(file.output).parent_path().string());
+    }
+    std::error_code trouble;
+    if (!line_.out_dir.empty()) fs::create_directories(line_.out_dir, trouble);
+    if (trouble) {
+      return Error("file-unwritable", fmt::format("cannot be made: {}", trouble.message()))
+          .in_file(line_.out_dir);
+    }
+    for (const std::string& folder : folders) {
+      remove_temporaries_of_killed(folder.empty() ? "." : folder);
+    }
+    journal_.emplace(line_.out_dir, context_.report.tool, journal_suffix(line_.shard));
+    return {};
+  }
+
+  void do_files() {
+    const std::size_t count = list_.files.size();
+    const int threads = thread_count(line_.jobs);
+    const int workers =
+        static_cast<int>(std::clamp<std::size_t>(count, 1, static_cast<std::size_t>(threads)));
+    jobs_of_a_file_ = std::max(1, threads / workers);
+    console_->begin(context_.report.tool, count);
+    in_order<Outcome>(
+        count, workers, kWindow, [&](std::size_t i) { return do_file(list_.files[i]); },
+        [&](std::size_t i, Outcome outcome) { return take(list_.files[i], std::move(outcome)); });
+    console_->end();
+  }
+
+  Outcome do_file(const BatchFile& file) {
+    Outcome outcome;
+    ToolContext context;
+    try {
+      run_file(file, context, outcome);
+    } catch (const std::bad_alloc&) {
+      fail(file, Error("out-of-memory", "there is not enough memory"), context, outcome);
+    } catch (const std::exception& error) {
+      fail(file, Error("internal", error.what()), context, outcome);
+    }
+    return outcome;
+  }
+
+  void run_file(const BatchFile& file, ToolContext& context, Outcome& outcome) {
+    const ToolSpec spec = make_spec_();
+    CommandLine line(spec, CommandLine::Form::one_file);
+    const auto parsed = line.parse(arguments_for_file(options_of(file, list_, line_.out_dir),
+                                                      line_.fixed_positionals, file.input,
+                                                      file.output, line_.no_clobber));
+    if (!parsed) return fail(file, parsed.error(), context, outcome);
+    context = line.context();
+    context.jobs = jobs_of_a_file_;
+    context.quiet = line_.quiet;
+    context.verbose = line_.verbose;
+    context.progress = &no_progress_;
+    context.kept_messages = &outcome.messages;
+    context.report_on_standard_output = line_.json_path == "-";
+    context.subject.file = file.input;
+
+    const std::string made_with = digest(file, context);
+    if (!line_.force) {
+      if (auto record = journal_->unchanged(file.key, made_with, file.input)) {
+        return note_unchanged(file, context, std::move(*record), outcome);
+      }
+    }
+    std::error_code known_later;  // when the file is created
+    for (const std::string& path : context.destinations) {
+      fs::create_directories(fs::path(path).parent_path(), known_later);
+    }
+    const Result<int> done = run_guarded(spec, context);
+    if (!done) return fail(file, done.error(), context, outcome);
+    if (*done != kExitDone) {
+      return fail(file, Error("failed", fmt::format("ended with exit code {}", *done)), context,
+                  outcome);
+    }
+    outcome.kind = Outcome::Kind::done;
+    outcome.report = report_of(file, context, outcome);
+    const auto record =
+        journal_record(line_.out_dir, file.key, made_with, file.input, context.report);
+    // What is gone again or no regular file cannot be known later.
+    if (record) outcome.journal = journal_->add(*record);
+  }
+
+  // A checksum of all that makes a result besides the bytes of its inputs.
+  std::string digest(const BatchFile& file, const ToolContext& context) const {
+    Json all;
+    all["tool"] = context.report.tool;
+    all["version"] = context.report.version;
+    all["input"] = base_name(file.input);  // it stands in the result's provenance
+    all["options"] = context.result_options;
+    // Other inputs by their whole paths, for the journal knows the content of those that it names.
+    all["inputs"] = line_.fixed_positionals;
+    for (const GivenOption& option : list_.option_sets[file.options].options) {
+      if (!option.names_input) continue;
+      for (const std::string& value : option.values) all["inputs"].push_back(value);
+    }
+    all["outputs"] = Json::array();
+    for (const GivenOption& option : list_.option_sets[file.options].options) {
+      if (!option.names_output) continue;
+      for (const std::string& value : option.values) {
+        all["outputs"].push_back(expanded(value, file, ""));
+      }
+    }
+    const std::string text = all.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return hex(xxh3(std::as_bytes(std::span(text))));
+  }
+
+  Json report_of(const BatchFile& file, const ToolContext& context, const Outcome& outcome) const {
+    Json report;
+    report["input"] = file.input;
+    report["output"] = file.output;
+    report["status"] = name_of(outcome.kind);
+    report["options"] = context.report.options;
+    report["inputs"] = to_json(context.report.inputs);
+    report["outputs"] = context.report.outputs;
+    report["issues"] = to_json(context.report.issues);
+    report["result"] = context.report.result;
+    return report;
+  }
+
+  void note_unchanged(const BatchFile& file, const ToolContext& context, Json record,
+                      Outcome& outcome) const {
+    outcome.kind = Outcome::Kind::unchanged;
+    outcome.report = report_of(file, context, outcome);
+    outcome.report["inputs"] = std::move(record["inputs"]);
+    for (const Json& written : record["outputs"]) {
+      outcome.report["outputs"].push_back(
+          (fs::path(line_.out_dir) / written.value("path", std::string())).string());
+    }
+    outcome.report["issues"] = std::move(record["issues"]);
+    outcome.report["result"] = std::move(record["result"]);
+  }
+
+  void fail(const BatchFile& file, Error error, ToolContext& context, Outcome& outcome) const {
+    // A word of a manifest is at fault, or else the file.
+    const bool of_line = error.code == "usage" && !list_.option_sets[file.options].options.empty();
+    if (error.where.file.empty() && of_line && !file.line.file.empty()) error.where = file.line;
+    context.report.tool = context_.report.tool;
+    context.kept_messages = &outcome.messages;
+    context.subject.file = file.input;
+    context.tell(error);
+    outcome.kind = Outcome::Kind::failed;
+    context.report.outputs.clear();
+    context.report.result = Json::object();
+    outcome.report = report_of(file, context, outcome);
+  }
+
+  // Tells what became of a file; whether to go on.
+  bool take(const BatchFile& file, Outcome outcome) {
+    if (!outcome.messages.empty()) write_message(console_.get(), outcome.messages);
+    report_.add(outcome.report);
+    if (!outcome.journal && journal_trouble_) {
+      journal_trouble_ = outcome.journal;
+    }
+    ++counts_[static_cast<int>(outcome.kind)];
+    console_->advance(1);
+    if (outcome.kind != Outcome::Kind::failed) return true;
+    if (failed_.size() < kNamedAgain) failed_.push_back(file.input);
+    return line_.keep_going;
+  }
+
+  std::size_t count(Outcome::Kind kind) const { return counts_[static_cast<int>(kind)]; }
+  std::size_t left() const { return list_.files.size() - counts_[0] - counts_[1] - counts_[2]; }
+
+  Json result() const {
+    Json json;
+    json["files"] = list_.files.size();
+    json["done"] = count(Outcome::Kind::done);
+    json["unchanged"] = count(Outcome::Kind::unchanged);
+    json["failed"] = count(Outcome::Kind::failed);
+    json["left"] = left();
+    return json;
+  }
+
+  int finish() {
+    Status kept = journal_->tidy();
+    if (!journal_trouble_) kept = journal_trouble_;
+    if (!kept) {
+      Diagnostic warning = kept.error();
+      warning.severity = Severity::warning;
+      context_.tell(std::move(warning));
+    }
+    const std::size_t failed = count(Outcome::Kind::failed);
+    if (failed > 0) context_.tell(failure());
+    std::string line =
+        fmt::format("{}: {}", context_.report.tool, counted_files(list_.files.size()));
+    if (!line_.shard.empty()) {
+      line += fmt::format(" of {} (part {})", list_.total, line_.shard);
+    }
+    const auto add = [&](std::size_t number, const char* what) {
+      if (number > 0) line += fmt::format(", {} {}", number, what);
+    };
+    add(count(Outcome::Kind::done), "done");
+    add(count(Outcome::Kind::unchanged), "unchanged");
+    add(failed, "failed");
+    add(left(), "left");
+    context_.say(line);
+    const Status written = report_.end(context_.report.issues, result());
+    if (!written) {
+      context_.tell(written.error());
+      return kExitTrouble;
+    }
+    if (failed == 0) return kExitDone;
+    return line_.keep_going ? kExitPartly : kExitTrouble;
+  }
+
+  Error failure() const {
+    std::string names;
+    for (const std::string& name : failed_) names += (names.empty() ? "" : ", ") + name;
+    if (!line_.keep_going) {
+      return Error("batch-stopped",
+                   fmt::format("stopped at {}, the first file that failed; {} left", names, left()),
+                   "--keep-going does the others; what is done is not done again");
+    }
+    const std::size_t more = count(Outcome::Kind::failed) - failed_.size();
+    if (more > 0) names += fmt::format(" and {} more", more);
+    return Error("batch-failed",
+                 fmt::format("{} failed: {}", counted_files(count(Outcome::Kind::failed)), names));
+  }
+
+  const MakeToolSpec& make_spec_;
+  const CommandLine& line_;
+  ToolContext context_;  // of the batch as a whole
+  std::unique_ptr<Console> console_;
+  Progress no_progress_;
+  BatchList list_;
+  BatchReport report_;
+  std::optional<Journal> journal_;
+  int jobs_of_a_file_ = 1;
+  std::array<std::size_t, 3> counts_{};
+  std::vector<std::string> failed_;
+  Status journal_trouble_;
+};
+
+}  // namespace
+
+bool is_for_many(const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments) {
+    if (argument == "--") return false;
+    for (const std::string option : {"--out-dir", "--manifest"}) {
+      if (argument == option || argument.rfind(option + "=", 0) == 0) return true;
+    }
+  }
+  return false;
+}
+
+int run_batch(const MakeToolSpec& make_spec, const CommandLine& line) {
+  return Batch(make_spec, line).run();
+}
+
+}  // namespace krok

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/result.h"
+#include "tools/common/batch_list.h"
+#include "tools/common/command_line.h"
+
+namespace krok {
+
+// Whether the files of a batch can be done side by side: no two results (outputs, and outputs that
+// options name) share a file, and none replaces an input, the manifest or the report. What is wrong
+// is added to `errors` (code usage).
+void check_batch(const CommandLine& line, const BatchList& list, Diagnostics& errors);
+
+}  // namespace krok

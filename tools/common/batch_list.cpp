@@ -1,0 +1,278 @@
+#include "tools/common/batch_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <unordered_set>
+
+#include "core/file.h"
+#include "core/hash.h"
+#include "core/numbers.h"
+#include "tools/common/batch_check.h"
+#include "tools/common/glob.h"
+#include "tools/common/paths.h"
+
+namespace krok {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxErrors = 20;
+
+// An input, and the folder below which its sub-folders are kept; none yet for files that were named
+// one by one.
+struct Found {
+  std::string input;
+  std::optional<std::string> base;
+};
+
+struct Shard {
+  std::int64_t index = 1, count = 1;
+};
+
+Result<Shard> parse_shard(const std::string& text) {
+  if (text.empty()) return Shard();
+  const std::size_t slash = text.find('/');
+  if (slash != std::string::npos) {
+    const auto index = parse_integer(text.substr(0, slash));
+    const auto count = parse_integer(text.substr(slash + 1));
+    if (index && count && *index >= 1 && *index <= *count && *count <= 1'000'000) {
+      return Shard{*index, *count};
+    }
+  }
+  return Error("usage", fmt::format("--shard: '{}' is no part of a list", text),
+               "write 1/4, 2/4, 3/4 and 4/4 for the four quarters");
+}
+
+// The longest path of folders that all absolute paths begin with.
+std::string common_folder(const std::vector<std::string>& paths) {
+  std::optional<fs::path> common;
+  for (const std::string& path : paths) {
+    const fs::path folder = fs::path(path).parent_path();
+    if (!common) {
+      common = folder;
+      continue;
+    }
+    fs::path shared;
+    for (auto a = common->begin(), b = folder.begin();
+         a != common->end() && b != folder.end() && *a == *b; ++a, ++b) {
+      shared /= *a;
+    }
+    common = shared;
+  }
+  return common ? common->string() : std::string();
+}
+
+bool has_extension(const std::string& path, const std::vector<std::string>& extensions) {
+  return std::find(extensions.begin(), extensions.end(), extension(path)) != extensions.end();
+}
+
+std::string words(const std::vector<std::string>& list) {
+  std::string text;
+  for (const std::string& word : list) {
+    text += (text.empty() ? "" : word == list.back() ? " or " : ", ") + word;
+  }
+  return text;
+}
+
+class Lister {
+ public:
+  Lister(const CommandLine& line, const MakeToolSpec& make_spec, Diagnostics& errors)
+      : line_(line), spec_(make_spec()), sets_(make_spec, line), errors_(errors) {}
+
+  BatchList list() {
+    const auto shard = parse_shard(line_.shard);
+    if (!shard) fail(shard.error());
+    if (line_.manifest.empty()) {
+      from_arguments();
+    } else {
+      from_manifest();
+    }
+    if (errors_.empty()) name_outputs();
+    list_.total = list_.files.size();
+    list_.option_sets = std::move(sets_).take();
+    if (errors_.empty()) check_batch(line_, list_, errors_);
+    if (errors_.size() > kMaxErrors) shorten_errors();
+    if (!errors_.empty()) return {};
+    // By name, so that a file stays in its shard when others come and go.
+    std::erase_if(list_.files, [&](const BatchFile& file) {
+      const auto hash = xxh3(std::as_bytes(std::span(file.key)));
+      return hash % static_cast<std::uint64_t>(shard->count) !=
+             static_cast<std::uint64_t>(shard->index - 1);
+    });
+    return std::move(list_);
+  }
+
+ private:
+  void fail(Error error) { errors_.push_back(std::move(error)); }
+
+  void shorten_errors() {
+    const std::size_t more = errors_.size() - kMaxErrors;
+    errors_.resize(kMaxErrors);
+    fail(Error("usage", fmt::format("and {} more", more)));
+  }
+
+  void from_arguments() {
+    const auto set = sets_.find({});
+    if (!set) return fail(set.error());
+    if (!sets_.all()[*set].ending) return fail(sets_.all()[*set].ending.error());
+    if (line_.inputs.empty()) {
+      return fail(Error("usage", "no input is given", "name files, folders or patterns"));
+    }
+    std::unordered_set<std::string> known;
+    for (const std::string& argument : line_.inputs) {
+      for (Found& found : find(argument)) {
+        if (!known.insert(absolute_path(found.input)).second) continue;
+        list_.files.push_back({std::move(found.input), {}, {}, {}, *set, {}});
+        bases_.push_back(std::move(found.base));
+      }
+    }
+  }
+
+  std::vector<Found> find(const std::string& argument) {
+    if (argument == "-") {
+      fail(Error("usage", "standard input is one file, not many", "use -o, or name files"));
+      return {};
+    }
+    std::error_code missing;
+    Result<std::vector<std::string>> paths = std::vector<std::string>();
+    std::string base = argument;
+    std::string nothing;
+    if (fs::is_directory(argument, missing)) {
+      paths = find_files_below(argument);
+      if (paths) {
+        std::erase_if(*paths,
+                      [&](const auto& path) { return !has_extension(path, spec_.batch->reads); });
+      }
+      nothing = fmt::format("no {} file is in this folder", words(spec_.batch->reads));
+    } else if (has_wildcards(argument) && !fs::exists(argument, missing)) {
+      paths = find_files(argument);
+      base = fixed_part(argument);
+      nothing = "no file fits this pattern";
+    } else {
+      return {{argument, std::nullopt}};
+    }
+    std::vector<Found> found;
+    if (!paths) {
+      fail(paths.error());
+    } else if (paths->empty()) {
+      fail(Error("usage", nothing).in_file(argument));
+    } else {
+      for (std::string& path : *paths) found.push_back({std::move(path), base});
+    }
+    return found;
+  }
+
+  void from_manifest() {
+    if (!line_.inputs.empty()) {
+      return fail(Error("usage", "inputs are given and a --manifest too", "use one of them"));
+    }
+    const auto file = InputFile::open(line_.manifest);
+    if (!file) return fail(file.error());
+    Manifest manifest = parse_manifest(file->text(), line_.manifest);
+    errors_.insert(errors_.end(), manifest.errors.begin(), manifest.errors.end());
+    for (ManifestLine& line : manifest.lines) {
+      const auto set = sets_.find(line.options);
+      if (!set) {
+        fail(Error(set.error()).in_file(line_.manifest));
+        if (line.options.empty()) return;  // wrong on the command line, for all
+        continue;
+      }
+      // The place of the options, for messages about them.
+      const Location place = line.options.empty() ? line.input.where : line.options[0].where;
+      if (line.output.text.empty() && line_.out_dir.empty()) {
+        fail(Error("manifest-line", "there is no output", "name one, or give --out-dir")
+                 .in_file(line_.manifest)
+                 .at_line(place.line, line.input.where.column));
+        continue;
+      }
+      list_.files.push_back({line.input.text, {}, line.output.text, {}, *set, place});
+      bases_.push_back(std::nullopt);
+    }
+    std::stable_sort(errors_.begin(), errors_.end(),
+                     [](const auto& a, const auto& b) { return a.where.line < b.where.line; });
+    if (manifest.lines.empty() && errors_.empty()) {
+      fail(Error("manifest-line", "the list holds no file").in_file(line_.manifest));
+    }
+  }
+
+  // Fills in keys that are missing, and outputs.
+  void name_outputs() {
+    std::vector<std::string> named;  // one by one
+    for (std::size_t i = 0; i < list_.files.size(); ++i) {
+      if (list_.files[i].key.empty() && !bases_[i]) {
+        named.push_back(absolute_path(list_.files[i].input));
+      }
+    }
+    const std::string common = common_folder(named);
+    for (std::size_t i = 0; i < list_.files.size(); ++i) {
+      BatchFile& file = list_.files[i];
+      if (file.key.empty()) {
+        const std::string base = !line_.base.empty() ? line_.base : bases_[i].value_or(common);
+        name_output(file, base);
+      } else {
+        file.key = fs::path(file.key).lexically_normal().string();
+        file.name = fs::path(file.key).replace_extension().string();
+      }
+      file.output = below(line_.out_dir, file.key);
+    }
+  }
+
+  void name_output(BatchFile& file, const std::string& base) {
+    // A folder is compared without a slash at its end.
+    fs::path folder = absolute_path(base.empty() ? "." : base);
+    if (!folder.has_filename()) folder = folder.parent_path();
+    const fs::path relative = fs::path(absolute_path(file.input)).lexically_relative(folder);
+    if (relative.empty() || *relative.begin() == "..") {
+      return fail(Error("usage", fmt::format("is not below {}", base),
+                        "--base is a folder that all inputs are in")
+                      .in_file(file.input));
+    }
+    const auto& ending = sets_.all()[file.options].ending;
+    if (!ending) {
+      Error error = ending.error();
+      error.where = file.line;
+      return fail(std::move(error));
+    }
+    file.name = fs::path(relative).replace_extension().string();
+    file.key = file.name + *ending;
+  }
+
+  const CommandLine& line_;
+  const ToolSpec spec_;
+  OptionSets sets_;
+  Diagnostics& errors_;
+  BatchList list_;
+  std::vector<std::optional<std::string>> bases_;  // of each file
+};
+
+}  // namespace
+
+std::string expanded(const std::string& value, const BatchFile& file, const std::string& out_dir) {
+  const std::string placeholder = "{name}";
+  std::string path = value;
+  for (std::size_t at = 0; (at = path.find(placeholder, at)) != std::string::npos;) {
+    path.replace(at, placeholder.size(), file.name);
+    at += file.name.size();
+  }
+  return below(out_dir, path);
+}
+
+std::vector<GivenOption> options_of(const BatchFile& file, const BatchList& list,
+                                    const std::string& out_dir) {
+  std::vector<GivenOption> options = list.option_sets[file.options].options;
+  for (GivenOption& option : options) {
+    if (!option.names_output) continue;
+    for (std::string& value : option.values) value = expanded(value, file, out_dir);
+  }
+  return options;
+}
+
+BatchList list_files(const CommandLine& line, const MakeToolSpec& make_spec, Diagnostics& errors) {
+  return Lister(line, make_spec, errors).list();
+}
+
+}  // namespace krok

@@ -1,0 +1,240 @@
+#include "tools/common/command_line.h"
+
+#include <fmt/format.h>
+
+#include "tools/common/help.h"
+#include "tools/common/one_of.h"
+
+namespace krok {
+
+namespace {
+
+constexpr const char* kCommon = "Common options";
+constexpr const char* kMany = "Many files";
+
+bool type_begins(const CLI::Option& option, const char* word) {
+  return option.get_type_name().rfind(word, 0) == 0;
+}
+
+bool is_flag(const CLI::Option& option) {
+  return option.get_items_expected_max() == 0;
+}
+
+}  // namespace
+
+std::vector<std::string> arguments_of(const std::vector<GivenOption>& options) {
+  std::vector<std::string> arguments;
+  for (const GivenOption& option : options) {
+    const std::string dashed = (option.name.size() == 1 ? "-" : "--") + option.name;
+    for (const std::string& value : option.values) {
+      if (option.is_flag) {
+        arguments.push_back(dashed + "=" + value);
+      } else {
+        arguments.push_back(dashed);
+        arguments.push_back(value);
+      }
+    }
+  }
+  return arguments;
+}
+
+CommandLine::CommandLine(const ToolSpec& spec, Form form)
+    : form_(form),
+      app_(spec.summary, spec.name),
+      tool_(spec.name),
+      takes_many_(spec.batch.has_value()) {
+  app_.set_help_flag();
+  spec.declare(app_);
+  if (form == Form::many) take_many_inputs();
+  for (CLI::Option* option : app_.get_options()) {
+    if (!option->get_positional()) own_options_.push_back(option);
+  }
+  // Here what is required may still come from a line of a manifest, or be on the command line.
+  if (form == Form::many || form == Form::own) {
+    for (CLI::Option* option : app_.get_options()) option->required(false);
+  }
+  if (form == Form::own) {
+    std::vector<CLI::Option*> positionals;
+    for (CLI::Option* option : app_.get_options()) {
+      if (option->get_positional()) positionals.push_back(option);
+    }
+    for (CLI::Option* option : positionals) app_.remove_option(option);
+  }
+  remember_values();
+  if (form == Form::single || form == Form::many) {
+    shape_help(app_, spec);
+    if (spec.batch) declare_for_many();
+    declare_common(spec);
+  } else if (form == Form::one_file) {
+    app_.add_option("-o,--output", output);
+    app_.add_flag("--no-clobber", no_clobber);
+  }
+}
+
+// The last positional becomes a list.
+void CommandLine::take_many_inputs() {
+  CLI::Option* last = nullptr;
+  for (CLI::Option* option : app_.get_options()) {
+    if (option->get_positional()) last = option;
+  }
+  if (last == nullptr) return;
+  const std::string type = last->get_type_name();
+  app_.remove_option(last);
+  inputs_option_ = app_.add_option("inputs", inputs, "")->type_name(type);
+}
+
+void CommandLine::declare_common(const ToolSpec& spec) {
+  app_.set_help_flag("-h,--help", "This text")->group(kCommon);
+  app_.set_version_flag("--version", fmt::format("{} {}", spec.name, version()), "The version")
+      ->group(kCommon);
+  if (spec.has_output) {
+    auto* option = app_.add_option("-o,--output", output, "Where the result goes")
+                       ->type_name("OUTPUT")
+                       ->group(kCommon);
+    if (spec.needs_output && form_ == Form::single) option->required();
+    app_.add_flag("--no-clobber", no_clobber, "Refuse to replace a file that exists")
+        ->group(kCommon);
+  }
+  app_.add_flag("-q,--quiet", quiet, "Errors only")->group(kCommon);
+  app_.add_flag("-v,--verbose", verbose, "Notes too")->group(kCommon);
+  app_.add_option("--json", json_path,
+                  "A report in JSON on standard output, or with --json=FILE in a file")
+      ->type_name("[=FILE]")
+      ->group(kCommon);
+  app_.add_option("--progress", style, "Progress: auto, bar, plain, json or none")
+      ->type_name("STYLE")
+      ->transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
+                                         {"bar", ProgressStyle::bar},
+                                         {"plain", ProgressStyle::plain},
+                                         {"json", ProgressStyle::json},
+                                         {"none", ProgressStyle::none}}))
+      ->default_str("auto")
+      ->group(kCommon);
+  app_.add_option("-j,--jobs", jobs, "Threads; 0 is one a core")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->default_str("0")
+      ->group(kCommon);
+}
+
+void CommandLine::declare_for_many() {
+  app_.add_option("--out-dir", out_dir,
+                  "Take many inputs: files, folders and patterns such as 'takes/**/*.bvh'; put the "
+                  "results into DIR, in the same sub-folders")
+      ->type_name("DIR")
+      ->group(kMany);
+  app_.add_option("--base", base,
+                  "Sub-folders are those below FOLDER, not those below a pattern's fixed part or "
+                  "what all named files share")
+      ->type_name("FOLDER")
+      ->group(kMany);
+  app_.add_option(
+          "--manifest", manifest,
+          "The list of files: input, output and options a line, between tabs; - is standard "
+          "input")
+      ->type_name("LIST.tsv")
+      ->group(kMany);
+  app_.add_option("--shard", shard, "Do the Ith of N parts of the list only")
+      ->type_name("I/N")
+      ->group(kMany);
+  app_.add_flag("--keep-going", keep_going,
+                "Go on after a file that failed; otherwise the first one in the list ends the run")
+      ->group(kMany);
+  app_.add_flag("--force", force,
+                "Do files anew that stand already, made from the same input and options")
+      ->group(kMany);
+}
+
+// A transform that is added last sees the values first.
+void CommandLine::remember_values() {
+  for (CLI::Option* option : own_options_) {
+    if (is_flag(*option)) continue;
+    option->transform([this, option](const std::string& value) {
+      written_[option].push_back(value);
+      return value;
+    });
+  }
+}
+
+void CommandLine::note_given() {
+  for (const CLI::Option* option : own_options_) {
+    if (option->count() == 0) continue;
+    GivenOption given;
+    given.name = option->get_single_name();
+    const auto found = written_.find(option);
+    given.is_flag = is_flag(*option);
+    given.values = found == written_.end() ? option->results() : found->second;
+    given.names_input = type_begins(*option, "IN");
+    given.names_output = type_begins(*option, "OUT");
+    given_.push_back(std::move(given));
+  }
+  if (form_ != Form::many) return;
+  for (const CLI::Option* option : app_.get_options()) {
+    if (!option->get_positional() || option == inputs_option_) continue;
+    for (const std::string& value : option->results()) fixed_positionals.push_back(value);
+  }
+}
+
+Status CommandLine::check_use_of_batch_options() const {
+  const char* const first = !base.empty()    ? "--base"
+                            : !shard.empty() ? "--shard"
+                            : keep_going     ? "--keep-going"
+                            : force          ? "--force"
+                                             : nullptr;
+  if (form_ != Form::single || first == nullptr) return {};
+  return Error("usage", fmt::format("{} is for many files", first),
+               "say where the results go by --out-dir or --manifest");
+}
+
+Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arguments) {
+  try {
+    app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    return Wish::help;
+  } catch (const CLI::CallForVersion&) {
+    return Wish::version;
+  } catch (const CLI::ParseError& error) {
+    const bool too_many = form_ == Form::single && takes_many_ &&
+                          dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    return Error("usage", error.what(),
+                 fmt::format("see {} --help{}", tool_,
+                             too_many ? "; many files go into a folder, --out-dir DIR" : ""));
+  }
+  if (Status fits = check_use_of_batch_options(); !fits) return fits.error();
+  note_given();
+  return Wish::run;
+}
+
+std::string CommandLine::help() const {
+  return help_text(app_);
+}
+
+ToolContext CommandLine::context() const {
+  ToolContext context;
+  context.report.tool = tool_;
+  context.report.version = version();
+  context.jobs = jobs;
+  context.no_clobber = no_clobber;
+  context.quiet = quiet;
+  context.verbose = verbose;
+  context.output = output;
+  context.report_on_standard_output = json_path == "-";
+  for (const GivenOption& option : given_) {
+    const Json value = option.is_flag              ? Json(option.values.back() != "false")
+                       : option.values.size() == 1 ? Json(option.values.front())
+                                                   : Json(option.values);
+    context.report.options[option.name] = value;
+    if (option.names_output) {
+      for (const std::string& path : option.values) context.destinations.push_back(path);
+      continue;
+    }
+    context.result_options[option.name] =
+        option.names_input ? Json(base_name(option.values.front())) : value;
+  }
+  for (const std::string& path : {output, json_path}) {
+    if (!path.empty()) context.destinations.push_back(path);
+  }
+  return context;
+}
+
+}  // namespace krok

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "tools/common/tool.h"
+
+namespace krok {
+
+// Gives the tool's --help its form: usage, options in groups, examples, exit codes.
+void shape_help(CLI::App& app, const ToolSpec& spec);
+
+// The text of --help.
+std::string help_text(const CLI::App& app);
+
+}  // namespace krok

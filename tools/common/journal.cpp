@@ -1,0 +1,212 @@
+#include "tools/common/journal.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "core/hash.h"
+#include "tools/common/paths.h"
+
+namespace krok {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kEnd = ".journal.jsonl";
+
+std::string text_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+std::string checksum(const InputFile& file) {
+  return hex(file.checksum());
+}
+
+bool output_holds(const Json& output, const std::string& folder) {
+  const std::string path = below(folder, text_of(output, "path"));
+  const auto size = output.find("size");
+  std::error_code missing;
+  if (size == output.end() || !size->is_number_unsigned() ||
+      fs::file_size(path, missing) != size->get<std::uintmax_t>() || missing) {
+    return false;
+  }
+  const auto file = InputFile::open(path);
+  return file && checksum(*file) == text_of(output, "xxh3");
+}
+
+const Json& array_of(const Json& record, const char* key) {
+  static const Json empty = Json::array();
+  const auto found = record.find(key);
+  return found != record.end() && found->is_array() ? *found : empty;
+}
+
+// A path for a journal in `folder`: below it, or as it is.
+std::string from_folder(const std::string& folder, const std::string& path) {
+  if (folder.empty() || fs::path(path).is_absolute() != fs::path(folder).is_absolute()) return path;
+  const fs::path relative =
+      fs::path(path).lexically_normal().lexically_relative(fs::path(folder).lexically_normal());
+  return relative.empty() ? path : relative.string();
+}
+
+}  // namespace
+
+Journal::Journal(const std::string& folder, const std::string& tool, const std::string& suffix)
+    : folder_(folder), path_(below(folder, tool + suffix + std::string(kEnd))) {
+  std::vector<std::string> paths;
+  std::error_code missing;
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, missing), end; entry != end;
+       entry.increment(missing)) {
+    const std::string name = entry->path().filename().string();
+    if (name.rfind(tool + ".", 0) == 0 && name.ends_with(kEnd)) {
+      paths.push_back(below(folder, name));
+    }
+  }
+  std::sort(paths.begin(), paths.end());
+  for (const std::string& path : paths) read(path);
+}
+
+Journal::~Journal() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void Journal::read(const std::string& path) {
+  auto file = InputFile::open(path);
+  if (!file) return;
+  files_.push_back(std::move(*file));
+  const std::string_view text = files_.back().text();
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string_view::npos) break;  // a line that a killed run did not finish
+    const std::string_view whole = text.substr(at, end - at);
+    const Json record = Json::parse(whole, nullptr, false);
+    if (record.is_object() && !text_of(record, "output").empty()) {
+      index_[text_of(record, "output")].push_back({files_.size() - 1, at, whole.size()});
+    }
+    at = end + 1;
+  }
+}
+
+std::string_view Journal::line(const Place& place) const {
+  return files_[place.file].text().substr(place.begin, place.size);
+}
+
+Result<std::string> Journal::checksum_of_input(const std::string& path) const {
+  const std::lock_guard lock(checking_);
+  if (const auto found = input_checksums_.find(path); found != input_checksums_.end()) {
+    return found->second;
+  }
+  const auto file = InputFile::open(path);
+  if (!file) return file.error();
+  return input_checksums_[path] = checksum(*file);
+}
+
+std::optional<Json> Journal::unchanged(const std::string& output, const std::string& made_with,
+                                       const std::string& input) const {
+  const auto found = index_.find(output);
+  if (found == index_.end()) return std::nullopt;
+  std::string input_checksum;
+  // The newest first.
+  for (auto place = found->second.rbegin(); place != found->second.rend(); ++place) {
+    Json record = Json::parse(line(*place), nullptr, false);
+    if (!record.is_object() || text_of(record, "made_with") != made_with) continue;
+    const std::string recorded_input = text_of(record, "input");
+    bool holds = !array_of(record, "inputs").empty() && !array_of(record, "outputs").empty();
+    for (Json& source : record["inputs"]) {
+      if (!holds) break;
+      const std::string path = text_of(source, "path");
+      if (path != recorded_input) {
+        const auto now = checksum_of_input(path);
+        holds = now && *now == text_of(source, "xxh3");
+        continue;
+      }
+      if (input_checksum.empty()) {
+        const auto file = InputFile::open(input);
+        if (!file) return std::nullopt;
+        input_checksum = checksum(*file);
+      }
+      holds = input_checksum == text_of(source, "xxh3");
+      source["path"] = input;
+    }
+    for (const Json& written : array_of(record, "outputs")) {
+      holds = holds && output_holds(written, folder_);
+    }
+    if (holds) return record;
+  }
+  return std::nullopt;
+}
+
+Status Journal::add(const Json& record) {
+  std::string text = record.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::lock_guard lock(adding_);
+  const auto fail = [&] {
+    return Error("journal-unwritable", fmt::format("cannot be written: {}", std::strerror(errno)),
+                 "the next run will do these files again")
+        .in_file(path_);
+  };
+  if (descriptor_ < 0) {
+    descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) return fail();
+    // After a line that a killed run did not finish, a new one begins.
+    const off_t size = lseek(descriptor_, 0, SEEK_END);
+    char last = '\n';
+    if (size > 0 && pread(descriptor_, &last, 1, size - 1) == 1 && last != '\n') text = "\n" + text;
+  }
+  added_ = true;
+  for (std::string_view rest = text; !rest.empty();) {
+    const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return fail();
+    rest.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return {};
+}
+
+Status Journal::tidy() {
+  if (!added_) return {};
+  ::close(descriptor_);
+  descriptor_ = -1;
+  files_.clear();
+  index_.clear();
+  read(path_);
+  std::vector<std::string> outputs;
+  for (const auto& [output, places] : index_) outputs.push_back(output);
+  std::sort(outputs.begin(), outputs.end());
+  auto file = OutputFile::create(path_);
+  if (!file) return file.error();
+  for (const std::string& output : outputs) {
+    if (Status written = file->write(line(index_[output].back())); !written) return written;
+    if (Status written = file->write("\n"); !written) return written;
+  }
+  return file->commit();
+}
+
+Result<Json> journal_record(const std::string& folder, const std::string& output,
+                            const std::string& made_with, const std::string& input,
+                            const Report& report) {
+  Json record;
+  record["output"] = output;
+  record["made_with"] = made_with;
+  record["version"] = report.version;
+  record["input"] = input;
+  record["inputs"] = to_json(report.inputs);
+  record["outputs"] = Json::array();
+  for (const std::string& path : report.outputs) {
+    const auto file = InputFile::open(path);
+    if (!file) return file.error();
+    record["outputs"].push_back({{"path", from_folder(folder, path)},
+                                 {"size", file->bytes().size()},
+                                 {"xxh3", checksum(*file)}});
+  }
+  record["issues"] = to_json(report.issues);
+  record["result"] = report.result;
+  return record;
+}
+
+}  // namespace krok

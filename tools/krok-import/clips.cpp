@@ -1,0 +1,121 @@
+#include "tools/krok-import/clips.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "capture/unique_names.h"
+#include "core/numbers.h"
+#include "core/text.h"
+
+namespace krok::import {
+
+namespace {
+
+constexpr std::string_view kPlace = "{clip}";
+constexpr std::size_t kMostListed = 20;
+
+std::string name_of(const nodes::Scene& scene, std::size_t index) {
+  const std::string& name = scene.animations[index].name;
+  return name.empty() ? fmt::format("animation {}", index) : to_utf8(name);
+}
+
+// Without characters that separate folders or that shells and other systems mind.
+std::string file_name_of(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    const bool odd = static_cast<unsigned char>(c) < 32 || c == 127 ||
+                     std::string_view("/\\:*?\"<>|{}$`'&;!").find(c) != std::string_view::npos;
+    result += odd ? '_' : c;
+  }
+  while (result.starts_with('.') || result.starts_with('-')) result[0] = '_';
+  if (result.size() > 100) {
+    std::size_t end = 100;
+    while ((static_cast<unsigned char>(result[end]) & 0xC0) == 0x80) --end;
+    result.resize(end);
+  }
+  return result;
+}
+
+std::vector<ChosenClip> all_clips(const nodes::Scene& scene) {
+  std::vector<ChosenClip> clips;
+  UniqueNames names;
+  for (std::size_t i = 0; i < scene.animations.size(); ++i) {
+    const std::string name = name_of(scene, i);
+    clips.push_back({static_cast<int>(i), name, names.make(file_name_of(name))});
+  }
+  return clips;
+}
+
+std::string list_of(const std::vector<ChosenClip>& clips) {
+  std::string list;
+  for (std::size_t i = 0; i < clips.size() && i < kMostListed; ++i) {
+    list += fmt::format("{}{} ({})", i == 0 ? "" : ", ", i, shown(clips[i].name));
+  }
+  return list + (clips.size() > kMostListed ? ", ..." : "");
+}
+
+}  // namespace
+
+Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const std::string& wanted,
+                                             const std::string& file, ToolContext& context) {
+  std::vector<ChosenClip> clips = all_clips(scene);
+  if (clips.empty() && (wanted.empty() || wanted == "all")) return clips;
+  if (clips.empty()) {
+    return Error("import-missing",
+                 fmt::format("no animation is in it: there is no --clip {}", shown(wanted)))
+        .in_file(file);
+  }
+  for (const ChosenClip& clip : clips) {
+    if (clip.name == wanted) return std::vector{clip};
+  }
+  if (wanted == "all") return clips;
+  if (!wanted.empty()) {
+    const auto number = parse_integer(wanted);
+    if (number && *number >= 0 && *number < static_cast<long long>(clips.size())) {
+      return std::vector{clips[static_cast<std::size_t>(*number)]};
+    }
+    return Error("import-clip", fmt::format("no animation is called {}", shown(wanted)),
+                 "it has " + list_of(clips))
+        .in_file(file);
+  }
+  if (clips.size() > 1) {
+    Diagnostic told;
+    told.severity = Severity::warning;
+    told.code = "import-clips";
+    told.message = fmt::format("of {} animations the first, {}, is taken; they are {}",
+                               clips.size(), shown(clips[0].name), list_of(clips));
+    told.hint = "--clip takes another by its name or number, --clip all takes all";
+    told.where.file = file;
+    context.tell(std::move(told));
+  }
+  clips.resize(1);
+  return clips;
+}
+
+Result<std::string> clip_path(const std::string& pattern, const std::string& option,
+                              const ChosenClip& clip, bool several, const std::string& extension) {
+  if (pattern.empty() || pattern == "-") {
+    if (several && pattern == "-") {
+      return Error("usage",
+                   fmt::format("{} -: several clips do not go to standard output", option));
+    }
+    return pattern;
+  }
+  std::string path = pattern;
+  std::error_code ignored;
+  if (path.ends_with('/') || std::filesystem::is_directory(path, ignored)) {
+    path += std::string(path.ends_with('/') ? "" : "/") + std::string(kPlace) + extension;
+  }
+  const std::size_t base = path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1;
+  const std::size_t place = path.find(kPlace, base);
+  if (place == std::string::npos) {
+    if (!several) return path;
+    return Error(
+        "usage", fmt::format("{} {}: several clips need names of their own", option, pattern),
+        fmt::format("put {{clip}} where the name goes: {} 'walk_{{clip}}{}'", option, extension));
+  }
+  return path.replace(place, kPlace.size(), clip.file_name);
+}
+
+}  // namespace krok::import

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/file.h"
+#include "core/result.h"
+#include "formats/registry/registry.h"
+#include "tools/common/tool.h"
+#include "tools/krok-import/options.h"
+
+namespace krok::import {
+
+// Whether a file of this kind is a scene of nodes, with characters, cameras and animations, and no
+// capture.
+bool is_scene(registry::Kind kind);
+
+// Reads a scene and writes what is asked for: the motion of one or all of its animations, the
+// character as a model, a camera, morph targets and their weights. All files appear or none. An
+// Error (code import-missing) for something that the file does not hold.
+Result<int> import_scene(const InputFile& input, registry::Kind kind, const Options& options,
+                         ToolContext& context);
+
+}  // namespace krok::import

@@ -1,0 +1,75 @@
+#include "tools/krok-import/stream.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "formats/anim/anim.h"
+#include "formats/bvh/bvh_reader.h"
+#include "formats/model/model_format.h"
+#include "scene/model.h"
+#include "tools/common/output_kind.h"
+#include "tools/krok-import/facts.h"
+#include "tools/krok-import/output_set.h"
+#include "tools/krok-import/source.h"
+
+namespace krok::import {
+
+std::optional<Result<int>> stream_capture(const InputFile& input, registry::Kind kind,
+                                          const Options& options, ToolContext& context) {
+  using registry::Kind;
+  if (kind != Kind::bvh || context.output.empty() || options.resample > 0 ||
+      !options.skeleton.empty() || !check_output_kind(context.output, "-o", Kind::anim)) {
+    return std::nullopt;
+  }
+  auto how = read_options(options);
+  if (!how) return std::nullopt;
+  how->jobs = context.jobs;
+  how->progress = context.progress;
+  auto capture = bvh::open(input.text(), input.path(), bvh_options(options, *how),
+                           [&](std::size_t offset) { input.release_before(offset); });
+  if (!capture) return std::nullopt;
+
+  std::atomic<bool> faulty = false;
+  FrameSource frames = capture->frames;
+  frames.read = [&](int first, int count, std::span<Vec3f> positions,
+                    std::span<Quatf> orientations) {
+    Status read = capture->frames.read(first, count, positions, orientations);
+    if (!read) faulty = true;
+    return read;
+  };
+  Provenance provenance;
+  const auto last_words = [&] {
+    context.tell(capture->diagnostics);
+    provenance = context.provenance();
+    provenance.conversions = capture->clip.provenance.conversions;
+    return provenance;
+  };
+  const anim::WriteOptions writing{.orientation = options.orientation, .jobs = context.jobs};
+  OutputSet outputs(context);
+  Status added = outputs.add(context.output, [&](OutputFile& file) {
+    return anim::write(frames, last_words, writing, file);
+  });
+  if (faulty) return std::nullopt;
+  if (added) {
+    added = outputs.add(options.model, [&](OutputFile& file) {
+      Model model;
+      model.skeleton = capture->clip.skeleton;
+      model.provenance = provenance;
+      return model::write(model, {.orientation = options.orientation}, file);
+    });
+  }
+  if (added) added = outputs.finish();
+  if (!added) return Result<int>(added.error());
+
+  Json result = facts_of(capture->frames);
+  result.update(facts_of(capture->conventions));
+  result["source_rate"] = to_json(capture->rate);
+  result.update(details_of(*capture));
+  result["repairs"] = capture->repairs;
+  context.report.result = std::move(result);
+  context.say(fmt::format("{} -> {}", line_about(options.input, capture->frames), outputs.names()));
+  return Result<int>(kExitDone);
+}
+
+}  // namespace krok::import
