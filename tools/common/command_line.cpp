@@ -40,11 +40,12 @@ std::vector<std::string> arguments_of(const std::vector<GivenOption>& options) {
 
 CommandLine::CommandLine(const ToolSpec& spec, Form form)
     : form_(form),
+      declare_(spec.declare),
       app_(spec.summary, spec.name),
       tool_(spec.name),
       takes_many_(spec.batch.has_value()) {
   app_.set_help_flag();
-  spec.declare(app_);
+  declare_(app_);
   if (form == Form::many) take_many_inputs();
   for (CLI::Option* option : app_.get_options()) {
     if (!option->get_positional()) own_options_.push_back(option);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -79,6 +80,8 @@ class CommandLine {
   Status check_use_of_batch_options() const;
 
   Form form_;
+  // Keeps alive what the options of app_ write to.
+  std::function<void(CLI::App&)> declare_;
   CLI::App app_;
   CLI::Option* inputs_option_ = nullptr;
   std::vector<CLI::Option*> own_options_;
