@@ -3,6 +3,7 @@
 // position channels, an End Site lost, a frame shifted, a conversion where none was asked for.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -125,7 +126,8 @@ TEST_F(Corpus, LibraryAgreesWithIndependentKinematicsInBothReadings) {
 }
 
 TEST_F(Corpus, ImportedFilesAgreeWithIndependentKinematics) {
-  const std::string out = testing::TempDir() + "krok_corpus_bvh.anim";
+  const std::string out =
+      testing::TempDir() + "krok_corpus_bvh_" + std::to_string(getpid()) + ".anim";
   for (const Listed& file : files_) {
     SCOPED_TRACE(file.path);
     const std::string path = kFolder + "/" + file.path;
@@ -193,7 +195,8 @@ TEST_F(Corpus, FramesInFrontOfCmuConversionsAreFoundAsRestPoses) {
 
 // Read, write, read: the same joints, and the same motion within what is printed.
 TEST_F(Corpus, WrittenFilesReadBackAsTheSameMotion) {
-  const std::string out = testing::TempDir() + "krok_corpus_written.bvh";
+  const std::string out =
+      testing::TempDir() + "krok_corpus_written_" + std::to_string(getpid()) + ".bvh";
   for (const Listed& file : files_) {
     SCOPED_TRACE(file.path);
     const auto first = bvh::read(text_of(kFolder + "/" + file.path), file.path);

@@ -3,6 +3,7 @@
 // that go wrong near gimbal lock.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -32,7 +33,8 @@ struct Errors {
 };
 
 Errors round_trip(const Clip& clip, const bvh::WriteOptions& writing) {
-  const std::string path = testing::TempDir() + "krok_round_trip.bvh";
+  const std::string path =
+      testing::TempDir() + "krok_round_trip_" + std::to_string(getpid()) + ".bvh";
   auto output = OutputFile::create(path);
   EXPECT_TRUE(output.ok());
   EXPECT_TRUE(bvh::write(clip, writing, *output).ok());

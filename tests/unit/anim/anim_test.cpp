@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -217,7 +218,8 @@ TEST(Anim, FramesMadeWhenAskedForGiveTheSameFile) {
         EXPECT_GT(frame, released);
         released = frame;
       };
-      const std::string path = testing::TempDir() + "krok-anim-source.anim";
+      const std::string path =
+          testing::TempDir() + "krok-anim-source-" + std::to_string(getpid()) + ".anim";
       auto file = OutputFile::create(path);
       ASSERT_TRUE(file.ok());
       bool all_read = false;

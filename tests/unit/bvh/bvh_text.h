@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
@@ -66,7 +67,8 @@ inline const Diagnostic* find(const Diagnostics& diagnostics, const std::string&
 }
 
 inline std::string written(const Clip& clip, const WriteOptions& options = WriteOptions()) {
-  const std::string path = testing::TempDir() + "krok_unit_bvh.bvh";
+  const std::string path =
+      testing::TempDir() + "krok_unit_bvh_" + std::to_string(getpid()) + ".bvh";
   auto file = OutputFile::create(path);
   EXPECT_TRUE(file.ok());
   const Status done = write(clip, options, *file);

@@ -1,6 +1,8 @@
 // If these fail, exported captures differ from the motion they were made of, or other programs
 // cannot read them.
 
+#include <unistd.h>
+
 #include <cmath>
 
 #include "math/quaternion.h"
@@ -186,7 +188,8 @@ TEST(BvhWriter, NoFramesAndOneJoint) {
 }
 
 TEST(BvhWriter, RefusesWhatItCannotWrite) {
-  auto file = OutputFile::create(testing::TempDir() + "krok_unit_bvh_refused.bvh");
+  auto file =
+      OutputFile::create(testing::TempDir() + "krok_unit_bvh_refused_" + std::to_string(getpid()));
   ASSERT_TRUE(file.ok());
   Clip clip = arm_clip(2);
   WriteOptions options;

@@ -86,7 +86,7 @@ TEST(CsvWriter, AClipWithoutFramesGivesTheHeader) {
 TEST(CsvWriter, RefusesWhatIsNotFinite) {
   Clip clip = two_joints();
   clip.positions[2].x() = std::numeric_limits<float>::quiet_NaN();
-  auto file = OutputFile::create(testing::TempDir() + "krok_csv_nan");
+  auto file = OutputFile::create(testing::TempDir() + "krok_csv_nan_" + std::to_string(getpid()));
   ASSERT_TRUE(file.ok());
   const Status refused = csv::write(clip, *file);
   ASSERT_FALSE(refused.ok());
