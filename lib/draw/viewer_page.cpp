@@ -48,18 +48,15 @@ Status add_motion(const ViewedMotion& viewed, Parts& parts) {
     }
     item["body"] = pack_body(*viewed.body, blob);
   }
+  if (Status good = check(viewed.keys, clip.skeleton, clip.duration()); !good) return good;
   Json contacts = Json::array();
-  for (const Contact& contact : viewed.contacts) {
-    if (contact.joint < 0 || contact.joint >= clip.joint_count()) {
-      return Error("viewer-index", fmt::format("a contact is of joint {}, which {} lacks",
-                                               contact.joint, viewed.name));
-    }
+  for (const Contact& contact : viewed.keys.contacts) {
     contacts.push_back({{"joint", contact.joint}, {"start", contact.start}, {"end", contact.end}});
   }
   if (!contacts.empty()) item["contacts"] = std::move(contacts);
   Json keytimes = Json::array();
-  for (const Mark& mark : viewed.keytimes) {
-    keytimes.push_back({{"time", mark.time}, {"name", mark.name}});
+  for (const Keytime& key : viewed.keys.keytimes) {
+    keytimes.push_back({{"time", key.time}, {"name", key.name}});
   }
   if (!keytimes.empty()) item["keytimes"] = std::move(keytimes);
   parts.finish(std::move(item), blob.base64());

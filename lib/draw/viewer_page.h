@@ -9,21 +9,12 @@
 #include "scene/camera_track.h"
 #include "scene/clip.h"
 #include "scene/model.h"
+#include "scene/motion_keys.h"
 
 // A page that plays motions in a browser: one HTML file with its program and its data inside, which
 // opens from disk without a network. The program is in the folder page/.
 
 namespace krok::draw {
-
-struct Contact {
-  int joint = 0;
-  double start = 0.0, end = 0.0;  // seconds
-};
-
-struct Mark {
-  double time = 0.0;  // seconds
-  std::string name;
-};
 
 // A motion as a skeleton, and as a character where a body is given.
 struct ViewedMotion {
@@ -32,8 +23,7 @@ struct ViewedMotion {
   bool visible = true;
   const Clip* clip = nullptr;
   const Model* body = nullptr;  // of the same joints as the clip; null for none
-  std::vector<Contact> contacts;
-  std::vector<Mark> keytimes;
+  MotionKeys keys;              // coloured and marked on the time line
 };
 
 struct ViewedCamera {
@@ -63,9 +53,8 @@ struct ViewerPage {
 
 // The page as HTML text, in UTF-8. Rotations are stored to 1.5e-4 radians relative to the parent,
 // positions as floats; a minute of 60 joints at 60 frames a second takes less than 3 MB. The same
-// input gives the same bytes. Codes: those of check() for clips, models and cameras; viewer-body
-// for a body whose joints are not the clip's; viewer-index for a contact of a joint that is not
-// there.
+// input gives the same bytes. Codes: those of check() for clips, models, cameras and keys;
+// viewer-body for a body whose joints are not the clip's.
 Result<std::string> write_viewer_page(const ViewerPage& page);
 
 }  // namespace krok::draw

@@ -9,6 +9,7 @@
 #include "formats/gltf/gltf_reader.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
+#include "tools/common/keys_sidecar.h"
 #include "tools/common/motion_input.h"
 
 namespace krok::view {
@@ -21,7 +22,19 @@ std::string name_of(const std::string& path) {
   return path == "-" ? "standard input" : base_name(path);
 }
 
-Status add_file(const std::string& path, ToolContext& context, Files& files) {
+// Contacts and keytimes: those in the file beside the motion, or found.
+Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice choice,
+                           ToolContext& context) {
+  if (choice == KeysChoice::none) return MotionKeys();
+  if (choice == KeysChoice::automatic) {
+    auto sidecar = read_keys_beside(path, clip, context);
+    if (!sidecar) return std::move(sidecar).error();
+    return *sidecar ? std::move((*sidecar)->keys) : MotionKeys();
+  }
+  return find_keys(clip, find_roles(clip.skeleton), context);
+}
+
+Status add_file(const std::string& path, KeysChoice choice, ToolContext& context, Files& files) {
   auto input = context.open_input(path);
   if (!input) return input.error();
   switch (registry::identify(input->path(), input->bytes())) {
@@ -53,7 +66,9 @@ Status add_file(const std::string& path, ToolContext& context, Files& files) {
     default: {
       auto clip = read_motion(*input, context);
       if (!clip) return std::move(clip).error().in_file(path);
-      files.motions.push_back({path, name_of(path), std::move(*clip), nullptr});
+      auto keys = keys_of(path, *clip, choice, context);
+      if (!keys) return std::move(keys).error().in_file(path);
+      files.motions.push_back({path, name_of(path), std::move(*clip), nullptr, std::move(*keys)});
       return {};
     }
   }
@@ -71,7 +86,7 @@ void share_models(Files& files) {
   }
   for (Files::Character& character : files.models) {
     if (character.used) continue;
-    Files::Motion still{character.path, character.name, {}, nullptr};
+    Files::Motion still{character.path, character.name, {}, nullptr, {}};
     still.clip.skeleton = character.model.skeleton;
     if (!character.model.triangles.empty()) still.body = &character.model;
     files.motions.push_back(std::move(still));
@@ -107,7 +122,7 @@ Status build_bodies(const Options& options, ToolContext& context, Files& files) 
 Result<Files> read_files(const Options& options, ToolContext& context) {
   Files files;
   for (const std::string& path : options.inputs) {
-    if (Status added = add_file(path, context, files); !added) return added.error();
+    if (Status added = add_file(path, options.keys, context, files); !added) return added.error();
   }
   share_models(files);
   if (Status built = build_bodies(options, context, files); !built) return built.error();

@@ -20,6 +20,7 @@ struct Files {
     std::string path, name;
     Clip clip;
     const Model* body = nullptr;  // of `models` or `bodies`
+    MotionKeys keys;
   };
   struct Glb {
     std::string name;

@@ -7,6 +7,7 @@
 #include "core/numbers.h"
 #include "draw/viewer_page.h"
 #include "tools/common/one_of.h"
+#include "tools/common/output_set.h"
 #include "tools/krok-view/files.h"
 
 namespace krok::view {
@@ -33,6 +34,7 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
     viewed.visible = visible(page.motions.size());
     viewed.clip = &motion.clip;
     viewed.body = motion.body;
+    viewed.keys = motion.keys;
     page.motions.push_back(std::move(viewed));
   }
   for (const Files::Glb& glb : files.glbs) {
@@ -89,6 +91,14 @@ void declare(CLI::App& app, Options& options) {
                                       {"medium", BodyChoice::medium},
                                       {"high", BodyChoice::high}}))
       ->default_str("auto");
+  app.add_option("--keys", options.keys,
+                 "Contacts, coloured, and keytimes, marked on the time line: auto (those in the "
+                 "file NAME.keys.json beside a motion), find (found anew, as krok-keys does), none")
+      ->type_name("WHICH")
+      ->transform(one_of<KeysChoice>({{"auto", KeysChoice::automatic},
+                                      {"find", KeysChoice::find},
+                                      {"none", KeysChoice::none}}))
+      ->default_str("auto");
   app.add_option("--title", options.title, "The page's title; otherwise the first file's name")
       ->type_name("WORDS");
 }
@@ -107,11 +117,9 @@ Result<int> run(const Options& options, ToolContext& context) {
 
   auto html = draw::write_viewer_page(page_of(*files, options, layout));
   if (!html) return html.error();
-  auto file = OutputFile::create(context.output, context.output_options());
-  if (!file) return file.error();
-  if (Status written = file->write(*html); !written) return written.error();
-  if (Status done = file->commit(); !done) return done.error();
-  context.wrote(context.output);
+  const Status written =
+      write_output(context, context.output, [&](OutputFile& file) { return file.write(*html); });
+  if (!written) return written.error();
 
   Json shown = Json::array();
   for (const Files::Motion& motion : files->motions) {
@@ -119,7 +127,9 @@ Result<int> run(const Options& options, ToolContext& context) {
                      {"joints", motion.clip.joint_count()},
                      {"frames", motion.clip.frame_count()},
                      {"rate", motion.clip.rate},
-                     {"vertices", motion.body ? motion.body->vertex_count() : 0}});
+                     {"vertices", motion.body ? motion.body->vertex_count() : 0},
+                     {"contacts", motion.keys.contacts.size()},
+                     {"keytimes", motion.keys.keytimes.size()}});
   }
   context.report.result["motions"] = std::move(shown);
   context.report.result["files"] = files->glbs.size();

@@ -10,12 +10,14 @@
 namespace krok::view {
 
 enum class Layout : unsigned char { automatic, apart, together, list };
+enum class KeysChoice : unsigned char { automatic, none, find };
 enum class BodyChoice : unsigned char { automatic, none, low, medium, high };
 
 struct Options {
   std::vector<std::string> inputs;
   Layout layout = Layout::automatic;
   BodyChoice body = BodyChoice::automatic;
+  KeysChoice keys = KeysChoice::automatic;
   bool difference = false;
   std::string title;
 };

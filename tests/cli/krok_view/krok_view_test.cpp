@@ -74,6 +74,33 @@ TEST_F(KrokView, ShowsAModelAloneInItsReferencePose) {
   EXPECT_EQ(items[0]["frames"], 0);
 }
 
+TEST_F(KrokView, ShowsTheKeysThatStandBesideAMotion) {
+  const std::string motion = put("walk.bvh", get(kWalk));
+  ASSERT_EQ(view({motion, "--body", "none"}).exit_code, 0);
+  EXPECT_FALSE(data()["items"][0].contains("keytimes"));
+  put("walk.keys.json", R"({"schema": "krok.keys/1", "keytimes": [{"name": "hop", "time": 1.5}],
+      "contacts": [{"joint": "LeftFoot", "start": 1, "end": 2, "place": [0, 0, 0]}]})");
+  ASSERT_EQ(view({motion, "--body", "none"}).exit_code, 0);
+  const json item = data()["items"][0];
+  ASSERT_EQ(item["keytimes"].size(), 1U);
+  EXPECT_EQ(item["keytimes"][0]["name"], "hop");
+  ASSERT_EQ(item["contacts"].size(), 1U);
+  EXPECT_EQ(item["contacts"][0]["end"], 2.0);
+  ASSERT_EQ(view({motion, "--body", "none", "--keys", "none"}).exit_code, 0);
+  EXPECT_FALSE(data()["items"][0].contains("keytimes"));
+  ASSERT_EQ(view({motion, "--body", "none", "--keys", "find"}).exit_code, 0);
+  EXPECT_EQ(data()["items"][0]["keytimes"].size(), 17U);
+}
+
+TEST_F(KrokView, SaysWhatIsWrongWithTheKeysBesideAMotion) {
+  const std::string motion = put("walk.bvh", get(kWalk));
+  put("walk.keys.json", R"({"schema": "krok.keys/1", "keytimes": [{"name": "hop", "time": 99}]})");
+  const ToolRun run = view({motion, "--body", "none"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("walk.keys.json:1:"));
+  EXPECT_TRUE(has_code(run.err, "keys-time")) << run.err;
+}
+
 TEST_F(KrokView, ShowsACamera) {
   ASSERT_EQ(view({kMotion, kFrozen + "camera.cam", "--body", "none"}).exit_code, 0);
   const json items = data()["items"];

@@ -131,10 +131,10 @@ TEST(ViewerPage, RefusesAContactOfNoJoint) {
   const Clip clip = test::swinging_clip(test::human_skeleton(), 2, 60);
   ViewerPage page;
   page.motions.push_back(viewed(clip));
-  page.motions[0].contacts.push_back({clip.joint_count(), 0, 1});
+  page.motions[0].keys.contacts.push_back({clip.joint_count(), 0, 0});
   const auto html = write_viewer_page(page);
   ASSERT_FALSE(html.ok());
-  EXPECT_EQ(html.error().code, "viewer-index");
+  EXPECT_EQ(html.error().code, "keys-joint");
 }
 
 }  // namespace

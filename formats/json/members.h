@@ -1,0 +1,43 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+#include "formats/json/located_json.h"
+
+namespace krok::json {
+
+// Takes members out of objects as a file's specification tells them. What is wrong is said with the
+// words for the object ("a contact"), the member's key, and line and column.
+class Members {
+ public:
+  // Errors get the codes FORMAT-structure (a member that is missing or not known, another kind of
+  // object) and FORMAT-value. `text` is what parse() was given and must outlive this.
+  Members(std::string_view text, std::string format) : text_(text), format_(std::move(format)) {}
+
+  // An error about a value: FORMAT-value, at its place.
+  Error wrong(const Value& value, std::string message, std::string hint = {}) const;
+
+  // Whether `object` is an object with none but these keys.
+  Status only(const Value& object, std::string_view what,
+              std::initializer_list<std::string_view> keys) const;
+
+  // The member, which must be there and of that kind.
+  Result<const Value*> get(const Value& object, std::string_view what, std::string_view key,
+                           Value::Kind kind) const;
+
+  // The same of a member that may be left out: nullptr then.
+  Result<const Value*> find(const Value& object, std::string_view what, std::string_view key,
+                            Value::Kind kind) const;
+
+  // Whether the member "schema" is there and says `schema`.
+  Status has_schema(const Value& object, std::string_view what, std::string_view schema) const;
+
+ private:
+  std::string_view text_;
+  std::string format_;
+};
+
+}  // namespace krok::json

@@ -1,0 +1,311 @@
+#include "contacts/contacts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "contacts/series_internal.h"
+
+namespace krok {
+
+namespace {
+
+constexpr double kUsualLeg = 0.86;     // metres
+constexpr double kSamePlace = 0.15;    // metres
+constexpr double kJitterSpeed = 0.06;  // metres a second
+constexpr double kJitterTimes = 2;
+constexpr double kLowestCutoff = 5;     // Hz
+constexpr double kRefineWindow = 0.12;  // seconds
+
+// A run of frames in which a point is still, edges in frames with fractions.
+struct Run {
+  int track = 0;
+  double first = 0, last = 0;
+  bool open_start = false, open_end = false;
+  Vec3 place = Vec3::Zero();
+
+  bool overlaps(const Run& other) const { return first < other.last && other.first < last; }
+};
+
+struct Tracks {
+  double rate = 30;
+  std::vector<std::vector<Vec3>> raw, smooth;
+  std::vector<double> jitter;  // metres a second, what smoothing leaves
+};
+
+// Where a value crosses `threshold` between frame f - 1 and f.
+double crossing(double before, double after, double threshold, int f) {
+  const double rise = after - before;
+  if (rise == 0) return f;
+  return f - 1 + std::clamp((threshold - before) / rise, 0.0, 1.0);
+}
+
+// Runs of low values: on at or below `on`, off above `off`. The edges are where the value crosses
+// those.
+std::vector<Run> low_runs(const std::vector<double>& values, double on, double off) {
+  std::vector<Run> runs;
+  bool within = false;
+  for (int f = 0; f < static_cast<int>(values.size()); ++f) {
+    const double now = values[static_cast<std::size_t>(f)];
+    const double before = f > 0 ? values[static_cast<std::size_t>(f - 1)] : now;
+    if (!within && now <= on) {
+      within = true;
+      Run run;
+      run.open_start = f == 0;
+      run.first = f == 0 ? 0 : crossing(before, now, on, f);
+      runs.push_back(run);
+    } else if (within && now > off) {
+      within = false;
+      runs.back().last = crossing(before, now, off, f);
+    }
+  }
+  if (within) {
+    runs.back().last = static_cast<double>(values.size()) - 1;
+    runs.back().open_end = true;
+  }
+  return runs;
+}
+
+Vec3 middle_place(const std::vector<Vec3>& track, double first, double last) {
+  std::array<std::vector<double>, 3> values;
+  const int from = static_cast<int>(std::ceil(first)), to = static_cast<int>(std::floor(last));
+  for (int f = std::min(from, to); f <= std::max(from, to); ++f) {
+    const auto place =
+        static_cast<std::size_t>(std::clamp(f, 0, static_cast<int>(track.size()) - 1));
+    for (int i = 0; i < 3; ++i) values[static_cast<std::size_t>(i)].push_back(track[place][i]);
+  }
+  return {contacts::middle(values[0]), contacts::middle(values[1]), contacts::middle(values[2])};
+}
+
+// Cuts a run to where it is no higher above its own level than the thresholds say.
+void cut_to_level(const std::vector<Vec3>& track, double on, double off, Run& run) {
+  const int from = static_cast<int>(std::ceil(run.first)),
+            to = static_cast<int>(std::floor(run.last));
+  std::vector<double> heights;
+  for (int f = from; f <= to; ++f) {
+    heights.push_back(std::abs(track[static_cast<std::size_t>(f)].y() - run.place.y()));
+  }
+  if (heights.empty()) return;
+  const std::vector<Run> level = low_runs(heights, on, off);
+  const auto longest =
+      std::ranges::max_element(level, {}, [](const Run& part) { return part.last - part.first; });
+  if (longest == level.end()) return;
+  if (!longest->open_start) run.first = from + longest->first, run.open_start = false;
+  if (!longest->open_end) run.last = from + longest->last, run.open_end = false;
+}
+
+class Finder {
+ public:
+  Finder(const Clip& clip, const ContactOptions& options, FoundContacts& found)
+      : clip_(clip), options_(options), found_(found), scale_(found.leg_length / kUsualLeg) {}
+
+  void find() {
+    take_tracks();
+    for (std::size_t t = 0; t < found_.tracks.size(); ++t) find_runs(static_cast<int>(t));
+    leave_out_air();
+    for (Run& run : runs_) refine(run);
+    set_heights();
+    for (const Run& run : runs_) {
+      found_.stays.push_back({run.track, run.first / clip_.rate, run.last / clip_.rate,
+                              run.open_start, run.open_end, run.place});
+    }
+    std::ranges::sort(found_.stays, {}, [](const Stay& s) { return std::tuple(s.track, s.start); });
+  }
+
+ private:
+  void take_tracks() {
+    tracks_.rate = clip_.rate;
+    for (PointTrack& track : found_.tracks) {
+      tracks_.raw.push_back(track_of(clip_, track.point, found_.leg_length));
+      const double jitter = contacts::jitter_of(tracks_.raw.back());
+      const double wanted = contacts::cutoff_for(jitter, kJitterSpeed * scale_, clip_.rate);
+      const double cutoff =
+          std::clamp(wanted, std::min(kLowestCutoff, options_.cutoff), options_.cutoff);
+      tracks_.smooth.push_back(contacts::smoothed(tracks_.raw.back(), clip_.rate, cutoff));
+      tracks_.jitter.push_back(contacts::speed_jitter(jitter, cutoff, clip_.rate));
+      track.speed = contacts::norms(contacts::velocities(tracks_.smooth.back(), clip_.rate));
+    }
+  }
+
+  const std::vector<Vec3>& smooth(const Run& run) const {
+    return tracks_.smooth[static_cast<std::size_t>(run.track)];
+  }
+
+  void find_runs(int track) {
+    const double jitter = kJitterTimes * tracks_.jitter[static_cast<std::size_t>(track)];
+    std::vector<Run> runs = low_runs(found_.tracks[static_cast<std::size_t>(track)].speed,
+                                     std::hypot(options_.on_speed * scale_, jitter),
+                                     std::hypot(options_.off_speed * scale_, jitter));
+    std::vector<Run> kept;
+    for (Run& run : runs) {
+      run.track = track;
+      run.place = middle_place(smooth(run), run.first, run.last);
+      cut_to_level(smooth(run), options_.on_height * scale_, options_.off_height * scale_, run);
+      const bool again = !kept.empty() &&
+                         run.first - kept.back().last < 0.5 * options_.shortest * clip_.rate &&
+                         (run.place - kept.back().place).norm() < options_.on_height * scale_;
+      if (again) {
+        kept.back().last = run.last;
+        kept.back().open_end = run.open_end;
+        kept.back().place = middle_place(smooth(run), kept.back().first, run.last);
+      } else {
+        kept.push_back(run);
+      }
+    }
+    // What is cut off by the clip's ends may have been longer.
+    std::erase_if(kept, [&](const Run& run) {
+      if (run.open_start || run.open_end) return false;
+      return run.last - run.first < options_.shortest * clip_.rate;
+    });
+    runs_.insert(runs_.end(), kept.begin(), kept.end());
+  }
+
+  const SolePoint& point(const Run& run) const {
+    return found_.tracks[static_cast<std::size_t>(run.track)].point;
+  }
+
+  // Whether the same part of a foot stood clearly lower in this place.
+  bool floor_is_lower(const Run& run) const {
+    return std::ranges::any_of(runs_, [&](const Run& other) {
+      if (point(other).part != point(run).part) return false;
+      const Vec3 apart = other.place - run.place;
+      return -apart.y() > options_.off_height * scale_ &&
+             Vec2(apart.x(), apart.z()).norm() < kSamePlace * scale_;
+    });
+  }
+
+  // Whether the other foot stands lower all the while: this one then never bears the figure.
+  bool other_foot_bears(const Run& run) const {
+    for (double f = std::ceil(run.first); f <= run.last; ++f) {
+      const bool borne = std::ranges::any_of(runs_, [&](const Run& other) {
+        return point(other).side != point(run).side && other.first <= f && f <= other.last &&
+               run.place.y() - other.place.y() > options_.off_height * scale_ + rise_of(run, other);
+      });
+      if (!borne) return false;
+    }
+    return true;
+  }
+  // How much higher one part of a flat foot is than the other's; parts are points at the sole, so
+  // nothing, but a joint for the ball lies in the foot.
+  double rise_of(const Run& run, const Run& other) const {
+    return point(run).part == point(other).part ? 0 : 0.03 * scale_;
+  }
+
+  void leave_out_air() {
+    std::vector<Run> kept;
+    for (const Run& run : runs_) {
+      if (!floor_is_lower(run) && !other_foot_bears(run)) kept.push_back(run);
+    }
+    runs_ = std::move(kept);
+  }
+
+  void refine(Run& run) const {
+    if (!options_.refine || run.last - run.first < 2) return;
+    const auto& raw = tracks_.raw[static_cast<std::size_t>(run.track)];
+    const double window = std::max(kRefineWindow * clip_.rate, 4.0);
+    double first = run.first, last = run.last;
+    if (!run.open_start) first = contacts::break_near(raw, run.first, window, true);
+    if (!run.open_end) last = contacts::break_near(raw, run.last, window, false);
+    if (last > first) run.first = first, run.last = last;
+  }
+
+  // The support under a point at a frame: the level of the stay it is in, between two stays from
+  // one to the other.
+  void set_heights() {
+    for (std::size_t t = 0; t < found_.tracks.size(); ++t) {
+      PointTrack& track = found_.tracks[t];
+      const auto& smooth = tracks_.smooth[t];
+      std::vector<const Run*> own;
+      for (const Run& run : runs_) {
+        if (run.track == static_cast<int>(t)) own.push_back(&run);
+      }
+      double lowest = 0;
+      for (std::size_t f = 0; f < smooth.size(); ++f) {
+        lowest = f == 0 ? smooth[f].y() : std::min(lowest, smooth[f].y());
+      }
+      std::size_t next = 0;
+      for (std::size_t f = 0; f < smooth.size(); ++f) {
+        const auto frame = static_cast<double>(f);
+        while (next < own.size() && own[next]->last < frame) ++next;
+        double level = lowest;
+        if (next < own.size() && (next == 0 || own[next]->first <= frame)) {
+          level = own[next]->place.y();
+        } else if (next == own.size() && next > 0) {
+          level = own[next - 1]->place.y();
+        } else if (next > 0) {
+          const Run &from = *own[next - 1], &to = *own[next];
+          const double part = (frame - from.last) / std::max(1e-9, to.first - from.last);
+          level = from.place.y() * (1 - part) + to.place.y() * part;
+        }
+        track.height.push_back(smooth[f].y() - level);
+      }
+    }
+  }
+
+  const Clip& clip_;
+  const ContactOptions& options_;
+  FoundContacts& found_;
+  double scale_;
+  Tracks tracks_;
+  std::vector<Run> runs_;
+};
+
+// The stays that joints make.
+void take_contacts(const Clip& clip, FoundContacts& found) {
+  for (const Stay& stay : found.stays) {
+    const SolePoint& point = found.tracks[static_cast<std::size_t>(stay.track)].point;
+    if (point.estimated && point.part != FootPart::heel) continue;
+    // A touch at the clip's very end is a moment, not a stay.
+    if ((stay.end - stay.start) * clip.rate < 1) continue;
+    SolePoint joint = point;
+    joint.offset = Vec3::Zero();
+    const Vec3 place = middle_place(track_of(clip, joint, found.leg_length), stay.start * clip.rate,
+                                    stay.end * clip.rate);
+    found.contacts.push_back({point.joint, stay.start, stay.end, place});
+  }
+  std::ranges::sort(found.contacts, {},
+                    [](const Contact& c) { return std::tuple(c.start, c.joint); });
+}
+
+Diagnostic warning(std::string code, std::string message, std::string hint) {
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = std::move(code);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  return diagnostic;
+}
+
+}  // namespace
+
+Result<FoundContacts> find_contacts(const Clip& clip, const RoleMap& roles,
+                                    const ContactOptions& options) {
+  const Feet feet = find_feet(clip, roles);
+  FoundContacts found;
+  found.leg_length = feet.leg_length;
+  for (const auto& points : feet.points) {
+    for (const SolePoint& point : points) found.tracks.push_back({point, {}, {}});
+  }
+  if (found.tracks.empty()) {
+    return Error("contacts-feet", "no joint of this skeleton is known to be a foot",
+                 "a role map tells which joints are legs and feet");
+  }
+  if (clip.frame_count() < 3) {
+    found.warnings.push_back(
+        warning("contacts-short",
+                fmt::format("{} frames are too few to tell what moves", clip.frame_count()), ""));
+    return found;
+  }
+  Finder(clip, options, found).find();
+  take_contacts(clip, found);
+  if (found.contacts.empty()) {
+    found.warnings.push_back(
+        warning("contacts-none", "no part of a foot ever stays in one place",
+                "does the figure walk in place, as on a treadmill, or float?"));
+  }
+  return found;
+}
+
+}  // namespace krok

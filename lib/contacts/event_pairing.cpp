@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "contacts/event_pairing_internal.h"
+#include "contacts/series_internal.h"
+
+namespace krok::contacts {
+
+namespace {
+
+constexpr double kAlike = 0.008;   // seconds
+constexpr double kFar = 0.06;      // seconds
+constexpr double kVeryFar = 0.15;  // seconds
+
+// The index of the value nearest to `time` within `reach`, or nothing.
+std::optional<std::size_t> nearest(const std::vector<double>& values, double time, double reach) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double apart = std::abs(values[i] - time);
+    if (apart <= reach && (!best || apart < std::abs(values[*best] - time))) best = i;
+  }
+  return best;
+}
+
+}  // namespace
+
+double Offset::weight_of(double apart) const {
+  if (!known) return 1;
+  if (!jittery) return std::abs(apart) > kVeryFar ? 0 : 1;
+  if (std::abs(apart) > std::max(kFar, 5 * spread)) return 0;
+  return std::min(1.0, kAlike * kAlike / std::max(1e-12, spread * spread));
+}
+
+Offset offset_of(std::vector<double> offsets, double usual, bool jittery) {
+  Offset offset{usual};
+  offset.jittery = jittery;
+  if (offsets.empty()) return offset;
+  offset.usual = middle(offsets);
+  for (double& value : offsets) value = std::abs(value - offset.usual);
+  offset.spread = middle(offsets);
+  offset.known = offsets.size() >= 4;
+  return offset;
+}
+
+bool Pairing::stands_at(double time) const {
+  return std::ranges::any_of(
+      stances, [&](const Stance& stance) { return stance.start < time && time < stance.end; });
+}
+
+void Pairing::pair() {
+  event.assign(seeds->size(), std::nullopt);
+  std::vector<int> taken(events.size(), -1);
+  for (std::size_t i = 0; i < seeds->size(); ++i) {
+    const auto found = nearest(events, (*seeds)[i], 0.3 * cycle);
+    if (!found) continue;
+    const int before = taken[*found];
+    if (before >= 0) {
+      const double old = std::abs(events[*found] - (*seeds)[static_cast<std::size_t>(before)]);
+      if (old <= std::abs(events[*found] - (*seeds)[i])) continue;
+      event[static_cast<std::size_t>(before)].reset();
+    }
+    taken[*found] = static_cast<int>(i);
+    event[i] = found;
+  }
+}
+
+void Pairing::add_offsets(std::vector<double>& offsets) const {
+  for (std::size_t i = 0; i < event.size(); ++i) {
+    if (event[i]) offsets.push_back(events[*event[i]] - (*seeds)[i]);
+  }
+}
+
+Events Pairing::events_with(const Offset& offset) const {
+  Events result;
+  std::vector<std::uint8_t> used(events.size(), 0);
+  for (std::size_t i = 0; i < event.size(); ++i) {
+    const bool unseen = leaves_unseen && leaves_unseen((*seeds)[i]);
+    const double expected = (*seeds)[i] + (unseen ? kOffAfterBack : offset.usual);
+    if (!event[i]) {
+      if (stands_at(expected) || !is_low((*seeds)[i])) continue;
+      result.times.push_back(expected);
+      ++result.from_seeds;
+      continue;
+    }
+    used[*event[i]] = 1;
+    const double found = events[*event[i]];
+    if (unseen) {
+      result.times.push_back(std::max(found, expected));
+      continue;
+    }
+    result.times.push_back(expected + offset.weight_of(found - expected) * (found - expected));
+  }
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (!used[i] && !is_seeded(*all, events[i], cycle)) result.times.push_back(events[i]);
+  }
+  std::ranges::sort(result.times);
+  return result;
+}
+
+}  // namespace krok::contacts

@@ -1,0 +1,201 @@
+#include "contacts/gait_keytimes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "contacts/event_pairing_internal.h"
+#include "contacts/series_internal.h"
+#include "contacts/walking_feet_internal.h"
+
+namespace krok {
+
+namespace {
+
+using contacts::Foot;
+using contacts::Stance;
+
+constexpr double kApart = 1e-5;      // seconds
+constexpr double kFrame = 1.0 / 60;  // seconds
+
+class Finder {
+ public:
+  Finder(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
+         const GaitOptions& options)
+      : clip_(clip), found_(found), feet_(clip, roles, found, options) {}
+
+  Gait find() const {
+    Gait gait;
+    for (const bool strikes : {true, false}) take_events(strikes, gait);
+    std::erase_if(gait.keytimes, [&](const Keytime& key) { return !feet_.upright(key.time); });
+    std::ranges::stable_sort(gait.keytimes, {}, &Keytime::time);
+    make_alternate(gait.keytimes);
+    for (std::size_t i = 1; i < gait.keytimes.size(); ++i) {
+      gait.keytimes[i].time = std::max(gait.keytimes[i].time, gait.keytimes[i - 1].time + kApart);
+    }
+    return gait;
+  }
+
+ private:
+  // Of two strikes of a foot in a row the first stays, of two offs the last.
+  static void make_alternate(std::vector<Keytime>& keytimes) {
+    std::vector<std::uint8_t> kept(keytimes.size(), 1);
+    for (const char* side : {"left", "right"}) {
+      std::size_t before = keytimes.size();
+      for (std::size_t i = 0; i < keytimes.size(); ++i) {
+        if (!keytimes[i].name.starts_with(side)) continue;
+        if (before < keytimes.size() && keytimes[before].name == keytimes[i].name) {
+          const bool strike = keytimes[i].name.ends_with("strike");
+          kept[strike ? i : before] = 0;
+          if (strike) continue;
+        }
+        before = i;
+      }
+    }
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < keytimes.size(); ++i) {
+      if (kept[i]) keytimes[place++] = keytimes[i];
+    }
+    keytimes.resize(place);
+  }
+
+  std::vector<double> starts_of(const Foot& foot) const {
+    std::vector<double> times;
+    for (const Stance& stance : foot.stances) {
+      if (!stance.open_start) times.push_back(stance.start);
+    }
+    return times;
+  }
+  std::vector<double> ends_of(const Foot& foot) const {
+    std::vector<double> times;
+    for (const Stance& stance : foot.stances) {
+      if (!stance.open_end) times.push_back(stance.end);
+    }
+    return times;
+  }
+
+  contacts::Pairing pairing(std::size_t side, bool strikes) const {
+    const Foot& foot = feet_.foot(side);
+    contacts::Pairing pair;
+    pair.all = &foot.seeds;
+    pair.seeds = strikes ? &foot.seeds.front : &foot.seeds.back;
+    pair.cycle = foot.cycle;
+    pair.stances = foot.stances;
+    pair.is_low = [this, &foot, strikes](double seed) {
+      return feet_.stays_low(foot, seed, strikes);
+    };
+    if (!strikes && !feet_.has_tip(foot)) {
+      pair.leaves_unseen = [this, &foot](double seed) { return feet_.stays_level(foot, seed); };
+    }
+    pair.events = strikes ? starts_of(foot) : ends_of(foot);
+    pair.pair();
+    return pair;
+  }
+
+  void take_events(bool strikes, Gait& gait) const {
+    const std::array<contacts::Pairing, 2> pairs = {pairing(0, strikes), pairing(1, strikes)};
+    std::vector<double> offsets;
+    for (const contacts::Pairing& pair : pairs) pair.add_offsets(offsets);
+    const contacts::Offset offset = contacts::offset_of(
+        offsets, strikes ? contacts::kStrikeAfterFront : contacts::kOffAfterBack, feet_.jittery());
+    for (std::size_t s = 0; s < 2; ++s) {
+      contacts::Events events = pairs[s].events_with(offset);
+      if (strikes) {
+        add_first_strike(feet_.foot(s), events.times);
+        add_last_strike(feet_.foot(s), events.times);
+      }
+      gait.from_seeds += events.from_seeds;
+      const std::string name =
+          fmt::format("{}_{}", name_of(static_cast<FootSide>(s)), strikes ? "strike" : "off");
+      for (const double time : events.times) {
+        if (time >= 0 && time <= clip_.duration()) gait.keytimes.push_back({time, name});
+      }
+    }
+  }
+
+  // A clip that is cut at a strike begins with a foot that rolls over its heel. How long that takes
+  // is known from the other strikes.
+  void add_first_strike(const Foot& foot, std::vector<double>& strikes) const {
+    if (foot.stances.empty() || !foot.stances.front().open_start || foot.tracks.size() < 2) return;
+    std::vector<double> rolls;
+    double first_roll = -1;
+    for (const Stance& stance : foot.stances) {
+      double flat = -1;
+      for (const Stay& stay : found_.stays) {
+        if (static_cast<std::size_t>(stay.track) != foot.tracks[1]) continue;
+        if (stay.start < stance.start - 1e-9 || stay.start > stance.end) continue;
+        if (flat < 0 || stay.start < flat) flat = stay.open_start ? 0 : stay.start;
+      }
+      if (flat < 0) continue;
+      if (stance.open_start) {
+        first_roll = flat;
+      } else {
+        rolls.push_back(flat - stance.start);
+      }
+    }
+    if (rolls.empty() || !(first_roll > 0)) return;
+    const double strike = first_roll - contacts::middle(rolls);
+    if (strike > -kFrame && strike < first_roll) {
+      strikes.insert(strikes.begin(), std::max(0.0, strike));
+    }
+  }
+
+  // A clip that is cut at a strike ends with a foot about to touch, a usual swing after its off;
+  // the few frames in which it slows down do not tell when better.
+  void add_last_strike(const Foot& foot, std::vector<double>& strikes) const {
+    std::vector<double> swings;
+    for (std::size_t i = 1; i < foot.stances.size(); ++i) {
+      swings.push_back(foot.stances[i].start - foot.stances[i - 1].end);
+    }
+    if (swings.size() < 2) return;
+    const double end = clip_.duration();
+    const bool begun = foot.stances.back().open_end && foot.stances.back().start > end - 3 * kFrame;
+    if (foot.stances.back().open_end && !begun) return;
+    const Stance& last = foot.stances[foot.stances.size() - (begun ? 2 : 1)];
+    if (begun) swings.pop_back();
+    const double expected = last.end + contacts::middle(swings);
+    if (expected < end - 3 * kFrame || expected > end + 1.5 * kFrame) return;
+    while (!strikes.empty() && strikes.back() > last.end) strikes.pop_back();
+    strikes.push_back(std::min(expected, end));
+  }
+
+  const Clip& clip_;
+  const FoundContacts& found_;
+  contacts::WalkingFeet feet_;
+};
+
+}  // namespace
+
+Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
+               const GaitOptions& options) {
+  Gait gait;
+  if (clip.frame_count() >= 3 && !found.tracks.empty() && found.leg_length > 0) {
+    gait = Finder(clip, roles, found, options).find();
+  }
+  const auto warn = [&](std::string code, std::string message, std::string hint) {
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::warning;
+    diagnostic.code = std::move(code);
+    diagnostic.message = std::move(message);
+    diagnostic.hint = std::move(hint);
+    gait.warnings.push_back(std::move(diagnostic));
+  };
+  if (gait.keytimes.empty()) {
+    warn("gait-none", "no step was found", "");
+  } else if (found.contacts.empty()) {
+    warn("gait-in-place",
+         "no part of a foot stays in one place, so keytimes are where the feet turn before and "
+         "behind the pelvis",
+         "a figure that walks on the spot slides; its strikes and offs are good to some 30 ms");
+  } else if (gait.from_seeds > 0) {
+    warn("gait-seeds",
+         fmt::format("{} of {} keytimes are shown by no contact", gait.from_seeds,
+                     gait.keytimes.size()),
+         "they are where the foot turns before or behind the pelvis; look at them with --plot");
+  }
+  return gait;
+}
+
+}  // namespace krok

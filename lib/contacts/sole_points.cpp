@@ -1,0 +1,282 @@
+#include "contacts/sole_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contacts/series_internal.h"
+
+namespace krok {
+
+namespace {
+
+// Of the leg, hip to ankle: 0.491 of the stature (Drillis and Contini).
+constexpr double kAnkleHeight = 0.0794;
+constexpr double kHeelBehind = 0.0733;
+constexpr double kBallHeight = 0.0224;
+constexpr double kBallForward = 0.147;
+constexpr double kTipForward = 0.236;
+constexpr double kTipHeight = 0.012;
+constexpr double kLowestAnkle = 0.04, kHighestAnkle = 0.16;
+
+constexpr double kStillSpeed = 0.17;  // legs a second: 0.15 m/s for a leg of 0.86 m
+constexpr double kJump = 0.1;         // of the leg
+constexpr double kLowest = 0.2;       // of all frames
+constexpr int kFewest = 5;            // frames
+
+struct Leg {
+  int upper = -1, lower = -1, foot = -1, toes = -1, tip = -1;
+};
+
+bool is_below(const Skeleton& skeleton, int joint, int ancestor) {
+  while (joint >= 0 && joint != ancestor) joint = skeleton.parents[static_cast<std::size_t>(joint)];
+  return joint >= 0;
+}
+
+double apart(const Skeleton& skeleton, int a, int b) {
+  return (skeleton.reference[static_cast<std::size_t>(a)].position -
+          skeleton.reference[static_cast<std::size_t>(b)].position)
+      .norm();
+}
+
+// The joint of `candidates` that is furthest from `from` in the reference pose, or -1.
+int furthest(const Skeleton& skeleton, int from, const std::vector<int>& candidates) {
+  int best = -1;
+  for (const int joint : candidates) {
+    if (best < 0 || apart(skeleton, from, joint) > apart(skeleton, from, best) + 1e-9) best = joint;
+  }
+  return best;
+}
+
+Leg find_leg(const Skeleton& skeleton, const RoleMap& roles, FootSide side) {
+  const bool left = side == FootSide::left;
+  Leg leg;
+  leg.upper = roles.joint(left ? Role::left_upper_leg : Role::right_upper_leg);
+  leg.lower = roles.joint(left ? Role::left_lower_leg : Role::right_lower_leg);
+  leg.foot = roles.joint(left ? Role::left_foot : Role::right_foot);
+  const auto ends_below = [&](int joint) {
+    std::vector<int> ends;
+    for (int j = joint + 1; j < skeleton.joint_count(); ++j) {
+      if (skeleton.end_sites[static_cast<std::size_t>(j)] && is_below(skeleton, j, joint)) {
+        ends.push_back(j);
+      }
+    }
+    return ends;
+  };
+  if (leg.foot < 0) {
+    if (leg.lower >= 0) leg.foot = furthest(skeleton, leg.lower, ends_below(leg.lower));
+    return leg;
+  }
+  std::vector<int> toes = roles.joints(left ? Role::left_toes : Role::right_toes);
+  std::erase_if(toes, [&](int j) { return !is_below(skeleton, j, leg.foot); });
+  std::vector<int> beyond;
+  for (const int joint : toes) {
+    const bool branch = std::ranges::any_of(
+        toes, [&](int other) { return other != joint && is_below(skeleton, joint, other); });
+    if (branch || skeleton.end_sites[static_cast<std::size_t>(joint)]) {
+      beyond.push_back(joint);
+    } else if (leg.toes < 0) {
+      leg.toes = joint;
+    }
+  }
+  // With a joint for the toes what ends below it is their tip, not the heel's end.
+  const std::vector<int> ends = ends_below(leg.toes >= 0 ? leg.toes : leg.foot);
+  beyond.insert(beyond.end(), ends.begin(), ends.end());
+  leg.tip = furthest(skeleton, leg.foot, beyond);
+  if (leg.tip >= 0 && apart(skeleton, leg.foot, leg.tip) < 1e-6) leg.tip = -1;
+  return leg;
+}
+
+double length_of(const Skeleton& skeleton, const Leg& leg) {
+  if (leg.upper < 0 || leg.lower < 0 || leg.foot < 0) return 0;
+  return apart(skeleton, leg.upper, leg.lower) + apart(skeleton, leg.lower, leg.foot);
+}
+
+Vec3 position(const Clip& clip, int frame, int joint) {
+  return clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>();
+}
+Quat orientation(const Clip& clip, int frame, int joint) {
+  return clip.frame_orientations(frame)[static_cast<std::size_t>(joint)]
+      .cast<double>()
+      .normalized();
+}
+
+// The frames in which the foot is flat as far as can be told; empty for the reference pose.
+std::vector<int> flat_frames(const Clip& clip, const Leg& leg, double leg_length) {
+  const int frames = clip.frame_count();
+  std::vector<int> flat;
+  if (frames < kFewest) return flat;
+  const int front = leg.toes >= 0 ? leg.toes : leg.tip >= 0 ? leg.tip : leg.foot;
+  const int step = std::max(1, static_cast<int>(std::lround(clip.rate / 30)));
+  const auto moved = [&](int joint, int frame) {
+    const int from = std::max(0, frame - step), to = std::min(frames - 1, frame + step);
+    return (position(clip, to, joint) - position(clip, from, joint)).norm() * clip.rate /
+           std::max(1, to - from);
+  };
+  for (int f = 0; f < frames; ++f) {
+    if (std::max(moved(leg.foot, f), moved(front, f)) < kStillSpeed * leg_length) flat.push_back(f);
+  }
+  const auto height = [&](int f) {
+    return position(clip, f, leg.foot).y() + position(clip, f, front).y();
+  };
+  if (static_cast<int>(flat.size()) < kFewest) {
+    flat.resize(static_cast<std::size_t>(frames));
+    for (int f = 0; f < frames; ++f) flat[static_cast<std::size_t>(f)] = f;
+    std::ranges::stable_sort(flat, {}, height);
+    flat.resize(std::max<std::size_t>(1, static_cast<std::size_t>(frames * kLowest)));
+    std::ranges::sort(flat);
+  }
+  return flat;
+}
+
+// Up in a joint's frame while the foot is flat, the median over its frames.
+Vec3 up_in(const Clip& clip, int joint, const std::vector<int>& flat) {
+  const Quat& reference = clip.skeleton.reference[static_cast<std::size_t>(joint)].orientation;
+  const Vec3 at_reference = reference.conjugate() * Vec3::UnitY();
+  if (flat.empty()) return at_reference;
+  std::array<std::vector<double>, 3> values;
+  for (const int frame : flat) {
+    const Vec3 up = orientation(clip, frame, joint).conjugate() * Vec3::UnitY();
+    for (int i = 0; i < 3; ++i) values[static_cast<std::size_t>(i)].push_back(up[i]);
+  }
+  const Vec3 up(contacts::middle(values[0]), contacts::middle(values[1]),
+                contacts::middle(values[2]));
+  return up.norm() > 0.1 ? Vec3(up.normalized()) : at_reference;
+}
+
+// Where a joint is in another's frame while the foot is flat.
+Vec3 place_in(const Clip& clip, int joint, int frame_joint, const std::vector<int>& flat) {
+  const auto relative = [](const Vec3& at, const Vec3& origin, const Quat& turn) -> Vec3 {
+    return turn.conjugate() * Vec3(at - origin);
+  };
+  if (flat.empty()) {
+    const Transform& from = clip.skeleton.reference[static_cast<std::size_t>(frame_joint)];
+    return relative(clip.skeleton.reference[static_cast<std::size_t>(joint)].position,
+                    from.position, from.orientation);
+  }
+  std::array<std::vector<double>, 3> values;
+  for (const int frame : flat) {
+    const Vec3 at = relative(position(clip, frame, joint), position(clip, frame, frame_joint),
+                             orientation(clip, frame, frame_joint));
+    for (int i = 0; i < 3; ++i) values[static_cast<std::size_t>(i)].push_back(at[i]);
+  }
+  return {contacts::middle(values[0]), contacts::middle(values[1]), contacts::middle(values[2])};
+}
+
+// Straight ahead in the foot joint's frame, at right angles to up.
+Vec3 forward_in(const Clip& clip, const Leg& leg, const Vec3& up, const std::vector<int>& flat) {
+  const auto level = [&](const Vec3& v) -> Vec3 { return v - up * up.dot(v); };
+  const int front = leg.tip >= 0 ? leg.tip : leg.toes;
+  Vec3 forward = Vec3::Zero();
+  if (front >= 0) forward = level(place_in(clip, front, leg.foot, flat));
+  if (forward.norm() < 1e-4) {
+    const auto foot = static_cast<std::size_t>(leg.foot);
+    forward = level(clip.skeleton.reference[foot].orientation.conjugate() * Vec3::UnitZ());
+  }
+  return forward.norm() < 1e-4 ? Vec3(up.unitOrthogonal()) : Vec3(forward.normalized());
+}
+
+std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side, double length) {
+  std::vector<SolePoint> points;
+  if (leg.foot < 0 || !(length > 0)) return points;
+  if (clip.skeleton.end_sites[static_cast<std::size_t>(leg.foot)]) {
+    points.push_back({side, FootPart::heel, leg.foot, Vec3::Zero(), true});
+    return points;
+  }
+  const std::vector<int> flat = flat_frames(clip, leg, length);
+  const Vec3 up = up_in(clip, leg.foot, flat);
+  const Vec3 forward = forward_in(clip, leg, up, flat);
+  double ankle = kAnkleHeight * length;
+  if (leg.toes >= 0 || leg.tip >= 0) {
+    const Vec3 front = place_in(clip, leg.toes >= 0 ? leg.toes : leg.tip, leg.foot, flat);
+    const double above = (leg.toes >= 0 ? kBallHeight : kTipHeight) * length;
+    ankle = std::clamp(above - up.dot(front), kLowestAnkle * length, kHighestAnkle * length);
+  }
+  points.push_back(
+      {side, FootPart::heel, leg.foot, -up * ankle - forward * (kHeelBehind * length), true});
+  if (leg.toes >= 0) {
+    points.push_back({side, FootPart::ball, leg.toes, Vec3::Zero(), false});
+    // Toes bend, so which way their tip lies is asked of the foot.
+    const Vec3 toes_up = up_in(clip, leg.toes, flat);
+    if (leg.tip >= 0) {
+      points.push_back({side, FootPart::tip, leg.tip, Vec3::Zero(), false});
+    } else {
+      Vec3 ahead = forward;
+      if (flat.empty()) {
+        const auto at = [&](int j) {
+          return clip.skeleton.reference[static_cast<std::size_t>(j)].orientation;
+        };
+        ahead = at(leg.toes).conjugate() * (at(leg.foot) * forward);
+      } else {
+        const int frame = flat[flat.size() / 2];
+        ahead = orientation(clip, frame, leg.toes).conjugate() *
+                (orientation(clip, frame, leg.foot) * forward);
+      }
+      ahead -= toes_up * toes_up.dot(ahead);
+      points.push_back({side, FootPart::tip, leg.toes,
+                        ahead.normalized() * ((kTipForward - kBallForward) * length) -
+                            toes_up * (kBallHeight * length),
+                        true});
+    }
+    return points;
+  }
+  if (leg.tip >= 0) {
+    const Vec3 end = place_in(clip, leg.tip, leg.foot, flat);
+    const bool at_ball = forward.dot(end) < 0.5 * (kBallForward + kTipForward) * length;
+    if (!at_ball) {
+      points.push_back(
+          {side, FootPart::ball, leg.foot, forward * (kBallForward * length) - up * ankle, true});
+    }
+    points.push_back(
+        {side, at_ball ? FootPart::ball : FootPart::tip, leg.tip, Vec3::Zero(), false});
+    return points;
+  }
+  points.push_back(
+      {side, FootPart::ball, leg.foot, forward * (kBallForward * length) - up * ankle, true});
+  return points;
+}
+
+}  // namespace
+
+const char* name_of(FootSide side) {
+  return side == FootSide::left ? "left" : "right";
+}
+
+const char* name_of(FootPart part) {
+  return part == FootPart::heel ? "heel" : part == FootPart::ball ? "ball" : "tip";
+}
+
+Feet find_feet(const Clip& clip, const RoleMap& roles) {
+  Feet feet;
+  std::array<Leg, 2> legs;
+  int with_length = 0;
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    Leg& leg = legs[static_cast<std::size_t>(side)];
+    leg = find_leg(clip.skeleton, roles, side);
+    const double length = length_of(clip.skeleton, leg);
+    if (length > 0) ++with_length;
+    feet.leg_length += length;
+  }
+  if (with_length > 0) feet.leg_length /= with_length;
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    const auto s = static_cast<std::size_t>(side);
+    feet.points[s] = points_of(clip, legs[s], side, feet.leg_length);
+  }
+  return feet;
+}
+
+std::vector<Vec3> track_of(const Clip& clip, const SolePoint& point, double leg_length) {
+  std::vector<Vec3> track;
+  track.reserve(static_cast<std::size_t>(clip.frame_count()));
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    track.push_back(position(clip, f, point.joint) +
+                    orientation(clip, f, point.joint) * point.offset);
+  }
+  if (track.size() > 3) {
+    const double after = std::max((track[2] - track[1]).norm(), (track[3] - track[2]).norm());
+    const bool jumps = (track[1] - track[0]).norm() > 3 * after + kJump * leg_length;
+    if (jumps) track[0] = 2 * track[1] - track[2];
+  }
+  return track;
+}
+
+}  // namespace krok

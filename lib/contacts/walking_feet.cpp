@@ -1,0 +1,285 @@
+#include <algorithm>
+#include <cmath>
+
+#include "contacts/series_internal.h"
+#include "contacts/walking_feet_internal.h"
+#include "motion/ground_place.h"
+
+namespace krok::contacts {
+
+namespace {
+
+constexpr double kSeedCutoff = 6;      // Hz
+constexpr double kTravelCutoff = 0.6;  // Hz
+constexpr double kTravelSpeed = 0.3;   // metres a second
+constexpr double kGap = 0.1;           // seconds
+constexpr double kStair = 0.2;         // metres, a stride's rise
+constexpr double kJitter = 0.001;      // metres, frame to frame
+
+double level_norm(const Vec3& v) {
+  return std::hypot(v.x(), v.z());
+}
+
+class FootSteps {
+ public:
+  FootSteps(const FoundContacts& found, FootSide side) {
+    for (const Stay& stay : found.stays) {
+      const SolePoint& point = found.tracks[static_cast<std::size_t>(stay.track)].point;
+      if (point.side == side)
+        stays_.push_back({stay.start, stay.end, stay.open_start, stay.open_end, false});
+    }
+    std::ranges::stable_sort(stays_, {}, &Stance::start);
+  }
+
+  // The foot's stances: stays of its points, breaks in between that are no steps left out.
+  template <typename IsStep>
+  void join(const IsStep& is_step) {
+    for (const Stance& stay : stays_) {
+      if (stances.empty() ||
+          (stay.start - stances.back().end > kGap && is_step(stances.back().end, stay.start))) {
+        stances.push_back(stay);
+        continue;
+      }
+      Stance& last = stances.back();
+      last.open_start = last.open_start || stay.open_start;
+      if (stay.end > last.end) {
+        last.end = stay.end;
+        last.open_end = stay.open_end;
+      }
+    }
+  }
+
+  std::vector<Stance> stances;
+
+ private:
+  std::vector<Stance> stays_;
+};
+
+// The moment, in frames, between a frame that is slow and its neighbour that is not.
+template <typename Speed>
+double crossed(const Speed& speed, int slow_frame, int fast_frame, int frames, double slow) {
+  if (fast_frame < 0 || fast_frame >= frames) return slow_frame;
+  const double part =
+      (slow - speed(slow_frame)) / std::max(1e-9, speed(fast_frame) - speed(slow_frame));
+  return slow_frame + part * (fast_frame - slow_frame);
+}
+
+}  // namespace
+
+WalkingFeet::WalkingFeet(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
+                         const GaitOptions& options)
+    : clip_(clip), found_(found), options_(options), leg_(found.leg_length) {
+  carrier_ = carrying_joint(roles);
+  const SolePoint carrier{FootSide::left, FootPart::heel, carrier_, Vec3::Zero(), false};
+  pelvis_ = smoothed(track_of(clip, carrier, leg_), clip.rate, kSeedCutoff);
+  for (std::size_t t = 0; t < found.tracks.size(); ++t) {
+    const SolePoint& point = found.tracks[t].point;
+    raw_.push_back(track_of(clip, point, leg_));
+    tracks_.push_back(smoothed(raw_.back(), clip.rate, kSeedCutoff));
+    jittery_ = jittery_ || jitter_of(raw_.back()) > kJitter * leg_ / kUsualLeg;
+    feet_[static_cast<std::size_t>(point.side)].tracks.push_back(t);
+  }
+  take_directions();
+  for (const FootSide side : {FootSide::left, FootSide::right}) prepare(side);
+}
+
+void WalkingFeet::take_directions() {
+  std::vector<Vec3> slow = velocities(pelvis_, clip_.rate);
+  slow = smoothed(slow, clip_.rate, kTravelCutoff);
+  for (int f = 0; f < clip_.frame_count(); ++f) {
+    const Vec3& v = slow[static_cast<std::size_t>(f)];
+    const double speed = level_norm(v);
+    if (speed > kTravelSpeed * leg_ / kUsualLeg) {
+      directions_.emplace_back(v.x() / speed, 0, v.z() / speed);
+    } else {
+      const double heading = ground_place(clip_, carrier_, f).heading;
+      directions_.emplace_back(std::sin(heading), 0, std::cos(heading));
+    }
+  }
+}
+
+void WalkingFeet::prepare(FootSide side) {
+  Foot& foot = feet_[static_cast<std::size_t>(side)];
+  if (foot.tracks.empty()) return;
+  const auto &heel = tracks_[foot.tracks.front()], &front = tracks_[foot.tracks.back()];
+  std::vector<double> reach;
+  for (std::size_t f = 0; f < pelvis_.size(); ++f) {
+    reach.push_back(directions_[f].dot(0.5 * (heel[f] + front[f]) - pelvis_[f]));
+  }
+  foot.seeds = turning_points(reach, clip_.rate, options_.least_reach * leg_);
+  foot.cycle = cycle_of(foot.seeds);
+  FootSteps steps(found_, side);
+  steps.join([&](double from, double to) { return is_step(foot, from, to); });
+  foot.stances = std::move(steps.stances);
+  add_sliding(foot);
+  for (std::size_t i = 0; i < foot.stances.size(); ++i) {
+    const double before = i == 0 ? 0 : foot.stances[i - 1].end;
+    const double after =
+        i + 1 == foot.stances.size() ? clip_.duration() : foot.stances[i + 1].start;
+    to_touches(foot, before, after, foot.stances[i]);
+  }
+}
+
+void WalkingFeet::add_sliding(Foot& foot) const {
+  for (const double front : foot.seeds.front) {
+    const auto back = std::ranges::upper_bound(foot.seeds.back, front);
+    if (back == foot.seeds.back.end() || *back - front > foot.cycle) continue;
+    const bool known = std::ranges::any_of(foot.stances, [&](const Stance& stance) {
+      return stance.start < *back && front < stance.end;
+    });
+    if (known) continue;
+    if (const auto stance = sliding(foot, front, *back)) foot.stances.push_back(*stance);
+  }
+  std::ranges::sort(foot.stances, {}, &Stance::start);
+}
+
+double WalkingFeet::lowest_of(const Foot& foot, std::size_t f) const {
+  double least = 1e9;
+  for (const std::size_t t : foot.tracks) least = std::min(least, tracks_[t][f].y());
+  return least;
+}
+
+double WalkingFeet::floor_near(int frame, double cycle) const {
+  const int reach = static_cast<int>(cycle * clip_.rate);
+  double least = 1e9;
+  for (int f = std::max(0, frame - reach); f <= std::min(clip_.frame_count() - 1, frame + reach);
+       ++f) {
+    for (const Foot& foot : feet_) {
+      least = std::min(least, lowest_of(foot, static_cast<std::size_t>(f)));
+    }
+  }
+  return least;
+}
+
+bool WalkingFeet::is_low(const Foot& foot, int frame, double floor) const {
+  return lowest_of(foot, static_cast<std::size_t>(frame)) - floor <
+         options_.low_height * leg_ / kUsualLeg;
+}
+
+bool WalkingFeet::stays_low(const Foot& foot, double seed, bool front) const {
+  // Where the clip begins or ends before the other seed, there.
+  double other =
+      front ? std::min(clip_.duration(), seed + foot.cycle) : std::max(0.0, seed - foot.cycle);
+  for (const double time : front ? foot.seeds.back : foot.seeds.front) {
+    if (front ? time > seed && time < other : time < seed && time > other) other = time;
+  }
+  const int from = static_cast<int>(std::min(seed, other) * clip_.rate);
+  const int to =
+      std::min(clip_.frame_count() - 1, static_cast<int>(std::max(seed, other) * clip_.rate));
+  const double floor = floor_near((from + to) / 2, foot.cycle);
+  int low = 0;
+  for (int f = from; f <= to; ++f) low += is_low(foot, f, floor) ? 1 : 0;
+  return low >= 0.75 * (to - from + 1);
+}
+
+bool WalkingFeet::has_tip(const Foot& foot) const {
+  return std::ranges::any_of(
+      foot.tracks, [&](std::size_t t) { return found_.tracks[t].point.part == FootPart::tip; });
+}
+
+bool WalkingFeet::stays_level(const Foot& foot, double seed) const {
+  const auto level = [&](double time) {
+    const double frame = std::clamp(time * clip_.rate, 0.0, clip_.frame_count() - 1.0);
+    return lowest_of(foot, static_cast<std::size_t>(frame));
+  };
+  return std::abs(level(seed + 0.5 * foot.cycle) - level(seed - 0.3 * foot.cycle)) <
+         kStair * leg_ / kUsualLeg;
+}
+
+std::optional<Stance> WalkingFeet::sliding(const Foot& foot, double front, double back) const {
+  const int frames = clip_.frame_count();
+  const auto slowest = [&](int f) {
+    double least = 1e9;
+    for (const std::size_t t : foot.tracks) {
+      least = std::min(least, found_.tracks[t].speed[static_cast<std::size_t>(f)]);
+    }
+    return least;
+  };
+  double fastest = 0;
+  const int reach = static_cast<int>(foot.cycle * clip_.rate);
+  const int from = static_cast<int>(front * clip_.rate), to = static_cast<int>(back * clip_.rate);
+  for (int f = std::max(0, from - reach); f < std::min(frames, to + reach); ++f) {
+    fastest = std::max(fastest, slowest(f));
+  }
+  int calm = from;
+  for (int f = from; f <= std::min(to, frames - 1); ++f) {
+    if (slowest(f) < slowest(calm)) calm = f;
+  }
+  const double slow = options_.sliding_speed * fastest;
+  if (slowest(calm) > 0.5 * slow) return {};
+  if (!is_low(foot, calm, floor_near(calm, foot.cycle))) return {};
+  int first = calm, last = calm;
+  while (first > 0 && slowest(first - 1) <= slow) --first;
+  while (last + 1 < frames && slowest(last + 1) <= slow) ++last;
+  return Stance{crossed(slowest, first, first - 1, frames, slow) / clip_.rate,
+                crossed(slowest, last, last + 1, frames, slow) / clip_.rate, first == 0,
+                last == frames - 1, true};
+}
+
+void WalkingFeet::to_touches(const Foot& foot, double before, double after, Stance& stance) const {
+  if (stance.slides) return;
+  double start = stance.start, end = stance.end;
+  for (const std::size_t t : foot.tracks) {
+    for (const Stay& stay : found_.stays) {
+      if (static_cast<std::size_t>(stay.track) != t) continue;
+      if (stay.start < stance.start - 1e-9 || stay.end > stance.end + 1e-9) continue;
+      if (!stance.open_start) start = std::min(start, touch(t, stay.start, before, true));
+      const bool heel = foot.tracks.size() > 1 && t == foot.tracks.front();
+      if (!stance.open_end && !heel) end = std::max(end, touch(t, stay.end, after, false));
+    }
+  }
+  stance.start = start;
+  stance.end = end;
+}
+
+double WalkingFeet::touch(std::size_t t, double from, double limit, bool first) const {
+  const PointTrack& track = found_.tracks[t];
+  const double scale = leg_ / kUsualLeg;
+  const int step = first ? -1 : 1;
+  const double at = from * clip_.rate;
+  int f = static_cast<int>(first ? std::floor(at) : std::ceil(at));
+  const int last = static_cast<int>(limit * clip_.rate);
+  const auto touches = [&](int frame) {
+    if (frame < 0 || frame >= clip_.frame_count()) return false;
+    if (first ? frame <= last : frame >= last) return false;
+    const auto i = static_cast<std::size_t>(frame);
+    return track.speed[i] < options_.touch_speed * scale &&
+           track.height[i] < options_.touch_height * scale;
+  };
+  if (!touches(f)) return from;
+  while (touches(f + step)) f += step;
+  const double window = std::max(0.12 * clip_.rate, 4.0);
+  const double stiffness = jittery_ ? 0.3 : 0.1;
+  const double found = break_near(raw_[t], f, window, first, stiffness) / clip_.rate;
+  return first ? std::min(found, from) : std::max(found, from);
+}
+
+bool WalkingFeet::is_step(const Foot& foot, double from, double to) const {
+  const auto frame = [&](double time) {
+    return static_cast<std::size_t>(
+        std::clamp<double>(std::lround(time * clip_.rate), 0, clip_.frame_count() - 1));
+  };
+  const std::size_t first = frame(from), last = frame(to);
+  const double scale = leg_ / kUsualLeg;
+  double lift = 1e9, way = 1e9;
+  for (const std::size_t t : foot.tracks) {
+    const auto& track = tracks_[t];
+    const double floor = std::max(track[first].y(), track[last].y());
+    double highest = 0;
+    for (std::size_t f = first; f <= last; ++f) highest = std::max(highest, track[f].y() - floor);
+    lift = std::min(lift, highest);
+    way = std::min(way, (track[last] - track[first]).norm());
+  }
+  return lift > options_.least_lift * scale || way > options_.least_way * scale;
+}
+
+bool WalkingFeet::upright(double time) const {
+  const double frame = time * clip_.rate;
+  const auto f =
+      static_cast<std::size_t>(std::clamp<double>(std::lround(frame), 0, clip_.frame_count() - 1));
+  double lowest = 1e9;
+  for (const auto& track : tracks_) lowest = std::min(lowest, track[f].y());
+  return pelvis_[f].y() - lowest > options_.least_height * leg_;
+}
+
+}  // namespace krok::contacts

@@ -1,0 +1,48 @@
+#include "scene/motion_keys.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace krok {
+namespace {
+
+constexpr double kBeyond = 1e-3;  // seconds: times are rounded when they are written
+constexpr double kApart = 1e-6;   // seconds
+
+bool within(double time, double duration) {
+  return std::isfinite(time) && time >= -kBeyond && time <= duration + kBeyond;
+}
+
+}  // namespace
+
+Status check(const MotionKeys& keys, const Skeleton& skeleton, double duration) {
+  for (std::size_t i = 0; i < keys.contacts.size(); ++i) {
+    const Contact& contact = keys.contacts[i];
+    if (contact.joint < 0 || contact.joint >= skeleton.joint_count()) {
+      return Error("keys-joint", fmt::format("contact {}: joint {} of {}", i, contact.joint,
+                                             skeleton.joint_count()));
+    }
+    if (!within(contact.start, duration) || !within(contact.end, duration) ||
+        contact.end < contact.start) {
+      return Error("keys-time", fmt::format("contact {}: {} s to {} s in a motion of {} s", i,
+                                            contact.start, contact.end, duration));
+    }
+    if (!contact.place.allFinite()) {
+      return Error("keys-place", fmt::format("contact {}: its place is not finite", i));
+    }
+  }
+  for (std::size_t i = 0; i < keys.keytimes.size(); ++i) {
+    const Keytime& key = keys.keytimes[i];
+    if (key.name.empty()) return Error("keys-name", fmt::format("keytime {} has no name", i));
+    const bool rises = i == 0 || key.time >= keys.keytimes[i - 1].time + kApart;
+    if (!within(key.time, duration) || !rises) {
+      return Error("keys-time",
+                   fmt::format("keytime {} ({}): {} s in a motion of {} s{}", i, key.name, key.time,
+                               duration, rises ? "" : ", not after the one before it"));
+    }
+  }
+  return {};
+}
+
+}  // namespace krok

@@ -1,0 +1,216 @@
+// If these fail, krok-keys loses what a person set by hand, writes where it was not told to, or
+// leaves its user without knowing what is wrong.
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+
+namespace krok::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
+
+class KrokKeys : public CliTest {
+ protected:
+  KrokKeys() : motion_(put("walk.bvh", get(kWalk))), file_(path("walk.keys.json")) {}
+
+  ToolRun keys(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), motion_);
+    return run_tool("krok-keys", arguments);
+  }
+  json written() const { return json::parse(get(file_)); }
+  void write(const json& text) const { put("walk.keys.json", text.dump(1)); }
+  static double time_of(const json& file, const std::string& name, std::size_t which = 0) {
+    for (const json& key : file["keytimes"]) {
+      if (key["name"] == name && which-- == 0) return key["time"];
+    }
+    return -1;
+  }
+
+  std::string motion_, file_;
+};
+
+TEST_F(KrokKeys, FindsTheSamplesKnownEvents) {
+  ASSERT_EQ(keys({"-o", file_}).exit_code, 0);
+  const json truth = json::parse(get(KROK_SOURCE_DIR "/samples/captures/walk.contacts.json"));
+  std::size_t events = 0;
+  for (const auto& [name, times] : truth["keytimes"].items()) {
+    for (std::size_t i = 0; i < times.size(); ++i, ++events) {
+      EXPECT_NEAR(time_of(written(), name, i), times[i].get<double>(), 1.0 / 60) << name << i;
+    }
+  }
+  EXPECT_EQ(written()["keytimes"].size(), events);
+  EXPECT_EQ(events, 17U);
+}
+
+TEST_F(KrokKeys, ShowsATableAndWritesNothing) {
+  const ToolRun run = keys({});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("left_strike"));
+  EXPECT_THAT(run.out, HasSubstr("LeftToeBase at "));
+  EXPECT_THAT(run.err, HasSubstr("17 keytimes"));
+  EXPECT_THAT(listing(), ElementsAre("walk.bvh"));
+}
+
+TEST_F(KrokKeys, ReportsAsJson) {
+  const ToolRun run = keys({"--json"});
+  ASSERT_EQ(run.exit_code, 0);
+  const json result = json::parse(run.out)["result"];
+  EXPECT_EQ(result["keytimes"].size(), 17U);
+  EXPECT_FALSE(result["edited"].get<bool>());
+  EXPECT_NEAR(result["gait"]["cadence"].get<double>(), 109.4, 1);
+  EXPECT_NEAR(result["gait"]["stance"][0].get<double>(), 0.62, 0.02);
+}
+
+TEST_F(KrokKeys, SetMovesMarksAndStays) {
+  ASSERT_EQ(keys({"-o", file_}).exit_code, 0);
+  const std::size_t count = written()["keytimes"].size();
+  const double before = time_of(written(), "left_off");
+  ASSERT_EQ(
+      keys({"-o", file_, "--set", "left_off=" + std::to_string(before + 0.05) + "s,clap=120f"})
+          .exit_code,
+      0);
+  EXPECT_NEAR(time_of(written(), "left_off"), before + 0.05, 1e-6);
+  EXPECT_EQ(time_of(written(), "clap"), 2.0);
+  EXPECT_EQ(written()["keytimes"].size(), count + 1);
+  // Neither a run like the first nor one that finds anew loses them.
+  for (const char* find : {"auto", "steps"}) {
+    const ToolRun again = keys({"-o", file_, "--find", find});
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_NEAR(time_of(written(), "left_off"), before + 0.05, 1e-6) << find;
+    EXPECT_EQ(time_of(written(), "clap"), 2.0) << find;
+    EXPECT_EQ(written()["keytimes"].size(), count + 1) << find;
+  }
+  ASSERT_EQ(keys({"-o", file_, "--discard-edits"}).exit_code, 0);
+  EXPECT_EQ(time_of(written(), "left_off"), before);
+  EXPECT_EQ(time_of(written(), "clap"), -1);
+}
+
+TEST_F(KrokKeys, AnEditInATextEditorIsKept) {
+  ASSERT_EQ(keys({"-o", file_}).exit_code, 0);
+  json file = written();
+  file["keytimes"][3]["time"] = file["keytimes"][3]["time"].get<double>() + 0.02;
+  write(file);
+  const ToolRun run = keys({"-o", file_});
+  ASSERT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.err, HasSubstr("edited by hand"));
+  EXPECT_EQ(written()["keytimes"], file["keytimes"]);
+  // It stays known as edited though the file is now the tool's own writing.
+  ASSERT_EQ(keys({"-o", file_}).exit_code, 0);
+  EXPECT_EQ(written()["keytimes"], file["keytimes"]);
+  const std::string stood = get(file_);
+  const ToolRun refused = keys({"-o", file_, "--find", "steps"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(has_code(refused.err, "keys-edited")) << refused.err;
+  EXPECT_EQ(get(file_), stood);
+}
+
+TEST_F(KrokKeys, RemovedStaysRemoved) {
+  ASSERT_EQ(keys({"-o", file_, "--remove", "right_off"}).exit_code, 0);
+  EXPECT_EQ(time_of(written(), "right_off"), -1);
+  ASSERT_EQ(keys({"-o", file_}).exit_code, 0);
+  EXPECT_EQ(time_of(written(), "right_off"), -1);
+  const ToolRun none = keys({"-o", file_, "--remove", "right_off@1s"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_TRUE(has_code(none.err, "keys-none"));
+}
+
+TEST_F(KrokKeys, ContactsCanBeAddedAndTakenOut) {
+  ASSERT_EQ(keys({"-o", file_, "--add-contact", "LeftHand=1s..1.5s"}).exit_code, 0);
+  json hand;
+  const json file = written();
+  for (const json& contact : file["contacts"]) {
+    if (contact["joint"] == "LeftHand") hand = contact;
+  }
+  ASSERT_FALSE(hand.is_null());
+  EXPECT_EQ(hand["by"], "hand");
+  EXPECT_GT(hand["place"][1].get<double>(), 0.5);
+  ASSERT_EQ(keys({"-o", file_, "--remove-contact", "LeftHand@1.2s"}).exit_code, 0);
+  EXPECT_THAT(get(file_), Not(HasSubstr("LeftHand")));
+  for (const char* wrong : {"LeftHand", "LeftHand=1s", "LeftHoof=1s..2s", "LeftHand=2s..1s",
+                            "LeftHand=1s..99s", "=1s..2s", "LeftHand=x..y"}) {
+    EXPECT_EQ(keys({"-o", file_, "--add-contact", wrong}).exit_code, 2) << wrong;
+  }
+}
+
+TEST_F(KrokKeys, SaysWhatCannotBe) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--set", "left_off=1s"},  // no -o
+                                             {"-o", file_, "--set", "left_off"},
+                                             {"-o", file_, "--set", "=1s"},
+                                             {"-o", file_, "--set", "left_off=99s"},
+                                             {"-o", file_, "--set", "a=1s,b=1s"},
+                                             {"-o", file_, "--find", "everything"},
+                                             {"-o", file_, "--find", "none", "--discard-edits"},
+                                             {"--keys", path("none.json")}}) {
+    const ToolRun run = keys(arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments.back();
+    EXPECT_THAT(run.err, HasSubstr("error: ")) << arguments.back();
+  }
+  EXPECT_THAT(listing(), ElementsAre("walk.bvh"));
+}
+
+TEST_F(KrokKeys, ABrokenFileIsNotReplacedUnasked) {
+  put("walk.keys.json", "{\"schema\": \"krok.keys/1\", \"keytimes\": [");
+  const ToolRun run = keys({"-o", file_});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("walk.keys.json:1:"));
+  EXPECT_EQ(get(file_), "{\"schema\": \"krok.keys/1\", \"keytimes\": [");
+  EXPECT_EQ(keys({"-o", file_, "--discard-edits"}).exit_code, 0);
+  EXPECT_EQ(written()["keytimes"].size(), 17U);
+}
+
+TEST_F(KrokKeys, PlotsTheFeet) {
+  ASSERT_EQ(keys({"--plot", path("walk.svg")}).exit_code, 0);
+  const std::string svg = get(path("walk.svg"));
+  EXPECT_THAT(svg, HasSubstr("<svg"));
+  for (const char* part : {"left foot", "right foot", "speed", "height", "left_strike", "heel"}) {
+    EXPECT_THAT(svg, HasSubstr(part));
+  }
+}
+
+TEST_F(KrokKeys, AnswersNoWhereThereIsNoStep) {
+  const std::string still = put("still.bvh", capture(40));
+  const ToolRun run = run_tool("krok-keys", {still});
+  EXPECT_EQ(run.exit_code, 2);  // a chain of three joints has no feet
+  EXPECT_TRUE(has_code(run.err, "contacts-feet")) << run.err;
+  // One frame of the walk holds no step.
+  std::string text = get(kWalk);
+  const auto frames = text.find("Frames:");
+  std::size_t end = text.find('\n', text.find("Frame Time", frames));
+  for (int i = 0; i < 5; ++i) end = text.find('\n', end + 1);
+  text = text.substr(0, frames) + "Frames: 5" +
+         text.substr(text.find('\n', frames), end + 1 - text.find('\n', frames));
+  const std::string brief = put("brief.bvh", text);
+  EXPECT_EQ(run_tool("krok-keys", {brief}).exit_code, 0);
+  EXPECT_EQ(run_tool("krok-keys", {brief, "--find", "steps"}).exit_code, 1);
+}
+
+TEST_F(KrokKeys, ManyFilesEachBesideItsMotion) {
+  std::filesystem::create_directory(path("in"));
+  put("in/a.bvh", get(kWalk));
+  put("in/b.bvh", get(kWalk));
+  const auto batch = [&] {
+    return run_tool("krok-keys", {path("in"), "--out-dir", path("in"), "-j", "2"});
+  };
+  ASSERT_EQ(batch().exit_code, 0);
+  EXPECT_EQ(get(path("in/a.keys.json")), get(path("in/b.keys.json")));
+  // Edited between two runs of the batch.
+  json edited = json::parse(get(path("in/b.keys.json")));
+  edited["keytimes"].push_back({{"name", "clap"}, {"time", 1.0}, {"by", "hand"}});
+  put("in/b.keys.json", edited.dump());
+  const ToolRun again = batch();
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(get(path("in/b.keys.json")), HasSubstr("clap"));
+}
+
+}  // namespace
+}  // namespace krok::test

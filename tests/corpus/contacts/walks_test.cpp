@@ -1,0 +1,127 @@
+// Walks of real people from several exporters. Nobody measured when their feet touched, so what is
+// found is held against what gait analysis knows of all walks (Perry and Burnfield, "Gait
+// Analysis"; Winter): feet take turns, a foot is down for a little over half of the cycle, both are
+// for some of it, left and right are much alike. If these fail, blends of captures fall out of
+// step.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "contacts/gait_figures.h"
+#include "contacts/gait_keytimes.h"
+#include "core/file.h"
+#include "formats/bvh/bvh_reader.h"
+
+namespace krok {
+namespace {
+
+struct Found {
+  Clip clip;
+  FoundContacts contacts;
+  Gait gait;
+};
+
+// Skips the test where there is no corpus.
+#define FIND_OR_SKIP(found, name)                                                                  \
+  const std::string path = std::string(KROK_CORPUS_DIR) + "/bvh/" + (name);                        \
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: no corpus at " << KROK_CORPUS_DIR; \
+  const Found found = find(path)
+
+Found find(const std::string& path) {
+  Found found;
+  const auto file = InputFile::open(path);
+  EXPECT_TRUE(file.ok());
+  auto capture = bvh::read(file->text(), path, {});
+  EXPECT_TRUE(capture.ok());
+  found.clip = std::move(capture->clip);
+  const RoleMap roles = find_roles(found.clip.skeleton);
+  auto contacts = find_contacts(found.clip, roles);
+  EXPECT_TRUE(contacts.ok());
+  found.contacts = std::move(*contacts);
+  found.gait = find_gait(found.clip, roles, found.contacts);
+  EXPECT_TRUE(check({found.contacts.contacts, found.gait.keytimes}, found.clip.skeleton,
+                    found.clip.duration())
+                  .ok());
+  return found;
+}
+
+class Walks : public testing::TestWithParam<const char*> {};
+
+TEST_P(Walks, AreAsGaitAnalysisHasThem) {
+  FIND_OR_SKIP(found, GetParam());
+  const GaitFigures gait = gait_figures(found.gait.keytimes);
+  EXPECT_GE(gait.cycles, 2);
+  EXPECT_GT(gait.cadence, 80);
+  EXPECT_LT(gait.cadence, 135);
+  for (const double stance : gait.stance) {
+    EXPECT_GT(stance, 0.44);
+    EXPECT_LT(stance, 0.70);
+  }
+  EXPECT_NEAR(gait.stance[0], gait.stance[1], 0.13);
+  EXPECT_LT(gait.double_support, 0.4);
+  // One foot's strike, the other's, in turn.
+  std::string last;
+  for (const Keytime& key : found.gait.keytimes) {
+    if (!key.name.ends_with("strike")) continue;
+    EXPECT_NE(key.name, last) << key.time;
+    last = key.name;
+  }
+  EXPECT_LE(found.gait.from_seeds, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, Walks,
+                         testing::Values("walkset_cmu07/007_02.bvh", "walkset_cmu07/007_06.bvh",
+                                         "walkset_cmu07/007_09.bvh", "pybvh/cmu_12_01_walk.bvh",
+                                         "optitrack_arena_bvh-matlab/walk.bvh",
+                                         "makehuman/12_03.bvh",
+                                         "pymo/AV_8Walk_Meredith_HVHA_Rep1.bvh",
+                                         "iclone_cmu/002_01.bvh",
+                                         "deep-motion-editing/xia_test_neutral_01_000.bvh"),
+                         [](const auto& test_case) {
+                           std::string name = test_case.param;
+                           for (char& c : name) {
+                             if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+                           }
+                           return name;
+                         });
+
+// In a run no two feet are down at once.
+TEST(Run, HasFlight) {
+  FIND_OR_SKIP(found, "iclone_cmu/002_03.bvh");
+  const GaitFigures gait = gait_figures(found.gait.keytimes);
+  EXPECT_GT(gait.cadence, 140);
+  for (const double stance : gait.stance) {
+    EXPECT_GT(stance, 0.25);
+    EXPECT_LT(stance, 0.45);
+  }
+}
+
+// A man on a bicycle: after he has mounted, no foot stands for a quarter of a minute but where he
+// stops pedalling.
+TEST(Bicycle, HasNoGait) {
+  FIND_OR_SKIP(found, "optitrack_arena_bvh-matlab/louise.bvh");
+  int pedalled = 0;
+  for (const Keytime& key : found.gait.keytimes) {
+    if (key.time > 10.5 && key.time < 22) ++pedalled;
+  }
+  EXPECT_EQ(pedalled, 0);
+}
+
+// Breakdance on the hands: feet that swing a metre over the floor do not strike it.
+TEST(Breakdance, FeetInTheAirDoNotStrike) {
+  FIND_OR_SKIP(found, "animated_drawings/rokoko_jesse_dance.bvh");
+  int in_the_air = 0;
+  for (const Keytime& key : found.gait.keytimes) {
+    if (key.time > 2.2 && key.time < 8.5) ++in_the_air;
+  }
+  EXPECT_LE(in_the_air, 4);
+  for (const Contact& contact : found.contacts.contacts) {
+    EXPECT_LT(contact.place.y() - found.contacts.contacts.front().place.y(), 0.3);
+  }
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,75 @@
+// If these fail, contacts and keytimes that a motion does not have pass for sound, and whoever uses
+// them reads joints and times that are not there.
+
+#include "scene/motion_keys.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace krok {
+namespace {
+
+Skeleton two_joints() {
+  Skeleton skeleton;
+  skeleton.names = {"root", "foot"};
+  skeleton.parents = {-1, 0};
+  skeleton.reference.resize(2);
+  return skeleton;
+}
+
+MotionKeys sound() {
+  MotionKeys keys;
+  keys.contacts = {{1, 0.0, 0.5, Vec3(0, 0, 0.1)}, {1, 1.0, 2.0, Vec3(0, 0, 0.9)}};
+  keys.keytimes = {{0.0, "left_strike"}, {0.5, "left_off"}, {2.0, "end"}};
+  return keys;
+}
+
+std::string code_of(const MotionKeys& keys) {
+  const Status status = check(keys, two_joints(), 2.0);
+  return status ? "" : status.error().code;
+}
+
+TEST(MotionKeys, SoundOnesPass) {
+  EXPECT_EQ(code_of(sound()), "");
+  EXPECT_EQ(code_of(MotionKeys()), "");
+  MotionKeys rounded = sound();
+  rounded.contacts[1].end = 2.0004;  // as a file with three digits has it
+  EXPECT_EQ(code_of(rounded), "");
+}
+
+TEST(MotionKeys, FaultsAreFound) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  MotionKeys keys = sound();
+  keys.contacts[0].joint = 2;
+  EXPECT_EQ(code_of(keys), "keys-joint");
+  keys.contacts[0].joint = -1;
+  EXPECT_EQ(code_of(keys), "keys-joint");
+
+  keys = sound();
+  keys.contacts[0].end = -0.5;
+  EXPECT_EQ(code_of(keys), "keys-time");
+  keys = sound();
+  keys.contacts[1].end = 2.1;
+  EXPECT_EQ(code_of(keys), "keys-time");
+  keys = sound();
+  keys.contacts[1].start = nan;
+  EXPECT_EQ(code_of(keys), "keys-time");
+
+  keys = sound();
+  keys.contacts[1].place.y() = nan;
+  EXPECT_EQ(code_of(keys), "keys-place");
+
+  keys = sound();
+  keys.keytimes[1].time = 0.0;
+  EXPECT_EQ(code_of(keys), "keys-time");
+  keys = sound();
+  keys.keytimes[0].time = nan;
+  EXPECT_EQ(code_of(keys), "keys-time");
+  keys = sound();
+  keys.keytimes[2].name.clear();
+  EXPECT_EQ(code_of(keys), "keys-name");
+}
+
+}  // namespace
+}  // namespace krok

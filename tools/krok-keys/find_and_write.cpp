@@ -1,0 +1,217 @@
+#include "tools/krok-keys/find_and_write.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "contacts/gait_figures.h"
+#include "contacts/gait_keytimes.h"
+#include "core/numbers.h"
+#include "formats/keys/keys.h"
+#include "tools/common/keys_sidecar.h"
+#include "tools/common/motion_input.h"
+#include "tools/common/output_set.h"
+#include "tools/common/role_input.h"
+#include "tools/krok-keys/edit_keys.h"
+#include "tools/krok-keys/feet_plot.h"
+
+namespace krok::keys_tool {
+
+namespace {
+
+std::string shown_input(const Options& options) {
+  return options.input == "-" ? "standard input" : base_name(options.input);
+}
+
+bool stands(const std::string& path) {
+  std::error_code ignored;
+  return !path.empty() && path != "-" && std::filesystem::is_regular_file(path, ignored);
+}
+
+// The file that -o names is an output, which is read beforehand all the same, for what a person
+// wrote into it is to be kept.
+Result<std::optional<keys::Sidecar>> read_before(const Options& options, const Clip& clip,
+                                                 ToolContext& context) {
+  if (options.discard_edits) return std::optional<keys::Sidecar>();
+  if (!options.keys.empty()) {
+    auto sidecar = read_keys_file(options.keys, clip, context);
+    if (!sidecar) return std::move(sidecar).error();
+    return std::optional<keys::Sidecar>(std::move(*sidecar));
+  }
+  if (context.output.empty()) return read_keys_beside(options.input, clip, context);
+  if (!stands(context.output)) return std::optional<keys::Sidecar>();
+  const auto file = InputFile::open(context.output);
+  if (!file) return file.error();
+  auto sidecar = keys::read_sidecar(file->text(), context.output, clip.skeleton, clip.duration());
+  if (!sidecar) {
+    Error error = std::move(sidecar).error();
+    if (error.hint.empty()) error.hint = "--discard-edits replaces the file as it stands";
+    return error;
+  }
+  return std::optional<keys::Sidecar>(std::move(*sidecar));
+}
+
+struct Found {
+  std::optional<FoundContacts> contacts;  // where feet are known
+  MotionKeys keys;
+};
+
+Result<Found> find(const Clip& clip, const RoleMap& roles, ToolContext& context) {
+  auto contacts = find_contacts(clip, roles);
+  if (!contacts) return std::move(contacts).error();
+  Gait gait = find_gait(clip, roles, *contacts);
+  context.tell(contacts->warnings);
+  context.tell(gait.warnings);
+  Found found;
+  found.keys = {contacts->contacts, std::move(gait.keytimes)};
+  found.contacts = std::move(*contacts);
+  return found;
+}
+
+// Whether steps are looked for, or why that cannot be.
+Result<bool> is_to_find(const Options& options, const std::optional<keys::Sidecar>& before) {
+  if (options.find == Find::none) return false;
+  if (!before || !before->has_edits()) return true;
+  if (options.find == Find::automatic) return false;
+  if (!before->edited) return true;
+  return Error("keys-edited",
+               "the file with the keys was edited in places that have no mark, which finding steps "
+               "anew would undo",
+               "mark them with \"by\": \"hand\", or give --discard-edits");
+}
+
+std::string as_table(const keys::Sidecar& sidecar, const Skeleton& skeleton) {
+  std::string text;
+  const auto hand = [](const std::vector<std::uint8_t>& marks, std::size_t i) {
+    return i < marks.size() && marks[i] != 0 ? "  by hand" : "";
+  };
+  for (std::size_t i = 0; i < sidecar.keys.keytimes.size(); ++i) {
+    const Keytime& key = sidecar.keys.keytimes[i];
+    text += fmt::format("{:9.3f} s  {}{}\n", key.time, key.name, hand(sidecar.keytimes_by_hand, i));
+  }
+  for (std::size_t i = 0; i < sidecar.keys.contacts.size(); ++i) {
+    const Contact& contact = sidecar.keys.contacts[i];
+    text += fmt::format("{:9.3f} s to {:7.3f} s  {} at {:.3f}, {:.3f}, {:.3f} m{}\n", contact.start,
+                        contact.end, skeleton.names[static_cast<std::size_t>(contact.joint)],
+                        contact.place.x(), contact.place.y(), contact.place.z(),
+                        hand(sidecar.contacts_by_hand, i));
+  }
+  return text;
+}
+
+Json as_json(const keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitFigures& gait) {
+  const auto hand = [](const std::vector<std::uint8_t>& marks, std::size_t i) {
+    return i < marks.size() && marks[i] != 0;
+  };
+  Json keytimes = Json::array(), contacts = Json::array();
+  for (std::size_t i = 0; i < sidecar.keys.keytimes.size(); ++i) {
+    const Keytime& key = sidecar.keys.keytimes[i];
+    keytimes.push_back(
+        {{"name", key.name}, {"time", key.time}, {"by_hand", hand(sidecar.keytimes_by_hand, i)}});
+  }
+  for (std::size_t i = 0; i < sidecar.keys.contacts.size(); ++i) {
+    const Contact& contact = sidecar.keys.contacts[i];
+    contacts.push_back({{"joint", skeleton.names[static_cast<std::size_t>(contact.joint)]},
+                        {"start", contact.start},
+                        {"end", contact.end},
+                        {"place", {contact.place.x(), contact.place.y(), contact.place.z()}},
+                        {"by_hand", hand(sidecar.contacts_by_hand, i)}});
+  }
+  Json json;
+  json["keytimes"] = std::move(keytimes);
+  json["contacts"] = std::move(contacts);
+  json["gait"] = {{"cycles", gait.cycles},
+                  {"cycle", gait.cycle},
+                  {"cadence", gait.cadence},
+                  {"stance", {gait.stance[0], gait.stance[1]}},
+                  {"double_support", gait.double_support}};
+  return json;
+}
+
+std::string gait_text(const GaitFigures& gait) {
+  if (gait.cycles == 0) return {};
+  return fmt::format("; {:.0f} steps a minute, feet down {:.0f} % and {:.0f} % of a cycle",
+                     gait.cadence, 100 * gait.stance[0], 100 * gait.stance[1]);
+}
+
+Status write_results(const Options& options, const Clip& clip, const RoleMap& roles,
+                     std::optional<FoundContacts> found, const keys::Sidecar& sidecar,
+                     ToolContext& context) {
+  OutputSet outputs(context);
+  if (!context.output.empty()) {
+    const std::string text = keys::write_sidecar(sidecar, clip.skeleton);
+    const Status added =
+        outputs.add(context.output, [&](OutputFile& file) { return file.write(text); });
+    if (!added) return added;
+  }
+  if (!options.plot.empty()) {
+    if (!found) {
+      auto contacts = find_contacts(clip, roles);
+      if (!contacts) return std::move(contacts).error();
+      found = std::move(*contacts);
+    }
+    const auto svg = feet_plot(shown_input(options), clip, *found, sidecar.keys);
+    if (!svg) return svg.error();
+    const Status added =
+        outputs.add(options.plot, [&](OutputFile& file) { return file.write(*svg); });
+    if (!added) return added;
+  }
+  return outputs.finish();
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  const auto changes = changes_of(options);
+  if (!changes) return changes.error();
+  if (!changes->empty() && context.output.empty()) {
+    return Error(
+        "usage", "-o is missing: where shall the changed keys go?",
+        fmt::format("-o {} puts them beside the motion",
+                    options.input == "-" ? "NAME.keys.json" : keys_sidecar_path(options.input)));
+  }
+  const auto clip = read_motion(options.input, context);
+  if (!clip) return clip.error();
+  const auto find_roles = open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  const auto roles = (*find_roles)(clip->skeleton);
+  if (!roles) return roles.error();
+  const auto before = read_before(options, *clip, context);
+  if (!before) return before.error();
+  const auto finding = is_to_find(options, *before);
+  if (!finding) return finding.error();
+
+  keys::Sidecar sidecar = before->value_or(keys::Sidecar{});
+  std::optional<FoundContacts> contacts;
+  if (*finding) {
+    auto found = find(*clip, *roles, context);
+    if (!found) return std::move(found).error().in_file(options.input);
+    sidecar = with_edits(std::move(found->keys), sidecar);
+    contacts = std::move(found->contacts);
+  } else if (*before && (*before)->has_edits()) {
+    context.say("the keys were edited by hand and are kept; --find steps finds the rest anew");
+  }
+  sidecar.duration = clip->duration();
+  if (Status changed = change(*changes, *clip, sidecar); !changed) return changed.error();
+  if (Status sound = krok::check(sidecar.keys, clip->skeleton, clip->duration()); !sound) {
+    return sound.error();
+  }
+  const Status written =
+      write_results(options, *clip, *roles, std::move(contacts), sidecar, context);
+  if (!written) return written.error();
+
+  const GaitFigures gait = gait_figures(sidecar.keys.keytimes);
+  context.report.result = as_json(sidecar, clip->skeleton, gait);
+  context.report.result["found"] = *finding;
+  context.report.result["edited"] = sidecar.has_edits();
+  if (context.output.empty() && options.plot.empty()) {
+    context.print(as_table(sidecar, clip->skeleton));
+  }
+  context.say(fmt::format("{}: {}, {}{}", shown_input(options),
+                          counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
+                          counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
+                          gait_text(gait)));
+  return options.find == Find::steps && sidecar.keys.keytimes.empty() ? kExitNo : kExitDone;
+}
+
+}  // namespace krok::keys_tool

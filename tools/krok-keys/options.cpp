@@ -1,0 +1,145 @@
+#include "tools/krok-keys/options.h"
+
+#include <fmt/format.h>
+
+#include "tools/common/one_of.h"
+#include "tools/common/role_input.h"
+
+namespace krok::keys_tool {
+
+namespace {
+
+Error usage(std::string message, std::string hint) {
+  return Error("usage", std::move(message), std::move(hint));
+}
+
+// What stands before the last `mark` and after it.
+struct Halves {
+  std::string before, after;
+  bool split = false;
+};
+Halves halves_at(const std::string& text, const std::string& mark) {
+  const auto place = text.rfind(mark);
+  if (place == std::string::npos) return {text, {}, false};
+  return {text.substr(0, place), text.substr(place + mark.size()), true};
+}
+
+Result<ClipTime> time_of(const std::string& text, const std::string& option) {
+  auto time = parse_clip_time(text);
+  if (time) return time;
+  Error error = std::move(time).error();
+  error.message = fmt::format("{}: {}", option, error.message);
+  return error;
+}
+
+Result<KeytimeChange> parse_keytime(const std::string& text, const std::string& mark,
+                                    const std::string& option, bool needs_time) {
+  const Halves halves = halves_at(text, mark);
+  if (halves.before.empty() || (needs_time && !halves.split)) {
+    return usage(fmt::format("{}: '{}' does not say what and when", option, text),
+                 fmt::format("write {} left_strike{}1.25s", option, mark));
+  }
+  KeytimeChange change{halves.before, {}};
+  if (!halves.split) return change;
+  const auto time = time_of(halves.after, option);
+  if (!time) return time.error();
+  change.time = *time;
+  return change;
+}
+
+Result<ContactChange> parse_contact(const std::string& text) {
+  const Halves parts = halves_at(text, "=");
+  const Halves times = halves_at(parts.after, "..");
+  if (parts.before.empty() || !times.split) {
+    return usage(fmt::format("--add-contact: '{}' does not say which joint and when", text),
+                 "write --add-contact LeftFoot=1.2s..1.8s");
+  }
+  const auto from = time_of(times.before, "--add-contact");
+  if (!from) return from.error();
+  const auto to = time_of(times.after, "--add-contact");
+  if (!to) return to.error();
+  return ContactChange{parts.before, *from, *to};
+}
+
+}  // namespace
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("input", options.input,
+                 "The motion: a .anim file, or a capture as krok-import reads it by default")
+      ->type_name("IN")
+      ->required();
+  add_map_option(app, options.map);
+  app.add_option("--find", options.find,
+                 "steps (find contacts and keytimes; what was set by hand stays), none (take the "
+                 "file as it is), or auto: none where a person edited the file, otherwise steps")
+      ->type_name("WHAT")
+      ->transform(
+          one_of<Find>({{"auto", Find::automatic}, {"steps", Find::steps}, {"none", Find::none}}))
+      ->default_str("auto");
+  app.add_option("--keys", options.keys,
+                 "The file to begin with; otherwise the one that -o names, or else the one beside "
+                 "the motion")
+      ->type_name("IN.json");
+  app.add_flag("--discard-edits", options.discard_edits,
+               "Find all anew, whatever a person changed before");
+  app.add_option("--plot", options.plot,
+                 "Heights and speeds of the feet over time with contacts and keytimes, as SVG")
+      ->type_name("OUT.svg");
+  const char* group = "By hand";
+  const auto list = [&](const char* name, std::vector<std::string>& values, const char* help,
+                        const char* type) {
+    app.add_option(name, values, help)
+        ->type_name(type)
+        ->delimiter(',')
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group(group);
+  };
+  list("--set", options.set,
+       "Move the keytime of that name that is within 0.15 s there, or else add one; several with "
+       "commas, or repeated. Times: 1.25s, 250ms, or 120f for a frame",
+       "NAME=TIME");
+  list("--remove", options.remove, "Take out a keytime, or all of a name", "NAME[@TIME]");
+  list("--add-contact", options.add_contact,
+       "Add a contact of a joint, in place of those it overlaps; its place is where the joint is "
+       "meanwhile",
+       "JOINT=TIME..TIME");
+  list("--remove-contact", options.remove_contact,
+       "Take out the contact that a joint has at that time", "JOINT@TIME");
+}
+
+Result<Changes> changes_of(const Options& options) {
+  Changes changes;
+  for (const std::string& text : options.set) {
+    auto change = parse_keytime(text, "=", "--set", true);
+    if (!change) return change.error();
+    changes.set.push_back(std::move(*change));
+  }
+  for (const std::string& text : options.remove) {
+    auto change = parse_keytime(text, "@", "--remove", false);
+    if (!change) return change.error();
+    changes.remove.push_back(std::move(*change));
+  }
+  for (const std::string& text : options.add_contact) {
+    auto change = parse_contact(text);
+    if (!change) return change.error();
+    changes.add_contact.push_back(std::move(*change));
+  }
+  for (const std::string& text : options.remove_contact) {
+    const auto change = parse_keytime(text, "@", "--remove-contact", true);
+    if (!change) return change.error();
+    changes.remove_contact.push_back({change->name, *change->time, *change->time});
+  }
+  return changes;
+}
+
+Status check(const Options& options) {
+  const auto changes = changes_of(options);
+  if (!changes) return changes.error();
+  if (options.discard_edits && options.find == Find::none) {
+    return usage("--discard-edits and --find none leave nothing", "choose one of them");
+  }
+  return {};
+}
+
+}  // namespace krok::keys_tool
