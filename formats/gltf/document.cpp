@@ -217,24 +217,38 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
   if (!tracks.times.empty()) {
     tinygltf::Animation animation;
     animation.name = name;
-    const int times = add_floats(tracks.times, TINYGLTF_TYPE_SCALAR, Use::data, true);
+    std::map<std::vector<int>, int> time_accessors;
+    // The times of some frames, or of all; tracks with keys at the same frames share them.
+    const auto times = [&](const std::vector<int>& frames) {
+      const auto [place, made] = time_accessors.emplace(frames, 0);
+      if (made) {
+        std::vector<float> chosen;
+        for (const int frame : frames) chosen.push_back(tracks.times[frame]);
+        place->second = add_floats(frames.empty() ? tracks.times : chosen, TINYGLTF_TYPE_SCALAR,
+                                   Use::data, true);
+      }
+      return place->second;
+    };
     for (int j = 0; j < skeleton.joint_count(); ++j) {
       const JointTrack& track = tracks.joints[j];
       if (!track.translations.empty()) {
-        add_channel(animation, first + j, "translation", times,
+        const int input = times(track.translation_frames);
+        add_channel(animation, first + j, "translation", input,
                     add_floats({track.translations.data()->data(), track.translations.size() * 3},
                                TINYGLTF_TYPE_VEC3, Use::data, false, Keep::view));
       }
       if (!track.rotations.empty()) {
+        const int input = times(track.rotation_frames);
         const std::span values(track.rotations.data()->coeffs().data(), track.rotations.size() * 4);
-        add_channel(animation, first + j, "rotation", times,
+        add_channel(animation, first + j, "rotation", input,
                     add_floats(values, TINYGLTF_TYPE_VEC4, Use::data, false, Keep::view));
       }
     }
     // A figure that stands still in its reference pose is still a motion of some length.
     if (animation.channels.empty()) {
       const std::vector<Vec3f> still(tracks.times.size(), tracks.joints[0].rest_translation);
-      add_channel(animation, first, "translation", times, add_vectors(still, Use::data));
+      const int input = times({});
+      add_channel(animation, first, "translation", input, add_vectors(still, Use::data));
     }
     gltf.animations.push_back(std::move(animation));
   }

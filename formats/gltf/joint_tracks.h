@@ -21,6 +21,10 @@ struct JointTrack {
   // hemisphere, so that a viewer's interpolation takes the shorter arc.
   std::vector<Vec3f> translations;
   std::vector<Quatf> rotations;
+
+  // Where reduce_tracks() has left fewer values than frames: the frames that they belong to,
+  // rising.
+  std::vector<int> translation_frames, rotation_frames;
 };
 
 struct JointTracks {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/hermite.h"
 #include "math/quaternion.h"
 #include "nodes/evaluate.h"
 
@@ -26,13 +27,8 @@ void interpolate_spline(const Channel& channel, std::size_t key, double t, doubl
   const float* out0 = v0 + width;
   const float* v1 = channel.values->data() + value_offset(channel, key + 1);
   const float* in1 = v1 - width;
-  const double t2 = t * t;
-  const double t3 = t2 * t;
   for (std::size_t i = 0; i < width; ++i) {
-    values[i] = (2 * t3 - 3 * t2 + 1) * static_cast<double>(v0[i]) +
-                span * (t3 - 2 * t2 + t) * static_cast<double>(out0[i]) +
-                (3 * t2 - 2 * t3) * static_cast<double>(v1[i]) +
-                span * (t3 - t2) * static_cast<double>(in1[i]);
+    values[i] = hermite(v0[i], out0[i], v1[i], in1[i], span, t);
   }
 }
 

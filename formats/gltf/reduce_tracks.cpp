@@ -1,0 +1,85 @@
+#include "formats/gltf/reduce_tracks.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "math/quaternion.h"
+
+namespace krok::gltf {
+
+namespace {
+
+// joint_to_parent of all frames as a viewer has it, [frames x joints].
+std::vector<Transform> local_transforms(const JointTracks& tracks) {
+  const std::size_t joints = tracks.joints.size(), frames = tracks.times.size();
+  std::vector<Transform> local(joints * frames);
+  for (std::size_t j = 0; j < joints; ++j) {
+    const JointTrack& track = tracks.joints[j];
+    assert(track.translation_frames.empty() && track.rotation_frames.empty());
+    for (std::size_t f = 0; f < frames; ++f) {
+      const Vec3f& position =
+          track.translations.empty() ? track.rest_translation : track.translations[f];
+      const Quatf& rotation = track.rotations.empty() ? track.rest_rotation : track.rotations[f];
+      local[f * joints + j] = {position.cast<double>(),
+                               normalized_or_identity(rotation.cast<double>())};
+    }
+  }
+  return local;
+}
+
+template <typename Value>
+void keep(const std::vector<int>& frames, std::vector<Value>& values, std::vector<int>& kept) {
+  if (values.empty() || frames.size() == values.size()) return;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    values[k] = values[static_cast<std::size_t>(frames[k])];
+  }
+  values.resize(frames.size());
+  kept = frames;
+}
+
+// Where no track has a key at the last frame, the motion would end early: the first gets one.
+void lengthen(const JointTracks& tracks, int last, std::vector<KeptFrames>& joints) {
+  std::vector<int>* first = nullptr;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const JointTrack& track = tracks.joints[j];
+    for (auto [frames, has_track] : {std::pair{&joints[j].position, !track.translations.empty()},
+                                     {&joints[j].rotation, !track.rotations.empty()}}) {
+      if (!has_track) continue;
+      if (frames->back() == last) return;
+      if (first == nullptr) first = frames;
+    }
+  }
+  if (first != nullptr) first->push_back(last);
+}
+
+}  // namespace
+
+Result<Reduction> reduce_tracks(const Skeleton& rest, const ReduceOptions& options, int jobs,
+                                JointTracks& tracks) {
+  const std::vector<double> times(tracks.times.begin(), tracks.times.end());
+  // A key of a translation takes 12 bytes, of a rotation 16, its time 4 where the track does not
+  // share those of all frames, and what the file says of such times some 120.
+  ReduceOptions smallest = options;
+  smallest.most_kept =
+      std::max(0.0, std::min(options.most_kept, 0.75 - 10.0 / static_cast<double>(times.size())));
+  auto reduction = choose_keys(rest.parents, times, local_transforms(tracks), smallest, jobs);
+  if (!reduction || times.empty()) return reduction;
+  const int last = static_cast<int>(times.size()) - 1;
+  lengthen(tracks, last, reduction->joints);
+  reduction->keys_before = reduction->keys_after = 0;
+  for (std::size_t j = 0; j < tracks.joints.size(); ++j) {
+    const KeptFrames& kept = reduction->joints[j];
+    JointTrack& track = tracks.joints[j];
+    reduction->keys_before += track.translations.size() + track.rotations.size();
+    keep(kept.position, track.translations, track.translation_frames);
+    keep(kept.rotation, track.rotations, track.rotation_frames);
+    for (std::size_t k = 1; k < track.rotations.size(); ++k) {
+      Quatf& rotation = track.rotations[k];
+      if (track.rotations[k - 1].dot(rotation) < 0) rotation.coeffs() = -rotation.coeffs();
+    }
+    reduction->keys_after += track.translations.size() + track.rotations.size();
+  }
+  return reduction;
+}
+
+}  // namespace krok::gltf

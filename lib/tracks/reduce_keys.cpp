@@ -1,0 +1,205 @@
+#include "tracks/reduce_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "math/quaternion.h"
+#include "tracks/key_reducer_internal.h"
+
+namespace krok {
+
+namespace {
+
+using tracks_detail::kTracksPerJoint;
+using tracks_detail::ReductionTask;
+using tracks_detail::StretchResult;
+
+// Long motions go in stretches of so many frames, which share their border frames.
+constexpr std::size_t kStretch = 1024;
+
+Status check(const ReduceOptions& options) {
+  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance) ||
+      !(options.shell_distance >= 0) || !std::isfinite(options.shell_distance) ||
+      !(options.most_kept >= 0)) {
+    return Error(
+        "reduce-tolerance",
+        fmt::format("a tolerance of {} m with a shell of {} m and at most {} kept, expected "
+                    "a positive number and two that are not negative",
+                    options.tolerance, options.shell_distance, options.most_kept));
+  }
+  return {};
+}
+
+std::vector<std::vector<int>> joints_below(std::span<const int> parents) {
+  std::vector<std::vector<int>> below(parents.size());
+  for (int j = 0; j < static_cast<int>(parents.size()); ++j) {
+    for (int a = j; a >= 0; a = parents[static_cast<std::size_t>(a)]) {
+      below[static_cast<std::size_t>(a)].push_back(j);
+    }
+  }
+  return below;
+}
+
+// Which tracks need more than the value of the first frame: those whose change, alone, would be
+// seen. What is left still may take a quarter of the tolerance on the longest chain.
+std::vector<tracks_detail::Keep> moving_tracks(const ReductionTask& task, std::size_t frames) {
+  const std::size_t joints = task.parents.size();
+  std::vector<std::size_t> depth(joints, 1);
+  std::size_t deepest = 1;
+  for (std::size_t j = 0; j < joints; ++j) {
+    if (task.parents[j] >= 0) depth[j] = depth[static_cast<std::size_t>(task.parents[j])] + 1;
+    deepest = std::max(deepest, depth[j]);
+  }
+  // The length of all bones below a joint is more than the reach of its rotation.
+  std::vector<double> reach(joints, task.options.shell_distance), longest(joints, 0);
+  for (std::size_t f = 0; f < frames; ++f) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      longest[j] = std::max(longest[j], task.local[f * joints + j].position.norm());
+    }
+  }
+  for (std::size_t j = joints; j-- > 0;) {
+    if (task.parents[j] < 0) continue;
+    double& above = reach[static_cast<std::size_t>(task.parents[j])];
+    above = std::max(above, reach[j] + longest[j]);
+  }
+  const double still =
+      0.25 * task.options.tolerance / static_cast<double>(kTracksPerJoint * deepest);
+  using tracks_detail::Keep;
+  std::vector<Keep> keep(kTracksPerJoint * joints, Keep::first);
+  for (std::size_t f = 1; f < frames; ++f) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      const Transform& first = task.local[j];
+      const Transform& now = task.local[f * joints + j];
+      if ((now.position - first.position).norm() > still) keep[kTracksPerJoint * j] = Keep::needed;
+      if (tracks_detail::rotation_error(first.orientation, now.orientation, reach[j]) > still) {
+        keep[kTracksPerJoint * j + 1] = Keep::needed;
+      }
+    }
+  }
+  return keep;
+}
+
+// Adds a stretch's keys to those of the stretches before it.
+void append(const StretchResult& stretch, Reduction& reduction) {
+  for (std::size_t track = 0; track < stretch.keys.size(); ++track) {
+    KeptFrames& joint = reduction.joints[track / kTracksPerJoint];
+    auto& kept = track % kTracksPerJoint == 0 ? joint.position : joint.rotation;
+    for (const int frame : stretch.keys[track]) {
+      if (kept.empty() || frame > kept.back()) kept.push_back(frame);
+    }
+  }
+  if (stretch.largest_error <= reduction.largest_error) return;
+  reduction.largest_error = stretch.largest_error;
+  reduction.worst_joint = stretch.worst_joint;
+  reduction.worst_frame = stretch.worst_frame;
+}
+
+Reduction reduce_all(const ReductionTask& task, int jobs) {
+  const std::size_t frames = task.times.size();
+  const std::size_t stretches = std::max<std::size_t>((frames + kStretch - 2) / kStretch, 1);
+  std::vector<StretchResult> results(stretches);
+  parallel_for(stretches, 1, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      results[s] = tracks_detail::reduce_stretch(task, s * kStretch,
+                                                 std::min((s + 1) * kStretch + 1, frames));
+    }
+  });
+  Reduction reduction;
+  reduction.joints.resize(task.parents.size());
+  reduction.keys_before = task.keep.size() * frames;
+  for (const StretchResult& stretch : results) append(stretch, reduction);
+  return reduction;
+}
+
+// Marks the tracks of which too many keys stay to be worth times of their own. Whether there are
+// any that were not yet.
+bool keep_all_where_few_go(const ReduceOptions& options, const Reduction& reduction,
+                           ReductionTask& task) {
+  const double most = options.most_kept * static_cast<double>(task.times.size());
+  bool any = false;
+  for (std::size_t track = 0; track < task.keep.size(); ++track) {
+    const KeptFrames& joint = reduction.joints[track / kTracksPerJoint];
+    const auto& kept = track % kTracksPerJoint == 0 ? joint.position : joint.rotation;
+    if (task.keep[track] == tracks_detail::Keep::needed &&
+        static_cast<double>(kept.size()) > most) {
+      task.keep[track] = tracks_detail::Keep::all;
+      any = true;
+    }
+  }
+  return any;
+}
+
+template <typename Track>
+void keep(const Track& all, std::span<const int> frames, Track& kept) {
+  kept.curve = all.curve;
+  for (const int frame : frames) {
+    kept.times.push_back(all.times[static_cast<std::size_t>(frame)]);
+    kept.values.push_back(all.values[static_cast<std::size_t>(frame)]);
+  }
+}
+
+}  // namespace
+
+Result<Reduction> choose_keys(std::span<const int> parents, std::span<const double> times,
+                              std::span<const Transform> joint_to_parent,
+                              const ReduceOptions& options, int jobs) {
+  if (Status fine = check(options); !fine) return fine.error();
+  const std::size_t joints = parents.size(), frames = times.size();
+  assert(joint_to_parent.size() == joints * frames);
+  if (frames == 0 || joints == 0) {
+    Reduction nothing;
+    nothing.joints.resize(joints);
+    return nothing;
+  }
+  ReductionTask task{parents, times, joint_to_parent, {}, joints_below(parents), options};
+  task.keep = moving_tracks(task, frames);
+  Reduction reduction = reduce_all(task, jobs);
+  // Tracks that get all their keys back leave more room to the others, and take away what made up
+  // for an error of theirs: so all begins anew, and with the last round what comes out is right.
+  constexpr int kRounds = 4;
+  for (int round = 1; round < kRounds && keep_all_where_few_go(options, reduction, task); ++round) {
+    reduction = reduce_all(task, jobs);
+  }
+  for (KeptFrames& joint : reduction.joints) {
+    for (std::vector<int>* kept : {&joint.position, &joint.rotation}) {
+      if (kept->empty()) kept->push_back(0);
+      reduction.keys_after += kept->size();
+    }
+  }
+  return reduction;
+}
+
+Result<ReducedClip> reduce_keys(const Clip& clip, const ReduceOptions& options, int jobs) {
+  const KeyedClip all = keyed_clip(clip);
+  const std::size_t joints = all.joints.size();
+  const auto frames = static_cast<std::size_t>(clip.frame_count());
+  std::vector<double> times;
+  if (joints > 0) times = all.joints[0].rotation.times;
+  std::vector<Transform> local(joints * frames);
+  for (std::size_t j = 0; j < joints; ++j) {
+    for (std::size_t f = 0; f < frames; ++f) {
+      local[f * joints + j] = {all.joints[j].position.values[f], all.joints[j].rotation.values[f]};
+    }
+  }
+  auto reduction = choose_keys(clip.skeleton.parents, times, local, options, jobs);
+  if (!reduction) return std::move(reduction).error();
+  ReducedClip result;
+  result.clip.skeleton = all.skeleton;
+  result.clip.duration = all.duration;
+  result.clip.provenance = all.provenance;
+  result.clip.joints.resize(joints);
+  if (frames > 0) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      keep(all.joints[j].position, reduction->joints[j].position, result.clip.joints[j].position);
+      keep(all.joints[j].rotation, reduction->joints[j].rotation, result.clip.joints[j].rotation);
+    }
+  }
+  result.reduction = *std::move(reduction);
+  return result;
+}
+
+}  // namespace krok

@@ -1,0 +1,142 @@
+// Would fail if a glTF file with fewer keys showed another motion than its tolerance allows, ended
+// early, or came out larger than the one with all keys.
+
+#include "formats/gltf/reduce_tracks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/file.h"
+#include "formats/gltf/gltf_reader.h"
+#include "formats/gltf/gltf_writer.h"
+#include "math/quaternion.h"
+#include "nodes/evaluate.h"
+#include "support/folder_test.h"
+#include "support/test_scenes.h"
+
+namespace krok {
+namespace {
+
+class ReduceTracks : public test::FolderTest {
+ protected:
+  // Writes the tracks, reads the file back, and gives its size.
+  std::size_t write(const Skeleton& skeleton, const gltf::JointTracks& tracks,
+                    nodes::Scene& scene) {
+    const std::string name = path("motion.glb");
+    auto file = OutputFile::create(name);
+    EXPECT_TRUE(file.ok());
+    EXPECT_TRUE(gltf::write_skeleton(skeleton, tracks, {}, *file).ok());
+    EXPECT_TRUE(file->commit().ok());
+    auto read = gltf::read_file(name);
+    EXPECT_TRUE(read.ok()) << read.error().message;
+    scene = *std::move(read);
+    return get(name).size();
+  }
+};
+
+// The furthest that a joint or a point 3 cm beside it is off, at four moments a frame.
+double largest_error(const nodes::Scene& all, const nodes::Scene& reduced, double duration,
+                     int moments) {
+  const auto a = nodes::Evaluator::create(all), b = nodes::Evaluator::create(reduced);
+  nodes::Evaluation x, y;
+  double worst = 0;
+  for (int i = 0; i <= moments; ++i) {
+    a->place_nodes(0, duration * i / moments, x);
+    b->place_nodes(0, duration * i / moments, y);
+    for (std::size_t n = 0; n < x.node_to_world.size(); ++n) {
+      for (const Vec3& point :
+           {Vec3(0, 0, 0), Vec3(0.03, 0, 0), Vec3(0, 0.03, 0), Vec3(0, 0, -0.03)}) {
+        const Vec4 place = point.homogeneous();
+        worst = std::max(worst, (x.node_to_world[n] * place - y.node_to_world[n] * place).norm());
+      }
+    }
+  }
+  return worst;
+}
+
+TEST_F(ReduceTracks, ShowsTheSameMotionWithinTheToleranceInASmallerFile) {
+  const Clip clip = test::swinging_clip(test::with_turned_joints(test::human_skeleton()), 300, 60);
+  auto tracks = gltf::joint_tracks(clip.skeleton, clip);
+  ASSERT_TRUE(tracks.ok());
+  nodes::Scene all, reduced;
+  const std::size_t size = write(clip.skeleton, *tracks, all);
+  for (const double tolerance : {1e-4, 1e-3, 1e-2}) {
+    gltf::JointTracks fewer = *tracks;
+    const auto reduction = gltf::reduce_tracks(clip.skeleton, {.tolerance = tolerance}, 2, fewer);
+    ASSERT_TRUE(reduction.ok());
+    EXPECT_LE(reduction->largest_error, tolerance);
+    EXPECT_LT(write(clip.skeleton, fewer, reduced), tolerance < 1e-3 ? size : size * 3 / 4)
+        << tolerance;
+    EXPECT_LE(largest_error(all, reduced, clip.duration(), 4 * 299), 1.02 * tolerance);
+    std::size_t keys = 0, before = 0;
+    for (const gltf::JointTrack& track : fewer.joints)
+      keys += track.rotations.size() + track.translations.size();
+    for (const gltf::JointTrack& track : tracks->joints)
+      before += track.rotations.size() + track.translations.size();
+    EXPECT_EQ(reduction->keys_after, keys);
+    EXPECT_EQ(reduction->keys_before, before);
+  }
+}
+
+TEST_F(ReduceTracks, NeverMakesAFileMuchLarger) {
+  // Noise from frame to frame: nothing can go.
+  Clip clip = test::swinging_clip(test::human_skeleton(), 50, 30);
+  for (std::size_t i = 0; i < clip.orientations.size(); ++i) {
+    const double noise = 0.05 * std::sin(12.9898 * static_cast<double>(i * i));
+    clip.orientations[i] =
+        clip.orientations[i] * from_rotation_vector(Vec3(noise, -noise, 0)).cast<float>();
+  }
+  auto tracks = gltf::joint_tracks(clip.skeleton, clip);
+  ASSERT_TRUE(tracks.ok());
+  nodes::Scene scene;
+  const std::size_t size = write(clip.skeleton, *tracks, scene);
+  for (const double tolerance : {1e-6, 1e-4, 1e-3}) {
+    gltf::JointTracks fewer = *tracks;
+    ASSERT_TRUE(gltf::reduce_tracks(clip.skeleton, {.tolerance = tolerance}, 1, fewer).ok());
+    EXPECT_LE(write(clip.skeleton, fewer, scene), size) << tolerance;
+  }
+}
+
+TEST_F(ReduceTracks, AFigureThatStandsStillLastsAsLong) {
+  Clip clip;
+  clip.skeleton = test::human_skeleton();
+  clip.rate = 10;
+  clip.resize(31);
+  std::vector<Transform> pose = clip.skeleton.reference;
+  pose[3].orientation = from_rotation_vector(Vec3(0.4, 0, 0));
+  for (int f = 0; f < 31; ++f) clip.set_pose(f, pose);
+  auto tracks = gltf::joint_tracks(clip.skeleton, clip);
+  ASSERT_TRUE(tracks.ok());
+  ASSERT_TRUE(gltf::reduce_tracks(clip.skeleton, {.tolerance = 1e-3}, 1, *tracks).ok());
+  nodes::Scene scene;
+  write(clip.skeleton, *tracks, scene);
+  double end = 0;
+  for (const nodes::Channel& channel : scene.animations.at(0).channels) {
+    end = std::max(end, static_cast<double>(channel.times->back()));
+  }
+  EXPECT_NEAR(end, 3, 1e-6);
+}
+
+TEST_F(ReduceTracks, SuccessiveRotationsThatStayLieInOneHemisphere) {
+  const Clip clip = test::swinging_clip(test::with_turned_joints(test::human_skeleton()), 300, 60);
+  auto tracks = gltf::joint_tracks(clip.skeleton, clip);
+  ASSERT_TRUE(tracks.ok());
+  ASSERT_TRUE(gltf::reduce_tracks(clip.skeleton, {.tolerance = 0.05}, 1, *tracks).ok());
+  for (const gltf::JointTrack& track : tracks->joints) {
+    for (std::size_t k = 1; k < track.rotations.size(); ++k) {
+      EXPECT_GE(track.rotations[k].dot(track.rotations[k - 1]), 0);
+    }
+  }
+}
+
+TEST_F(ReduceTracks, OfNoFramesIsNothingAndNoToleranceAnError) {
+  gltf::JointTracks tracks = gltf::rest_tracks(test::human_skeleton());
+  EXPECT_TRUE(gltf::reduce_tracks(test::human_skeleton(), {.tolerance = 1e-3}, 1, tracks).ok());
+  const auto refused = gltf::reduce_tracks(test::human_skeleton(), {.tolerance = 0}, 1, tracks);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, "reduce-tolerance");
+}
+
+}  // namespace
+}  // namespace krok
