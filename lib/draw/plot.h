@@ -18,10 +18,10 @@ namespace krok::draw {
 enum class Scale : unsigned char { linear, logarithmic };
 
 struct Axis {
-  std::string label;  // what it is, "time"
-  std::string unit;   // "s"; empty for a number
+  std::string label;      // what it is, "time"
+  std::string unit = {};  // "s"; empty for a number
   Scale scale = Scale::linear;
-  std::optional<double> low, high;  // otherwise from the data, rounded outwards to ticks
+  std::optional<double> low = {}, high = {};  // otherwise from the data, rounded outwards to ticks
 };
 
 enum class SeriesStyle : unsigned char { line, points, line_and_points };
@@ -32,12 +32,14 @@ struct Series {
   std::string name;  // for the legend; empty for none
   std::vector<double> x, y;
   SeriesStyle style = SeriesStyle::line;
-  int colour = -1;  // place in the palette; -1: the series' own place in the panel
+  int colour = -1;     // place in the palette; -1: the series' own place in the panel
+  int dash = -1;       // which stroke pattern, 0 is solid; -1: the colour's own
+  bool arrow = false;  // a head at the end of the line, in its direction there
   bool faint = false;
 };
 
-// A stretch of the x axis, such as a foot on the ground, drawn as a bar along the bottom. Lanes are
-// stacked from the axis upwards.
+// A stretch of the x axis, such as a foot on the ground, drawn as a bar in a lane. Lanes are
+// stacked from the axis upwards, below the series.
 struct Span {
   double from = 0.0, to = 0.0;
   int lane = 0;
@@ -54,13 +56,24 @@ struct Panel {
   std::string title;
   Axis x, y;
   bool same_scale = false;  // a unit is as long on both axes: maps, paths
+  bool legend = true;       // names of series below the panel; false where the figure's tells all
   std::vector<Series> series;
   std::vector<Span> spans;
+  std::vector<std::string> lanes;  // names beside the lanes, a letter or two, from below
   std::vector<Moment> moments;
+};
+
+// What a colour and a stroke pattern stand for.
+struct LegendEntry {
+  std::string name;
+  int colour = 0;  // as in Series, but of the figure's legend never -1
+  int dash = -1;
+  SeriesStyle style = SeriesStyle::line;
 };
 
 struct Figure {
   std::string title;
+  std::vector<LegendEntry> legend;  // of all panels, below the title; panels may have their own
   std::vector<Panel> panels;
   int columns = 1;
   double panel_width = 640.0, panel_height = 260.0;  // of the plotted area, CSS pixels
@@ -68,7 +81,8 @@ struct Figure {
 
 // The figure as an SVG text. Lines are thinned to what a fiftieth of a pixel can show. Codes:
 // plot-empty for a figure without a panel; plot-shape for series whose x and y differ in length;
-// plot-axis for limits that are not finite, not rising, or not positive on a logarithmic axis.
+// plot-size for panels under a pixel or over 100,000; plot-axis for limits that are not finite, not
+// rising, or not positive on a logarithmic axis.
 Result<std::string> to_svg(const Figure& figure);
 
 // The colours that series take in turn, as "#rrggbb".

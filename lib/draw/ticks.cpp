@@ -2,22 +2,23 @@
 #include <cmath>
 
 #include "draw/plot.h"
+#include "draw/plot_axis_internal.h"
 
 namespace krok::draw {
 
-namespace {
-
-// The smallest 1, 2 or 5 times a power of ten that is not below `step`.
-double round_step(double step) {
-  const double power = std::pow(10.0, std::floor(std::log10(step)));
+double tick_step(double low, double high, int wanted) {
+  const double least = (high - low) / std::max(wanted, 1);
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
   for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= step * (1 - 1e-9)) return factor * power;
+    if (factor * power >= least * (1 - 1e-9)) return factor * power;
   }
   return 10.0 * power;
 }
 
+namespace {
+
 std::vector<double> linear_ticks(double low, double high, int wanted) {
-  const double step = round_step((high - low) / std::max(wanted, 1));
+  const double step = tick_step(low, high, wanted);
   std::vector<double> result;
   const double first = std::ceil(low / step - 1e-9);
   const double last = std::floor(high / step + 1e-9);

@@ -2,19 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "compare/camera_difference.h"
 #include "compare/clip_difference.h"
 #include "compare/model_difference.h"
 #include "compare/scene_difference.h"
 #include "core/numbers.h"
+#include "difference_plot.h"
 #include "formats/anim/anim.h"
 #include "formats/cam/cam.h"
-#include "formats/gltf/gltf_reader.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
 #include "gltf_scene.h"
+#include "tools/common/gltf/gltf_input.h"
 
 namespace krok::diff {
 
@@ -64,13 +63,33 @@ Result<std::pair<T, T>> read_both(const InputFile& first, const InputFile& secon
   return std::pair<T, T>(std::move(*a), std::move(*b));
 }
 
+// Draws the sheet of two things, where one is wanted.
+template <typename T>
+Status draw_sheet(const T& first, const T& second, const compare::Measure& found,
+                  const Options& options, ToolContext& context) {
+  if (options.sheet.path.empty()) return {};
+  DifferenceSheet sheet = sheet_of(first, second, found);
+  sheet.first_name = base_name(options.first);
+  sheet.second_name = base_name(options.second);
+  return write_sheet(sheet, options.sheet, context);
+}
+
 Result<Outcome> compare_clips(const InputFile& first, const InputFile& second,
-                              const compare::Tolerance& tolerance) {
+                              const Options& options, ToolContext& context) {
   auto clips = read_both<Clip>(first, second,
                                [](const InputFile& file) { return anim::read(file.bytes()); });
   if (!clips) return clips.error();
-  const auto found = compare::difference(clips->first, clips->second, tolerance);
+  const auto found = compare::difference(clips->first, clips->second, options.tolerance);
   if (!found) return found.error();
+  if (Status drawn = draw_sheet(clips->first, clips->second, found->positions, options, context);
+      !drawn) {
+    return drawn.error();
+  }
+  if (!options.plot.empty()) {
+    const PlottedClip a{base_name(options.first), &clips->first};
+    const PlottedClip b{base_name(options.second), &clips->second};
+    if (Status drawn = write_plot(a, b, options.plot, context); !drawn) return drawn.error();
+  }
   Outcome outcome;
   outcome.kind = "anim";
   outcome.summary = {fmt::format("motions: {}, {} compared",
@@ -87,12 +106,16 @@ Result<Outcome> compare_clips(const InputFile& first, const InputFile& second,
 }
 
 Result<Outcome> compare_models(const InputFile& first, const InputFile& second,
-                               const compare::Tolerance& tolerance) {
+                               const Options& options, ToolContext& context) {
   auto models = read_both<Model>(first, second,
                                  [](const InputFile& file) { return model::read(file.bytes()); });
   if (!models) return models.error();
-  const auto found = compare::difference(models->first, models->second, tolerance);
+  const auto found = compare::difference(models->first, models->second, options.tolerance);
   if (!found) return found.error();
+  if (Status drawn = draw_sheet(models->first, models->second, found->positions, options, context);
+      !drawn) {
+    return drawn.error();
+  }
   Outcome outcome;
   outcome.kind = "model";
   outcome.summary = {fmt::format(
@@ -131,30 +154,26 @@ Result<Outcome> compare_cameras(const InputFile& first, const InputFile& second,
   return outcome;
 }
 
-Result<nodes::Scene> read_gltf(const InputFile& file, ToolContext& context) {
-  gltf::ReadOptions options;
-  const std::filesystem::path folder = std::filesystem::path(file.path()).parent_path();
-  options.folder = folder.empty() ? "." : folder.string();
-  auto asset = gltf::read(file.bytes(), options);
-  if (!asset) return std::move(asset.error()).in_file(file.path());
-  for (Diagnostic diagnostic : asset->diagnostics) {
-    diagnostic.where.file = file.path();
-    context.tell(std::move(diagnostic));
-  }
-  return asset;
-}
-
 Result<Outcome> compare_gltf(const InputFile& first, const InputFile& second,
-                             const compare::Tolerance& tolerance, ToolContext& context) {
+                             const Options& options, ToolContext& context) {
   auto assets = read_both<nodes::Scene>(
       first, second, [&](const InputFile& file) { return read_gltf(file, context); });
   if (!assets) return assets.error();
+  context.tell(assets->first.diagnostics);
+  context.tell(assets->second.diagnostics);
   const auto a = scene_of(assets->first);
   if (!a) return Error(a.error()).in_file(first.path());
   const auto b = scene_of(assets->second);
   if (!b) return Error(b.error()).in_file(second.path());
-  const auto found = compare::difference(*a, *b, tolerance, context.jobs, *context.progress);
+  const auto found =
+      compare::difference(*a, *b, options.tolerance, context.jobs, *context.progress);
   if (!found) return found.error();
+  const bool bare = a->meshes.empty() || b->meshes.empty();
+  if (Status drawn =
+          draw_sheet(*a, *b, bare ? found->joint_positions : found->positions, options, context);
+      !drawn) {
+    return drawn.error();
+  }
 
   Outcome outcome;
   outcome.kind = "gltf";
@@ -206,15 +225,22 @@ Result<Outcome> compare_files(const Options& options, ToolContext& context) {
                              options.second, description(*second_kind)),
                  "compare two files of one kind; krok-export and krok-skin make glTF of a motion");
   }
+  if (!options.plot.empty() && *first_kind != Kind::anim) {
+    return Error("usage", "--plot shows motions (.anim) over time",
+                 "--sheet shows models and glTF files too");
+  }
+  if (!options.sheet.path.empty() && *first_kind == Kind::cam) {
+    return Error("usage", "--sheet shows figures, and cameras have none");
+  }
   switch (*first_kind) {
     case Kind::anim:
-      return compare_clips(*first, *second, options.tolerance);
+      return compare_clips(*first, *second, options, context);
     case Kind::model:
-      return compare_models(*first, *second, options.tolerance);
+      return compare_models(*first, *second, options, context);
     case Kind::cam:
       return compare_cameras(*first, *second, options.tolerance);
     default:
-      return compare_gltf(*first, *second, options.tolerance, context);
+      return compare_gltf(*first, *second, options, context);
   }
 }
 

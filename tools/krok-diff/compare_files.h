@@ -4,6 +4,7 @@
 
 #include "compare/measure.h"
 #include "core/result.h"
+#include "difference_sheet.h"
 #include "outcome.h"
 #include "tools/common/tool.h"
 
@@ -12,10 +13,12 @@ namespace krok::diff {
 struct Options {
   std::string first, second;  // paths
   compare::Tolerance tolerance;
+  SheetOptions sheet;
+  std::string plot;  // a path; empty for none
 };
 
-// Reads both files and compares them. Codes diff-kind (a file of a kind that cannot be compared),
-// diff-kinds (two kinds), and those of the readers.
+// Reads both files, compares them and draws what is wanted of the difference. Codes diff-kind (a
+// file of a kind that cannot be compared), diff-kinds (two kinds), and those of the readers.
 Result<Outcome> compare_files(const Options& options, ToolContext& context);
 
 }  // namespace krok::diff

@@ -3,6 +3,7 @@
 #include "compare_files.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
+#include "difference_plot.h"
 #include "tools/common/tool.h"
 
 namespace krok::diff {
@@ -15,6 +16,8 @@ struct Arguments {
   std::string length = "0.01mm";
   std::string angle = "0.01deg";
   std::string ratio = "0.0001";
+  SheetOptions sheet;
+  std::string plot;
 };
 
 Result<double> not_negative(Result<double> value, const char* option, const std::string& text) {
@@ -47,6 +50,10 @@ Result<Options> parse(const Arguments& arguments) {
   const auto ratio = not_negative(parse_ratio(arguments.ratio), "--ratio", arguments.ratio);
   if (!ratio) return ratio.error();
   options.tolerance = {*length, *angle, *ratio};
+  options.sheet = arguments.sheet;
+  options.plot = arguments.plot;
+  if (Status fits = check_picture_name(options.sheet.path, "--sheet"); !fits) return fits.error();
+  if (Status fits = check_plot_name(options.plot); !fits) return fits.error();
   return options;
 }
 
@@ -68,6 +75,17 @@ void declare(CLI::App& app, Arguments& arguments) {
                  "coordinates")
       ->type_name("NUMBER")
       ->default_str(arguments.ratio);
+  app.add_option("--sheet", arguments.sheet.path,
+                 "A picture of both figures and of where they differ, as PNG; of motions, models "
+                 "and glTF")
+      ->type_name("OUT.png");
+  declare_picture_options(app, arguments.sheet.picture, kDifferenceMoments);
+  for (const char* name : {"--moments", "--sides", "--elevation", "--size"}) {
+    app.get_option(name)->needs("--sheet");
+  }
+  app.add_option("--plot", arguments.plot,
+                 "Charts of the distances and angles between two motions over time, as SVG")
+      ->type_name("OUT.svg");
 }
 
 Result<int> run(const Arguments& arguments, ToolContext& context) {
@@ -97,7 +115,9 @@ int main(int argc, char** argv) {
       {"krok-diff walk.anim walk_again.anim --tolerance 0.1mm --angle 0.1deg",
        "Largest and RMS difference of joints, with joint and frame; exit code 1 if beyond."},
       {"krok-diff walk_rig.glb walk_clip.glb --json=diff.json",
-       "A skinned rig against the same motion baked into morph targets; all figures as JSON."}};
+       "A skinned rig against the same motion baked into morph targets; all figures as JSON."},
+      {"krok-diff raw.anim clean.anim --sheet change.png --plot change.svg",
+       "Both figures side by side and where they differ, and the distance over time."}};
   spec.exit_done = "the same within the tolerance";
   spec.exit_no = "the files differ: beyond tolerance, or in skeleton, topology, frames or rate";
   spec.has_output = false;

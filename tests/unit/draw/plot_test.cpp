@@ -6,10 +6,11 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
+#include <set>
+
+#include "unit/draw/svg_reading.h"
 
 namespace krok::draw {
 namespace {
@@ -24,60 +25,6 @@ std::string svg_of(const Panel& panel) {
   auto svg = to_svg(figure);
   EXPECT_TRUE(svg.ok()) << svg.error().message;
   return svg.ok() ? *svg : std::string();
-}
-
-// The numbers that stand at each % of `pattern`, for each place in the text that it fits.
-std::vector<std::vector<double>> numbers_of(const std::string& text, const std::string& pattern) {
-  std::vector<std::vector<double>> found;
-  for (std::size_t start = 0; start < text.size(); ++start) {
-    std::vector<double> row;
-    const char* at = text.c_str() + start;
-    bool fits = true;
-    for (std::size_t i = 0; i < pattern.size() && fits; ++i) {
-      if (pattern[i] != '%') {
-        fits = *at == pattern[i];
-        if (fits) ++at;
-        continue;
-      }
-      char* end = nullptr;
-      fits = std::isdigit(static_cast<unsigned char>(*at)) != 0;
-      if (!fits) break;
-      row.push_back(std::strtod(at, &end));
-      at = end;
-    }
-    if (fits) found.push_back(row);
-  }
-  return found;
-}
-
-// The corners of the first line.
-std::vector<std::vector<double>> line_of(const std::string& svg) {
-  std::string path = svg.substr(svg.find("class=\"line\""));
-  path.resize(path.find("/>"));
-  std::replace(path.begin(), path.end(), 'M', 'L');
-  return numbers_of(path, "L% %");
-}
-
-// How an axis maps values to pixels, read back from two of its tick labels as a person would.
-struct Ruler {
-  double value_a, pixel_a, value_b, pixel_b;
-  bool logarithmic = false;
-  double value_at(double pixel) const {
-    const double share = (pixel - pixel_a) / (pixel_b - pixel_a);
-    return logarithmic ? value_a * std::pow(value_b / value_a, share)
-                       : value_a + share * (value_b - value_a);
-  }
-};
-
-Ruler x_ruler(const std::string& svg) {
-  const auto ticks = numbers_of(svg, "text-anchor=\"middle\" x=\"%\" y=\"%\">%<");
-  return {ticks.front()[2], ticks.front()[0], ticks.back()[2], ticks.back()[0]};
-}
-
-Ruler y_ruler(const std::string& svg) {
-  const auto ticks = numbers_of(svg, "text-anchor=\"end\" x=\"%\" y=\"%\">%<");
-  // The text's base line is 0.35 of its size below the value.
-  return {ticks.front()[2], ticks.front()[1] - 4.2, ticks.back()[2], ticks.back()[1] - 4.2};
 }
 
 Panel line_panel() {
@@ -199,6 +146,169 @@ TEST(Plot, OneValueStandsInTheMiddle) {
   EXPECT_EQ(numbers_of(svg_of(panel), "cx=\"%\"").size(), 1U);
 }
 
+TEST(Plot, OneTickWithinTheValuesMakesNoOddAxis) {
+  // Of the multiples of 50 only 50 lies within; the axis is to end at multiples all the same.
+  Figure figure;
+  figure.panel_height = 100;
+  figure.panels = {line_panel()};
+  figure.panels[0].series[0].y = {4, 50, 70, 20};
+  const auto svg = to_svg(figure);
+  ASSERT_TRUE(svg.ok());
+  const Ruler y = y_ruler(*svg);
+  EXPECT_NEAR(y.value_at(28), 100, 0.01);  // the upper edge of the plotted area
+  EXPECT_NEAR(y.value_at(128), 0, 0.01);
+}
+
+TEST(Plot, LinesCanBeToldApartWithoutColour) {
+  Panel panel;
+  for (int i = 0; i < 6; ++i) {
+    Series series;
+    series.x = {0, 1};
+    series.y = {0, 1.0 * i};
+    panel.series.push_back(series);
+  }
+  const std::string svg = svg_of(panel);
+  std::set<std::string> patterns;
+  for (int i = 0; i < 6; ++i) {
+    const std::string line = line_text(svg, i);
+    const auto at = line.find("stroke-dasharray");
+    patterns.insert(at == std::string::npos ? "" : line.substr(at, line.find('"', at + 18) - at));
+  }
+  EXPECT_EQ(patterns.size(), 6U);
+}
+
+TEST(Plot, BarsOfLanesStandBelowTheData) {
+  Panel panel = line_panel();
+  panel.y.low = 3;
+  panel.spans = {{1, 2, 0, 0}, {0.5, 4, 1, 4}};
+  panel.lanes = {"R", "L"};
+  const std::string svg = svg_of(panel);
+  const Ruler x = x_ruler(svg);
+  const auto bars =
+      numbers_of(svg, "fill-opacity=\"0.75\" x=\"%\" y=\"%\" width=\"%\" height=\"%\"");
+  ASSERT_EQ(bars.size(), 2U);
+  EXPECT_NEAR(x.value_at(bars[0][0]), 1, 0.001);
+  EXPECT_NEAR(x.value_at(bars[0][0] + bars[0][2]), 2, 0.001);
+  EXPECT_NEAR(x.value_at(bars[1][0]), 0.5, 0.001);
+  EXPECT_LE(bars[1][1] + bars[1][3], bars[0][1]);  // the second lane above the first
+  for (const auto& point : line_of(svg)) EXPECT_LT(point[1], bars[1][1]);
+  EXPECT_THAT(svg, HasSubstr(">L<"));
+  EXPECT_THAT(svg, HasSubstr(palette()[4]));
+}
+
+TEST(Plot, ALegendOfTheFigureStandsForAllPanels) {
+  Figure figure;
+  figure.panels = {line_panel(), line_panel()};
+  for (Panel& panel : figure.panels) panel.legend = false;
+  figure.legend = {{"left", 0, 0}, {"right", 4, 1}};
+  const auto svg = to_svg(figure);
+  ASSERT_TRUE(svg.ok());
+  EXPECT_EQ(count_of(*svg, ">left<"), 1);
+  EXPECT_EQ(count_of(*svg, ">right<"), 1);
+  EXPECT_EQ(count_of(*svg, ">knee<"), 0);
+}
+
+TEST(Plot, AnArrowEndsALineInItsDirection) {
+  Panel panel = line_panel();
+  panel.series[0].x = {0, 10, 20};
+  panel.series[0].y = {0, 0, 0};
+  panel.series[0].arrow = true;
+  const std::string svg = svg_of(panel);
+  const auto line = line_of(svg);
+  const auto head = numbers_of(svg, "d=\"M% %L% %L% %Z\"");
+  ASSERT_EQ(head.size(), 1U);
+  EXPECT_EQ(head[0][0], line.back()[0]);  // the tip
+  EXPECT_LT(head[0][2], head[0][0]);      // the rest behind it
+  EXPECT_NEAR(head[0][3] + head[0][5], 2 * head[0][1], 0.01);
+  panel.series[0].x = {7};  // nothing that has a direction
+  panel.series[0].y = {7};
+  EXPECT_EQ(numbers_of(svg_of(panel), "d=\"M% %L% %L% %Z\"").size(), 0U);
+}
+
+TEST(Plot, ValuesAtTheEndsOfDoublesDoNoHarm) {
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  const double huge = std::numeric_limits<double>::max();
+  const std::vector<std::vector<double>> rows = {
+      {-huge, huge}, {0, tiny}, {1, 1 + 1e-15}, {1e15, 1e15 + 0.125}, {-1e200, 1e200}};
+  for (const Scale scale : {Scale::linear, Scale::logarithmic}) {
+    for (const auto& row : rows) {
+      Panel panel;
+      panel.x.scale = panel.y.scale = scale;
+      Series series;
+      series.x = series.y = row;
+      panel.series.push_back(series);
+      const std::string svg = svg_of(panel);
+      EXPECT_THAT(svg, Not(HasSubstr("nan"))) << row[0] << " " << row[1];
+      EXPECT_THAT(svg, Not(HasSubstr("inf"))) << row[0] << " " << row[1];
+      EXPECT_LT(svg.size(), 20000U) << row[0] << " " << row[1];
+    }
+  }
+}
+
+TEST(Plot, WhatLiesFarOutsideOfGivenLimitsIsNotDrawnFarAway) {
+  Panel panel = line_panel();
+  panel.y.low = 0;
+  panel.y.high = 1e-6;
+  for (const auto& point : line_of(svg_of(panel))) EXPECT_LT(std::abs(point[1]), 1e7);
+}
+
+TEST(Plot, AMillionNoisyPointsMakeAFileThatBrowsersOpen) {
+  Panel panel;
+  Series series;
+  std::uint32_t state = 1;
+  for (int i = 0; i < 1'000'000; ++i) {
+    state = state * 1664525U + 1013904223U;
+    series.x.push_back(i);
+    series.y.push_back(state / 4294967296.0);
+  }
+  panel.series.push_back(series);
+  const std::string line = svg_of(panel);
+  EXPECT_LT(line.size(), 3'000'000U);
+  // Nothing of what can be seen is lost: the peaks are there.
+  const Ruler y = y_ruler(line);
+  double low = 1, high = 0;
+  for (const auto& point : line_of(line)) {
+    low = std::min(low, y.value_at(point[1]));
+    high = std::max(high, y.value_at(point[1]));
+  }
+  EXPECT_NEAR(low, 0, 1e-3);
+  EXPECT_NEAR(high, 1, 1e-3);
+  panel.series[0].style = SeriesStyle::points;
+  for (double& x : panel.series[0].x) x = std::fmod(x, 100);
+  EXPECT_LT(svg_of(panel).size(), 12'000'000U);
+}
+
+TEST(Plot, TextThatIsNoUtf8OrTooLongIsMended) {
+  Panel panel = line_panel();
+  panel.title = "caf\xE9 " + std::string(400, 'x') + " end";
+  panel.series[0].name = "\xEF\xBF\xBE" + std::string(5000, 'n');
+  const std::string svg = svg_of(panel);
+  EXPECT_THAT(svg, HasSubstr("caf\xC3\xA9 "));
+  EXPECT_THAT(svg, HasSubstr("xx end<"));
+  EXPECT_THAT(svg, HasSubstr("\u2026"));
+  EXPECT_THAT(svg, Not(HasSubstr("\xEF\xBF\xBE")));
+  EXPECT_LT(svg.size(), 20000U);
+}
+
+TEST(Plot, AnAxisOfLargeNumbersTellsItsTicksApart) {
+  Panel panel = line_panel();
+  panel.series[0].y = {2'000'000, 2'000'004, 2'000'008, 2'000'001};
+  EXPECT_THAT(svg_of(panel), HasSubstr(">2000004<"));
+}
+
+TEST(Plot, NamesOfMomentsDoNotCoverEachOther) {
+  Panel panel = line_panel();
+  panel.moments = {{1.0, "first"},
+                   {1.001, "second"},
+                   {3.0, "third"},
+                   {std::numeric_limits<double>::quiet_NaN(), "never"}};
+  const std::string svg = svg_of(panel);
+  EXPECT_THAT(svg, HasSubstr(">first<"));
+  EXPECT_THAT(svg, Not(HasSubstr(">second<")));
+  EXPECT_THAT(svg, HasSubstr(">third<"));
+  EXPECT_THAT(svg, Not(HasSubstr("never")));
+}
+
 TEST(Plot, RefusesWhatMakesNoPlot) {
   EXPECT_EQ(to_svg(Figure()).error().code, "plot-empty");
   Figure uneven;
@@ -210,6 +320,10 @@ TEST(Plot, RefusesWhatMakesNoPlot) {
   falling.panels[0].x.low = 2;
   falling.panels[0].x.high = 1;
   EXPECT_EQ(to_svg(falling).error().code, "plot-axis");
+  Figure flat;
+  flat.panels.push_back(line_panel());
+  flat.panel_height = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(to_svg(flat).error().code, "plot-size");
 }
 
 TEST(Ticks, AreRoundNumbers) {

@@ -200,6 +200,8 @@ export class Figure {
     this.skeleton.visible = skeleton || !hasBody;
     if (hasBody) {
       this.body.visible = body;
+      // Whether a material lets through is part of its shader.
+      this.body.material.needsUpdate = this.body.material.transparent !== this.skeleton.visible;
       this.body.material.transparent = this.skeleton.visible;
       this.body.material.opacity = this.skeleton.visible ? 0.45 : 1;
       this.body.material.depthWrite = !this.skeleton.visible;
@@ -209,6 +211,14 @@ export class Figure {
   update(time) {
     const { motion } = this;
     motion.pose(time);
+    if (this.skeleton.visible) this.placeSkeleton(time);
+    if (this.body && this.body.visible) {
+      this.bodyBones.forEach((bone, joint) => motion.matrix(joint, bone.matrixWorld));
+    }
+  }
+
+  placeSkeleton(time) {
+    const { motion } = this;
     const matrix = new Matrix4();
     const turn = new Quaternion();
     const along = new Vector3();
@@ -231,9 +241,6 @@ export class Figure {
     });
     this.jointMesh.instanceMatrix.needsUpdate = true;
     this.colourContacts(time);
-    if (this.body && this.body.visible) {
-      this.bodyBones.forEach((bone, joint) => motion.matrix(joint, bone.matrixWorld));
-    }
   }
 
   colourContacts(time) {

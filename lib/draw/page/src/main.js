@@ -327,7 +327,7 @@ class Interface {
     const { player, stage } = this;
     player.shown[key] = value;
     this.switches.get(key).checked = value;
-    if (key === 'grid') stage.grid.visible = stage.shadow.visible = value;
+    if (key === 'grid') stage.ground.visible = value;
     if (key === 'difference' && !value) {
       for (const { figure } of player.items) figure?.motion && figure.plainColours();
     }

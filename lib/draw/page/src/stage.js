@@ -2,25 +2,18 @@
 
 import {
   AmbientLight,
-  CanvasTexture,
   Color,
   DirectionalLight,
   Fog,
   HemisphereLight,
-  Mesh,
-  MeshBasicMaterial,
   PCFShadowMap,
   PerspectiveCamera,
-  PlaneGeometry,
-  RepeatWrapping,
   Scene,
-  ShadowMaterial,
   Vector3,
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-
-const GROUND_SIZE = 400; // metres
+import { Ground } from './ground.js';
 
 export class Stage {
   constructor(canvas) {
@@ -45,7 +38,8 @@ export class Stage {
     this.controls.addEventListener('change', () => this.redraw());
     this.flown = null; // a recorded camera that is looked through
 
-    this.makeGround();
+    this.ground = new Ground();
+    this.scene.add(this.ground);
     this.dark = globalThis.matchMedia?.('(prefers-color-scheme: dark)');
     this.dark?.addEventListener('change', () => this.applyColours());
     this.applyColours();
@@ -53,49 +47,12 @@ export class Stage {
     this.resize();
   }
 
-  // A grid of metres, every fifth line stronger, and what catches the shadows.
-  makeGround() {
-    this.gridCanvas = document.createElement('canvas');
-    this.gridCanvas.width = this.gridCanvas.height = 640; // five metres
-    this.gridTexture = new CanvasTexture(this.gridCanvas);
-    this.gridTexture.wrapS = this.gridTexture.wrapT = RepeatWrapping;
-    this.gridTexture.repeat.setScalar(GROUND_SIZE / 5);
-    this.gridTexture.anisotropy = this.renderer.capabilities.getMaxAnisotropy();
-    const plane = new PlaneGeometry(GROUND_SIZE, GROUND_SIZE).rotateX(-Math.PI / 2);
-    this.grid = new Mesh(
-      plane,
-      new MeshBasicMaterial({ map: this.gridTexture, transparent: true, depthWrite: false }),
-    );
-    this.grid.renderOrder = -2;
-    this.shadow = new Mesh(plane, new ShadowMaterial({ opacity: 0.28, depthWrite: false }));
-    this.shadow.receiveShadow = true;
-    this.shadow.renderOrder = -1;
-    this.scene.add(this.grid, this.shadow);
-  }
-
   applyColours() {
     const dark = Boolean(this.dark?.matches);
-    const ground = new Color(dark ? '#15181c' : '#f4f5f7');
-    this.scene.background = ground;
-    this.scene.fog = new Fog(ground, 20, 90);
-    const pen = this.gridCanvas.getContext('2d');
-    const size = this.gridCanvas.width;
-    pen.clearRect(0, 0, size, size);
-    const line = (at, width, colour) => {
-      pen.strokeStyle = colour;
-      pen.lineWidth = width;
-      pen.beginPath();
-      pen.moveTo(at, 0);
-      pen.lineTo(at, size);
-      pen.moveTo(0, at);
-      pen.lineTo(size, at);
-      pen.stroke();
-    };
-    const ink = dark ? '190,205,220' : '60,72,86';
-    for (let metre = 1; metre < 5; ++metre) line((metre * size) / 5, 2, `rgba(${ink},0.28)`);
-    line(0, 5, `rgba(${ink},0.55)`);
-    line(size, 5, `rgba(${ink},0.55)`);
-    this.gridTexture.needsUpdate = true;
+    const air = new Color(dark ? '#15181c' : '#f4f5f7');
+    this.scene.background = air;
+    this.scene.fog = new Fog(air, 20, 90);
+    this.ground.ink.setRGB(...(dark ? [190, 205, 220] : [60, 72, 86]).map((part) => part / 255));
     this.redraw();
   }
 

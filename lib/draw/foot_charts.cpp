@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "draw/chart_style_internal.h"
+#include "motion/ground_place.h"
+
+namespace krok::draw {
+
+namespace {
+
+// The ankle and all joints beyond it.
+std::vector<int> joints_of_foot(const ChartedMotion& motion, Side side) {
+  std::vector<int> joints;
+  const int ankle = motion.roles->joint(side == Side::left ? Role::left_foot : Role::right_foot);
+  if (ankle < 0) return joints;
+  const auto within = subtree(motion.clip->skeleton, ankle);
+  for (std::size_t j = 0; j < within.size(); ++j) {
+    if (within[j] != 0) joints.push_back(static_cast<int>(j));
+  }
+  return joints;
+}
+
+std::vector<double> lowest_heights(const ChartedMotion& motion, const std::vector<int>& joints) {
+  std::vector<double> heights;
+  for (int f = motion.frames.first; f <= motion.frames.last; ++f) {
+    const auto positions = motion.clip->frame_positions(f);
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const int joint : joints) {
+      lowest = std::min<double>(lowest, positions[static_cast<std::size_t>(joint)].y());
+    }
+    heights.push_back(lowest);
+  }
+  return heights;
+}
+
+std::vector<double> slowest_speeds(const ChartedMotion& motion, const std::vector<int>& joints) {
+  std::vector<double> speeds;
+  const Clip& clip = *motion.clip;
+  for (int f = motion.frames.first; f <= motion.frames.last; ++f) {
+    const int before = std::max(f - 1, 0), after = std::min(f + 1, clip.frame_count() - 1);
+    const auto from = clip.frame_positions(before), to = clip.frame_positions(after);
+    double slowest = std::numeric_limits<double>::infinity();
+    for (const int joint : joints) {
+      const auto j = static_cast<std::size_t>(joint);
+      slowest = std::min(slowest, (to[j] - from[j]).cast<double>().norm());
+    }
+    speeds.push_back(slowest * clip.rate / (after - before));
+  }
+  return speeds;
+}
+
+}  // namespace
+
+std::vector<Panel> foot_panels(std::span<const ChartedMotion> motions, Scale speed_scale) {
+  Panel heights = time_panel(motions, "Height of the feet (lowest joint)", "height", "m");
+  Panel speeds = time_panel(motions, "Speed of the feet (slowest joint)", "speed", "m/s");
+  speeds.y.scale = speed_scale;
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    for (const Side side : {Side::left, Side::right}) {
+      const std::vector<int> joints = joints_of_foot(motions[m], side);
+      if (joints.empty()) continue;
+      heights.series.push_back(side_line(motions[m], m, side, lowest_heights(motions[m], joints)));
+      if (motions[m].clip->frame_count() < 2) continue;
+      speeds.series.push_back(side_line(motions[m], m, side, slowest_speeds(motions[m], joints)));
+    }
+  }
+  std::vector<Panel> panels;
+  if (heights.series.empty()) return panels;
+  add_keys(motions, true, heights);
+  panels.push_back(std::move(heights));
+  if (speeds.series.empty()) return panels;
+  add_keys(motions, false, speeds);
+  if (speed_scale == Scale::linear) speeds.y.low = 0;
+  panels.push_back(std::move(speeds));
+  return panels;
+}
+
+}  // namespace krok::draw

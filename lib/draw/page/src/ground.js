@@ -1,0 +1,69 @@
+// The ground: a grid of metres, every fifth line stronger, and the shadows on it.
+
+import { Color, Mesh, PlaneGeometry, ShadowMaterial } from 'three';
+
+const SIZE = 400; // metres
+const HALF_WIDTHS = [1 / 128, 2.5 / 128]; // of a line and a fifth line, metres
+const STRENGTHS = [0.28, 0.55];
+const SHADOW = 0.28;
+const SHARPEST = 1 / 128; // metres; seen from near, an edge is as soft as this
+
+// How much of a pixel's footprint the lines take up, worked out instead of looked up: a texture
+// would have to be read at many places to stay clear far away. Per axis, so that a footprint long
+// in one direction does not blur the other. A footprint is taken as a box.
+const COVERAGE = `
+uniform vec3 ink;
+varying vec2 vGround;
+
+vec2 linesUpTo( vec2 at, float apart, float halfWidth ) {
+  vec2 line = floor( at / apart + 0.5 );
+  return line * 2.0 * halfWidth + clamp( at - line * apart, -halfWidth, halfWidth );
+}
+
+vec2 linesIn( vec2 low, vec2 high, float apart, float halfWidth ) {
+  return linesUpTo( high, apart, halfWidth ) - linesUpTo( low, apart, halfWidth );
+}
+
+vec4 grid() {
+  vec2 across = dFdx( vGround );
+  vec2 along = dFdy( vGround );
+  vec2 box = max( sqrt( across * across + along * along ), vec2( ${SHARPEST} ) );
+  vec2 low = vGround - 0.5 * box;
+  vec2 high = low + box;
+  vec2 fine = ( linesIn( low, high, 1.0, ${HALF_WIDTHS[0]} ) - linesIn( low, high, 5.0, ${HALF_WIDTHS[0]} ) ) / box;
+  vec2 fifth = linesIn( low, high, 5.0, ${HALF_WIDTHS[1]} ) / box;
+  vec2 bare = 1.0 - fine - fifth;
+  vec2 clear = 1.0 - ${STRENGTHS[0]} * fine - ${STRENGTHS[1]} * fifth;
+  return vec4( ink * ( 1.0 - bare.x * bare.y ), 1.0 - clear.x * clear.y );
+}
+`;
+
+// The grid, and over it the shadow, which is black. Most of the ground has neither.
+const COMPOSE = `
+  vec4 lines = grid();
+  float lit = 1.0 - opacity * ( 1.0 - getShadowMask() );
+  float cover = 1.0 - lit * ( 1.0 - lines.a );
+  gl_FragColor = vec4( color, cover );
+  if ( lines.a > 0.0 ) {
+    gl_FragColor.rgb = linearToOutputTexel( vec4( lines.rgb, 1.0 ) ).rgb * lit * lines.a / cover;
+  }
+`;
+
+export class Ground extends Mesh {
+  constructor() {
+    const ink = new Color();
+    const material = new ShadowMaterial({ opacity: SHADOW, depthWrite: false });
+    material.onBeforeCompile = (shader) => {
+      shader.uniforms.ink = { value: ink };
+      shader.vertexShader = `varying vec2 vGround;\n${shader.vertexShader}`.replace(
+        '#include <begin_vertex>', '#include <begin_vertex>\nvGround = position.xz;');
+      shader.fragmentShader = COVERAGE + shader.fragmentShader
+        .replace(/gl_FragColor = .*;/, COMPOSE)
+        .replace('#include <colorspace_fragment>', '');
+    };
+    super(new PlaneGeometry(SIZE, SIZE).rotateX(-Math.PI / 2), material);
+    this.ink = ink;
+    this.receiveShadow = true;
+    this.renderOrder = -1;
+  }
+}

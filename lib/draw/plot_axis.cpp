@@ -1,0 +1,89 @@
+#include "draw/plot_axis_internal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace krok::draw {
+
+namespace {
+
+constexpr double kLeast = 1e-250;     // values below are 0 to an axis
+constexpr double kSameValue = 1e-12;  // relative
+
+// The smallest 1, 2 or 5 times a power of ten that is not below `value`; their inverses are of the
+// same form.
+double round_up(double value) {
+  return tick_step(0, value, 1);
+}
+
+}  // namespace
+
+void Range::add(double value, Scale scale) {
+  if (!can_show(value, scale)) return;
+  if (scale == Scale::linear && std::abs(value) < kLeast) value = 0;
+  low = std::min(low, value);
+  high = std::max(high, value);
+}
+
+Range Range::settled(Scale scale) const {
+  if (!(low <= high)) return scale == Scale::linear ? Range{0.0, 1.0} : Range{1.0, 10.0};
+  if (high - low > kSameValue * std::max(std::abs(low), std::abs(high))) return *this;
+  const double around = low == 0 ? 1.0 : std::abs(low) * 0.5;
+  return {low - around, high + around};
+}
+
+Status check_axis(const Axis& axis) {
+  const bool bad = (axis.low && !std::isfinite(*axis.low)) ||
+                   (axis.high && !std::isfinite(*axis.high)) ||
+                   (axis.low && axis.high && *axis.low >= *axis.high) ||
+                   (axis.scale == Scale::logarithmic &&
+                    ((axis.low && *axis.low <= 0) || (axis.high && *axis.high <= 0)));
+  if (!bad) return {};
+  return Error("plot-axis", fmt::format("the limits of the axis '{}' do not rise, or are no "
+                                        "numbers that it can show",
+                                        axis.label));
+}
+
+Mapping map_axis(const Axis& axis, const Range& values, int wanted) {
+  Mapping mapping;
+  mapping.scale = axis.scale;
+  const auto [low, high] = values.settled(axis.scale);
+  if (axis.scale == Scale::logarithmic) {
+    mapping.low = axis.low.value_or(1 / round_up(1 / low));
+    mapping.high = axis.high.value_or(round_up(high));
+    if (mapping.high <= mapping.low) mapping.high = mapping.low * 10;
+    return mapping;
+  }
+  const double step = tick_step(low, high, wanted);
+  mapping.low = axis.low.value_or(std::floor(low / step + 1e-9) * step);
+  mapping.high = axis.high.value_or(std::ceil(high / step - 1e-9) * step);
+  if (mapping.high <= mapping.low) mapping.high = mapping.low + step;
+  return mapping;
+}
+
+double step_of(const std::vector<double>& ticks) {
+  double step = INFINITY;
+  for (std::size_t i = 1; i < ticks.size(); ++i) step = std::min(step, ticks[i] - ticks[i - 1]);
+  return std::isfinite(step) ? step : ticks.empty() ? 1.0 : std::max(std::abs(ticks[0]), 1e-9);
+}
+
+std::string tick_text(double value, double step, Scale scale) {
+  if (scale == Scale::logarithmic) return fmt::format("{:.6g}", value);
+  const double size = std::max(std::abs(value), step);
+  if (size >= 1e6 || size < 1e-4) {
+    const int significant = static_cast<int>(std::ceil(std::log10(size / step) - 1e-9)) + 1;
+    return fmt::format("{:.{}g}", value, std::clamp(significant, 3, 15));
+  }
+  const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
+  std::string text = fmt::format("{:.{}f}", value, digits);
+  if (text[0] == '-') text.replace(0, 1, "\u2212");  // a minus sign as long as the digits
+  return text;
+}
+
+std::string axis_title(const Axis& axis) {
+  if (axis.label.empty() || axis.unit.empty()) return axis.label + axis.unit;
+  return fmt::format("{} ({})", axis.label, axis.unit);
+}
+
+}  // namespace krok::draw

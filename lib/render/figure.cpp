@@ -1,0 +1,85 @@
+#include "render/figure.h"
+
+#include <fmt/format.h>
+
+namespace krok::render {
+
+namespace {
+
+constexpr float kFarthest = 1e15F;
+
+bool usable(const Vec3f& point) {
+  // Not a number fails the comparison.
+  return point.cwiseAbs().maxCoeff() <= kFarthest && point.allFinite();
+}
+
+bool usable(float radius) {
+  return radius >= 0 && radius <= kFarthest;
+}
+
+Error fault(const char* what) {
+  return Error("render-figure", fmt::format("the figure cannot be drawn: {}", what));
+}
+
+Status check(const Surface& surface) {
+  const std::size_t vertices = surface.positions.size();
+  if (surface.triangles == nullptr) return fault("a surface has no list of triangles");
+  if (!surface.normals.empty() && surface.normals.size() != vertices) {
+    return fault("not as many normals as vertices");
+  }
+  if (surface.colours.size() != 1 && surface.colours.size() != vertices) {
+    return fault("neither one colour nor one for each vertex");
+  }
+  for (const auto& triangle : *surface.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      if (corner >= vertices) return fault("a triangle names a vertex that does not exist");
+    }
+  }
+  for (const Vec3f& point : surface.positions) {
+    if (!usable(point)) return fault("a vertex is not finite, or too far away");
+  }
+  for (const Vec3f& normal : surface.normals) {
+    if (!normal.allFinite()) return fault("a normal is not finite");
+  }
+  return {};
+}
+
+}  // namespace
+
+Status check(const Figure& figure) {
+  for (const Surface& surface : figure.surfaces) {
+    if (Status good = check(surface); !good) return good;
+  }
+  for (const Bone& bone : figure.bones) {
+    if (!usable(bone.from) || !usable(bone.to)) {
+      return fault("a joint is not finite, or too far away");
+    }
+    if (!usable(bone.from_radius) || !usable(bone.to_radius)) {
+      return fault("a bone's radius is negative or not finite");
+    }
+  }
+  if (!usable(Vec3f(figure.centre.cast<float>()))) {
+    return fault("its place is not finite, or too far away");
+  }
+  return {};
+}
+
+Bounds bounds(const Figure& figure) {
+  Eigen::AlignedBox3d box;
+  for (const Surface& surface : figure.surfaces) {
+    for (const Vec3f& point : surface.positions) box.extend(point.cast<double>());
+  }
+  const auto add_ball = [&box](const Vec3f& middle, float radius) {
+    const Vec3 reach = Vec3::Constant(static_cast<double>(radius));
+    box.extend(middle.cast<double>() - reach);
+    box.extend(middle.cast<double>() + reach);
+  };
+  for (const Bone& bone : figure.bones) {
+    add_ball(bone.from, bone.from_radius);
+    add_ball(bone.to, bone.to_radius);
+  }
+  if (box.isEmpty()) box.extend(figure.centre);
+  return {box.min(), box.max()};
+}
+
+}  // namespace krok::render

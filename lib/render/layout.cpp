@@ -1,0 +1,195 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/layout_internal.h"
+
+namespace krok::render {
+
+namespace {
+
+constexpr int kMostPixelsAcross = 30'000;
+constexpr double kMostPixels = 100e6;
+constexpr double kHeightLines = 44;  // pixels from one to the next, at least
+
+// What cells show, in metres to the right of and above their centres.
+struct Window {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 high = -low;
+
+  bool empty() const { return !(low.x() <= high.x()); }
+  void add(const Vec2& at) {
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+  }
+  void add(const Window& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
+};
+
+// Places of the world as one metre a unit, up positive.
+class Plane {
+ public:
+  Plane(const SheetRow& row, const Vec3& centre) : centre_(centre) {
+    const Camera camera{centre, row.yaw, row.elevation};
+    right_ = camera.right();
+    up_ = camera.up();
+  }
+  Vec2 at(const Vec3& point) const {
+    return {right_.dot(point - centre_), up_.dot(point - centre_)};
+  }
+
+ private:
+  Vec3 centre_, right_, up_;
+};
+
+Window window_of(const SheetRow& row, const SheetCell& cell) {
+  const Plane plane(row, cell.centre);
+  Window window;
+  const auto add_ball = [&](const Vec3f& middle, float radius) {
+    const Vec2 at = plane.at(middle.cast<double>());
+    const Vec2 reach = Vec2::Constant(static_cast<double>(radius));
+    window.add(at - reach);
+    window.add(at + reach);
+  };
+  for (const SheetCell::Layer& layer : cell.layers) {
+    for (const Surface& surface : layer.figure->surfaces) {
+      for (const Vec3f& point : surface.positions) window.add(plane.at(point.cast<double>()));
+    }
+    for (const Bone& bone : layer.figure->bones) {
+      add_ball(bone.from, bone.from_radius);
+      add_ball(bone.to, bone.to_radius);
+    }
+  }
+  for (const Vec3& point : cell.path) window.add(plane.at(point));
+  return window;
+}
+
+// A row's window, with the ground where that is near enough.
+Window window_of(const SheetRow& row, RowPlace& place) {
+  Window window;
+  for (const SheetCell& cell : row.cells) {
+    window.add(window_of(row, cell));
+    place.has_labels = place.has_labels || !cell.label.empty() || !cell.marks.empty();
+    place.has_notes = place.has_notes || !cell.note.empty();
+  }
+  if (window.empty()) return window;
+  const double size = (window.high - window.low).maxCoeff();
+  if (window.low.y() > size) {
+    place.ground_distance = window.low.y();
+  } else if (window.high.y() < -size) {
+    place.ground_distance = window.high.y();
+  }
+  place.shows_ground = place.ground_distance == 0;
+  if (place.shows_ground) {
+    window.low.y() = std::min(window.low.y(), 0.0);
+    window.high.y() = std::max(window.high.y(), 0.0);
+  }
+  return window;
+}
+
+Status check_options(const Sheet& sheet, const SheetOptions& options) {
+  const auto has_cells = [](const SheetRow& row) { return !row.cells.empty(); };
+  if (std::none_of(sheet.rows.begin(), sheet.rows.end(), has_cells)) {
+    return Error("sheet-empty", "there is nothing to put on the sheet");
+  }
+  if (options.row_height < 32 || options.row_height > 4000) {
+    return Error("sheet-size",
+                 fmt::format("rows of {} pixels are out of range", options.row_height),
+                 "from 32 to 4000 pixels");
+  }
+  if (options.cell_width < 32 || options.cell_width > 16'000) {
+    return Error("sheet-size",
+                 fmt::format("cells of {} pixels are out of range", options.cell_width),
+                 "from 32 to 16000 pixels");
+  }
+  return {};
+}
+
+}  // namespace
+
+double round_step(double least) {
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= least * (1 - 1e-9)) return factor * power;
+  }
+  return 10 * power;
+}
+
+Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options) {
+  if (Status good = check_options(sheet, options); !good) return good.error();
+  Layout layout;
+  layout.rows.resize(sheet.rows.size());
+  std::vector<Window> windows;
+  Vec2 size = Vec2::Zero();  // of the widest and of the tallest, metres
+  double left = std::numeric_limits<double>::infinity();
+  double right = -left;
+  std::size_t columns = 0;
+  for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
+    Window window = window_of(sheet.rows[r], layout.rows[r]);
+    columns = std::max(columns, sheet.rows[r].cells.size());
+    if (window.empty()) window.add(Vec2::Zero());
+    left = std::min(left, window.low.x());
+    right = std::max(right, window.high.x());
+    size.y() = std::max(size.y(), window.high.y() - window.low.y());
+    windows.push_back(window);
+  }
+  size.x() = right - left;
+  const auto scale = [](int pixels, double metres) { return (pixels - 2 * kAir) / metres; };
+  // Figures of no size are shown as if they had some, for otherwise there is no scale.
+  size = size.cwiseMax(size.maxCoeff() > 0 ? 1e-3 * size.maxCoeff() : 1.0);
+  layout.pixels_per_metre =
+      std::min(scale(options.row_height, size.y()), scale(options.cell_width, size.x()));
+  const double per_metre = layout.pixels_per_metre;
+  layout.height_step = round_step(kHeightLines / per_metre);
+  layout.cell_width = std::max(48, static_cast<int>(std::ceil(size.x() * per_metre)) + 2 * kAir);
+
+  const double wide = 2.0 * kMargin + kGutter +
+                      static_cast<double>(columns) * static_cast<double>(layout.cell_width);
+  double y = kMargin;
+  for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
+    const SheetRow& row = sheet.rows[r];
+    RowPlace& place = layout.rows[r];
+    const Window& window = windows[r];
+    const double high = (window.high.y() - window.low.y()) * per_metre;
+    const double bottom = y + kHeader + std::ceil(high) + 2 * kAir + kGroundBand;
+    if (wide > kMostPixelsAcross || bottom > kMostPixelsAcross || wide * bottom > kMostPixels) {
+      return Error(
+          "sheet-size",
+          fmt::format("the picture would be {:.0f} pixels wide and {:.0f} high or more; "
+                      "at most {} million pixels and {} in one direction are made",
+                      wide, bottom, static_cast<int>(kMostPixels / 1e6), kMostPixelsAcross),
+          "take a smaller size, or fewer moments, sides or files");
+    }
+    place.header = static_cast<int>(y);
+    place.top = place.header + (row.title.empty() && row.note.empty() ? 0 : kHeader);
+    place.bottom = static_cast<int>(place.top + std::ceil(high)) + 2 * kAir + kGroundBand;
+    // A whole pixel, so that the line is sharp.
+    place.ground = std::round(place.top + kAir + window.high.y() * per_metre);
+    place.low = (place.ground - place.bottom) / per_metre;
+    place.high = (place.ground - place.top) / per_metre;
+    for (std::size_t c = 0; c < row.cells.size(); ++c) {
+      CellPlace cell;
+      cell.row = static_cast<int>(r);
+      cell.column = static_cast<int>(c);
+      cell.left = kMargin + kGutter + static_cast<int>(c) * layout.cell_width;
+      cell.right = cell.left + layout.cell_width;
+      cell.top = place.top;
+      cell.bottom = place.bottom;
+      const double middle = 0.5 * (cell.left + cell.right) - 0.5 * (left + right) * per_metre;
+      cell.camera = {row.cells[c].centre, row.yaw, row.elevation, per_metre,
+                     Vec2(middle, place.ground)};
+      layout.cells.push_back(cell);
+    }
+    y = place.bottom + (place.has_labels ? kLabel : 0) + (place.has_notes ? kLabel : 0) + kRowGap;
+  }
+  layout.key_top = static_cast<int>(y);
+  layout.width = static_cast<int>(wide);
+  layout.height = layout.key_top + (sheet.key ? kKey : 0) + kMargin - kRowGap;
+  return layout;
+}
+
+}  // namespace krok::render

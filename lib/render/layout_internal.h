@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "render/sheet.h"
+
+// Where everything on a sheet stands.
+
+namespace krok::render {
+
+// Lengths in pixels.
+inline constexpr int kMargin = 16;
+inline constexpr int kGutter = 46;  // left of the cells, for heights
+inline constexpr int kHeader = 24;  // above a row's cells
+inline constexpr int kLabel = 17;   // a line below a cell
+inline constexpr int kRowGap = 12;
+inline constexpr int kAir = 8;         // around the figures in a cell
+inline constexpr int kGroundBand = 9;  // below the ground
+inline constexpr int kKey = 46;
+inline constexpr double kTitleSize = 14, kTextSize = 12, kSmallSize = 11;
+
+// Above this the ground is seen from above.
+inline constexpr double kRaised = 2 * kRadiansPerDegree;
+
+struct RowPlace {
+  int header = 0;           // the upper edge of its title
+  int top = 0, bottom = 0;  // of its cells
+  double ground = 0;        // the pixel line of y = 0 through the cells' centres
+  bool shows_ground = true;
+  double ground_distance = 0;  // metres from the figures down (or, negative, up) to the ground
+  bool has_labels = false, has_notes = false;
+  double low = 0, high = 0;  // metres above the ground that its cells show
+};
+
+struct Layout {
+  int width = 0, height = 0;
+  double pixels_per_metre = 0;
+  double height_step = 0;
+  int cell_width = 0;
+  std::vector<RowPlace> rows;
+  std::vector<CellPlace> cells;
+  int key_top = 0;
+};
+
+// Codes sheet-empty, sheet-size.
+Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options);
+
+// The smallest 1, 2 or 5 times a power of ten that is at least `least`, which is positive.
+double round_step(double least);
+
+}  // namespace krok::render

@@ -1,0 +1,208 @@
+#include "render/renderer_internal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.h"
+
+namespace krok::render {
+
+namespace {
+
+constexpr int kTile = 16;   // pixels, both ways
+constexpr int kAcross = 3;  // samples of a pixel, both ways
+constexpr int kSamples = kAcross * kAcross;
+constexpr float kReach = 0.16F;        // units; how near a surface must be to take light away
+constexpr float kShadowReach = 0.35F;  // the same for the ground
+constexpr float kShadow = 0.55F;
+
+// The rays that one of a pixel's samples follows; all samples together follow all.
+TracedFigure::Rays rays_of(int sample, int directions) {
+  const int count = directions / kSamples;
+  return {directions, sample * count, count};
+}
+
+// Where light comes from, in the camera's own directions (right, up, towards it), so that a figure
+// looks the same from all sides: a strong one from the upper left, a weak one from the right, one
+// from behind that brightens the rim; and light from everywhere, more from above.
+struct Lamp {
+  Vec3f direction;
+  float strength;
+};
+
+class Lights {
+ public:
+  explicit Lights(const Camera& camera) {
+    const auto world = [&camera](double right, double up, double towards) -> Vec3f {
+      const Vec3 way = right * camera.right() + up * camera.up() + towards * camera.towards();
+      return way.normalized().cast<float>();
+    };
+    lamps_ = {{{world(-0.5, 0.7, 0.65), 0.66F},
+               {world(0.85, 0.1, 0.5), 0.2F},
+               {world(0.25, 0.55, -0.8), 0.25F}}};
+    up_ = camera.up().cast<float>();
+  }
+
+  Light shaded(const Hit& hit, float occlusion) const {
+    const float open = 1 - 0.75F * occlusion;
+    float light = (0.46F + 0.12F * hit.normal.dot(up_)) * open;
+    for (const Lamp& lamp : lamps_) {
+      light +=
+          lamp.strength * std::max(0.0F, hit.normal.dot(lamp.direction)) * (0.5F + 0.5F * open);
+    }
+    return light * hit.colour;
+  }
+
+ private:
+  std::array<Lamp, 3> lamps_;
+  Vec3f up_;
+};
+
+// What one view needs for each of its pixels.
+class ViewPainter {
+ public:
+  explicit ViewPainter(const View& view)
+      : view_(view),
+        lights_(view.camera),
+        right_(view.camera.right()),
+        up_(view.camera.up()),
+        towards_(view.camera.towards()) {
+    for (const View::Layer& layer : view.layers) reaches_.push_back(reach_of(*layer.figure));
+  }
+
+  void paint(int left, int top, int right, int bottom, Image& image) const {
+    std::vector<std::size_t> near;
+    const Box tile{Vec2(left, top), Vec2(right, bottom)};
+    for (std::size_t i = 0; i < reaches_.size(); ++i) {
+      if ((reaches_[i].low.array() <= tile.high.array()).all() &&
+          (reaches_[i].high.array() >= tile.low.array()).all()) {
+        near.push_back(i);
+      }
+    }
+    if (near.empty()) return;
+    for (int y = top; y < bottom; ++y) {
+      for (int x = left; x < right; ++x) paint_pixel(x, y, near, image);
+    }
+  }
+
+ private:
+  struct Seen {
+    double depth;
+    float opacity;
+    Light light;
+  };
+
+  // The pixels that a figure and its shadow may lie on.
+  Box reach_of(const TracedFigure& figure) const {
+    Bounds box = figure.box();
+    if (view_.shadows) {
+      const double reach = static_cast<double>(kShadowReach) * figure.unit();
+      box.low -= Vec3(reach, 0, reach);
+      box.high += Vec3(reach, 0, reach);
+      box.low.y() = std::min(box.low.y(), 0.0);
+    }
+    Box pixels{Vec2::Constant(1e300), Vec2::Constant(-1e300)};
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 point((corner & 1) != 0 ? box.low.x() : box.high.x(),
+                       (corner & 2) != 0 ? box.low.y() : box.high.y(),
+                       (corner & 4) != 0 ? box.low.z() : box.high.z());
+      const Vec2 place = view_.camera.project(point);
+      pixels.low = pixels.low.cwiseMin(place);
+      pixels.high = pixels.high.cwiseMax(place);
+    }
+    return pixels;
+  }
+
+  void paint_pixel(int x, int y, const std::vector<std::size_t>& near, Image& image) const {
+    const Colour before = image.at(x, y);
+    const Light ground = to_light(before);
+    Light sum = Light::Zero();
+    bool changed = false;
+    for (int sample = 0; sample < kSamples; ++sample) {
+      const double across = x + (sample % kAcross + 0.5) / kAcross;
+      const double down = y + (sample / kAcross + 0.5) / kAcross;
+      Light light = ground;
+      changed = look(Vec2(across, down), sample, near, light) || changed;
+      sum += light;
+    }
+    if (changed) image.set(x, y, to_colour(sum / static_cast<float>(kSamples)));
+  }
+
+  // Lays what is seen at a place over `light`; false where nothing is.
+  bool look(const Vec2& place, int sample, const std::vector<std::size_t>& near,
+            Light& light) const {
+    const Camera& camera = view_.camera;
+    const Vec2 offset = (place - camera.place_of_target) / camera.pixels_per_metre;
+    const Vec3 point = camera.target + offset.x() * right_ - offset.y() * up_;
+    thread_local std::vector<Seen> seen;
+    seen.clear();
+    for (const std::size_t i : near) {
+      const View::Layer& layer = view_.layers[i];
+      const auto hit = layer.figure->look(point, towards_);
+      if (!hit) continue;
+      const float occlusion =
+          layer.figure->occlusion(hit->point, hit->normal, rays_of(sample, 18), kReach);
+      const double depth = hit->depth + (layer.figure->middle() - camera.target).dot(towards_);
+      seen.push_back({layer.behind ? -std::numeric_limits<double>::infinity() : depth,
+                      layer.opacity, lights_.shaded(*hit, occlusion)});
+    }
+    bool changed = !seen.empty();
+    if (view_.shadows) changed = add_shadows(point, sample, near, light) || changed;
+    // From the farthest to the nearest; of equally far ones in the order of the layers.
+    std::stable_sort(seen.begin(), seen.end(),
+                     [](const Seen& a, const Seen& b) { return a.depth < b.depth; });
+    for (const Seen& one : seen) light += one.opacity * (one.light - light);
+    return changed;
+  }
+
+  bool add_shadows(const Vec3& point, int sample, const std::vector<std::size_t>& near,
+                   Light& light) const {
+    const Vec3 on_ground = point - point.y() / towards_.y() * towards_;
+    float open = 1;
+    for (const std::size_t i : near) {
+      const TracedFigure& figure = *view_.layers[i].figure;
+      const float occlusion = figure.occlusion(figure.local(on_ground), Vec3f::UnitY(),
+                                               rays_of(sample, 54), kShadowReach);
+      open *= 1 - kShadow * view_.layers[i].opacity * occlusion;
+    }
+    light *= open;
+    return open < 1;
+  }
+
+  const View& view_;
+  Lights lights_;
+  Vec3 right_, up_, towards_;
+  std::vector<Box> reaches_;
+};
+
+}  // namespace
+
+void render(std::span<const View> views, Image& image, int jobs) {
+  struct Tile {
+    std::size_t view;
+    int left, top;
+  };
+  std::vector<ViewPainter> painters;
+  std::vector<Tile> tiles;
+  painters.reserve(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    painters.emplace_back(views[i]);
+    for (int top = views[i].top; top < views[i].bottom; top += kTile) {
+      for (int left = views[i].left; left < views[i].right; left += kTile) {
+        tiles.push_back({i, left, top});
+      }
+    }
+  }
+  parallel_for(tiles.size(), 8, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Tile& tile = tiles[i];
+      const View& view = views[tile.view];
+      painters[tile.view].paint(tile.left, tile.top, std::min(tile.left + kTile, view.right),
+                                std::min(tile.top + kTile, view.bottom), image);
+    }
+  });
+}
+
+}  // namespace krok::render

@@ -1,0 +1,261 @@
+#include "render/sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/numbers.h"
+#include "render/layout_internal.h"
+#include "render/renderer_internal.h"
+#include "render/text.h"
+
+namespace krok::render {
+
+namespace {
+
+constexpr Colour kPaper = colour(0xFFFFFF);
+constexpr Colour kPanel = colour(0xF4F5F7);
+constexpr Colour kGround = colour(0xD5DAE0);
+constexpr Colour kGroundLine = colour(0x5B6570);
+constexpr Colour kHeightLine = colour(0xE2E6EA);
+constexpr Colour kGridLine = colour(0xC3CAD2);
+constexpr Colour kPath = colour(0x9AA5B1);
+constexpr Colour kInk = colour(0x1B1F24);
+constexpr Colour kSoft = colour(0x5B6570);
+constexpr Colour kAccent = colour(0xC2251C);
+
+Box box_of(const CellPlace& cell) {
+  return {Vec2(cell.left, cell.top), Vec2(cell.right, cell.bottom)};
+}
+
+// Paints all that lies flat: what is behind the figures, and the words.
+class SheetPainter {
+ public:
+  SheetPainter(const Sheet& sheet, const Layout& layout, TextPainter& text, Image& image)
+      : sheet_(sheet), layout_(layout), text_(text), image_(image) {}
+
+  void paint_behind() {
+    for (std::size_t r = 0; r < sheet_.rows.size(); ++r) {
+      if (!sheet_.rows[r].cells.empty()) paint_row(sheet_.rows[r], layout_.rows[r]);
+    }
+    for (const CellPlace& cell : layout_.cells) {
+      const SheetRow& row = sheet_.rows[static_cast<std::size_t>(cell.row)];
+      if (row.elevation > kRaised) paint_grid(cell);
+      paint_path(content(cell).path, cell);
+    }
+  }
+
+  // What is before the figures.
+  void paint_words() {
+    for (const CellPlace& cell : layout_.cells) {
+      const bool raised = sheet_.rows[static_cast<std::size_t>(cell.row)].elevation > kRaised;
+      // Looks at different grounds are kept apart.
+      if (raised && cell.column > 0) {
+        fill(image_, {{cell.left - 1.0, cell.top}, {cell.left + 1.0, cell.bottom}}, kPaper);
+      }
+    }
+    for (std::size_t r = 0; r < sheet_.rows.size(); ++r) {
+      paint_header(sheet_.rows[r], layout_.rows[r]);
+    }
+    for (const CellPlace& cell : layout_.cells) paint_labels(cell);
+    if (sheet_.key) paint_key(*sheet_.key);
+  }
+
+ private:
+  const SheetCell& content(const CellPlace& cell) const {
+    return sheet_.rows[static_cast<std::size_t>(cell.row)]
+        .cells[static_cast<std::size_t>(cell.column)];
+  }
+
+  void paint_row(const SheetRow& row, const RowPlace& place) {
+    const double left = kMargin + kGutter;
+    const double right =
+        left + static_cast<double>(row.cells.size()) * static_cast<double>(layout_.cell_width);
+    fill(image_, {{left, place.top}, {right, place.bottom}}, kPanel);
+    if (row.elevation > kRaised) return;
+    const double step = layout_.height_step;
+    const auto first = static_cast<long long>(std::ceil(place.low / step));
+    const auto last = static_cast<long long>(std::floor(place.high / step));
+    for (long long i = first; i <= last; ++i) {
+      const double height = static_cast<double>(i) * step;
+      const double y = std::round(place.ground - height * layout_.pixels_per_metre);
+      if (y < place.top + 5 || y > place.bottom - 4) continue;
+      if (i != 0) fill(image_, {{left, y}, {right, y + 1}}, kHeightLine);
+      const std::string words = i == 0 ? "0" : readable(height) + " m";
+      text_.draw(image_, {left - 6, y + 4}, words, kSmallSize, kSoft, Align::right);
+    }
+    if (!place.shows_ground) return;
+    fill(image_, {{left, place.ground}, {right, place.bottom}}, kGround);
+    fill(image_, {{left, place.ground}, {right, place.ground + 1.5}}, kGroundLine);
+  }
+
+  // Lines on the ground as far apart as those of equal height, fainter away from the centre.
+  void paint_grid(const CellPlace& cell) {
+    const Camera& camera = cell.camera;
+    const double step = layout_.height_step;
+    const double reach =
+        std::hypot(cell.right - cell.left, cell.bottom - cell.top) / camera.pixels_per_metre;
+    const auto piece = [&](const Vec3& from, const Vec3& to) {
+      const double far = (0.5 * (from + to) - camera.target).norm() / reach;
+      draw_line(image_, camera.project(from), camera.project(to), 1, kGridLine, box_of(cell),
+                std::clamp(1.2 - 1.2 * far, 0.0, 1.0));
+    };
+    const auto lines = [&](int across, int along) {
+      const double middle = camera.target[across];
+      for (double i = std::ceil((middle - reach) / step); i * step <= middle + reach; ++i) {
+        constexpr int kPieces = 24;
+        for (int k = 0; k < kPieces; ++k) {
+          Vec3 from = Vec3::Zero();
+          Vec3 to = Vec3::Zero();
+          from[across] = to[across] = i * step;
+          from[along] = camera.target[along] + reach * (2.0 * k / kPieces - 1);
+          to[along] = camera.target[along] + reach * (2.0 * (k + 1) / kPieces - 1);
+          piece(from, to);
+        }
+      }
+    };
+    lines(0, 2);
+    lines(2, 0);
+  }
+
+  void paint_path(const std::vector<Vec3>& path, const CellPlace& cell) {
+    // In steps of some pixels, for where pieces overlap a line is darker.
+    constexpr double kStep = 4;
+    std::vector<Vec2> line;
+    for (const Vec3& point : path) {
+      const Vec2 at = cell.camera.project(point);
+      if (line.empty() || !((at - line.back()).norm() < kStep)) line.push_back(at);
+    }
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      draw_line(image_, line[i - 1], line[i], 1.5, kPath, box_of(cell));
+    }
+  }
+
+  void paint_header(const SheetRow& row, const RowPlace& place) {
+    const double line = place.header + 16;
+    const double right = layout_.width - kMargin;
+    double x = kMargin + kGutter;
+    const std::string title = text_.fitted(row.title, kTitleSize, right - x);
+    text_.draw(image_, {x, line}, title, kTitleSize, kInk);
+    x += text_.width(title, kTitleSize) + (title.empty() ? 0 : 10);
+    std::string note = row.note;
+    if (!place.shows_ground) {
+      note += fmt::format("{}the ground is {} m {}", note.empty() ? "" : "   ",
+                          readable(std::abs(place.ground_distance), 3),
+                          place.ground_distance > 0 ? "below" : "above");
+    }
+    text_.draw(image_, {x, line}, text_.fitted(note, kTextSize, right - x), kTextSize, kSoft);
+  }
+
+  void paint_labels(const CellPlace& cell) {
+    const SheetCell& what = content(cell);
+    const double middle = 0.5 * (cell.left + cell.right);
+    const double most = cell.right - cell.left - 4;
+    double line = cell.bottom + 13;
+    text_.draw(image_, {middle, line}, text_.fitted(what.label, kTextSize, most), kTextSize,
+               what.marked ? kAccent : kInk, Align::centre);
+    std::vector<std::pair<double, double>> taken;  // marks that would touch another are left out
+    for (const SheetCell::Mark& mark : what.marks) {
+      const double x = cell.camera.project(mark.at).x();
+      const double half = 0.5 * text_.width(mark.text, kSmallSize) + 3;
+      const bool free = std::none_of(taken.begin(), taken.end(), [&](const auto& other) {
+        return x - half < other.second && other.first < x + half;
+      });
+      if (!free) continue;
+      taken.emplace_back(x - half, x + half);
+      text_.draw(image_, {x, line}, mark.text, kSmallSize, kSoft, Align::centre);
+    }
+    if (!what.label.empty() || !what.marks.empty()) line += kLabel;
+    text_.draw(image_, {middle, line}, text_.fitted(what.note, kSmallSize, most), kSmallSize, kSoft,
+               Align::centre);
+  }
+
+  void paint_key(const ColourKey& key) {
+    const double left = kMargin + kGutter;
+    const double width = std::min(320.0, static_cast<double>(layout_.width) - left - kMargin);
+    const double top = layout_.key_top + 18;
+    text_.draw(image_, {left, top - 6}, text_.fitted(key.label, kTextSize, width), kTextSize, kInk);
+    for (int i = 0; i < static_cast<int>(width); ++i) {
+      const Colour at = key.at((i + 0.5) / width * key.high);
+      fill(image_, {{left + i, top}, {left + i + 1, top + 10}}, at);
+    }
+    const std::string end = fmt::format("{} {}", readable(key.high, 4), key.unit);
+    text_.draw(image_, {left, top + 23}, "0", kSmallSize, kSoft);
+    text_.draw(image_, {left + width, top + 23}, end, kSmallSize, kSoft, Align::right);
+    if (key.low > 0 && key.low < key.high) {
+      text_.draw(image_, {left + 0.5 * width, top + 23},
+                 fmt::format("grey: up to {} {}", readable(key.low, 4), key.unit), kSmallSize,
+                 kSoft, Align::centre);
+    }
+  }
+
+  const Sheet& sheet_;
+  const Layout& layout_;
+  TextPainter& text_;
+  Image& image_;
+};
+
+}  // namespace
+
+Colour ColourKey::at(double value) const {
+  constexpr Colour kSame = colour(0xB9C1C9);
+  constexpr Colour kSmall = colour(0x2A78D6);
+  constexpr Colour kMiddle = colour(0xE8C84A);
+  constexpr Colour kLarge = colour(0xD03B3B);
+  if (value <= low) return kSame;
+  const double share = value < high ? value / high : 1.0;  // also what is not a number
+  return share < 0.5 ? mixed(kSmall, kMiddle, 2 * share) : mixed(kMiddle, kLarge, 2 * share - 1);
+}
+
+Result<SheetPicture> make_sheet(const Sheet& sheet, const SheetOptions& options) {
+  // Each figure once, however many cells show it.
+  std::map<const Figure*, std::size_t> places;
+  std::vector<const Figure*> figures;
+  for (const SheetRow& row : sheet.rows) {
+    for (const SheetCell& cell : row.cells) {
+      for (const SheetCell::Layer& layer : cell.layers) {
+        if (places.emplace(layer.figure, figures.size()).second) figures.push_back(layer.figure);
+      }
+    }
+  }
+  const auto tracer = Tracer::create();
+  if (!tracer) return tracer.error();
+  std::vector<TracedFigure> traced;
+  traced.reserve(figures.size());
+  for (const Figure* figure : figures) {
+    auto ready = tracer->add(*figure);
+    if (!ready) return ready.error();
+    traced.push_back(std::move(*ready));
+  }
+  auto layout = lay_out(sheet, options);
+  if (!layout) return layout.error();
+  auto text = TextPainter::create();
+  if (!text) return text.error();
+
+  SheetPicture picture;
+  picture.image = Image(layout->width, layout->height, kPaper);
+  SheetPainter painter(sheet, *layout, *text, picture.image);
+  painter.paint_behind();
+  std::vector<View> views;
+  for (const CellPlace& place : layout->cells) {
+    const SheetRow& row = sheet.rows[static_cast<std::size_t>(place.row)];
+    const SheetCell& cell = row.cells[static_cast<std::size_t>(place.column)];
+    View view{place.camera, place.left, place.top, place.right, place.bottom, {}, false};
+    view.shadows = row.elevation > kRaised;
+    for (const SheetCell::Layer& layer : cell.layers) {
+      view.layers.push_back(
+          {&traced[places.at(layer.figure)], static_cast<float>(layer.opacity), layer.behind});
+    }
+    views.push_back(std::move(view));
+  }
+  render(views, picture.image, options.jobs);
+  painter.paint_words();
+  picture.cells = std::move(layout->cells);
+  picture.pixels_per_metre = layout->pixels_per_metre;
+  picture.height_step = layout->height_step;
+  return picture;
+}
+
+}  // namespace krok::render

@@ -1,0 +1,146 @@
+#include "render/text.h"
+
+#include <ft2build.h>
+#include FT_FREETYPE_H
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "core/text.h"
+#include "render/font_internal.h"
+
+namespace krok::render {
+
+namespace {
+
+// The characters of a text that is UTF-8.
+std::vector<char32_t> characters(const std::string& text) {
+  std::vector<char32_t> result;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto first = static_cast<unsigned char>(text[i]);
+    const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+    char32_t character = length == 1 ? first : first & (0xFFU >> (length + 1));
+    for (std::size_t k = 1; k < length; ++k) {
+      character = character << 6 | (static_cast<unsigned char>(text[i + k]) & 0x3FU);
+    }
+    result.push_back(character);
+    i += length;
+  }
+  return result;
+}
+
+constexpr char32_t kEllipsis = 0x2026;
+constexpr double kFarthest = 1e6;  // pixels; beyond it is no picture
+constexpr double kFixed = 64.0;    // FreeType counts in 1/64 pixels
+
+}  // namespace
+
+struct TextPainter::Face {
+  FT_Library library = nullptr;
+  FT_Face face = nullptr;
+
+  Face() = default;
+  Face(const Face&) = delete;
+  Face& operator=(const Face&) = delete;
+  ~Face() {
+    if (face != nullptr) FT_Done_Face(face);
+    if (library != nullptr) FT_Done_FreeType(library);
+  }
+
+  void set_size(double size) const {
+    const double kept = std::clamp(size, 4.0, 400.0);
+    FT_Set_Char_Size(face, 0, static_cast<FT_F26Dot6>(std::lround(kept * kFixed)), 72, 72);
+  }
+
+  // Without hints letters keep their shapes and widths at every size.
+  bool load(char32_t character, bool drawn) const {
+    const FT_Int32 how = FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP | (drawn ? FT_LOAD_RENDER : 0);
+    return FT_Load_Char(face, character, how) == 0;
+  }
+
+  double width(const std::vector<char32_t>& text) const {
+    double sum = 0;
+    for (const char32_t character : text) {
+      if (load(character, false)) sum += static_cast<double>(face->glyph->linearHoriAdvance);
+    }
+    return sum / 65536.0;
+  }
+};
+
+TextPainter::TextPainter(std::unique_ptr<Face> face) : face_(std::move(face)) {}
+TextPainter::TextPainter(TextPainter&&) noexcept = default;
+TextPainter& TextPainter::operator=(TextPainter&&) noexcept = default;
+TextPainter::~TextPainter() = default;
+
+Result<TextPainter> TextPainter::create() {
+  auto face = std::make_unique<Face>();
+  const auto file = font_file();
+  const auto* bytes = reinterpret_cast<const FT_Byte*>(file.data());
+  if (FT_Init_FreeType(&face->library) != 0 ||
+      FT_New_Memory_Face(face->library, bytes, static_cast<FT_Long>(file.size()), 0, &face->face) !=
+          0) {
+    return Error("text-font", "the typeface of labels cannot be loaded");
+  }
+  return TextPainter(std::move(face));
+}
+
+double TextPainter::width(std::string_view text, double size) {
+  face_->set_size(size);
+  return face_->width(characters(to_utf8(text)));
+}
+
+void TextPainter::draw(Image& image, const Vec2& place, std::string_view text, double size,
+                       Colour colour, Align align) {
+  if (!(place.cwiseAbs().maxCoeff() < kFarthest)) return;
+  face_->set_size(size);
+  const auto letters = characters(to_utf8(text));
+  double x = place.x();
+  if (align != Align::left) x -= face_->width(letters) * (align == Align::centre ? 0.5 : 1.0);
+  const double line = std::round(place.y());
+  for (const char32_t character : letters) {
+    // Letters begin at quarters of a pixel, so that they stand evenly.
+    const double start = std::floor(x * 4 + 0.5) / 4;
+    FT_Vector shift{static_cast<FT_Pos>(std::lround((start - std::floor(start)) * kFixed)), 0};
+    FT_Set_Transform(face_->face, nullptr, &shift);
+    const bool loaded = face_->load(character, true);
+    FT_Set_Transform(face_->face, nullptr, nullptr);
+    if (!loaded) continue;
+    const FT_GlyphSlot glyph = face_->face->glyph;
+    const FT_Bitmap& bitmap = glyph->bitmap;
+    const int left = static_cast<int>(std::floor(start)) + glyph->bitmap_left;
+    const int top = static_cast<int>(line) - glyph->bitmap_top;
+    for (int row = 0; row < static_cast<int>(bitmap.rows); ++row) {
+      for (int column = 0; column < static_cast<int>(bitmap.width); ++column) {
+        const unsigned char cover = bitmap.buffer[row * bitmap.pitch + column];
+        image.blend(left + column, top + row, colour, cover / 255.0);
+      }
+    }
+    x += static_cast<double>(glyph->linearHoriAdvance) / 65536.0;
+  }
+}
+
+std::string TextPainter::fitted(std::string_view text, double size, double most) {
+  const std::string whole = to_utf8(text);
+  face_->set_size(size);
+  auto letters = characters(whole);
+  if (face_->width(letters) <= most) return whole;
+  while (!letters.empty()) {
+    letters.back() = kEllipsis;
+    if (face_->width(letters) <= most) break;
+    letters.pop_back();
+  }
+  if (letters.empty()) return {};
+  // The bytes of the letters that are left: those of the text before its character number size - 1.
+  std::size_t bytes = 0;
+  for (std::size_t kept = 0; kept + 1 < letters.size(); ++kept) {
+    ++bytes;
+    while (bytes < whole.size() && (static_cast<unsigned char>(whole[bytes]) & 0xC0U) == 0x80U) {
+      ++bytes;
+    }
+  }
+  return whole.substr(0, bytes) + "\u2026";
+}
+
+}  // namespace krok::render

@@ -1,0 +1,311 @@
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/tracer_internal.h"
+
+namespace krok::render {
+
+namespace {
+
+// One instruction set for all machines and one thread for building, so that the same rays meet the
+// same surfaces everywhere.
+constexpr const char* kDevice = "isa=sse4.2,threads=1,set_affinity=0";
+
+constexpr double kFarthest = 1.0;   // units; no figure reaches farther than 0.87 from its middle
+constexpr double kStart = 2.0;      // units before the middle, where looks begin
+constexpr float kStep = 1e-4F;      // off the surface that a ray leaves
+constexpr float kSmallest = 1e-6F;  // units; a bone shorter than this is a ball
+
+// Directions about +Z in which light comes to a surface, as many as its cosine gives them.
+template <int count>
+const std::array<Vec3f, count>& directions() {
+  static const auto table = [] {
+    std::array<Vec3f, count> result;
+    const double golden = kPi * (3 - std::sqrt(5.0));
+    for (int i = 0; i < count; ++i) {
+      const double share = (i + 0.5) / count;
+      const double radius = std::sqrt(share);
+      result[static_cast<std::size_t>(i)] =
+          Vec3(radius * std::cos(golden * i), radius * std::sin(golden * i), std::sqrt(1 - share))
+              .cast<float>();
+    }
+    return result;
+  }();
+  return table;
+}
+
+// A point given to Embree, with room for the radius.
+void put(float* place, const Vec3f& point) {
+  std::copy_n(point.data(), 3, place);
+}
+
+struct Curve {
+  Vec3f from, to;
+  float from_radius, to_radius;
+  bool is_ball() const { return (to - from).norm() < kSmallest; }
+};
+
+}  // namespace
+
+Light to_light(Colour colour) {
+  static const auto table = [] {
+    std::array<float, 256> result;
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      const double value = static_cast<double>(i) / 255.0;
+      result[i] = static_cast<float>(value <= 0.04045 ? value / 12.92
+                                                      : std::pow((value + 0.055) / 1.055, 2.4));
+    }
+    return result;
+  }();
+  return {table[colour.red], table[colour.green], table[colour.blue]};
+}
+
+Colour to_colour(const Light& light) {
+  const auto channel = [](float value) {
+    const double kept = std::clamp(static_cast<double>(value), 0.0, 1.0);
+    const double screen =
+        kept <= 0.0031308 ? 12.92 * kept : 1.055 * std::pow(kept, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(screen * 255.0 + 0.5);
+  };
+  return {channel(light.x()), channel(light.y()), channel(light.z())};
+}
+
+struct Tracer::Device {
+  RTCDevice device = nullptr;
+  Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  ~Device() {
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+};
+
+struct TracedFigure::Scene {
+  RTCScene scene = nullptr;
+  // Which bones are bars and which are balls, in the order that Embree has them.
+  std::vector<std::size_t> bars, balls;
+  unsigned bars_geometry = RTC_INVALID_GEOMETRY_ID, balls_geometry = RTC_INVALID_GEOMETRY_ID;
+
+  Scene() = default;
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+  ~Scene() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+  }
+
+  // Commits and attaches; the scene keeps it alive. False where Embree had no memory for a buffer.
+  unsigned attach(RTCGeometry geometry) const {
+    rtcCommitGeometry(geometry);
+    const unsigned id = rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    return id;
+  }
+};
+
+namespace {
+
+// Memory of a geometry for `count` elements, or null. Embree takes no empty buffers.
+template <typename T>
+T* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t stride,
+          std::size_t count) {
+  return static_cast<T*>(rtcSetNewGeometryBuffer(geometry, type, 0, format, stride, count));
+}
+
+RTCGeometry mesh(RTCDevice device, const Surface& surface, const TracedFigure& figure) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  if (surface.triangles->empty()) return geometry;
+  auto* points = buffer<float>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+                               3 * sizeof(float), surface.positions.size());
+  auto* corners = buffer<std::uint32_t>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+                                        3 * sizeof(std::uint32_t), surface.triangles->size());
+  if (points == nullptr || corners == nullptr) return geometry;
+  for (const Vec3f& point : surface.positions) {
+    put(points, figure.local(point.cast<double>()));
+    points += 3;
+  }
+  for (const auto& triangle : *surface.triangles) {
+    corners = std::copy(triangle.begin(), triangle.end(), corners);
+  }
+  return geometry;
+}
+
+RTCGeometry bars(RTCDevice device, std::span<const Curve> curves) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  auto* ends = buffer<float>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4 * sizeof(float),
+                             2 * curves.size());
+  auto* starts = buffer<std::uint32_t>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT,
+                                       sizeof(std::uint32_t), curves.size());
+  if (ends == nullptr || starts == nullptr) return geometry;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    put(ends + 8 * i, curves[i].from);
+    ends[8 * i + 3] = curves[i].from_radius;
+    put(ends + 8 * i + 4, curves[i].to);
+    ends[8 * i + 7] = curves[i].to_radius;
+    starts[i] = static_cast<std::uint32_t>(2 * i);
+  }
+  return geometry;
+}
+
+RTCGeometry balls(RTCDevice device, std::span<const Curve> curves) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  auto* points = buffer<float>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
+                               4 * sizeof(float), curves.size());
+  if (points == nullptr) return geometry;
+  for (const Curve& curve : curves) {
+    put(points, curve.from);
+    points[3] = std::max(curve.from_radius, curve.to_radius);
+    points += 4;
+  }
+  return geometry;
+}
+
+}  // namespace
+
+Tracer::Tracer(Tracer&&) noexcept = default;
+Tracer& Tracer::operator=(Tracer&&) noexcept = default;
+Tracer::~Tracer() = default;
+TracedFigure::TracedFigure(TracedFigure&&) noexcept = default;
+TracedFigure& TracedFigure::operator=(TracedFigure&&) noexcept = default;
+TracedFigure::~TracedFigure() = default;
+
+Result<Tracer> Tracer::create() {
+  Tracer tracer;
+  tracer.device_ = std::make_unique<Device>();
+  tracer.device_->device = rtcNewDevice(kDevice);
+  if (tracer.device_->device == nullptr) {
+    return Error("render-memory", "the renderer cannot be started");
+  }
+  return tracer;
+}
+
+Result<TracedFigure> Tracer::add(const Figure& figure) const {
+  if (Status good = check(figure); !good) return good.error();
+  TracedFigure traced;
+  traced.figure_ = &figure;
+  traced.box_ = bounds(figure);
+  traced.middle_ = 0.5 * (traced.box_.low + traced.box_.high);
+  traced.unit_ = std::max(traced.box_.extent(), 1e-30);
+
+  const RTCDevice device = device_->device;
+  traced.scene_ = std::make_unique<TracedFigure::Scene>();
+  TracedFigure::Scene& scene = *traced.scene_;
+  scene.scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene.scene, RTC_SCENE_FLAG_ROBUST);
+  for (const Surface& surface : figure.surfaces) scene.attach(mesh(device, surface, traced));
+
+  std::vector<Curve> bar_curves;
+  std::vector<Curve> ball_curves;
+  for (std::size_t i = 0; i < figure.bones.size(); ++i) {
+    const Bone& bone = figure.bones[i];
+    const auto unit = static_cast<float>(traced.unit_);
+    const Curve curve{traced.local(bone.from.cast<double>()), traced.local(bone.to.cast<double>()),
+                      bone.from_radius / unit, bone.to_radius / unit};
+    (curve.is_ball() ? ball_curves : bar_curves).push_back(curve);
+    (curve.is_ball() ? scene.balls : scene.bars).push_back(i);
+  }
+  if (!bar_curves.empty()) scene.bars_geometry = scene.attach(bars(device, bar_curves));
+  if (!ball_curves.empty()) scene.balls_geometry = scene.attach(balls(device, ball_curves));
+  rtcCommitScene(scene.scene);
+  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
+    return Error("render-memory", "the renderer has no memory for a figure of this size");
+  }
+  return traced;
+}
+
+Vec3f TracedFigure::normal_of(const void* ray_hit, Light& colour) const {
+  const RTCHit& hit = static_cast<const RTCRayHit*>(ray_hit)->hit;
+  const Vec3f flat(hit.Ng_x, hit.Ng_y, hit.Ng_z);
+  if (hit.geomID == scene_->bars_geometry || hit.geomID == scene_->balls_geometry) {
+    const bool bar = hit.geomID == scene_->bars_geometry;
+    const Bone& bone = figure_->bones[(bar ? scene_->bars : scene_->balls)[hit.primID]];
+    const float along = bar ? std::clamp(hit.u, 0.0F, 1.0F) : 0.0F;
+    colour = (1 - along) * to_light(bone.from_colour) + along * to_light(bone.to_colour);
+    return flat;
+  }
+  const Surface& surface = figure_->surfaces[hit.geomID];
+  const auto& corners = (*surface.triangles)[hit.primID];
+  const std::array<float, 3> share = {1 - hit.u - hit.v, hit.u, hit.v};
+  if (surface.colours.size() == 1) {
+    colour = to_light(surface.colours[0]);
+  } else {
+    colour = Light::Zero();
+    for (std::size_t k = 0; k < 3; ++k) colour += share[k] * to_light(surface.colours[corners[k]]);
+  }
+  if (surface.normals.empty()) return flat;
+  Vec3f smooth = Vec3f::Zero();
+  for (std::size_t k = 0; k < 3; ++k) smooth += share[k] * surface.normals[corners[k]];
+  // Opposite normals cancel out.
+  return smooth.squaredNorm() > 1e-12F ? smooth : flat;
+}
+
+std::optional<Hit> TracedFigure::look(const Vec3& point, const Vec3& towards) const {
+  const Vec3 offset = (point - middle_) / unit_;
+  const Vec3 aside = offset - towards.dot(offset) * towards;
+  // Embree wants no rays from far away.
+  if (!(aside.squaredNorm() <= kFarthest * kFarthest)) return std::nullopt;
+  const Vec3f start = (aside + kStart * towards).cast<float>();
+  const Vec3f direction = -towards.cast<float>();
+  RTCRayHit ray{};
+  ray.ray.org_x = start.x();
+  ray.ray.org_y = start.y();
+  ray.ray.org_z = start.z();
+  ray.ray.dir_x = direction.x();
+  ray.ray.dir_y = direction.y();
+  ray.ray.dir_z = direction.z();
+  ray.ray.tfar = static_cast<float>(2 * kStart);
+  ray.ray.mask = 0xFFFFFFFFU;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect1(scene_->scene, &context, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  Hit hit;
+  hit.depth = (kStart - static_cast<double>(ray.ray.tfar)) * unit_;
+  hit.point = start + ray.ray.tfar * direction;
+  hit.normal = normal_of(&ray, hit.colour);
+  const float length = hit.normal.norm();
+  const bool has_direction = length > 0 && std::isfinite(length);
+  hit.normal = has_direction ? Vec3f(hit.normal / length) : Vec3f(-direction);
+  if (hit.normal.dot(direction) > 0) hit.normal = -hit.normal;
+  return hit;
+}
+
+float TracedFigure::occlusion(const Vec3f& point, const Vec3f& normal, const Rays& rays,
+                              float reach) const {
+  if (!(point.norm() <= static_cast<float>(kFarthest) + reach)) return 0;
+  // Two directions across the normal. Source: Duff et al., Building an Orthonormal Basis, Revisited
+  // (JCGT 6(1), 2017).
+  const float sign = std::copysign(1.0F, normal.z());
+  const float a = -1.0F / (sign + normal.z());
+  const float b = normal.x() * normal.y() * a;
+  const Vec3f across(1 + sign * normal.x() * normal.x() * a, sign * b, -sign * normal.x());
+  const Vec3f other(b, sign + normal.y() * normal.y() * a, -normal.y());
+  const Vec3f start = point + kStep * normal;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  const Vec3f* ways = rays.directions == 18 ? directions<18>().data() : directions<54>().data();
+  int met = 0;
+  for (int i = rays.first; i < rays.first + rays.count; ++i) {
+    const Vec3f& way = ways[i];
+    const Vec3f direction = way.x() * across + way.y() * other + way.z() * normal;
+    RTCRay ray{};
+    ray.org_x = start.x();
+    ray.org_y = start.y();
+    ray.org_z = start.z();
+    ray.dir_x = direction.x();
+    ray.dir_y = direction.y();
+    ray.dir_z = direction.z();
+    ray.tnear = kStep;
+    ray.tfar = reach;
+    ray.mask = 0xFFFFFFFFU;
+    rtcOccluded1(scene_->scene, &context, &ray);
+    met += ray.tfar < 0 ? 1 : 0;
+  }
+  return static_cast<float>(met) / static_cast<float>(rays.count);
+}
+
+}  // namespace krok::render

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "core/result.h"
+#include "render/figure.h"
+
+// Figures made ready for rays, by Intel Embree.
+
+namespace krok::render {
+
+// Linear light, 0 .. 1.
+using Light = Vec3f;
+
+Light to_light(Colour colour);
+Colour to_colour(const Light& light);
+
+struct Hit {
+  double depth = 0;  // metres towards the viewer from the figure's own middle
+  Vec3f point;       // where, for occlusion()
+  Vec3f normal;      // unit, on the side that is seen
+  Light colour;
+};
+
+class Tracer;
+
+// A figure in a box of its own, the middle in the origin and about one unit wide, so that neither
+// very large and small figures nor far ones lose digits. The figure must outlive it.
+class TracedFigure {
+ public:
+  TracedFigure(TracedFigure&&) noexcept;
+  TracedFigure& operator=(TracedFigure&&) noexcept;
+  ~TracedFigure();
+
+  const Bounds& box() const { return box_; }
+  const Vec3& middle() const { return middle_; }
+  double unit() const { return unit_; }  // metres
+
+  // What is seen of it along the line through `point` (world), from the far end of `towards`.
+  std::optional<Hit> look(const Vec3& point, const Vec3& towards) const;
+
+  // Of a set of `directions` about a normal, as many as its cosine gives them, those that are to be
+  // followed at a time.
+  struct Rays {
+    int directions = 18;  // of 18 or 54
+    int first = 0, count = 2;
+  };
+  // The share (0 .. 1) of these rays that leave a point with this normal and meet the figure within
+  // `reach` units. The directions are the same at each point.
+  float occlusion(const Vec3f& point, const Vec3f& normal, const Rays& rays, float reach) const;
+
+  // A point of the world in units.
+  Vec3f local(const Vec3& world) const { return ((world - middle_) / unit_).cast<float>(); }
+
+ private:
+  friend class Tracer;
+  struct Scene;
+  TracedFigure() = default;
+  Vec3f normal_of(const void* ray_hit, Light& colour) const;
+
+  const Figure* figure_ = nullptr;
+  Bounds box_;
+  Vec3 middle_ = Vec3::Zero();
+  double unit_ = 1;
+  std::unique_ptr<Scene> scene_;
+};
+
+// Embree's device. Figures that it made keep what they need of it.
+class Tracer {
+ public:
+  // Code render-memory where Embree cannot.
+  static Result<Tracer> create();
+  Tracer(Tracer&&) noexcept;
+  Tracer& operator=(Tracer&&) noexcept;
+  ~Tracer();
+
+  // Codes: those of check(Figure); render-memory.
+  Result<TracedFigure> add(const Figure& figure) const;
+
+ private:
+  struct Device;
+  Tracer() = default;
+  std::unique_ptr<Device> device_;
+};
+
+}  // namespace krok::render

@@ -1,0 +1,261 @@
+// If these fail, krok-plot draws something else than its user asked for, or leaves them without
+// knowing why there is no figure. What charts show is tested in tests/unit/draw.
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+
+namespace krok::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
+const std::string kTurn = KROK_SOURCE_DIR "/samples/captures/turn.bvh";
+
+class KrokPlot : public CliTest {
+ protected:
+  ToolRun plot(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"-o", path("out.svg"), "--json=" + path("report.json")});
+    return run_tool("krok-plot", arguments);
+  }
+  std::string svg() const { return get(path("out.svg")); }
+  json panels() const { return json::parse(get(path("report.json")))["result"]["panels"]; }
+  std::vector<std::string> titles() const {
+    std::vector<std::string> found;
+    for (const json& panel : panels()) found.push_back(panel["title"]);
+    return found;
+  }
+  std::vector<std::string> lines(std::size_t panel) const {
+    std::vector<std::string> found;
+    const json all = panels();
+    for (const json& line : all[panel]["lines"]) found.push_back(line["name"]);
+    return found;
+  }
+  void expect_trouble(std::vector<std::string> arguments, const char* code,
+                      const std::string& words) const {
+    std::filesystem::remove(path("out.svg"));
+    const ToolRun run = plot(std::move(arguments));
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_TRUE(has_code(run.err, code)) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(words));
+    EXPECT_FALSE(std::filesystem::exists(path("out.svg")));
+  }
+};
+
+TEST_F(KrokPlot, ShowsWhatMattersOfAPersonWithoutOptions) {
+  const ToolRun run = plot({kWalk});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, HasSubstr("8 panels"));
+  EXPECT_THAT(titles(),
+              ElementsAre("Path from above, a dot every 0.5 s", "Height of the feet (lowest joint)",
+                          "Speed of the feet (slowest joint)", "Hip flexion", "Knee flexion",
+                          "Ankle dorsiflexion", "Shoulder elevation", "Elbow flexion"));
+  for (const char* text : {">walk.bvh<", ">left<", ">right<", ">time (s)<", ">height (m)<"}) {
+    EXPECT_THAT(svg(), HasSubstr(text));
+  }
+  // The walk is a walk: knees straighten and bend to about 60 degrees, hips swing to both sides
+  // (Winter 1991, normal gait: knee 0 to 65, hip -11 to 22 and more for long steps).
+  const json shown = panels();
+  for (const json& line : shown[4]["lines"]) {
+    EXPECT_LT(line["low"].get<double>(), 10);
+    EXPECT_GT(line["high"].get<double>(), 50);
+    EXPECT_LT(line["high"].get<double>(), 75);
+  }
+  for (const json& line : shown[3]["lines"]) {
+    EXPECT_LT(line["low"].get<double>(), -10);
+    EXPECT_GT(line["high"].get<double>(), 20);
+  }
+}
+
+TEST_F(KrokPlot, GivesTheSameBytesForAnyJobs) {
+  ASSERT_EQ(plot({kWalk, "-j", "1"}).exit_code, 0);
+  const std::string first = svg();
+  ASSERT_EQ(plot({kWalk, "-j", "4"}).exit_code, 0);
+  EXPECT_EQ(svg(), first);
+}
+
+TEST_F(KrokPlot, ShowsTheChartsAskedForInTheirOrder) {
+  ASSERT_EQ(plot({kWalk, "--show", "positions,path", "--show", "path"}).exit_code, 0);
+  EXPECT_THAT(titles(), ElementsAre("Hips", "Path from above, a dot every 0.5 s"));
+}
+
+TEST_F(KrokPlot, ShowsAPartOfTheTime) {
+  ASSERT_EQ(plot({kWalk, "--show", "positions", "--from", "0.5s", "--to", "60f"}).exit_code, 0);
+  EXPECT_EQ(panels()[0]["lines"][0]["values"], 31);  // frames 30 to 60
+  expect_trouble({kWalk, "--from", "9s"}, "plot-range", "no frame stands between 9 s");
+  expect_trouble({kWalk, "--from", "2s", "--to", "1s"}, "plot-range", "264 frames");
+  expect_trouble({kWalk, "--from", "soon"}, "quantity-number", "--from");
+}
+
+TEST_F(KrokPlot, ShowsJointsByName) {
+  ASSERT_EQ(plot({kWalk, "--joint", "Left*Arm", "--euler", "zxy"}).exit_code, 0);
+  const auto shown = titles();
+  ASSERT_GE(shown.size(), 4U);
+  EXPECT_EQ(shown[0], "LeftArm");
+  EXPECT_EQ(shown[2], "LeftArm (ZXY Euler)");
+  EXPECT_THAT(lines(2), ElementsAre("z", "x", "y"));
+  expect_trouble({kWalk, "--joint", "Tail"}, "motion-joint", "Tail");
+  expect_trouble({kWalk, "--joint", "Hips", "--euler", "XXY"}, "usage", "--euler");
+  expect_trouble({kWalk, "--euler", "XYZ"}, "usage", "--joint");
+}
+
+TEST_F(KrokPlot, PutsTwoMotionsIntoTheSamePanels) {
+  ASSERT_EQ(plot({kWalk, kTurn}).exit_code, 0);
+  EXPECT_THAT(panels(), SizeIs(8));
+  EXPECT_THAT(lines(4), ElementsAre("left, walk.bvh", "right, walk.bvh", "left, turn.bvh",
+                                    "right, turn.bvh"));
+  EXPECT_THAT(svg(), HasSubstr(">turn.bvh<"));
+  EXPECT_THAT(svg(), HasSubstr(">walk.bvh and turn.bvh<"));
+}
+
+TEST_F(KrokPlot, ShowsHowFarTwoMotionsAreApart) {
+  // In frame 1 the whole figure of the second is 2 cm further in z.
+  const std::string a = put("a.bvh", capture(20)), b = put("b.bvh", capture(20, "0.02"));
+  const ToolRun run = plot({a, b, "--difference"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(titles(), ElementsAre("Distance between joints", "Angle between joints"));
+  const json difference = json::parse(get(path("report.json")))["result"]["difference"];
+  EXPECT_NEAR(difference["positions"]["largest"].get<double>(), 0.02, 1e-6);
+  EXPECT_EQ(difference["positions"]["frame"], 1);
+  EXPECT_NEAR(difference["positions"]["rms"].get<double>(), 0.02 / std::sqrt(20), 1e-6);
+  EXPECT_EQ(difference["orientations"]["largest"], 0.0);
+  expect_trouble({a, "--difference"}, "usage", "between two motions, not 1");
+}
+
+TEST_F(KrokPlot, DrawsContactsThatStandBesideTheMotion) {
+  put("walk.bvh", get(kWalk));
+  put("walk.keys.json", R"({"schema": "krok.keys/1", "contacts": [
+    {"joint": "LeftFoot", "start": 0.6, "end": 1.2, "place": [0.05, 0.07, 0.7]}],
+    "keytimes": [{"name": "left_strike", "time": 0.6}]})");
+  ASSERT_EQ(plot({path("walk.bvh")}).exit_code, 0);
+  EXPECT_THAT(svg(), HasSubstr(">left_strike<"));
+  EXPECT_THAT(svg(), HasSubstr("fill-opacity"));
+  const std::string with_keys = svg();
+  ASSERT_EQ(plot({path("walk.bvh"), "--keys", "none"}).exit_code, 0);
+  EXPECT_THAT(svg(), Not(HasSubstr("left_strike")));
+  ASSERT_EQ(plot({kWalk, "--keys", path("walk.keys.json")}).exit_code, 0);
+  EXPECT_EQ(svg(), with_keys);
+  put("walk.keys.json", "{\"schema\": 7}");
+  expect_trouble({path("walk.bvh")}, "keys-value", "walk.keys.json:1:12");
+}
+
+TEST_F(KrokPlot, ShowsAFigureThatIsNoPerson) {
+  const std::string chain = put("chain.bvh", capture(30));
+  ASSERT_EQ(plot({chain}).exit_code, 0);
+  EXPECT_THAT(titles(), ElementsAre("Path from above, a dot every 0.1 s", "Hips",
+                                    "Turn from the reference pose"));
+  const ToolRun run = plot({chain, "--show", "feet,path"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.err, HasSubstr("no joint is known for feet"));
+  expect_trouble({chain, "--show", "feet"}, "plot-roles", "--map");
+}
+
+TEST_F(KrokPlot, ShowsOneFrame) {
+  ASSERT_EQ(plot({put("one.bvh", capture(1))}).exit_code, 0);
+  EXPECT_THAT(svg(), Not(HasSubstr("nan")));
+  EXPECT_THAT(svg(), Not(HasSubstr("inf")));
+}
+
+TEST_F(KrokPlot, DrawsTheTableThatKrokExportWrites) {
+  ASSERT_EQ(run_tool("krok-export", {kWalk, "-o", path("walk.csv")}).exit_code, 0);
+  const ToolRun run = plot(
+      {path("walk.csv"), "--where", "joint=LeftFoot", "--where", "joint=RightFoot", "--y", "y"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(lines(0), ElementsAre("LeftFoot", "RightFoot"));
+  EXPECT_EQ(panels()[0]["x"], (json{{"label", "time"}, {"unit", "s"}}));
+  EXPECT_EQ(panels()[0]["y"], (json{{"label", "y"}, {"unit", "m"}}));
+  EXPECT_THAT(svg(), HasSubstr(">time (s)<"));
+  EXPECT_EQ(panels()[0]["lines"][0]["values"], 264);
+  const json from_table = panels()[0]["lines"][0];
+  ASSERT_EQ(plot({kWalk, "--show", "positions", "--joint", "LeftFoot"}).exit_code, 0);
+  EXPECT_NEAR(panels()[0]["lines"][1]["low"].get<double>(), from_table["low"].get<double>(), 1e-6);
+  EXPECT_NEAR(panels()[0]["lines"][1]["high"].get<double>(), from_table["high"].get<double>(),
+              1e-6);
+}
+
+TEST_F(KrokPlot, DrawsATableByColumnNames) {
+  const std::string table =
+      put("fit.csv", "examples,error_mm,size_mm,cost [s]\n1,100,2,0.5\n10,1,4,\n100,0.01,8,3\n");
+  ASSERT_EQ(plot({table, "-v"}).exit_code, 0);
+  EXPECT_THAT(panels(), SizeIs(2));  // a panel for millimetres, one for seconds
+  EXPECT_THAT(lines(0), ElementsAre("error", "size"));
+  ASSERT_EQ(plot({table, "--x", "examples", "--y", "error", "--y", "size,cost", "--log-x",
+                  "--log-y", "--style", "both"})
+                .exit_code,
+            0);
+  EXPECT_THAT(lines(1), ElementsAre("size", "cost"));
+  EXPECT_EQ(panels()[1]["lines"][1]["values"], 2);  // and a gap
+  EXPECT_THAT(svg(), HasSubstr(">error (mm)<"));
+  EXPECT_THAT(svg(), HasSubstr(">0.01<"));
+  EXPECT_THAT(svg(), HasSubstr("<circle"));
+}
+
+TEST_F(KrokPlot, TakesATableOfAnyNameWhereItIsTold) {
+  const std::string table = put("numbers.dat", "1;2\n2;4\n3;6\n");
+  ASSERT_EQ(plot({"--table", table}).exit_code, 0);
+  EXPECT_THAT(lines(0), ElementsAre("column 2"));
+  EXPECT_EQ(panels()[0]["lines"][0]["high"], 6.0);
+}
+
+TEST_F(KrokPlot, SaysWhatIsWrongWithATable) {
+  const std::string ragged = put("ragged.csv", "a,b\n1,2\n3\n");
+  expect_trouble({ragged}, "csv-ragged", "ragged.csv:3:1: error: 1 cell here, 2 columns");
+  const std::string words = put("words.csv", "t,v\n0,1\n1,fast\n");
+  expect_trouble({words, "--y", "v"}, "csv-number",
+                 "words.csv:3:3: error: 'fast' in the column 'v'");
+  expect_trouble({words, "--y", "w"}, "csv-column", "there are t, v");
+  expect_trouble({words, "--y", "t", "--where", "v=slow"}, "plot-where", "no row");
+  expect_trouble({words, "--where", "v"}, "usage", "joint=Hips");
+  expect_trouble({put("empty.csv", "")}, "csv-empty", "empty.csv");
+  expect_trouble({words, "--joint", "Hips"}, "usage", "--joint is for motions");
+  expect_trouble({kWalk, "--y", "v"}, "usage", "--y is for tables");
+  expect_trouble({kWalk, words}, "usage", "do not go into one figure");
+  std::string wide = "a";
+  for (int i = 0; i < 100; ++i) wide += ",b" + std::to_string(i);
+  wide += "\n1";
+  for (int i = 0; i < 100; ++i) wide += ",1";
+  expect_trouble({put("wide.csv", wide)}, "plot-lines", "--y chooses columns");
+}
+
+TEST_F(KrokPlot, RefusesNamesOfOtherKindsOfFiles) {
+  const ToolRun run = run_tool("krok-plot", {kWalk, "-o", path("out.png")});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("an SVG"));
+  EXPECT_THAT(listing(), IsEmpty());
+  const ToolRun none = run_tool("krok-plot", {kWalk});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("-o is missing"));
+}
+
+TEST_F(KrokPlot, FitsThePaper) {
+  ASSERT_EQ(plot({kWalk, "--columns", "1", "--panel", "400x100", "--title", "A & B"}).exit_code, 0);
+  EXPECT_THAT(svg(), HasSubstr("width=\"482\""));
+  EXPECT_THAT(svg(), HasSubstr(">A &amp; B<"));
+  expect_trouble({kWalk, "--panel", "400"}, "usage", "340x170");
+  expect_trouble({kWalk, "--panel", "0x100"}, "usage", "340x170");
+  expect_trouble({kWalk, "--show", "toes"}, "usage", "'toes' is not path, feet");
+  expect_trouble({kWalk, "--moments", "3"}, "usage", "for --sheet and --strip");
+}
+
+TEST_F(KrokPlot, MakesAFileOfEachOfMany) {
+  put("a.bvh", capture(5));
+  put("b.bvh", capture(6));
+  const ToolRun run = run_tool(
+      "krok-plot", {path("a.bvh"), path("b.bvh"), "--show", "path", "--out-dir", path("plots")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(get(path("plots/a.svg")), HasSubstr(">a.bvh<"));
+  EXPECT_THAT(get(path("plots/b.svg")), HasSubstr(">b.bvh<"));
+}
+
+}  // namespace
+}  // namespace krok::test

@@ -1,0 +1,255 @@
+// If these fail, who looks at a contact sheet sees the figure elsewhere, at another moment or at
+// another size than it was.
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/fixture.h"
+#include "support/picture.h"
+
+namespace krok::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
+
+class KrokPlotSheet : public CliTest {
+ protected:
+  ToolRun plot(std::vector<std::string> arguments) const {
+    arguments.push_back("--json=" + path("report.json"));
+    return run_tool("krok-plot", arguments);
+  }
+  json report() const { return json::parse(get(path("report.json")))["result"]; }
+  // Of all cells in their order.
+  std::vector<int> frames_shown() const {
+    const json cells = report()["sheet"]["cells"];
+    std::vector<int> frames;
+    for (const json& cell : cells) frames.push_back(cell["moments"][0]["frame"]);
+    return frames;
+  }
+  render::Image picture(const std::string& name) const {
+    auto image = picture_of(get(path(name)));
+    EXPECT_TRUE(image.ok()) << (image ? "" : image.error().message);
+    return image ? std::move(*image) : render::Image();
+  }
+
+  // World positions by frame, as krok-export tells them.
+  std::map<int, std::vector<Vec3>> exported(const std::string& capture) const {
+    EXPECT_EQ(run_tool("krok-export", {capture, "-o", path("positions.csv")}).exit_code, 0);
+    std::istringstream lines(get(path("positions.csv")));
+    std::map<int, std::vector<Vec3>> frames;
+    std::string line;
+    std::map<std::string, std::size_t> columns;
+    while (std::getline(lines, line)) {
+      if (line.empty() || line[0] == '#') continue;
+      std::vector<std::string> fields;
+      std::istringstream parts(line);
+      for (std::string field; std::getline(parts, field, ',');) fields.push_back(field);
+      if (columns.empty()) {
+        for (std::size_t i = 0; i < fields.size(); ++i) columns[fields[i]] = i;
+        continue;
+      }
+      const auto number = [&](const char* name) { return std::stod(fields.at(columns.at(name))); };
+      frames[static_cast<int>(number("frame"))].emplace_back(number("x"), number("y"), number("z"));
+    }
+    return frames;
+  }
+};
+
+TEST_F(KrokPlotSheet, EveryJointsPixelIsWhereTheJointIs) {
+  ASSERT_EQ(plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides",
+                  "front,left,back-right,top", "--moments", "4"})
+                .exit_code,
+            0);
+  const auto frames = exported(kWalk);
+  const auto image = picture("s.png");
+  const json sheet = report()["sheet"];
+  ASSERT_EQ(sheet["width"], image.width);
+  ASSERT_EQ(sheet["cells"].size(), 16U);
+  int joints = 0;
+  for (const json& cell : sheet["cells"]) {
+    for (const Vec3& joint : frames.at(cell["moments"][0]["frame"])) {
+      const Vec2 at = place_in(cell, sheet["pixels_per_metre"], joint);
+      const render::Colour colour =
+          image.at(static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y())));
+      // Darker than the lightest of the background, whatever colour the limb has.
+      EXPECT_LT(std::min({colour.red, colour.green, colour.blue}), 200)
+          << cell << " " << joint.transpose();
+      ++joints;
+    }
+  }
+  EXPECT_EQ(joints, 16 * 29);
+}
+
+TEST_F(KrokPlotSheet, TheBodyStandsOnTheGroundAndIsAsTallAsTheFigure) {
+  ASSERT_EQ(plot({kWalk, "--sheet", path("s.png"), "--moments", "3"}).exit_code, 0);
+  const auto frames = exported(kWalk);
+  const auto image = picture("s.png");
+  const json sheet = report()["sheet"];
+  ASSERT_EQ(sheet["cells"].size(), 6U);
+  const double per_metre = sheet["pixels_per_metre"];
+  for (const json& cell : sheet["cells"]) {
+    const Silhouette figure = silhouette(image, cell, 16);
+    const double ground = cell["target_pixel"][1];
+    EXPECT_NEAR((ground - figure.bottom) / per_metre, 0.0, 0.03);
+    double top = 0;
+    for (const Vec3& joint : frames.at(cell["moments"][0]["frame"])) top = std::max(top, joint.y());
+    EXPECT_NEAR((ground - figure.top) / per_metre, top, 0.06);
+    EXPECT_GT(figure.bottom - figure.top, 200) << "not tiny";
+  }
+}
+
+TEST_F(KrokPlotSheet, TheLeftIsBlueAndToTheRightOfWhoeverLooksAtTheFront) {
+  ASSERT_EQ(
+      plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides", "front,back"}).exit_code,
+      0);
+  const auto image = picture("s.png");
+  const json cells = report()["sheet"]["cells"];
+  ASSERT_EQ(cells.size(), 16U);
+  for (const json& cell : cells) {
+    const Silhouette figure = silhouette(image, cell);
+    if (cell["row"] == 0) {
+      EXPECT_GT(figure.blue_x, figure.orange_x + 10);
+    } else {
+      EXPECT_LT(figure.blue_x, figure.orange_x - 10);
+    }
+  }
+}
+
+TEST_F(KrokPlotSheet, ShowsTheMomentsThatAreNamed) {
+  ASSERT_EQ(plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides", "front",
+                  "--moments", "2s,30f,0.5s"})
+                .exit_code,
+            0);
+  EXPECT_THAT(frames_shown(), ElementsAre(30, 120)) << "30f and 0.5s are one frame of 60 a second";
+  ASSERT_EQ(plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides", "front",
+                  "--moments", "3", "--from", "1s", "--to", "120f"})
+                .exit_code,
+            0);
+  EXPECT_THAT(frames_shown(), ElementsAre(60, 90, 120));
+}
+
+TEST_F(KrokPlotSheet, PutsFilesOnOneSheetAtOneScale) {
+  put("short.bvh", capture(5));
+  ASSERT_EQ(plot({kWalk, path("short.bvh"), "--body", "none", "--sheet", path("s.png"), "--sides",
+                  "front", "--moments", "4"})
+                .exit_code,
+            0);
+  const json cells = report()["sheet"]["cells"];
+  ASSERT_EQ(cells.size(), 8U);
+  EXPECT_EQ(cells[0]["name"], "walk.bvh");
+  EXPECT_EQ(cells[7]["name"], "short.bvh");
+  EXPECT_EQ(cells[7]["moments"][0]["frame"], 4);
+}
+
+TEST_F(KrokPlotSheet, AStripGoesFromLeftToRight) {
+  ASSERT_EQ(plot({kWalk, "--strip", path("s.png"), "--body", "none", "--moments", "5"}).exit_code,
+            0);
+  const json strip = report()["strip"];
+  ASSERT_EQ(strip["cells"].size(), 1U);
+  const json cell = strip["cells"][0];
+  ASSERT_EQ(cell["moments"].size(), 5U);
+  const auto frames = exported(kWalk);
+  const auto image = picture("s.png");
+  double before = -1;
+  for (const json& moment : cell["moments"]) {
+    const Vec3 hips = frames.at(moment["frame"])[0];
+    const Vec2 at = place_in(cell, strip["pixels_per_metre"], hips);
+    EXPECT_GT(at.x(), before);
+    before = at.x();
+  }
+  // The last figure's hips are drawn in full where they project.
+  const auto last =
+      place_in(cell, strip["pixels_per_metre"], frames.at(cell["moments"][4]["frame"])[0]);
+  const render::Colour colour = image.at(static_cast<int>(last.x()), static_cast<int>(last.y()));
+  EXPECT_LT(std::min({colour.red, colour.green, colour.blue}), 150);
+}
+
+TEST_F(KrokPlotSheet, DrawsModelsAndGlbFiles) {
+  const std::string model = path("own.model"), glb = path("own.glb"), anim = path("own.anim");
+  ASSERT_EQ(run_tool("krok-import", {kWalk, "-o", anim}).exit_code, 0);
+  ASSERT_EQ(run_tool("krok-body", {anim, "--detail", "low", "-o", model}).exit_code, 0);
+  ASSERT_EQ(run_tool("krok-skin", {model, anim, "-o", glb, "--as", "rig"}).exit_code, 0);
+  ASSERT_EQ(
+      plot({model, anim, "--sheet", path("a.png"), "--sides", "left", "--moments", "2"}).exit_code,
+      0);
+  const json by_model = report()["sheet"];
+  EXPECT_EQ(by_model["cells"].size(), 2U) << "the model is moved, not shown beside the motion";
+  ASSERT_EQ(plot({glb, "--sheet", path("b.png"), "--sides", "left", "--moments", "2"}).exit_code,
+            0);
+  const json by_glb = report()["sheet"];
+  const auto a = picture("a.png");
+  const auto b = picture("b.png");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double first = silhouette(a, by_model["cells"][i], 16).pixels;
+    const double second = silhouette(b, by_glb["cells"][i], 16).pixels;
+    EXPECT_GT(first, 1000);
+    EXPECT_NEAR(second / first, 1, 0.03) << "the same body in the same pose";
+  }
+  ASSERT_EQ(plot({model, "--sheet", path("c.png")}).exit_code, 0);
+  EXPECT_EQ(report()["sheet"]["cells"].size(), 2U) << "alone it stands still, seen from two sides";
+}
+
+TEST_F(KrokPlotSheet, GivesTheSameBytesForAnyNumberOfThreads) {
+  for (const char* jobs : {"1", "2"}) {
+    ASSERT_EQ(run_tool("krok-plot", {kWalk, "--sheet", path(std::string(jobs) + ".png"),
+                                     "--moments", "2", "--elevation", "20deg", "-j", jobs})
+                  .exit_code,
+              0);
+  }
+  EXPECT_EQ(get(path("1.png")), get(path("2.png")));
+}
+
+TEST_F(KrokPlotSheet, RefusesWhatMakesNoSense) {
+  const std::vector<std::vector<std::string>> wrong = {
+      {"--size", "5"},
+      {"--size", "100000"},
+      {"--size", "4000", "--moments", "100", "--sides", "front,left,back"},
+      {"--moments", "0"},
+      {"--moments", "100000"},
+      {"--moments", "soon"},
+      {"--moments", "99s"},
+      {"--moments", "-1f"},
+      {"--moments", "0s,,1s"},
+      {"--sides", "under"},
+      {"--sides", ""},
+      {"--elevation", "100deg"},
+      {"--elevation", "high"},
+      {"--from", "99s"},
+      {"--from", "2s", "--to", "1s"},
+      {"--body", "fat"},
+      {"--front", "back"},
+  };
+  for (std::vector<std::string> arguments : wrong) {
+    const std::string what = arguments[0] + " " + arguments[1];
+    arguments.insert(arguments.begin(), {kWalk, "--body", "none", "--sheet", path("s.png")});
+    const ToolRun run = run_tool("krok-plot", arguments);
+    EXPECT_EQ(run.exit_code, 2) << what;
+    EXPECT_THAT(run.err, HasSubstr("error: ")) << what;
+    EXPECT_THAT(listing(), IsEmpty()) << what;
+  }
+  const ToolRun named = run_tool("krok-plot", {kWalk, "--sheet", path("s.jpg")});
+  EXPECT_EQ(named.exit_code, 2);
+  EXPECT_THAT(named.err, HasSubstr("PNG"));
+  EXPECT_THAT(listing(), IsEmpty());
+}
+
+TEST_F(KrokPlotSheet, TakesOneFrameAndNoFrames) {
+  put("one.bvh", capture(1));
+  put("none.bvh", capture(0));
+  for (const char* name : {"one.bvh", "none.bvh"}) {
+    const ToolRun run = plot({path(name), "--sheet", path("s.png"), "--strip", path("t.png")});
+    EXPECT_EQ(run.exit_code, 0) << name << run.err;
+    EXPECT_EQ(report()["sheet"]["cells"].size(), 2U) << name;
+  }
+}
+
+}  // namespace
+}  // namespace krok::test

@@ -1,0 +1,131 @@
+#include "difference_sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+
+namespace krok::diff {
+
+namespace {
+
+constexpr double kPale = 0.35;  // the first figure's opacity where the difference is shown
+constexpr render::Colour kPaleColour = render::colour(0x8E99A5);
+
+struct LengthUnit {
+  const char* name;
+  double in_a_metre;
+};
+
+LengthUnit unit_for(double metres) {
+  if (metres < 0.1) return {"mm", 1000};
+  if (metres < 10) return {"cm", 100};
+  return {"m", 1};
+}
+
+render::ColourKey key_of(const DifferenceSheet& sheet, const LengthUnit& unit) {
+  render::ColourKey key;
+  key.label = "distance between the two";
+  key.unit = unit.name;
+  key.low = sheet.tolerance * unit.in_a_metre;
+  key.high = sheet.largest * unit.in_a_metre;
+  // Two that are the same have a scale too.
+  if (!(key.high > key.low)) key.high = key.low > 0 ? 2 * key.low : 1;
+  return key;
+}
+
+Result<std::vector<PictureMoment>> moments_of(const DifferenceSheet& sheet,
+                                              const SheetOptions& options) {
+  auto moments = choose_moments(options.picture.moments, kDifferenceMoments, sheet.span);
+  if (!moments || !sheet.worst) return moments;
+  const auto at = std::lower_bound(
+      moments->begin(), moments->end(), *sheet.worst,
+      [](const PictureMoment& a, const PictureMoment& b) { return a.time < b.time; });
+  if (at == moments->end() || at->time != sheet.worst->time) moments->insert(at, *sheet.worst);
+  return moments;
+}
+
+// The figure without its own colours.
+render::Figure in_grey(render::Figure figure) {
+  for (render::Surface& surface : figure.surfaces) surface.colours = {kPaleColour};
+  for (render::Bone& bone : figure.bones) bone.from_colour = bone.to_colour = kPaleColour;
+  return figure;
+}
+
+// What is said of one moment's distances.
+std::string note_of(const DifferenceSheet& sheet, const Compared& one, bool worst,
+                    const LengthUnit& unit) {
+  if (!one.largest) return {};
+  if (*one.largest <= sheet.tolerance) return "the same";
+  return fmt::format("{} {} {}", worst ? "largest:" : "up to",
+                     readable(*one.largest * unit.in_a_metre, 3), unit.name);
+}
+
+// The three rows that one side has.
+void add_rows(const DifferenceSheet& sheet, const PictureSide& side,
+              const std::vector<PictureMoment>& moments, const std::vector<Compared>& compared,
+              const std::vector<render::Figure>& pale, const LengthUnit& unit,
+              render::Sheet& result) {
+  render::SheetRow first, second, both;
+  first.title = sheet.first_name;
+  second.title = sheet.second_name;
+  both.title = "where they differ";
+  first.note = second.note = side.name;
+  both.note = sheet.measured ? side.name + ", the first pale"
+                             : side.name +
+                                   ", the first pale; they do not correspond point by "
+                                   "point, so no distances are shown";
+  for (render::SheetRow* row : {&first, &second, &both}) {
+    row->yaw = sheet.heading + side.yaw;
+    row->elevation = side.elevation;
+  }
+  const bool moves = moments.size() > 1 || sheet.span.end > sheet.span.start;
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const Compared& one = compared[i];
+    render::SheetCell cell;
+    cell.centre = one.first.centre;  // one place for all three
+    if (moves) cell.label = moments[i].label();
+    cell.marked = sheet.worst && moments[i].time == sheet.worst->time;
+    cell.layers = {{&one.first}};
+    first.cells.push_back(cell);
+    cell.layers = {{&one.second}};
+    second.cells.push_back(cell);
+    cell.layers = {{&pale[i], kPale, true}, {&one.coloured}};
+    cell.note = note_of(sheet, one, cell.marked, unit);
+    both.cells.push_back(std::move(cell));
+  }
+  for (render::SheetRow* row : {&first, &second, &both}) result.rows.push_back(std::move(*row));
+}
+
+}  // namespace
+
+Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
+                   ToolContext& context) {
+  const auto sides = parse_sides(options.picture);
+  if (!sides) return sides.error();
+  const auto moments = moments_of(sheet, options);
+  if (!moments) return moments.error();
+  const LengthUnit unit = unit_for(sheet.largest);
+  const render::ColourKey key = key_of(sheet, unit);
+  std::vector<Compared> compared;
+  for (const PictureMoment& moment : *moments) compared.push_back(sheet.at(moment, key));
+
+  std::vector<render::Figure> pale;
+  for (const Compared& one : compared) pale.push_back(in_grey(one.first));
+  render::Sheet picture;
+  if (sheet.measured) picture.key = key;
+  for (const PictureSide& side : *sides) {
+    add_rows(sheet, side, *moments, compared, pale, unit, picture);
+  }
+  render::SheetOptions how;
+  how.row_height = options.picture.size;
+  how.cell_width = 2 * options.picture.size;
+  how.jobs = context.jobs;
+  const auto made = render::make_sheet(picture, how);
+  if (!made) return made.error();
+  return write_picture(made->image, options.path, context);
+}
+
+}  // namespace krok::diff

@@ -1,0 +1,215 @@
+#include "tools/krok-plot/charts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "core/numbers.h"
+#include "draw/difference_chart.h"
+#include "motion/ground_place.h"
+#include "motion/joint_selection.h"
+
+namespace krok::plot {
+
+namespace {
+
+using draw::ChartedMotion;
+using draw::Panel;
+
+// Joints that are shown of a figure whose angles nobody named, without --joint.
+constexpr int kTurningJoints = 6;
+
+void append(std::vector<Panel>& panels, std::vector<Panel> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(panels));
+}
+
+// The names of joints that a pattern selects in any of the motions, in the order in which they are
+// found. motion-joint for a pattern that selects none.
+Result<std::vector<std::string>> chosen_joints(const Motions& motions,
+                                               const std::vector<std::string>& patterns) {
+  std::vector<std::string> names;
+  std::set<std::string> known;
+  for (const std::string& pattern : patterns) {
+    Result<std::vector<std::uint8_t>> selected = Error();
+    bool any = false;
+    for (const Motions::Motion& file : motions.files) {
+      const Skeleton& skeleton = file.clip.skeleton;
+      selected = select_joints(skeleton, {{pattern}, {}});
+      if (!selected) continue;
+      any = true;
+      for (std::size_t j = 0; j < selected->size(); ++j) {
+        if ((*selected)[j] != 0 && known.insert(skeleton.names[j]).second) {
+          names.push_back(skeleton.names[j]);
+        }
+      }
+    }
+    if (!any) return std::move(selected).error().in_file(motions.files.front().path);
+  }
+  return names;
+}
+
+// Charts on their way into a figure.
+class MotionFigure {
+ public:
+  MotionFigure(const Motions& motions, const Options& options, ToolContext& context)
+      : motions_(motions), options_(options), context_(context) {}
+
+  Result<draw::Figure> make() {
+    auto joints = chosen_joints(motions_, options_.motion.joints);
+    if (!joints) return joints.error();
+    joints_ = std::move(*joints);
+    const std::vector<Chart> charts =
+        options_.motion.charts.empty() ? usual_charts() : options_.motion.charts;
+    for (const Chart chart : charts) {
+      if (Status added = add(chart); !added) return added.error();
+    }
+    if (figure_.panels.empty()) return nothing_to_show();
+    figure_.legend = draw::motion_legend(motions_.charted, sides_);
+    return std::move(figure_);
+  }
+
+ private:
+  std::vector<Chart> usual_charts() const {
+    if (!joints_.empty()) return {Chart::positions, Chart::angles};
+    return {Chart::path, Chart::feet, Chart::angles};
+  }
+
+  bool asked_for(Chart chart) const {
+    const auto& charts = options_.motion.charts;
+    return std::find(charts.begin(), charts.end(), chart) != charts.end();
+  }
+
+  Status add(Chart chart) {
+    const auto& motions = motions_.charted;
+    switch (chart) {
+      case Chart::path:
+        append(figure_.panels, draw::path_panels(motions));
+        return {};
+      case Chart::feet:
+        add_sided(draw::foot_panels(motions, options_.magnitude_scale), chart, "feet");
+        return {};
+      case Chart::angles:
+        add_angles();
+        return {};
+      case Chart::positions:
+        append(figure_.panels, draw::position_panels(motions, joints_or_carriers()));
+        return {};
+      case Chart::difference:
+        return add_difference();
+    }
+    return {};
+  }
+
+  void add_sided(std::vector<Panel> panels, Chart chart, const char* what) {
+    if (panels.empty() && asked_for(chart)) {
+      context_.warn("plot-roles", fmt::format("no joint is known for {}", what),
+                    "--map says what joints are; --joint NAME shows any joint");
+    }
+    sides_ = sides_ || !panels.empty();
+    append(figure_.panels, std::move(panels));
+  }
+
+  void add_angles() {
+    const auto& motions = motions_.charted;
+    if (joints_.empty()) {
+      auto panels = draw::body_angle_panels(motions);
+      if (!panels.empty() || asked_for(Chart::angles)) {
+        add_sided(std::move(panels), Chart::angles, "angles of a body");
+      } else {
+        add_most_turning();
+      }
+      return;
+    }
+    append(figure_.panels, options_.motion.euler
+                               ? draw::euler_panels(motions, joints_, *options_.motion.euler)
+                               : draw::turn_panels(motions, joints_));
+  }
+
+  // For figures that are no people.
+  void add_most_turning() {
+    const auto joints = draw::most_turning_joints(motions_.charted.front(), kTurningJoints);
+    append(figure_.panels, draw::position_panels(motions_.charted, joints_or_carriers()));
+    append(figure_.panels, draw::turn_panels(motions_.charted, joints));
+  }
+
+  std::vector<std::string> joints_or_carriers() const {
+    if (!joints_.empty()) return joints_;
+    std::vector<std::string> names;
+    for (const Motions::Motion& file : motions_.files) {
+      const auto carrier = static_cast<std::size_t>(carrying_joint(file.roles));
+      const std::string& name = file.clip.skeleton.names[carrier];
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    return names;
+  }
+
+  Status add_difference() {
+    if (motions_.charted.size() != 2) {
+      return Error("usage", fmt::format("a difference is between two motions, not {}",
+                                        motions_.charted.size()));
+    }
+    const ChartedMotion& first = motions_.charted[0];
+    const ChartedMotion& second = motions_.charted[1];
+    auto difference = draw::difference_over_time(first, second, joints_);
+    if (!difference) return difference.error();
+    for (const std::string& sentence : difference->differences) {
+      context_.warn("plot-difference", sentence);
+    }
+    report(*difference, first.clip->skeleton);
+    append(figure_.panels, draw::difference_panels(*difference, options_.magnitude_scale));
+    return {};
+  }
+
+  void report(const draw::MotionDifference& difference, const Skeleton& skeleton) {
+    const auto measure = [&](const compare::Measure& values) {
+      Json json;
+      json["largest"] = values.largest;
+      json["joint"] = values.where.joint < 0
+                          ? Json()
+                          : Json(skeleton.names[static_cast<std::size_t>(values.where.joint)]);
+      json["frame"] = values.where.frame < 0 ? Json() : Json(values.where.frame);
+      json["rms"] = values.rms();
+      return json;
+    };
+    Json json;
+    json["joints"] = difference.joints;
+    json["frames"] = difference.times.size();
+    json["positions"] = measure(difference.positions);        // metres
+    json["orientations"] = measure(difference.orientations);  // radians
+    context_.report.result["difference"] = std::move(json);
+    const compare::Measure& positions = difference.positions;
+    context_.say(fmt::format(
+        "difference: {} mm at most{}, {} mm root mean square",
+        readable(positions.largest * 1000, 4),
+        positions.where.joint < 0
+            ? ""
+            : fmt::format(" ({} at {} s)",
+                          skeleton.names[static_cast<std::size_t>(positions.where.joint)],
+                          readable(positions.where.time, 4)),
+        readable(positions.rms() * 1000, 4)));
+  }
+
+  Error nothing_to_show() const {
+    return Error("plot-roles", "the figure has none of what --show asks for",
+                 "--map says what joints are; --joint NAME shows any joint")
+        .in_file(motions_.files.front().path);
+  }
+
+  const Motions& motions_;
+  const Options& options_;
+  ToolContext& context_;
+  std::vector<std::string> joints_;
+  draw::Figure figure_;
+  bool sides_ = false;
+};
+
+}  // namespace
+
+Result<draw::Figure> chart_motions(const Motions& motions, const Options& options,
+                                   ToolContext& context) {
+  return MotionFigure(motions, options, context).make();
+}
+
+}  // namespace krok::plot

@@ -1,0 +1,96 @@
+#include "tools/krok-plot/motions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/file.h"
+#include "core/numbers.h"
+#include "tools/common/keys_sidecar.h"
+#include "tools/common/motion_input.h"
+#include "tools/common/role_input.h"
+
+namespace krok::plot {
+
+namespace {
+
+constexpr double kSameFrame = 1e-3;  // of a frame
+
+Result<draw::FrameRange> frames_of(const Clip& clip, const MotionOptions& options) {
+  if (clip.frame_count() == 0) {
+    return Error("plot-range", "the motion has no frames");
+  }
+  // Clamped before they become whole numbers, for a moment may be as far away as a double can say.
+  const double end = clip.frame_count() - 1;
+  const double from = options.from ? options.from->seconds(clip.rate) * clip.rate : 0.0;
+  const double to = options.to ? options.to->seconds(clip.rate) * clip.rate : end;
+  const double first = std::ceil(std::min(from, end + 1) - kSameFrame);
+  const double last = std::floor(std::min(to, end) + kSameFrame);
+  if (first > last) {
+    return Error("plot-range",
+                 fmt::format("no frame stands between {} s and {} s", readable(from / clip.rate),
+                             readable(to / clip.rate)),
+                 fmt::format("the motion has {}, {} s", counted(clip.frame_count(), "frame"),
+                             readable(clip.duration())));
+  }
+  return draw::FrameRange{static_cast<int>(first), static_cast<int>(last)};
+}
+
+Result<MotionKeys> read_keys(const std::string& option, const std::string& motion, const Clip& clip,
+                             ToolContext& context) {
+  if (option == "none") return MotionKeys();
+  if (option != "auto") {
+    auto given = read_keys_file(option, clip, context);
+    if (!given) return given.error();
+    return std::move(given->keys);
+  }
+  auto beside = read_keys_beside(motion, clip, context);
+  if (!beside) {
+    if (beside.error().hint.empty()) {
+      beside.error().hint = "it was found beside the motion; --keys none leaves it";
+    }
+    return beside.error();
+  }
+  return *beside ? std::move((*beside)->keys) : MotionKeys();
+}
+
+}  // namespace
+
+std::string name_of_input(const std::string& path) {
+  return path == "-" ? "standard input" : base_name(path);
+}
+
+Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
+                             ToolContext& context) {
+  if (options.keys != "auto" && options.keys != "none" && inputs.size() > 1) {
+    return Error("usage", "--keys names one file, and there are several motions",
+                 "--keys auto takes the file beside each");
+  }
+  const auto find_roles_of = open_role_map(options.map, context);
+  if (!find_roles_of) return find_roles_of.error();
+  Motions motions;
+  for (const std::string& path : inputs) {
+    auto clip = read_motion(path, context);
+    if (!clip) return std::move(clip).error().in_file(path);
+    auto roles = (*find_roles_of)(clip->skeleton);
+    if (!roles) return roles.error();
+    motions.files.push_back({path, std::move(*clip), std::move(*roles)});
+    const Motions::Motion& file = motions.files.back();
+
+    draw::ChartedMotion charted;
+    charted.name = name_of_input(path);
+    charted.clip = &file.clip;
+    charted.roles = &file.roles;
+    const auto frames = frames_of(file.clip, options);
+    if (!frames) return Error(frames.error()).in_file(path);
+    charted.frames = *frames;
+    auto keys = read_keys(options.keys, path, file.clip, context);
+    if (!keys) return keys.error();
+    charted.keys = std::move(*keys);
+    motions.charted.push_back(std::move(charted));
+  }
+  return motions;
+}
+
+}  // namespace krok::plot

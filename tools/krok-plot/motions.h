@@ -1,0 +1,34 @@
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "draw/motion_charts.h"
+#include "roles/roles.h"
+#include "scene/clip.h"
+#include "tools/common/tool.h"
+#include "tools/krok-plot/options.h"
+
+namespace krok::plot {
+
+// The motions of the input files, kept for as long as charts are made of them.
+struct Motions {
+  struct Motion {
+    std::string path;
+    Clip clip;
+    RoleMap roles;
+  };
+  std::deque<Motion> files;
+  std::vector<draw::ChartedMotion> charted;  // of `files`, in their order
+};
+
+// Reads the motions with what lies beside them, and works out which frames to show.
+Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
+                             ToolContext& context);
+
+// "walk.bvh"; "standard input" for "-".
+std::string name_of_input(const std::string& path);
+
+}  // namespace krok::plot

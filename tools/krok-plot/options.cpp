@@ -1,0 +1,338 @@
+#include "tools/krok-plot/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "core/file.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "tools/common/one_of.h"
+#include "tools/common/role_input.h"
+
+namespace krok::plot {
+
+namespace {
+
+struct ChartName {
+  std::string_view name;
+  Chart chart;
+};
+constexpr std::array kCharts = {ChartName{"path", Chart::path}, ChartName{"feet", Chart::feet},
+                                ChartName{"angles", Chart::angles},
+                                ChartName{"positions", Chart::positions},
+                                ChartName{"difference", Chart::difference}};
+
+Error usage(std::string message, std::string hint = {}) {
+  return Error("usage", std::move(message), std::move(hint));
+}
+
+CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::string>& values,
+                      const std::string& description) {
+  return app.add_option(name, values, description)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void declare_motions(CLI::App& app, Arguments& a) {
+  const char* group = "Motions";
+  add_list(app, "--show", a.show,
+           "Which charts, in which order: path (from above), feet (height, speed), angles (of "
+           "hips, knees, ankles, shoulders, elbows), positions, difference; several between "
+           "commas. Without it path, feet and angles, or what the figure has of them")
+      ->type_name("CHARTS")
+      ->group(group);
+  add_list(app, "--joint", a.joints,
+           "Show this joint: where it is, and how far it is turned from the reference pose against "
+           "its parent; with --show positions or angles one of the two. * stands for any "
+           "characters; may be repeated")
+      ->type_name("NAME")
+      ->group(group);
+  app.add_option("--euler", a.euler,
+                 "Show turns of joints as Euler angles in this order: ZXY is R = Rz Rx Ry")
+      ->type_name("ORDER")
+      ->group(group);
+  app.add_option("--from", a.from,
+                 "The first moment shown: 1.5s, 250ms, or 120f for a frame; a bare number is "
+                 "seconds")
+      ->type_name("TIME")
+      ->group(group);
+  app.add_option("--to", a.to, "The last moment shown")->type_name("TIME")->group(group);
+  app.add_flag("--difference", a.difference,
+               "How far the joints of two motions are apart: the same as --show difference")
+      ->group(group);
+  app.add_option("--keys", a.keys,
+                 "Contacts and keytimes to draw: a file, none, or auto, which takes NAME.keys.json "
+                 "beside the motion if there is one")
+      ->type_name("IN.json|auto|none")
+      ->default_str(a.keys)
+      ->group(group);
+  add_map_option(app, a.map)->group(group);
+}
+
+void declare_tables(CLI::App& app, Arguments& a) {
+  const char* group = "Tables";
+  app.add_flag("--table", a.table,
+               "The inputs are tables (CSV), which files called .csv or .tsv are without it. Units "
+               "are read from column names: time [s], time (s), time_s")
+      ->group(group);
+  app.add_option("--x", a.x, "The column to go along; otherwise the one for time, or the first")
+      ->type_name("COLUMN")
+      ->group(group);
+  add_list(app, "--y", a.y,
+           "What to draw: a column, or several for one panel, between commas; may be repeated for "
+           "more panels. Otherwise all columns of numbers, a panel for each unit")
+      ->type_name("COLUMNS")
+      ->group(group);
+  app.add_option("--by", a.by,
+                 "A line for each value of this column; otherwise of the only column of words, if "
+                 "there is one")
+      ->type_name("COLUMN")
+      ->group(group);
+  add_list(app, "--where", a.where,
+           "Only rows in which the column has this value; of several values of one column any; may "
+           "be repeated")
+      ->type_name("COLUMN=VALUE")
+      ->group(group);
+  app.add_option("--style", a.style, "line, points or both")
+      ->type_name("STYLE")
+      ->transform(one_of<draw::SeriesStyle>({{"line", draw::SeriesStyle::line},
+                                             {"points", draw::SeriesStyle::points},
+                                             {"both", draw::SeriesStyle::line_and_points}}))
+      ->default_str("line")
+      ->group(group);
+  app.add_flag("--log-x", a.log_x, "A logarithmic x axis")->group(group);
+}
+
+Result<std::vector<Chart>> parse_charts(const std::vector<std::string>& lists) {
+  std::vector<Chart> charts;
+  for (const std::string& list : lists) {
+    for (std::size_t begin = 0; begin <= list.size();) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      const std::string_view word = trimmed(std::string_view(list).substr(begin, end - begin));
+      begin = end + 1;
+      const auto found = std::find_if(kCharts.begin(), kCharts.end(),
+                                      [&](const ChartName& name) { return name.name == word; });
+      if (found == kCharts.end()) {
+        return usage(fmt::format("--show: '{}' is not path, feet, angles, positions or difference",
+                                 shown(word)));
+      }
+      if (std::find(charts.begin(), charts.end(), found->chart) == charts.end()) {
+        charts.push_back(found->chart);
+      }
+    }
+  }
+  return charts;
+}
+
+Result<EulerOrder> parse_order(const std::string& text) {
+  EulerOrder order = {};
+  std::array<bool, 3> seen = {};
+  bool good = text.size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    const int axis = ascii_lower(text[i]) - 'x';
+    good = axis >= 0 && axis < 3 && !seen[static_cast<std::size_t>(axis)];
+    if (!good) break;
+    seen[static_cast<std::size_t>(axis)] = true;
+    order[i] = static_cast<krok::Axis>(axis);
+  }
+  if (good) return order;
+  return usage(
+      fmt::format("--euler: '{}' is no order of the three axes, such as ZXY", shown(text)));
+}
+
+Result<std::optional<ClipTime>> parse_moment(const std::string& text, const char* option) {
+  if (text.empty()) return std::optional<ClipTime>();
+  auto time = parse_clip_time(text);
+  if (!time) {
+    time.error().message = fmt::format("{}: {}", option, time.error().message);
+    return time.error();
+  }
+  if (time->value < 0) return usage(fmt::format("{} {} is less than 0", option, text));
+  return std::optional<ClipTime>(*time);
+}
+
+Result<MotionOptions> understand_motions(const Arguments& a) {
+  MotionOptions options;
+  auto charts = parse_charts(a.show);
+  if (!charts) return charts.error();
+  options.charts = std::move(*charts);
+  const auto found = std::find(options.charts.begin(), options.charts.end(), Chart::difference);
+  if (a.difference && found == options.charts.end()) options.charts.push_back(Chart::difference);
+  options.joints = a.joints;
+  if (!a.euler.empty()) {
+    if (a.joints.empty()) return usage("--euler shows turns of joints; name them with --joint");
+    auto order = parse_order(a.euler);
+    if (!order) return order.error();
+    options.euler = *order;
+  }
+  auto from = parse_moment(a.from, "--from");
+  if (!from) return from.error();
+  auto to = parse_moment(a.to, "--to");
+  if (!to) return to.error();
+  options.from = *from;
+  options.to = *to;
+  options.keys = a.keys;
+  options.map = a.map;
+  return options;
+}
+
+Result<TableOptions> understand_tables(const Arguments& a) {
+  TableOptions options;
+  options.x = a.x;
+  options.y = a.y;
+  options.by = a.by;
+  for (const std::string& condition : a.where) {
+    const std::size_t equals = condition.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      return usage(fmt::format("--where {}: a column and its value are needed, as in joint=Hips",
+                               shown(condition)));
+    }
+    options.where.emplace_back(condition.substr(0, equals), condition.substr(equals + 1));
+  }
+  options.style = a.style;
+  if (a.log_x) options.x_scale = draw::Scale::logarithmic;
+  if (a.log_y) options.y_scale = draw::Scale::logarithmic;
+  return options;
+}
+
+// A length in pixels that a panel can have; 0 for anything else.
+double parse_pixels(std::string_view text) {
+  const double length = parse_finite(text).value_or(0);
+  return length >= 80 && length <= 10000 ? length : 0;
+}
+
+Result<std::pair<double, double>> parse_panel(const std::string& text) {
+  const std::string_view whole = text;
+  const std::size_t middle = std::min(whole.find('x'), whole.size() - 1);
+  const double width = parse_pixels(whole.substr(0, middle));
+  const double height = parse_pixels(whole.substr(middle + 1));
+  if (width > 0 && height > 0) return std::pair(width, height);
+  return usage(
+      fmt::format("--panel {}: width and height in pixels are needed, from 80 to 10000, "
+                  "such as 340x170",
+                  shown(text)));
+}
+
+// Whether all inputs are tables; an Error where only some are.
+Result<bool> are_tables(const Arguments& a) {
+  const auto is_table = [&](const std::string& path) {
+    const std::string ending = extension(path);
+    return a.table || ending == ".csv" || ending == ".tsv";
+  };
+  const auto count = std::count_if(a.inputs.begin(), a.inputs.end(), is_table);
+  if (count == 0) return false;
+  if (static_cast<std::size_t>(count) == a.inputs.size()) return true;
+  return usage("motions and tables do not go into one figure", "plot them one after the other");
+}
+
+// An option of the other kind of input is a misunderstanding.
+Status check_fit(const Arguments& a, bool table) {
+  const char* wrong = nullptr;
+  if (table) {
+    wrong = !a.show.empty()     ? "--show"
+            : !a.joints.empty() ? "--joint"
+            : !a.euler.empty()  ? "--euler"
+            : !a.from.empty()   ? "--from"
+            : !a.to.empty()     ? "--to"
+            : a.difference      ? "--difference"
+            : a.keys != "auto"  ? "--keys"
+            : !a.map.empty()    ? "--map"
+                                : nullptr;
+  } else {
+    wrong = !a.x.empty()                         ? "--x"
+            : !a.y.empty()                       ? "--y"
+            : !a.by.empty()                      ? "--by"
+            : !a.where.empty()                   ? "--where"
+            : a.log_x                            ? "--log-x"
+            : a.style != draw::SeriesStyle::line ? "--style"
+                                                 : nullptr;
+  }
+  if (wrong == nullptr) return {};
+  return usage(fmt::format("{} is for {}, and {} was given", wrong, table ? "motions" : "tables",
+                           table ? "a table" : "a motion"),
+               table ? "see krok-plot --help" : "--table says that the input is a table");
+}
+
+void declare_pictures(CLI::App& app, Arguments& a) {
+  declare_sheet(app, a.sheet);
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_group() == "Options" && !option->get_positional()) option->group("Pictures");
+  }
+}
+
+// Whether something was asked for that only pictures have.
+bool has_picture_options(const SheetOptions& options) {
+  const SheetOptions usual;
+  return options.picture.moments != usual.picture.moments ||
+         options.picture.sides != usual.picture.sides ||
+         options.picture.elevation != usual.picture.elevation ||
+         options.picture.size != usual.picture.size || options.front != usual.front ||
+         options.body != usual.body;
+}
+
+}  // namespace
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.add_option("inputs", arguments.inputs,
+                 "Motions (.anim, or a capture such as BVH) or tables (.csv); several go into the "
+                 "same panels")
+      ->type_name("IN")
+      ->required();
+  declare_motions(app, arguments);
+  declare_tables(app, arguments);
+  const char* group = "Figure";
+  app.add_flag("--log-y", arguments.log_y,
+               "A logarithmic y axis; of motions for speeds and differences")
+      ->group(group);
+  app.add_option("--title", arguments.title, "Otherwise the name of the input")
+      ->type_name("WORDS")
+      ->group(group);
+  app.add_option("--columns", arguments.columns, "Panels side by side; otherwise 2")
+      ->type_name("N")
+      ->check(CLI::Range(1, 20).description(""))
+      ->group(group);
+  app.add_option("--panel", arguments.panel,
+                 "The size of each panel in pixels, 96 to the inch [340x170, one alone 640x260]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+  declare_pictures(app, arguments);
+}
+
+Result<Options> understand(const Arguments& arguments) {
+  Options options;
+  options.inputs = arguments.inputs;
+  const auto table = are_tables(arguments);
+  if (!table) return table.error();
+  options.table = *table;
+  if (Status fits = check_fit(arguments, *table); !fits) return fits.error();
+  auto motion = understand_motions(arguments);
+  if (!motion) return motion.error();
+  options.motion = std::move(*motion);
+  auto columns = understand_tables(arguments);
+  if (!columns) return columns.error();
+  options.columns_of_table = std::move(*columns);
+  if (arguments.log_y) options.magnitude_scale = draw::Scale::logarithmic;
+  options.title = arguments.title;
+  options.columns = arguments.columns;
+  if (!arguments.panel.empty()) {
+    const auto panel = parse_panel(arguments.panel);
+    if (!panel) return panel.error();
+    options.panel = *panel;
+  }
+  options.sheet = arguments.sheet;
+  options.sheet.from = arguments.from;
+  options.sheet.to = arguments.to;
+  if (!options.sheet.wanted() && has_picture_options(options.sheet)) {
+    return usage(
+        "--moments, --sides, --elevation, --size, --front and --body are for --sheet and --strip");
+  }
+  if (options.table && options.sheet.wanted()) {
+    return usage("--sheet and --strip show figures, and a table was given");
+  }
+  return options;
+}
+
+}  // namespace krok::plot

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "tools/common/figures/moving_figure.h"
+#include "tools/common/figures/picture.h"
+#include "tools/common/tool.h"
+
+// Pictures of the figures themselves: contact sheets and motion strips.
+
+namespace krok::plot {
+
+// What "front" is.
+enum class Front : unsigned char {
+  figure,  // where the figure faces at the first moment shown
+  world    // +Z, where figures face in their reference pose
+};
+
+struct SheetOptions {
+  std::string sheet, strip;  // paths; empty for none
+  PictureOptions picture;
+  std::string from, to;
+  Front front = Front::figure;
+  BodyChoice body = BodyChoice::automatic;
+
+  bool wanted() const { return !sheet.empty() || !strip.empty(); }
+};
+
+// --sheet, --strip and what belongs to them, but --from and --to.
+void declare_sheet(CLI::App& app, SheetOptions& options);
+
+// Draws the figures of all inputs into the pictures that are wanted, writes these and notes them in
+// the report.
+Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
+                   ToolContext& context);
+
+}  // namespace krok::plot

@@ -1,0 +1,323 @@
+#include "tools/krok-plot/table_charts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/csv/table.h"
+#include "tools/krok-plot/motions.h"
+
+namespace krok::plot {
+
+namespace {
+
+using csv::ColumnName;
+using csv::Table;
+
+constexpr std::size_t kMostLines = 60;  // in a panel: more cannot be told apart
+
+// What of a table is drawn.
+struct Choice {
+  std::optional<std::size_t> x;                  // nothing for the row's number
+  std::vector<std::vector<std::size_t>> panels;  // columns
+  std::optional<std::size_t> by;
+};
+
+// Whether a column counts rows or time rather than being something to look at.
+bool is_counter(const ColumnName& name) {
+  return same_word(name.label, "frame") || same_word(name.label, "time") ||
+         same_word(name.label, "t");
+}
+
+// A column as people would name it in words: its label, and the unit that krok-export's tables have
+// without writing it.
+ColumnName understood(const Table& table, std::size_t column) {
+  ColumnName name = table.columns()[column];
+  const auto& columns = table.columns();
+  const bool from_export =
+      columns.size() > 2 && columns[0].header == "frame" && columns[1].header == "time";
+  if (!from_export || !name.unit.empty()) return name;
+  if (column == 1) name.unit = "s";
+  if (columns.size() == 6 && columns[2].header == "joint" && column > 2) name.unit = "m";
+  return name;
+}
+
+std::optional<std::size_t> usual_x(const Table& table) {
+  const auto& columns = table.columns();
+  for (const char* wanted : {"time", "t", "frame"}) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (table.numeric()[c] != 0 && same_word(columns[c].label, wanted)) return c;
+    }
+  }
+  if (table.numeric()[0] != 0 && columns.size() > 1) return 0;
+  return std::nullopt;
+}
+
+// All columns of numbers but the x axis, a panel for each unit.
+std::vector<std::vector<std::size_t>> usual_panels(const Table& table,
+                                                   std::optional<std::size_t> x) {
+  std::vector<std::string> units;
+  std::vector<std::vector<std::size_t>> panels;
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (table.numeric()[c] == 0 || c == x || is_counter(table.columns()[c])) continue;
+    const std::string unit = understood(table, c).unit;
+    const auto found = std::find(units.begin(), units.end(), unit);
+    const auto place = static_cast<std::size_t>(found - units.begin());
+    if (found == units.end()) {
+      units.push_back(unit);
+      panels.emplace_back();
+    }
+    panels[place].push_back(c);
+  }
+  return panels;
+}
+
+// A name as it stands, or else several between commas.
+Result<std::vector<std::size_t>> find_columns(const Table& table, const std::string& names) {
+  if (const auto whole = table.find(names)) return std::vector<std::size_t>{*whole};
+  std::vector<std::size_t> columns;
+  for (std::size_t begin = 0; begin <= names.size();) {
+    const std::size_t end = std::min(names.find(',', begin), names.size());
+    const auto column = table.find(trimmed(std::string_view(names).substr(begin, end - begin)));
+    if (!column) return column.error();
+    columns.push_back(*column);
+    begin = end + 1;
+  }
+  return columns;
+}
+
+Result<Choice> choose(const Table& table, const TableOptions& options) {
+  Choice choice;
+  if (options.x.empty()) {
+    choice.x = usual_x(table);
+  } else {
+    const auto x = table.find(options.x);
+    if (!x) return x.error();
+    choice.x = *x;
+  }
+  for (const std::string& names : options.y) {
+    auto columns = find_columns(table, names);
+    if (!columns) return columns.error();
+    choice.panels.push_back(std::move(*columns));
+  }
+  if (options.y.empty()) choice.panels = usual_panels(table, choice.x);
+  if (!options.by.empty()) {
+    const auto by = table.find(options.by);
+    if (!by) return by.error();
+    choice.by = *by;
+  } else if (std::count(table.numeric().begin(), table.numeric().end(), 0) == 1) {
+    const auto words = std::find(table.numeric().begin(), table.numeric().end(), 0);
+    choice.by = static_cast<std::size_t>(words - table.numeric().begin());
+  }
+  return choice;
+}
+
+// The rows that all conditions hold for.
+Result<std::vector<std::size_t>> chosen_rows(const Table& table, const TableOptions& options) {
+  std::map<std::size_t, std::set<std::string>> wanted;
+  for (const auto& [name, value] : options.where) {
+    const auto column = table.find(name);
+    if (!column) return column.error();
+    wanted[*column].insert(value);
+  }
+  std::vector<std::uint8_t> chosen(table.row_count(), 1);
+  for (const auto& [column, values] : wanted) {
+    const auto cells = table.texts(column);
+    for (std::size_t row = 0; row < cells.size(); ++row) {
+      if (values.count(cells[row]) == 0) chosen[row] = 0;
+    }
+  }
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < chosen.size(); ++row) {
+    if (chosen[row] != 0) rows.push_back(row);
+  }
+  if (rows.empty()) return Error("plot-where", "--where leaves no row of the table");
+  return rows;
+}
+
+// Rows that make a line, by what stands in the column `by`, in the order in which values come up.
+struct Group {
+  std::string name;
+  std::vector<std::size_t> rows;
+};
+
+Result<std::vector<Group>> group(const Table& table, const std::vector<std::size_t>& rows,
+                                 std::optional<std::size_t> by) {
+  if (!by) return std::vector<Group>{{"", rows}};
+  const auto cells = table.texts(*by);
+  std::vector<Group> groups;
+  std::map<std::string, std::size_t> places;
+  for (const std::size_t row : rows) {
+    const auto [found, is_new] = places.emplace(cells[row], groups.size());
+    if (is_new) groups.push_back({cells[row], {}});
+    groups[found->second].rows.push_back(row);
+    if (groups.size() > kMostLines) {
+      return Error("plot-lines",
+                   fmt::format("the column '{}' has more than {} values, each of which would be a "
+                               "line",
+                               shown(table.columns()[*by].header), kMostLines),
+                   "--where COLUMN=VALUE chooses some, --by another column");
+    }
+  }
+  return groups;
+}
+
+// What a panel's y axis says: the name if it is one column, the unit if all share it.
+draw::Axis y_axis(const Table& table, const std::vector<std::size_t>& columns) {
+  draw::Axis axis;
+  const ColumnName first = understood(table, columns.front());
+  axis.unit = first.unit;
+  for (const std::size_t column : columns) {
+    if (understood(table, column).unit != axis.unit) axis.unit.clear();
+  }
+  if (columns.size() == 1) axis.label = first.label;
+  return axis;
+}
+
+draw::Axis x_axis(const Table& table, std::optional<std::size_t> x) {
+  if (!x) return {"row"};
+  const ColumnName name = understood(table, *x);
+  return {name.label, name.unit};
+}
+
+// One file's lines on their way into the panels.
+class TableLines {
+ public:
+  TableLines(const Table& table, const Choice& choice, const TableOptions& options)
+      : table_(table), choice_(choice), options_(options) {}
+
+  // `file` is put before the names of lines unless it is empty.
+  Status add_to(std::vector<draw::Panel>& panels, const std::string& file) {
+    const auto rows = chosen_rows(table_, options_);
+    if (!rows) return rows.error();
+    const auto groups = group(table_, *rows, choice_.by);
+    if (!groups) return groups.error();
+    std::vector<std::size_t> columns;
+    if (choice_.x) columns.push_back(*choice_.x);
+    for (const auto& panel : choice_.panels) {
+      if (panel.size() * groups->size() > kMostLines) return too_many(panel.size(), groups->size());
+      columns.insert(columns.end(), panel.begin(), panel.end());
+    }
+    const auto numbers = table_.numbers(columns);
+    if (!numbers) return numbers.error();
+    std::size_t next = choice_.x ? 1 : 0;
+    for (std::size_t p = 0; p < choice_.panels.size(); ++p) {
+      for (const std::size_t column : choice_.panels[p]) {
+        const std::vector<double>& values = (*numbers)[next++];
+        for (const Group& lines : *groups) {
+          draw::Series series = line(numbers->front(), values, lines.rows);
+          series.name = name_of(file, column, lines.name, choice_.panels[p].size() > 1);
+          panels[p].series.push_back(std::move(series));
+        }
+      }
+    }
+    return {};
+  }
+
+ private:
+  draw::Series line(const std::vector<double>& x, const std::vector<double>& values,
+                    const std::vector<std::size_t>& rows) const {
+    draw::Series series;
+    series.style = options_.style;
+    for (const std::size_t row : rows) {
+      series.x.push_back(choice_.x ? x[row] : static_cast<double>(row + 1));
+      series.y.push_back(values[row]);
+    }
+    return series;
+  }
+
+  std::string name_of(const std::string& file, std::size_t column, const std::string& group_name,
+                      bool several) const {
+    std::string name = group_name;
+    if (several || (name.empty() && file.empty()))
+      name += (name.empty() ? "" : " ") + understood(table_, column).label;
+    if (!file.empty()) name += (name.empty() ? "" : ", ") + file;
+    return name;
+  }
+
+  static Error too_many(std::size_t columns, std::size_t groups) {
+    return Error("plot-lines",
+                 fmt::format("a panel would have {} lines, {} at most can be told apart",
+                             grouped(static_cast<long long>(columns * groups)), kMostLines),
+                 "--y chooses columns, --where COLUMN=VALUE rows");
+  }
+
+  const Table& table_;
+  const Choice& choice_;
+  const TableOptions& options_;
+};
+
+void tell_choice(const Table& table, const Choice& choice, const TableOptions& options,
+                 const std::string& path, ToolContext& context) {
+  std::string chosen;
+  const auto add = [&](std::string words) { chosen += (chosen.empty() ? "" : ", ") + words; };
+  if (options.x.empty()) {
+    add(choice.x ? fmt::format("x is '{}'", shown(table.columns()[*choice.x].header))
+                 : "x is the row's number");
+  }
+  if (options.by.empty() && choice.by) {
+    add(fmt::format("a line for each '{}'", shown(table.columns()[*choice.by].header)));
+  }
+  if (options.y.empty()) add("all columns of numbers are drawn");
+  if (chosen.empty()) return;
+  Diagnostic note;
+  note.severity = Severity::note;
+  note.code = "plot-columns";
+  note.message = std::move(chosen);
+  note.hint = "--x, --y and --by choose others";
+  note.where.file = path;
+  context.tell(std::move(note));
+}
+
+Status add_table(const std::string& path, const Options& options, ToolContext& context,
+                 draw::Figure& figure) {
+  const auto input = context.open_input(path);
+  if (!input) return input.error();
+  const auto table = Table::read(input->text(), path);
+  if (!table) return table.error();
+  const TableOptions& wanted = options.columns_of_table;
+  const auto choice = choose(*table, wanted);
+  if (!choice) return choice.error();
+  if (choice->panels.empty()) {
+    return Error("plot-columns", "the table has no column of numbers to draw");
+  }
+  tell_choice(*table, *choice, wanted, path, context);
+  if (figure.panels.empty()) {
+    for (const auto& columns : choice->panels) {
+      draw::Panel panel;
+      panel.x = x_axis(*table, choice->x);
+      panel.y = y_axis(*table, columns);
+      panel.x.scale = wanted.x_scale;
+      panel.y.scale = wanted.y_scale;
+      figure.panels.push_back(std::move(panel));
+    }
+  }
+  if (figure.panels.size() != choice->panels.size()) {
+    return Error("plot-columns", "the tables do not have the same columns",
+                 "choose with --x and --y");
+  }
+  const bool several = options.inputs.size() > 1;
+  Status added = TableLines(*table, *choice, wanted)
+                     .add_to(figure.panels, several ? name_of_input(path) : std::string());
+  // What one line is stands beside its axis.
+  for (draw::Panel& panel : figure.panels) panel.legend = panel.series.size() > 1;
+  return added;
+}
+
+}  // namespace
+
+Result<draw::Figure> chart_tables(const Options& options, ToolContext& context) {
+  draw::Figure figure;
+  for (const std::string& path : options.inputs) {
+    if (Status added = add_table(path, options, context, figure); !added) {
+      return std::move(added.error()).in_file(path);
+    }
+  }
+  return figure;
+}
+
+}  // namespace krok::plot
