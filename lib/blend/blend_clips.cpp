@@ -1,0 +1,337 @@
+#include "blend/blend_clips.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "blend/grounded_clip.h"
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "math/euler.h"
+#include "math/quaternion.h"
+#include "pose/blend_pose.h"
+#include "pose/sample_pose.h"
+
+namespace krok::blend {
+
+namespace {
+
+constexpr double kMostTransforms = 1e8;
+constexpr double kRounding = 1e-6;  // of a frame, for the number of frames
+constexpr std::size_t kFramesAtOnce = 32;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+Status check_inputs(std::span<const BlendInput> inputs) {
+  if (inputs.empty()) return Error("blend-empty", "there is no motion to blend");
+  for (const BlendInput& input : inputs) {
+    if (Status sound = check(*input.clip); !sound) {
+      return std::move(sound).error().in_file(input.name);
+    }
+    if (input.clip->frame_count() == 0) {
+      return Error("blend-empty", fmt::format("{} has no frames", input.name));
+    }
+    const std::string differs =
+        difference_in_structure(inputs.front().clip->skeleton, input.clip->skeleton);
+    if (!differs.empty()) {
+      return Error("blend-skeleton",
+                   fmt::format("{} and {} are not of one skeleton: {}", inputs.front().name,
+                               input.name, differs),
+                   "krok-retarget brings one on the other's skeleton");
+    }
+    if (input.keys == nullptr) continue;
+    if (Status sound = check(*input.keys, input.clip->skeleton, input.clip->duration()); !sound) {
+      return std::move(sound).error().in_file(input.name);
+    }
+  }
+  return {};
+}
+
+// Where all curves have their points, the sum is linear between them.
+Status check_sum(std::span<const BlendInput> inputs) {
+  std::set<double> points = {0};
+  for (const BlendInput& input : inputs) {
+    points.insert(input.weight.generic.begin(), input.weight.generic.end());
+  }
+  for (const double point : points) {
+    double sum = 0;
+    for (const BlendInput& input : inputs) sum += input.weight.at(point);
+    if (std::abs(sum - 1) <= 1e-6) continue;
+    const bool constant = points.size() == 1;
+    return Error("blend-sum",
+                 fmt::format("the weights sum to {}{}, not to 1", readable(sum),
+                             constant ? "" : fmt::format(" at generic time {}", readable(point))),
+                 "--modifier allows it, for motions that are added on top of another");
+  }
+  return {};
+}
+
+class Blender {
+ public:
+  Blender(std::span<const BlendInput> inputs, const RoleMap& roles, const BlendOptions& options,
+          const BlendTime& time, double rate)
+      : inputs_(inputs), options_(options), time_(time) {
+    const int carrier = options.align == Align::none ? -1 : carrying_joint(roles);
+    for (const BlendInput& input : inputs) motions_.emplace_back(*input.clip, carrier);
+    blended_.clip.skeleton = inputs.front().clip->skeleton;
+    blended_.clip.rate = rate;
+    blended_.clip.resize(static_cast<int>(std::floor(time.duration() * rate + kRounding)) + 1);
+    find_contact_joints();
+  }
+
+  Blended blend(const Correspondence& correspondence) {
+    find_times();
+    sum_poses();
+    if (options_.align != Align::none) walk();
+    find_spread();
+    find_keys(correspondence);
+    return std::move(blended_);
+  }
+
+ private:
+  int frames() const { return blended_.clip.frame_count(); }
+  double weight(std::size_t motion, int frame) const {
+    return inputs_[motion].weight.at(blended_.generic[at(frame)]);
+  }
+
+  // Joints that touch something in the motions, where all of them have keys.
+  void find_contact_joints() {
+    for (const BlendInput& input : inputs_) {
+      if (input.keys == nullptr) {
+        contact_joints_.clear();
+        return;
+      }
+      for (const Contact& contact : input.keys->contacts) contact_joints_.insert(contact.joint);
+    }
+  }
+
+  // Steps 2 and 3: generic time of each frame, and what time it is in each motion.
+  void find_times() {
+    blended_.times.resize(motions_.size());
+    for (int f = 0; f < frames(); ++f) {
+      const double generic = time_.generic_at(f / blended_.clip.rate);
+      blended_.generic.push_back(generic);
+      for (std::size_t m = 0; m < motions_.size(); ++m) {
+        blended_.times[m].push_back(time_.maps()[m].at(generic));
+      }
+    }
+  }
+
+  // Steps 4 and 5 for the pose, as seen from the figure's place on the ground. The first motion
+  // decides which of q and -q are summed.
+  void sum_poses() {
+    Clip& clip = blended_.clip;
+    const auto joints = clip.skeleton.names.size();
+    parallel_for(at(frames()), kFramesAtOnce, options_.jobs,
+                 [&](std::size_t begin, std::size_t end) {
+                   const std::size_t blocks = at(pose_blocks(clip.joint_count()));
+                   std::vector<PoseBlock> reference(blocks), sum(blocks);
+                   std::vector<BlendTerm> terms;
+                   std::vector<Transform> pose(joints);
+                   for (std::size_t f = begin; f < end; ++f) {
+                     terms.clear();
+                     for (std::size_t m = 0; m < motions_.size(); ++m) {
+                       const auto share = static_cast<float>(weight(m, static_cast<int>(f)));
+                       if (share == 0) continue;
+                       terms.push_back({&motions_[m].poses(), blended_.times[m][f], share});
+                     }
+                     sample_pose(motions_.front().poses(), blended_.times.front()[f], reference);
+                     blend_poses(terms, reference, sum);
+                     unpack_pose(sum, pose);
+                     local_to_world(clip.skeleton.parents, pose, pose);
+                     clip.set_pose(static_cast<int>(f), pose);
+                   }
+                 });
+  }
+
+  GroundPlace first_place() const {
+    GroundPlace sum;
+    const double reference = motions_.front().place(blended_.times.front().front()).heading;
+    double all = 0;
+    for (std::size_t m = 0; m < motions_.size(); ++m) {
+      const GroundPlace place = motions_[m].place(blended_.times[m].front());
+      const double share = weight(m, 0);
+      all += share;
+      sum.x += share * place.x;
+      sum.z += share * place.z;
+      sum.heading += share * wrapped(place.heading - reference);
+    }
+    return {sum.x / all, sum.z / all, reference + sum.heading / all};
+  }
+
+  // Step 4 for the way: what the figure walks from frame to frame, in its own heading.
+  void walk() {
+    Clip& clip = blended_.clip;
+    std::vector<Transform> pose(clip.skeleton.names.size());
+    std::vector<Vec3> before(pose.size());
+    GroundPlace place = first_place();
+    for (int f = 0; f < frames(); ++f) {
+      clip.get_pose(f, pose);
+      if (f > 0) place = next_place(place, f, before, pose);
+      for (std::size_t j = 0; j < pose.size(); ++j) before[j] = pose[j].position;
+      const Transform to_world = place.to_world();
+      for (Transform& joint : pose) joint = to_world * joint;
+      clip.set_pose(f, pose);
+    }
+  }
+
+  GroundPlace next_place(const GroundPlace& place, int frame, std::span<const Vec3> before,
+                         std::span<const Transform> pose) const {
+    Vec3 way = Vec3::Zero();
+    double turn = 0;
+    for (std::size_t m = 0; m < motions_.size(); ++m) {
+      const double share = weight(m, frame);
+      if (share == 0) continue;
+      const GroundPlace from = motions_[m].place(blended_.times[m][at(frame - 1)]);
+      const GroundPlace to = motions_[m].place(blended_.times[m][at(frame)]);
+      way +=
+          share * (axis_rotation(Axis::y, -from.heading) * Vec3(to.x - from.x, 0, to.z - from.z));
+      turn += share * (to.heading - from.heading);
+    }
+    const Quat heading = axis_rotation(Axis::y, place.heading);
+    if (options_.align == Align::stance) {
+      const Quat turned = axis_rotation(Axis::y, turn);
+      way = pinned(way, frame,
+                   [&](std::size_t j) -> Vec3 { return before[j] - turned * pose[j].position; });
+    }
+    const Vec3 moved = heading * way;
+    return {place.x + moved.x(), place.z + moved.z(), place.heading + turn};
+  }
+
+  // The way with which what stands moves no more than it does in the motions. `stay(j)` is the way,
+  // in the heading before, with which joint j would not move at all. As much as all motions'
+  // contacts count, the rest is `way`.
+  template <typename Stay>
+  Vec3 pinned(const Vec3& way, int frame, const Stay& stay) const {
+    double all = 0;
+    Vec3 sum = Vec3::Zero();
+    for (const int joint : contact_joints_) {
+      double stands = 0;
+      Vec3 slides = Vec3::Zero();
+      for (std::size_t m = 0; m < motions_.size(); ++m) {
+        const double share = weight(m, frame);
+        if (share == 0) continue;
+        const double from = blended_.times[m][at(frame - 1)], to = blended_.times[m][at(frame)];
+        if (touches(*inputs_[m].keys, joint, 0.5 * (from + to))) stands += share;
+        const Vec3 slide = motions_[m].position(joint, to) - motions_[m].position(joint, from);
+        slides += share * (axis_rotation(Axis::y, -motions_[m].place(from).heading) * slide);
+      }
+      stands = std::clamp(stands, 0.0, 1.0);
+      all += stands;
+      sum += stands * (stay(at(joint)) + slides);
+    }
+    if (all == 0) return way;
+    Vec3 result = all >= 1 ? Vec3(sum / all) : Vec3(sum + (1 - all) * way);
+    result.y() = 0;
+    return result;
+  }
+
+  static bool touches(const MotionKeys& keys, int joint, double time) {
+    return std::ranges::any_of(keys.contacts, [&](const Contact& contact) {
+      return contact.joint == joint && contact.start <= time && time <= contact.end;
+    });
+  }
+
+  void find_spread() {
+    std::vector<PoseBlock> block(at(pose_blocks(blended_.clip.joint_count())));
+    std::vector<Transform> first(blended_.clip.skeleton.names.size()), other(first.size());
+    for (int f = 0; f < frames() && motions_.size() > 1; ++f) {
+      bool has_first = false;
+      for (std::size_t m = 0; m < motions_.size(); ++m) {
+        if (weight(m, f) == 0) continue;
+        sample_pose(motions_[m].poses(), blended_.times[m][at(f)], block);
+        unpack_pose(block, has_first ? other : first);
+        for (std::size_t j = 0; has_first && j < first.size(); ++j) {
+          const double angle = angle_between(first[j].orientation, other[j].orientation);
+          if (angle <= blended_.widest_spread) continue;
+          blended_.widest_spread = angle;
+          blended_.spread_joint = static_cast<int>(j);
+          blended_.spread_frame = f;
+        }
+        has_first = true;
+      }
+    }
+  }
+
+  void find_keys(const Correspondence& correspondence) {
+    MotionKeys& keys = blended_.keys;
+    for (int k = 0; k < correspondence.moments(); ++k) {
+      const std::string& name = correspondence.names[at(k)];
+      const bool is_end =
+          (k == 0 && name == "begin") || (k + 1 == correspondence.moments() && name == "end");
+      if (is_end) continue;
+      // The last may lie a part of a frame behind the last frame.
+      keys.keytimes.push_back({std::min(time_.moments()[at(k)], blended_.clip.duration()), name});
+    }
+    if (contact_joints_.empty() || frames() < 2) return;
+    // What stands by the weights of most.
+    for (const int joint : contact_joints_) {
+      int begin = -1;
+      for (int f = 0; f <= frames(); ++f) {
+        double stands = 0;
+        for (std::size_t m = 0; f < frames() && m < motions_.size(); ++m) {
+          if (touches(*inputs_[m].keys, joint, blended_.times[m][at(f)])) stands += weight(m, f);
+        }
+        if (stands > 0.5) {
+          if (begin < 0) begin = f;
+        } else if (begin >= 0) {
+          add_contact(joint, begin, f - 1);
+          begin = -1;
+        }
+      }
+    }
+    std::ranges::sort(keys.contacts, [](const Contact& a, const Contact& b) {
+      return a.start != b.start ? a.start < b.start : a.joint < b.joint;
+    });
+  }
+
+  void add_contact(int joint, int first, int last) {
+    const Clip& clip = blended_.clip;
+    const Vec3 place = clip.frame_positions((first + last) / 2)[at(joint)].cast<double>();
+    blended_.keys.contacts.push_back({joint, first / clip.rate, last / clip.rate, place});
+  }
+
+  std::span<const BlendInput> inputs_;
+  const BlendOptions& options_;
+  const BlendTime& time_;
+  std::vector<GroundedClip> motions_;
+  std::set<int> contact_joints_;
+  Blended blended_;
+};
+
+}  // namespace
+
+Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& roles,
+                            const Correspondence& correspondence, const BlendOptions& options) {
+  if (Status sound = check_inputs(inputs); !sound) return sound.error();
+  if (Status sound = check(correspondence); !sound) return sound.error();
+  if (correspondence.times.size() != inputs.size()) {
+    return Error("blend-keys", "there are not as many motions as there are lists of moments");
+  }
+  if (!options.any_sum) {
+    if (Status sound = check_sum(inputs); !sound) return sound.error();
+  }
+  const double rate = options.rate > 0 ? options.rate : inputs.front().clip->rate;
+  if (!std::isfinite(rate) || options.rate < 0) {
+    return Error("clip-rate", "the rate of a blend must be a positive number");
+  }
+  std::vector<TimeMap> maps;
+  std::vector<WeightCurve> weights;
+  for (std::size_t m = 0; m < inputs.size(); ++m) {
+    maps.emplace_back(correspondence.times[m], options.warp);
+    weights.push_back(inputs[m].weight);
+  }
+  const auto time = BlendTime::create(std::move(maps), std::move(weights), 2 / rate * (1 - 1e-9));
+  if (!time) return time.error();
+  if (time->duration() * rate * inputs.front().clip->joint_count() > kMostTransforms) {
+    return Error("clip-too-long", fmt::format("{} s at {} frames a second are too many frames",
+                                              readable(time->duration()), readable(rate)));
+  }
+  return Blender(inputs, roles, options, *time, rate).blend(correspondence);
+}
+
+}  // namespace krok::blend

@@ -1,0 +1,320 @@
+#include "tools/krok-blend/blend_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "blend/warp_by_shape.h"
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "core/text.h"
+#include "formats/anim/anim.h"
+#include "tools/common/keys_sidecar.h"
+#include "tools/common/motion_input.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/orientation_option.h"
+#include "tools/common/output_kind.h"
+#include "tools/common/output_set.h"
+#include "tools/common/role_input.h"
+#include "tools/krok-blend/weighted_input.h"
+
+namespace krok::blend_tool {
+
+namespace {
+
+using blend::Blended;
+using blend::BlendInput;
+using blend::Correspondence;
+
+struct Motion {
+  std::string name;
+  Clip clip;
+  MotionKeys keys;
+  bool has_keys = false;
+  blend::WeightCurve weight;
+};
+
+// Those beside the motion; where none are, found if that is wanted.
+Status take_keys(const Options& options, const std::string& path, const FindRoles& find_roles,
+                 Motion& motion, ToolContext& context) {
+  if (options.keys == KeysChoice::none) return {};
+  auto sidecar = read_keys_beside(path, motion.clip, context);
+  if (!sidecar) return sidecar.error();
+  if (*sidecar) {
+    motion.keys = std::move((*sidecar)->keys);
+    motion.has_keys = true;
+    return {};
+  }
+  if (options.keys == KeysChoice::sidecar) {
+    return Error("keys-missing",
+                 fmt::format("{} stands not beside it", base_name(keys_sidecar_path(path))),
+                 "krok-keys makes it; --keys auto finds keytimes on the spot")
+        .in_file(path);
+  }
+  const auto roles = find_roles(motion.clip.skeleton);
+  if (!roles) return roles.error();
+  auto found = krok::find_keys(motion.clip, *roles, context);
+  if (!found) {
+    context.warn("keys-none", fmt::format("{}: {}", motion.name, found.error().message));
+    return {};
+  }
+  motion.keys = std::move(*found);
+  motion.has_keys = true;
+  return {};
+}
+
+Result<std::vector<Motion>> read_motions(const Options& options, const FindRoles& find_roles,
+                                         ToolContext& context) {
+  std::vector<Motion> motions;
+  for (const std::string& word : options.inputs) {
+    const auto input = parse_weighted_input(word);
+    if (!input) return input.error();
+    auto clip = read_motion(input->path, context);
+    if (!clip) return clip.error();
+    Motion motion;
+    motion.name = input->path == "-" ? "standard input" : base_name(input->path);
+    motion.clip = std::move(*clip);
+    if (input->weight) {
+      motion.weight = blend::WeightCurve::constant(*input->weight);
+    } else {
+      auto curve = read_weight_curve(input->curve, context);
+      if (!curve) return curve.error();
+      motion.weight = std::move(*curve);
+    }
+    if (Status found = take_keys(options, input->path, find_roles, motion, context); !found) {
+      return found.error();
+    }
+    motions.push_back(std::move(motion));
+  }
+  return motions;
+}
+
+// The moments by keytimes, by shapes, or by beginnings and ends.
+Result<Correspondence> find_moments(const Options& options, const std::vector<Motion>& motions,
+                                    const RoleMap& roles, ToolContext& context) {
+  if (options.warp == WarpChoice::dtw) {
+    std::vector<const Clip*> clips;
+    for (const Motion& motion : motions) clips.push_back(&motion.clip);
+    return blend::warp_by_shape(clips, roles, {.jobs = context.jobs});
+  }
+  const auto ends = [&] {
+    std::vector<double> durations;
+    for (const Motion& motion : motions) durations.push_back(motion.clip.duration());
+    return blend::ends_alone(durations);
+  };
+  if (options.keys == KeysChoice::none) return ends();
+  const auto lacks_keytimes = [](const Motion& motion) { return motion.keys.keytimes.empty(); };
+  if (options.keys == KeysChoice::automatic && std::ranges::any_of(motions, lacks_keytimes)) {
+    const auto& motion = *std::ranges::find_if(motions, lacks_keytimes);
+    context.warn("blend-keys",
+                 fmt::format("{} has no keytimes; the motions are matched from beginning to end",
+                             motion.name),
+                 "--warp dtw matches them by their poses; krok-keys --set sets keytimes");
+    return ends();
+  }
+  std::vector<blend::KeyedMotion> keyed;
+  for (const Motion& motion : motions) {
+    keyed.push_back({motion.name, motion.clip.duration(), &motion.keys, 2.1 / motion.clip.rate});
+  }
+  auto found = blend::match_keytimes(keyed);
+  if (found) context.tell(found->notes);
+  return found;
+}
+
+// The places of frames in all motions, as a table for people and krok-plot.
+std::string warp_table(const std::vector<Motion>& motions, const Blended& blended) {
+  std::string text = "time [s],generic";
+  for (const Motion& motion : motions) {
+    std::string name = motion.name;
+    std::ranges::replace_if(
+        name, [](char c) { return c == ',' || c == '"' || c == '\n'; }, '_');
+    text += fmt::format(",{} [s]", name);
+  }
+  text += '\n';
+  for (std::size_t f = 0; f < blended.generic.size(); ++f) {
+    text += fmt::format("{:.6f},{:.6f}", static_cast<double>(f) / blended.clip.rate,
+                        blended.generic[f]);
+    for (const auto& times : blended.times) text += fmt::format(",{:.6f}", times[f]);
+    text += '\n';
+  }
+  return text;
+}
+
+// Where the keytimes of the result go: beside it, unless a person wrote there.
+Result<std::string> keys_place(const Blended& blended, ToolContext& context) {
+  if (blended.keys.empty() || context.output == "-") return std::string();
+  const std::string path = keys_sidecar_path(context.output);
+  std::error_code unknown;
+  if (!std::filesystem::exists(path, unknown)) return path;
+  const auto file = InputFile::open(path);
+  if (!file) return file.error();
+  const auto before = keys::read_sidecar(file->text(), path, blended.clip.skeleton, HUGE_VAL);
+  if (before && !before->has_edits()) return path;
+  return Error("keys-edited", "holds what a person wrote, or no keytimes of such a motion",
+               "the keytimes of the result would go there: move it away, or name the result "
+               "otherwise")
+      .in_file(path);
+}
+
+Status write_results(const Options& options, const std::vector<Motion>& motions, Blended& blended,
+                     ToolContext& context) {
+  const auto keys_path = keys_place(blended, context);
+  if (!keys_path) return keys_path.error();
+  blended.clip.provenance = context.provenance();
+  for (const Motion& motion : motions) {
+    for (const std::string& conversion : motion.clip.provenance.conversions) {
+      blended.clip.provenance.conversions.push_back(fmt::format("{}: {}", motion.name, conversion));
+    }
+  }
+  OutputSet outputs(context);
+  Status added = outputs.add(context.output, [&](OutputFile& file) {
+    return anim::write(blended.clip,
+                       {.orientation = options.orientation, .jobs = thread_count(context.jobs)},
+                       file);
+  });
+  if (added && !keys_path->empty()) {
+    added = outputs.add(*keys_path, [&](OutputFile& file) {
+      return file.write(keys::write(blended.keys, blended.clip.skeleton, blended.clip.duration()));
+    });
+  }
+  if (added) {
+    added = outputs.add(options.save_warp,
+                        [&](OutputFile& file) { return file.write(warp_table(motions, blended)); });
+  }
+  return added ? outputs.finish() : added;
+}
+
+void warn_of_spread(const Blended& blended, ToolContext& context) {
+  constexpr double kMost = kPi / 2;
+  if (blended.widest_spread <= kMost) return;
+  Diagnostic told;
+  told.severity = Severity::warning;
+  told.code = "blend-spread";
+  told.joint = blended.clip.skeleton.names[static_cast<std::size_t>(blended.spread_joint)];
+  told.frame = blended.spread_frame;
+  told.message = fmt::format(
+      "the motions turn {} up to {:.0f} degrees apart (frame {}); a sum of "
+      "rotations over 90 degrees apart means little",
+      told.joint, blended.widest_spread / kRadiansPerDegree, told.frame);
+  told.hint = "look at the result, or at whether the keytimes belong together";
+  context.tell(std::move(told));
+}
+
+void report(const std::vector<Motion>& motions, const Correspondence& moments,
+            const Blended& blended, ToolContext& context) {
+  Json list = Json::array();
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    Json entry;
+    entry["name"] = motions[m].name;
+    entry["weight"] = motions[m].weight.is_constant() ? Json(motions[m].weight.weights[0]) : Json();
+    entry["moments"] = moments.times[m];
+    list.push_back(std::move(entry));
+  }
+  Json& result = context.report.result;
+  result["frames"] = blended.clip.frame_count();
+  result["rate"] = blended.clip.rate;
+  result["duration"] = blended.clip.duration();
+  result["moments"] = moments.names;
+  result["motions"] = std::move(list);
+  Json keytimes = Json::array();
+  for (const Keytime& key : blended.keys.keytimes) {
+    keytimes.push_back({{"name", key.name}, {"time", key.time}});
+  }
+  result["keytimes"] = std::move(keytimes);
+  result["widest_spread_degrees"] = blended.widest_spread / kRadiansPerDegree;
+}
+
+}  // namespace
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("inputs", options.inputs,
+                 "Motions of one skeleton (.anim, or captures such as BVH), each with its weight: "
+                 "a number, or @FILE.csv with the columns generic and weight")
+      ->type_name("IN:WEIGHT")
+      ->required();
+  add_choice<KeysChoice>(app, "--keys", options.keys,
+                         {{"auto", KeysChoice::automatic},
+                          {"sidecar", KeysChoice::sidecar},
+                          {"none", KeysChoice::none}},
+                         "Keytimes: auto (the file NAME.keys.json beside a motion, otherwise "
+                         "found as krok-keys does), sidecar (that file alone), none (beginnings "
+                         "and ends)",
+                         "WHICH", "auto")
+      ->group("Time");
+  add_choice<WarpChoice>(
+      app, "--warp", options.warp,
+      {{"pchip", WarpChoice::pchip}, {"linear", WarpChoice::linear}, {"dtw", WarpChoice::dtw}},
+      "Time between keytimes: pchip (speeds without jumps), linear, or dtw (no "
+      "keytimes, but moments whose poses are alike)",
+      "HOW", "pchip")
+      ->group("Time");
+  add_rate(app, "--rate", options.rate, "Frames a second; otherwise the first motion's")
+      ->group("Time");
+  add_choice<blend::Align>(app, "--align", options.align,
+                           {{"root", blend::Align::root},
+                            {"stance", blend::Align::stance},
+                            {"none", blend::Align::none}},
+                           "Ways: root (summed in the figure's heading, so that turns blend), "
+                           "stance (the same, and feet that stand are kept in place), none (poses "
+                           "are summed where they are)",
+                           "HOW", "root")
+      ->group("Space");
+  app.add_flag("--modifier", options.modifier,
+               "Allow weights that do not sum to 1, for a motion put on top of another")
+      ->group("Space");
+  add_map_option(app, options.map)->group("Space");
+  app.add_option("--save-warp", options.save_warp,
+                 "Write which moment of each motion every frame comes from")
+      ->type_name("OUT.csv")
+      ->group("Output");
+  add_orientation_option(app, options.orientation);
+}
+
+Status check(const Options& options) {
+  for (const std::string& word : options.inputs) {
+    if (const auto input = parse_weighted_input(word); !input) return input.error();
+  }
+  return {};
+}
+
+Result<int> run(const Options& options, ToolContext& context) {
+  if (Status kind = check_output_kind(context.output, "-o", registry::Kind::anim); !kind) {
+    return kind.error();
+  }
+  const auto find_roles = open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  const auto motions = read_motions(options, *find_roles, context);
+  if (!motions) return motions.error();
+  const auto roles = (*find_roles)(motions->front().clip.skeleton);
+  if (!roles) return roles.error();
+  const auto moments = find_moments(options, *motions, *roles, context);
+  if (!moments) return moments.error();
+
+  std::vector<BlendInput> inputs;
+  for (const Motion& motion : *motions) {
+    inputs.push_back(
+        {motion.name, &motion.clip, motion.has_keys ? &motion.keys : nullptr, motion.weight});
+  }
+  blend::BlendOptions how;
+  how.warp = options.warp == WarpChoice::linear ? blend::Warp::linear : blend::Warp::pchip;
+  how.align = options.align;
+  how.rate = options.rate;
+  how.any_sum = options.modifier;
+  how.jobs = context.jobs;
+  auto blended = blend::blend_clips(inputs, *roles, *moments, how);
+  if (!blended) return blended.error();
+  warn_of_spread(*blended, context);
+  if (Status written = write_results(options, *motions, *blended, context); !written) {
+    return written.error();
+  }
+  report(*motions, *moments, *blended, context);
+  context.say(fmt::format("{} -> {}: {} at {} /s ({} s), {} moments in common",
+                          counted(static_cast<long long>(motions->size()), "motion"),
+                          context.output, counted(blended->clip.frame_count(), "frame"),
+                          readable(blended->clip.rate), readable(blended->clip.duration(), 4),
+                          moments->moments()));
+  return kExitDone;
+}
+
+}  // namespace krok::blend_tool
