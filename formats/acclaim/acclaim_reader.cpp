@@ -13,7 +13,6 @@
 #include "formats/acclaim/motion_file_internal.h"
 #include "formats/acclaim/skeleton_file_internal.h"
 #include "formats/acclaim/source_text_internal.h"
-#include "roles/roles.h"
 
 namespace krok::acclaim {
 
@@ -81,6 +80,9 @@ class Reader {
   Status choose_conventions(const Kinematics& kinematics) {
     Conventions& conventions = capture_.conventions;
     const Skeleton in_file = kinematics.skeleton();
+    auto roles = roles_of(in_file, options_);
+    if (!roles) return std::move(roles).error();
+    capture_.roles = *std::move(roles);
     if (!options_.complete()) {
       std::vector<Vec3> samples;
       std::vector<Transform> pose(kinematics.joint_count());
@@ -90,7 +92,7 @@ class Reader {
         kinematics.pose(motion_.frame(frame), pose);
         for (const Transform& joint : pose) samples.push_back(joint.position);
       }
-      conventions = detect_conventions(in_file, find_roles(in_file), samples);
+      conventions = detect_conventions(in_file, capture_.roles, samples);
       take_unit_of_file(in_file);
     }
     apply_given(options_, conventions);
@@ -250,8 +252,8 @@ class Reader {
       }
       if (options_.progress != nullptr) options_.progress->advance(end - begin);
     });
-    if (!finite) return overflow(amc_);
     if (options_.progress != nullptr) options_.progress->end();
+    if (!finite) return overflow(amc_);
     for (std::size_t i = 1; i < count; ++i) {
       if (places_[i] - places_[i - 1] < 2) continue;
       fill_frames_between(clip, static_cast<int>(places_[i - 1]), static_cast<int>(places_[i]));

@@ -124,6 +124,9 @@ Result<nodes::Scene> read_file(const std::string& path, const ReadOptions& optio
   scene->diagnostics.insert(scene->diagnostics.begin(), companions.diagnostics.begin(),
                             companions.diagnostics.end());
   for (Diagnostic& diagnostic : scene->diagnostics) diagnostic.where.file = path;
+  for (const Companions::Entry& companion : companions.files) {
+    scene->files.push_back(companion.file.path());
+  }
   if (scene->meshes.empty() && scene->animations.empty() && scene->cameras.empty() &&
       scene->nodes.size() < 2) {
     return Error("assimp-empty", "the file holds no mesh, no skeleton, no animation and no camera",

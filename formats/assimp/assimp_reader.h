@@ -34,7 +34,9 @@ struct ReadOptions {
 // What a scene is: nodes with the file's names, each of Assimp's meshes a primitive at its node
 // with up to 8 influences a vertex (more: the largest are kept and it is said), bones as skins,
 // animations with their keys at the file's own times (seconds). FBX's pivots are folded into their
-// node. Texture coordinates are glTF's, v down. Scene::space has what the file says.
+// node. Texture coordinates are glTF's, v down. Tangents where the file has them (FBX, COLLADA),
+// with glTF's side. Scene::space has what the file says, Scene::files the companions that were
+// read.
 //
 // MD5: `x.md5mesh` comes with the motion `x.md5anim` beside it; a given `x.md5anim` with the mesh
 // `x.md5mesh`, or with the only one in its folder whose joints are the same; without one it is a

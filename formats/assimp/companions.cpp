@@ -74,7 +74,7 @@ class Finder {
       return std::nullopt;
     }
     if (!fs::is_regular_file(path, trouble)) return std::nullopt;
-    auto file = InputFile::open(path.string(), most_bytes_);
+    auto file = InputFile::open(path.lexically_normal().string(), most_bytes_);
     if (!file) {
       tell(Severity::warning, fmt::format("'{}' {}; it is left out",
                                           shown(path.filename().string()), file.error().message));

@@ -55,6 +55,7 @@ void put_primitive(ByteWriter& out, const Primitive& primitive) {
   put_text(out, primitive.material);
   put_shared(out, primitive.positions);
   put_shared(out, primitive.normals);
+  put_shared(out, primitive.tangents);
   put_shared(out, primitive.texture_coordinates);
   out.write(static_cast<std::int32_t>(primitive.influences_per_vertex));
   put_array(out, primitive.influence_joints);
@@ -201,6 +202,13 @@ MorphTarget take_target(Parser& in, std::size_t vertices) {
   return target;
 }
 
+bool are_tangents(const std::vector<Vec4f>& tangents, std::size_t vertices) {
+  return tangents.size() == vertices &&
+         std::all_of(tangents.begin(), tangents.end(), [](const Vec4f& tangent) {
+           return std::abs(tangent.head<3>().norm() - 1) < 1e-3f && std::abs(tangent.w()) == 1;
+         });
+}
+
 Primitive take_primitive(Parser& in) {
   Primitive primitive;
   primitive.material = in.text();
@@ -210,6 +218,9 @@ Primitive take_primitive(Parser& in) {
   const std::size_t vertices = primitive.vertex_count();
   primitive.normals = in.shared<Vec3f>();
   in.require(!primitive.normals || primitive.normals->size() == vertices, "normals are missing");
+  primitive.tangents = in.shared<Vec4f>();
+  in.require(!primitive.tangents || are_tangents(*primitive.tangents, vertices),
+             "tangents are missing, or no directions");
   primitive.texture_coordinates = in.shared<Vec2f>();
   in.require(!primitive.texture_coordinates || primitive.texture_coordinates->size() == vertices,
              "texture coordinates are missing");

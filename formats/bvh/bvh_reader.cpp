@@ -232,16 +232,19 @@ class Reader {
   // Unit and axes, from the options and, where they say nothing, from the data.
   Status detect(const SampleRows& samples, Positions positions) {
     Conventions& conventions = capture_.conventions;
+    const Kinematics in_file(hierarchy_, positions, {});
+    const Skeleton skeleton = skeleton_of(in_file);
+    auto roles = roles_of(skeleton, options_);
+    if (!roles) return std::move(roles).error();
+    capture_.roles = *std::move(roles);
     if (!options_.complete()) {
-      const Kinematics in_file(hierarchy_, positions, {});
-      const Skeleton skeleton = skeleton_of(in_file);
       std::vector<Vec3> sample_positions;
       std::vector<Transform> pose(in_file.joint_count());
       for (std::size_t i = 0; i < samples.count(); ++i) {
         in_file.pose(samples.row(i), pose);
         for (const Transform& joint : pose) sample_positions.push_back(joint.position);
       }
-      conventions = detect_conventions(skeleton, find_roles(skeleton), sample_positions);
+      conventions = detect_conventions(skeleton, capture_.roles, sample_positions);
     }
     apply_given(options_, conventions);
     return {};
@@ -334,6 +337,7 @@ class Reader {
       }
       if (options_.progress != nullptr) options_.progress->advance(end - begin);
     });
+    if (options_.progress != nullptr) options_.progress->end();
     if (row_is_faulty_) return {};
     if (first_overflow < count) {
       Error overflow("bvh-number", "the numbers are so large that positions overflow",
@@ -342,7 +346,6 @@ class Reader {
       overflow.frame = static_cast<std::int64_t>(first_overflow);
       return overflow;
     }
-    if (options_.progress != nullptr) options_.progress->end();
     fill_faulty_frames();
     return {};
   }
@@ -359,7 +362,7 @@ class Reader {
   }
 
   void report_rest_pose() {
-    const RestPose rest = find_rest_pose(capture_.clip);
+    const RestPose rest = find_rest_pose(capture_.clip, capture_.roles);
     tell(Severity::note, "bvh-reference", rest.reference);
     capture_.rest_frame_found = rest.first_frame_is_rest;
     const bool drop = capture_.clip.frame_count() > 0 &&

@@ -152,7 +152,7 @@ class Writer {
     int open = 0;
     for (const WrittenJoint& joint : written_) {
       close_to(joint.depth, open);
-      const std::string indent(static_cast<std::size_t>(joint.depth), '\t');
+      const std::string indent = indentation(joint.depth);
       const std::string& name = skeleton().names[static_cast<std::size_t>(joint.index)];
       if (joint.end_site) {
         text_ += indent + "End Site\n";
@@ -181,7 +181,13 @@ class Writer {
   }
 
   void close_to(int depth, int& open) {
-    while (open > depth) text_ += std::string(static_cast<std::size_t>(--open), '\t') + "}\n";
+    while (open > depth) text_ += indentation(--open) + "}\n";
+  }
+
+  // No deeper than people can follow: a chain of thousands of joints would be mostly tabs.
+  static std::string indentation(int depth) {
+    constexpr int kDeepest = 32;
+    return std::string(static_cast<std::size_t>(std::min(depth, kDeepest)), '\t');
   }
 
   void write_motion_header() {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "math/quaternion.h"
-#include "roles/roles.h"
 
 namespace krok::bvh {
 
@@ -99,9 +98,8 @@ const char* name_of(PoseKind kind) {
 
 }  // namespace
 
-RestPose find_rest_pose(const Clip& clip) {
+RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   RestPose result;
-  const RoleMap roles = find_roles(clip.skeleton);
   result.reference = fmt::format("the reference pose (OFFSETs, no rotations) is {}",
                                  name_of(kind_of_pose(roles, clip.skeleton.reference)));
   constexpr int kFewest = 4;

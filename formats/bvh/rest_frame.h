@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "roles/roles.h"
 #include "scene/clip.h"
 
 namespace krok::bvh {
@@ -16,7 +17,8 @@ struct RestPose {
 
 // Looks whether the reference pose is a T-pose, and whether the first frame is a rest pose put in
 // front of the motion: the step to the second frame is several times larger than the steps that
-// follow, and the first frame is a T-pose or leaves most joints unturned.
-RestPose find_rest_pose(const Clip& clip);
+// follow, and the first frame is a T-pose or leaves most joints unturned. `roles` are those of the
+// clip's joints.
+RestPose find_rest_pose(const Clip& clip, const RoleMap& roles);
 
 }  // namespace krok::bvh

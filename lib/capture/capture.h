@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "capture/conventions.h"
 #include "core/progress.h"
 #include "core/result.h"
+#include "roles/roles.h"
 #include "scene/clip.h"
 
 // What readers of motion captures have in common, whatever the format.
@@ -23,6 +25,10 @@ enum class Strictness { normal, strict, repair };
 // What the file is written in, where the user says so, and how to read it.
 struct CaptureOptions : GivenConventions {
   Strictness strictness = Strictness::normal;
+
+  // What the joints are, where the user says so. Called with the skeleton as the file has it, whose
+  // names are those of the result; its Error is the reader's. Empty: find_roles.
+  std::function<Result<RoleMap>(const Skeleton& skeleton)> roles;
 
   // Frames a second, whatever the file says.
   std::optional<double> rate;
@@ -46,6 +52,9 @@ struct Capture {
   // Notes and warnings: every choice, every oddity, every repair.
   Diagnostics diagnostics;
 
+  // What the joints are, as the conventions were worked out by.
+  RoleMap roles;
+
   // What the file was taken to be written in.
   Conventions conventions;
 
@@ -53,6 +62,9 @@ struct Capture {
   Choice rate;                       // where the rate comes from
   std::vector<std::string> repairs;  // what was left out or filled, a line each
 };
+
+// The roles that a reader goes by: as the options have them, otherwise as find_roles has them.
+Result<RoleMap> roles_of(const Skeleton& skeleton, const CaptureOptions& options);
 
 // Whether `rate`, if given, is positive and finite; an Error with `code` otherwise.
 Status check_rate(const std::optional<double>& rate, const std::string& code);

@@ -418,11 +418,20 @@ Result<Figure> make_figure(const Scene& scene, const nodes::Evaluator& evaluator
   return figure;
 }
 
-MorphWeights make_weights(const Figure& figure, const nodes::Evaluator& evaluator, int animation,
-                          const Sampling& sampling) {
+Result<MorphWeights> make_weights(const Figure& figure, const nodes::Evaluator& evaluator,
+                                  int animation, const Sampling& sampling) {
+  constexpr std::size_t kMost = 100'000'000;
+  const std::size_t targets = figure.weight_sources.size();
+  if (targets > 0 && at(sampling.frames) > kMost / targets) {
+    return Error("scene-too-long",
+                 fmt::format("{} frames of {} morph targets' weights are out of proportion",
+                             sampling.frames, targets),
+                 "--resample N takes fewer frames a second");
+  }
   MorphWeights weights;
   weights.rate = sampling.rate;
   weights.names = figure.morphs.names;
+  weights.values.reserve(at(sampling.frames) * targets);
   nodes::Evaluation state;
   for (int frame = 0; frame < sampling.frames; ++frame) {
     evaluator.place_nodes(animation, sampling.time(frame), state);

@@ -48,8 +48,9 @@ Result<Figure> make_figure(const nodes::Scene& scene, const nodes::Evaluator& ev
                            const Rig& rig, const Conversion& conversion,
                            const FigureOptions& options, Diagnostics& diagnostics);
 
-// The weights of a figure's targets over time; animation -1: as they are without.
-MorphWeights make_weights(const Figure& figure, const nodes::Evaluator& evaluator, int animation,
-                          const Sampling& sampling);
+// The weights of a figure's targets over time; animation -1: as they are without. An Error (code
+// scene-too-long) for more than 100 million weights in all.
+Result<MorphWeights> make_weights(const Figure& figure, const nodes::Evaluator& evaluator,
+                                  int animation, const Sampling& sampling);
 
 }  // namespace krok::character

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "character/morph_targets_internal.h"
+#include "core/hash.h"
 #include "core/text.h"
 
 namespace krok::character {
@@ -20,21 +22,54 @@ double resting(const nodes::Scene& scene, const Figure::WeightSource& source) {
   return weights[at(source.target)];
 }
 
-const nodes::Channel* weights_of(const nodes::Animation& animation, int node) {
-  for (const nodes::Channel& channel : animation.channels) {
-    if (channel.node == node && channel.path == nodes::Path::weights) return &channel;
-  }
-  return nullptr;
+template <typename T>
+void feed(Xxh3Stream& stream, T value) {
+  value += T(0);  // -0 is 0
+  stream.update(std::as_bytes(std::span(&value, 1)));
 }
 
 }  // namespace
 
+TargetNames::TargetNames(const nodes::Scene& scene, const nodes::Evaluator& evaluator)
+    : scene_(scene), evaluator_(evaluator) {
+  for (const nodes::Animation& animation : scene.animations) {
+    auto& by_node = channels_.emplace_back();
+    for (const nodes::Channel& channel : animation.channels) {
+      if (channel.path == nodes::Path::weights) by_node.emplace(channel.node, &channel);
+    }
+  }
+}
+
+std::vector<const nodes::Channel*> TargetNames::channels_of(int node) const {
+  std::vector<const nodes::Channel*> found;
+  for (const auto& by_node : channels_) {
+    const auto channel = by_node.find(node);
+    found.push_back(channel == by_node.end() ? nullptr : channel->second);
+  }
+  return found;
+}
+
+std::uint64_t TargetNames::fingerprint(const Figure::WeightSource& source) const {
+  Xxh3Stream stream;
+  feed(stream, resting(scene_, source));
+  for (const nodes::Channel* channel : channels_of(source.node)) {
+    feed(stream, channel == nullptr ? 0 : 1);
+    if (channel == nullptr) continue;
+    const auto width = at(channel->width);
+    for (std::size_t k = 0; k < channel->values->size() / width; ++k) {
+      feed(stream, (*channel->values)[k * width + at(source.target)]);
+    }
+  }
+  return stream.digest();
+}
+
 // The same at rest, and in each animation the same keys.
 bool TargetNames::same_weights(const Figure::WeightSource& a, const Figure::WeightSource& b) const {
   if (resting(scene_, a) != resting(scene_, b)) return false;
-  for (const nodes::Animation& animation : scene_.animations) {
-    const nodes::Channel* one = weights_of(animation, a.node);
-    const nodes::Channel* other = weights_of(animation, b.node);
+  const auto channels = channels_of(a.node), others = channels_of(b.node);
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const nodes::Channel* one = channels[i];
+    const nodes::Channel* other = others[i];
     if (one == nullptr && other == nullptr) continue;
     if (one == nullptr || other == nullptr || one->interpolation != other->interpolation ||
         *one->times != *other->times) {
@@ -62,7 +97,7 @@ void TargetNames::add(const nodes::Instance& instance) {
     if (name.empty()) {
       name = fmt::format("{}_{}", mesh.name.empty() ? "target" : to_utf8(mesh.name), k);
     }
-    std::vector<int>& named = by_name_[name];
+    std::vector<int>& named = by_name_[{name, fingerprint(source)}];
     const auto same = std::find_if(named.begin(), named.end(), [&](int target) {
       return sources_[at(target)].node != instance.node &&
              same_weights(sources_[at(target)], source);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -15,8 +16,7 @@ namespace krok::character {
 
 class TargetNames {
  public:
-  TargetNames(const nodes::Scene& scene, const nodes::Evaluator& evaluator)
-      : scene_(scene), evaluator_(evaluator) {}
+  TargetNames(const nodes::Scene& scene, const nodes::Evaluator& evaluator);
 
   void add(const nodes::Instance& instance);
 
@@ -28,12 +28,18 @@ class TargetNames {
   const std::vector<Figure::WeightSource>& sources() const { return sources_; }
 
  private:
+  // A node's weights channel in each animation, null where it has none.
+  std::vector<const nodes::Channel*> channels_of(int node) const;
   bool same_weights(const Figure::WeightSource& a, const Figure::WeightSource& b) const;
+  // The same for all that same_weights() takes for the same.
+  std::uint64_t fingerprint(const Figure::WeightSource& source) const;
 
   const nodes::Scene& scene_;
   const nodes::Evaluator& evaluator_;
   std::map<std::pair<int, int>, int> indices_;  // by node and the mesh's target
-  std::map<std::string, std::vector<int>> by_name_;
+  // Channels are many, and so are targets that share a name.
+  std::vector<std::map<int, const nodes::Channel*>> channels_;  // for each animation, by node
+  std::map<std::pair<std::string, std::uint64_t>, std::vector<int>> by_name_;  // and fingerprint
   UniqueNames unique_;
   std::vector<std::string> names_;
   std::vector<Figure::WeightSource> sources_;

@@ -135,8 +135,9 @@ std::vector<Vec3> sample_positions(const nodes::Evaluator& evaluator, const Rig&
                                    const Sampling& sampling, int most) {
   std::vector<Vec3> positions;
   nodes::Evaluation state;
-  const int step = std::max(1, sampling.frames / std::max(1, most));
-  for (int frame = 0; frame < sampling.frames; frame += step) {
+  const int limit = std::max(1, most);
+  const int step = sampling.frames / limit + (sampling.frames % limit > 0 ? 1 : 0);
+  for (int frame = 0; frame < sampling.frames; frame += std::max(1, step)) {
     evaluator.place_nodes(animation, sampling.time(frame), state);
     for (int j = 0; j < rig.joints.count(); ++j) {
       positions.push_back(rig.joint_to_world(state, j).topRightCorner<3, 1>());

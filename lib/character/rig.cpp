@@ -133,8 +133,13 @@ void Builder::mark_ends(const std::vector<char>& weighted) {
       if (channel.path != nodes::Path::rotation) continue;
       const std::vector<float>& values = *channel.values;
       const auto width = static_cast<std::size_t>(channel.width);
-      for (std::size_t i = width; i < values.size(); ++i) {
-        if (std::abs(values[i] - values[i % width]) > 1e-5f) other[at(joint)] = 1;
+      // Of cubic splines in-tangent, value and out-tangent of each key.
+      const bool spline = channel.interpolation == nodes::Interpolation::cubic_spline;
+      const std::size_t parts = spline ? 3 : 1;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool is_tangent = spline && i / width % parts != 1;
+        const float still = is_tangent ? 0.0f : values[(parts / 2) * width + i % width];
+        if (std::abs(values[i] - still) > 1e-5f) other[at(joint)] = 1;
       }
     }
   }

@@ -22,10 +22,15 @@ constexpr double kUsualRate = 30.0;
 constexpr double kUnevenRate = 60.0;
 constexpr double kMostFrames = 1e7;
 
+// What rounding to floats makes of a time, in frames. From half a frame on all times would fit.
+double float_rounding(double rate, double time) {
+  return std::min(0.24, 2.4e-7 * std::abs(time) * rate);
+}
+
 // How far a time may lie from a frame, in frames: rounding of floats, plus that of printed times
 // where they lie a frame apart.
 double tolerance(double rate, double time, bool printed) {
-  return 0.01 + (printed ? std::min(0.04, 6e-4 * rate) : 0.0) + 2.4e-7 * std::abs(time) * rate;
+  return 0.01 + (printed ? std::min(0.04, 6e-4 * rate) : 0.0) + float_rounding(rate, time);
 }
 
 // The farthest that a time lies from a frame of `rate`, in frames; nothing where one lies too far.
@@ -170,7 +175,7 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
                              readable(sampling.rate), readable(chosen.keys_to - chosen.keys_from)));
   }
   // A remainder that rounding explains makes no frame.
-  const double rest = 1e-2 + 2.4e-7 * std::abs(chosen.keys_to) / sampling.step;
+  const double rest = 1e-2 + float_rounding(1 / sampling.step, chosen.keys_to);
   sampling.frames = static_cast<int>(std::ceil(steps - rest)) + 1;
   sampling.frames = std::max(sampling.frames, 1);
   if (chosen.keys_from != 0) {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/numbers.h"
-#include "roles/roles.h"
 
 namespace krok::character {
 
@@ -48,13 +47,13 @@ Mat4 rotation_to_apply(const nodes::Space& space) {
   return result;
 }
 
-Conventions find_conventions(const nodes::Space& space, const Rig* rig,
+Conventions find_conventions(const nodes::Space& space, const Rig* rig, const RoleMap& roles,
                              std::span<const Vec3> samples, const GivenConventions& given) {
   Conventions found;
   const bool all_known =
       (space.metres || given.unit) && (space.file_to_krok || (given.up && given.forward));
   if (!all_known && rig != nullptr) {
-    found = detect_conventions(rig->skeleton, find_roles(rig->skeleton), samples);
+    found = detect_conventions(rig->skeleton, roles, samples);
   } else if (!all_known) {
     found.unit_reason = found.up_reason = found.forward_reason =
         "the file does not say, and there is no figure to go by";
@@ -69,8 +68,7 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig,
   return found;
 }
 
-void check_figure(const Skeleton& skeleton, Diagnostics& diagnostics) {
-  const RoleMap roles = find_roles(skeleton);
+void check_figure(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
   if (!roles.humanoid) return;
   const Conventions found = detect_conventions(skeleton, roles, {});
   const auto warn = [&](const char* code, std::string message, std::string hint) {

@@ -6,6 +6,7 @@
 #include "capture/convention_choice.h"
 #include "character/rig.h"
 #include "core/result.h"
+#include "roles/roles.h"
 
 // The unit and axes of a scene.
 
@@ -17,14 +18,15 @@ Mat4 rotation_to_apply(const nodes::Space& space);
 
 // What the user gave, then what the file says (nodes::Space), then what the figure shows (see
 // detect_conventions). `rig` may be null, where a scene has no skeleton: then what is not known is
-// a default. `samples` are joint positions of frames, [frames x joints], in the rig's frame.
-Conventions find_conventions(const nodes::Space& space, const Rig* rig,
+// a default. `roles` are those of its joints. `samples` are joint positions of frames, [frames x
+// joints], in the rig's frame.
+Conventions find_conventions(const nodes::Space& space, const Rig* rig, const RoleMap& roles,
                              std::span<const Vec3> samples, const GivenConventions& given);
 
 // Holds a skeleton in Krok's frame against what a figure should be: upright, facing +Z, of a human
 // size. What is otherwise is warned of with the option that mends it (codes scene-up,
 // scene-forward, scene-unit); figures that are not humanoid pass. For scenes whose conventions were
 // not detected, but said by the file or the user.
-void check_figure(const Skeleton& skeleton, Diagnostics& diagnostics);
+void check_figure(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics);
 
 }  // namespace krok::character

@@ -25,7 +25,7 @@ struct Section {
 };
 
 // The sections of one pass, by the bilinear transform. Codes: filter-order; filter-cutoff unless
-// the cutoff is positive and, the correction for two passes included, below half of `rate`.
+// the cutoff is positive and below half of `rate`.
 Result<std::vector<Section>> design(const Butterworth& filter, double rate);
 
 // Filters `series` in place, forward and backward. Each end is continued by `padding` values,

@@ -210,11 +210,11 @@ Result<SpikeRemoval> remove_spikes(const Clip& clip, const SpikeOptions& options
   }
   LocalMotion motion = local_motion(clip);
   const std::vector<std::uint8_t> moving = moving_joints(motion);
-  const auto frames_of = [&](double seconds) {
-    return static_cast<int>(std::min(1e6, std::round(seconds * clip.rate)));
+  const auto frames_of = [&](double seconds, double most) {
+    return static_cast<int>(std::min(most, std::round(seconds * clip.rate)));
   };
-  const int longest = std::max(1, frames_of(options.longest));
-  const int around = std::max(10, frames_of(0.5));
+  const int longest = std::max(1, frames_of(options.longest, 32));
+  const int around = std::max(10, frames_of(0.5, 256));
 
   std::vector<std::vector<Spike>> found(clip.skeleton.names.size());
   parallel_for(found.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {

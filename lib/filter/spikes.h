@@ -14,11 +14,12 @@ namespace krok::filter {
 struct SpikeOptions {
   // How many times the usual deviation a spike must reach. The deviation of a frame is how far it
   // lies from the cubic through its neighbours; what is usual is the median of that over a second
-  // about the frame, a robust scale as the median absolute deviation of Hampel's filter is.
+  // about the frame (at most 512 frames), a robust scale as the median absolute deviation of
+  // Hampel's filter is.
   double threshold = 6;
   double least_angle = 3 * kRadiansPerDegree;  // smaller deviations of rotations are no spikes
   double least_distance = 0.01;                // nor are those of positions; metres
-  double longest = 0.05;                       // seconds, rounded to frames, one at least
+  double longest = 0.05;  // seconds, rounded to frames, one at least and 32 at most
 };
 
 struct Spike {

@@ -16,7 +16,7 @@ struct JoinOptions {
 };
 
 // What was found where the two meet, before anything was blended: the largest angle between the
-// same joints' rotations to their parents. radians.
+// same joints' rotations to their parents, in radians.
 struct Joined {
   Clip clip;
   int joint_frame = 0;  // the frame that belongs to both, the middle of what they share

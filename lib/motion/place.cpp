@@ -64,13 +64,20 @@ Status scale_clip(double factor, Clip& clip) {
     return Error("motion-scale", fmt::format("a figure cannot be scaled by {}", factor),
                  "the factor is a positive number");
   }
-  for (Vec3f& position : clip.positions) {
-    position = (factor * position.cast<double>()).cast<float>();
-    if (!position.allFinite()) {
-      return Error("motion-scale",
-                   fmt::format("scaled by {} the motion goes beyond what can be stored", factor));
-    }
+  const auto scaled = [&](const Vec3f& position) {
+    return Vec3f((factor * position.cast<double>()).cast<float>());
+  };
+  const bool fits =
+      std::ranges::all_of(clip.positions,
+                          [&](const Vec3f& position) { return scaled(position).allFinite(); }) &&
+      std::ranges::all_of(clip.skeleton.reference, [&](const Transform& joint) {
+        return (factor * joint.position).cast<float>().allFinite();
+      });
+  if (!fits) {
+    return Error("motion-scale",
+                 fmt::format("scaled by {} the motion goes beyond what can be stored", factor));
   }
+  for (Vec3f& position : clip.positions) position = scaled(position);
   for (Transform& joint : clip.skeleton.reference) joint.position *= factor;
   return {};
 }

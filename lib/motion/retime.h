@@ -8,8 +8,8 @@ namespace krok {
 // What becomes of the last moment of a motion when its frames fall between the old ones.
 enum class LastFrame {
   within,  // times are exact; the last frame is the last that lies within (as resample() does)
-  kept     // the motion is stretched by less than half a frame in all, so that its last frame stays
-           // the last: what a loop needs
+  kept     // the motion is stretched by less than half a frame in all, or to two frames where it
+           // would have less, so that its last frame stays the last: what a loop needs
 };
 
 // The clip at another rate, and `speed` times as fast; the rate may be the same. Frame i is the

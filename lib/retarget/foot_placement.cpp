@@ -46,6 +46,11 @@ Vec3 flat(const Vec3& v) {
 
 }  // namespace
 
+int softening_reach(double rate) {
+  constexpr double kMost = 256;  // what only rates of thousands of frames a second come to
+  return static_cast<int>(std::lround(std::min(0.12 * rate, kMost)));
+}
+
 std::vector<double> softened(const std::vector<double>& values, int reach) {
   const int count = static_cast<int>(values.size());
   std::vector<double> widened(values.size()), result(values.size());
@@ -54,16 +59,19 @@ std::vector<double> softened(const std::vector<double>& values, int reach) {
     const auto last = values.begin() + std::min(count, i + reach + 1);
     widened[at(i)] = *std::max_element(first, last);
   }
-  // Weights of a raised cosine, which sum to the same whatever the frame.
+  // A raised cosine.
+  std::vector<double> weights;
+  double all = 0;
+  for (int k = -reach; k <= reach; ++k) {
+    weights.push_back(1 + std::cos(kPi * k / (reach + 1)));
+    all += weights.back();
+  }
   for (int i = 0; i < count; ++i) {
     double sum = 0;
-    double weights = 0;
     for (int k = -reach; k <= reach; ++k) {
-      const double weight = 1 + std::cos(kPi * k / (reach + 1));
-      weights += weight;
-      sum += weight * widened[at(std::clamp(i + k, 0, count - 1))];
+      sum += weights[at(k + reach)] * widened[at(std::clamp(i + k, 0, count - 1))];
     }
-    result[at(i)] = sum / weights;
+    result[at(i)] = sum / all;
   }
   return result;
 }
@@ -236,8 +244,7 @@ std::vector<double> LegPlacement::standing(const Clip& source) const {
     const double lean = kPi / 2 + elevation(shank);  // from straight down
     upright[at(f)] = 1 - smooth_step(60 * kRadiansPerDegree, 85 * kRadiansPerDegree, lean);
   }
-  const int reach = static_cast<int>(std::lround(0.12 * source.rate));
-  std::vector<double> result = softened(near, reach);
+  std::vector<double> result = softened(near, softening_reach(source.rate));
   for (std::size_t f = 0; f < result.size(); ++f) result[f] *= upright[f];
   return result;
 }

@@ -37,6 +37,9 @@ double ankle_over_floor(const Figure& figure, Role foot, const Floor& floor);
 // hundred. 0 for a clip without frames.
 double standing_height(const Clip& clip, const Figure& stance);
 
+// The frames of 0.12 s at `rate` frames a second, at most 256.
+int softening_reach(double rate);
+
 // A curve that is nowhere below `values` (within rounding) and has no corners: the largest of the
 // `reach` neighbours on both sides, averaged over as many.
 std::vector<double> softened(const std::vector<double>& values, int reach);

@@ -360,7 +360,7 @@ class Transfer {
     const double most = 0.06 * leg_length(target_, target_roles_);
     for (double& drop : drops) drop = std::min(drop, most);
     if (std::all_of(drops.begin(), drops.end(), [](double drop) { return drop == 0; })) return {};
-    return softened(drops, static_cast<int>(std::lround(0.12 * source_.rate)));
+    return softened(drops, softening_reach(source_.rate));
   }
 
   Clip moved() {

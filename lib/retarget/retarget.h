@@ -41,8 +41,8 @@ struct Options {
   std::optional<int> source_frame = std::nullopt;
   std::optional<int> target_frame = std::nullopt;
 
-  int jobs = 0;
-  Progress* progress = nullptr;
+  int jobs = 0;                  // threads; 0: as many as processors
+  Progress* progress = nullptr;  // told of frames while retarget() runs; may be null
 };
 
 // How the joints of the two skeletons were brought together.

@@ -114,7 +114,6 @@ class LegStraightener {
   }
 
   void flatten(int foot, int front, std::vector<Transform>& pose) const {
-    std::vector<Transform> frame(pose.size());
     double lowest = std::numeric_limits<double>::max();
     Quat flattest = pose[at(foot)].orientation;
     for (int f = 0; f < clip_.frame_count(); f += step_) {

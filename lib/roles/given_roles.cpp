@@ -174,7 +174,9 @@ Result<RoleMap> find_roles(const Skeleton& skeleton, std::span<const GivenRole> 
       if (map.roles[j] == entry.role && map.fingers[j] == entry.finger) map.fingers[j] = {};
     }
   }
+  map.given.assign(map.roles.size(), 0);
   for (const GivenRole& entry : given) {
+    map.given[at(entry.joint)] = 1;
     map.roles[at(entry.joint)] = entry.role;
     map.fingers[at(entry.joint)] = entry.finger;
   }

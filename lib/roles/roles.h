@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -61,6 +62,9 @@ struct RoleMap {
   // True where hips, head or neck, both upper legs, lower legs and feet, and both upper arms and
   // hands were found: a figure that limb-wise operations can rely on.
   bool humanoid = false;
+
+  // [joints], 1 where the user said what the joint is; empty where nothing was said.
+  std::vector<std::uint8_t> given;
 
   // The first joint with a role, or -1. For roles that many joints have (spine, neck, fingers), no
   // other of them stands above it.

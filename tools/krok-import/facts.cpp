@@ -6,6 +6,8 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
+#include "tools/common/printable.h"
+#include "tools/common/role_report.h"
 
 namespace krok::import {
 
@@ -71,6 +73,25 @@ Json facts_of(const Conventions& c) {
   facts["reference_axes"] = {{"up", direction_name(c.reference_up)},
                              {"forward", direction_name(c.reference_forward)}};
   return facts;
+}
+
+Json result_of(const Capture& capture, const FrameSource& motion, const Json& details) {
+  Json result = facts_of(motion);
+  result.update(roles_json(motion.skeleton, capture.roles));
+  result.update(facts_of(capture.conventions));
+  result["source_rate"] = to_json(capture.rate);
+  result.update(details);
+  result["repairs"] = capture.repairs;
+  return result;
+}
+
+void say_roles(const Skeleton& skeleton, const RoleMap& roles, ToolContext& context) {
+  if (!context.verbose) return;
+  std::string text;
+  for (const RoleRow& row : role_rows(skeleton, roles)) {
+    text += fmt::format("{}  {:<13}  {}", text.empty() ? "" : "\n", row.label, printable(row.text));
+  }
+  context.say(text);
 }
 
 std::string line_about(const std::string& input, const Clip& clip) {

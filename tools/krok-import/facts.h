@@ -1,6 +1,6 @@
 #pragma once
 
-#include "capture/convention_choice.h"
+#include "capture/capture.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
 #include "tools/common/tool.h"
@@ -21,6 +21,12 @@ Json facts_of(const FrameSource& motion);
 
 // Unit, up, forward and the reference pose's axes.
 Json facts_of(const Conventions& conventions);
+
+// All that is reported of a capture whose frames are `motion`; `details` are those of its format.
+Json result_of(const Capture& capture, const FrameSource& motion, const Json& details);
+
+// With -v: what the joints are, a line for each part of the body.
+void say_roles(const Skeleton& skeleton, const RoleMap& roles, ToolContext& context);
 
 // "walk.bvh: 52 joints, 90 frames at 30 /s (2.97 s), height 1.71 m".
 std::string line_about(const std::string& input, const Clip& clip);

@@ -8,8 +8,9 @@
 #include "motion/sample.h"
 #include "scene/model.h"
 #include "tools/common/output_kind.h"
+#include "tools/common/output_set.h"
+#include "tools/common/scene/scene_input.h"
 #include "tools/krok-import/facts.h"
-#include "tools/krok-import/output_set.h"
 #include "tools/krok-import/scene_import.h"
 #include "tools/krok-import/source.h"
 #include "tools/krok-import/stream.h"
@@ -17,16 +18,6 @@
 namespace krok::import {
 
 namespace {
-
-Json result_of(const Source& source, const Clip& clip) {
-  const Capture& capture = source.capture;
-  Json result = facts_of(clip);
-  result.update(facts_of(capture.conventions));
-  result["source_rate"] = to_json(capture.rate);
-  result.update(source.details);
-  result["repairs"] = capture.repairs;
-  return result;
-}
 
 Status write_outputs(const Options& options, ToolContext& context, const Clip& clip) {
   OutputSet outputs(context);
@@ -83,16 +74,23 @@ Result<int> import_capture(const InputFile& input, registry::Kind kind, const Op
   clip.provenance.conversions = std::move(conversions);
 
   if (Status written = write_outputs(options, context, clip); !written) return written.error();
-  context.report.result = result_of(*source, clip);
+  context.report.result = result_of(source->capture, frames_of(clip), source->details);
   std::string outputs = context.output;
   if (!options.model.empty()) outputs += (outputs.empty() ? "" : ", ") + options.model;
   context.say(fmt::format("{} -> {}", line_about(options.input, clip), outputs));
+  say_roles(clip.skeleton, source->capture.roles, context);
   return kExitDone;
 }
 
 }  // namespace
 
-Result<int> run(const Options& options, ToolContext& context) {
+Status check(const Options& options) {
+  if (const auto how = read_options(options); !how) return how.error();
+  return check_output_kind(options.model, "--model", registry::Kind::model);
+}
+
+Result<int> run(const Options& given, ToolContext& context) {
+  Options options = given;
   if (context.output.empty() && options.model.empty() && options.cam.empty() &&
       options.morphs.empty() && options.weights.empty()) {
     return Error("usage", "nothing to write: neither -o nor --model, --cam, --morphs is given",
@@ -101,11 +99,11 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!options.model.empty() && options.model == context.output) {
     return Error("usage", "-o and --model name the same file");
   }
-  if (Status fits = check_output_kind(options.model, "--model", registry::Kind::model); !fits) {
-    return fits.error();
-  }
   const auto input = context.open_input(options.input);
   if (!input) return input.error();
+  auto roles = open_role_map(options.map, context);
+  if (!roles) return roles.error();
+  if (!options.map.empty()) options.roles = *std::move(roles);
   const registry::Kind kind = registry::identify(input->path(), input->bytes());
   return is_scene(kind) ? import_scene(*input, kind, options, context)
                         : import_capture(*input, kind, options, context);

@@ -33,6 +33,7 @@ krok::ToolSpec make_spec() {
         return std::string(options->clip == "all" ? "_{clip}.anim" : ".anim");
       }};
   spec.declare = [options](CLI::App& app) { krok::import::declare_options(app, *options); };
+  spec.check = [options] { return krok::import::check(*options); };
   spec.run = [options](krok::ToolContext& context) { return krok::import::run(*options, context); };
   return spec;
 }

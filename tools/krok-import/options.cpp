@@ -2,39 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "core/numbers.h"
-#include "tools/common/one_of.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/orientation_option.h"
 
 namespace krok::import {
 
 namespace {
-
-// An option whose value is one of a list of words.
-template <typename T>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
-                        std::vector<std::pair<std::string, T>> words,
-                        const std::string& description, const std::string& type_name,
-                        const std::string& default_word) {
-  return app.add_option(name, value, description)
-      ->type_name(type_name)
-      ->transform(one_of(std::move(words)))
-      ->default_str(default_word);
-}
-
-// A positive finite number; CLI11 alone takes "1e999" and "nan".
-CLI::Option* add_rate(CLI::App& app, const std::string& name, double& value,
-                      const std::string& description) {
-  return app.add_option(name, value, description)
-      ->type_name("N")
-      ->check(CLI::Validator(
-          [](std::string& text) {
-            const auto rate = parse_finite(text);
-            return rate && *rate >= 1e-3 && *rate <= 1e6
-                       ? std::string()
-                       : "'" + text + "' is no rate from 0.001 to 1000000";
-          },
-          ""));
-}
 
 Result<std::optional<Direction>> direction_option(const std::string& text, const char* option) {
   if (text == "auto") return std::optional<Direction>();
@@ -58,6 +31,7 @@ void declare_options(CLI::App& app, Options& options) {
                  "The skeleton of an Acclaim motion; otherwise the .asf file beside it that its "
                  "name begins with, or the only one there")
       ->type_name("IN.asf");
+  add_map_option(app, options.map);
   app.add_option(
          "--model", options.model,
          "Also, or alone, write the character: skeleton with reference pose, mesh and skin; "
@@ -147,13 +121,7 @@ void declare_options(CLI::App& app, Options& options) {
       ->excludes(strict)
       ->group(faults);
 
-  add_choice<OrientationEncoding>(
-      app, "--orientation", options.orientation,
-      {{"xyz", OrientationEncoding::xyz}, {"xyzw", OrientationEncoding::xyzw}},
-      "How orientations are stored: three numbers each (xyz) or four, "
-      "exactly (xyzw)",
-      "HOW", "xyz")
-      ->group("Output");
+  add_orientation_option(app, options.orientation);
 }
 
 Result<CaptureOptions> read_options(const Options& options) {
@@ -175,6 +143,7 @@ Result<CaptureOptions> read_options(const Options& options) {
     const auto rotation = rotation_to_krok(*result.up, *result.forward);
     if (!rotation) return Error("usage", rotation.error().message, rotation.error().hint);
   }
+  result.roles = options.roles;
   if (options.fps > 0) result.rate = options.fps;
   result.strictness = options.strict   ? Strictness::strict
                       : options.repair ? Strictness::repair

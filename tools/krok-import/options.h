@@ -7,6 +7,7 @@
 #include "core/result.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/container/packed_orientation.h"
+#include "tools/common/role_input.h"
 
 namespace krok::import {
 
@@ -14,6 +15,7 @@ namespace krok::import {
 struct Options {
   std::string input;
   std::string skeleton;  // --skeleton, empty where it is to be found
+  std::string map;       // --map, empty where none is given
   std::string model;     // --model, empty where none is wanted
   std::string clip;      // --clip, empty for the first
   std::string skin;      // --skin, empty for the largest skeleton
@@ -32,6 +34,9 @@ struct Options {
   OrientationEncoding orientation = OrientationEncoding::xyz;
   bool strict = false;
   bool repair = false;
+
+  // What joints are, as --map has it; set once that is open.
+  FindRoles roles;
 };
 
 void declare_options(CLI::App& app, Options& options);

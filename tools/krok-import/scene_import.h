@@ -8,10 +8,6 @@
 
 namespace krok::import {
 
-// Whether a file of this kind is a scene of nodes, with characters, cameras and animations, and no
-// capture.
-bool is_scene(registry::Kind kind);
-
 // Reads a scene and writes what is asked for: the motion of one or all of its animations, the
 // character as a model, a camera, morph targets and their weights. All files appear or none. An
 // Error (code import-missing) for something that the file does not hold.

@@ -42,6 +42,7 @@ Result<std::string> skeleton_for(const std::string& motion, const Options& optio
     return Error("acclaim-skeleton", "a motion in Acclaim's format needs its skeleton", kHint)
         .in_file(motion);
   }
+  context.chose_beside(motion, ".asf");
   auto found = acclaim::find_skeleton(motion);
   if (!found) {
     Error error = std::move(found).error();

@@ -8,9 +8,10 @@
 #include "formats/bvh/bvh_reader.h"
 #include "formats/model/model_format.h"
 #include "scene/model.h"
+#include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
+#include "tools/common/output_set.h"
 #include "tools/krok-import/facts.h"
-#include "tools/krok-import/output_set.h"
 #include "tools/krok-import/source.h"
 
 namespace krok::import {
@@ -31,13 +32,7 @@ std::optional<Result<int>> stream_capture(const InputFile& input, registry::Kind
   if (!capture) return std::nullopt;
 
   std::atomic<bool> faulty = false;
-  FrameSource frames = capture->frames;
-  frames.read = [&](int first, int count, std::span<Vec3f> positions,
-                    std::span<Quatf> orientations) {
-    Status read = capture->frames.read(first, count, positions, orientations);
-    if (!read) faulty = true;
-    return read;
-  };
+  const FrameSource frames = watched(capture->frames, faulty);
   Provenance provenance;
   const auto last_words = [&] {
     context.tell(capture->diagnostics);
@@ -62,13 +57,9 @@ std::optional<Result<int>> stream_capture(const InputFile& input, registry::Kind
   if (added) added = outputs.finish();
   if (!added) return Result<int>(added.error());
 
-  Json result = facts_of(capture->frames);
-  result.update(facts_of(capture->conventions));
-  result["source_rate"] = to_json(capture->rate);
-  result.update(details_of(*capture));
-  result["repairs"] = capture->repairs;
-  context.report.result = std::move(result);
+  context.report.result = result_of(*capture, capture->frames, details_of(*capture));
   context.say(fmt::format("{} -> {}", line_about(options.input, capture->frames), outputs.names()));
+  say_roles(capture->frames.skeleton, capture->roles, context);
   return Result<int>(kExitDone);
 }
 

@@ -6,6 +6,7 @@
 #include "core/result.h"
 #include "describe_skeleton.h"
 #include "description.h"
+#include "formats/registry/registry.h"
 #include "tools/common/tool.h"
 
 // One function a kind of file. Each reads the whole file, so that what is described is also known
@@ -23,6 +24,8 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
 // A skeleton, or a motion with the skeleton that stands beside it.
 Result<Description> describe_acclaim(const InputFile& file, const SkeletonOptions& how,
                                      ToolContext& context);
-Result<Description> describe_gltf(const InputFile& file, ToolContext& context);
+// glTF, and what is read through Assimp.
+Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
+                                   const SkeletonOptions& how, ToolContext& context);
 
 }  // namespace krok::info

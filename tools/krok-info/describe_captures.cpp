@@ -11,33 +11,15 @@ namespace krok::info {
 
 namespace {
 
-void add_choice(const std::string& key, const std::string& choice, Confidence confidence,
-                const std::string& reason, Description& out) {
-  const std::string why = reason.empty() ? std::string() : ": " + reason;
-  out.add(key, fmt::format("{} ({}{})", choice, confidence_name(confidence), why));
-  out.json[key] = {
-      {"choice", choice}, {"confidence", confidence_name(confidence)}, {"reason", reason}};
-}
-
 // What all captures have. `measured` says of what pose the size is.
 Status add_capture(const Capture& capture, const std::string& measured, const SkeletonOptions& how,
                    Description& out) {
   const Clip& clip = capture.clip;
-  const Conventions& conventions = capture.conventions;
   if (Status added = add_skeleton(clip.skeleton, how, out); !added) return added.error();
   std::vector<Vec3> positions;
   for (const Transform& joint : clip.skeleton.reference) positions.push_back(joint.position);
   add_size<Vec3>(positions, measured, out);
-  const Unit& unit = conventions.unit;
-  add_choice(
-      "unit",
-      unit.name == "m" ? unit.name : fmt::format("{}, {} m", unit.name, readable(unit.metres)),
-      conventions.unit_confidence, conventions.unit_reason, out);
-  out.json["unit"]["metres"] = unit.metres;
-  add_choice("up", std::string(direction_name(conventions.up)), conventions.up_confidence,
-             conventions.up_reason, out);
-  add_choice("forward", std::string(direction_name(conventions.forward)),
-             conventions.forward_confidence, conventions.forward_reason, out);
+  add_conventions(capture.conventions, out);
   return {};
 }
 
@@ -59,8 +41,7 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
   out.json["frame_time"] = capture->frame_time;
   if (Status added = add_capture(*capture, "joints with all rotations 0", how, out); !added)
     return added.error();
-  add_choice("positions", capture->positions.choice, capture->positions.confidence,
-             capture->positions.reason, out);
+  add_choice("positions", capture->positions, out);
   out.json["rest_frame"] = capture->rest_frame_found;
   if (capture->rest_frame_found) out.add("rest pose", "frame 0, no part of the motion");
   return out;

@@ -5,32 +5,9 @@
 #include <algorithm>
 
 #include "core/numbers.h"
+#include "tools/common/printable.h"
 
 namespace krok::info {
-
-namespace {
-
-std::string printable(const std::string& text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    // U+0080 to U+009F, in UTF-8 0xC2 and the byte itself, are control characters too.
-    const bool two_bytes =
-        byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
-    if (two_bytes) ++i;
-    result += byte < 32 || byte == 127 || two_bytes ? '?' : text[i];
-  }
-  return result;
-}
-
-// 12,345.
-std::string grouped(std::uint64_t value) {
-  std::string digits = std::to_string(value);
-  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-  return digits;
-}
-
-}  // namespace
 
 void Description::add(std::string label, std::string line) {
   rows.push_back({std::move(label), {std::move(line)}});
@@ -54,15 +31,30 @@ std::string to_text(const std::string& path, const Description& description) {
   return text;
 }
 
-std::string count_of(std::uint64_t count, const std::string& noun, std::string plural) {
-  if (plural.empty()) plural = noun + "s";
-  return fmt::format("{} {}", grouped(count), count == 1 ? noun : plural);
+void add_choice(const std::string& key, const Choice& choice, Description& out) {
+  const std::string why = choice.reason.empty() ? std::string() : ": " + choice.reason;
+  out.add(key, fmt::format("{} ({}{})", choice.choice, confidence_name(choice.confidence), why));
+  out.json[key] = {{"choice", choice.choice},
+                   {"confidence", confidence_name(choice.confidence)},
+                   {"reason", choice.reason}};
+}
+
+void add_conventions(const Conventions& conventions, Description& out) {
+  const Unit& unit = conventions.unit;
+  const std::string size = unit.name == "m" ? "" : fmt::format(", {} m", readable(unit.metres));
+  add_choice("unit", {unit.name + size, conventions.unit_reason, conventions.unit_confidence}, out);
+  out.json["unit"]["metres"] = unit.metres;
+  const auto axis = [&](const char* key, Direction direction, const std::string& reason,
+                        Confidence confidence) {
+    add_choice(key, {std::string(direction_name(direction)), reason, confidence}, out);
+  };
+  axis("up", conventions.up, conventions.up_reason, conventions.up_confidence);
+  axis("forward", conventions.forward, conventions.forward_reason, conventions.forward_confidence);
 }
 
 void add_timing(int frames, double rate, Description& out) {
   const double duration = frames < 2 ? 0.0 : (frames - 1) / rate;
-  out.add("frames", fmt::format("{} at {} frames/s", grouped(static_cast<std::uint64_t>(frames)),
-                                readable(rate)));
+  out.add("frames", fmt::format("{} at {} frames/s", grouped(frames), readable(rate)));
   out.add("duration", readable(duration, 5) + " s");
   out.json["frames"] = frames;
   out.json["rate"] = rate;

@@ -1,10 +1,12 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "capture/convention_choice.h"
+#include "core/numbers.h"
 #include "math/types.h"
 #include "scene/provenance.h"
 #include "tools/common/report.h"
@@ -28,12 +30,20 @@ struct Description {
   void add(std::string label, std::vector<std::string> lines);  // nothing for no lines
 };
 
-// Labels in one column, values in the next. Control characters, which a file may hold in its names
-// and which a terminal would obey, become "?".
+// Labels in one column, values in the next; printable.
 std::string to_text(const std::string& path, const Description& description);
 
 // "52 joints", "1 joint", "12,345 vertices"; `plural` where an s is not enough.
-std::string count_of(std::uint64_t count, const std::string& noun, std::string plural = {});
+inline std::string count_of(std::size_t count, std::string_view noun,
+                            std::string_view plural = {}) {
+  return counted(static_cast<long long>(count), noun, plural);
+}
+
+// What was chosen for want of a word in the file, how sure that is, and why.
+void add_choice(const std::string& key, const Choice& choice, Description& out);
+
+// Unit, up and forward.
+void add_conventions(const Conventions& conventions, Description& out);
 
 // Frames, rate and duration.
 void add_timing(int frames, double rate, Description& out);

@@ -1,9 +1,8 @@
 #include "info.h"
 
-#include <optional>
-
 #include "describe.h"
 #include "formats/registry/registry.h"
+#include "tools/common/scene/scene_input.h"
 
 namespace krok::info {
 
@@ -12,7 +11,9 @@ namespace {
 Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
                              ToolContext& context) {
   using registry::Kind;
-  switch (registry::identify(file.path(), file.bytes())) {
+  const Kind kind = registry::identify(file.path(), file.bytes());
+  if (is_scene(kind)) return describe_scene(file, kind, how, context);
+  switch (kind) {
     case Kind::anim:
       return describe_anim(file, how, context);
     case Kind::model:
@@ -24,16 +25,15 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
     case Kind::asf:
     case Kind::amc:
       return describe_acclaim(file, how, context);
-    case Kind::glb:
-    case Kind::gltf:
-      return describe_gltf(file, context);
     default:
       break;
   }
-  return Error("info-kind",
-               "is " + std::string(registry::describe_content(file.bytes())) +
-                   ", which krok-info does not read",
-               "it reads .anim, .model, .cam, .bvh, .asf, .amc, .glb and .gltf files");
+  return Error(
+      "info-kind",
+      "is " + std::string(registry::describe_content(file.bytes())) +
+          ", which krok-info does not read",
+      "it reads .anim, .model, .cam, .bvh, .asf, .amc, .glb and .gltf files, and characters in "
+      ".fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and .md5anim files");
 }
 
 Result<Description> describe_path(const std::string& path, const SkeletonOptions& how,
@@ -49,14 +49,9 @@ Result<Description> describe_path(const std::string& path, const SkeletonOptions
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  SkeletonOptions how;
-  how.verbose = context.verbose;
-  std::optional<InputFile> map;
-  if (!options.map.empty()) {
-    auto opened = context.open_input(options.map);
-    if (!opened) return opened.error();
-    how.map = &map.emplace(std::move(*opened));
-  }
+  auto roles = open_role_map(options.map, context);
+  if (!roles) return roles.error();
+  const SkeletonOptions how{*std::move(roles), context.verbose};
   Json files = Json::array();
   bool failed = false;
   bool first = true;

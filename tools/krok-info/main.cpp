@@ -1,4 +1,5 @@
 #include "info.h"
+#include "tools/common/role_input.h"
 
 int main(int argc, char** argv) {
   krok::info::Options options;
@@ -6,7 +7,7 @@ int main(int argc, char** argv) {
   spec.name = "krok-info";
   spec.summary =
       "What is in a file: motions (.anim), models (.model), cameras (.cam), captures (.bvh, .asf, "
-      ".amc), glTF (.glb, .gltf)";
+      ".amc), characters (glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5)";
   spec.inputs = "FILE...";
   spec.examples = {{"krok-info walk.anim",
                     "Frames, rate, duration, size, provenance, and what the joints are in a body."},
@@ -18,9 +19,7 @@ int main(int argc, char** argv) {
     app.add_option("FILE", options.files, "Files of any of these kinds; - is standard input")
         ->type_name("")
         ->required();
-    app.add_option("--map", options.map,
-                   "What joints are, where their names do not tell: a role map (JSON)")
-        ->type_name("IN.json");
+    krok::add_map_option(app, options.map);
   };
   spec.run = [&](krok::ToolContext& context) { return krok::info::run(options, context); };
   return krok::run_tool(spec, argc, argv);

@@ -124,5 +124,26 @@ TEST_F(AcclaimImport, InfoReadsBoth) {
   EXPECT_THAT(alone.err, Not(HasSubstr("--skeleton")));
 }
 
+// A batch that runs again must not keep a result that a single run would not make.
+TEST_F(AcclaimImport, ASkeletonThatCameLaterIsTakenByABatch) {
+  std::filesystem::create_directory(path("in"));
+  put("in/walk.amc", small_files::kAmc);
+  put("in/other.asf", small_files::kAsf);
+  const std::vector<std::string> batch = {path("in"), "--out-dir", path("out"), "--json"};
+  const auto status = [&] {
+    const Json report = Json::parse(run_tool("krok-import", batch).out);
+    const auto& file = report["files"][0];
+    return file["status"].get<std::string>() + " " +
+           base_name(file["inputs"][1]["path"].get<std::string>());
+  };
+  EXPECT_EQ(status(), "done other.asf");
+  EXPECT_EQ(status(), "unchanged other.asf");
+  put("in/notes.txt", "no skeleton");
+  EXPECT_EQ(status(), "unchanged other.asf");
+  put("in/walk.asf", small_files::kAsf);
+  EXPECT_EQ(status(), "done walk.asf");
+  EXPECT_EQ(status(), "unchanged walk.asf");
+}
+
 }  // namespace
 }  // namespace krok::test

@@ -7,6 +7,7 @@
 #include "formats/model/model_format.h"
 #include "imported.h"
 #include "support/glb_builder.h"
+#include "unit/assimp/sample_md5.h"
 
 namespace krok::test {
 namespace {
@@ -216,6 +217,26 @@ TEST_F(SceneImportTest, ABufferBesideTheFileIsAnInputToo) {
   const Json inputs = Json::parse(run.out)["inputs"];
   ASSERT_EQ(inputs.size(), 2u);
   EXPECT_EQ(inputs[1]["path"], path("data.bin"));
+}
+
+TEST_F(SceneImportTest, ABatchDoesAnewWhatACompanionChanges) {
+  MovingRig rig;
+  put("walk.md5anim", md5anim(rig));
+  put("walk.md5mesh", md5mesh(rig));
+  const auto batch = [&] {
+    const ToolRun run = run_tool("krok-import", {path("walk.md5anim"), "--out-dir", path("out"),
+                                                 "--model", "{name}.model", "--json"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return Json::parse(run.out)["files"][0];
+  };
+  const Json first = batch();
+  ASSERT_EQ(first["inputs"].size(), 2u);
+  EXPECT_EQ(first["inputs"][1]["path"], path("walk.md5mesh"));
+  EXPECT_EQ(first["result"]["model"]["vertices"], 4);
+  EXPECT_EQ(batch()["status"], "unchanged");
+  rig.rest[0].translation.x() += 0.5;
+  put("walk.md5mesh", md5mesh(rig));
+  EXPECT_EQ(batch()["status"], "done");
 }
 
 }  // namespace

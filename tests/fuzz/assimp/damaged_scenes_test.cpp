@@ -14,7 +14,6 @@
 #include <sstream>
 
 #include "unit/assimp/reading.h"
-#include "unit/assimp/sample_fbx.h"
 #include "unit/assimp/sample_files.h"
 
 namespace krok {
@@ -25,7 +24,7 @@ using namespace test;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr std::size_t kRounds = 8;
 #else
-constexpr std::size_t kRounds = 40;
+constexpr std::size_t kRounds = 28;
 #endif
 
 class DamagedScenes : public testing::Test {

@@ -9,7 +9,6 @@
 #include <set>
 
 #include "unit/assimp/reading.h"
-#include "unit/assimp/sample_fbx.h"
 #include "unit/assimp/sample_files.h"
 
 namespace krok {
@@ -129,9 +128,10 @@ TEST(Smd, MotionsOfAList) {
   const MovingRig rig;
   const Folder folder;
   const std::string path = folder.add("body.smd", smd(rig, true, false));
-  folder.add("anims/walk.smd", smd(rig, false, true));
-  folder.add("body_animation.txt", "walking anims/walk.smd\n");
+  const std::string motion = folder.add("anims/walk.smd", smd(rig, false, true));
+  const std::string list = folder.add("body_animation.txt", "walking anims/walk.smd\n");
   const auto scene = read_or_fail(path);
+  EXPECT_EQ(scene.files, (std::vector<std::string>{motion, list}));
   ASSERT_EQ(scene.animations.size(), 1u);
   EXPECT_EQ(scene.animations[0].name, "walking");
   expect_motion(scene, rig, {0.0, 1 / 30.0, 4 / 30.0, 6 / 30.0}, Mat4::Identity());
@@ -193,6 +193,8 @@ TEST(Md5, MeshAndMotionFindEachOther) {
   for (auto& poses : moved.frames) poses[1].translation = moved.frames[0][1].translation;
   const std::string mesh = folder.add("body.md5mesh", md5mesh(rig));
   const std::string motion = folder.add("body.md5anim", md5anim(moved));
+  EXPECT_EQ(read_or_fail(mesh).files, std::vector<std::string>{motion});
+  EXPECT_EQ(read_or_fail(motion).files, std::vector<std::string>{mesh});
   for (const std::string& path : {mesh, motion}) {
     const auto scene = read_or_fail(path);
     // Joint 2 rests, in the motion's base frame and not in the mesh's pose.
@@ -208,6 +210,7 @@ TEST(Md5, MeshAndMotionFindEachOther) {
   // A motion of another name takes the only mesh that has its joints.
   const auto other = read_or_fail(folder.add("walk.md5anim", md5anim(moved)));
   EXPECT_EQ(other.meshes.size(), 1u);
+  EXPECT_EQ(other.files, std::vector<std::string>{mesh});
   expect_motion(other, moved, times, z_up_to_y_up());
 }
 
@@ -226,6 +229,7 @@ TEST(Md5, MotionAlone) {
   folder.add("walk.md5mesh", md5mesh(stranger));
   const auto again = read_or_fail(path);
   EXPECT_TRUE(again.meshes.empty());
+  EXPECT_TRUE(again.files.empty());
   EXPECT_TRUE(has_code(again.diagnostics, "assimp-companion"));
 }
 
@@ -436,6 +440,29 @@ TEST(Fbx, TargetsRestWhereTheFileSays) {
   text.replace(at, 16, "DeformPercent: 25");
   EXPECT_EQ(read_or_fail(folder.add("lifted.fbx", text)).meshes[0].weights,
             std::vector<double>{0.25});
+}
+
+TEST(Fbx, TangentsWithTheSideOfTheThirdAxis) {
+  const Folder folder;
+  FbxSample sample;
+  const auto scene = read_or_fail(folder.add("body.fbx", sample.text()));
+  const nodes::Primitive& primitive = scene.meshes[0].primitives[0];
+  ASSERT_TRUE(primitive.tangents);
+  ASSERT_EQ(primitive.tangents->size(), 4u);
+  for (std::size_t v = 0; v < 4; ++v) {
+    const bool last = (*primitive.positions)[v] == Vec3f(0, 10, 0);
+    const Vec4f expected = last ? Vec4f(1, 0, 0, 1) : Vec4f(0, 1, 0, -1);
+    EXPECT_EQ((*primitive.tangents)[v], expected) << v;
+  }
+  for (const char* none : {"0,0,0", "nan,0,0"}) {
+    sample.last_tangent = none;
+    const auto without = read_or_fail(folder.add("without.fbx", sample.text()));
+    EXPECT_FALSE(without.meshes[0].primitives[0].tangents) << none;
+    EXPECT_TRUE(has_code(without.diagnostics, "assimp-tangents")) << none;
+    EXPECT_EQ(without.meshes[0].primitives[0].vertex_count(), 4u);
+  }
+  EXPECT_FALSE(
+      read_or_fail(folder.add("a.dae", collada(MovingRig()))).meshes[0].primitives[0].tangents);
 }
 
 TEST(Fbx, SpaceAndMesh) {

@@ -9,7 +9,6 @@
 
 #include "formats/assimp/scene_transfer.h"
 #include "unit/assimp/reading.h"
-#include "unit/assimp/sample_fbx.h"
 #include "unit/assimp/sample_files.h"
 
 namespace krok {

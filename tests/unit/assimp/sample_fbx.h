@@ -62,6 +62,9 @@ struct FbxSample {
                                  {3, 4, 5},
                                  {{5, 0, 0}, {60, 20, -70}, {0, 90, 10}}}};
   std::vector<double> times = {0.0, 0.2, 0.75};
+  // Of the square's last corner. The others' are along y and have the third axis along x, so that
+  // it is on the left of normal x tangent; this one has it along y.
+  std::string last_tangent = "1,0,0";
 
   std::string text() const;
 };
@@ -138,8 +141,20 @@ inline std::string FbxSample::text() const {
       "PolygonVertexIndex: *4 {\na: 0,1,2,-4\n}\nGeometryVersion: 124\n"
       "LayerElementNormal: 0 {\nVersion: 101\nName: \"\"\nMappingInformationType: "
       "\"ByPolygonVertex\"\nReferenceInformationType: \"Direct\"\nNormals: *12 {\n"
-      "a: 0,0,1,0,0,1,0,0,1,0,0,1\n}\n}\nLayer: 0 {\nVersion: 100\nLayerElement:  {\n"
-      "Type: \"LayerElementNormal\"\nTypedIndex: 0\n}\n}\n}\n";
+      "a: 0,0,1,0,0,1,0,0,1,0,0,1\n}\n}\n";
+  const auto directions = [&](const std::string& name, const std::string& values) {
+    out += fmt::format(
+        "LayerElement{0}: 0 {{\nVersion: 101\nName: \"\"\nMappingInformationType: "
+        "\"ByPolygonVertex\"\nReferenceInformationType: \"Direct\"\n{0}s: *12 {{\na: {1}\n}}\n}}\n",
+        name, values);
+  };
+  directions("Tangent", "0,2,0,0,2,0,0,2,0," + last_tangent);
+  directions("Binormal", "1,0,0,1,0,0,1,0,0,0,1,0");
+  out += "Layer: 0 {\nVersion: 100\n";
+  for (const char* name : {"Normal", "Tangent", "Binormal"}) {
+    out += fmt::format("LayerElement:  {{\nType: \"LayerElement{}\"\nTypedIndex: 0\n}}\n", name);
+  }
+  out += "}\n}\n";
   link(5000, 0);
   link(5001, 5000);
   out += "Deformer: 6000, \"Deformer::\", \"Skin\" {\nVersion: 101\nLink_DeformAcuracy: 50\n}\n";

@@ -187,6 +187,14 @@ TEST(BvhWriter, NoFramesAndOneJoint) {
   EXPECT_EQ(read_back(text).clip.frame_count(), 0);
 }
 
+// A chain of n joints that were indented as deep as they hang would take n * n tabs.
+TEST(BvhWriter, DeepChainsStayInProportion) {
+  Clip clip;
+  clip.skeleton.add("0", -1, {});
+  for (int j = 1; j < 20000; ++j) clip.skeleton.add(std::to_string(j), j - 1, {});
+  EXPECT_LT(written(clip).size(), 10'000'000u);
+}
+
 TEST(BvhWriter, RefusesWhatItCannotWrite) {
   auto file =
       OutputFile::create(testing::TempDir() + "krok_unit_bvh_refused_" + std::to_string(getpid()));

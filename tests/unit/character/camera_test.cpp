@@ -30,7 +30,7 @@ CameraTrack track_of(const nodes::Scene& scene, int animation, const GivenConven
   const auto evaluator = *nodes::Evaluator::create(scene);
   const auto cameras = camera_nodes(scene, evaluator);
   EXPECT_EQ(cameras, std::vector<int>{1});
-  const auto conventions = find_conventions(scene.space, nullptr, {}, given);
+  const auto conventions = find_conventions(scene.space, nullptr, {}, {}, given);
   Diagnostics found;
   Sampling sampling;
   if (animation >= 0) {

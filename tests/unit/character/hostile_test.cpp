@@ -27,7 +27,7 @@ void survive(const nodes::Scene& scene) {
     EXPECT_EQ(rig.error().code, "scene-value");
     return;
   }
-  const auto conventions = find_conventions(scene.space, &*rig, {}, {});
+  const auto conventions = find_conventions(scene.space, &*rig, find_roles(rig->skeleton), {}, {});
   const auto conversion = Conversion::make(conventions);
   ASSERT_TRUE(conversion.ok());
   const auto figure =

@@ -41,6 +41,17 @@ TEST(Sampling, LongMotionsKeepTheirRateDespiteFloats) {
   EXPECT_EQ(result.sampling.frames, 100000);
 }
 
+// So late, floats are coarser than frames: any time would be near enough to one.
+TEST(Sampling, LateUnevenKeysDoNotPassForFrames) {
+  std::vector<float> times;
+  for (int i = 0; i < 40; ++i) {
+    times.push_back(static_cast<float>(70000 + i + 0.5 * std::fmod(i * 0.618034, 1.0)));
+  }
+  const auto result = chosen(keyed(times));
+  EXPECT_EQ(result.sampling.rate, 60);
+  EXPECT_EQ(result.rate.confidence, Confidence::guess);
+}
+
 TEST(Sampling, TimesOfThreeDecimalsAreUnderstood) {
   std::vector<float> times;
   for (int i = 0; i < 50; ++i) times.push_back(static_cast<float>(std::round(i / 0.03) / 1000));

@@ -34,7 +34,8 @@ Imported import(const nodes::Scene& scene, const nodes::Evaluator& evaluator, in
   auto rig = make_rig(scene, evaluator, std::move(*joints), found);
   EXPECT_TRUE(rig.ok()) << (rig.ok() ? "" : rig.error().message);
   result.rig = std::move(*rig);
-  const Conventions conventions = find_conventions(scene.space, &result.rig, {}, given);
+  const Conventions conventions =
+      find_conventions(scene.space, &result.rig, find_roles(result.rig.skeleton), {}, given);
   result.conversion = *Conversion::make(conventions);
   auto figure =
       make_figure(scene, evaluator, result.rig, result.conversion, {.with_morphs = true}, found);
@@ -92,6 +93,26 @@ TEST(ImportedShape, AScaledArmatureIsFolded) {
   ASSERT_EQ(skeleton.names, (std::vector<std::string>{"Hips", "Spine", "Head", "Head_end"}));
   EXPECT_NEAR((skeleton.reference[1].position - skeleton.reference[0].position).norm(), 0.3, 1e-9);
   EXPECT_EQ(skeleton.end_sites[3], 1);
+}
+
+// The scene with two keys of a cubic spline on Head_end's rotation: in-tangent, value, out-tangent.
+nodes::Scene with_end_spline(const std::vector<float>& values) {
+  nodes::Scene scene = armature_scene();
+  EXPECT_EQ(scene.nodes[4].name, "Head_end");
+  add_channel(scene.animations[0], 4, nodes::Path::rotation, 4, {0, 0.5f}, values);
+  scene.animations[0].channels.back().interpolation = nodes::Interpolation::cubic_spline;
+  return scene;
+}
+
+// A comparison of all numbers would take a still end to move: tangents are 0, the value is not.
+TEST(ImportedShape, AStillEndStaysOneUnderACubicSpline) {
+  std::vector<float> values = {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0,
+                               0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0};
+  const nodes::Scene still = with_end_spline(values);
+  EXPECT_EQ(import(still, *nodes::Evaluator::create(still)).clip.skeleton.end_sites[3], 1);
+  values[8] = 0.5f;  // leaves the first key turning
+  const nodes::Scene moving = with_end_spline(values);
+  EXPECT_EQ(import(moving, *nodes::Evaluator::create(moving)).clip.skeleton.end_sites[3], 0);
 }
 
 TEST(ImportedShape, TheBindPoseIsTheReferenceAndTheMotionStaysTheSame) {
@@ -254,9 +275,15 @@ TEST(ImportedShape, TargetsStandInTheReferencePose) {
       EXPECT_NEAR(distance, !moved ? 0.0 : body ? 1.0 : 0.01, 1e-6) << t << " " << v;
     }
   }
-  const MorphWeights weights = make_weights(imported.figure, evaluator, 0, imported.sampling);
-  EXPECT_EQ(weights.frame_count(), 13);
-  EXPECT_EQ(weights.values[1], 0.25f);
+  const auto weights = make_weights(imported.figure, evaluator, 0, imported.sampling);
+  ASSERT_TRUE(weights.ok());
+  EXPECT_EQ(weights->frame_count(), 13);
+  EXPECT_EQ(weights->values[1], 0.25f);
+  Sampling endless = imported.sampling;
+  endless.frames = 2'000'000'000;
+  const auto too_long = make_weights(imported.figure, evaluator, 0, endless);
+  ASSERT_FALSE(too_long.ok());
+  EXPECT_EQ(too_long.error().code, "scene-too-long");
 }
 
 }  // namespace

@@ -107,7 +107,10 @@ TEST(Scale, FigureAndMotionTogether) {
   for (const double factor : {0.0, -1.0, double(NAN), double(HUGE_VAL), 1e300}) {
     Clip other = motion();
     EXPECT_EQ(scale_clip(factor, other).error().code, "motion-scale") << factor;
+    EXPECT_EQ(distance(other, motion()), 0) << "half done";
   }
+  Clip no_frames = motion(0);
+  EXPECT_EQ(scale_clip(1e308, no_frames).error().code, "motion-scale");
 }
 
 TEST(InPlace, AllOrOnlyTheEvenPart) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "retarget/foot_placement.h"
 #include "samples/generator/walk.h"
 #include "tests/unit/retarget/figures.h"
 
@@ -17,6 +18,18 @@ samples::Walk walk_of(samples::WalkOptions options) {
   auto walk = samples::make_walk(options);
   EXPECT_TRUE(walk.ok());
   return std::move(*walk);
+}
+
+// A file may claim any rate; the frames that are looked at must not grow with it.
+TEST(Softening, ReachesAsFarAsTheRateAllows) {
+  EXPECT_EQ(retarget::softening_reach(100), 12);
+  EXPECT_EQ(retarget::softening_reach(1e11), 256);
+  EXPECT_EQ(retarget::softening_reach(1e-9), 0);
+  const std::vector<double> values = {0, 0, 0, 1, 0, 0, 0, 0};
+  const auto soft = retarget::softened(values, 2);
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_GE(soft[i], values[i] - 1e-12) << i;
+  EXPECT_NEAR(soft[3], 1, 1e-12);
+  EXPECT_EQ(retarget::softened({}, 256).size(), 0u);
 }
 
 // A figure of other proportions: `thigh`, `shank`, `foot` and `width` times those of a human.

@@ -59,6 +59,10 @@ TEST(GivenRoles, OverrideWhatTheNamesSay) {
   EXPECT_EQ(joint_of(skeleton, *map, Role::neck), "-");
   EXPECT_EQ(map->roles[static_cast<std::size_t>(skeleton.find("Spine2"))], Role::spine);
   EXPECT_TRUE(map->humanoid);
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const std::string& name = skeleton.names[static_cast<std::size_t>(j)];
+    EXPECT_EQ(map->given[static_cast<std::size_t>(j)], name == "Spine1" || name == "Neck") << name;
+  }
   const auto less = find_roles(skeleton, std::vector{given(skeleton, "LeftFoot", "helper")});
   ASSERT_TRUE(less.ok());
   EXPECT_EQ(less->roles[static_cast<std::size_t>(skeleton.find("LeftFoot"))], Role::helper);
@@ -69,6 +73,7 @@ TEST(GivenRoles, NothingGivenIsTheSameAsNone) {
   const auto map = find_roles(skeleton, std::span<const GivenRole>());
   ASSERT_TRUE(map.ok());
   EXPECT_EQ(map->roles, find_roles(skeleton).roles);
+  EXPECT_TRUE(map->given.empty());
 }
 
 TEST(GivenRoles, AJointTakesARoleFromTheOneFoundForIt) {

@@ -1,0 +1,54 @@
+// If these fail, a scene's axes are worked out from other roles than those that its importer knows.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "character/space.h"
+#include "support/human_skeleton.h"
+
+namespace krok::character {
+namespace {
+
+// Left and right exchanged.
+RoleMap mirrored(RoleMap map) {
+  for (Role& role : map.roles) {
+    std::string name(role_name(role));
+    if (name.starts_with("left_")) {
+      role = *parse_role("right_" + name.substr(5));
+    } else if (name.starts_with("right_")) {
+      role = *parse_role("left_" + name.substr(6));
+    }
+  }
+  return map;
+}
+
+TEST(SceneConventions, GoByTheRolesThatAreKnown) {
+  Rig rig;
+  rig.skeleton = test::human_skeleton();
+  const RoleMap roles = find_roles(rig.skeleton);
+  const Conventions found = find_conventions({}, &rig, roles, {}, {});
+  EXPECT_EQ(found.forward, Direction::plus_z);
+  EXPECT_EQ(found.forward_confidence, Confidence::certain);
+  EXPECT_EQ(find_conventions({}, &rig, mirrored(roles), {}, {}).forward, Direction::minus_z);
+  EXPECT_EQ(find_conventions({}, &rig, {}, {}, {}).forward_confidence, Confidence::guess);
+}
+
+TEST(SceneConventions, FiguresAreCheckedByTheRolesThatAreKnown) {
+  const Skeleton skeleton = test::human_skeleton();
+  const RoleMap roles = find_roles(skeleton);
+  Diagnostics found;
+  check_figure(skeleton, roles, found);
+  EXPECT_TRUE(found.empty());
+  Skeleton turned = skeleton;  // by half a turn about +Y
+  for (Transform& joint : turned.reference) joint.position.x() *= -1, joint.position.z() *= -1;
+  check_figure(turned, roles, found);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].code, "scene-forward");
+  found.clear();
+  check_figure(turned, {}, found);
+  EXPECT_TRUE(found.empty()) << "of what is no humanoid nothing is expected";
+}
+
+}  // namespace
+}  // namespace krok::character

@@ -1,0 +1,26 @@
+#include "tools/common/scene/scene_input.h"
+
+#include "formats/assimp/assimp_reader.h"
+#include "tools/common/gltf/gltf_input.h"
+
+namespace krok {
+
+using registry::Kind;
+
+bool is_scene(Kind kind) {
+  return kind == Kind::glb || kind == Kind::gltf || registry::is_read_through_assimp(kind);
+}
+
+Result<nodes::Scene> read_scene(const InputFile& input, Kind kind, ToolContext& context) {
+  if (!registry::is_read_through_assimp(kind)) return read_gltf(input, context);
+  if (input.path() == "-") {
+    return Error("assimp-kind",
+                 "only BVH, Acclaim's formats and GLB can be read from standard input")
+        .in_file(input.path());
+  }
+  if (kind == Kind::md5anim) context.chose_beside(input.path(), ".md5mesh");
+  if (kind == Kind::md5mesh) context.chose_beside(input.path(), ".md5anim");
+  return with_its_files(assimp::read_file(input.path()), input, context);
+}
+
+}  // namespace krok

@@ -1,0 +1,189 @@
+#include "tools/krok-import/scene_importer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "tools/common/role_report.h"
+#include "tools/common/scene/scene_conventions.h"
+#include "tools/krok-import/facts.h"
+
+namespace krok::import {
+
+Result<int> SceneImporter::run() {
+  for (auto step : {&SceneImporter::choose, &SceneImporter::find_rig, &SceneImporter::find_space,
+                    &SceneImporter::add_figure, &SceneImporter::add_clips}) {
+    if (Status done = (this->*step)(); !done) return std::move(done.error()).in_file(path_);
+  }
+  tell_what_else_is_there();
+  const std::string written = outputs_.names();
+  if (Status done = outputs_.finish(); !done) return done.error();
+  report();
+  context_.say(fmt::format("{} -> {}", line_, written));
+  if (rig_) say_roles(rig_->skeleton, roles_, context_);
+  return kExitDone;
+}
+
+void SceneImporter::tell(Diagnostics& found) {
+  for (Diagnostic& diagnostic : found) {
+    diagnostic.where.file = path_;
+    context_.tell(std::move(diagnostic));
+  }
+  found.clear();
+}
+
+void SceneImporter::warn(const char* code, std::string message, std::string hint,
+                         Severity severity) {
+  Diagnostic told;
+  told.severity = severity;
+  told.code = code;
+  told.message = std::move(message);
+  told.hint = std::move(hint);
+  told.where.file = path_;
+  context_.tell(std::move(told));
+}
+
+Error SceneImporter::missing(const std::string& what, const std::string& option, std::string hint) {
+  return Error("import-missing", fmt::format("no {} is in it: {} cannot be written", what, option),
+               std::move(hint));
+}
+
+std::string SceneImporter::label_of_camera(std::size_t index) const {
+  const nodes::Node& node = scene_.nodes[static_cast<std::size_t>(cameras_[index])];
+  const std::string& lens = scene_.cameras[static_cast<std::size_t>(node.camera)].name;
+  return fmt::format("{} ({})", index, shown(node.name.empty() ? lens : node.name));
+}
+
+Status SceneImporter::choose_camera() {
+  if (cameras_.empty()) {
+    return missing("camera", "--cam", "in glTF a camera must belong to a node of the scene");
+  }
+  std::string list;
+  for (std::size_t i = 0; i < std::min<std::size_t>(cameras_.size(), 20); ++i) {
+    list += (i == 0 ? "" : ", ") + label_of_camera(i);
+  }
+  if (options_.camera.empty()) {
+    camera_ = cameras_[0];
+    if (cameras_.size() == 1) return {};
+    warn("import-cameras",
+         fmt::format("of {} cameras the first is taken; they are {}", cameras_.size(), list),
+         "--camera takes another by its name or number");
+    return {};
+  }
+  for (const int node : cameras_) {
+    const nodes::Node& one = scene_.nodes[static_cast<std::size_t>(node)];
+    if (one.name == options_.camera ||
+        scene_.cameras[static_cast<std::size_t>(one.camera)].name == options_.camera) {
+      camera_ = node;
+      return {};
+    }
+  }
+  const auto number = parse_integer(options_.camera);
+  if (number && *number >= 0 && *number < static_cast<long long>(cameras_.size())) {
+    camera_ = cameras_[static_cast<std::size_t>(*number)];
+    return {};
+  }
+  return Error("import-camera", fmt::format("no camera is called {}", shown(options_.camera)),
+               "it has " + list);
+}
+
+Status SceneImporter::choose() {
+  cameras_ = character::camera_nodes(scene_, evaluator_);
+  if (wants_camera()) {
+    if (Status chosen = choose_camera(); !chosen) return chosen;
+  }
+  auto clips = choose_clips(scene_, options_.clip, path_, context_);
+  if (!clips) return clips.error();
+  clips_ = std::move(*clips);
+  // In a batch nobody asked for the motion of this very file.
+  still_ = clips_.empty() && context_.kept_messages != nullptr &&
+           (wants_model() || wants_camera() || wants_morphs());
+  if (wants_motion() && clips_.empty()) {
+    return missing("animation", "-o", "--model alone takes the character, --cam alone a camera");
+  }
+  return {};
+}
+
+Status SceneImporter::find_rig() {
+  const bool known = scene_.space.metres && scene_.space.file_to_krok;
+  const bool needed = wants_motion() || wants_model() || wants_morphs();
+  if (!needed && known) return {};
+  Diagnostics found;
+  auto joints = character::choose_joints(scene_, evaluator_, options_.skin, found);
+  if (!joints && !needed) return {};  // a camera alone can do without
+  if (!joints) return joints.error();
+  auto rig = character::make_rig(scene_, evaluator_, std::move(*joints), found);
+  if (!rig) return rig.error();
+  rig_ = std::move(*rig);
+  if (needed) tell(found);
+  auto roles = roles_of(rig_->skeleton, how_);
+  if (!roles) return roles.error();
+  roles_ = *std::move(roles);
+  return {};
+}
+
+Status SceneImporter::find_space() {
+  const int first = clips_.empty() ? -1 : clips_[0].animation;
+  const auto conventions =
+      scene_conventions(scene_, evaluator_, rig_ ? &*rig_ : nullptr, roles_, first, how_);
+  if (!conventions) return conventions.error();
+  conventions_ = *conventions;
+  auto conversion = Conversion::make(conventions_);
+  if (!conversion) return conversion.error();
+  conversion_ = *conversion;
+  conversions_ = describe_conversions(conventions_, how_);
+  GivenConventions said = how_;  // by the user or the file
+  if (scene_.space.metres) said.unit = conventions_.unit;
+  if (scene_.space.file_to_krok) {
+    said.up = conventions_.up;
+    said.forward = conventions_.forward;
+  }
+  Diagnostics found;
+  report_conventions(conventions_, said, "scene", path_, found);
+  tell(found);
+  if (!rig_) return {};
+  auto skeleton = character::skeleton_in_krok(*rig_, conversion_);
+  if (!skeleton) return skeleton.error();
+  if (said.complete()) character::check_figure(*skeleton, roles_, found);
+  tell(found);
+  return {};
+}
+
+// What the file holds beyond what was asked for, so that nobody looks for it elsewhere.
+void SceneImporter::tell_what_else_is_there() {
+  if (still_) warn("import-missing", "no animation is in it: no motion is written");
+  std::vector<std::string> more;
+  const auto has = [&](std::size_t count, const char* one, const char* option) {
+    if (count > 0) {
+      more.push_back(fmt::format("{} ({})", counted(static_cast<long long>(count), one), option));
+    }
+  };
+  std::size_t targets = 0, meshes = 0;
+  for (const nodes::Mesh& mesh : scene_.meshes) targets += mesh.target_count();
+  if (!wants_model()) meshes = scene_.meshes.size();
+  if (meshes > 0) more.push_back(meshes == 1 ? "a mesh (--model)" : "meshes (--model)");
+  if (!wants_camera()) has(cameras_.size(), "camera", "--cam");
+  if (!wants_morphs()) has(targets, "morph target", "--morphs");
+  if (more.empty()) return;
+  warn("import-more", fmt::format("the file also holds {}", fmt::join(more, ", ")), "",
+       Severity::note);
+}
+
+void SceneImporter::report() {
+  Json result = Json::object();
+  // One clip's facts stand where those of a capture do.
+  if (clip_facts_.size() == 1) result.update(clip_facts_[0]);
+  if (rig_) result.update(roles_json(rig_->skeleton, roles_));
+  result.update(facts_of(conventions_));
+  if (clip_facts_.size() > 1) result["clips"] = clip_facts_;
+  result["animations"] = Json::array();
+  for (const nodes::Animation& one : scene_.animations) result["animations"].push_back(one.name);
+  result.update(result_);
+  result["repairs"] = Json::array();
+  context_.report.result = std::move(result);
+}
+
+}  // namespace krok::import

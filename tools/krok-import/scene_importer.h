@@ -1,0 +1,88 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "character/mesh.h"
+#include "character/motion.h"
+#include "character/space.h"
+#include "core/file.h"
+#include "core/result.h"
+#include "nodes/evaluate.h"
+#include "tools/common/output_set.h"
+#include "tools/common/tool.h"
+#include "tools/krok-import/clips.h"
+#include "tools/krok-import/options.h"
+
+namespace krok::import {
+
+// A scene on its way into Krok's form.
+class SceneImporter {
+ public:
+  SceneImporter(const InputFile& input, const Options& options, const CaptureOptions& how,
+                const nodes::Scene& scene, const nodes::Evaluator& evaluator, ToolContext& context)
+      : path_(input.path()),
+        options_(options),
+        how_(how),
+        context_(context),
+        scene_(scene),
+        evaluator_(evaluator),
+        outputs_(context) {}
+
+  // Does all the work; nothing is left behind if any of it fails.
+  Result<int> run();
+
+ private:
+  bool wants_motion() const { return !context_.output.empty() && !still_; }
+  bool wants_model() const { return !options_.model.empty(); }
+  bool wants_camera() const { return !options_.cam.empty(); }
+  bool wants_morphs() const { return !options_.morphs.empty() || !options_.weights.empty(); }
+  // Tells what the library found, as said of this file.
+  void tell(Diagnostics& found);
+  void warn(const char* code, std::string message, std::string hint = {},
+            Severity severity = Severity::warning);
+  static Error missing(const std::string& what, const std::string& option, std::string hint);
+
+  // What is taken of the file, and in which unit and axes it is (scene_importer.cpp).
+  Status choose();
+  Status choose_camera();
+  std::string label_of_camera(std::size_t index) const;
+  Status find_rig();
+  Status find_space();
+
+  // What is written (scene_outputs.cpp).
+  Status add_figure();
+  Status add_model();
+  Status add_morphs();
+  Status add_weights(const ChosenClip& clip, const character::ChosenSampling& sampling);
+  Status add_clips();
+  Status add_clip(const ChosenClip& clip);
+  Status add_camera(const ChosenClip& clip, const character::ChosenSampling& sampling);
+
+  void tell_what_else_is_there();
+  void report();
+
+  const std::string path_;
+  const Options& options_;
+  const CaptureOptions& how_;
+  ToolContext& context_;
+  const nodes::Scene& scene_;
+  const nodes::Evaluator& evaluator_;
+  OutputSet outputs_;
+
+  std::vector<ChosenClip> clips_;
+  std::vector<int> cameras_;  // nodes
+  bool still_ = false;        // a file of a batch without the animation that others have
+  int camera_ = -1;           // the node that is written
+  std::optional<character::Rig> rig_;
+  RoleMap roles_;  // of the rig's joints
+  character::Figure figure_;
+  Conventions conventions_;
+  Conversion conversion_;
+  std::vector<std::string> conversions_;
+  Json result_ = Json::object(), clip_facts_ = Json::array();
+  std::string line_;
+};
+
+}  // namespace krok::import

@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/anim/anim.h"
+#include "formats/cam/cam.h"
+#include "formats/csv/csv_writer.h"
+#include "formats/model/model_format.h"
+#include "formats/morph_exr/morph_exr.h"
+#include "tools/common/output_kind.h"
+#include "tools/krok-import/facts.h"
+#include "tools/krok-import/scene_importer.h"
+
+// What an import of a scene writes: the figure, its motions, a camera.
+
+namespace krok::import {
+
+using registry::Kind;
+
+Status SceneImporter::add_figure() {
+  if (!wants_model() && !wants_morphs()) return {};
+  Diagnostics found;
+  auto figure = character::make_figure(scene_, evaluator_, *rig_, conversion_,
+                                       {.with_morphs = wants_morphs()}, found);
+  if (!figure) return figure.error();
+  tell(found);
+  figure_ = std::move(*figure);
+  if (Status added = add_model(); !added) return added;
+  return wants_morphs() ? add_morphs() : Status();
+}
+
+Status SceneImporter::add_model() {
+  if (!wants_model()) return {};
+  Model& model = figure_.model;
+  model.provenance = context_.provenance();
+  model.provenance.conversions = conversions_;
+  result_["model"] = {{"vertices", model.vertex_count()},
+                      {"triangles", model.triangles.size()},
+                      {"parts", model.parts.size()},
+                      {"joints", model.skeleton.joint_count()}};
+  line_ = fmt::format("{}: {}, {}, {}", base_name(path_),
+                      counted(model.skeleton.joint_count(), "joint"),
+                      counted(model.vertex_count(), "vertex", "vertices"),
+                      counted(static_cast<long long>(model.triangles.size()), "triangle"));
+  return outputs_.add(options_.model, [&](OutputFile& file) {
+    return model::write(model, {.orientation = options_.orientation}, file);
+  });
+}
+
+Status SceneImporter::add_morphs() {
+  MorphSet& morphs = figure_.morphs;
+  const char* option = options_.morphs.empty() ? "--morph-weights" : "--morphs";
+  if (morphs.names.empty()) return missing("morph target", option, "");
+  result_["morph_targets"] = morphs.names;
+  morphs.provenance = context_.provenance();
+  morphs.provenance.conversions = conversions_;
+  if (line_.empty()) {
+    line_ = fmt::format("{}: {} of {}", base_name(path_),
+                        counted(morphs.target_count(), "morph target"),
+                        counted(morphs.vertex_count, "vertex", "vertices"));
+  }
+  return outputs_.add(options_.morphs,
+                      [&](OutputFile& file) { return morph_exr::write(morphs, file); });
+}
+
+Status SceneImporter::add_weights(const ChosenClip& clip,
+                                  const character::ChosenSampling& sampling) {
+  if (options_.weights.empty()) return {};
+  const auto weights =
+      character::make_weights(figure_, evaluator_, clip.animation, sampling.sampling);
+  if (!weights) return weights.error();
+  const auto path = clip_path(options_.weights, "--morph-weights", clip, clips_.size() > 1, ".csv");
+  if (!path) return path.error();
+  return outputs_.add(*path, [&](OutputFile& file) { return csv::write(*weights, file); });
+}
+
+Status SceneImporter::add_clips() {
+  if (clips_.empty()) {  // a camera that stands still
+    const character::ChosenSampling still;
+    if (Status added = add_weights({}, still); !added) return added;
+    return wants_camera() ? add_camera({}, still) : Status();
+  }
+  if (!wants_motion() && !wants_camera() && options_.weights.empty()) return {};
+  for (const ChosenClip& clip : clips_) {
+    if (Status added = add_clip(clip); !added) return added;
+  }
+  return {};
+}
+
+Status SceneImporter::add_clip(const ChosenClip& chosen) {
+  Diagnostics found;
+  character::SamplingOptions wanted;
+  wanted.source_rate = how_.rate;
+  if (options_.resample > 0) wanted.rate = options_.resample;
+  const auto& animation = scene_.animations[static_cast<std::size_t>(chosen.animation)];
+  const auto sampling = character::choose_sampling(animation, wanted, found);
+  if (!sampling) return sampling.error();
+  Json facts = Json::object();
+  facts["clip"] = {{"name", chosen.name}, {"number", chosen.animation}};
+  if (wants_motion()) {
+    if (!character::moves_rig(scene_, *rig_, chosen.animation)) {
+      warn("import-still", fmt::format("{} moves no joint of the skeleton", shown(chosen.name)));
+    }
+    auto clip = character::make_clip(evaluator_, *rig_, conversion_, chosen.animation,
+                                     sampling->sampling, context_.jobs, context_.progress, found);
+    if (!clip) return clip.error();
+    tell(found);
+    clip->provenance = context_.provenance();
+    clip->provenance.conversions = conversions_;
+    clip->provenance.conversions.push_back(
+        fmt::format("keys sampled at {} frames a second from {} s on",
+                    readable(1 / sampling->sampling.step), readable(sampling->keys_from)));
+    const auto path = clip_path(context_.output, "-o", chosen, clips_.size() > 1, ".anim");
+    if (!path) return path.error();
+    if (Status fits = check_output_kind(*path, "-o", Kind::anim); !fits) return fits;
+    const Status added = outputs_.add(*path, [&](OutputFile& file) {
+      return anim::write(*clip, {.orientation = options_.orientation, .jobs = context_.jobs}, file);
+    });
+    if (!added) return added;
+    facts.update(facts_of(*clip));
+    facts["output"] = *path;
+    line_ = line_about(path_, *clip);
+  }
+  tell(found);
+  facts["source_rate"] = to_json(sampling->rate);
+  facts["keys"] = {{"from", sampling->keys_from}, {"to", sampling->keys_to}};
+  clip_facts_.push_back(std::move(facts));
+  if (Status added = add_weights(chosen, *sampling); !added) return added;
+  return wants_camera() ? add_camera(chosen, *sampling) : Status();
+}
+
+Status SceneImporter::add_camera(const ChosenClip& clip,
+                                 const character::ChosenSampling& sampling) {
+  Diagnostics found;
+  auto track = character::make_camera(scene_, evaluator_, camera_, conversion_,
+                                      character::rotation_to_apply(scene_.space), clip.animation,
+                                      sampling.sampling, found);
+  if (!track) return track.error();
+  tell(found);
+  track->provenance = context_.provenance();
+  track->provenance.conversions = conversions_;
+  const auto path = clip_path(options_.cam, "--cam", clip, clips_.size() > 1, ".cam");
+  if (!path) return path.error();
+  if (Status fits = check_output_kind(*path, "--cam", Kind::cam); !fits) return fits;
+  result_["camera"] = {
+      {"name", scene_.nodes[static_cast<std::size_t>(camera_)].name},
+      {"frames", track->frame_count()},
+      {"rate", track->rate},
+      {"field_of_view", static_cast<double>(track->fields_of_view.front()) / kRadiansPerDegree}};
+  if (line_.empty()) {
+    line_ = fmt::format("{}: camera {}, {} at {} /s", base_name(path_),
+                        shown(scene_.nodes[static_cast<std::size_t>(camera_)].name),
+                        counted(track->frame_count(), "frame"), readable(track->rate));
+  }
+  return outputs_.add(*path, [&](OutputFile& file) {
+    return cam::write(*track, {.orientation = options_.orientation}, file);
+  });
+}
+
+}  // namespace krok::import

@@ -1,0 +1,216 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "character/rig.h"
+#include "character/space.h"
+#include "core/numbers.h"
+#include "describe.h"
+#include "nodes/evaluate.h"
+#include "tools/common/scene/scene_conventions.h"
+#include "tools/common/scene/scene_input.h"
+
+namespace krok::info {
+
+namespace {
+
+constexpr std::size_t kMostNames = 12;
+
+std::string named(const std::string& name, std::size_t index) {
+  return name.empty() ? fmt::format("number {}", index) : name;
+}
+
+void add_meshes(const nodes::Scene& scene, Description& out) {
+  std::vector<std::string> lines;
+  out.json["meshes"] = Json::array();
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const nodes::Mesh& mesh = scene.meshes[i];
+    std::size_t vertices = 0, triangles = 0;
+    for (const nodes::Primitive& primitive : mesh.primitives) {
+      vertices += primitive.vertex_count();
+      triangles += primitive.triangles.size();
+    }
+    std::string line =
+        fmt::format("{}: {}, {}", named(mesh.name, i), count_of(vertices, "vertex", "vertices"),
+                    count_of(triangles, "triangle"));
+    Json targets = Json::array();
+    std::string names;
+    if (mesh.target_count() > 0) {
+      line += ", " + count_of(mesh.target_count(), "morph target");
+      for (const nodes::MorphTarget& target : mesh.primitives[0].targets) {
+        targets.push_back(target.name);
+        if (targets.size() <= kMostNames) names += (names.empty() ? "" : ", ") + target.name;
+      }
+      const bool named = names.find_first_not_of(", ") != std::string::npos;
+      if (named) line += ": " + names + (targets.size() > kMostNames ? ", ..." : "");
+    }
+    lines.push_back(std::move(line));
+    out.json["meshes"].push_back({{"name", mesh.name},
+                                  {"vertices", vertices},
+                                  {"triangles", triangles},
+                                  {"primitives", mesh.primitives.size()},
+                                  {"morph_targets", mesh.target_count()},
+                                  {"target_names", std::move(targets)}});
+  }
+  out.add("meshes", std::move(lines));
+}
+
+void add_skins(const nodes::Scene& scene, Description& out) {
+  std::vector<std::string> lines;
+  out.json["skins"] = Json::array();
+  for (std::size_t i = 0; i < scene.skins.size(); ++i) {
+    const nodes::Skin& skin = scene.skins[i];
+    lines.push_back(
+        fmt::format("{}: {}", named(skin.name, i), count_of(skin.joints.size(), "joint")));
+    out.json["skins"].push_back({{"name", skin.name}, {"joints", skin.joints.size()}});
+  }
+  out.add("skins", std::move(lines));
+}
+
+void add_animations(const nodes::Scene& scene, Description& out) {
+  std::vector<std::string> lines;
+  out.json["animations"] = Json::array();
+  for (std::size_t i = 0; i < scene.animations.size(); ++i) {
+    const nodes::Animation& animation = scene.animations[i];
+    double end = 0;
+    std::size_t keys = 0;
+    for (const nodes::Channel& channel : animation.channels) {
+      if (!channel.times || channel.times->empty()) continue;
+      end = std::max(end, static_cast<double>(channel.times->back()));
+      keys = std::max(keys, channel.times->size());
+    }
+    lines.push_back(fmt::format("{}: {} s, {}, up to {} each", named(animation.name, i),
+                                readable(end, 5), count_of(animation.channels.size(), "channel"),
+                                count_of(keys, "key")));
+    out.json["animations"].push_back({{"name", animation.name},
+                                      {"duration", end},
+                                      {"channels", animation.channels.size()},
+                                      {"keys", keys}});
+  }
+  out.add("animations", std::move(lines));
+}
+
+// The cameras at nodes of the scene that is shown.
+void add_cameras(const nodes::Scene& scene, Description& out) {
+  std::vector<std::string> lines;
+  out.json["cameras"] = Json::array();
+  for (const nodes::Node& node : scene.nodes) {
+    if (node.camera < 0 || !node.in_scene) continue;
+    const nodes::Camera& camera = scene.cameras[static_cast<std::size_t>(node.camera)];
+    const std::string& name = node.name.empty() ? camera.name : node.name;
+    const double degrees = camera.field_of_view / kRadiansPerDegree;
+    lines.push_back(fmt::format("{}: {}", named(name, lines.size()),
+                                camera.perspective
+                                    ? fmt::format("{} deg field of view", readable(degrees, 4))
+                                    : "orthographic"));
+    out.json["cameras"].push_back({{"name", name}, {"perspective", camera.perspective}});
+    if (camera.perspective) out.json["cameras"].back()["field_of_view"] = degrees;
+  }
+  out.add("cameras", std::move(lines));
+}
+
+// The skeleton that krok-import takes; nothing where a scene has neither skins nor animations, for
+// then any node might be a joint.
+Result<std::optional<character::Rig>> find_rig(const nodes::Scene& scene,
+                                               const nodes::Evaluator& evaluator,
+                                               Diagnostics& found) {
+  std::optional<character::Rig> none;
+  if (scene.skins.empty() && scene.animations.empty()) return none;
+  auto joints = character::choose_joints(scene, evaluator, "", found);
+  if (!joints && joints.error().code == "scene-skeleton") return none;
+  if (!joints) return joints.error();
+  auto rig = character::make_rig(scene, evaluator, *std::move(joints), found);
+  if (!rig) return rig.error();
+  return std::optional(*std::move(rig));
+}
+
+// What a viewer shows before it plays an animation, in metres.
+Status add_shown_size(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
+                      const Conventions& conventions, Description& out) {
+  const auto conversion = Conversion::make(conventions);
+  if (!conversion) return conversion.error();
+  const Mat4 turn = character::rotation_to_apply(scene.space);
+  Eigen::AlignedBox3d box;
+  const auto extend = [&](const Vec3& position) {
+    const Vec3 turned = turn.topLeftCorner<3, 3>() * position;
+    box.extend(conversion->pose({turned, Quat::Identity()}).position);
+  };
+  nodes::Evaluation shown;
+  evaluator.evaluate(-1, 0, shown);
+  for (const auto& positions : shown.positions) {
+    for (const Vec3& position : positions) extend(position);
+  }
+  if (!box.isEmpty()) {
+    add_size(box, "meshes as shown without animation", out);
+    return {};
+  }
+  for (const int joint : evaluator.joints()) {
+    const Mat4& to_world = shown.node_to_world[static_cast<std::size_t>(joint)];
+    extend(to_world.topRightCorner<3, 1>());
+  }
+  add_size(box, "nodes as shown without animation", out);
+  return {};
+}
+
+// The skeleton with its roles, unit and axes, and the size.
+Status add_figure(const nodes::Scene& scene, const std::string& path, const SkeletonOptions& how,
+                  ToolContext& context, Description& out) {
+  const auto evaluator = nodes::Evaluator::create(scene);
+  if (!evaluator) return evaluator.error();
+  Diagnostics found;
+  const auto rig = find_rig(scene, *evaluator, found);
+  if (!rig) return rig.error();
+  for (Diagnostic& diagnostic : found) {
+    diagnostic.where.file = path;
+    context.tell(std::move(diagnostic));
+  }
+  RoleMap roles;
+  if (*rig) {
+    auto map = how.roles((*rig)->skeleton);
+    if (!map) return map.error();
+    roles = *std::move(map);
+    add_skeleton((*rig)->skeleton, roles, how.verbose, out);
+  }
+  const int first = scene.animations.empty() ? -1 : 0;
+  const auto conventions =
+      scene_conventions(scene, *evaluator, *rig ? &**rig : nullptr, roles, first, {});
+  if (!conventions) return conventions.error();
+  add_conventions(*conventions, out);
+  return add_shown_size(scene, *evaluator, *conventions, out);
+}
+
+// "a glTF scene", "an FBX file".
+std::string name_of(registry::Kind kind, const InputFile& file) {
+  if (!registry::is_read_through_assimp(kind)) return "a glTF scene";
+  if (registry::kind_of_content(file.bytes()) == registry::Kind::unknown) {
+    return fmt::format("a scene (.{})", registry::kind_name(kind));
+  }
+  return std::string(registry::describe_content(file.bytes()));
+}
+
+}  // namespace
+
+Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
+                                   const SkeletonOptions& how, ToolContext& context) {
+  const auto scene = read_scene(file, kind, context);
+  if (!scene) return scene.error();
+  context.tell(scene->diagnostics);
+  Description out;
+  out.what = name_of(kind, file);
+  out.json["kind"] = registry::is_read_through_assimp(kind) ? registry::kind_name(kind) : "gltf";
+  out.add("nodes", grouped(std::ssize(scene->nodes)));
+  out.json["nodes"] = scene->nodes.size();
+  add_meshes(*scene, out);
+  add_skins(*scene, out);
+  add_animations(*scene, out);
+  add_cameras(*scene, out);
+  if (Status added = add_figure(*scene, file.path(), how, context, out); !added) {
+    return added.error();
+  }
+  if (!scene->generator.empty()) out.add("made by", scene->generator);
+  out.json["generator"] = scene->generator;
+  return out;
+}
+
+}  // namespace krok::info
