@@ -30,9 +30,9 @@ inline constexpr std::array<Step, kSide* kSide> kSteps = [] {
   return steps;
 }();
 
-// Good enough to stop searching: 2e-7 rad, a few times what rounding four components costs anyway.
-// Squared distance of quaternions; the angle is twice the distance.
-inline constexpr double kGoodEnough = 1e-7 * 1e-7;
+// Good enough to stop searching: 6e-7 rad, some times what rounding four components costs anyway,
+// and 0.6 micrometres at a metre. Squared distance of quaternions; the angle is twice the distance.
+inline constexpr double kGoodEnough = 3e-7 * 3e-7;
 
 // Sizes of w above which one ring of steps is tried, and three; below, all.
 inline constexpr double kOneRing = 0.02;

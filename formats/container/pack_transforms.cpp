@@ -14,9 +14,11 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "core/simd.h"
 #include "formats/container/orientation_search_internal.h"
@@ -75,23 +77,190 @@ HWY_INLINE V squared_distance(V dx, V dy, V dz, V dw) {
                  hn::Mul(dw, dw));
 }
 
-// Exchanges two components with their places where the first is smaller in size.
-HWY_INLINE void settle(V& a, V& b, V& place_a, V& place_b) {
-  const auto swap = hn::Lt(hn::Abs(a), hn::Abs(b));
-  const V before = a, place_before = place_a;
-  a = hn::IfThenElse(swap, b, a);
-  b = hn::IfThenElse(swap, before, b);
-  place_a = hn::IfThenElse(swap, place_b, place_a);
-  place_b = hn::IfThenElse(swap, place_before, place_b);
+// The steps of a search one after the other, a lane each; the last ones are never reached.
+constexpr std::size_t kMostSteps = (kSteps.size() + kLanes - 1) / kLanes * kLanes;
+struct alignas(64) StepTable {
+  std::int64_t first[kMostSteps];  // counted from -kReach
+  double second[kMostSteps];
+};
+constexpr StepTable kStepTable = [] {
+  StepTable table{};
+  for (std::size_t s = 0; s < kMostSteps; ++s) {
+    const Step step = s < kSteps.size() ? kSteps[s] : Step{};
+    table.first[s] = step.first + kReach;
+    table.second[s] = step.second;
+  }
+  return table;
+}();
+
+// A unit quaternion with w <= 0.
+struct Target {
+  double x, y, z, w;
+};
+
+// The components by size, the earlier first where they are equal.
+struct BySize {
+  V a, b, c;
+  V place_a, place_b, place_c;
+};
+
+HWY_INLINE BySize by_size(V x, V y, V z) {
+  const Doubles d;
+  BySize sorted{x, y, z, hn::Zero(d), hn::Set(d, 1.0), hn::Set(d, 2.0)};
+  const auto settle = [](V& first, V& second, V& first_place, V& second_place) {
+    const auto swap = hn::Lt(hn::Abs(first), hn::Abs(second));
+    const V before = first, place_before = first_place;
+    first = hn::IfThenElse(swap, second, first);
+    second = hn::IfThenElse(swap, before, second);
+    first_place = hn::IfThenElse(swap, second_place, first_place);
+    second_place = hn::IfThenElse(swap, place_before, second_place);
+  };
+  settle(sorted.a, sorted.b, sorted.place_a, sorted.place_b);
+  settle(sorted.b, sorted.c, sorted.place_b, sorted.place_c);
+  settle(sorted.a, sorted.b, sorted.place_a, sorted.place_b);
+  return sorted;
 }
 
-// Unit quaternions that are left to the search, a lane each.
+// What steps of the largest component leave for the others.
+struct AfterA {
+  V try_a, left, nearest_b, spacing_b;
+};
+
+// The solution for some steps.
+struct Tries {
+  V a, b, c, distance;
+};
+
+// What a search goes by; a lane a target, or a target in all lanes.
+struct Search {
+  V a, b, c, w;
+  V nearest_a, spacing_a, rest_of_a, rest_of_b;
+
+  HWY_INLINE Search(V a_, V b_, V c_, V w_) : a(a_), b(b_), c(c_), w(w_) {
+    const V c_squared = hn::Mul(c, c);
+    const V w_squared = hn::Mul(w, w);
+    nearest_a = rounded(a);
+    spacing_a = spacing(nearest_a);
+    rest_of_a = hn::Sqrt(hn::Add(hn::Add(hn::Mul(b, b), c_squared), w_squared));
+    rest_of_b = hn::Sqrt(hn::Add(c_squared, w_squared));
+  }
+
+  HWY_INLINE V distance(V try_a, V try_b, V try_c) const {
+    return squared_distance(hn::Sub(try_a, a), hn::Sub(try_b, b), hn::Sub(try_c, c),
+                            hn::Sub(rebuilt_w(try_a, try_b, try_c), w));
+  }
+  HWY_INLINE Tries nearest() const {
+    const V nearest_b = rounded(b), nearest_c = rounded(c);
+    return {nearest_a, nearest_b, nearest_c, distance(nearest_a, nearest_b, nearest_c)};
+  }
+  HWY_INLINE AfterA after(V first) const {
+    AfterA result;
+    result.try_a = rounded(hn::Add(nearest_a, hn::Mul(first, spacing_a)));
+    result.left = hn::Sub(hn::Set(Doubles(), 1.0), hn::Mul(result.try_a, result.try_a));
+    result.nearest_b = rounded(hn::Mul(b, scale(result.left, rest_of_a)));
+    result.spacing_b = spacing(result.nearest_b);
+    return result;
+  }
+  HWY_INLINE Tries solve(const AfterA& at, V second) const {
+    Tries result;
+    result.a = at.try_a;
+    result.b = rounded(hn::Add(at.nearest_b, hn::Mul(second, at.spacing_b)));
+    const V left_by_b = hn::Sub(at.left, hn::Mul(result.b, result.b));
+    result.c = rounded(hn::Mul(c, scale(left_by_b, rest_of_b)));
+    result.distance = distance(result.a, result.b, result.c);
+    return result;
+  }
+};
+
+// AfterA for each step from -kReach on.
+struct AfterATable {
+  static constexpr std::size_t kSize = (kSide + kLanes - 1) / kLanes * kLanes;
+  HWY_ALIGN double try_a[kSize], left[kSize], nearest_b[kSize], spacing_b[kSize];
+
+  // Fills in what steps up to `reach` need.
+  HWY_INLINE void fill(const Search& search, int reach) {
+    const Doubles d;
+    const auto first = static_cast<std::size_t>(kReach - reach);
+    const auto end = static_cast<std::size_t>(kReach + reach + 1);
+    for (std::size_t i = first; i < end; i += kLanes) {
+      const std::size_t at = std::min(i, kSize - kLanes);
+      const AfterA after = search.after(hn::Iota(d, static_cast<double>(at) - kReach));
+      hn::StoreU(after.try_a, d, try_a + at);
+      hn::StoreU(after.left, d, left + at);
+      hn::StoreU(after.nearest_b, d, nearest_b + at);
+      hn::StoreU(after.spacing_b, d, spacing_b + at);
+    }
+  }
+  HWY_INLINE AfterA at(const std::int64_t* places) const {
+    const Doubles d;
+    const auto place = hn::Load(hn::RebindToSigned<Doubles>(), places);
+    return {hn::GatherIndex(d, try_a, place), hn::GatherIndex(d, left, place),
+            hn::GatherIndex(d, nearest_b, place), hn::GatherIndex(d, spacing_b, place)};
+  }
+};
+
+// The best so far, as if steps were tried one after the other until one is good enough.
+struct Best {
+  double distance;
+  double a, b, c;
+
+  HWY_INLINE bool is_good() const { return !(distance > kGoodEnough); }
+
+  HWY_INLINE void take(const Tries& tries, std::size_t used) {
+    const Doubles d;
+    if (hn::AllFalse(d, hn::Lt(tries.distance, hn::Set(d, distance)))) return;
+    HWY_ALIGN double distances[kLanes], as[kLanes], bs[kLanes], cs[kLanes];
+    hn::Store(tries.distance, d, distances);
+    hn::Store(tries.a, d, as);
+    hn::Store(tries.b, d, bs);
+    hn::Store(tries.c, d, cs);
+    for (std::size_t i = 0; i < used && !is_good(); ++i) {
+      if (distances[i] < distance) *this = {distances[i], as[i], bs[i], cs[i]};
+    }
+  }
+};
+
+// The whole search for one target, the steps side by side.
+void search_on(const Target& target, std::byte* out) {
+  const Doubles d;
+  const BySize sorted = by_size(hn::Set(d, target.x), hn::Set(d, target.y), hn::Set(d, target.z));
+  const Search search(sorted.a, sorted.b, sorted.c, hn::Set(d, target.w));
+  const double size = std::abs(target.w);
+  const int reach = size > kOneRing ? 1 : size > kThreeRings ? 3 : kReach;
+  const auto steps = static_cast<std::size_t>((2 * reach + 1) * (2 * reach + 1));
+  AfterATable after;
+  after.fill(search, reach);
+
+  const Tries nearest = search.nearest();
+  Best best = {hn::GetLane(nearest.distance), hn::GetLane(nearest.a), hn::GetLane(nearest.b),
+               hn::GetLane(nearest.c)};
+  // A try is a long chain of roots and quotients; two vectors of them run side by side.
+  for (std::size_t s = 0; s < steps && !best.is_good(); s += 2 * kLanes) {
+    const std::size_t next = std::min(s + kLanes, kMostSteps - kLanes);
+    const Tries tries =
+        search.solve(after.at(kStepTable.first + s), hn::Load(d, kStepTable.second + s));
+    const Tries next_tries =
+        search.solve(after.at(kStepTable.first + next), hn::Load(d, kStepTable.second + next));
+    best.take(tries, std::min(steps - s, kLanes));
+    if (s + kLanes < steps) best.take(next_tries, std::min(steps - next, kLanes));
+  }
+  const double values[3] = {best.a, best.b, best.c};
+  const double places[3] = {hn::GetLane(sorted.place_a), hn::GetLane(sorted.place_b),
+                            hn::GetLane(sorted.place_c)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto value = static_cast<float>(values[k]);
+    std::memcpy(out + sizeof(float) * static_cast<std::size_t>(places[k]), &value, sizeof value);
+  }
+}
+
+// Targets to search for, a lane each.
 struct Targets {
   HWY_ALIGN double x[kLanes], y[kLanes], z[kLanes], w[kLanes];
   std::byte* out[kLanes];
   std::size_t count = 0;
 };
 
+// Most targets need only the first step; the others are searched for one by one.
 void search(Targets& targets) {
   const Doubles d;
   // Lanes that are not used take the first one's work and throw it away.
@@ -101,69 +270,30 @@ void search(Targets& targets) {
     targets.z[i] = targets.z[0];
     targets.w[i] = targets.w[0];
   }
-  V a = hn::Load(d, targets.x), b = hn::Load(d, targets.y), c = hn::Load(d, targets.z);
-  const V w = hn::Load(d, targets.w);
-  V place_a = hn::Zero(d), place_b = hn::Set(d, 1.0), place_c = hn::Set(d, 2.0);
-  settle(a, b, place_a, place_b);
-  settle(b, c, place_b, place_c);
-  settle(a, b, place_a, place_b);
-  const V nearest_a = rounded(a);
-  const V spacing_a = spacing(nearest_a);
-  const V rest_of_b_squared = hn::Mul(c, c);
-  const V w_squared = hn::Mul(w, w);
-  const V rest_of_a = hn::Sqrt(hn::Add(hn::Add(hn::Mul(b, b), rest_of_b_squared), w_squared));
-  const V rest_of_b = hn::Sqrt(hn::Add(rest_of_b_squared, w_squared));
-  const V size = hn::Abs(w);
-  const auto steps_for = [&](int reach) {
-    return hn::Set(d, static_cast<double>((2 * reach + 1) * (2 * reach + 1)));
-  };
-  const V steps = hn::IfThenElse(
-      hn::Gt(size, hn::Set(d, kOneRing)), steps_for(1),
-      hn::IfThenElse(hn::Gt(size, hn::Set(d, kThreeRings)), steps_for(3), steps_for(kReach)));
-
-  V best_a = nearest_a, best_b = rounded(b), best_c = rounded(c);
-  V best = squared_distance(hn::Sub(best_a, a), hn::Sub(best_b, b), hn::Sub(best_c, c),
-                            hn::Sub(rebuilt_w(best_a, best_b, best_c), w));
-  struct AfterA {
-    V try_a, nearest_b, left, spacing_b;
-  };
-  AfterA after_a[kSide];
-  bool known[kSide] = {};
-  const V good_enough = hn::Set(d, kGoodEnough);
-  for (std::size_t s = 0; s < kSteps.size(); ++s) {
-    const auto active =
-        hn::And(hn::Gt(best, good_enough), hn::Gt(steps, hn::Set(d, static_cast<double>(s))));
-    if (hn::AllFalse(d, active)) break;
-    const std::size_t first = static_cast<std::size_t>(kSteps[s].first + kReach);
-    AfterA& at = after_a[first];
-    if (!known[first]) {
-      at.try_a = rounded(
-          hn::Add(nearest_a, hn::Mul(hn::Set(d, static_cast<double>(kSteps[s].first)), spacing_a)));
-      at.left = hn::Sub(hn::Set(d, 1.0), hn::Mul(at.try_a, at.try_a));
-      at.nearest_b = rounded(hn::Mul(b, scale(at.left, rest_of_a)));
-      at.spacing_b = spacing(at.nearest_b);
-      known[first] = true;
-    }
-    const V second = hn::Set(d, static_cast<double>(kSteps[s].second));
-    const V try_b = rounded(hn::Add(at.nearest_b, hn::Mul(second, at.spacing_b)));
-    const V left_by_b = hn::Sub(at.left, hn::Mul(try_b, try_b));
-    const V try_c = rounded(hn::Mul(c, scale(left_by_b, rest_of_b)));
-    const V distance = squared_distance(hn::Sub(at.try_a, a), hn::Sub(try_b, b), hn::Sub(try_c, c),
-                                        hn::Sub(rebuilt_w(at.try_a, try_b, try_c), w));
-    const auto better = hn::And(active, hn::Lt(distance, best));
-    best = hn::IfThenElse(better, distance, best);
-    best_a = hn::IfThenElse(better, at.try_a, best_a);
-    best_b = hn::IfThenElse(better, try_b, best_b);
-    best_c = hn::IfThenElse(better, try_c, best_c);
-  }
+  static_assert(kSteps[0].first == 0 && kSteps[0].second == 0);
+  const BySize sorted =
+      by_size(hn::Load(d, targets.x), hn::Load(d, targets.y), hn::Load(d, targets.z));
+  const Search search(sorted.a, sorted.b, sorted.c, hn::Load(d, targets.w));
+  const Tries nearest = search.nearest();
+  const Tries tries = search.solve(search.after(hn::Zero(d)), hn::Zero(d));
+  const V good = hn::Set(d, kGoodEnough);
+  const auto keep = hn::Or(hn::Not(hn::Gt(nearest.distance, good)),
+                           hn::Not(hn::Lt(tries.distance, nearest.distance)));
   HWY_ALIGN double values[3][kLanes], places[3][kLanes];
-  hn::Store(best_a, d, values[0]);
-  hn::Store(best_b, d, values[1]);
-  hn::Store(best_c, d, values[2]);
-  hn::Store(place_a, d, places[0]);
-  hn::Store(place_b, d, places[1]);
-  hn::Store(place_c, d, places[2]);
+  hn::Store(hn::IfThenElse(keep, nearest.a, tries.a), d, values[0]);
+  hn::Store(hn::IfThenElse(keep, nearest.b, tries.b), d, values[1]);
+  hn::Store(hn::IfThenElse(keep, nearest.c, tries.c), d, values[2]);
+  hn::Store(sorted.place_a, d, places[0]);
+  hn::Store(sorted.place_b, d, places[1]);
+  hn::Store(sorted.place_c, d, places[2]);
+  std::uint8_t good_bits[8] = {};
+  hn::StoreMaskBits(
+      d, hn::Not(hn::Gt(hn::IfThenElse(keep, nearest.distance, tries.distance), good)), good_bits);
   for (std::size_t i = 0; i < targets.count; ++i) {
+    if ((good_bits[0] >> i & 1) == 0) {
+      search_on({targets.x[i], targets.y[i], targets.z[i], targets.w[i]}, targets.out[i]);
+      continue;
+    }
     for (int k = 0; k < 3; ++k) {
       const auto value = static_cast<float>(values[k][i]);
       std::memcpy(targets.out[i] + sizeof(float) * static_cast<std::size_t>(places[k][i]), &value,
@@ -174,9 +304,9 @@ void search(Targets& targets) {
 }
 
 // A group of kLanes transforms, of which the first `used` are stored at `out`. Orientations that
-// need the search are added to `few` or `many`, by how many steps it takes, and stored later.
+// need the search are added to `targets` and stored later.
 HWY_INLINE void pack_group(const float* positions, const float* orientations, std::size_t used,
-                           std::byte* out, Targets& few, Targets& many) {
+                           std::byte* out, Targets& targets) {
   const Doubles d;
   const Floats f;
   hn::Vec<Floats> fx, fy, fz, fw;
@@ -225,7 +355,6 @@ HWY_INLINE void pack_group(const float* positions, const float* orientations, st
   hn::StoreMaskBits(d, searched, bits);
   for (unsigned left = bits[0]; left != 0; left &= left - 1) {
     const auto i = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-    Targets& targets = target[3][i] < -kOneRing ? few : many;
     targets.x[targets.count] = target[0][i];
     targets.y[targets.count] = target[1][i];
     targets.z[targets.count] = target[2][i];
@@ -236,20 +365,19 @@ HWY_INLINE void pack_group(const float* positions, const float* orientations, st
 }
 
 void pack(const float* positions, const float* orientations, std::size_t count, std::byte* out) {
-  Targets few, many;
+  Targets targets;
   std::size_t i = 0;
   for (; i + kLanes <= count; i += kLanes) {
-    pack_group(positions + 3 * i, orientations + 4 * i, kLanes, out + i * kRecord, few, many);
+    pack_group(positions + 3 * i, orientations + 4 * i, kLanes, out + i * kRecord, targets);
   }
   if (i < count) {
     // Filled up with identities, which need no search.
     HWY_ALIGN float tail[4 * kLanes] = {};
     for (std::size_t k = 0; k < kLanes; ++k) tail[4 * k + 3] = 1;
     std::copy_n(orientations + 4 * i, 4 * (count - i), tail);
-    pack_group(positions + 3 * i, tail, count - i, out + i * kRecord, few, many);
+    pack_group(positions + 3 * i, tail, count - i, out + i * kRecord, targets);
   }
-  if (few.count > 0) search(few);
-  if (many.count > 0) search(many);
+  if (targets.count > 0) search(targets);
 }
 
 #else
