@@ -9,7 +9,7 @@ CMAKE_FLAGS ?=
 # Debian packages: to build, and on top of that to test.
 BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev libfast-float-dev \
   nlohmann-json3-dev libxxhash-dev libhwy-dev libtinygltf-dev libassimp-dev libopenexr-dev \
-  libcli11-dev help2man
+  libcli11-dev help2man libembree-dev libpng-dev libfreetype-dev fonts-dejavu-core
 TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3 \
   chromium
 LINT_PACKAGES := clang-tidy
@@ -30,7 +30,8 @@ help:
 	@echo "make bench    benchmarks, as ratios against a reference in the same run"
 	@echo "make asan     the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make tsan     the tests under ThreadSanitizer"
-	@echo "make golden   renew the golden files and the generated pages; review them as a diff"
+	@echo "make golden   write golden files that are missing and renew the generated pages; with FORCE=1"
+	@echo "              replace golden files that differ, too: review them as a diff"
 	@echo "make format   clang-format all sources"
 	@echo "make lint     clang-tidy over the sources"
 	@echo "make install  install tools, library and headers (PREFIX=/usr/local, DESTDIR=)"
@@ -94,7 +95,7 @@ bench: test-deps all
 	@for program in $(BUILD)/bench/*; do echo "== $$(basename $$program)"; $$program || exit 1; done
 
 golden: unit-test-build
-	tests/golden/update.sh $(BUILD)
+	tests/golden/update.sh $(if $(FORCE),--force) $(BUILD)
 
 .PHONY: unit-test-build
 unit-test-build: CMAKE_FLAGS += -DKROK_BUILD_TESTS=ON
@@ -117,4 +118,4 @@ install: all
 	cmake --install $(BUILD)
 
 clean:
-	rm -rf build build-asan build-tsan build-debug out
+	rm -rf $(BUILD) build build-asan build-tsan build-debug out

@@ -54,15 +54,19 @@ class InputFile {
 // commit() waits until all of them are on the disk, where errors of a delayed write show, and
 // renames it; so that after a power cut, too, either the old file stands or the new one. The disk
 // is told to begin while more is written, which leaves little to wait for. If the object dies
-// before commit(), or the program ends by SIGINT, SIGTERM, SIGHUP or SIGPIPE (see
-// remove_temporaries_on_signals), the temporary file is removed and what stood at `path` still
-// stands. The result keeps the permissions of the file that it replaces; a symbolic link stays,
-// what it points to is replaced. "-" is standard output; a path that exists and is no regular file
-// (a device, a pipe) is written directly, for a rename would replace the device.
+// before commit(), or the program ends by a signal (see remove_temporaries_on_signals), the
+// temporary file is removed and what stood at `path` still stands. The result keeps the permissions
+// of the file that it replaces; a symbolic link stays, what it points to is replaced. "-" is
+// standard output; a path that exists and is no regular file (a device, a pipe) is written
+// directly, for a rename would replace the device.
 class OutputFile {
  public:
   struct Options {
     bool no_clobber = false;  // refuse a path that exists (code file-exists)
+    // A file that replaces none is put in place without waiting for the disk. For whoever writes
+    // many: store_files() waits once, and a way to tell which are whole (a journal with checksums)
+    // is needed after a power cut.
+    bool stored_later = false;
   };
 
   static Result<OutputFile> create(const std::string& path, Options options);
@@ -85,11 +89,21 @@ class OutputFile {
 
   std::uint64_t size() const;
 
-  // Brings what was written to the disk without putting the file in place, so that of several files
-  // that belong together none is put in place before all of them are safe.
-  Status sync();
+  // Ends writing: brings what was written to the disk and lets go of the system's file, so that any
+  // number of files may wait to be put in place. Nothing can be written any more.
+  Status seal();
 
+  // Where the bytes of a sealed file are until it is put in place.
+  const std::string& written_at() const;
+
+  // Seals the file and puts it in place.
   Status commit();
+
+  // The same for files that belong together: none is put in place before all of them are safe, and
+  // if one of them cannot be, those before it are taken back, so that all appear or none. What was
+  // replaced comes back too where the file system can exchange names (those of Linux can). What
+  // went to a stream cannot be taken back.
+  static Status place_all(std::span<OutputFile> files);
 
  private:
   struct State;
@@ -97,15 +111,19 @@ class OutputFile {
   std::unique_ptr<State> state_;
 };
 
+// Waits until all that was written to the file system of `folder` is on its disk.
+Status store_files(const std::string& folder);
+
 // Writes all of `bytes` to `path` by an OutputFile.
 Status write_file(const std::string& path, std::span<const std::byte> bytes,
                   OutputFile::Options options = {});
 Status write_file(const std::string& path, std::string_view text, OutputFile::Options options = {});
 
-// Installs handlers for SIGINT, SIGTERM, SIGHUP and SIGPIPE that remove the temporary files of all
-// living OutputFiles (up to 256 at a time) and end the program by the same signal. A signal that
-// the program was started to ignore (nohup) stays ignored. For programs, called once at their
-// start.
+// Installs handlers that remove the temporary files of all living OutputFiles when a signal ends
+// the program, and end it by the same signal: those that ask it to end (SIGINT, SIGTERM, SIGHUP,
+// ...), limits of time, and faults of its own. Signals that the program was started to ignore
+// (nohup), or that someone handles already, are left so. SIGXFSZ is ignored: a file that grows too
+// large is then an Error (code file-unwritable). For programs, called once at their start.
 void remove_temporaries_on_signals();
 
 // Removes the temporary files in `folder` that programs left there which were killed (SIGKILL, a

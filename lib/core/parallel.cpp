@@ -5,6 +5,8 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -13,6 +15,30 @@ namespace krok {
 int thread_count(int jobs) {
   if (jobs > 0) return jobs;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void on_threads(std::size_t threads, const std::function<void()>& work) {
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  const auto guarded = [&]() noexcept {
+    try {
+      work();
+    } catch (...) {
+      const std::lock_guard lock(failure_mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    try {
+      helpers.reserve(threads);
+      while (helpers.size() + 1 < threads) helpers.emplace_back(guarded);
+    } catch (const std::system_error&) {  // a limit of the system
+    } catch (const std::bad_alloc&) {
+    }
+    guarded();
+  }
+  if (failure) std::rethrow_exception(failure);
 }
 
 void parallel_for(std::size_t count, std::size_t grain, int jobs,
@@ -46,11 +72,7 @@ void parallel_for(std::size_t count, std::size_t grain, int jobs,
   };
 
   const std::size_t threads = std::min(static_cast<std::size_t>(thread_count(jobs)), ranges);
-  {
-    std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
-    work();
-  }
+  on_threads(threads, work);
   if (failure) std::rethrow_exception(failure);
 }
 
@@ -147,11 +169,7 @@ Status make_in_order(std::size_t count, int jobs,
   const std::size_t slots = slots_for(jobs);
   InOrder order(count, slots, make, take);
   const std::size_t threads = std::min(static_cast<std::size_t>(thread_count(jobs)), count);
-  {
-    std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back([&] { order.work(); });
-    order.work();
-  }
+  on_threads(threads, [&] { order.work(); });
   return order.result();
 }
 

@@ -13,6 +13,11 @@ namespace krok {
 // The number of threads that `jobs` asks for: itself if positive, otherwise what the machine has.
 int thread_count(int jobs);
 
+// Calls `work` on up to `threads` threads at once, this one included, and returns when all are
+// done. Where the system gives fewer threads, it goes on with those; `work` must be right for any
+// number of them. If it throws, one of the exceptions is rethrown here.
+void on_threads(std::size_t threads, const std::function<void()>& work);
+
 // Calls body(begin, end) for consecutive ranges that together cover [0, count), each of at most
 // `grain` items, on up to `jobs` threads (the calling one included; 1 runs in order on it alone).
 // Ranges begin at multiples of `grain` whatever `jobs` is. If a body throws, ranges not yet

@@ -25,7 +25,7 @@ case "${1:-}" in -h | --help) usage && exit 0 ;; esac
 [ $# -le 2 ] || fail "$# arguments, at most 2 are taken" "put names with spaces in quotes"
 capture=${1:-$here/../captures/walk.bvh}
 out=${2:-out/demo}
-for tool in import body skin diff export info; do
+for tool in import body skin diff export info keys view plot; do
   [ -x "$bin/krok-$tool" ] || fail "no krok-$tool in $bin" "build with make, or set KROK_BIN"
 done
 mkdir -p -- "$out" || fail "cannot make the folder $out"
@@ -91,4 +91,16 @@ made "${base}_motion.csv" "world positions of the joints, for a spreadsheet"
 made "${base}_motion.bvh" "the motion as BVH again"
 made "${base}_motion.glb" "the skeleton alone, animated"
 
-say "Done. Drop ${base}_rig.glb into any glTF viewer."
+say "6. Something to look at"
+# Its keytimes stand in both; a motion without steps has none, and no picture needs them.
+"$bin/krok-keys" -q -o "$base.keys.json" -- "$base.anim" || rm -f -- "$base.keys.json"
+[ ! -e "$base.keys.json" ] || made "$base.keys.json" "when feet stand, and the keytimes of the gait"
+"$bin/krok-view" -q -o "$base.html" -- "$base.anim" "$base.model"
+made "$base.html" "a page that plays it, in any browser, from disk"
+"$bin/krok-plot" -q -o "$base.svg" --sheet "${base}_sheet.png" --strip "${base}_strip.png" \
+  -- "$base.anim"
+made "$base.svg" "path, feet and joint angles as charts"
+made "${base}_sheet.png" "the figure at eight moments, from the front and its left"
+made "${base}_strip.png" "the same along its way"
+
+say "Done. Open $base.html in a browser, or drop ${base}_rig.glb into any glTF viewer."

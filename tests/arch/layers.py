@@ -19,25 +19,31 @@ ALLOWED = {
     "lib/nodes": BASE,
     "lib/capture": BASE | {"lib/roles"},
     "lib/character": BASE | {"lib/roles", "lib/capture", "lib/nodes"},
+    "lib/tracks": BASE,
+    "lib/pose": BASE,
     "lib/motion": BASE | {"lib/roles"},
+    "lib/blend": BASE | {"lib/roles", "lib/motion", "lib/pose"},
     "lib/filter": BASE | {"lib/motion"},
+    "lib/contacts": BASE | {"lib/roles", "lib/motion", "lib/filter"},
     "lib/ik": BASE,
     "lib/retarget": BASE | {"lib/roles", "lib/ik", "lib/motion"},
     "lib/skin": BASE,
     "lib/body": BASE | {"lib/roles"},
     "lib/compare": BASE,
-    "lib/draw": BASE,
+    "lib/draw": BASE | {"lib/roles", "lib/motion", "lib/compare", "lib/retarget"},
+    "lib/render": BASE,
     "formats/registry": {"lib/core"},
     "formats/json": {"lib/core"},
     "formats/role_map": BASE | {"lib/roles", "formats/json"},
     "formats/sequences": {"lib/core", "formats/json"},
+    "formats/keys": BASE | {"formats/json"},
     "formats/container": BASE | {"formats/registry"},
     "formats/bvh": BASE | {"lib/roles", "lib/capture", "formats/registry"},
     "formats/acclaim": BASE | {"lib/roles", "lib/capture", "formats/registry"},
     "formats/anim": BASE | {"formats/container", "formats/registry"},
     "formats/model": BASE | {"formats/container", "formats/registry"},
     "formats/cam": BASE | {"formats/container", "formats/registry"},
-    "formats/gltf": BASE | {"lib/nodes"},
+    "formats/gltf": BASE | {"lib/nodes", "lib/tracks"},
     "formats/assimp": BASE | {"lib/nodes", "formats/registry"},
     "formats/csv": BASE,
     "formats/morph_exr": BASE | {"formats/container"},
@@ -50,7 +56,7 @@ TOP = {
 PUBLIC_THIRD_PARTY = ("Eigen/",)
 THIRD_PARTY = re.compile(
     r"^(ceres|bullet|btBullet|tiny_gltf|OpenEXR|Imf|Imath|assimp|hwy|fmt|CLI|nlohmann|fast_float|"
-    r"xxhash)")
+    r"xxhash|embree|png\.h|ft2build)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 

@@ -9,9 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kTools[] = {"krok-import", "krok-export",   "krok-info",
-                                  "krok-body",   "krok-skin",     "krok-diff",
-                                  "krok-edit",   "krok-retarget", "krok-view"};
+constexpr const char* kTools[] = {"krok-import", "krok-export", "krok-info", "krok-body",
+                                  "krok-skin",   "krok-diff",   "krok-edit", "krok-retarget",
+                                  "krok-view",   "krok-plot",   "krok-keys", "krok-blend"};
 
 class Tools : public CliTest, public testing::WithParamInterface<const char*> {};
 
@@ -31,10 +31,16 @@ TEST_P(Tools, HelpAndVersionEndWithSuccess) {
 
 TEST_P(Tools, HelpReadsWell) {
   const std::string help = run_tool(GetParam(), {"--help"}).out;
-  EXPECT_EQ(help.find(":{"), std::string::npos) << "value lists as CLI11 prints them";
-  EXPECT_EQ(help.find("TEXT"), std::string::npos) << help;
-  EXPECT_EQ(help.find("INT"), std::string::npos) << help;
-  EXPECT_EQ(help.find("FLOAT"), std::string::npos) << help;
+  // "{sequence}" stands in the texts; options have no such names.
+  for (std::size_t at = 0; (at = help.find("\n  -", at)) != std::string::npos; ++at) {
+    const std::string name =
+        help.substr(at + 1, std::min<std::size_t>(34, help.find('\n', at + 1) - at));
+    EXPECT_EQ(name.find('{'), std::string::npos) << "as CLI11 prints it: " << name;
+  }
+  // CLI11's names for types stand after a name, "--every INT".
+  for (const char* type : {" TEXT", " INT", " UINT", " FLOAT", " BOOLEAN"}) {
+    EXPECT_EQ(help.find(type), std::string::npos) << help;
+  }
   EXPECT_EQ(help.find("\n\n\n"), std::string::npos) << help;
   for (std::size_t at = 0; at < help.size();) {
     const std::size_t end = std::min(help.find('\n', at), help.size());
@@ -51,6 +57,9 @@ TEST_P(Tools, WrongUsageEndsWithTwo) {
                                                     {"--progress=loud"},
                                                     {"-j", "many"},
                                                     {"-j", "2x"},
+                                                    {"-j", "0x2"},
+                                                    {"-j", " 2"},
+                                                    {"-j", "1025"},
                                                     {"-j", "-1"}}) {
     const ToolRun run = run_tool(GetParam(), arguments);
     EXPECT_EQ(run.exit_code, 2);
@@ -184,6 +193,43 @@ TEST_F(Behaviour, NumbersOfOptionsMustParseWhole) {
     EXPECT_EQ(run.exit_code, 2) << fps << run.err;
     EXPECT_NE(run.err.find("error: "), std::string::npos) << run.err;
   }
+}
+
+// "010" is ten, and what is no decimal number is none.
+TEST_F(Behaviour, NumbersAreDecimal) {
+  ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("in.anim")}).exit_code, 0);
+  const auto frames_at_speed = [&](const std::string& speed) {
+    const ToolRun run = run_tool(
+        "krok-edit", {path("in.anim"), "-o", path("out.anim"), "--speed", speed, "--json"});
+    return run.exit_code == 0 ? Json::parse(run.out)["result"]["frames"].get<int>() : -1;
+  };
+  EXPECT_EQ(frames_at_speed("010"), frames_at_speed("10"));
+  EXPECT_EQ(frames_at_speed("02"), 20);
+  for (const char* number : {"0x10", " 2", "2 ", "1e999", "nan", "1_0", ""}) {
+    EXPECT_EQ(frames_at_speed(number), -1) << number;
+    const ToolRun rounds = run_tool(
+        "krok-edit", {path("in.anim"), "-o", path("out.anim"), "--loop", "--rounds", number});
+    EXPECT_EQ(rounds.exit_code, 2) << number;
+    EXPECT_TRUE(has_code(rounds.err, "usage")) << rounds.err;
+    const ToolRun digits =
+        run_tool("krok-export", {path("in.anim"), "-o", path("out.bvh"), "--digits", number});
+    EXPECT_EQ(digits.exit_code, 2) << number;
+  }
+  EXPECT_EQ(run_tool("krok-export", {path("in.anim"), "-o", path("out.bvh"), "--digits", "010"})
+                .exit_code,
+            0);
+}
+
+TEST_F(Behaviour, AFlagThatIsOffIsReportedSo) {
+  ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("in.anim")}).exit_code, 0);
+  for (const char* word : {"off", "no", "0", "false", "n"}) {
+    const ToolRun run = run_tool("krok-edit", {path("in.anim"), "-o", path("out.anim"), "--json",
+                                               std::string("--mirror=") + word});
+    EXPECT_EQ(Json::parse(run.out)["options"]["mirror"], false) << word;
+  }
+  const ToolRun on =
+      run_tool("krok-edit", {path("in.anim"), "-o", path("out.anim"), "--json", "--mirror=yes"});
+  EXPECT_EQ(Json::parse(on.out)["options"]["mirror"], true);
 }
 
 // A program started with its standard streams closed must not write messages into files.

@@ -1,52 +1,15 @@
 #pragma once
 
-#include <gtest/gtest.h>
-#include <stdlib.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
-#include <vector>
 
+#include "support/folder_test.h"
 #include "support/run_tool.h"
 
 namespace krok::test {
 
 // A new folder for each test, and captures to put there.
-class CliTest : public testing::Test {
+class CliTest : public FolderTest {
  protected:
-  CliTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "krok-cli-test-XXXXXX").string();
-    EXPECT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  ~CliTest() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  std::string put(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
-  }
-  static std::string get(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  // All names in the folder, hidden temporary files included.
-  std::vector<std::string> listing() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
-      names.push_back(entry.path().filename());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
   // A chain of three joints that swings, metres, y-up. `third_value` replaces the third number of
   // the second row.
   static std::string capture(int frames, const std::string& third_value = "0") {
@@ -63,8 +26,6 @@ class CliTest : public testing::Test {
     }
     return text;
   }
-
-  std::filesystem::path folder_;
 };
 
 // The end of a message as all tools give it: "[code]".

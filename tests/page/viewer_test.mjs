@@ -75,8 +75,9 @@ async function open(name, options = {}) {
   return page;
 }
 
-// How many different colours a picture of the canvas has; a blank one has a few.
-async function colours(page, name) {
+// Of a picture of the canvas: how many different colours it has, a blank one a few, and how many
+// pixels are as blue as the first figure's bones; its body is paler.
+async function look(page, name) {
   const picture = await page.locator('#view').screenshot();
   if (process.env.KROK_PAGE_SHOTS) {
     const { writeFileSync } = await import('node:fs');
@@ -89,7 +90,8 @@ async function colours(page, name) {
     const pen = canvas.getContext('2d');
     pen.drawImage(image, 0, 0);
     const pixels = new Uint32Array(pen.getImageData(0, 0, image.width, image.height).data.buffer);
-    return new Set(pixels).size;
+    const blue = pixels.filter((pixel) => ((pixel >> 16) & 0xff) - (pixel & 0xff) > 70).length;
+    return { colours: new Set(pixels).size, blue };
   }, picture.toString('base64'));
 }
 
@@ -160,10 +162,13 @@ try {
   await jointsAgree(one, made('walk.anim'), 60);
   await playsByKeyboard(one);
   await controlsHaveNames(one);
-  expect(await colours(one, 'one') > 500, 'the page of a motion is blank');
+  const body = await look(one, 'one');
+  expect(body.colours > 500, 'the page of a motion is blank');
   await one.keyboard.press('s');
+  const both = await look(one, 'both');
+  expect(both.blue > body.blue + 1000, `the body hides the skeleton: ${body.blue}, ${both.blue} blue pixels`);
   await one.keyboard.press('b');
-  expect(await colours(one, 'skeleton') > 300, 'the skeleton alone is blank');
+  expect((await look(one, 'skeleton')).colours > 300, 'the skeleton alone is blank');
 
   const two = await open('two.html');
   await jointsAgree(two, made('turn.anim'), 60, 1);
@@ -171,10 +176,10 @@ try {
 
   const glb = await open('glb.html');
   await jointsAgree(glb, made('walk.anim'), 60);
-  expect(await colours(glb, 'glb') > 500, 'the page of a GLB is blank');
+  expect((await look(glb, 'glb')).colours > 500, 'the page of a GLB is blank');
 
   const phone = await open('one.html', { viewport: { width: 390, height: 700 }, hasTouch: true, isMobile: true, colorScheme: 'dark' });
-  expect(await colours(phone, 'phone') > 500, 'the page on a phone is blank');
+  expect((await look(phone, 'phone')).colours > 500, 'the page on a phone is blank');
   const wide = await phone.evaluate(() => document.documentElement.scrollWidth);
   expect(wide <= 390, `on a phone the page is ${wide} pixels wide`);
 } catch (error) {

@@ -1,10 +1,12 @@
 #include "tools/common/batch.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <new>
 #include <optional>
@@ -14,10 +16,12 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "tools/common/batch_list.h"
+#include "tools/common/batch_names.h"
 #include "tools/common/batch_report.h"
 #include "tools/common/in_order.h"
 #include "tools/common/journal.h"
 #include "tools/common/option_sets.h"
+#include "tools/common/paths.h"
 
 namespace krok {
 
@@ -41,6 +45,12 @@ struct Outcome {
   std::string messages;
   Json report;
   Status journal;
+  // Results whose names the list does not tell, "hero_{clip}.anim": which of two files they belong
+  // to is decided in the order of the list.
+  std::vector<std::string> unforeseen;
+  std::vector<OutputFile> held_files;  // those of them that are to be put in place
+  std::optional<Json> record;          // for the journal, once they are
+  ToolContext context;
 };
 
 const char* name_of(Outcome::Kind kind) {
@@ -100,8 +110,8 @@ class Batch {
 
  private:
   Status begin_report() {
-    return report_.begin(line_.json_path, context_.report.tool, context_.report.version,
-                         options_of_batch(line_));
+    return report_.begin(line_.json_path, {.no_clobber = line_.no_clobber}, context_.report.tool,
+                         context_.report.version, options_of_batch(line_));
   }
 
   // Ends a batch of which no file was begun.
@@ -118,7 +128,9 @@ class Batch {
     std::set<std::string> folders = {line_.out_dir,
                                      fs::path(line_.json_path).parent_path().string()};
     for (const BatchFile& file : list_.files) {
-      folders.insert(fs::path(file.output).parent_path().string());
+      for (const std::string& path : outputs_of(file, list_, line_.out_dir)) {
+        folders.insert(fs::path(path).parent_path().string());
+      }
     }
     std::error_code trouble;
     if (!line_.out_dir.empty()) fs::create_directories(line_.out_dir, trouble);
@@ -148,13 +160,12 @@ class Batch {
 
   Outcome do_file(const BatchFile& file) {
     Outcome outcome;
-    ToolContext context;
     try {
-      run_file(file, context, outcome);
+      run_file(file, outcome.context, outcome);
     } catch (const std::bad_alloc&) {
-      fail(file, Error("out-of-memory", "there is not enough memory"), context, outcome);
+      fail(file, Error("out-of-memory", "there is not enough memory"), outcome);
     } catch (const std::exception& error) {
-      fail(file, Error("internal", error.what()), context, outcome);
+      fail(file, Error("internal", error.what()), outcome);
     }
     return outcome;
   }
@@ -165,7 +176,7 @@ class Batch {
     const auto parsed = line.parse(arguments_for_file(options_of(file, list_, line_.out_dir),
                                                       line_.fixed_positionals, file.input,
                                                       file.output, line_.no_clobber));
-    if (!parsed) return fail(file, parsed.error(), context, outcome);
+    if (!parsed) return fail(file, parsed.error(), outcome);
     context = line.context();
     context.jobs = jobs_of_a_file_;
     context.quiet = line_.quiet;
@@ -174,11 +185,13 @@ class Batch {
     context.kept_messages = &outcome.messages;
     context.report_on_standard_output = line_.json_path == "-";
     context.subject.file = file.input;
+    context.report_path = line_.json_path;
+    context.check_unforeseen = [this](const std::string& path) { return names_.check(path); };
 
     const std::string made_with = digest(file, context);
     if (!line_.force) {
       if (auto record = journal_->unchanged(file.key, made_with, file.input)) {
-        return note_unchanged(file, context, std::move(*record), outcome);
+        return note_unchanged(file, std::move(*record), outcome);
       }
     }
     std::error_code known_later;  // when the file is created
@@ -186,17 +199,40 @@ class Batch {
       fs::create_directories(fs::path(path).parent_path(), known_later);
     }
     const Result<int> done = run_guarded(spec, context);
-    if (!done) return fail(file, done.error(), context, outcome);
+    if (!done) return fail(file, done.error(), outcome);
     if (*done != kExitDone) {
-      return fail(file, Error("failed", fmt::format("ended with exit code {}", *done)), context,
-                  outcome);
+      return fail(file, Error("failed", fmt::format("ended with exit code {}", *done)), outcome);
     }
     outcome.kind = Outcome::Kind::done;
     outcome.report = report_of(file, context, outcome);
-    const auto record =
-        journal_record(line_.out_dir, file.key, made_with, file.input, context.report);
+    outcome.unforeseen = std::move(context.held_paths);
+    outcome.held_files = std::move(context.held_files);
+    auto record = journal_record(line_.out_dir, file.key, made_with, file.input, context.report,
+                                 places_of(outcome));
     // What is gone again or no regular file cannot be known later.
-    if (record) outcome.journal = journal_->add(*record);
+    if (!record) return;
+    if (outcome.held_files.empty()) {
+      outcome.journal = journal_->add(*record);
+    } else {
+      outcome.record = std::move(*record);
+    }
+  }
+
+  // Where the bytes of results stand that are not in place yet.
+  static std::map<std::string, std::string> places_of(const Outcome& outcome) {
+    std::map<std::string, std::string> places;
+    for (std::size_t i = 0; i < outcome.held_files.size(); ++i) {
+      places[outcome.unforeseen[i]] = outcome.held_files[i].written_at();
+    }
+    return places;
+  }
+
+  // In the order of the list: the results that have waited for it get their place.
+  Status place(const BatchFile& file, Outcome& outcome) {
+    if (Status claimed = names_.claim(outcome.unforeseen, file.input); !claimed) return claimed;
+    if (Status placed = OutputFile::place_all(outcome.held_files); !placed) return placed;
+    if (outcome.record) outcome.journal = journal_->add(*outcome.record);
+    return {};
   }
 
   // A checksum of all that makes a result besides the bytes of its inputs.
@@ -236,20 +272,22 @@ class Batch {
     return report;
   }
 
-  void note_unchanged(const BatchFile& file, const ToolContext& context, Json record,
-                      Outcome& outcome) const {
+  void note_unchanged(const BatchFile& file, Json record, Outcome& outcome) const {
+    const ToolContext& context = outcome.context;
     outcome.kind = Outcome::Kind::unchanged;
     outcome.report = report_of(file, context, outcome);
     outcome.report["inputs"] = std::move(record["inputs"]);
     for (const Json& written : record["outputs"]) {
-      outcome.report["outputs"].push_back(
-          (fs::path(line_.out_dir) / written.value("path", std::string())).string());
+      const std::string path = below(line_.out_dir, written.value("path", std::string()));
+      outcome.report["outputs"].push_back(path);
+      if (!context.is_destination(path)) outcome.unforeseen.push_back(path);
     }
     outcome.report["issues"] = std::move(record["issues"]);
     outcome.report["result"] = std::move(record["result"]);
   }
 
-  void fail(const BatchFile& file, Error error, ToolContext& context, Outcome& outcome) const {
+  void fail(const BatchFile& file, Error error, Outcome& outcome) const {
+    ToolContext& context = outcome.context;
     // A word of a manifest is at fault, or else the file.
     const bool of_line = error.code == "usage" && !list_.option_sets[file.options].options.empty();
     if (error.where.file.empty() && of_line && !file.line.file.empty()) error.where = file.line;
@@ -258,6 +296,7 @@ class Batch {
     context.subject.file = file.input;
     context.tell(error);
     outcome.kind = Outcome::Kind::failed;
+    outcome.held_files.clear();
     context.report.outputs.clear();
     context.report.result = Json::object();
     outcome.report = report_of(file, context, outcome);
@@ -265,6 +304,9 @@ class Batch {
 
   // Tells what became of a file; whether to go on.
   bool take(const BatchFile& file, Outcome outcome) {
+    if (outcome.kind != Outcome::Kind::failed) {
+      if (const Status placed = place(file, outcome); !placed) fail(file, placed.error(), outcome);
+    }
     if (!outcome.messages.empty()) write_message(console_.get(), outcome.messages);
     report_.add(outcome.report);
     if (!outcome.journal && journal_trouble_) {
@@ -272,6 +314,11 @@ class Batch {
     }
     ++counts_[static_cast<int>(outcome.kind)];
     console_->advance(1);
+    if (outcome.kind == Outcome::Kind::done) {
+      for (const Json& path : outcome.report["outputs"]) {
+        written_folders_.insert(fs::path(path.get<std::string>()).parent_path().string());
+      }
+    }
     if (outcome.kind != Outcome::Kind::failed) return true;
     if (failed_.size() < kNamedAgain) failed_.push_back(file.input);
     return line_.keep_going;
@@ -290,7 +337,21 @@ class Batch {
     return json;
   }
 
+  // What was written without waiting for the disk is on it, or it is said.
+  Status store() const {
+    std::set<dev_t> stored;
+    for (const std::string& folder : written_folders_) {
+      const std::string path = folder.empty() ? "." : folder;
+      struct stat status {};
+      if (stat(path.c_str(), &status) != 0 || !stored.insert(status.st_dev).second) continue;
+      if (Status done = store_files(path); !done) return done;
+    }
+    return {};
+  }
+
   int finish() {
+    const Status stored = store();
+    if (!stored) context_.tell(stored.error());
     Status kept = journal_->tidy();
     if (!journal_trouble_) kept = journal_trouble_;
     if (!kept) {
@@ -318,6 +379,7 @@ class Batch {
       context_.tell(written.error());
       return kExitTrouble;
     }
+    if (!stored) return kExitTrouble;
     if (failed == 0) return kExitDone;
     return line_.keep_going ? kExitPartly : kExitTrouble;
   }
@@ -342,11 +404,13 @@ class Batch {
   std::unique_ptr<Console> console_;
   Progress no_progress_;
   BatchList list_;
+  BatchNames names_{list_, line_.out_dir};
   BatchReport report_;
   std::optional<Journal> journal_;
   int jobs_of_a_file_ = 1;
   std::array<std::size_t, 3> counts_{};
   std::vector<std::string> failed_;
+  std::set<std::string> written_folders_;
   Status journal_trouble_;
 };
 

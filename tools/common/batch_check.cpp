@@ -1,7 +1,6 @@
 #include "tools/common/batch_check.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <map>
 #include <unordered_map>
@@ -12,21 +11,12 @@ namespace krok {
 
 namespace {
 
-// A file on the disk, whatever it is called.
-using FileNumber = std::pair<dev_t, ino_t>;
-
-std::optional<FileNumber> number_of(const std::string& path) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
-  return FileNumber(status.st_dev, status.st_ino);
-}
-
 class Check {
  public:
   Check(const CommandLine& line, const BatchList& list, Diagnostics& errors)
       : line_(line), list_(list), errors_(errors) {}
 
-  void run() {
+  std::map<FileNumber, std::string> run() {
     for (const BatchFile& file : list_.files) note_read(file.input);
     for (const std::string& path : line_.fixed_positionals) note_read(path);
     if (line_.manifest != "-") note_read(line_.manifest);
@@ -52,6 +42,7 @@ class Check {
         }
       }
     }
+    return std::move(read_);
   }
 
  private:
@@ -75,11 +66,11 @@ class Check {
                               "name a file for what all of them take"));
       return;
     }
-    if (const auto number = number_of(path)) read_.emplace(*number, path);
+    if (const auto number = file_number(path)) read_.emplace(*number, path);
   }
 
   void check(const std::string& path, std::size_t who, bool lacks_placeholder = false) {
-    const auto number = number_of(path);
+    const auto number = file_number(path);
     if (number) {
       if (const auto found = read_.find(*number); found != read_.end()) {
         return fail(who,
@@ -114,8 +105,8 @@ class Check {
 
 }  // namespace
 
-void check_batch(const CommandLine& line, const BatchList& list, Diagnostics& errors) {
-  Check(line, list, errors).run();
+void check_batch(const CommandLine& line, BatchList& list, Diagnostics& errors) {
+  list.read_files = Check(line, list, errors).run();
 }
 
 }  // namespace krok

@@ -144,6 +144,7 @@ class Lister {
     if (fs::is_directory(argument, missing)) {
       paths = find_files_below(argument);
       if (paths) {
+        leave_out_results(argument, *paths);
         std::erase_if(*paths,
                       [&](const auto& path) { return !has_extension(path, spec_.batch->reads); });
       }
@@ -151,9 +152,13 @@ class Lister {
     } else if (has_wildcards(argument) && !fs::exists(argument, missing)) {
       paths = find_files(argument);
       base = fixed_part(argument);
+      if (paths) leave_out_results(base, *paths);
       nothing = "no file fits this pattern";
-    } else {
+    } else if (fs::exists(argument, missing)) {
       return {{argument, std::nullopt}};
+    } else {
+      fail(Error("file-missing", "no such file", "check the path").in_file(argument));
+      return {};
     }
     std::vector<Found> found;
     if (!paths) {
@@ -164,6 +169,18 @@ class Lister {
       for (std::string& path : *paths) found.push_back({std::move(path), base});
     }
     return found;
+  }
+
+  // Where the results go into a folder inside the one that is read, they are not read again.
+  void leave_out_results(const std::string& folder, std::vector<std::string>& paths) const {
+    std::error_code unknown;
+    const fs::path read = fs::weakly_canonical(folder.empty() ? "." : folder, unknown);
+    const fs::path written = fs::weakly_canonical(line_.out_dir.empty() ? "." : line_.out_dir);
+    const fs::path inside = written.lexically_relative(read);
+    if (inside.empty() || inside == "." || *inside.begin() == "..") return;
+    const std::string results = absolute_path((fs::path(folder) / inside).string()) + "/";
+    std::erase_if(
+        paths, [&](const std::string& path) { return absolute_path(path).rfind(results, 0) == 0; });
   }
 
   void from_manifest() {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
 #include "tools/common/command_line.h"
 #include "tools/common/option_sets.h"
+#include "tools/common/paths.h"
 #include "tools/common/tool.h"
 
 namespace krok {
@@ -22,8 +24,9 @@ struct BatchFile {
 
 struct BatchList {
   std::vector<OptionSet> option_sets;
-  std::vector<BatchFile> files;  // those of this shard
-  std::size_t total = 0;         // in all shards
+  std::vector<BatchFile> files;                  // those of this shard
+  std::size_t total = 0;                         // in all shards
+  std::map<FileNumber, std::string> read_files;  // inputs of all shards, maps, the list itself
 };
 
 // The path in an option that names an output: "{name}" in it stands for the file's output below the

@@ -12,10 +12,10 @@ std::string text_of(const Json& json) {
 
 }  // namespace
 
-Status BatchReport::begin(const std::string& path, const std::string& tool,
+Status BatchReport::begin(const std::string& path, OutputFile::Options how, const std::string& tool,
                           const std::string& version, const Json& options) {
   if (path.empty()) return {};
-  auto file = OutputFile::create(path);
+  auto file = OutputFile::create(path, how);
   if (!file) return file.error();
   file_ = std::move(*file);
   return file_->write(

@@ -20,8 +20,8 @@ namespace krok {
 class BatchReport {
  public:
   // An empty path is for no report.
-  Status begin(const std::string& path, const std::string& tool, const std::string& version,
-               const Json& options);
+  Status begin(const std::string& path, OutputFile::Options how, const std::string& tool,
+               const std::string& version, const Json& options);
   void add(const Json& file);
   Status end(const Diagnostics& issues, const Json& result);
 

@@ -4,6 +4,7 @@
 
 #include "tools/common/help.h"
 #include "tools/common/one_of.h"
+#include "tools/common/option_kinds.h"
 
 namespace krok {
 
@@ -111,9 +112,7 @@ void CommandLine::declare_common(const ToolSpec& spec) {
                                          {"none", ProgressStyle::none}}))
       ->default_str("auto")
       ->group(kCommon);
-  app_.add_option("-j,--jobs", jobs, "Threads; 0 is one a core")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024).description(""))
+  add_whole(app_, "-j,--jobs", jobs, "Threads; 0 is one a core", 0, 1024)
       ->default_str("0")
       ->group(kCommon);
 }
@@ -165,6 +164,13 @@ void CommandLine::note_given() {
     const auto found = written_.find(option);
     given.is_flag = is_flag(*option);
     given.values = found == written_.end() ? option->results() : found->second;
+    if (given.is_flag) {  // "off", "no" and "0" are words for false
+      for (std::string& value : given.values) {
+        bool on = false;
+        (void)CLI::detail::lexical_cast(value, on);
+        value = on ? "true" : "false";
+      }
+    }
     given.names_input = type_begins(*option, "IN");
     given.names_output = type_begins(*option, "OUT");
     given_.push_back(std::move(given));
@@ -219,6 +225,7 @@ ToolContext CommandLine::context() const {
   context.quiet = quiet;
   context.verbose = verbose;
   context.output = output;
+  context.report_path = json_path;
   context.report_on_standard_output = json_path == "-";
   for (const GivenOption& option : given_) {
     const Json value = option.is_flag              ? Json(option.values.back() != "false")
@@ -229,8 +236,13 @@ ToolContext CommandLine::context() const {
       for (const std::string& path : option.values) context.destinations.push_back(path);
       continue;
     }
-    context.result_options[option.name] =
-        option.names_input ? Json(base_name(option.values.front())) : value;
+    if (!option.names_input) {
+      context.result_options[option.name] = value;
+      continue;
+    }
+    Json names = Json::array();
+    for (const std::string& path : option.values) names.push_back(base_name(path));
+    context.result_options[option.name] = names.size() == 1 ? names.front() : names;
   }
   for (const std::string& path : {output, json_path}) {
     if (!path.empty()) context.destinations.push_back(path);

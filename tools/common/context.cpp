@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "core/hash.h"
+#include "core/text.h"
 #include "tools/common/console_progress.h"
 #include "tools/common/paths.h"
 #include "tools/common/tool.h"
@@ -50,12 +53,13 @@ void ToolContext::print(const std::string& text) {
 }
 
 Result<InputFile> ToolContext::open_input(const std::string& path) {
-  for (const std::string& destination : destinations) {
-    if (same_file(path, destination)) {
-      refused_inputs.push_back(path);
-      return Error("usage", "is read and would be replaced by a result", "choose another name")
-          .in_file(path);
-    }
+  const auto replaces = [&](const std::string& destination) {
+    return same_file(path, destination);
+  };
+  if (std::any_of(destinations.begin(), destinations.end(), replaces) ||
+      written_.count(place_of(path)) > 0) {
+    refused_inputs.push_back(path);
+    return replaced_error(path);
   }
   for (const Report::Input& input : report.inputs) {
     if (path == "-" && input.path == path) {
@@ -67,24 +71,59 @@ Result<InputFile> ToolContext::open_input(const std::string& path) {
   return file;
 }
 
+void ToolContext::chose_beside(const std::string& path, const std::string& ending) {
+  report.choices.push_back({std::filesystem::path(path).parent_path().string(), ending});
+}
+
+Status ToolContext::check_output(const std::string& path) {
+  for (const Report::Input& input : report.inputs) {
+    if (!same_file(input.path, path)) continue;
+    refused_inputs.push_back(input.path);
+    return replaced_error(input.path);
+  }
+  if (check_unforeseen && !is_destination(path)) {
+    if (Status fits = check_unforeseen(path); !fits) return fits;
+  }
+  const std::string place = place_of(path);
+  if (!place.empty()) written_.insert(place);
+  const auto is_same = [&](const std::string& other) {
+    return !place.empty() && place_of(other) == place;
+  };
+  if ((!report_path.empty() && is_same(report_path)) ||
+      std::any_of(report.outputs.begin(), report.outputs.end(), is_same)) {
+    return twice_error(path);
+  }
+  return {};
+}
+
+bool ToolContext::is_destination(const std::string& path) const {
+  return std::find(destinations.begin(), destinations.end(), path) != destinations.end();
+}
+
 void ToolContext::wrote(const std::string& path) {
   report.outputs.push_back(path);
 }
 
+// Formats hold their texts as UTF-8; names of files may be any bytes.
 Provenance ToolContext::provenance() const {
   Provenance provenance;
   provenance.tool = report.tool;
   provenance.version = report.version;
   for (const auto& input : report.inputs) {
-    provenance.sources.push_back({base_name(input.path), input.xxh3});
+    provenance.sources.push_back({to_utf8(base_name(input.path)), input.xxh3});
   }
+  const auto text_of = [](const Json& value) {
+    return value.is_string() ? to_utf8(value.get<std::string>())
+                             : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
   for (const auto& [name, value] : result_options.items()) {
-    provenance.options.emplace_back(name,
-                                    value.is_string() ? value.get<std::string>() : value.dump());
+    // An option that was repeated stands as often.
+    const Json values = value.is_array() ? value : Json::array({value});
+    for (const Json& one : values) provenance.options.emplace_back(name, text_of(one));
   }
   for (const Diagnostic& issue : report.issues) {
     if (issue.severity == Severity::warning) {
-      provenance.warnings.push_back(fmt::format("{} [{}]", issue.message, issue.code));
+      provenance.warnings.push_back(to_utf8(fmt::format("{} [{}]", issue.message, issue.code)));
     }
   }
   return provenance;

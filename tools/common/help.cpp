@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string_view>
 
 namespace krok {
 
@@ -16,7 +17,9 @@ std::string usage(const ToolSpec& spec) {
       fmt::format("Usage: {} [options] {}{}\n", spec.name, spec.inputs,
                   spec.has_output ? (spec.needs_output ? " -o OUTPUT" : " [-o OUTPUT]") : "");
   if (spec.batch) {
-    text += fmt::format("       {} [options] {}... --out-dir DIR\n", spec.name, spec.inputs);
+    const bool ends_so = std::string_view(spec.inputs).ends_with("...");
+    text += fmt::format("       {} [options] {}{} --out-dir DIR\n", spec.name, spec.inputs,
+                        ends_so ? "" : "...");
     text += fmt::format("       {} [options] --manifest LIST.tsv\n", spec.name);
   }
   return text;
@@ -72,6 +75,14 @@ class HelpFormatter : public CLI::Formatter {
     return app->get_description() + "\n\n";
   }
   std::string make_footer(const CLI::App* app) const override { return app->get_footer(); }
+  // Without "{false}" after a flag that takes one back.
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+    std::string name = CLI::Formatter::make_option_name(option, is_positional);
+    for (std::size_t at; (at = name.find('{')) != std::string::npos;) {
+      name.erase(at, name.find('}', at) - at + 1);
+    }
+    return name;
+  }
   // Only the value's name, and the default where it has one; types and "REQUIRED" would be noise.
   std::string make_option_opts(const CLI::Option* option) const override {
     std::string text;

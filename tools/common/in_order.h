@@ -1,20 +1,21 @@
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
 #include <map>
 #include <mutex>
-#include <thread>
-#include <vector>
+
+#include "core/parallel.h"
 
 namespace krok {
 
 // Does work(i) for i from 0 to count - 1 on up to `threads` threads, and gives each outcome to
 // take(i, outcome) in the order of i, one at a time, on any of the threads. Work is begun in order,
 // at most `window` items ahead of the first one not taken, so that few outcomes wait. Once take
-// gives false, no work is begun and nothing is taken any more; what was begun is finished. Neither
-// may throw.
+// gives false, no work is begun and nothing is taken any more; what was begun is finished. The same
+// after one of them throws, and the exception is thrown on.
 template <typename Outcome>
 void in_order(std::size_t count, int threads, std::size_t window,
               const std::function<Outcome(std::size_t)>& work,
@@ -43,10 +44,19 @@ void in_order(std::size_t count, int threads, std::size_t window,
       taken_one.notify_all();
     }
   };
+  // The others would wait for the item of one that throws.
+  const auto guarded = [&] {
+    try {
+      run();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      stopped = true;
+      taken_one.notify_all();
+      throw;
+    }
+  };
 
-  std::vector<std::jthread> helpers;
-  for (int i = 1; i < threads; ++i) helpers.emplace_back(run);
-  run();
+  on_threads(static_cast<std::size_t>(std::max(threads, 1)), guarded);
 }
 
 }  // namespace krok

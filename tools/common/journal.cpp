@@ -55,6 +55,23 @@ std::string from_folder(const std::string& folder, const std::string& path) {
   return relative.empty() ? path : relative.string();
 }
 
+// Of the names and sizes of the files with an ending, ".asf", in a folder.
+std::string names_checksum(const std::string& folder, const std::string& ending) {
+  std::vector<std::string> names;
+  std::error_code unknown;
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, unknown), end; entry != end;
+       entry.increment(unknown)) {
+    const std::string name = entry->path().filename().string();
+    if (extension(name) != ending) continue;
+    std::error_code no_file;
+    names.push_back(fmt::format("{}\n{}\n", name, entry->file_size(no_file)));
+  }
+  std::sort(names.begin(), names.end());
+  std::string text;
+  for (const std::string& name : names) text += name;
+  return hex(xxh3(std::as_bytes(std::span(text))));
+}
+
 }  // namespace
 
 Journal::Journal(const std::string& folder, const std::string& tool, const std::string& suffix)
@@ -107,6 +124,14 @@ Result<std::string> Journal::checksum_of_input(const std::string& path) const {
   return input_checksums_[path] = checksum(*file);
 }
 
+std::string Journal::checksum_of_choice(const std::string& folder,
+                                        const std::string& ending) const {
+  const std::lock_guard lock(checking_);
+  std::string& known = choice_checksums_[{folder, ending}];
+  if (known.empty()) known = names_checksum(folder, ending);
+  return known;
+}
+
 std::optional<Json> Journal::unchanged(const std::string& output, const std::string& made_with,
                                        const std::string& input) const {
   const auto found = index_.find(output);
@@ -133,6 +158,15 @@ std::optional<Json> Journal::unchanged(const std::string& output, const std::str
       }
       holds = input_checksum == text_of(source, "xxh3");
       source["path"] = input;
+    }
+    const auto folder_of = [](const std::string& path) {
+      return fs::path(path).parent_path().string();
+    };
+    for (const Json& choice : array_of(record, "choices")) {
+      std::string folder = text_of(choice, "folder");
+      if (folder == folder_of(recorded_input)) folder = folder_of(input);
+      holds =
+          holds && checksum_of_choice(folder, text_of(choice, "ending")) == text_of(choice, "xxh3");
     }
     for (const Json& written : array_of(record, "outputs")) {
       holds = holds && output_holds(written, folder_);
@@ -189,16 +223,24 @@ Status Journal::tidy() {
 
 Result<Json> journal_record(const std::string& folder, const std::string& output,
                             const std::string& made_with, const std::string& input,
-                            const Report& report) {
+                            const Report& report,
+                            const std::map<std::string, std::string>& places) {
   Json record;
   record["output"] = output;
   record["made_with"] = made_with;
   record["version"] = report.version;
   record["input"] = input;
   record["inputs"] = to_json(report.inputs);
+  record["choices"] = Json::array();
+  for (const Report::Choice& choice : report.choices) {
+    record["choices"].push_back({{"folder", choice.folder},
+                                 {"ending", choice.ending},
+                                 {"xxh3", names_checksum(choice.folder, choice.ending)}});
+  }
   record["outputs"] = Json::array();
   for (const std::string& path : report.outputs) {
-    const auto file = InputFile::open(path);
+    const auto held = places.find(path);
+    const auto file = InputFile::open(held == places.end() ? path : held->second);
     if (!file) return file.error();
     record["outputs"].push_back({{"path", from_folder(folder, path)},
                                  {"size", file->bytes().size()},

@@ -19,14 +19,16 @@
 //
 //   {"output": "a/walk.anim", "made_with": "16 digits", "version": "0.1.0", "input":
 //   "takes/walk.bvh",
-//    "inputs": [{"path", "xxh3"}], "outputs": [{"path", "size", "xxh3"}], "issues": [], "result":
-//    {}}
+//    "inputs": [{"path", "xxh3"}], "choices": [{"folder", "ending", "xxh3"}],
+//    "outputs": [{"path", "size", "xxh3"}], "issues": [], "result": {}}
 //
 // "output" and the paths in "outputs" are below the folder; "made_with" is a checksum of all that
-// makes a result besides the inputs' bytes. A line is written in one piece when a result is whole
-// on the disk, so that a killed run loses at most the line that it was at; what is no whole line is
-// passed over. Nothing is believed: a result counts as done only while all its files and all its
-// inputs have the checksums that stand there. A lost or wrong line costs time, never a result.
+// makes a result besides the inputs' bytes; a choice is of one of the files with that ending in
+// that folder, its checksum one of their names and sizes. A line is written in one piece when a
+// result is whole on the disk, so that a killed run loses at most the line that it was at; what is
+// no whole line is passed over. Nothing is believed: a result counts as done only while all its
+// files and all its inputs have the checksums that stand there. A lost or wrong line costs time,
+// never a result.
 
 namespace krok {
 
@@ -62,6 +64,7 @@ class Journal {
   void read(const std::string& path);
   std::string_view line(const Place& place) const;
   Result<std::string> checksum_of_input(const std::string& path) const;
+  std::string checksum_of_choice(const std::string& folder, const std::string& ending) const;
 
   std::string folder_;
   std::string path_;
@@ -72,11 +75,13 @@ class Journal {
   std::mutex adding_;
   mutable std::mutex checking_;
   mutable std::map<std::string, std::string> input_checksums_;  // of files that many results share
+  mutable std::map<std::pair<std::string, std::string>, std::string> choice_checksums_;
 };
 
-// A record of a result: the checksums of its files are taken from the disk.
+// A record of a result: the checksums of its files are taken from the disk; of those in `places`,
+// which are not in place yet, from where it says.
 Result<Json> journal_record(const std::string& folder, const std::string& output,
                             const std::string& made_with, const std::string& input,
-                            const Report& report);
+                            const Report& report, const std::map<std::string, std::string>& places);
 
 }  // namespace krok

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
-
 #include "formats/acclaim/acclaim_reader.h"
 #include "formats/acclaim/find_skeleton.h"
 #include "formats/anim/anim.h"
@@ -32,6 +30,7 @@ Result<Clip> told(Result<Capture> capture, ToolContext& context) {
 }
 
 Result<Clip> read_acclaim(const InputFile& motion, ToolContext& context) {
+  context.chose_beside(motion.path(), ".asf");
   const auto found = acclaim::find_skeleton(motion.path());
   if (!found) return found.error();
   const auto skeleton = context.open_input(found->path);
@@ -59,6 +58,17 @@ MotionFacts facts_of(const FrameSource& frames, std::vector<std::string> convers
 }
 
 }  // namespace
+
+FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty) {
+  FrameSource watching = frames;
+  watching.read = [&](int first, int count, std::span<Vec3f> positions,
+                      std::span<Quatf> orientations) {
+    Status read = frames.read(first, count, positions, orientations);
+    if (!read) faulty = true;
+    return read;
+  };
+  return watching;
+}
 
 Result<Clip> read_motion(const InputFile& input, ToolContext& context) {
   switch (registry::identify(input.path(), input.bytes())) {
@@ -94,13 +104,7 @@ Result<MotionFacts> use_motion(const std::string& path, ToolContext& context,
                   [&](std::size_t offset) { input->release_before(offset); });
     if (opened) {
       std::atomic<bool> faulty = false;
-      FrameSource frames = opened->frames;
-      frames.read = [&](int first, int count, std::span<Vec3f> positions,
-                        std::span<Quatf> orientations) {
-        Status read = opened->frames.read(first, count, positions, orientations);
-        if (!read) faulty = true;
-        return read;
-      };
+      const FrameSource frames = watched(opened->frames, faulty);
       const Status used = use(frames);
       if (!faulty) {
         if (!used) return used.error();

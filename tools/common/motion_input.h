@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
@@ -20,6 +21,10 @@ Result<Clip> read_motion(const std::string& path, ToolContext& context);
 
 // The same of a file that is open already.
 Result<Clip> read_motion(const InputFile& input, ToolContext& context);
+
+// The same frames, that note in `faulty` when one cannot be read, whatever their user makes of
+// that. Both arguments must outlive what is returned.
+FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty);
 
 // What is known of a motion once its frames were used.
 struct MotionFacts {

@@ -20,6 +20,12 @@ struct Report {
     std::string xxh3;
   };
   std::vector<Input> inputs;
+  // Where one of several files was chosen; for the journal of a batch, not for the report.
+  struct Choice {
+    std::string folder;
+    std::string ending;  // ".asf"
+  };
+  std::vector<Choice> choices;
   Json options = Json::object();
   std::vector<std::string> outputs;
   Diagnostics issues;

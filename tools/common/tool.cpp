@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 
 #include "tools/common/batch.h"
 #include "tools/common/command_line.h"
@@ -60,31 +62,48 @@ Status check_destinations(const ToolContext& context) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (same_file(paths[i], paths[j])) {
-        return Error("usage", fmt::format("{} would be written twice", paths[i]),
-                     "give each result its own file");
+        return twice_error(paths[i]);
       }
     }
   }
   return {};
 }
 
-int finish(ToolContext& context, const std::string& json_path, int exit_code) {
-  if (json_path.empty()) return exit_code;
+// The report, begun before the work, so that nothing is written where it cannot be.
+using ReportFile = std::optional<OutputFile>;
+
+Status begin_report(const ToolContext& context, ReportFile& file) {
+  if (context.report_path.empty()) return {};
+  auto created = OutputFile::create(context.report_path, {.no_clobber = context.no_clobber});
+  if (!created) return created.error();
+  file = std::move(*created);
+  return {};
+}
+
+int finish(ToolContext& context, ReportFile& file, int exit_code) {
+  if (!file) return exit_code;
   for (const std::string& input : context.refused_inputs) {
-    if (same_file(input, json_path)) return kExitTrouble;
+    if (same_file(input, context.report_path)) return kExitTrouble;
   }
   const std::string text =
       context.report.to_json().dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (const Status written = write_file(json_path, text); !written) {
+  (void)file->write(text).ok();  // a failure is kept and told by commit()
+  if (const Status written = file->commit(); !written) {
     write_message(context.console, to_text(written.error()) + "\n");
     return kExitTrouble;
   }
   return exit_code;
 }
 
-int fail(ToolContext& context, const std::string& json_path, const Error& error) {
+int fail(ToolContext& context, ReportFile& file, const Error& error) {
   context.tell(error);
-  return finish(context, json_path, kExitTrouble);
+  return finish(context, file, kExitTrouble);
+}
+
+// What is told without a report.
+int fail(ToolContext& context, const Error& error) {
+  context.tell(error);
+  return kExitTrouble;
 }
 
 bool standard_output_written() {
@@ -95,30 +114,72 @@ Error standard_output_error() {
   return Error("file-unwritable", "standard output cannot be written", "check where it goes");
 }
 
-int print_and_end(const std::string& tool, const std::string& text) {
-  (void)std::fwrite(text.data(), 1, text.size(), stdout);
-  if (standard_output_written()) return kExitDone;
-  write_message(nullptr, message_of(tool, standard_output_error()));
-  return kExitTrouble;
-}
-
 int run_single(const ToolSpec& spec, const CommandLine& line) {
   ToolContext context = line.context();
   if (context.report_on_standard_output && context.output == "-") {
-    return fail(context, "",
+    return fail(context,
                 Error("usage", "the report and the output cannot both go to standard output",
                       fmt::format("see {} --help", spec.name)));
   }
-  if (Status apart = check_destinations(context); !apart) return fail(context, "", apart.error());
+  if (Status apart = check_destinations(context); !apart) return fail(context, apart.error());
+  ReportFile report;
+  if (Status begun = begin_report(context, report); !begun) return fail(context, begun.error());
   const bool silent = context.quiet && line.style == ProgressStyle::automatic;
   const auto console = console_progress(silent ? ProgressStyle::none : line.style);
   context.console = console.get();
   context.progress = console.get();
-  const Result<int> done = run_guarded(spec, context);
+  const Status fits = spec.check ? spec.check() : Status();
+  const Result<int> done = fits ? run_guarded(spec, context) : Result<int>(fits.error());
   console->end();
-  if (!done) return fail(context, line.json_path, done.error());
-  if (!standard_output_written()) return fail(context, line.json_path, standard_output_error());
-  return finish(context, line.json_path, *done);
+  if (!done) return fail(context, report, done.error());
+  if (!standard_output_written()) return fail(context, report, standard_output_error());
+  return finish(context, report, *done);
+}
+
+// Of a command line that could not be parsed.
+int fail_usage(const ToolSpec& spec, const std::vector<std::string>& arguments, bool many,
+               const Error& error) {
+  ToolContext context;
+  context.report.tool = spec.name;
+  context.report.version = version();
+  context.report_path = report_path(arguments);
+  const auto end = std::find(arguments.begin(), arguments.end(), "--");
+  context.no_clobber = std::find(arguments.begin(), end, "--no-clobber") != end;
+  if (many && !only_a_report_stands_at(context.report_path)) {
+    context.report_path.clear();  // a pattern may stand for it
+  }
+  ReportFile report;
+  const Status begun = begin_report(context, report);
+  const int code = fail(context, report, error);
+  return begun ? code : fail(context, begun.error());
+}
+
+int run_arguments(const MakeToolSpec& make_spec, const std::vector<std::string>& arguments) {
+  const ToolSpec spec = make_spec();
+  const bool many = spec.batch && is_for_many(arguments);
+  CommandLine line(spec, many ? CommandLine::Form::many : CommandLine::Form::single);
+  const auto wish = line.parse(arguments);
+  if (!wish) return fail_usage(spec, arguments, many, wish.error());
+  if (*wish == CommandLine::Wish::version) {
+    return print_and_end(spec.name, fmt::format("{} {}\n", spec.name, version()));
+  }
+  // Without the changes for many files, whatever else was given.
+  if (*wish == CommandLine::Wish::help) {
+    return print_and_end(spec.name, CommandLine(spec, CommandLine::Form::single).help());
+  }
+  return many ? run_batch(make_spec, line) : run_single(spec, line);
+}
+
+// What was thrown, as an Error. For a catch clause.
+Error error_of_exception(const std::string& tool) {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return Error("out-of-memory", "there is not enough memory");
+  } catch (const std::exception& error) {
+    return Error("internal", fmt::format("a bug in {}: {}", tool, error.what()),
+                 "please report it with the input that caused it");
+  }
 }
 
 }  // namespace
@@ -134,38 +195,28 @@ std::function<Result<std::string>()> always(std::string ending) {
 Result<int> run_guarded(const ToolSpec& spec, ToolContext& context) {
   try {
     return spec.run(context);
-  } catch (const std::bad_alloc&) {
-    return Error("out-of-memory", "there is not enough memory");
-  } catch (const std::exception& error) {
-    return Error("internal", fmt::format("a bug in {}: {}", spec.name, error.what()),
-                 "please report it with the input that caused it");
+  } catch (const std::exception&) {
+    return error_of_exception(spec.name);
   }
+}
+
+int print_and_end(const std::string& tool, const std::string& text) {
+  (void)std::fwrite(text.data(), 1, text.size(), stdout);
+  if (standard_output_written()) return kExitDone;
+  write_message(nullptr, message_of(tool, standard_output_error()));
+  return kExitTrouble;
 }
 
 int run_tool(const MakeToolSpec& make_spec, int argc, char** argv) {
   open_missing_standard_streams();
   remove_temporaries_on_signals();
-  const ToolSpec spec = make_spec();
-  const std::vector<std::string> arguments = arguments_of(argc, argv);
-  const bool many = spec.batch && is_for_many(arguments);
-  CommandLine line(spec, many ? CommandLine::Form::many : CommandLine::Form::single);
-  const auto wish = line.parse(arguments);
-  if (!wish) {
-    ToolContext context;
-    context.report.tool = spec.name;
-    context.report.version = version();
-    std::string path = report_path(arguments);
-    if (many && !only_a_report_stands_at(path)) path.clear();  // a pattern may stand for it
-    return fail(context, path, wish.error());
+  try {
+    return run_arguments(make_spec, arguments_of(argc, argv));
+  } catch (const std::exception&) {
+    const std::string tool = base_name(argc > 0 ? argv[0] : "krok");
+    write_message(nullptr, message_of(tool, error_of_exception(tool)));
+    return kExitTrouble;
   }
-  if (*wish == CommandLine::Wish::version) {
-    return print_and_end(spec.name, fmt::format("{} {}\n", spec.name, version()));
-  }
-  // Without the changes for many files, whatever else was given.
-  if (*wish == CommandLine::Wish::help) {
-    return print_and_end(spec.name, CommandLine(spec, CommandLine::Form::single).help());
-  }
-  return many ? run_batch(make_spec, line) : run_single(spec, line);
 }
 
 int run_tool(const ToolSpec& spec, int argc, char** argv) {

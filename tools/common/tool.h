@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,9 @@ class ToolContext {
   // The files that this run writes: -o, --json=FILE and every option whose value is named OUT... in
   // the help. open_input refuses to read one of them.
   std::vector<std::string> destinations;
-  // What open_input refused for that. No report is written there either.
+  // Where the report goes: --json=FILE, "-", or empty.
+  std::string report_path;
+  // Inputs that a result would have replaced. No report is written there either.
   std::vector<std::string> refused_inputs;
 
   // The options given that change the result, for provenance: without those that name outputs, and
@@ -65,8 +68,22 @@ class ToolContext {
   // nothing changed.
   Result<InputFile> open_input(const std::string& path);
 
+  // Notes that the result depends on which files with this ending, ".asf", stand beside `path`, for
+  // one of them was chosen: when another comes, a batch does the file anew.
+  void chose_beside(const std::string& path, const std::string& ending);
+
+  // Whether a result may go to `path`: an Error (code usage) for a file that this run reads, its
+  // report, what it writes already and, in a batch, files that the batch reads or other files of it
+  // are to become. Results are written by write_output or an OutputSet (output_set.h), which ask.
+  Status check_output(const std::string& path);
+  // Whether `path` is one of the destinations, as written there: other results have names that the
+  // input or an option's file tells.
+  bool is_destination(const std::string& path) const;
+
   // The options for writing a file, and a note of it in the report; call before writing.
-  OutputFile::Options output_options() const { return {.no_clobber = no_clobber}; }
+  OutputFile::Options output_options() const {
+    return {.no_clobber = no_clobber, .stored_later = kept_messages != nullptr};
+  }
   void wrote(const std::string& path);
 
   // Provenance of a result: this tool, its version, the inputs opened so far by base name, the
@@ -80,9 +97,16 @@ class ToolContext {
   std::string* kept_messages = nullptr;
   // ... and what is about no file in particular is about this one.
   Location subject;
+  // What the batch says to a result that is no destination, and ...
+  std::function<Status(const std::string& path)> check_unforeseen;
+  // ... those results, which the batch puts in place.
+  std::vector<OutputFile> held_files;
+  std::vector<std::string> held_paths;
 
  private:
   void put_message(const std::string& text);
+
+  std::set<std::string> written_;  // places that check_output let pass
 };
 
 struct ToolSpec {
@@ -112,6 +136,9 @@ struct ToolSpec {
 
   // Adds the tool's own options and positionals.
   std::function<void(CLI::App&)> declare;
+  // Whether the options, which are parsed, have values that fit some file or other; may be empty.
+  // Asked before any file is opened, of a batch once for each set of options.
+  std::function<Status()> check;
   // Does the work; the value is an exit code, an Error becomes a message and kExitTrouble.
   std::function<Result<int>(ToolContext&)> run;
 };
@@ -128,6 +155,10 @@ std::function<Result<std::string>()> always(std::string ending);
 int run_tool(const MakeToolSpec& make_spec, int argc, char** argv);
 // For a tool that takes no batches.
 int run_tool(const ToolSpec& spec, int argc, char** argv);
+
+// Prints on standard output and gives the exit code: kExitTrouble with a message where it cannot be
+// written.
+int print_and_end(const std::string& tool, const std::string& text);
 
 // The work alone, with whatever is thrown as an Error (out-of-memory, internal).
 Result<int> run_guarded(const ToolSpec& spec, ToolContext& context);

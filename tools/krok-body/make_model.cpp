@@ -6,8 +6,9 @@
 #include "formats/anim/anim.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
-#include "tools/common/one_of.h"
+#include "tools/common/orientation_option.h"
 #include "tools/common/output_kind.h"
+#include "tools/common/output_set.h"
 
 namespace krok::body_tool {
 
@@ -79,12 +80,10 @@ void declare(CLI::App& app, Options& options) {
                  "A motion or model; its skeleton is taken (- is standard input)")
       ->type_name("IN")
       ->required();
-  app.add_option("--detail", options.detail,
-                 "Vertices: low (about 2,500), medium (10,000) or high (40,000)")
-      ->type_name("LEVEL")
-      ->transform(one_of<BodyDetail>(
-          {{"low", BodyDetail::low}, {"medium", BodyDetail::medium}, {"high", BodyDetail::high}}))
-      ->default_str("medium")
+  add_choice<BodyDetail>(
+      app, "--detail", options.detail,
+      {{"low", BodyDetail::low}, {"medium", BodyDetail::medium}, {"high", BodyDetail::high}},
+      "Vertices: low (about 2,500), medium (10,000) or high (40,000)", "LEVEL", "medium")
       ->group("Body");
   app.add_option(
          "--pose", options.pose,
@@ -93,13 +92,12 @@ void declare(CLI::App& app, Options& options) {
       ->type_name("POSE")
       ->default_str("auto")
       ->group("Body");
-  app.add_option("--orientation", options.orientation,
-                 "Components stored of an orientation: xyz (w is rebuilt) or xyzw")
-      ->type_name("HOW")
-      ->transform(one_of<OrientationEncoding>(
-          {{"xyz", OrientationEncoding::xyz}, {"xyzw", OrientationEncoding::xyzw}}))
-      ->default_str("xyz")
-      ->group("Body");
+  add_orientation_option(app, options.orientation);
+}
+
+Status check(const Options& options) {
+  const auto how = body_options(options);
+  return how ? Status() : how.error();
 }
 
 Result<int> run(const Options& options, ToolContext& context) {
@@ -122,13 +120,10 @@ Result<int> run(const Options& options, ToolContext& context) {
   Model& model = body->model;
   model.provenance = context.provenance();
   model.provenance.conversions.push_back(fmt::format("body built in pose: {}", body->pose));
-  auto file = OutputFile::create(context.output, context.output_options());
-  if (!file) return file.error();
-  if (Status written = model::write(model, {.orientation = options.orientation}, *file); !written) {
-    return written.error();
-  }
-  if (Status done = file->commit(); !done) return done.error();
-  context.wrote(context.output);
+  const Status written = write_output(context, context.output, [&](OutputFile& file) {
+    return model::write(model, {.orientation = options.orientation}, file);
+  });
+  if (!written) return written.error();
 
   context.report.result = result_of(*body);
   context.say(fmt::format("body: {}, {}, {}, {} m3 -> {}",

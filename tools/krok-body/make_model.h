@@ -17,6 +17,9 @@ struct Options {
 
 void declare(CLI::App& app, Options& options);
 
+// Whether the options have values that fit some file or other.
+Status check(const Options& options);
+
 // Reads a skeleton, builds the body, writes it.
 Result<int> run(const Options& options, ToolContext& context);
 

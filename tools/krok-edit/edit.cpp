@@ -8,11 +8,12 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/anim/anim.h"
-#include "formats/role_map/role_map.h"
 #include "formats/sequences/sequences.h"
 #include "motion/ground_place.h"
 #include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
+#include "tools/common/output_set.h"
+#include "tools/common/role_input.h"
 #include "tools/krok-edit/steps.h"
 
 namespace krok::edit {
@@ -89,20 +90,15 @@ Result<int> list_sequences(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
-Result<RoleMap> read_roles(const Skeleton& skeleton, const Options& options, ToolContext& context) {
-  if (options.map.empty()) return find_roles(skeleton);
-  const auto input = context.open_input(options.map);
-  if (!input) return input.error();
-  return role_map::read(input->text(), options.map, skeleton);
-}
-
 // All inputs, each opened once.
 Result<Edit> read_inputs(const Options& options, ToolContext& context) {
   Edit edit;
   auto clip = read_motion(options.input, context);
   if (!clip) return clip.error();
   edit.clip = std::move(*clip);
-  auto roles = read_roles(edit.clip.skeleton, options, context);
+  const auto find_roles = open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  auto roles = (*find_roles)(edit.clip.skeleton);
   if (!roles) return roles.error();
   edit.roles = std::move(*roles);
   edit.carrier = carrying_joint(edit.roles);
@@ -120,22 +116,15 @@ Result<Edit> read_inputs(const Options& options, ToolContext& context) {
   return edit;
 }
 
-Status write(const Clip& clip, const std::string& path, ToolContext& context) {
-  anim::WriteOptions writing;
-  writing.jobs = thread_count(context.jobs);
-  auto file = OutputFile::create(path, context.output_options());
-  if (!file) return file.error();
-  if (Status written = anim::write(clip, writing, *file); !written) {
-    return std::move(written.error()).in_file(path);
-  }
-  if (Status done = file->commit(); !done) return done.error();
-  context.wrote(path);
-  return {};
-}
+// What became of one part of the input.
+struct Edited {
+  Json result;                     // what the report says of it
+  std::vector<std::string> lines;  // what people are told
+};
 
-// Does the steps and writes the result; gives what the report says of it.
-Result<Json> edit_and_write(const Options& options, Edit edit, const std::string& output,
-                            ToolContext& context) {
+// Does the steps and adds the result to the outputs.
+Result<Edited> edit_one(const Options& options, Edit edit, const std::string& output,
+                        ToolContext& context, OutputSet& outputs) {
   const std::string before = summary_text(edit.clip);
   // The order that the help promises.
   for (const auto step : {clean, cut_out, mirror_sides, change_timing, append_motions, make_loop,
@@ -145,18 +134,25 @@ Result<Json> edit_and_write(const Options& options, Edit edit, const std::string
     }
   }
   edit.clip.provenance = extended(edit.clip.provenance, context.provenance(), edit.lines);
-  if (Status written = write(edit.clip, output, context); !written) return written.error();
-  context.say(fmt::format("{}: {} -> {}: {}",
-                          options.input == "-" ? "standard input" : base_name(options.input),
-                          before, output, summary_text(edit.clip)));
-  for (const std::string& line : edit.lines) context.say("  " + line);
-  Json result = summary_of(edit.clip);
-  result["steps"] = std::move(edit.steps);
-  return result;
+  anim::WriteOptions writing;
+  writing.orientation = options.orientation;
+  writing.jobs = thread_count(context.jobs);
+  const Status added =
+      outputs.add(output, [&](OutputFile& file) { return anim::write(edit.clip, writing, file); });
+  if (!added) return added.error();
+  Edited edited;
+  edited.lines.push_back(fmt::format(
+      "{}: {} -> {}: {}", options.input == "-" ? "standard input" : base_name(options.input),
+      before, output, summary_text(edit.clip)));
+  for (const std::string& line : edit.lines) edited.lines.push_back("  " + line);
+  edited.result = summary_of(edit.clip);
+  edited.result["steps"] = std::move(edit.steps);
+  return edited;
 }
 
 // One file for each sequence; cleaning is done once for all.
-Status edit_all_sequences(const Options& options, Edit source, ToolContext& context) {
+Result<Edited> edit_all_sequences(const Options& options, Edit source, ToolContext& context,
+                                  OutputSet& outputs) {
   const std::string& pattern = context.output;
   const std::size_t place = pattern.rfind(kSequencePlace);
   if (place == std::string::npos) {
@@ -164,6 +160,7 @@ Status edit_all_sequences(const Options& options, Edit source, ToolContext& cont
                  "choose one with --sequence NAME, or put {sequence} where their names go: -o "
                  "'take_{sequence}.anim'");
   }
+  if (Status fit = check_sequences(options, source); !fit) return fit.error();
   if (Status cleaned = clean(options, context, source); !cleaned) {
     return std::move(cleaned.error()).in_file(options.input);
   }
@@ -171,21 +168,23 @@ Status edit_all_sequences(const Options& options, Edit source, ToolContext& cont
   cleaned_already.spike_threshold.reset();
   cleaned_already.smoothing.reset();
   cleaned_already.joints = {};
-  context.report.result["sequences"] = Json::array();
+  Edited all;
+  all.result["sequences"] = Json::array();
   for (const sequences::Sequence& sequence : source.sequences->sequences) {
     Edit edit = source;
     edit.sequence = sequence.name;
     std::string output = pattern;
     output.replace(place, kSequencePlace.size(), sequence.name);
-    auto result = edit_and_write(cleaned_already, std::move(edit), output, context);
-    if (!result) return result.error();
+    auto edited = edit_one(cleaned_already, std::move(edit), output, context, outputs);
+    if (!edited) return edited.error();
     Json entry;
     entry["name"] = sequence.name;
     entry["output"] = output;
-    entry.update(*result);
-    context.report.result["sequences"].push_back(std::move(entry));
+    entry.update(edited->result);
+    all.result["sequences"].push_back(std::move(entry));
+    all.lines.insert(all.lines.end(), edited->lines.begin(), edited->lines.end());
   }
-  return {};
+  return all;
 }
 
 Result<int> run_typed(const Arguments& arguments, ToolContext& context) {
@@ -214,15 +213,15 @@ Result<int> run(const Options& options, ToolContext& context) {
   auto source = read_inputs(options, context);
   if (!source) return source.error();
   const Json input_summary = summary_of(source->clip);
-  if (source->sequences && source->sequence.empty()) {
-    if (Status done = edit_all_sequences(options, std::move(*source), context); !done) {
-      return done.error();
-    }
-  } else {
-    auto result = edit_and_write(options, std::move(*source), context.output, context);
-    if (!result) return result.error();
-    context.report.result = std::move(*result);
-  }
+  const bool all_sequences = source->sequences && source->sequence.empty();
+  OutputSet outputs(context);
+  auto edited = all_sequences
+                    ? edit_all_sequences(options, std::move(*source), context, outputs)
+                    : edit_one(options, std::move(*source), context.output, context, outputs);
+  if (!edited) return edited.error();
+  if (Status done = outputs.finish(); !done) return done.error();
+  for (const std::string& line : edited->lines) context.say(line);
+  context.report.result = std::move(edited->result);
   context.report.result["input"] = input_summary;
   return kExitDone;
 }
@@ -246,10 +245,20 @@ ToolSpec make_spec() {
        "one motion after the other, from the origin towards +Z"}};
   spec.needs_output = false;  // --list-sequences writes nothing
   spec.batch = {{".anim", ".bvh", ".amc"}, [arguments]() -> Result<std::string> {
+                  if (arguments->list_sequences) {
+                    return Error("usage",
+                                 "--list-sequences makes no results, so --out-dir and "
+                                 "--manifest have none to name",
+                                 "give one input alone");
+                  }
                   const bool several = !arguments->sequences.empty() && arguments->sequence.empty();
                   return std::string(several ? "_{sequence}.anim" : ".anim");
                 }};
   spec.declare = [arguments](CLI::App& app) { declare(app, *arguments); };
+  spec.check = [arguments]() -> Status {
+    const auto options = understand(*arguments);
+    return options ? Status() : options.error();
+  };
   spec.run = [arguments](ToolContext& context) { return run_typed(*arguments, context); };
   return spec;
 }

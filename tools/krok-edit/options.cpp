@@ -6,7 +6,9 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/common/one_of.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/orientation_option.h"
+#include "tools/common/role_input.h"
 
 namespace krok::edit {
 
@@ -17,8 +19,8 @@ void declare_cleaning(CLI::App& app, Arguments& a) {
   app.add_flag("--spikes", a.spikes,
                "Replace frames in which a joint jumps away and back; each is reported")
       ->group(group);
-  app.add_option("--spike-threshold", a.spike_threshold,
-                 "How many times the usual deviation from the neighbouring frames a spike reaches")
+  add_number(app, "--spike-threshold", a.spike_threshold,
+             "How many times the usual deviation from the neighbouring frames a spike reaches")
       ->type_name("TIMES")
       ->default_str("6")
       ->group(group);
@@ -33,13 +35,15 @@ void declare_cleaning(CLI::App& app, Arguments& a) {
       ->type_name("FREQUENCY")
       ->default_str(a.cutoff)
       ->group(group);
-  app.add_option("--window", a.window, "savgol: the frames of a polynomial, an odd number")
+  add_whole(app, "--window", a.window, "savgol: the frames of a polynomial, an odd number", 1,
+            1000000)
       ->type_name("FRAMES")
       ->default_str("9")
       ->group(group);
-  app.add_option("--order", a.order,
-                 "butterworth: order of both passes together, 2, 4, 6 or 8 [4]; savgol: degree of "
-                 "the polynomials [3]")
+  add_whole(app, "--order", a.order,
+            "butterworth: order of both passes together, 2, 4, 6 or 8 [4]; savgol: degree of "
+            "the polynomials [3]",
+            0, 1000000)
       ->type_name("N")
       ->group(group);
   app.add_option("--joints", a.joints,
@@ -83,13 +87,12 @@ void declare_timing(CLI::App& app, Arguments& a) {
   app.add_flag("--mirror", a.mirror, "Exchange left and right, in the plane x = 0")
       ->group("3. Mirror");
   const char* group = "4. Timing";
-  app.add_option("--speed", a.speed, "Play it so many times as fast; a sequence's own comes on top")
+  add_number(app, "--speed", a.speed,
+             "Play it so many times as fast; a sequence's own comes on top")
       ->type_name("TIMES")
       ->default_str("1")
       ->group(group);
-  app.add_option("--resample", a.resample, "Frames a second of the result")
-      ->type_name("RATE")
-      ->group(group);
+  add_rate(app, "--resample", a.resample, "Frames a second of the result")->group(group);
 }
 
 void declare_joining(CLI::App& app, Arguments& a) {
@@ -121,32 +124,30 @@ void declare_loop(CLI::App& app, Arguments& a) {
       ->type_name("TIME")
       ->default_str(a.loop_blend)
       ->group(group);
-  app.add_option("--loop-end", a.loop_end,
-                 "Whether the last frame is the first one again (closed) or the one before it "
-                 "(open: a frame is added); auto compares them")
-      ->type_name("END")
-      ->transform(one_of<LoopEnd>(
-          {{"auto", LoopEnd::automatic}, {"closed", LoopEnd::closed}, {"open", LoopEnd::open}}))
-      ->default_str("auto")
+  add_choice<LoopEnd>(
+      app, "--loop-end", a.loop_end,
+      {{"auto", LoopEnd::automatic}, {"closed", LoopEnd::closed}, {"open", LoopEnd::open}},
+      "Whether the last frame is the first one again (closed) or the one before it (open: a frame "
+      "is added); auto compares them",
+      "END", "auto")
       ->group(group);
-  app.add_option("--loop-turn", a.loop_turn,
-                 "Whether a round turns the figure: keep, straighten, or auto, which straightens "
-                 "up to 10 degrees")
-      ->type_name("TURN")
-      ->transform(one_of<LoopTurn>({{"auto", LoopTurn::automatic},
-                                    {"keep", LoopTurn::keep},
-                                    {"straighten", LoopTurn::straighten}}))
-      ->default_str("auto")
+  add_choice<LoopTurn>(app, "--loop-turn", a.loop_turn,
+                       {{"auto", LoopTurn::automatic},
+                        {"keep", LoopTurn::keep},
+                        {"straighten", LoopTurn::straighten}},
+                       "Whether a round turns the figure: keep, straighten, or auto, which "
+                       "straightens up to 10 degrees",
+                       "TURN", "auto")
       ->group(group);
-  app.add_option("--loop-climb", a.loop_climb,
-                 "Whether a round gains height: keep, level, or auto, which levels up to 5 % of "
-                 "the figure's size")
-      ->type_name("CLIMB")
-      ->transform(one_of<LoopClimb>(
-          {{"auto", LoopClimb::automatic}, {"keep", LoopClimb::keep}, {"level", LoopClimb::level}}))
-      ->default_str("auto")
+  add_choice<LoopClimb>(
+      app, "--loop-climb", a.loop_climb,
+      {{"auto", LoopClimb::automatic}, {"keep", LoopClimb::keep}, {"level", LoopClimb::level}},
+      "Whether a round gains height: keep, level, or auto, which levels up to 5 % of the figure's "
+      "size",
+      "CLIMB", "auto")
       ->group(group);
-  app.add_option("--rounds", a.rounds, "Write so many rounds of the loop, one after the other")
+  add_whole(app, "--rounds", a.rounds, "Write so many rounds of the loop, one after the other", 1,
+            1000000)
       ->type_name("N")
       ->group(group);
 }
@@ -160,7 +161,7 @@ void declare_place(CLI::App& app, Arguments& a) {
                "so does a loop")
       ->group(travel);
   const char* size = "8. Size";
-  app.add_option("--scale", a.scale, "The whole figure and its motion, so many times as large")
+  add_number(app, "--scale", a.scale, "The whole figure and its motion, so many times as large")
       ->type_name("TIMES")
       ->group(size);
   app.add_option("--height", a.height,
@@ -203,6 +204,11 @@ Result<ClipTime> time_of(const std::string& text, const char* option) {
   return time;
 }
 
+Status over_nought(double value, const char* option) {
+  if (value > 0 && std::isfinite(value)) return {};
+  return usage(fmt::format("{} {} is not more than 0", option, readable(value)));
+}
+
 Result<Vec3> parse_move(const std::string& text) {
   Vec3 move = Vec3::Zero();
   std::size_t begin = 0;
@@ -221,18 +227,24 @@ Result<Vec3> parse_move(const std::string& text) {
 
 Status understand_cleaning(const Arguments& a, Options& options) {
   using Filter = Arguments::Filter;
-  if (a.spikes) options.spike_threshold = a.spike_threshold;
+  if (a.spikes) {
+    if (Status fits = over_nought(a.spike_threshold, "--spike-threshold"); !fits) return fits;
+    options.spike_threshold = a.spike_threshold;
+  }
   if (a.filter == Filter::butterworth) {
     auto cutoff = parse_frequency(a.cutoff);
     if (!cutoff) return named(std::move(cutoff).error(), "--cutoff");
-    options.smoothing = filter::Butterworth{*cutoff, a.order.value_or(4)};
+    if (Status fits = over_nought(*cutoff, "--cutoff"); !fits) return fits;
+    const filter::Butterworth butterworth{*cutoff, a.order.value_or(4)};
+    // At this rate the cutoff fits; whether it fits a file's rate, the file shows.
+    if (const auto known = filter::design(butterworth, 4 * *cutoff); !known) return known.error();
+    options.smoothing = butterworth;
   } else if (a.filter == Filter::savgol) {
-    options.smoothing = filter::SavitzkyGolay{a.window, a.order.value_or(3)};
+    const filter::SavitzkyGolay polynomials{a.window, a.order.value_or(3)};
+    if (Status fits = filter::check(polynomials); !fits) return fits;
+    options.smoothing = polynomials;
   }
   options.joints = {a.joints, a.below};
-  if ((!a.joints.empty() || !a.below.empty()) && !a.spikes && a.filter == Filter::none) {
-    return usage("--joints and --below say what --spikes and --filter work on; neither is given");
-  }
   return {};
 }
 
@@ -270,7 +282,6 @@ Status understand_loop(const Arguments& a, Options& options) {
   options.loop_blend = *blend;
   options.looping = {0, a.loop_end, a.loop_turn, a.loop_climb};
   options.rounds = a.rounds;
-  if (a.rounds && *a.rounds < 1) return usage("--rounds: at least one");
   return {};
 }
 
@@ -283,11 +294,14 @@ Status understand_place(const Arguments& a, Options& options) {
   if (a.scale && !a.height.empty()) {
     return usage("--scale and --height both give the size; choose one");
   }
+  if (a.scale) {
+    if (Status fits = over_nought(*a.scale, "--scale"); !fits) return fits;
+  }
   options.scale = a.scale;
   if (!a.height.empty()) {
     auto height = parse_length(a.height);
     if (!height) return named(std::move(height).error(), "--height");
-    if (!(*height > 0)) return usage(fmt::format("--height {} is not more than 0", a.height));
+    if (Status fits = over_nought(*height, "--height"); !fits) return fits;
     options.height = *height;
   }
   if (a.re_orient && !a.heading.empty()) {
@@ -321,28 +335,29 @@ void declare(CLI::App& app, Arguments& arguments) {
                  "The motion: a .anim file, or a capture as krok-import reads it by default")
       ->type_name("IN")
       ->required();
-  app.add_option("--map", arguments.map,
-                 "A file that says which joints are hips, feet, left, right, where names tell too "
-                 "little (formats/role_map/SPEC.md)")
-      ->type_name("IN.json")
-      ->group("Figure");
+  add_map_option(app, arguments.map)->group("Figure");
   declare_cleaning(app, arguments);
   declare_cut(app, arguments);
   declare_timing(app, arguments);
   declare_joining(app, arguments);
   declare_loop(app, arguments);
   declare_place(app, arguments);
+  add_orientation_option(app, arguments.orientation);
+  arguments.given = [&app](const char* option) { return app.count(option) > 0; };
 }
 
 Result<Options> understand(const Arguments& arguments) {
+  if (Status used = check_needs(arguments); !used) return used.error();
   Options options;
   options.input = arguments.input;
   options.map = arguments.map;
+  options.orientation = arguments.orientation;
   options.mirror = arguments.mirror;
   options.speed = arguments.speed;
   options.resample = arguments.resample;
   options.append = arguments.append;
   options.match_height = arguments.match_height;
+  if (Status fits = over_nought(arguments.speed, "--speed"); !fits) return fits.error();
   const auto blend = time_of(arguments.blend, "--blend");
   if (!blend) return blend.error();
   options.append_blend = *blend;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/quantity.h"
 #include "core/result.h"
 #include "filter/smooth_clip.h"
+#include "formats/container/packed_orientation.h"
 #include "motion/joint_selection.h"
 #include "motion/loop.h"
 #include "motion/travel.h"
@@ -24,6 +26,7 @@ struct Arguments {
   bool spikes = false;
   double spike_threshold = 6;
   Filter filter = Filter::none;
+  OrientationEncoding orientation = OrientationEncoding::xyz;
   std::string cutoff = "6Hz";
   std::optional<int> order;
   int window = 9;
@@ -55,12 +58,16 @@ struct Arguments {
   // 9. place
   bool at_origin = false, re_orient = false, ground = false;
   std::string heading, turn, move;
+
+  // Whether an option, "--blend", stands on the command line; set by declare().
+  std::function<bool(const char* option)> given;
 };
 
 // The same, understood.
 struct Options {
   std::string input;
   std::string map;  // a file that tells joints' roles, or empty
+  OrientationEncoding orientation = OrientationEncoding::xyz;
 
   std::optional<double> spike_threshold;
   std::optional<filter::Smoothing> smoothing;
@@ -94,7 +101,12 @@ struct Options {
   Vec3 move = Vec3::Zero();
 };
 
+// `app` is kept by the arguments.
 void declare(CLI::App& app, Arguments& arguments);
+
+// Whether each option has an effect: an Error (code usage) for one that says how another works
+// which is not given.
+Status check_needs(const Arguments& arguments);
 
 // Errors carry the option's name. Code usage for options that do not go together.
 Result<Options> understand(const Arguments& arguments);

@@ -34,6 +34,9 @@ struct Edit {
   void note(const char* step, Json figures, std::string line);
 };
 
+// Whether all parts that the sequences' file names lie within the motion.
+Status check_sequences(const Options& options, const Edit& edit);
+
 Status clean(const Options& options, ToolContext& context, Edit& edit);
 Status cut_out(const Options& options, ToolContext& context, Edit& edit);
 Status mirror_sides(const Options& options, ToolContext& context, Edit& edit);

@@ -38,10 +38,26 @@ struct Range {
   double first = 0, last = 0;  // frames, perhaps between two
 };
 
-// A part that the sequences' file names.
+// The frames of a part that the sequences' file names.
+Result<Range> range_of(const sequences::Sequence& sequence, const Options& options,
+                       const Edit& edit) {
+  const double file_rate = edit.sequences->rate;
+  const double scale = file_rate > 0 ? edit.clip.rate / file_rate : 1;
+  const Range range{sequence.first * scale, sequence.last * scale};
+  if (range.last > edit.clip.frame_count() - 1 + 1e-3) {
+    return Error(
+               "edit-sequence",
+               fmt::format(
+                   "'{}' ends with frame {}{}, but {}", sequence.name, sequence.last,
+                   file_rate > 0 ? fmt::format(" at {} frames a second", readable(file_rate)) : "",
+                   extent_of(edit.clip)))
+        .in_file(options.sequences);
+  }
+  return range;
+}
+
 Result<Range> named_range(const Options& options, Edit& edit) {
-  const sequences::SequenceFile& file = *edit.sequences;
-  const sequences::Sequence* sequence = file.find(edit.sequence);
+  const sequences::Sequence* sequence = edit.sequences->find(edit.sequence);
   if (sequence == nullptr) {
     return Error("edit-sequence", fmt::format("no sequence is called '{}'", edit.sequence),
                  "--list-sequences shows which there are")
@@ -49,18 +65,7 @@ Result<Range> named_range(const Options& options, Edit& edit) {
   }
   edit.speed *= sequence->speed;
   edit.loop = edit.loop || sequence->loop;
-  const double scale = file.rate > 0 ? edit.clip.rate / file.rate : 1;
-  const Range range{sequence->first * scale, sequence->last * scale};
-  if (range.last > edit.clip.frame_count() - 1 + 1e-3) {
-    return Error(
-               "edit-sequence",
-               fmt::format(
-                   "'{}' ends with frame {}{}, but {}", sequence->name, sequence->last,
-                   file.rate > 0 ? fmt::format(" at {} frames a second", readable(file.rate)) : "",
-                   extent_of(edit.clip)))
-        .in_file(options.sequences);
-  }
-  return range;
+  return range_of(*sequence, options, edit);
 }
 
 Result<Range> typed_range(const Options& options, const Edit& edit) {
@@ -141,6 +146,13 @@ std::string loop_text(const Looped& looped, const Edit& edit) {
 }
 
 }  // namespace
+
+Status check_sequences(const Options& options, const Edit& edit) {
+  for (const sequences::Sequence& sequence : edit.sequences->sequences) {
+    if (const auto range = range_of(sequence, options, edit); !range) return range.error();
+  }
+  return {};
+}
 
 Status cut_out(const Options& options, ToolContext&, Edit& edit) {
   edit.speed = options.speed;

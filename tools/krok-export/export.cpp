@@ -6,12 +6,15 @@
 
 #include "capture/conventions.h"
 #include "core/numbers.h"
+#include "core/quantity.h"
 #include "core/text.h"
 #include "formats/bvh/bvh_writer.h"
 #include "formats/csv/csv_writer.h"
 #include "formats/gltf/gltf_writer.h"
+#include "formats/gltf/reduce_tracks.h"
 #include "skin/bone_mesh.h"
 #include "tools/common/motion_input.h"
+#include "tools/common/output_set.h"
 
 namespace krok {
 
@@ -62,6 +65,36 @@ Result<double> unit_of(const ExportOptions& options, ExportFormat format) {
   return unit->metres;
 }
 
+// Metres.
+Result<double> reduce_tolerance(const ExportOptions& options) {
+  const auto tolerance = parse_length(options.reduce);
+  if (!tolerance)
+    return Error("usage", "--reduce: " + tolerance.error().message, tolerance.error().hint);
+  if (!(*tolerance > 0)) {
+    return Error("usage", fmt::format("--reduce: {} is not a positive length", options.reduce),
+                 "say --reduce 1mm; without it all keys stay");
+  }
+  return *tolerance;
+}
+
+// Whether the options are for this format.
+Status check_for(ExportFormat format, const ExportOptions& options) {
+  if (const auto unit = unit_of(options, format); !unit) return unit.error();
+  if (format != ExportFormat::bvh && (options.digits || !options.order.empty())) {
+    return Error("usage", "--digits and --order are for BVH");
+  }
+  if (options.bones && format != ExportFormat::glb && format != ExportFormat::gltf) {
+    return Error("usage", "--bones and --no-bones are for glTF");
+  }
+  if (!options.reduce.empty()) {
+    if (format != ExportFormat::glb && format != ExportFormat::gltf) {
+      return Error("usage", "--reduce is for glTF; the other formats have values for each frame");
+    }
+    if (const auto tolerance = reduce_tolerance(options); !tolerance) return tolerance.error();
+  }
+  return {};
+}
+
 MotionFacts facts_of(const Clip& clip) {
   return {clip.skeleton, clip.rate, clip.frame_count(), clip.duration(), {}};
 }
@@ -70,9 +103,20 @@ Error empty_error(const std::string& path) {
   return Error("export-empty", "the motion has no joints").in_file(path);
 }
 
+// Leaves out keys if that is asked for.
+Result<std::optional<Reduction>> reduce(const ExportOptions& options, const Skeleton& skeleton,
+                                        int jobs, gltf::JointTracks& tracks) {
+  if (options.reduce.empty()) return std::optional<Reduction>();
+  const auto tolerance = reduce_tolerance(options);
+  if (!tolerance) return tolerance.error();
+  auto reduction = gltf::reduce_tracks(skeleton, {.tolerance = *tolerance}, jobs, tracks);
+  if (!reduction) return reduction.error();
+  return std::optional(*std::move(reduction));
+}
+
 // Reads the motion, writes it, and tells what it was.
 Result<MotionFacts> export_gltf(bool binary, const ExportOptions& options, ToolContext& context,
-                                OutputFile& file) {
+                                std::optional<Reduction>& reduction) {
   std::optional<gltf::JointTracks> tracks;
   const auto facts = use_motion(options.input, context, [&](const FrameSource& frames) -> Status {
     if (frames.skeleton.empty()) return empty_error(options.input);
@@ -82,35 +126,54 @@ Result<MotionFacts> export_gltf(bool binary, const ExportOptions& options, ToolC
     return {};
   });
   if (!facts) return facts.error();
+  auto reduced = reduce(options, facts->skeleton, context.jobs, *tracks);
+  if (!reduced) return reduced.error();
+  reduction = *std::move(reduced);
   gltf::WriteOptions writing;
   writing.binary = binary;
   writing.provenance = context.provenance();
   writing.provenance.conversions = facts->conversions;
   const bool bones = options.bones.value_or(true);
   writing.name = bones ? "bones" : "skeleton";
-  const Status written = bones ? gltf::write_rig(bone_mesh(facts->skeleton), *tracks, writing, file)
-                               : gltf::write_skeleton(facts->skeleton, *tracks, writing, file);
-  if (!written) return Error(written.error()).in_file(context.output);
+  const Status written = write_output(context, context.output, [&](OutputFile& file) {
+    return bones ? gltf::write_rig(bone_mesh(facts->skeleton), *tracks, writing, file)
+                 : gltf::write_skeleton(facts->skeleton, *tracks, writing, file);
+  });
+  if (!written) return written.error();
   return facts;
 }
 
 Result<MotionFacts> export_others(ExportFormat format, const ExportOptions& options,
-                                  double unit_metres, ToolContext& context, OutputFile& file) {
+                                  double unit_metres, ToolContext& context) {
   const auto clip = read_motion(options.input, context);
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);
-  const Status written = write_as(format, *clip, options, unit_metres, file);
-  if (!written) return Error(written.error()).in_file(context.output);
+  const Status written = write_output(context, context.output, [&](OutputFile& file) {
+    return write_as(format, *clip, options, unit_metres, file);
+  });
+  if (!written) return written.error();
   return facts_of(*clip);
 }
 
-Json result_of(const MotionFacts& motion) {
+Json result_of(const MotionFacts& motion, const std::optional<Reduction>& reduction) {
   Json result;
   result["joints"] = motion.skeleton.joint_count();
   result["frames"] = motion.frame_count;
   result["rate"] = motion.rate;
   result["duration"] = motion.duration;
+  if (reduction) {
+    result["keys"] = reduction->keys_after;
+    result["keys_before"] = reduction->keys_before;
+    result["largest_error"] = reduction->largest_error;
+  }
   return result;
+}
+
+std::string words_for(const Reduction& reduction) {
+  return fmt::format(", {} of {}, off by at most {} mm",
+                     grouped(static_cast<long long>(reduction.keys_after)),
+                     counted(static_cast<long long>(reduction.keys_before), "key"),
+                     readable(1e3 * reduction.largest_error, 3));
 }
 
 }  // namespace
@@ -131,30 +194,29 @@ Result<std::string> extension_of(ExportFormat format) {
   return Error("usage", "no format is given for the results", "say --format bvh, glb, gltf or csv");
 }
 
+Status check_export(const ExportOptions& options) {
+  // Without a format the output's name tells it.
+  if (options.format == ExportFormat::from_extension) return {};
+  return check_for(options.format, options);
+}
+
 Result<int> run_export(const ExportOptions& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
   if (!format) return format.error();
+  if (Status fits = check_for(*format, options); !fits) return fits.error();
   const auto unit_metres = unit_of(options, *format);
   if (!unit_metres) return unit_metres.error();
-  if (*format != ExportFormat::bvh && (options.digits || !options.order.empty())) {
-    return Error("usage", "--digits and --order are for BVH");
-  }
-  if (options.bones && *format != ExportFormat::glb && *format != ExportFormat::gltf) {
-    return Error("usage", "--bones and --no-bones are for glTF");
-  }
-  auto file = OutputFile::create(context.output, context.output_options());
-  if (!file) return file.error();
   const bool is_glb = *format == ExportFormat::glb;
+  std::optional<Reduction> reduction;
   const auto motion = is_glb || *format == ExportFormat::gltf
-                          ? export_gltf(is_glb, options, context, *file)
-                          : export_others(*format, options, *unit_metres, context, *file);
+                          ? export_gltf(is_glb, options, context, reduction)
+                          : export_others(*format, options, *unit_metres, context);
   if (!motion) return motion.error();
-  if (Status done = file->commit(); !done) return done.error();
-  context.wrote(context.output);
-  context.report.result = result_of(*motion);
-  context.say(fmt::format("{}: {}, {}, {} s", context.output,
+  context.report.result = result_of(*motion, reduction);
+  context.say(fmt::format("{}: {}, {}, {} s{}", context.output,
                           counted(motion->skeleton.joint_count(), "joint"),
-                          counted(motion->frame_count, "frame"), readable(motion->duration, 3)));
+                          counted(motion->frame_count, "frame"), readable(motion->duration, 3),
+                          reduction ? words_for(*reduction) : ""));
   return kExitDone;
 }
 

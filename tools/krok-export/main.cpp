@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "tools/common/one_of.h"
+#include "tools/common/option_kinds.h"
 #include "tools/krok-export/export.h"
 
 namespace {
@@ -17,7 +18,8 @@ krok::ToolSpec make_spec() {
                    {"krok-export capture.bvh -o capture.glb",
                     "straight from a capture; what was chosen in reading it is told with -v"},
                    {"krok-export walk.anim --format csv -o - | head", "the first rows"}};
-  spec.batch = {{".anim"}, [options] { return krok::extension_of(options->format); }};
+  spec.batch = {{".anim", ".bvh", ".amc"},
+                [options] { return krok::extension_of(options->format); }};
   spec.declare = [options](CLI::App& app) {
     using krok::ExportFormat;
     app.add_option(
@@ -37,12 +39,13 @@ krok::ToolSpec make_spec() {
     app.add_option("--unit", options->unit, "BVH: the unit of lengths: m, cm, mm, in, ft")
         ->type_name("UNIT")
         ->default_str("cm");
-    app.add_option("--digits", options->digits,
-                   "BVH: decimals of angles in degrees, and of lengths in a centimetre; other "
-                   "units get more or fewer of the same fineness. 6 keep the motion to a millionth "
-                   "of a metre and of a radian")
+    krok::add_whole(
+        app, "--digits", options->digits,
+        "BVH: decimals of angles in degrees, and of lengths in a centimetre; other "
+        "units get more or fewer of the same fineness. 6 keep the motion to a millionth "
+        "of a metre and of a radian",
+        1, 15)
         ->type_name("1..15")
-        ->check(CLI::Range(1, 15).description(""))
         ->default_str("6");
     app.add_option("--order", options->order,
                    "BVH: the order of the rotation channels: XYZ, XZY, YXZ, YZX, ZXY or ZYX")
@@ -50,11 +53,17 @@ krok::ToolSpec make_spec() {
         ->check(CLI::IsMember({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}, CLI::ignore_case)
                     .description(""))
         ->default_str("ZXY");
+    app.add_option("--reduce", options->reduce,
+                   "glTF: leave out keys as long as each joint, and points 3 cm around it, stay "
+                   "within this distance of where they were, such as 1mm; for a smaller file. "
+                   "Without it each frame is a key")
+        ->type_name("LENGTH");
     app.add_flag_function(
         "--bones,!--no-bones", [options](std::int64_t sign) { options->bones = sign > 0; },
         "glTF: add a thin mesh for each bone, so that viewers show the skeleton (the "
         "default; --no-bones leaves joints alone)");
   };
+  spec.check = [options] { return krok::check_export(*options); };
   spec.run = [options](krok::ToolContext& context) { return krok::run_export(*options, context); };
   return spec;
 }

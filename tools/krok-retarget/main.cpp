@@ -19,6 +19,7 @@ krok::ToolSpec make_spec() {
                     "all motions in a folder"}};
   spec.batch = {{".anim", ".bvh", ".amc"}, krok::always(".anim")};
   spec.declare = [options](CLI::App& app) { declare(app, *options); };
+  spec.check = [options] { return check(*options); };
   spec.run = [options](krok::ToolContext& context) { return run(*options, context); };
   return spec;
 }

@@ -8,10 +8,11 @@
 #include "formats/anim/anim.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
-#include "formats/role_map/role_map.h"
 #include "tools/common/motion_input.h"
-#include "tools/common/one_of.h"
+#include "tools/common/orientation_option.h"
 #include "tools/common/output_kind.h"
+#include "tools/common/output_set.h"
+#include "tools/common/role_input.h"
 #include "tools/krok-retarget/outcome.h"
 
 namespace krok::retarget_tool {
@@ -47,10 +48,9 @@ Result<Target> read_target(const std::string& path, ToolContext& context) {
 
 Result<RoleMap> roles_of(const Skeleton& skeleton, const std::string& map_path,
                          ToolContext& context) {
-  if (map_path.empty()) return find_roles(skeleton);
-  const auto file = context.open_input(map_path);
-  if (!file) return file.error();
-  return role_map::read(file->text(), map_path, skeleton);
+  const auto roles = open_role_map(map_path, context);
+  if (!roles) return roles.error();
+  return (*roles)(skeleton);
 }
 
 Result<std::optional<int>> parse_frame(const char* option, const std::string& text) {
@@ -133,12 +133,10 @@ void declare(CLI::App& app, Options& options) {
                  "The skeleton to move: a model, or any motion or capture of it")
       ->type_name("IN.model|IN.anim")
       ->required();
-  app.add_option("--map", options.map,
+  add_map_option(app, options.map, "--map",
                  "What the input's joints are, where their names do not tell: a role map (JSON)")
-      ->type_name("IN.json")
       ->group("Joints");
-  app.add_option("--onto-map", options.onto_map, "The same for the target's joints")
-      ->type_name("IN.json")
+  add_map_option(app, options.onto_map, "--onto-map", "The same for the target's joints")
       ->group("Joints");
   app.add_option("--reference-pose", options.reference_pose,
                  "The input's pose that is set beside the target's reference pose: a frame, or "
@@ -152,25 +150,22 @@ void declare(CLI::App& app, Options& options) {
       ->type_name("POSE")
       ->default_str("auto")
       ->group("Joints");
-  app.add_option("--feet", options.feet,
-                 "keep: feet stand where the input's stand, scaled, and not in the floor; free: "
-                 "as the legs' rotations bring them")
-      ->type_name("HOW")
-      ->transform(
-          one_of<retarget::Feet>({{"keep", retarget::Feet::keep}, {"free", retarget::Feet::free}}))
-      ->default_str("keep")
+  add_choice<retarget::Feet>(
+      app, "--feet", options.feet, {{"keep", retarget::Feet::keep}, {"free", retarget::Feet::free}},
+      "keep: feet stand where the input's stand, scaled, and not in the floor; free: as the legs' "
+      "rotations bring them",
+      "HOW", "keep")
       ->group("Motion");
   app.add_option("--scale", options.scale,
                  "How much larger the motion's ways become; by default the ratio of the legs")
       ->type_name("NUMBER")
       ->group("Motion");
-  app.add_option("--orientation", options.orientation,
-                 "Components stored of an orientation: xyz (w is rebuilt) or xyzw")
-      ->type_name("HOW")
-      ->transform(one_of<OrientationEncoding>(
-          {{"xyz", OrientationEncoding::xyz}, {"xyzw", OrientationEncoding::xyzw}}))
-      ->default_str("xyz")
-      ->group("Motion");
+  add_orientation_option(app, options.orientation);
+}
+
+Status check(const Options& options) {
+  const auto how = parse(options);
+  return how ? Status() : how.error();
 }
 
 Result<int> run(const Options& options, ToolContext& context) {
@@ -201,14 +196,12 @@ Result<int> run(const Options& options, ToolContext& context) {
   clip.provenance = context.provenance();
   clip.provenance.conversions = source->provenance.conversions;
   clip.provenance.conversions.push_back("retargeted: " + summary(outcome));
-  auto file = OutputFile::create(context.output, context.output_options());
-  if (!file) return file.error();
   anim::WriteOptions writing;
   writing.orientation = options.orientation;
   writing.jobs = context.jobs;
-  if (Status written = anim::write(clip, writing, *file); !written) return written.error();
-  if (Status done = file->commit(); !done) return done.error();
-  context.wrote(context.output);
+  const Status written = write_output(
+      context, context.output, [&](OutputFile& file) { return anim::write(clip, writing, file); });
+  if (!written) return written.error();
 
   context.report.result = to_json(outcome);
   context.say(fmt::format("{}: {}", context.output, summary(outcome)));

@@ -23,6 +23,9 @@ struct Options {
 
 void declare(CLI::App& app, Options& options);
 
+// Whether the options have values that fit some file or other.
+Status check(const Options& options);
+
 // Reads the motion and the target, writes the motion on the target's skeleton. Codes: those of the
 // readers, of formats/role_map and of lib/retarget.
 Result<int> run(const Options& options, ToolContext& context);

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "tools/common/one_of.h"
+#include "tools/common/option_kinds.h"
 #include "tools/krok-skin/skin.h"
 
 namespace {
@@ -26,9 +27,7 @@ void declare(CLI::App& app, krok::SkinOptions& options, std::string& method) {
                  "Where the part to write begins, as for --time; not for pose")
       ->type_name("T");
   app.add_option("--to", options.to, "Where it ends, that frame included")->type_name("T");
-  app.add_option("--every", options.every, "Take every Nth frame only")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000000).description(""))
+  krok::add_whole(app, "--every", options.every, "Take every Nth frame only", 1, 1000000)
       ->default_str("1");
   app.add_option("--method", method, "How vertices follow the joints: linear (linear blend)")
       ->type_name("METHOD")
@@ -49,6 +48,7 @@ krok::ToolSpec make_spec() {
       {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one moment"}};
   spec.batch = {{".anim"}, krok::always(".glb")};
   spec.declare = [options, method](CLI::App& app) { declare(app, *options, *method); };
+  spec.check = [options] { return krok::check(*options); };
   spec.run = [options](krok::ToolContext& context) { return krok::run_skin(*options, context); };
   return spec;
 }

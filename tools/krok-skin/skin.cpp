@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "core/numbers.h"
-#include "core/parallel.h"
 #include "core/quantity.h"
 #include "formats/anim/anim.h"
 #include "formats/gltf/gltf_writer.h"
@@ -17,6 +15,7 @@
 #include "skin/bind.h"
 #include "skin/linear_blend.h"
 #include "skin/palette.h"
+#include "tools/common/output_set.h"
 
 namespace krok {
 
@@ -239,45 +238,26 @@ std::string frame_path(const std::string& output, int frame, int last_frame) {
   return fmt::format("{}_{:0{}}{}", stem, frame, digits, output.substr(stem.size()));
 }
 
-// One file a frame, several at a time. Of several failures the one of the earliest frame is told.
+// One file a frame, several at a time; all of them appear or none.
 Result<int> write_frames(const Scene& scene, ToolContext& context) {
   const int frames = scene.clip.frame_count();
   const int last_frame = scene.first_frame + (frames - 1) * scene.every;
-  const auto path_of = [&](std::size_t i) {
-    return frame_path(context.output, scene.first_frame + static_cast<int>(i) * scene.every,
-                      last_frame);
-  };
-  std::vector<Status> results(static_cast<std::size_t>(frames));
-  std::mutex failure_mutex;
-  bool failed = false;
-  context.progress->begin("writing frames", static_cast<std::uint64_t>(frames));
-  parallel_for(results.size(), 1, context.jobs, [&](std::size_t i, std::size_t) {
-    {
-      const std::lock_guard lock(failure_mutex);
-      if (failed) return;
-    }
-    const auto write = [&]() -> Status {
-      auto file = OutputFile::create(path_of(i), context.output_options());
-      if (!file) return file.error();
-      std::vector<Transform> pose(scene.clip.skeleton.names.size());
-      scene.clip.get_pose(static_cast<int>(i), pose);
-      Status written = write_pose(scene, pose, 1, write_options(context, context.output), *file);
-      if (!written) return std::move(written.error()).in_file(path_of(i));
-      return file->commit();
-    };
-    results[i] = write();
-    context.progress->advance(1);
-    if (!results[i]) {
-      const std::lock_guard lock(failure_mutex);
-      failed = true;
-    }
-  });
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    if (!results[i]) return results[i].error();
-    context.wrote(path_of(i));
+  std::vector<std::string> paths;
+  for (int i = 0; i < frames; ++i) {
+    paths.push_back(frame_path(context.output, scene.first_frame + i * scene.every, last_frame));
   }
-  context.say(fmt::format("{} to {}: {}", path_of(0), path_of(results.size() - 1),
-                          counted(frames, "file")));
+  const gltf::WriteOptions writing = write_options(context, context.output);
+  OutputSet outputs(context);
+  context.progress->begin("writing frames", static_cast<std::uint64_t>(frames));
+  const auto write = [&](std::size_t i, OutputFile& file) {
+    std::vector<Transform> pose(scene.clip.skeleton.names.size());
+    scene.clip.get_pose(static_cast<int>(i), pose);
+    context.progress->advance(1);
+    return write_pose(scene, pose, 1, writing, file);
+  };
+  if (Status added = outputs.add_all(paths, context.jobs, write); !added) return added.error();
+  if (Status done = outputs.finish(); !done) return done.error();
+  context.say(fmt::format("{} to {}: {}", paths.front(), paths.back(), counted(frames, "file")));
   return kExitDone;
 }
 
@@ -294,7 +274,19 @@ Status write_one(SkinAs as, const Scene& scene, double seconds, ToolContext& con
 }
 
 // An option that the rest of the command line makes void is a mistake to be told of.
+Status check_time(const char* option, const std::string& text) {
+  if (text.empty()) return {};
+  const auto time = parse_clip_time(text);
+  if (!time) return at_option(option, time.error());
+  if (time->value >= 0) return {};
+  return Error("skin-time", fmt::format("{} {} is less than 0", option, text));
+}
+
 Status check_options(const SkinOptions& options) {
+  for (const auto& [option, text] :
+       {std::pair{"--time", &options.time}, {"--from", &options.from}, {"--to", &options.to}}) {
+    if (Status fits = check_time(option, *text); !fits) return fits;
+  }
   const bool pose = options.as == SkinAs::pose;
   if (!pose && !options.time.empty()) {
     return Error("usage", "--time is for --as pose", "--from and --to choose a part of the motion");
@@ -331,6 +323,10 @@ Status check_output(const SkinOptions& options, const std::string& output) {
 
 }  // namespace
 
+Status check(const SkinOptions& options) {
+  return check_options(options);
+}
+
 Result<int> run_skin(const SkinOptions& options, ToolContext& context) {
   if (Status fits = check_options(options); !fits) return fits.error();
   if (Status fits = check_output(options, context.output); !fits) return fits.error();
@@ -354,13 +350,10 @@ Result<int> run_skin(const SkinOptions& options, ToolContext& context) {
     context.warn("skin-no-frames", "the motion has no frames, so the rig does not move");
   }
 
-  auto file = OutputFile::create(context.output, context.output_options());
-  if (!file) return file.error();
-  if (Status written = write_one(options.as, *scene, *seconds, context, *file); !written) {
-    return std::move(written.error()).in_file(context.output);
-  }
-  if (Status done = file->commit(); !done) return done.error();
-  context.wrote(context.output);
+  const Status written = write_output(context, context.output, [&](OutputFile& file) {
+    return write_one(options.as, *scene, *seconds, context, file);
+  });
+  if (!written) return written.error();
   context.say(fmt::format("{}: {}, {}", context.output,
                           counted(scene->model.vertex_count(), "vertex", "vertices"),
                           counted(frames, "frame")));

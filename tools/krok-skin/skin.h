@@ -17,6 +17,9 @@ struct SkinOptions {
   int every = 1;         // of the frames; not --as pose
 };
 
+// Whether the options have values that fit some file or other.
+Status check(const SkinOptions& options);
+
 // Reads a model and a motion, skins, and writes glTF.
 Result<int> run_skin(const SkinOptions& options, ToolContext& context);
 

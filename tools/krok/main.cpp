@@ -29,7 +29,10 @@ constexpr std::array kVerbs = {
     Verb{"skin", "a model and a motion to glTF: a rig, a baked clip, a pose"},
     Verb{"retarget", "a motion on another skeleton"},
     Verb{"edit", "cut, clean, mirror, loop, join, scale and place a motion"},
+    Verb{"keys", "contacts of the feet and keytimes of a gait, found, shown, edited"},
+    Verb{"blend", "the motion between motions, by weights and keytimes"},
     Verb{"view", "a page that plays motions in a browser"},
+    Verb{"plot", "charts of motions and tables"},
     Verb{"diff", "how far two files are apart, and where"},
 };
 
@@ -58,12 +61,10 @@ bool is_verb(std::string_view name) {
 int main(int argc, char** argv) {
   const std::string verb = argc > 1 ? argv[1] : "";
   if (verb == "--help" || verb == "-h" || verb == "help") {
-    fmt::print("{}", help());
-    return krok::kExitDone;
+    return krok::print_and_end("krok", help());
   }
   if (verb == "--version") {
-    fmt::print("krok {}\n", krok::version());
-    return krok::kExitDone;
+    return krok::print_and_end("krok", fmt::format("krok {}\n", krok::version()));
   }
   if (!is_verb(verb)) {
     fmt::print(stderr, "krok: error: {} [usage]\n  hint: see krok --help\n",

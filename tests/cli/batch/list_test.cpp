@@ -245,5 +245,45 @@ TEST_F(BatchList, OneModelForManyMotions) {
   EXPECT_EQ(counts(tool("krok-skin", again).out), (Counts{{"unchanged", 2}}));
 }
 
+// Results that lie inside the folder that is read are not read when the batch runs again.
+TEST_F(BatchList, ResultsAreNoInputs) {
+  put_capture("takes/a.bvh");
+  put_capture("takes/deep/b.bvh");
+  ASSERT_EQ(import({"takes", "--out-dir", "m"}).exit_code, 0);
+  for (int round = 0; round < 2; ++round) {
+    const ToolRun run =
+        tool("krok-edit", {"m/**/*.anim", "--mirror", "--out-dir", "m/out", "--json"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(counts(run.out),
+              (std::map<std::string, int>{{round == 0 ? "done" : "unchanged", 2}}));
+  }
+  const ToolRun folder =
+      tool("krok-edit", {"m", "--at-origin", "--out-dir", "m/../m/out", "--force"});
+  EXPECT_NE(folder.err.find("2 files, 2 done"), std::string::npos) << folder.err;
+  EXPECT_EQ(files_below("m/out"), (Names{"a.anim", "deep/b.anim"}));
+  // A file that is named is taken, wherever it stands.
+  EXPECT_EQ(tool("krok-edit", {"m/out/a.anim", "--mirror", "--out-dir", "m/out/again"}).exit_code,
+            0);
+}
+
+TEST_F(BatchList, FilesThatAreNamedMustBeThereAndAllThatAreNotAreTold) {
+  put_capture("a.bvh");
+  const ToolRun run = import({"a.bvh", "captures/", "b.bvh", "--out-dir", "out", "--keep-going"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("captures/: error: no such file"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("b.bvh: error: no such file"), std::string::npos) << run.err;
+  EXPECT_EQ(files_below("out"), Names{});
+}
+
+TEST_F(BatchList, AListOfSequencesIsNoBatch) {
+  put_capture("a.bvh");
+  put("parts.json", R"({"schema": "krok.sequences/1", "sequences": []})");
+  const ToolRun run = tool(
+      "krok-edit", {"a.bvh", "--list-sequences", "--sequences", "parts.json", "--out-dir", "out"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
 }  // namespace
 }  // namespace krok::test

@@ -8,59 +8,24 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "core/hash.h"
+#include "support/folder_test.h"
 
 namespace krok {
 namespace {
 
 namespace fs = std::filesystem;
 
-class FileTest : public testing::Test {
- protected:
-  FileTest() {
-    std::string name = (fs::temp_directory_path() / "krok-file-test-XXXXXX").string();
-    EXPECT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  ~FileTest() override {
-    std::error_code ignored;
-    fs::permissions(folder_, fs::perms::owner_all, ignored);
-    fs::remove_all(folder_, ignored);
-  }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  static void put(const std::string& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-  }
-  static std::string get(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  // Everything in the folder, hidden temporary files included.
-  std::vector<std::string> listing() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_))
-      names.push_back(entry.path().filename());
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  fs::path folder_;
-};
-
+using FileTest = test::FolderTest;
 using Names = std::vector<std::string>;
 
 TEST_F(FileTest, ReadsAWholeFile) {
-  put(path("a"), std::string("one\0two", 7));
+  put("a", std::string("one\0two", 7));
   const auto file = InputFile::open(path("a"));
   ASSERT_TRUE(file.ok());
   EXPECT_EQ(file->text(), std::string_view("one\0two", 7));
@@ -68,7 +33,7 @@ TEST_F(FileTest, ReadsAWholeFile) {
 }
 
 TEST_F(FileTest, ReadsAnEmptyFile) {
-  put(path("a"), "");
+  put("a", "");
   const auto file = InputFile::open(path("a"));
   ASSERT_TRUE(file.ok());
   EXPECT_TRUE(file->bytes().empty());
@@ -76,7 +41,7 @@ TEST_F(FileTest, ReadsAnEmptyFile) {
 
 TEST_F(FileTest, ReadsAPipe) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-  std::thread writer([&] { put(path("pipe"), std::string(200000, 'x')); });
+  std::thread writer([&] { put("pipe", std::string(200000, 'x')); });
   const auto file = InputFile::open(path("pipe"));
   writer.join();
   ASSERT_TRUE(file.ok());
@@ -91,8 +56,8 @@ TEST_F(FileTest, SaysWhyAFileCannotBeRead) {
     EXPECT_EQ(file.error().where.file, name);
     return file.error().code;
   };
-  put(path("big"), std::string(1001, 'x'));
-  put(path("plain"), "x");
+  put("big", std::string(1001, 'x'));
+  put("plain", "x");
   EXPECT_EQ(code(path("missing")), "file-missing");
   EXPECT_EQ(code(path("plain/inside")), "file-missing");
   EXPECT_EQ(code(folder_.string()), "file-directory");
@@ -112,7 +77,7 @@ TEST_F(FileTest, AppearsOnlyOnCommit) {
 }
 
 TEST_F(FileTest, LeavesNothingWithoutCommit) {
-  put(path("out"), "old");
+  put("out", "old");
   {
     auto file = OutputFile::create(path("out"));
     ASSERT_TRUE(file.ok());
@@ -159,7 +124,7 @@ TEST_F(FileTest, OverwritesWhatIsWritten) {
 }
 
 TEST_F(FileTest, NoClobberRefusesAFileThatExists) {
-  put(path("out"), "old");
+  put("out", "old");
   const auto file = OutputFile::create(path("out"), {.no_clobber = true});
   ASSERT_FALSE(file.ok());
   EXPECT_EQ(file.error().code, "file-exists");
@@ -170,7 +135,7 @@ TEST_F(FileTest, NoClobberRefusesAFileThatAppearedMeanwhile) {
   auto file = OutputFile::create(path("out"), {.no_clobber = true});
   ASSERT_TRUE(file.ok());
   ASSERT_TRUE(file->write("new").ok());
-  put(path("out"), "other");
+  put("out", "other");
   const Status done = file->commit();
   ASSERT_FALSE(done.ok());
   EXPECT_EQ(done.error().code, "file-exists");
@@ -186,7 +151,7 @@ TEST_F(FileTest, NoClobberWritesANewFile) {
 
 TEST_F(FileTest, WritesThroughASymbolicLink) {
   fs::create_directory(path("deep"));
-  put(path("deep/real"), "old");
+  put("deep/real", "old");
   fs::create_symlink("deep/real", path("link"));
   fs::create_symlink("link", path("link-to-link"));
   ASSERT_TRUE(write_file(path("link-to-link"), "new").ok());
@@ -212,7 +177,7 @@ TEST_F(FileTest, SymbolicLinksInACircleAreAnError) {
 }
 
 TEST_F(FileTest, KeepsTheModeOfTheFileItReplaces) {
-  put(path("out"), "old");
+  put("out", "old");
   ASSERT_EQ(chmod(path("out").c_str(), 0640), 0);
   ASSERT_TRUE(write_file(path("out"), "new").ok());
   struct stat status {};
@@ -221,7 +186,7 @@ TEST_F(FileTest, KeepsTheModeOfTheFileItReplaces) {
 }
 
 TEST_F(FileTest, NewFilesHaveTheUsualMode) {
-  put(path("usual"), "x");
+  put("usual", "x");
   ASSERT_TRUE(write_file(path("out"), "new").ok());
   struct stat usual {
   }, status{};
@@ -345,24 +310,27 @@ class SignalTest : public FileTest, public testing::WithParamInterface<int> {
 };
 
 TEST_P(SignalTest, RemovesTheTemporaryFileAndKeepsTheOldOne) {
-  put(path("out"), "old");
+  put("out", "old");
   EXPECT_EQ(end_child_by(GetParam(), false), GetParam());
   EXPECT_EQ(get(path("out")), "old");
   EXPECT_EQ(listing(), Names{"out"});
 }
 
 TEST_P(SignalTest, ASignalThatWasIgnoredStaysSo) {
-  put(path("out"), "old");
+  put("out", "old");
   EXPECT_EQ(end_child_by(GetParam(), true), 0);
   EXPECT_EQ(get(path("out")), std::string(1 << 20, 'n'));
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, SignalTest, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGPIPE));
+INSTANTIATE_TEST_SUITE_P(Signals, SignalTest,
+                         testing::Values(SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT, SIGALRM,
+                                         SIGVTALRM, SIGPROF, SIGUSR1, SIGUSR2, SIGPOLL, SIGXCPU,
+                                         SIGABRT, SIGBUS, SIGSEGV));
 
 TEST_F(FileTest, MemoryGivenBackIsReadAgain) {
   std::string text;
   for (int i = 0; text.size() < (std::size_t{9} << 20); ++i) text += std::to_string(i) + "\n";
-  put(path("long"), text);
+  put("long", text);
   const auto file = InputFile::open(path("long"));
   ASSERT_TRUE(file.ok());
   EXPECT_EQ(file->checksum(), xxh3(file->bytes()));
@@ -374,7 +342,7 @@ TEST_F(FileTest, MemoryGivenBackIsReadAgain) {
 }
 
 TEST_F(FileTest, ChecksumOfAnEmptyFileIsThatOfNoBytes) {
-  put(path("empty"), "");
+  put("empty", "");
   EXPECT_EQ(InputFile::open(path("empty"))->checksum(), xxh3({}));
 }
 

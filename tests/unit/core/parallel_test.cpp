@@ -3,6 +3,9 @@
 #include "core/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -89,6 +92,49 @@ TEST(ParallelFor, SkipsTheRestAfterAnException) {
                             }),
                std::runtime_error);
   EXPECT_EQ(calls.load(), 5);
+}
+
+TEST(OnThreads, CallsOnceAThread) {
+  for (const std::size_t threads : {0, 1, 2, 5}) {
+    std::atomic<std::size_t> calls{0};
+    on_threads(threads, [&] { ++calls; });
+    EXPECT_EQ(calls, std::max<std::size_t>(threads, 1));
+  }
+}
+
+TEST(OnThreads, WhatIsThrownIsThrownOnOnceAllAreDone) {
+  std::atomic<int> done{0};
+  EXPECT_THROW(on_threads(4,
+                          [&] {
+                            if (done++ == 1) throw std::runtime_error("one of them");
+                          }),
+               std::runtime_error);
+  EXPECT_EQ(done, 4);
+}
+
+// Of a thousand threads the system gives only a few here, for each takes 8 MB of address space.
+TEST(OnThreads, GoesOnWithTheThreadsThatThereAre) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
+#endif
+  const pid_t child = fork();
+  if (child == 0) {
+    rlimit limit{std::size_t{300} << 20, std::size_t{300} << 20};
+    if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(1);
+    std::atomic<std::size_t> calls{0}, items{0};
+    on_threads(1000, [&] { ++calls; });
+    parallel_for(2000, 1, 1000, [&](std::size_t, std::size_t) { ++items; });
+    const Status made = make_in_order(
+        2000, 1000, [](std::size_t, std::size_t) { return Status(); },
+        [&](std::size_t, std::size_t) {
+          ++items;
+          return Status();
+        });
+    _exit(calls >= 1 && calls < 1000 && items == 4000 && made ? 7 : 2);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
 }
 
 }  // namespace

@@ -27,6 +27,25 @@ TEST(ParseAngle, BareNumbersAreDegrees) {
   EXPECT_DOUBLE_EQ(*parse_angle("0.25rad"), 0.25);
 }
 
+TEST(ParseFrequency, IsInHertz) {
+  EXPECT_DOUBLE_EQ(*parse_frequency("6Hz"), 6);
+  EXPECT_DOUBLE_EQ(*parse_frequency("0.5 Hz"), 0.5);
+  EXPECT_DOUBLE_EQ(*parse_frequency("12.5"), 12.5);
+  EXPECT_DOUBLE_EQ(*parse_frequency("1e1Hz"), 10);
+  EXPECT_DOUBLE_EQ(*parse_frequency("-1"), -1);  // what it may be is for the option to say
+  for (const char* text : {"", "Hz", "nan", "infHz", "6Hz "}) {
+    const auto parsed = parse_frequency(text);
+    ASSERT_FALSE(parsed.ok()) << "'" << text << "'";
+    EXPECT_EQ(parsed.error().code, "quantity-number") << text;
+  }
+  for (const char* text : {"6hz", "6kHz", "6s", "6fps", "6deg"}) {
+    const auto parsed = parse_frequency(text);
+    ASSERT_FALSE(parsed.ok()) << text;
+    EXPECT_EQ(parsed.error().code, "quantity-unit") << text;
+    EXPECT_NE(parsed.error().hint.find("Hz"), std::string::npos) << parsed.error().hint;
+  }
+}
+
 TEST(ParseClipTime, TellsFramesFromSeconds) {
   EXPECT_DOUBLE_EQ(parse_clip_time("1.5s")->seconds(30), 1.5);
   EXPECT_DOUBLE_EQ(parse_clip_time("250ms")->seconds(30), 0.25);

@@ -2,36 +2,23 @@
 // one is just writing.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <filesystem>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "core/file.h"
+#include "support/folder_test.h"
 
 namespace krok {
 namespace {
 
-namespace fs = std::filesystem;
-
-class TemporaryTest : public testing::Test {
+class TemporaryTest : public test::FolderTest {
  protected:
-  TemporaryTest() {
-    std::string name = (fs::temp_directory_path() / "krok-temporary-test-XXXXXX").string();
-    EXPECT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  ~TemporaryTest() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  std::size_t count() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
-  fs::path folder_;
+  std::size_t count() const { return listing().size(); }
 };
 
 TEST_F(TemporaryTest, ThoseOfKilledProgramsAreRemoved) {
@@ -81,6 +68,44 @@ TEST_F(TemporaryTest, ASignalAmongManyThreadsLeavesNone) {
     ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
     ASSERT_EQ(count(), 0u) << "round " << round;
   }
+}
+
+// More than one table of names holds.
+TEST_F(TemporaryTest, ASignalRemovesHoweverManyThereAre) {
+  const pid_t child = fork();
+  if (child == 0) {
+    remove_temporaries_on_signals();
+    std::vector<OutputFile> files;
+    for (int i = 0; i < 1500; ++i) {
+      auto file = OutputFile::create(path("out" + std::to_string(i)), {.stored_later = true});
+      if (!file || !file->write("text") || !file->seal()) _exit(1);
+      files.push_back(std::move(*file));
+    }
+    kill(getpid(), SIGTERM);
+    for (;;) pause();
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM) << status;
+  EXPECT_EQ(count(), 0u);
+}
+
+// As `ulimit -f` has it.
+TEST_F(TemporaryTest, AFileThatGrowsTooLargeIsAnError) {
+  put("out", "old");
+  const pid_t child = fork();
+  if (child == 0) {
+    remove_temporaries_on_signals();
+    rlimit limit{1000, 1000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    const Status written = write_file(path("out"), std::string(1 << 20, 'n'));
+    _exit(!written && written.error().code == "file-unwritable" ? 7 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
+  EXPECT_EQ(get(path("out")), "old");
+  EXPECT_EQ(count(), 1u);
 }
 
 }  // namespace

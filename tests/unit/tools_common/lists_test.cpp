@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <new>
 #include <thread>
 
 #include "tools/common/glob.h"
@@ -113,6 +114,31 @@ TEST(InOrder, StopsWhereItIsTold) {
         });
     EXPECT_EQ(taken, 11u);
     EXPECT_LE(begun, 11u + 16u);
+  }
+}
+
+// As where memory ends. The threads that wait for their turn must not wait for ever.
+TEST(InOrder, AnExceptionEndsItAndIsThrownOn) {
+  for (const int threads : {1, 4}) {
+    std::size_t taken = 0;
+    const auto run = [&](bool in_work) {
+      taken = 0;
+      in_order<int>(
+          1000, threads, 8,
+          [&](std::size_t i) {
+            if (in_work && i == 20) throw std::bad_alloc();
+            return 0;
+          },
+          [&](std::size_t i, int) {
+            if (!in_work && i == 20) throw std::bad_alloc();
+            ++taken;
+            return true;
+          });
+    };
+    for (const bool in_work : {true, false}) {
+      EXPECT_THROW(run(in_work), std::bad_alloc);
+      EXPECT_LE(taken, 20u);
+    }
   }
 }
 

@@ -1,0 +1,333 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cassert>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "core/file.h"
+#include "core/temporary_files_internal.h"
+
+namespace krok {
+
+namespace {
+
+// What a chain of symbolic links ends in, whether or not that exists.
+std::filesystem::path link_target(std::filesystem::path path) {
+  constexpr int kMaxLinks = 40;
+  for (int i = 0; i < kMaxLinks; ++i) {
+    std::error_code no_link;
+    const std::filesystem::path target = std::filesystem::read_symlink(path, no_link);
+    if (no_link) break;
+    path = target.is_absolute() ? target : path.parent_path() / target;
+  }
+  return path;
+}
+
+// Gives the temporary file its name; EEXIST where `no_clobber` and the name is taken. Two programs
+// with --no-clobber cannot both win.
+int put_in_place(const std::string& temporary, const std::string& target, bool no_clobber) {
+  if (!no_clobber) return ::rename(temporary.c_str(), target.c_str()) == 0 ? 0 : errno;
+  if (renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0) {
+    return 0;
+  }
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  // A file system that cannot do that in one step: link() refuses an existing name too.
+  if (link(temporary.c_str(), target.c_str()) != 0) return errno;
+  unlink(temporary.c_str());
+  return 0;
+}
+
+Error exists_error(const std::string& path) {
+  return file_error("file-exists", path, "exists already and --no-clobber was given",
+                    "choose another name or leave --no-clobber out");
+}
+
+}  // namespace
+
+struct OutputFile::State {
+  std::string path;       // as the caller wrote it, for messages
+  std::string target;     // what is replaced, through symbolic links
+  std::string temporary;  // empty where bytes go to `path` directly
+  int descriptor = -1;
+  std::atomic<int>* slot = nullptr;
+  bool sealed = false;
+  enum class Placed { no, anew, exchanged, for_good } placed = Placed::no;
+  bool no_clobber = false;
+  bool stored_later = false;
+  std::uint64_t written = 0;  // by the caller
+  std::uint64_t given = 0;    // of these, to the system
+  std::uint64_t storing = 0;  // of these, told to be stored
+  std::vector<std::byte> pending;
+  Status failure;
+
+  ~State() { discard(); }
+
+  void close() {
+    if (descriptor > STDERR_FILENO) ::close(descriptor);
+    descriptor = -1;
+  }
+
+  void discard() {
+    close();
+    if (!temporary.empty()) {
+      unlink(temporary.c_str());
+      forget_temporary(slot);
+      temporary.clear();
+    }
+  }
+
+  Status fail(int error_number, const char* what) {
+    failure =
+        file_error("file-unwritable", path, fmt::format("{}: {}", what, system_text(error_number)),
+                   error_number == ENOSPC ? "free some space, nothing was changed" : "");
+    return failure;
+  }
+
+  Status write_now(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) return fail(errno, "cannot be written");
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+      given += static_cast<std::uint64_t>(count);
+    }
+    start_storing();
+    return {};
+  }
+
+  // Brings what was written to the disk, where that is to be waited for.
+  Status wait_for_disk() {
+    const bool later = stored_later && access(target.c_str(), F_OK) != 0 && errno == ENOENT;
+    if (later || fsync(descriptor) == 0) return {};
+    return fail(errno, "cannot be written");
+  }
+
+  // Has the disk begin with what was written, so that fsync() at the end has little to wait for.
+  // Only a beginning: what fails here, fsync() tells.
+  void start_storing() {
+    constexpr std::uint64_t kStretch = std::uint64_t{8} << 20;
+    if (temporary.empty() || given - storing < kStretch) return;
+    (void)sync_file_range(descriptor, static_cast<off_t>(storing),
+                          static_cast<off_t>(given - storing), SYNC_FILE_RANGE_WRITE);
+    storing = given;
+  }
+
+  Status flush_pending() {
+    const Status done = write_now(pending);
+    pending.clear();
+    return done;
+  }
+
+  Status seal() {
+    if (!failure) return failure;
+    if (sealed) return {};
+    if (Status flushed = flush_pending(); !flushed) return flushed;
+    std::vector<std::byte>().swap(pending);
+    if (!temporary.empty()) {
+      if (Status stored = wait_for_disk(); !stored) return stored;
+    }
+    sealed = true;
+    const int closing = std::exchange(descriptor, -1);
+    if (closing > STDERR_FILENO && ::close(closing) != 0) return fail(errno, "cannot be written");
+    return {};
+  }
+
+  // Gives the file its name. With `can_go_back` what it replaces stays for a while, under the
+  // temporary name.
+  Status place(bool can_go_back) {
+    placed = Placed::for_good;
+    if (temporary.empty()) return {};
+    bool is_new = no_clobber;
+    struct stat status {};
+    if (can_go_back && !no_clobber) {
+      const bool is_file = lstat(target.c_str(), &status) == 0 && !S_ISDIR(status.st_mode);
+      if (is_file && swap_names()) {
+        placed = Placed::exchanged;
+        return {};
+      }
+      is_new = !is_file;
+    }
+    const int trouble = put_in_place(temporary, target, no_clobber);
+    if (trouble == 0) {
+      if (is_new) placed = Placed::anew;
+      return {};
+    }
+    placed = Placed::no;
+    failure =
+        trouble == EEXIST ? Status(exists_error(path)) : fail(trouble, "cannot be put in place");
+    return failure;
+  }
+
+  void take_back() {
+    if (placed == Placed::anew) unlink(target.c_str());
+    if (placed == Placed::exchanged) (void)swap_names();
+    placed = Placed::no;
+  }
+
+  bool swap_names() const {
+    return renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0;
+  }
+};
+
+OutputFile::OutputFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+OutputFile::OutputFile(OutputFile&&) noexcept = default;
+OutputFile& OutputFile::operator=(OutputFile&&) noexcept = default;
+OutputFile::~OutputFile() = default;
+
+Result<OutputFile> OutputFile::create(const std::string& path, Options options) {
+  auto state = std::make_unique<State>();
+  state->path = path;
+  state->no_clobber = options.no_clobber;
+  state->stored_later = options.stored_later;
+  if (path == "-") {
+    state->descriptor = STDOUT_FILENO;
+    return OutputFile(std::move(state));
+  }
+  if (path.empty()) return Error("file-unwritable", "the output has no name");
+  struct stat status {};
+  const bool exists = stat(path.c_str(), &status) == 0;
+  if (exists && S_ISDIR(status.st_mode)) {
+    return file_error("file-directory", path, "is a folder, not a file",
+                      "give the output a file name");
+  }
+  if (exists && !S_ISREG(status.st_mode)) {
+    state->descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (state->descriptor < 0) {
+      return file_error("file-unwritable", path,
+                        fmt::format("cannot be opened: {}", system_text(errno)));
+    }
+    return OutputFile(std::move(state));
+  }
+  if (exists && options.no_clobber) {
+    return exists_error(path);
+  }
+  if (exists && access(path.c_str(), W_OK) != 0) {
+    return file_error("file-unwritable", path,
+                      fmt::format("cannot be replaced: {}", system_text(errno)));
+  }
+  // Through a link, the file that it points to is replaced, not the link.
+  state->target = link_target(path).string();
+  std::string folder = std::filesystem::path(state->target).parent_path().string();
+  if (folder.empty()) folder = ".";
+  Temporary temporary = create_temporary(folder);
+  if (temporary.descriptor < 0) {
+    const int why = errno;
+    std::error_code unknown;
+    if (!std::filesystem::is_directory(folder, unknown)) {
+      return file_error("file-unwritable", path, fmt::format("there is no folder {}", folder),
+                        "create the folder first");
+    }
+    return file_error("file-unwritable", path,
+                      fmt::format("cannot be created: {}", system_text(why)));
+  }
+  state->descriptor = temporary.descriptor;
+  state->temporary = std::move(temporary.path);
+  state->slot = temporary.slot;
+  // The result gets the mode it would have had, or had before; not the bits that lend out rights.
+  (void)fchmod(state->descriptor, exists ? (status.st_mode & 0777) : (0666 & ~mode_mask()));
+  return OutputFile(std::move(state));
+}
+
+Status OutputFile::write(std::span<const std::byte> bytes) {
+  assert(!state_->sealed);
+  if (!state_->failure) return state_->failure;
+  state_->written += bytes.size();
+  constexpr std::size_t kBuffer = std::size_t{1} << 18;
+  // Enough to be worth a call of its own is not copied.
+  constexpr std::size_t kLarge = std::size_t{1} << 16;
+  if (bytes.size() < kLarge && state_->pending.size() + bytes.size() < kBuffer) {
+    state_->pending.insert(state_->pending.end(), bytes.begin(), bytes.end());
+    return {};
+  }
+  if (Status flushed = state_->flush_pending(); !flushed) return flushed;
+  if (bytes.size() >= kLarge) return state_->write_now(bytes);
+  state_->pending.assign(bytes.begin(), bytes.end());
+  return {};
+}
+
+bool OutputFile::can_overwrite() const {
+  return !state_->temporary.empty();
+}
+
+Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
+  if (!state_->failure) return state_->failure;
+  if (state_->temporary.empty()) {
+    return file_error("file-unwritable", state_->path, "is a stream and cannot be rewritten");
+  }
+  if (Status flushed = state_->flush_pending(); !flushed) return flushed;
+  while (!bytes.empty()) {
+    const ssize_t count =
+        pwrite(state_->descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return state_->fail(errno, "cannot be written");
+    offset += static_cast<std::uint64_t>(count);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return {};
+}
+
+std::uint64_t OutputFile::size() const {
+  return state_->written;
+}
+
+Status OutputFile::seal() {
+  return state_->seal();
+}
+
+const std::string& OutputFile::written_at() const {
+  return state_->temporary.empty() ? state_->path : state_->temporary;
+}
+
+Status OutputFile::place_all(std::span<OutputFile> files) {
+  const auto give_up = [&](const Status& failure) {
+    for (auto file = files.rbegin(); file != files.rend(); ++file) file->state_->take_back();
+    for (OutputFile& file : files) file.state_->discard();
+    return failure;
+  };
+  for (OutputFile& file : files) {
+    if (const Status sealed = file.seal(); !sealed) return give_up(sealed);
+  }
+  for (OutputFile& file : files) {
+    if (const Status placed = file.state_->place(files.size() > 1); !placed) return give_up(placed);
+  }
+  // What was replaced goes.
+  for (OutputFile& file : files) file.state_->discard();
+  return {};
+}
+
+Status OutputFile::commit() {
+  return place_all({this, 1});
+}
+
+Status write_file(const std::string& path, std::span<const std::byte> bytes,
+                  OutputFile::Options options) {
+  auto file = OutputFile::create(path, options);
+  if (!file) return file.error();
+  if (Status written = file->write(bytes); !written) return written;
+  return file->commit();
+}
+
+Status write_file(const std::string& path, std::string_view text, OutputFile::Options options) {
+  return write_file(path, std::as_bytes(std::span(text)), options);
+}
+
+Status store_files(const std::string& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) {
+    return file_error("file-unwritable", folder,
+                      fmt::format("cannot be opened: {}", system_text(errno)));
+  }
+  const int trouble = syncfs(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  if (trouble == 0) return {};
+  return file_error("file-unwritable", folder,
+                    fmt::format("what was written there may be lost: {}", system_text(trouble)));
+}
+
+}  // namespace krok

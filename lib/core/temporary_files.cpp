@@ -1,0 +1,188 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <climits>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <new>
+#include <span>
+
+#include "core/file.h"
+#include "core/hash.h"
+#include "core/temporary_files_internal.h"
+
+namespace krok {
+
+namespace {
+
+// Temporary files that a signal must remove. A signal handler may not allocate or lock, so they
+// stand in tables that never move: a slot is claimed, filled, and marked ready once its file is
+// there. A further table is made when all are full, and never freed.
+enum SlotState : int { slot_free, slot_changing, slot_opening, slot_ready };
+struct Table {
+  static constexpr std::size_t kSlots = 256;
+  std::array<std::atomic<int>, kSlots> states{};
+  char paths[kSlots][PATH_MAX];
+  std::atomic<Table*> next{nullptr};
+};
+Table first_table;
+std::atomic<bool> ending_by_signal{false};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait");
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
+static_assert(std::atomic<Table*>::is_always_lock_free, "a signal handler may not wait");
+
+// The table after `table`; null where there is none and no memory for one.
+Table* following(Table& table) {
+  if (Table* next = table.next.load()) return next;
+  Table* added = new (std::nothrow) Table;
+  Table* other = nullptr;
+  if (added == nullptr || table.next.compare_exchange_strong(other, added)) return added;
+  delete added;  // another thread was first
+  return other;
+}
+
+// Null for a path that cannot be remembered.
+std::atomic<int>* remember_temporary(const std::string& path) {
+  if (path.size() >= PATH_MAX) return nullptr;
+  for (Table* table = &first_table; table != nullptr; table = following(*table)) {
+    for (std::size_t i = 0; i < Table::kSlots; ++i) {
+      int free = slot_free;
+      if (!table->states[i].compare_exchange_strong(free, slot_changing)) continue;
+      std::memcpy(table->paths[i], path.c_str(), path.size() + 1);
+      table->states[i].store(slot_opening);
+      return &table->states[i];
+    }
+  }
+  return nullptr;
+}
+
+bool any_is_opening() {
+  for (Table* table = &first_table; table != nullptr; table = table->next.load()) {
+    for (const auto& state : table->states) {
+      if (state.load() == slot_opening) return true;
+    }
+  }
+  return false;
+}
+
+extern "C" void remove_temporaries_and_end(int signal_number) {
+  // Other threads go on until the process ends. One that is just opening a file is waited for, not
+  // for long: it may be the very thread that this handler interrupted.
+  ending_by_signal.store(true);
+  constexpr int kWaits = 50;
+  for (int i = 0; i < kWaits && any_is_opening(); ++i) {
+    const timespec millisecond{0, 1'000'000};
+    nanosleep(&millisecond, nullptr);
+  }
+  for (Table* table = &first_table; table != nullptr; table = table->next.load()) {
+    for (std::size_t i = 0; i < Table::kSlots; ++i) {
+      const int state = table->states[i].load();
+      if (state == slot_opening || state == slot_ready) unlink(table->paths[i]);
+    }
+  }
+  signal(signal_number, SIG_DFL);
+  raise(signal_number);
+}
+
+// Once a signal is about to end the program, no new file is begun.
+void stop_if_ending(std::atomic<int>* slot) {
+  if (!ending_by_signal.load()) return;
+  forget_temporary(slot);
+  for (;;) pause();
+}
+
+// What the names of temporary files begin with, before the number of their process: which machine
+// and process namespace that number belongs to, for a folder may be shared.
+const std::string& temporary_prefix() {
+  static const std::string prefix = [] {
+    std::array<char, 256> host{};
+    (void)gethostname(host.data(), host.size() - 1);
+    std::error_code unknown;
+    const std::string place = std::string(host.data()) + "/" +
+                              std::filesystem::read_symlink("/proc/self/ns/pid", unknown).string();
+    return fmt::format(".krok-{}-", hex(xxh3(std::as_bytes(std::span(place)))));
+  }();
+  return prefix;
+}
+
+// Those that end a program unless it says otherwise: by someone's wish, by a limit, by a fault.
+constexpr int kEndingSignals[] = {SIGINT,    SIGTERM, SIGHUP,  SIGPIPE, SIGQUIT, SIGALRM,
+                                  SIGVTALRM, SIGPROF, SIGUSR1, SIGUSR2, SIGPOLL, SIGXCPU,
+                                  SIGABRT,   SIGBUS,  SIGSEGV, SIGFPE,  SIGILL,  SIGSYS};
+
+}  // namespace
+
+mode_t mode_mask() {
+  static const mode_t mask = [] {
+    const mode_t current = umask(0);
+    umask(current);
+    return current;
+  }();
+  return mask;
+}
+
+Temporary create_temporary(const std::string& folder) {
+  static std::atomic<unsigned> counter{0};
+  constexpr int kAttempts = 1000;  // names that killed programs left behind
+  Temporary temporary;
+  for (int i = 0; i < kAttempts; ++i) {
+    temporary.path =
+        fmt::format("{}/{}{}-{}", folder, temporary_prefix(), getpid(), counter.fetch_add(1));
+    temporary.slot = remember_temporary(temporary.path);
+    stop_if_ending(temporary.slot);
+    temporary.descriptor =
+        ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (temporary.descriptor >= 0) {
+      if (temporary.slot != nullptr) temporary.slot->store(slot_ready);
+      break;
+    }
+    const int why = errno;
+    forget_temporary(temporary.slot);
+    errno = why;
+    if (why != EEXIST) break;
+  }
+  return temporary;
+}
+
+void forget_temporary(std::atomic<int>* slot) {
+  if (slot != nullptr) slot->store(slot_free);
+}
+
+void remove_temporaries_of_killed(const std::string& folder) {
+  std::error_code unreadable;
+  for (std::filesystem::directory_iterator entry(folder, unreadable), end; entry != end;
+       entry.increment(unreadable)) {
+    const std::string name = entry->path().filename().string();
+    if (name.rfind(temporary_prefix(), 0) != 0) continue;
+    const std::string numbers = name.substr(temporary_prefix().size());
+    pid_t process = 0;
+    const auto parsed = std::from_chars(numbers.data(), numbers.data() + numbers.size(), process);
+    if (parsed.ec != std::errc() || process <= 0 || *parsed.ptr != '-') continue;
+    if (::kill(process, 0) != 0 && errno == ESRCH) unlink(entry->path().c_str());
+  }
+}
+
+void remove_temporaries_on_signals() {
+  (void)mode_mask();  // while there is one thread
+  struct sigaction action {};
+  action.sa_handler = remove_temporaries_and_end;
+  sigemptyset(&action.sa_mask);
+  for (const int signal_number : kEndingSignals) {
+    // What the caller ignores stays ignored (nohup, a shell's background jobs), and what a
+    // profiler or a sanitizer handles is left to it.
+    struct sigaction before {};
+    if (sigaction(signal_number, nullptr, &before) == 0 && before.sa_handler != SIG_DFL) continue;
+    sigaction(signal_number, &action, nullptr);
+  }
+  // A file that grows past the limit of the shell is then an error of write().
+  signal(SIGXFSZ, SIG_IGN);
+}
+
+}  // namespace krok

@@ -1,0 +1,122 @@
+// If these fail, `krok VERB` does something else than `krok-VERB`, or progress gets into what
+// scripts read.
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/fixture.h"
+
+namespace krok::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class Krok : public CliTest {
+ protected:
+  Krok() { put("in.bvh", capture(30)); }
+};
+
+TEST_F(Krok, PassesArgumentsAndExitCodesThrough) {
+  put("other.bvh", capture(30, "0.5"));
+  const ToolRun import = run_tool("krok", {"import", path("in.bvh"), "-o", path("a b.anim")});
+  EXPECT_EQ(import.exit_code, 0) << import.err;
+  ASSERT_EQ(run_tool("krok", {"import", path("other.bvh"), "-o", path("c.anim")}).exit_code, 0);
+  const ToolRun different = run_tool("krok", {"diff", path("a b.anim"), path("c.anim")});
+  EXPECT_EQ(different.exit_code, 1) << different.err;
+  EXPECT_EQ(different.out, run_tool("krok-diff", {path("a b.anim"), path("c.anim")}).out);
+  const ToolRun missing = run_tool("krok", {"info", path("none.anim")});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_TRUE(has_code(missing.err, "file-missing")) << missing.err;
+  EXPECT_EQ(run_tool("krok", {"info", "--help"}).out, run_tool("krok-info", {"--help"}).out);
+}
+
+TEST_F(Krok, TellsWhichVerbThereIsNot) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"dance"}, {"dance", "--help"}, {"../krok-info"}, {}}) {
+    const ToolRun run = run_tool("krok", arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
+    EXPECT_NE(run.err.find("hint: see krok --help"), std::string::npos) << run.err;
+  }
+}
+
+// The tools stand beside the program itself, not beside a link to it.
+TEST_F(Krok, WorksThroughALink) {
+  std::filesystem::create_symlink(std::string(KROK_BIN_DIR) + "/krok", path("k"));
+  const ToolRun run = test::run({path("k"), "info", "--version"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, run_tool("krok-info", {"--version"}).out);
+}
+
+TEST_F(Krok, AFullStandardOutputIsTrouble) {
+  ToolOptions full;
+  full.output_path = "/dev/full";
+  for (const char* option : {"--help", "--version"}) {
+    const ToolRun run = run_tool("krok", {option}, full);
+    EXPECT_EQ(run.exit_code, 2) << option;
+    EXPECT_TRUE(has_code(run.err, "file-unwritable")) << run.err;
+    EXPECT_EQ(run_tool("krok", {option}).exit_code, 0);
+  }
+}
+
+TEST_F(Krok, ProgressInJsonIsAnObjectALine) {
+  const ToolRun run =
+      run_tool("krok-import", {path("in.bvh"), "--out-dir", path("out"), "-q", "--progress=json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  std::istringstream lines(run.err);
+  int count = 0;
+  std::uint64_t done = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    const Json progress = Json::parse(line)["progress"];
+    EXPECT_EQ(progress["total"], 1);
+    EXPECT_FALSE(progress["what"].get<std::string>().empty());
+    done = progress["done"].get<std::uint64_t>();
+  }
+  EXPECT_GE(count, 2);
+  EXPECT_EQ(done, 1u);
+}
+
+TEST_F(Krok, ProgressInPlainLinesAndNoneWithoutATerminal) {
+  const ToolRun plain =
+      run_tool("krok-import", {path("in.bvh"), "--out-dir", path("out"), "-q", "--progress=plain"});
+  EXPECT_EQ(plain.err.find("krok-import: 0/1 (0 %)\n"), 0u) << plain.err;
+  EXPECT_NE(plain.err.find("1/1 (100 %)\n"), std::string::npos) << plain.err;
+  for (const char* style : {"auto", "none"}) {
+    const ToolRun run = run_tool("krok-import", {path("in.bvh"), "--out-dir", path("out"), "-q",
+                                                 "--force", std::string("--progress=") + style});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_EQ(run.err, "") << style;
+  }
+}
+
+// On a terminal, which script(1) makes: a bar that is taken away in the end, coloured unless
+// NO_COLOR says otherwise.
+TEST_F(Krok, ABarOnATerminalHonoursNoColor) {
+  if (!std::filesystem::exists("/usr/bin/script")) GTEST_SKIP() << "skipped: there is no script";
+  put("long.bvh", capture(150000));
+  std::filesystem::create_directory(path("in"));
+  for (int i = 0; i < 40; ++i) {
+    std::filesystem::create_hard_link(path("long.bvh"), path("in/" + std::to_string(i) + ".bvh"));
+  }
+  const auto bar = [&](const std::string& environment) {
+    const std::string command = environment + " " + KROK_BIN_DIR + "/krok-import " + path("in") +
+                                " --out-dir " + path("out") + " --force -j 1 --progress=bar";
+    ToolOptions options;
+    options.folder = folder_.string();
+    return test::run({"/usr/bin/script", "-qec", command, "/dev/null"}, options).out;
+  };
+  const std::string coloured = bar("env -u NO_COLOR");
+  const std::string plain = bar("NO_COLOR=1");
+  for (const std::string& text : {coloured, plain}) {
+    const std::size_t first = text.find("####");
+    ASSERT_NE(first, std::string::npos) << text;
+    EXPECT_NE(text.find("\r\033[K", first), std::string::npos) << "the bar stays: " << text;
+    EXPECT_NE(text.find("40 files, 40 done"), std::string::npos) << text;
+  }
+  EXPECT_NE(coloured.find("\033[32m"), std::string::npos);
+  EXPECT_EQ(plain.find("\033[32m"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace krok::test

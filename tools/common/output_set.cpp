@@ -1,0 +1,84 @@
+#include "tools/common/output_set.h"
+
+#include <algorithm>
+#include <atomic>
+#include <iterator>
+#include <optional>
+
+#include "core/parallel.h"
+#include "tools/common/paths.h"
+
+namespace krok {
+
+namespace {
+
+Result<OutputFile> written(const std::string& path, OutputFile::Options options,
+                           const std::function<Status(OutputFile&)>& write) {
+  auto file = OutputFile::create(path, options);
+  if (!file) return file.error();
+  if (Status done = write(*file); !done) return std::move(done.error()).in_file(path);
+  if (Status sealed = file->seal(); !sealed) return sealed.error();
+  return file;
+}
+
+}  // namespace
+
+Status OutputSet::add(const std::string& path, const std::function<Status(OutputFile&)>& write) {
+  if (path.empty()) return {};
+  return add_all({path}, 1, [&](std::size_t, OutputFile& file) { return write(file); });
+}
+
+Status OutputSet::add_all(const std::vector<std::string>& paths, int jobs,
+                          const std::function<Status(std::size_t, OutputFile&)>& write) {
+  for (const std::string& path : paths) {
+    if (Status fits = context_.check_output(path); !fits) return fits;
+    const std::string place = place_of(path);
+    if (!place.empty() && !places_.insert(place).second) return twice_error(path);
+  }
+  std::vector<std::optional<Result<OutputFile>>> made(paths.size());
+  std::atomic<bool> failed = false;
+  parallel_for(paths.size(), 1, jobs, [&](std::size_t i, std::size_t) {
+    if (failed) return;
+    made[i] = written(paths[i], context_.output_options(),
+                      [&](OutputFile& file) { return write(i, file); });
+    if (!*made[i]) failed = true;
+  });
+  // Files are begun in order, so that the first that failed is always among those begun.
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (made[i] && !*made[i]) return made[i]->error();
+  }
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    files_.push_back(std::move(**made[i]));
+    paths_.push_back(paths[i]);
+  }
+  return {};
+}
+
+Status OutputSet::finish() {
+  const bool foreseen = std::all_of(paths_.begin(), paths_.end(), [&](const std::string& path) {
+    return context_.is_destination(path);
+  });
+  if (context_.kept_messages != nullptr && !foreseen) {
+    std::move(files_.begin(), files_.end(), std::back_inserter(context_.held_files));
+    context_.held_paths.insert(context_.held_paths.end(), paths_.begin(), paths_.end());
+  } else if (Status placed = OutputFile::place_all(files_); !placed) {
+    return placed;
+  }
+  for (const std::string& path : paths_) context_.wrote(path);
+  return {};
+}
+
+std::string OutputSet::names() const {
+  std::string names;
+  for (const std::string& path : paths_) names += (names.empty() ? "" : ", ") + path;
+  return names;
+}
+
+Status write_output(ToolContext& context, const std::string& path,
+                    const std::function<Status(OutputFile&)>& write) {
+  OutputSet outputs(context);
+  if (Status added = outputs.add(path, write); !added) return added;
+  return outputs.finish();
+}
+
+}  // namespace krok
