@@ -42,12 +42,12 @@ std::optional<std::string> decode_percent(const std::string& text) {
   return decoded;
 }
 
-// The path of a buffer's file, if the URI is a relative path that stays in the folder, links
-// followed.
-Result<std::string> path_inside(const std::string& uri, const std::string& folder) {
+// The path of a file, if the URI is a relative path that stays in the folder, links followed.
+Result<std::string> path_inside(const std::string& uri, const std::string& what,
+                                const std::string& folder) {
   const auto refuse = [&](const char* why) {
-    return Error("gltf-buffer", fmt::format("the buffer '{}' {}", shortened(uri), why),
-                 "buffers must lie in the file's own folder or be embedded (.glb)");
+    return Error("gltf-buffer", fmt::format("the {} '{}' {}", what, shortened(uri), why),
+                 "what belongs to a file must lie in its own folder or be embedded (.glb)");
   };
   if (folder.empty()) return refuse("is a file of its own, and no folder is known for it");
   const auto decoded = decode_percent(uri);
@@ -68,10 +68,6 @@ Result<std::string> path_inside(const std::string& uri, const std::string& folde
   const fs::path inside = full.lexically_relative(root);
   if (inside.empty() || *inside.begin() == "..") return refuse("leaves the file's folder");
   return (fs::path(folder) / relative).string();
-}
-
-bool is_data_uri(const std::string& uri) {
-  return uri.starts_with("data:");
 }
 
 // Any media type: what matters is that it is base64.
@@ -96,6 +92,17 @@ Result<std::vector<unsigned char>> decode_data_uri(const std::string& uri, std::
 
 }  // namespace
 
+bool is_data_uri(const std::string& uri) {
+  return uri.starts_with("data:");
+}
+
+Result<InputFile> open_beside(const std::string& uri, const std::string& what,
+                              const std::string& folder, std::uint64_t most_bytes) {
+  const auto path = path_inside(uri, what, folder);
+  if (!path) return path.error();
+  return InputFile::open(*path, most_bytes);
+}
+
 Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Container& container,
                              const ReadOptions& options) {
   Buffers buffers;
@@ -116,9 +123,7 @@ Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Cont
       buffers.decoded.push_back(std::move(*decoded));
       bytes = std::as_bytes(std::span(buffers.decoded.back()));
     } else {
-      const auto path = path_inside(entry.uri, options.folder);
-      if (!path) return path.error();
-      auto file = InputFile::open(*path, bytes_left);
+      auto file = open_beside(entry.uri, "buffer", options.folder, bytes_left);
       if (!file) return file.error();
       buffers.files.push_back(std::move(*file));
       bytes = buffers.files.back().bytes();

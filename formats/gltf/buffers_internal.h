@@ -26,4 +26,11 @@ struct Buffers {
 Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Container& container,
                              const ReadOptions& options);
 
+bool is_data_uri(const std::string& uri);
+
+// Opens a file that a glTF in `folder` names by a relative URI; `what` is what it is to it,
+// "buffer". Codes: gltf-buffer for a URI that leads out of the folder, and those of InputFile.
+Result<InputFile> open_beside(const std::string& uri, const std::string& what,
+                              const std::string& folder, std::uint64_t most_bytes);
+
 }  // namespace krok::gltf

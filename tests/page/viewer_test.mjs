@@ -53,7 +53,8 @@ async function until(page, condition) {
 }
 
 async function open(name, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 900, height: 600 }, ...options });
+  // A page moves at once, which most checks have no use for.
+  const context = await browser.newContext({ viewport: { width: 900, height: 600 }, reducedMotion: 'reduce', ...options });
   const page = await context.newPage();
   page.on('console', (line) => {
     if (line.type() === 'error' || line.type() === 'warning') {
@@ -106,6 +107,7 @@ async function jointsAgree(page, motion, rate, item = 0) {
     let largest = 0;
     for (const { name, position } of joints) {
       const expected = frames[frame][name];
+      if (!expected) expect(false, `${motion}: no joint is called ${name}`);
       if (!expected) continue;
       largest = Math.max(largest, Math.hypot(...position.map((x, i) => x - expected[i])));
     }
@@ -140,6 +142,46 @@ async function playsByKeyboard(page) {
   expect(!(await state()).playing, 'Space does not pause');
 }
 
+// Keys turn the switches beside the picture, and what is shown with them where it shows at once.
+async function keysTurnSwitches(page, keys) {
+  for (const [key, name, shows = true] of keys) {
+    const box = page.getByLabel(`${name} (${key})`);
+    const before = await box.isChecked();
+    const picture = (await page.locator('#view').screenshot()).toString('base64');
+    await page.keyboard.press(key);
+    await page.waitForTimeout(200);
+    expect((await box.isChecked()) === !before, `${key} does not turn the switch ${name}`);
+    const changed = (await page.locator('#view').screenshot()).toString('base64') !== picture;
+    expect(changed || !shows, `${key} does not change the picture`);
+    await page.keyboard.press(key);
+    await page.waitForTimeout(200);
+    expect((await box.isChecked()) === before, `${key} does not turn the switch ${name} back`);
+  }
+}
+
+// The largest distance between joints of one name, as the page tells it, against the library's.
+async function differenceAgrees(page, one, other, rate) {
+  const frame = 40;
+  const a = positionsOf(one)[frame];
+  const b = positionsOf(other)[frame];
+  let largest = { distance: -1 };
+  for (const name of Object.keys(a)) {
+    if (!b[name]) continue;
+    const distance = Math.hypot(...a[name].map((x, i) => x - b[name][i]));
+    if (distance > largest.distance) largest = { name, distance };
+  }
+  await page.evaluate((time) => krokView.setTime(time), frame / rate);
+  await page.waitForTimeout(200);
+  const text = await page.locator('#difference').textContent();
+  const told = text.match(/up to ([\d.e+-]+) (mm|cm|m) at (.+); red is/);
+  expect(told !== null, `no difference is told: ${text}`);
+  if (!told) return;
+  const metres = Number(told[1]) * { mm: 1e-3, cm: 1e-2, m: 1 }[told[2]];
+  expect(Math.abs(metres - largest.distance) < 0.01 * largest.distance + 1e-4,
+    `the page tells ${text}, the library ${largest.distance} m at ${largest.name}`);
+  expect(told[3] === largest.name, `the page tells ${told[3]}, the library ${largest.name}`);
+}
+
 // Every control that can be reached has a name that a screen reader can say.
 async function controlsHaveNames(page) {
   const nameless = await page.evaluate(() =>
@@ -168,11 +210,71 @@ try {
   const both = await look(one, 'both');
   expect(both.blue > body.blue + 1000, `the body hides the skeleton: ${body.blue}, ${both.blue} blue pixels`);
   await one.keyboard.press('b');
-  expect((await look(one, 'skeleton')).colours > 300, 'the skeleton alone is blank');
+  const bones = await look(one, 'skeleton');
+  expect(bones.colours > 300, 'the skeleton alone is blank');
+  await one.keyboard.press('s');
+  const nothing = await look(one, 'nothing');
+  expect(nothing.blue * 10 < bones.blue, `b or s hides nothing: ${bones.blue}, ${nothing.blue} blue pixels`);
+  await one.keyboard.press('b');
+  await keysTurnSwitches(one, [['g', 'Ground'], ['f', 'Follow', false]]);
+  await one.evaluate(() => krokView.setTime(1));
+  await one.waitForTimeout(200);
+  const bare = await look(one, 'no trail');
+  await one.getByLabel('Joint', { exact: true }).selectOption({ label: 'LeftHand' });
+  await one.waitForTimeout(200);
+  const remove = one.getByRole('button', { name: 'Remove the trail of LeftHand' });
+  expect(await remove.count() === 1, 'a trail that was chosen is not listed');
+  const trail = await look(one, 'trail');
+  expect(trail.blue > bare.blue + 20, `no trail is drawn: ${bare.blue}, ${trail.blue} blue pixels`);
+  await remove.click();
+  await one.waitForTimeout(200);
+  expect((await look(one, 'trail gone')).blue === bare.blue, 'a trail cannot be removed');
+
+  const moving = await open('one.html', { reducedMotion: 'no-preference' });
+  await until(moving, () => krokView.playing && krokView.time > 0.1);
+  expect(await moving.getByRole('button', { name: 'Pause' }).count() === 1, 'the button of a moving page does not say Pause');
+  expect(!(await one.evaluate(() => krokView.playing)), 'a page plays for those who want stillness');
+  await moving.close();
 
   const two = await open('two.html');
   await jointsAgree(two, made('turn.anim'), 60, 1);
-  expect(/at \S+; red is/.test(await two.locator('#difference').textContent()), 'no difference is told');
+  await differenceAgrees(two, made('walk.anim'), made('turn.anim'), 60);
+  await keysTurnSwitches(two, [['a', 'Side by side']]);
+  await two.keyboard.press('d');
+  expect(!(await two.locator('#difference').isVisible()), 'd does not hide the difference');
+  const shownFiles = () => two.evaluate(() =>
+    [...document.querySelectorAll('#items input')].map((box) => box.checked).join());
+  await two.keyboard.press('PageDown');
+  const first = await shownFiles();
+  await two.keyboard.press('PageDown');
+  const second = await shownFiles();
+  await two.keyboard.press('PageUp');
+  expect(first !== second && [first, second].sort().join(';') === 'false,true;true,false',
+    `PageDown shows ${first}, then ${second}`);
+  expect((await shownFiles()) === first, 'PageUp does not go back');
+
+  const frozen = join(source, 'tests/golden/v1');
+  run('krok-view', join(frozen, 'motion.anim'), join(frozen, 'camera.cam'), '-o', made('camera.html'));
+  const flown = await open('camera.html');
+  const fly = flown.getByRole('button', { name: /Fly .*camera/ });
+  const seen = async () => (await flown.locator('#view').screenshot()).toString('base64');
+  const before = await seen();
+  await flown.keyboard.press('c');
+  await flown.waitForTimeout(200);
+  expect(await fly.getAttribute('aria-pressed') === 'true', 'c does not fly the camera');
+  expect((await seen()) !== before, 'the flown camera shows what was shown before');
+  await flown.keyboard.press('c');
+  expect(await fly.getAttribute('aria-pressed') === 'false', 'c does not land again');
+
+  run('krok-view', made('walk.anim'), '--keys', 'find', '--body', 'none', '-o', made('keys.html'));
+  const keyed = await open('keys.html');
+  const bars = await keyed.evaluate(() => {
+    const canvas = document.getElementById('lanes');
+    const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+    const red = pixels.filter((pixel) => (pixel & 0xff) > 150 && ((pixel >> 8) & 0xff) < 120 && pixel >>> 24 > 200);
+    return red.length / pixels.length;
+  });
+  expect(bars > 0.1, `contacts fill ${bars} of the time line`);
 
   const glb = await open('glb.html');
   await jointsAgree(glb, made('walk.anim'), 60);
@@ -189,4 +291,4 @@ try {
   rmSync(folder, { recursive: true, force: true });
 }
 console.log(`${checks} checks, ${faults.length} faults`);
-process.exitCode = faults.length > 0 || checks < 25 ? 1 : 0;
+process.exitCode = faults.length > 0 || checks < 55 ? 1 : 0;

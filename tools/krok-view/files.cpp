@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
 
 #include "body/body.h"
+#include "core/text.h"
 #include "formats/cam/cam.h"
 #include "formats/gltf/gltf_reader.h"
+#include "formats/gltf/pack_glb.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
+#include "tools/common/glob.h"
 #include "tools/common/keys_sidecar.h"
 #include "tools/common/motion_input.h"
 
@@ -16,10 +22,34 @@ namespace krok::view {
 
 namespace {
 
+namespace fs = std::filesystem;
 using registry::Kind;
 
 std::string name_of(const std::string& path) {
   return path == "-" ? "standard input" : base_name(path);
+}
+
+// Standard input has none.
+std::string folder_of(const std::string& path) {
+  if (path == "-") return {};
+  const std::string folder = fs::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+// The motions and characters in a folder and the folders in it, by name.
+Result<std::vector<std::string>> files_in(const std::string& folder) {
+  auto found = find_files_below(folder);
+  if (!found) return found.error();
+  static constexpr std::array<std::string_view, 5> kEndings = {".anim", ".bvh", ".amc", ".glb",
+                                                               ".gltf"};
+  std::erase_if(*found, [](const std::string& path) {
+    const std::string ending = ascii_lower(fs::path(path).extension().string());
+    return std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end();
+  });
+  if (!found->empty()) return found;
+  return Error("view-input", "no motion or character is in this folder",
+               "it may hold .anim, .bvh, .amc, .glb and .gltf files")
+      .in_file(folder);
 }
 
 // Contacts and keytimes: those in the file beside the motion, or found.
@@ -59,10 +89,17 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       files.glbs.push_back({name_of(path), {bytes.begin(), bytes.end()}});
       return {};
     }
-    case Kind::gltf:
-      return Error("view-input", "a .gltf may refer to other files, which a page cannot",
-                   "convert it to a .glb, which holds them")
-          .in_file(path);
+    case Kind::gltf: {
+      // A page cannot open the files beside it; they are packed with it.
+      auto packed = gltf::pack_glb(input->bytes(), {.folder = folder_of(path)});
+      if (!packed) return std::move(packed).error().in_file(path);
+      for (Diagnostic& told : packed->diagnostics) context.tell(std::move(told));
+      for (const std::string& beside : packed->files) {
+        if (auto opened = context.open_input(beside); !opened) return opened.error();
+      }
+      files.glbs.push_back({name_of(path), std::move(packed->bytes)});
+      return {};
+    }
     default: {
       auto clip = read_motion(*input, context);
       if (!clip) return std::move(clip).error().in_file(path);
@@ -122,7 +159,16 @@ Status build_bodies(const Options& options, ToolContext& context, Files& files) 
 Result<Files> read_files(const Options& options, ToolContext& context) {
   Files files;
   for (const std::string& path : options.inputs) {
-    if (Status added = add_file(path, options.keys, context, files); !added) return added.error();
+    std::vector<std::string> paths = {path};
+    std::error_code unknown;
+    if (path != "-" && fs::is_directory(path, unknown)) {
+      auto found = files_in(path);
+      if (!found) return found.error();
+      paths = std::move(*found);
+    }
+    for (const std::string& each : paths) {
+      if (Status added = add_file(each, options.keys, context, files); !added) return added.error();
+    }
   }
   share_models(files);
   if (Status built = build_bodies(options, context, files); !built) return built.error();

@@ -66,7 +66,7 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
 void declare(CLI::App& app, Options& options) {
   app.add_option("inputs", options.inputs,
                  "Motions (.anim, or a capture such as BVH), models (.model, moved by the motions "
-                 "of their skeleton), cameras (.cam), GLB files")
+                 "of their skeleton), cameras (.cam), glTF; of a folder all motions and glTF")
       ->type_name("IN")
       ->required();
   app.add_option("--layout", options.layout,

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdint>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
@@ -137,6 +139,54 @@ TEST_F(KrokView, SaysThatADifferenceNeedsTwo) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("--difference needs two motions"));
   EXPECT_THAT(listing(), IsEmpty());
+}
+
+// The page gets one GLB that holds what the .gltf names; what cannot be had is said.
+TEST_F(KrokView, PacksAGltfWithItsFiles) {
+  ASSERT_EQ(run_tool("krok-body", {kMotion, "-o", path("b.model"), "-q"}).exit_code, 0);
+  ASSERT_EQ(
+      run_tool("krok-skin", {path("b.model"), kMotion, "--as", "rig", "-o", path("rig.glb"), "-q"})
+          .exit_code,
+      0);
+  // The same in two files, with an image that is not there.
+  const std::string glb = get(path("rig.glb"));
+  const auto u32 = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, glb.data() + at, 4);
+    return value;
+  };
+  const std::uint32_t json_size = u32(12), bin_size = u32(20 + json_size);
+  json scene = json::parse(glb.substr(20, json_size));
+  scene["buffers"][0]["uri"] = "rig%20data.bin";
+  scene["buffers"][0]["byteLength"] = bin_size;
+  scene["images"] = json::array({{{"uri", "gone.png"}}});
+  put("rig data.bin", glb.substr(28 + json_size, bin_size));
+  put("rig.gltf", scene.dump());
+  const ToolRun run = view({path("rig.gltf"), "--json=" + path("report.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(has_code(run.err, "gltf-image")) << run.err;
+  EXPECT_EQ(json::parse(get(path("report.json")))["inputs"].size(), 2U);
+  const json item = data()["items"][0];
+  EXPECT_EQ(item["kind"], "gltf");
+  put("rig.gltf",
+      json::parse(scene.dump()).dump().replace(scene.dump().find("rig%20data"), 3, "../"));
+  EXPECT_EQ(view({path("rig.gltf")}).exit_code, 2);
+}
+
+TEST_F(KrokView, AFolderIsAListOfWhatMovesInIt) {
+  std::filesystem::create_directories(path("takes/more"));
+  std::filesystem::create_directories(path("empty"));
+  for (const char* name : {"takes/a.bvh", "takes/b.bvh", "takes/more/c.bvh"}) put(name, capture(4));
+  put("takes/notes.txt", "none");
+  ASSERT_EQ(view({path("takes"), "--body", "none"}).exit_code, 0);
+  const json items = data()["items"];
+  ASSERT_EQ(items.size(), 3U);
+  EXPECT_EQ(items[0]["name"], "a.bvh");
+  EXPECT_EQ(items[2]["name"], "c.bvh");
+  put("empty/notes.txt", "none");
+  const ToolRun empty = view({path("empty")});
+  EXPECT_EQ(empty.exit_code, 2);
+  EXPECT_TRUE(has_code(empty.err, "view-input")) << empty.err;
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ vec4 grid() {
   vec2 box = max( sqrt( across * across + along * along ), vec2( ${SHARPEST} ) );
   vec2 low = vGround - 0.5 * box;
   vec2 high = low + box;
-  vec2 fine = ( linesIn( low, high, 1.0, ${HALF_WIDTHS[0]} ) - linesIn( low, high, 5.0, ${HALF_WIDTHS[0]} ) ) / box;
+  vec2 fine = ( linesIn( low, high, 1.0, ${HALF_WIDTHS[0]} )
+    - linesIn( low, high, 5.0, ${HALF_WIDTHS[0]} ) ) / box;
   vec2 fifth = linesIn( low, high, 5.0, ${HALF_WIDTHS[1]} ) / box;
   vec2 bare = 1.0 - fine - fifth;
   vec2 clear = 1.0 - ${STRENGTHS[0]} * fine - ${STRENGTHS[1]} * fifth;
@@ -44,7 +45,7 @@ const COMPOSE = `
   float lit = 1.0 - opacity * ( 1.0 - getShadowMask() );
   float cover = 1.0 - lit * ( 1.0 - lines.a );
   gl_FragColor = vec4( color, cover );
-  if ( lines.a > 0.0 ) {
+  if ( lines.a > 1e-4 ) { // less is not seen, and dividing by it may not be safe
     gl_FragColor.rgb = linearToOutputTexel( vec4( lines.rgb, 1.0 ) ).rgb * lit * lines.a / cover;
   }
 `;

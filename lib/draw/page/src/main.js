@@ -571,6 +571,8 @@ async function main() {
   controls.rearrange();
   controls.frame();
   player.setTime(data.time ?? 0);
+  // It moves at once, but for those who asked their system for stillness.
+  if (player.duration > 0 && !matchMedia('(prefers-reduced-motion: reduce)').matches) controls.togglePlay();
 
   let last = null;
   let drawn = 0;

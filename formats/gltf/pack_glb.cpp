@@ -1,0 +1,137 @@
+#include "formats/gltf/pack_glb.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/bytes.h"
+#include "formats/gltf/buffers_internal.h"
+
+namespace krok::gltf {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kAlignment = 4;
+constexpr const char* kGreyPixel =
+    "data:image/png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mNoAAAAggCB2kUIOwAAAABJRU5ErkJggg==";
+
+class Packer {
+ public:
+  Packer(Json& json, const ReadOptions& options) : json_(json), options_(options) {}
+
+  void put_buffers(const Buffers& buffers) {
+    std::vector<std::size_t> begins;
+    for (const auto& view : buffers.views) begins.push_back(put(view));
+    for (const InputFile& file : buffers.files) packed_.files.push_back(file.path());
+    if (!json_.contains("bufferViews")) return;
+    for (Json& view : json_["bufferViews"]) {
+      if (!view.is_object()) continue;
+      const std::size_t buffer = number(view, "buffer"), offset = number(view, "byteOffset");
+      if (buffer >= begins.size()) continue;
+      view["buffer"] = 0;
+      view["byteOffset"] = begins[buffer] + offset;
+    }
+  }
+
+  void put_images() {
+    if (!json_.contains("images") || !json_["images"].is_array()) return;
+    for (Json& image : json_["images"]) {
+      if (!image.is_object() || !image.contains("uri") || !image["uri"].is_string()) continue;
+      const auto uri = image["uri"].get<std::string>();
+      if (!is_data_uri(uri)) put_image(uri, image);
+    }
+  }
+
+  Result<PackedGlb> finish() {
+    if (bin_.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
+      return Error("gltf-too-large",
+                   fmt::format("{} bytes are too many for a GLB in a page", bin_.size()));
+    }
+    if (!bin_.empty()) json_["buffers"] = Json::array({{{"byteLength", bin_.size()}}});
+    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    while (text.size() % kAlignment != 0) text += ' ';
+    constexpr std::uint32_t kHeader = 12, kChunk = 8;
+    const std::size_t size =
+        kHeader + kChunk + text.size() + (bin_.empty() ? 0 : kChunk + bin_.size());
+    ByteWriter out;
+    out.append_text("glTF");
+    out.write(std::uint32_t{2});
+    out.write(static_cast<std::uint32_t>(size));
+    out.write(static_cast<std::uint32_t>(text.size()));
+    out.append_text("JSON");
+    out.append_text(text);
+    if (!bin_.empty()) {
+      out.write(static_cast<std::uint32_t>(bin_.size()));
+      out.append_text(std::string_view("BIN\0", 4));
+      out.buffer().insert(out.buffer().end(), bin_.begin(), bin_.end());
+    }
+    packed_.bytes = std::move(out.buffer());
+    return std::move(packed_);
+  }
+
+ private:
+  static std::size_t number(const Json& object, const char* name) {
+    const auto found = object.find(name);
+    return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : 0;
+  }
+
+  std::size_t put(std::span<const std::byte> bytes) {
+    const std::size_t begin = bin_.size();
+    bin_.insert(bin_.end(), bytes.begin(), bytes.end());
+    bin_.resize((bin_.size() + kAlignment - 1) / kAlignment * kAlignment);
+    return begin;
+  }
+
+  void put_image(const std::string& uri, Json& image) {
+    const auto file = open_beside(uri, "image", options_.folder, options_.most_bytes);
+    if (!file) {
+      Diagnostic told = file.error();
+      told.severity = Severity::warning;
+      told.code = "gltf-image";
+      packed_.diagnostics.push_back(std::move(told));
+      image["uri"] = kGreyPixel;
+      return;
+    }
+    packed_.files.push_back(file->path());
+    const auto bytes = file->bytes();
+    const bool is_jpeg =
+        bytes.size() > 1 && bytes[0] == std::byte{0xFF} && bytes[1] == std::byte{0xD8};
+    const bool is_webp =
+        bytes.size() > 3 && bytes[0] == std::byte{'R'} && bytes[1] == std::byte{'I'};
+    const std::size_t begin = put(bytes);
+    Json& views = json_["bufferViews"];
+    if (!views.is_array()) views = Json::array();
+    views.push_back({{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size()}});
+    image.erase("uri");
+    image["bufferView"] = views.size() - 1;
+    image["mimeType"] = is_jpeg ? "image/jpeg" : is_webp ? "image/webp" : "image/png";
+  }
+
+  Json& json_;
+  const ReadOptions& options_;
+  std::vector<std::byte> bin_;
+  PackedGlb packed_;
+};
+
+}  // namespace
+
+Result<PackedGlb> pack_glb(std::span<const std::byte> gltf, const ReadOptions& options) {
+  if (auto sound = read(gltf, options); !sound) return sound.error();
+  const auto container = open_container(gltf);
+  if (!container) return container.error();
+  const auto parsed = parse_json(*container);
+  if (!parsed) return parsed.error();
+  const auto buffers = open_buffers(parsed->buffers, *container, options);
+  if (!buffers) return buffers.error();
+  Json json = Json::parse(container->json, nullptr, false);
+  Packer packer(json, options);
+  packer.put_buffers(*buffers);
+  packer.put_images();
+  return packer.finish();
+}
+
+}  // namespace krok::gltf
