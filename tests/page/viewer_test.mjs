@@ -76,6 +76,18 @@ async function open(name, options = {}) {
   return page;
 }
 
+// Does something that changes the picture, and waits until it is drawn: a loaded machine takes its
+// time.
+async function drawn(page, act) {
+  const before = await page.evaluate(() => krokView.drawn);
+  await act();
+  for (const end = Date.now() + 20000; Date.now() < end;) {
+    if (await page.evaluate((count) => krokView.drawn > count, before)) return;
+    await new Promise((wake) => { setTimeout(wake, 20); });
+  }
+  expect(false, `nothing is drawn after ${act}`);
+}
+
 // Of a picture of the canvas: how many different colours it has, a blank one a few, and how many
 // pixels are as blue as the first figure's bones; its body is paler.
 async function look(page, name) {
@@ -148,13 +160,12 @@ async function keysTurnSwitches(page, keys) {
     const box = page.getByLabel(`${name} (${key})`);
     const before = await box.isChecked();
     const picture = (await page.locator('#view').screenshot()).toString('base64');
-    await page.keyboard.press(key);
-    await page.waitForTimeout(200);
+    const press = () => page.keyboard.press(key);
+    await (shows ? drawn(page, press) : press());
     expect((await box.isChecked()) === !before, `${key} does not turn the switch ${name}`);
     const changed = (await page.locator('#view').screenshot()).toString('base64') !== picture;
     expect(changed || !shows, `${key} does not change the picture`);
-    await page.keyboard.press(key);
-    await page.waitForTimeout(200);
+    await (shows ? drawn(page, press) : press());
     expect((await box.isChecked()) === before, `${key} does not turn the switch ${name} back`);
   }
 }
@@ -170,8 +181,7 @@ async function differenceAgrees(page, one, other, rate) {
     const distance = Math.hypot(...a[name].map((x, i) => x - b[name][i]));
     if (distance > largest.distance) largest = { name, distance };
   }
-  await page.evaluate((time) => krokView.setTime(time), frame / rate);
-  await page.waitForTimeout(200);
+  await drawn(page, () => page.evaluate((time) => krokView.setTime(time), frame / rate));
   const text = await page.locator('#difference').textContent();
   const told = text.match(/up to ([\d.e+-]+) (mm|cm|m) at (.+); red is/);
   expect(told !== null, `no difference is told: ${text}`);
@@ -206,28 +216,25 @@ try {
   await controlsHaveNames(one);
   const body = await look(one, 'one');
   expect(body.colours > 500, 'the page of a motion is blank');
-  await one.keyboard.press('s');
+  await drawn(one, () => one.keyboard.press('s'));
   const both = await look(one, 'both');
   expect(both.blue > body.blue + 1000, `the body hides the skeleton: ${body.blue}, ${both.blue} blue pixels`);
-  await one.keyboard.press('b');
+  await drawn(one, () => one.keyboard.press('b'));
   const bones = await look(one, 'skeleton');
   expect(bones.colours > 300, 'the skeleton alone is blank');
-  await one.keyboard.press('s');
+  await drawn(one, () => one.keyboard.press('s'));
   const nothing = await look(one, 'nothing');
   expect(nothing.blue * 10 < bones.blue, `b or s hides nothing: ${bones.blue}, ${nothing.blue} blue pixels`);
-  await one.keyboard.press('b');
+  await drawn(one, () => one.keyboard.press('b'));
   await keysTurnSwitches(one, [['g', 'Ground'], ['f', 'Follow', false]]);
-  await one.evaluate(() => krokView.setTime(1));
-  await one.waitForTimeout(200);
+  await drawn(one, () => one.evaluate(() => krokView.setTime(1)));
   const bare = await look(one, 'no trail');
-  await one.getByLabel('Joint', { exact: true }).selectOption({ label: 'LeftHand' });
-  await one.waitForTimeout(200);
+  await drawn(one, () => one.getByLabel('Joint', { exact: true }).selectOption({ label: 'LeftHand' }));
   const remove = one.getByRole('button', { name: 'Remove the trail of LeftHand' });
   expect(await remove.count() === 1, 'a trail that was chosen is not listed');
   const trail = await look(one, 'trail');
   expect(trail.blue > bare.blue + 20, `no trail is drawn: ${bare.blue}, ${trail.blue} blue pixels`);
-  await remove.click();
-  await one.waitForTimeout(200);
+  await drawn(one, () => remove.click());
   expect((await look(one, 'trail gone')).blue === bare.blue, 'a trail cannot be removed');
 
   const moving = await open('one.html', { reducedMotion: 'no-preference' });
@@ -259,8 +266,7 @@ try {
   const fly = flown.getByRole('button', { name: /Fly .*camera/ });
   const seen = async () => (await flown.locator('#view').screenshot()).toString('base64');
   const before = await seen();
-  await flown.keyboard.press('c');
-  await flown.waitForTimeout(200);
+  await drawn(flown, () => flown.keyboard.press('c'));
   expect(await fly.getAttribute('aria-pressed') === 'true', 'c does not fly the camera');
   expect((await seen()) !== before, 'the flown camera shows what was shown before');
   await flown.keyboard.press('c');
