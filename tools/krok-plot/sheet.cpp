@@ -251,16 +251,9 @@ void declare_sheet(CLI::App& app, SheetOptions& options) {
       ->type_name("WHAT")
       ->transform(one_of<Front>({{"figure", Front::figure}, {"world", Front::world}}))
       ->default_str("figure");
-  app.add_option("--body", options.body,
-                 "A body for motions without a model: low (2,500 vertices), medium (10,000), high "
-                 "(40,000), auto: low for more than two files, else medium; none: all as bones")
-      ->type_name("DETAIL")
-      ->transform(one_of<BodyChoice>({{"auto", BodyChoice::automatic},
-                                      {"none", BodyChoice::none},
-                                      {"low", BodyChoice::low},
-                                      {"medium", BodyChoice::medium},
-                                      {"high", BodyChoice::high}}))
-      ->default_str("auto");
+  add_body_option(app, options.body,
+                  "A body for motions without a model: low (2,500 vertices), medium (10,000), high "
+                  "(40,000), auto: low for more than two files, else medium; none: all as bones");
 }
 
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,

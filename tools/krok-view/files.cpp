@@ -138,12 +138,7 @@ Status build_bodies(const Options& options, ToolContext& context, Files& files) 
     choice = bare <= 2 ? BodyChoice::medium : bare <= 4 ? BodyChoice::low : BodyChoice::none;
   }
   if (choice == BodyChoice::none) return {};
-  BodyOptions how;
-  how.detail = choice == BodyChoice::low      ? BodyDetail::low
-               : choice == BodyChoice::medium ? BodyDetail::medium
-                                              : BodyDetail::high;
-  how.jobs = context.jobs;
-  how.progress = context.progress;
+  const BodyOptions how = body_options(choice, context);
   for (Files::Motion& motion : files.motions) {
     if (motion.body != nullptr) continue;
     auto body = make_body(motion.clip, how);

@@ -81,16 +81,10 @@ void declare(CLI::App& app, Options& options) {
   app.add_flag("--difference", options.difference,
                "Put the first two figures together and colour their joints by how far apart those "
                "of the same name are");
-  app.add_option("--body", options.body,
-                 "A body for motions without a model: none, low (2,500 vertices), medium (10,000), "
-                 "high (40,000), or auto: fewer for more files, none for more than four")
-      ->type_name("DETAIL")
-      ->transform(one_of<BodyChoice>({{"auto", BodyChoice::automatic},
-                                      {"none", BodyChoice::none},
-                                      {"low", BodyChoice::low},
-                                      {"medium", BodyChoice::medium},
-                                      {"high", BodyChoice::high}}))
-      ->default_str("auto");
+  add_body_option(
+      app, options.body,
+      "A body for motions without a model: none, low (2,500 vertices), medium (10,000), "
+      "high (40,000), or auto: fewer for more files, none for more than four");
   app.add_option("--keys", options.keys,
                  "Contacts, coloured, and keytimes, marked on the time line: auto (those in the "
                  "file NAME.keys.json beside a motion), find (found anew, as krok-keys does), none")

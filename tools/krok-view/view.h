@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "core/result.h"
+#include "tools/common/body_choice.h"
 #include "tools/common/tool.h"
 
 namespace krok::view {
 
 enum class Layout : unsigned char { automatic, apart, together, list };
 enum class KeysChoice : unsigned char { automatic, none, find };
-enum class BodyChoice : unsigned char { automatic, none, low, medium, high };
 
 struct Options {
   std::vector<std::string> inputs;

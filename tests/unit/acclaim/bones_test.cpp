@@ -9,17 +9,9 @@
 #include "unit/acclaim/reading.h"
 #include "unit/acclaim/small_files.h"
 
+namespace krok::acclaim::test {
 namespace {
 
-using krok::Vec3;
-using krok::acclaim::DegreeOfFreedom;
-using krok::acclaim::ReadOptions;
-using krok::acclaim::test::all;
-using krok::acclaim::test::expect_near;
-using krok::acclaim::test::plain;
-using krok::acclaim::test::position;
-using krok::acclaim::test::read;
-using krok::acclaim::test::told;
 using small_files::kAmc;
 using small_files::kAsf;
 using small_files::with;
@@ -185,3 +177,4 @@ TEST(AcclaimReader, a_unit_that_makes_a_person_is_believed_and_another_is_not) {
 }
 
 }  // namespace
+}  // namespace krok::acclaim::test

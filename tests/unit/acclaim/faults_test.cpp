@@ -8,16 +8,9 @@
 #include "unit/acclaim/reading.h"
 #include "unit/acclaim/small_files.h"
 
+namespace krok::acclaim::test {
 namespace {
 
-using krok::Strictness;
-using krok::acclaim::ReadOptions;
-using krok::acclaim::test::all;
-using krok::acclaim::test::expect_near;
-using krok::acclaim::test::plain;
-using krok::acclaim::test::position;
-using krok::acclaim::test::read;
-using krok::acclaim::test::strictness;
 using small_files::kAmc;
 using small_files::kAsf;
 using small_files::with;
@@ -138,3 +131,4 @@ TEST(AcclaimReader, numbers_that_overflow_are_an_error) {
 }
 
 }  // namespace
+}  // namespace krok::acclaim::test

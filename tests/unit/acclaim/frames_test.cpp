@@ -9,17 +9,9 @@
 #include "unit/acclaim/reading.h"
 #include "unit/acclaim/small_files.h"
 
+namespace krok::acclaim::test {
 namespace {
 
-using krok::Strictness;
-using krok::acclaim::ReadOptions;
-using krok::acclaim::test::all;
-using krok::acclaim::test::expect_near;
-using krok::acclaim::test::plain;
-using krok::acclaim::test::position;
-using krok::acclaim::test::read;
-using krok::acclaim::test::strictness;
-using krok::acclaim::test::told;
 using small_files::kAmc;
 using small_files::kAsf;
 using small_files::with;
@@ -120,3 +112,4 @@ TEST(AcclaimReader, a_last_frame_that_is_cut_short_is_left_out) {
 }
 
 }  // namespace
+}  // namespace krok::acclaim::test

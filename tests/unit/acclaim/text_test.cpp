@@ -7,11 +7,9 @@
 #include "unit/acclaim/reading.h"
 #include "unit/acclaim/small_files.h"
 
+namespace krok::acclaim::test {
 namespace {
 
-using krok::acclaim::test::all;
-using krok::acclaim::test::read;
-using krok::acclaim::test::told;
 using small_files::kAmc;
 using small_files::kAsf;
 using small_files::with;
@@ -94,3 +92,4 @@ TEST(AcclaimReader, bones_that_do_not_hang_on_the_root_are_left_out) {
 }
 
 }  // namespace
+}  // namespace krok::acclaim::test

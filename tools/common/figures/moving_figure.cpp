@@ -321,12 +321,7 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
   const auto bare = std::count_if(read.motions.begin(), read.motions.end(),
                                   [](const Read::Motion& motion) { return !motion.body; });
   if (choice == BodyChoice::automatic) choice = bare > 2 ? BodyChoice::low : BodyChoice::medium;
-  BodyOptions how;
-  how.detail = choice == BodyChoice::low      ? BodyDetail::low
-               : choice == BodyChoice::medium ? BodyDetail::medium
-                                              : BodyDetail::high;
-  how.jobs = context.jobs;
-  how.progress = context.progress;
+  const BodyOptions how = body_options(choice, context);
   for (Read::Motion& motion : read.motions) {
     if (motion.body != nullptr) continue;
     auto body = make_body(motion.clip, how);

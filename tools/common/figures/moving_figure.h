@@ -7,15 +7,12 @@
 #include "core/result.h"
 #include "nodes/scene.h"
 #include "render/figure.h"
+#include "tools/common/body_choice.h"
 #include "tools/common/tool.h"
 
 // What input files hold as figures that pictures can be made of.
 
 namespace krok {
-
-// How fine a body is made for a motion that comes without one: low (2,500 vertices) for more than
-// two of them if automatic, otherwise medium (10,000).
-enum class BodyChoice : unsigned char { automatic, none, low, medium, high };
 
 struct MovingFigure {
   std::string path, name;  // the name is for people
@@ -35,7 +32,8 @@ struct MovingFigure {
 
 // Motions (captures, .anim), models (.model, moved by the motions of their skeleton or standing
 // alone) and glTF files, in the order of `paths`. With BodyChoice::none motions are drawn as bones,
-// and so are models and glTF files that have joints. Code figure-input for a file that shows no
+// and so are models and glTF files that have joints; automatic is low for more than two motions
+// that come without a body, otherwise medium. Code figure-input for a file that shows no
 // figure.
 Result<std::vector<MovingFigure>> read_figures(const std::vector<std::string>& paths,
                                                BodyChoice body, ToolContext& context);

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "body/body.h"
+#include "tools/common/one_of.h"
+#include "tools/common/tool.h"
+
+namespace krok {
+
+// --body, for tools that show motions: which body is made for one that comes without. What
+// automatic is depends on the tool.
+enum class BodyChoice : unsigned char { automatic, none, low, medium, high };
+
+inline CLI::Option* add_body_option(CLI::App& app, BodyChoice& choice,
+                                    const std::string& description) {
+  return app.add_option("--body", choice, description)
+      ->type_name("DETAIL")
+      ->transform(one_of<BodyChoice>({{"auto", BodyChoice::automatic},
+                                      {"none", BodyChoice::none},
+                                      {"low", BodyChoice::low},
+                                      {"medium", BodyChoice::medium},
+                                      {"high", BodyChoice::high}}))
+      ->default_str("auto");
+}
+
+// How the body is made; `choice` is low, medium or high.
+inline BodyOptions body_options(BodyChoice choice, const ToolContext& context) {
+  BodyOptions how;
+  how.detail = choice == BodyChoice::low      ? BodyDetail::low
+               : choice == BodyChoice::medium ? BodyDetail::medium
+                                              : BodyDetail::high;
+  how.jobs = context.jobs;
+  how.progress = context.progress;
+  return how;
+}
+
+}  // namespace krok
