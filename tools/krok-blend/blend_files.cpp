@@ -296,6 +296,13 @@ Result<int> run(const Options& options, ToolContext& context) {
     inputs.push_back(
         {motion.name, &motion.clip, motion.has_keys ? &motion.keys : nullptr, motion.weight});
   }
+  const auto stands = [](const Motion& motion) { return !motion.keys.contacts.empty(); };
+  if (options.align == blend::Align::stance && !std::ranges::all_of(*motions, stands)) {
+    context.warn("blend-stance",
+                 fmt::format("{} has no contacts; what stands is not kept in place",
+                             std::ranges::find_if_not(*motions, stands)->name),
+                 "krok-keys finds contacts, or sets them with --add-contact");
+  }
   blend::BlendOptions how;
   how.warp = options.warp == WarpChoice::linear ? blend::Warp::linear : blend::Warp::pchip;
   how.align = options.align;

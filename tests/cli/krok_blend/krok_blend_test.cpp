@@ -144,6 +144,14 @@ TEST_F(KrokBlend, MotionsWithoutStepsAreMatchedFromEndToEnd) {
   EXPECT_TRUE(has_code(beside.err, "keys-missing")) << beside.err;
 }
 
+TEST_F(KrokBlend, WithoutContactsNothingCanBeKeptInPlaceAndThatIsSaid) {
+  const ToolRun run = blend({walk("0.5"), quick("0.5"), "--keys", "none", "--align", "stance"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(has_code(run.err, "blend-stance")) << run.err;
+  const ToolRun known = blend({walk("0.5"), quick("0.5"), "--align", "stance"});
+  EXPECT_FALSE(has_code(known.err, "blend-stance")) << known.err;
+}
+
 TEST_F(KrokBlend, KeytimesThatAPersonWroteStay) {
   put("out.keys.json", "{\"schema\": \"something else\"}\n");
   const ToolRun run = blend({walk("0.5"), quick("0.5")});
