@@ -7,20 +7,14 @@
 
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
+#include "retarget/figure_measure_internal.h"
 
 namespace krok::retarget {
 
 namespace {
 
-const Vec3 kUp = Vec3::UnitY();
-
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
-}
-
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
 }
 
 std::vector<int> subtree(const Skeleton& skeleton, int root) {
