@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <optional>
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/json/located_json.h"
+#include "formats/json/members.h"
 
 namespace krok::sequences {
 
@@ -26,19 +24,16 @@ constexpr std::size_t kMostSequences = 10'000;
 
 class Reader {
  public:
-  explicit Reader(std::string_view text) : text_(text) {}
+  explicit Reader(std::string_view text) : text_(text), members_(text, "sequences") {}
 
   Result<SequenceFile> read() {
     const auto root = json::parse(text_, kLargestFile);
     if (!root) return root.error();
-    if (Status known = known_keys(*root, "the file", {"schema", "rate", "sequences"}); !known) {
+    if (Status known = members_.only(*root, "the file", {"schema", "rate", "sequences"}); !known) {
       return known.error();
     }
-    const auto schema = member(*root, "the file", "schema", Kind::string);
-    if (!schema) return schema.error();
-    if ((*schema)->text != kSchema) {
-      return fault(**schema, "sequences-structure",
-                   fmt::format("the schema is '{}', expected {}", shown((*schema)->text), kSchema));
+    if (Status right = members_.has_schema(*root, "the file", kSchema); !right) {
+      return right.error();
     }
     SequenceFile file;
     if (root->find("rate") != nullptr) {
@@ -46,12 +41,11 @@ class Reader {
       if (!rate) return rate.error();
       file.rate = *rate;
     }
-    const auto list = member(*root, "the file", "sequences", Kind::array);
+    const auto list = members_.get(*root, "the file", "sequences", Kind::array);
     if (!list) return list.error();
     if ((*list)->items.size() > kMostSequences) {
-      return fault(
-          **list, "sequences-value",
-          fmt::format("{} sequences are more than {}", (*list)->items.size(), kMostSequences));
+      return members_.wrong(**list, fmt::format("{} sequences are more than {}",
+                                                (*list)->items.size(), kMostSequences));
     }
     for (const Value& item : (*list)->items) {
       auto sequence = read_sequence(item, file);
@@ -62,59 +56,23 @@ class Reader {
   }
 
  private:
-  Error fault(const Value& value, std::string code, std::string message,
-              std::string hint = {}) const {
-    return json::error_at(text_, value.offset, std::move(code), std::move(message),
-                          std::move(hint));
-  }
-
-  Status known_keys(const Value& object, std::string_view what,
-                    std::initializer_list<std::string_view> keys) const {
-    if (object.kind != Kind::object) {
-      return fault(object, "sequences-structure",
-                   fmt::format("{} is {}, expected an object", what, json::kind_name(object.kind)));
-    }
-    for (const Value::Member& entry : object.members) {
-      if (std::ranges::find(keys, entry.key) != keys.end()) continue;
-      return json::error_at(text_, entry.key_offset, "sequences-structure",
-                            fmt::format("{} has no '{}'", what, shown(entry.key)),
-                            fmt::format("known are {}", fmt::join(keys, ", ")));
-    }
-    return {};
-  }
-
-  Result<const Value*> member(const Value& object, std::string_view what, std::string_view key,
-                              Kind kind) const {
-    const Value* value = object.find(key);
-    if (value == nullptr) {
-      return fault(object, "sequences-structure", fmt::format("{} lacks \"{}\"", what, key));
-    }
-    if (value->kind != kind) {
-      return fault(*value, "sequences-value",
-                   fmt::format("\"{}\" of {} is {}, expected {}", key, what,
-                               json::kind_name(value->kind), json::kind_name(kind)));
-    }
-    return value;
-  }
-
   Result<double> positive(const Value& object, std::string_view what, std::string_view key) const {
-    const auto value = member(object, what, key, Kind::number);
+    const auto value = members_.get(object, what, key, Kind::number);
     if (!value) return value.error();
     if (!((*value)->number > 0) || !std::isfinite((*value)->number)) {
-      return fault(**value, "sequences-value",
-                   fmt::format("\"{}\" of {} is {}, expected more than 0", key, what,
-                               readable((*value)->number)));
+      return members_.wrong(**value, fmt::format("\"{}\" of {} is {}, expected more than 0", key,
+                                                 what, readable((*value)->number)));
     }
     return (*value)->number;
   }
 
   Result<int> frame(const Value& object, std::string_view what, std::string_view key) const {
-    const auto value = member(object, what, key, Kind::number);
+    const auto value = members_.get(object, what, key, Kind::number);
     if (!value) return value.error();
     const double number = (*value)->number;
     if (!(number >= 0) || number > kLastFrame || number != std::floor(number)) {
-      return fault(**value, "sequences-value",
-                   fmt::format("\"{}\" of {} is {}, expected a frame: a whole number from 0", key,
+      return members_.wrong(
+          **value, fmt::format("\"{}\" of {} is {}, expected a frame: a whole number from 0", key,
                                what, readable(number, 12)));
     }
     return static_cast<int>(number);
@@ -127,23 +85,23 @@ class Reader {
       return c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
     });
     if (text.empty() || text == "." || text == ".." || !plain || text.size() > kLongestName) {
-      return fault(
-          name, "sequences-value", fmt::format("'{}' is no name for a sequence", shown(text)),
+      return members_.wrong(
+          name, fmt::format("'{}' is no name for a sequence", shown(text)),
           fmt::format("it is not empty, has no slashes and at most {} bytes", kLongestName));
     }
     if (file.find(text) != nullptr) {
-      return fault(name, "sequences-value",
-                   fmt::format("two sequences are called '{}'", shown(text)));
+      return members_.wrong(name, fmt::format("two sequences are called '{}'", shown(text)));
     }
     return {};
   }
 
   Result<Sequence> read_sequence(const Value& item, const SequenceFile& file) const {
-    if (Status known = known_keys(item, "a sequence", {"name", "first", "last", "speed", "loop"});
+    if (Status known =
+            members_.only(item, "a sequence", {"name", "first", "last", "speed", "loop"});
         !known) {
       return known.error();
     }
-    const auto name = member(item, "a sequence", "name", Kind::string);
+    const auto name = members_.get(item, "a sequence", "name", Kind::string);
     if (!name) return name.error();
     if (Status good = check_name(**name, file); !good) return good.error();
     Sequence sequence;
@@ -154,9 +112,9 @@ class Reader {
     const auto last = frame(item, what, "last");
     if (!last) return last.error();
     if (*last < *first) {
-      return fault(*item.find("last"), "sequences-value",
-                   fmt::format("{} ends with frame {}, before it begins with frame {}", what, *last,
-                               *first));
+      return members_.wrong(*item.find("last"),
+                            fmt::format("{} ends with frame {}, before it begins with frame {}",
+                                        what, *last, *first));
     }
     sequence.first = *first;
     sequence.last = *last;
@@ -166,7 +124,7 @@ class Reader {
       sequence.speed = *speed;
     }
     if (item.find("loop") != nullptr) {
-      const auto loop = member(item, what, "loop", Kind::boolean);
+      const auto loop = members_.get(item, what, "loop", Kind::boolean);
       if (!loop) return loop.error();
       sequence.loop = (*loop)->truth;
     }
@@ -174,6 +132,7 @@ class Reader {
   }
 
   std::string_view text_;
+  json::Members members_;
 };
 
 }  // namespace
