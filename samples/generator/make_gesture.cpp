@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include "core/file.h"
+#include "core/quantity.h"
+#include "formats/bvh/bvh_writer.h"
+#include "samples/generator/gesture.h"
+#include "tools/common/tool.h"
+
+// make-gesture: writes a generated gesture as BVH.
+
+namespace {
+
+using namespace krok;
+
+struct Arguments {
+  samples::GestureOptions gesture;
+  std::string kind = "wave", side = "right", duration;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.add_option("--kind", arguments.kind, "wave, limp or look")
+      ->check(CLI::IsMember({"wave", "limp", "look"}))
+      ->type_name("KIND")
+      ->capture_default_str()
+      ->group("Gesture");
+  app.add_option("--side", arguments.side,
+                 "The arm that waves, the leg that limps, where the head turns: left or right")
+      ->check(CLI::IsMember({"left", "right"}))
+      ->type_name("SIDE")
+      ->capture_default_str()
+      ->group("Gesture");
+  app.add_option("--duration", arguments.duration, "How long it lasts; of a limp: a stride")
+      ->type_name("TIME")
+      ->default_str("3s")
+      ->group("Gesture");
+  app.add_option("--rate", arguments.gesture.rate, "Frames a second")
+      ->type_name("N")
+      ->capture_default_str()
+      ->group("Capture");
+}
+
+Result<int> run(ToolContext& context, Arguments& arguments) {
+  samples::GestureOptions& gesture = arguments.gesture;
+  gesture.gesture = arguments.kind == "limp"   ? samples::Gesture::limp
+                    : arguments.kind == "look" ? samples::Gesture::look
+                                               : samples::Gesture::wave;
+  gesture.side = arguments.side == "left" ? samples::Side::left : samples::Side::right;
+  if (!arguments.duration.empty()) {
+    const auto duration = parse_clip_time(arguments.duration);
+    if (!duration) return duration.error();
+    gesture.duration = duration->seconds(gesture.rate);
+  }
+  const auto clip = samples::make_gesture(gesture);
+  if (!clip) return clip.error();
+  Result<OutputFile> file = OutputFile::create(context.output, context.output_options());
+  if (!file) return std::move(file).error();
+  if (Status done = bvh::write(*clip, {.decimals = 4}, *file); !done) return done.error();
+  if (Status done = file->commit(); !done) return done.error();
+  context.wrote(context.output);
+  context.say(fmt::format("{}: a {}, {} frames at {:g}/s, {:.1f} s", context.output, arguments.kind,
+                          clip->frame_count(), clip->rate, clip->duration()));
+  return kExitDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  ToolSpec spec;
+  spec.name = "make-gesture";
+  spec.summary = "Makes a capture of a gesture, to be laid over a walk of make-walk";
+  spec.inputs = "";
+  spec.examples = {
+      {"make-gesture --kind wave -o wave.bvh", "a figure that stands lifts an arm and waves"},
+      {"make-gesture --kind limp --side left --duration 1.2s -o limp.bvh",
+       "how the trunk moves in a stride of a limping figure"},
+  };
+  spec.declare = [&](CLI::App& app) { declare(app, arguments); };
+  spec.run = [&](ToolContext& context) { return run(context, arguments); };
+  return run_tool(spec, argc, argv);
+}
