@@ -47,6 +47,24 @@ Result<const Value*> Members::find(const Value& object, std::string_view what, s
   return value;
 }
 
+Result<std::optional<double>> Members::quantity(const Value& object, std::string_view what,
+                                                std::string_view key, Parser parse) const {
+  const Value* value = object.find(key);
+  if (value == nullptr) return std::optional<double>();
+  if (value->kind != Value::Kind::number && value->kind != Value::Kind::string) {
+    return wrong(*value, fmt::format("\"{}\" of {} is {}, expected a number or a text with a unit",
+                                     key, what, kind_name(value->kind)));
+  }
+  const std::string text =
+      value->kind == Value::Kind::number ? fmt::format("{}", value->number) : value->text;
+  const auto number = parse(text);
+  if (!number) {
+    return wrong(*value, fmt::format("\"{}\" of {}: {}", key, what, number.error().message),
+                 number.error().hint);
+  }
+  return std::optional(*number);
+}
+
 Status Members::has_schema(const Value& object, std::string_view what,
                            std::string_view schema) const {
   const auto found = get(object, what, "schema", Value::Kind::string);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -31,6 +32,12 @@ class Members {
   // The same of a member that may be left out: nullptr then.
   Result<const Value*> find(const Value& object, std::string_view what, std::string_view key,
                             Value::Kind kind) const;
+
+  // A quantity that may be left out: a number in the unit that `parse` takes bare ones in, or a
+  // text with a unit, such as "1.5cm" with parse_length().
+  using Parser = Result<double> (*)(std::string_view);
+  Result<std::optional<double>> quantity(const Value& object, std::string_view what,
+                                         std::string_view key, Parser parse) const;
 
   // Whether the member "schema" is there and says `schema`.
   Status has_schema(const Value& object, std::string_view what, std::string_view schema) const;

@@ -1,0 +1,304 @@
+#include "formats/library/library_description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/json/members.h"
+
+namespace krok::library {
+
+namespace {
+
+using json::Value;
+using Kind = Value::Kind;
+
+constexpr std::string_view kSchema = "krok.library/1";
+constexpr std::size_t kLargestFile = std::size_t{4} << 20;
+constexpr std::size_t kMostParameters = 8;
+constexpr std::size_t kMostExamples = 10'000;
+constexpr std::size_t kMostKeytimes = 100;
+constexpr std::size_t kLongestName = 200;
+
+json::Members::Parser parser_of(std::string_view measures) {
+  if (measures == "duration") {
+    return [](std::string_view text) -> Result<double> {
+      const auto time = parse_clip_time(text);
+      if (!time) return time.error();
+      if (time->in_frames) return Error("quantity-unit", "frames are no unit here", "use s or ms");
+      return time->value;
+    };
+  }
+  return measures.starts_with("step.turn") ? parse_angle : parse_length;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& path)
+      : text_(text), path_(path), members_(text, "library") {}
+
+  Result<LibraryDescription> read() {
+    const auto root = json::parse(text_, kLargestFile);
+    if (!root) return root.error();
+    Status done = members_.only(
+        *root, "the file",
+        {"schema", "comment", "name", "skeleton", "map", "swing", "mirror", "keytimes", "rate",
+         "outlier_deviations", "parameters", "steps", "examples"});
+    if (done) done = members_.has_schema(*root, "the file", kSchema);
+    if (done) done = read_general(*root);
+    if (done) done = read_list(*root, "parameters", kMostParameters, &Reader::read_parameter);
+    if (done) done = read_list(*root, "examples", kMostExamples, &Reader::read_example);
+    if (!done) return done.error();
+    return std::move(library_);
+  }
+
+ private:
+  Location place_of(const Value& value) const { return locate(text_, value.offset, path_); }
+
+  // Texts that may be left out but not be empty.
+  Status take(const Value& object, std::string_view what, std::string_view key,
+              std::string& text) const {
+    const auto found = members_.find(object, what, key, Kind::string);
+    if (!found) return found.error();
+    if (*found == nullptr) return {};
+    const std::string& given = (*found)->text;
+    const bool plain = std::ranges::none_of(
+        given, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+    if (given.empty() || !plain) {
+      return members_.wrong(
+          **found, fmt::format("\"{}\" of {} is empty or has control characters", key, what));
+    }
+    text = given;
+    return {};
+  }
+
+  Status take_flag(const Value& object, std::string_view what, std::string_view key,
+                   bool& flag) const {
+    const auto found = members_.find(object, what, key, Kind::boolean);
+    if (!found) return found.error();
+    if (*found != nullptr) flag = (*found)->truth;
+    return {};
+  }
+
+  Status take_positive(const Value& object, std::string_view what, std::string_view key,
+                       std::optional<double>& number) const {
+    const auto found = members_.find(object, what, key, Kind::number);
+    if (!found) return found.error();
+    if (*found == nullptr) return {};
+    number = (*found)->number;
+    if (*number > 0 && std::isfinite(*number)) return {};
+    return members_.wrong(**found, fmt::format("\"{}\" of {} is {}, expected more than 0", key,
+                                               what, readable(*number)));
+  }
+
+  Status take_moment(const Value& object, std::string_view what, std::string_view key,
+                     std::optional<ClipTime>& time) const {
+    const Value* value = object.find(key);
+    if (value == nullptr) return {};
+    const auto parsed = moment(*value, what, key);
+    if (!parsed) return parsed.error();
+    time = *parsed;
+    return {};
+  }
+
+  Result<ClipTime> moment(const Value& value, std::string_view what, std::string_view key) const {
+    if (value.kind != Kind::number && value.kind != Kind::string) {
+      return members_.wrong(value,
+                            fmt::format("\"{}\" of {} is {}, expected a time", shown(key), what,
+                                        json::kind_name(value.kind)),
+                            "seconds as a number, or a text such as \"1.5s\" or \"90f\"");
+    }
+    if (value.kind == Kind::number) {
+      if (value.number >= 0) return ClipTime{value.number, false};
+      return members_.wrong(value, fmt::format("\"{}\" of {} is before 0", shown(key), what));
+    }
+    const auto time = parse_clip_time(value.text);
+    if (!time || time->value < 0) {
+      return members_.wrong(value,
+                            fmt::format("\"{}\" of {}: {}", shown(key), what,
+                                        time ? "a time before 0" : time.error().message),
+                            time ? "" : time.error().hint);
+    }
+    return *time;
+  }
+
+  Status read_general(const Value& root) {
+    Status done = take(root, "the file", "name", library_.name);
+    if (done) done = take(root, "the file", "skeleton", library_.skeleton);
+    if (done) done = take(root, "the file", "map", library_.map);
+    if (done) done = take_flag(root, "the file", "mirror", library_.mirror);
+    if (done) done = take_positive(root, "the file", "rate", library_.rate);
+    if (done) done = read_swing(root);
+    if (done) done = read_steps(root, "the file", all_automatic_);
+    if (done) done = read_keytimes(root);
+    std::optional<double> deviations;
+    if (done) done = take_positive(root, "the file", "outlier_deviations", deviations);
+    if (deviations) library_.outlier_deviations = *deviations;
+    return done;
+  }
+
+  Status read_swing(const Value& root) {
+    const auto found = members_.find(root, "the file", "swing", Kind::string);
+    if (!found) return found.error();
+    if (*found == nullptr || (*found)->text == "left") return {};
+    if ((*found)->text != "right") {
+      return members_.wrong(
+          **found, fmt::format("\"swing\" is '{}', expected left or right", shown((*found)->text)));
+    }
+    library_.swing = Side::right;
+    return {};
+  }
+
+  // "steps": "auto".
+  Status read_steps(const Value& object, std::string_view what, bool& automatic) const {
+    const auto found = members_.find(object, what, "steps", Kind::string);
+    if (!found) return found.error();
+    if (*found == nullptr) return {};
+    automatic = (*found)->text == "auto";
+    if (automatic || (*found)->text == "one") return {};
+    return members_.wrong(**found, fmt::format("\"steps\" of {} is '{}', expected auto or one",
+                                               what, shown((*found)->text)));
+  }
+
+  Status read_keytimes(const Value& root) {
+    const auto found = members_.find(root, "the file", "keytimes", Kind::array);
+    if (!found) return found.error();
+    if (*found == nullptr) return {};
+    const auto& items = (*found)->items;
+    if (items.size() < 2 || items.size() > kMostKeytimes) {
+      return members_.wrong(
+          **found, fmt::format("{} keytimes, expected 2 to {}", items.size(), kMostKeytimes));
+    }
+    for (const Value& item : items) {
+      if (item.kind != Kind::string || item.text.empty() || item.text.size() > kLongestName) {
+        return members_.wrong(item, "a keytime's name is a text that is not empty");
+      }
+      if (std::ranges::find(library_.keytimes, item.text) != library_.keytimes.end()) {
+        return members_.wrong(item, fmt::format("two keytimes are called '{}'", shown(item.text)));
+      }
+      library_.keytimes.push_back(item.text);
+    }
+    return {};
+  }
+
+  using ReadEntry = Status (Reader::*)(const Value&);
+  Status read_list(const Value& root, std::string_view key, std::size_t most, ReadEntry entry) {
+    const auto list = members_.get(root, "the file", key, Kind::array);
+    if (!list) return list.error();
+    if ((*list)->items.empty() || (*list)->items.size() > most) {
+      return members_.wrong(
+          **list, fmt::format("{} {}, expected 1 to {}", (*list)->items.size(), key, most));
+    }
+    for (const Value& item : (*list)->items) {
+      if (Status done = (this->*entry)(item); !done) return done;
+    }
+    return {};
+  }
+
+  Status read_parameter(const Value& item) {
+    Status done =
+        members_.only(item, "a parameter", {"name", "measures", "tolerance", "from", "to"});
+    if (!done) return done;
+    ParameterEntry entry;
+    entry.place = place_of(item);
+    const auto measures = members_.get(item, "a parameter", "measures", Kind::string);
+    if (!measures) return measures.error();
+    done = take(item, "a parameter", "measures", entry.measures);
+    entry.name = entry.measures.substr(entry.measures.rfind('.') + 1);
+    if (done) done = take(item, "a parameter", "name", entry.name);
+    if (!done) return done;
+    if (entry.name.find('=') != std::string::npos || entry.name.size() > kLongestName) {
+      return members_.wrong(item, fmt::format("'{}' is no name for a parameter", shown(entry.name)),
+                            "names have no = in them and at most 200 bytes");
+    }
+    const auto same = [&](const ParameterEntry& other) { return other.name == entry.name; };
+    if (std::ranges::any_of(library_.parameters, same)) {
+      return members_.wrong(item, fmt::format("two parameters are called '{}'", shown(entry.name)),
+                            "give one another \"name\"");
+    }
+    if (Status read = read_range(item, entry); !read) return read;
+    library_.parameters.push_back(std::move(entry));
+    return {};
+  }
+
+  Status read_range(const Value& item, ParameterEntry& entry) const {
+    const std::string what = fmt::format("'{}'", shown(entry.name));
+    const struct {
+      const char* key;
+      std::optional<double>& value;
+    } numbers[] = {{"tolerance", entry.tolerance}, {"from", entry.least}, {"to", entry.most}};
+    for (const auto& number : numbers) {
+      const auto found = members_.quantity(item, what, number.key, parser_of(entry.measures));
+      if (!found) return found.error();
+      number.value = *found;
+    }
+    if (entry.tolerance && !(*entry.tolerance > 0)) {
+      return members_.wrong(*item.find("tolerance"),
+                            fmt::format("the tolerance of {} is not positive", what));
+    }
+    if (entry.least.has_value() != entry.most.has_value()) {
+      return members_.wrong(item, fmt::format("{} has one end of a range alone", what),
+                            "give both \"from\" and \"to\", or neither");
+    }
+    if (entry.least && !(*entry.least < *entry.most)) {
+      return members_.wrong(*item.find("to"), fmt::format("the range of {} is empty", what));
+    }
+    return {};
+  }
+
+  Status read_example(const Value& item) {
+    Status done = members_.only(item, "an example",
+                                {"name", "clip", "steps", "from", "to", "keys", "keytimes"});
+    if (!done) return done;
+    ExampleEntry entry;
+    entry.place = place_of(item);
+    entry.automatic = all_automatic_;
+    const auto clip = members_.get(item, "an example", "clip", Kind::string);
+    if (!clip) return clip.error();
+    done = take(item, "an example", "clip", entry.clip);
+    if (done) done = take(item, "an example", "name", entry.name);
+    if (done) done = take(item, "an example", "keys", entry.keys);
+    if (done) done = read_steps(item, "an example", entry.automatic);
+    if (done) done = take_moment(item, "an example", "from", entry.from);
+    if (done) done = take_moment(item, "an example", "to", entry.to);
+    if (done) done = read_given_keytimes(item, entry);
+    if (!done) return done;
+    library_.examples.push_back(std::move(entry));
+    return {};
+  }
+
+  Status read_given_keytimes(const Value& item, ExampleEntry& entry) const {
+    const auto found = members_.find(item, "an example", "keytimes", Kind::object);
+    if (!found) return found.error();
+    if (*found == nullptr) return {};
+    if (entry.automatic) {
+      return members_.wrong(**found, "an example whose steps are found takes no keytimes",
+                            "\"steps\": \"one\" makes the clip one example");
+    }
+    for (const Value::Member& member : (*found)->members) {
+      const auto time = moment(member.value, "an example", member.key);
+      if (!time) return time.error();
+      entry.keytimes.push_back({member.key, *time});
+    }
+    return {};
+  }
+
+  std::string_view text_;
+  const std::string& path_;
+  json::Members members_;
+  LibraryDescription library_;
+  bool all_automatic_ = false;
+};
+
+}  // namespace
+
+Result<LibraryDescription> read(std::string_view text, const std::string& path) {
+  auto library = Reader(text, path).read();
+  if (!library) return std::move(library).error().in_file(path);
+  return library;
+}
+
+}  // namespace krok::library
