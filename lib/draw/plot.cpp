@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "draw/plot_axis_internal.h"
+#include "draw/plot_field_internal.h"
 #include "draw/plot_legend_internal.h"
 #include "draw/plot_panel_internal.h"
 #include "draw/plot_style_internal.h"
@@ -37,6 +38,9 @@ Status check_figure(const Figure& figure) {
   for (const Panel& panel : figure.panels) {
     for (const Axis* axis : {&panel.x, &panel.y}) {
       if (Status good = check_axis(*axis); !good) return good;
+    }
+    if (panel.field) {
+      if (Status good = check_field(*panel.field); !good) return good;
     }
     for (const Series& series : panel.series) {
       if (series.x.size() != series.y.size()) {

@@ -52,11 +52,20 @@ struct Moment {
   std::string name;
 };
 
+// Values over an even grid, as colours below the series: white at zero, towards brown above it and
+// towards violet below, with a bar that tells which colour is which value.
+struct Field {
+  double x_low = 0, x_high = 1, y_low = 0, y_high = 1;  // of the grid's outer edges, rising
+  int columns = 0, rows = 0;                            // up to 1,000 each
+  std::vector<double> values;  // [rows x columns], the row at y_low first; NaN is left blank
+};
+
 struct Panel {
   std::string title;
   Axis x, y;
   bool same_scale = false;  // a unit is as long on both axes: maps, paths
   bool legend = true;       // names of series below the panel; false where the figure's tells all
+  std::optional<Field> field = {};
   std::vector<Series> series;
   std::vector<Span> spans;
   std::vector<std::string> lanes;  // names beside the lanes, a letter or two, from below
@@ -80,9 +89,10 @@ struct Figure {
 };
 
 // The figure as an SVG text. Lines are thinned to what a fiftieth of a pixel can show. Codes:
-// plot-empty for a figure without a panel; plot-shape for series whose x and y differ in length;
-// plot-size for panels under a pixel or over 100,000; plot-axis for limits that are not finite, not
-// rising, or not positive on a logarithmic axis.
+// plot-empty for a figure without a panel; plot-shape for series whose x and y differ in length
+// and for a field whose values do not fill its grid or whose edges do not rise; plot-size for
+// panels under a pixel or over 100,000; plot-axis for limits that are not finite, not rising, or
+// not positive on a logarithmic axis.
 Result<std::string> to_svg(const Figure& figure);
 
 // The colours that series take in turn, as "#rrggbb".

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "draw/plot_field_internal.h"
 #include "draw/plot_style_internal.h"
 #include "draw/svg_text_internal.h"
 
@@ -49,6 +50,7 @@ void PanelWriter::write() {
   put("<clipPath id=\"panel-{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
       id_, number(left_ - kAroundArea), number(top_ - kAroundArea),
       number(width_ + 2 * kAroundArea), number(height_ + 2 * kAroundArea));
+  if (panel_.field) write_field_bar(*panel_.field, left_ + width_, top_ - 8, out_);
   if (!panel_.title.empty()) {
     put("<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n", number(left_), number(top_ - 8),
         escaped(shortened(panel_.title, width_ * kTextSize / kTitleSize)));
@@ -57,6 +59,7 @@ void PanelWriter::write() {
   write_y_axis();
   write_lanes();
   put("<g clip-path=\"url(#panel-{})\">\n", id_);
+  if (panel_.field) write_field(*panel_.field, area_, out_);
   for (const Span& span : panel_.spans) bar(span);
   for (const Moment& moment : panel_.moments) line_across(moment);
   for (std::size_t i = 0; i < panel_.series.size(); ++i) series(i);
@@ -76,6 +79,14 @@ void PanelWriter::map() {
     x.add(span.from, panel_.x.scale);
     x.add(span.to, panel_.x.scale);
   }
+  if (panel_.field) {
+    for (const double edge : {panel_.field->x_low, panel_.field->x_high}) {
+      x.add(edge, panel_.x.scale);
+    }
+    for (const double edge : {panel_.field->y_low, panel_.field->y_high}) {
+      y.add(edge, panel_.y.scale);
+    }
+  }
   Axis along = panel_.x;
   // Time and the like fill the panel's width; a half-empty last step would look like missing
   // data.
@@ -85,7 +96,13 @@ void PanelWriter::map() {
     if (!along.high) along.high = whole.high;
   }
   area_.x = map_axis(along, x, x_ticks_wanted_);
-  area_.y = map_axis(panel_.y, y, y_ticks_wanted_);
+  Axis across = panel_.y;
+  // A field fills its panel.
+  if (panel_.field && !panel_.same_scale && y.low < y.high) {
+    if (!across.low) across.low = y.low;
+    if (!across.high) across.high = y.high;
+  }
+  area_.y = map_axis(across, y, y_ticks_wanted_);
   if (panel_.same_scale) equalise();
 }
 
