@@ -46,7 +46,7 @@ class Reader {
     Status done = members_.only(
         *root, "the file",
         {"schema", "comment", "name", "skeleton", "map", "swing", "mirror", "keytimes", "rate",
-         "outlier_deviations", "parameters", "steps", "examples"});
+         "outlier_deviations", "spacing", "parameters", "steps", "examples"});
     if (done) done = members_.has_schema(*root, "the file", kSchema);
     if (done) done = read_general(*root);
     if (done) done = read_list(*root, "parameters", kMostParameters, &Reader::read_parameter);
@@ -134,10 +134,21 @@ class Reader {
     if (done) done = read_swing(root);
     if (done) done = read_steps(root, "the file", all_automatic_);
     if (done) done = read_keytimes(root);
-    std::optional<double> deviations;
-    if (done) done = take_positive(root, "the file", "outlier_deviations", deviations);
-    if (deviations) library_.outlier_deviations = *deviations;
+    if (done) {
+      done = take_positive(root, "the file", "outlier_deviations", library_.outlier_deviations);
+    }
+    if (done) done = read_spacing(root);
     return done;
+  }
+
+  Status read_spacing(const Value& root) {
+    const auto found = members_.find(root, "the file", "spacing", Kind::number);
+    if (!found) return found.error();
+    if (*found == nullptr) return {};
+    library_.spacing = (*found)->number;
+    if (*library_.spacing >= 0 && *library_.spacing <= 1) return {};
+    return members_.wrong(
+        **found, fmt::format("\"spacing\" is {}, expected 0 to 1", readable(*library_.spacing)));
   }
 
   Status read_swing(const Value& root) {

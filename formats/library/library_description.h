@@ -47,8 +47,10 @@ struct LibraryDescription {
   bool mirror = false;                // steps of the other side count too, mirrored
   std::vector<std::string> keytimes;  // names, two or more; empty: those of a step
   std::optional<double> rate;         // frames a second of what is made, > 0
-  // How many median deviations from the median a step found may be before it is left out.
-  double outlier_deviations = 4;
+  // How many median deviations from the median a step found may be before it is left out, > 0.
+  std::optional<double> outlier_deviations;
+  // How close examples found may lie, as a share of the ranges; 0 keeps all.
+  std::optional<double> spacing;
   std::vector<ParameterEntry> parameters;  // one to eight, names unique
   std::vector<ExampleEntry> examples;      // one or more
 };

@@ -16,7 +16,7 @@ constexpr const char* kGood = R"({
   "schema": "krok.library/1",
   "name": "walking", "skeleton": "rest.anim", "map": "roles.json",
   "swing": "right", "mirror": true, "rate": 60,
-  "outlier_deviations": 3,
+  "outlier_deviations": 3, "spacing": 0.05,
   "parameters": [
     {"name": "stride", "measures": "step.length", "tolerance": "1mm", "from": "45cm", "to": 0.8},
     {"measures": "step.turn", "from": -10, "to": "0.5rad"},
@@ -40,6 +40,7 @@ TEST(LibraryDescription, ReadsWhatTheSpecSays) {
   EXPECT_TRUE(read->mirror);
   EXPECT_EQ(read->rate, 60.0);
   EXPECT_EQ(read->outlier_deviations, 3.0);
+  EXPECT_EQ(read->spacing, 0.05);
   EXPECT_TRUE(read->keytimes.empty());
 
   ASSERT_EQ(read->parameters.size(), 3u);
@@ -87,7 +88,8 @@ TEST(LibraryDescription, WhatIsLeftOutHasItsDefault) {
   EXPECT_EQ(read->swing, Side::left);
   EXPECT_FALSE(read->mirror);
   EXPECT_FALSE(read->rate.has_value());
-  EXPECT_EQ(read->outlier_deviations, 4.0);
+  EXPECT_FALSE(read->outlier_deviations.has_value());
+  EXPECT_FALSE(read->spacing.has_value());
   EXPECT_EQ(read->keytimes, (std::vector<std::string>{"begin", "end"}));
   EXPECT_EQ(read->parameters[0].name, "up@end");
   EXPECT_FALSE(read->examples[0].automatic);
@@ -125,6 +127,7 @@ TEST(LibraryDescription, EveryMistakeIsToldWithItsPlace) {
       {"\"rate\": 60", "\"rate\": 0", "library-value 4:45", "more than 0"},
       {"\"walking\"", "\"\"", "library-value 3:11", "empty"},
       {"\"outlier_deviations\": 3", "\"outlier_deviations\": -3", "library-value 5:25", "-3"},
+      {"\"spacing\": 0.05", "\"spacing\": 2", "library-value 5:39", "0 to 1"},
       {"\"1mm\"", "\"1kg\"", "library-value 7:64", "use one of"},
       {"\"1mm\"", "\"0mm\"", "library-value 7:64", "not positive"},
       {"\"1mm\"", "true", "library-value 7:64", "a text with a unit"},
