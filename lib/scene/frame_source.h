@@ -22,8 +22,8 @@ struct FrameSource {
                        std::span<Quatf> orientations)>
       read;
 
-  // May be empty. Tells that no frame before `frame` is asked for any more, so that memory may be
-  // given back; called with increasing numbers, by one thread at a time.
+  // May be empty. Tells that the frames before `frame` were read, so that memory may be given back;
+  // called with increasing numbers in each pass over the frames, by one thread at a time.
   std::function<void(int frame)> release;
 
   int joint_count() const { return skeleton.joint_count(); }

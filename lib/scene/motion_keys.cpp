@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace krok {
 namespace {
@@ -15,6 +17,22 @@ bool within(double time, double duration) {
 }
 
 }  // namespace
+
+MotionKeys part_of(const MotionKeys& keys, double from, double to) {
+  MotionKeys part;
+  for (Contact contact : keys.contacts) {
+    if (contact.end < from || contact.start > to) continue;
+    contact.start = std::max(contact.start, from) - from;
+    contact.end = std::min(contact.end, to) - from;
+    part.contacts.push_back(contact);
+  }
+  for (Keytime key : keys.keytimes) {
+    if (key.time < from || key.time > to) continue;
+    key.time -= from;
+    part.keytimes.push_back(std::move(key));
+  }
+  return part;
+}
 
 Status check(const MotionKeys& keys, const Skeleton& skeleton, double duration) {
   for (std::size_t i = 0; i < keys.contacts.size(); ++i) {

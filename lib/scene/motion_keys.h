@@ -31,6 +31,10 @@ struct MotionKeys {
   bool empty() const { return contacts.empty() && keytimes.empty(); }
 };
 
+// What lies between two moments, `from` <= `to` (seconds), counted from the first; contacts that
+// reach beyond are cut there.
+MotionKeys part_of(const MotionKeys& keys, double from, double to);
+
 // Whether `keys` fits a clip of `skeleton` that lasts `duration` seconds: joints exist, times are
 // finite, ordered and within the clip (up to a millisecond beyond), places finite, keytimes rising
 // by at least a microsecond with names that are not empty. Codes: keys-joint, keys-time,

@@ -71,5 +71,27 @@ TEST(MotionKeys, FaultsAreFound) {
   EXPECT_EQ(code_of(keys), "keys-name");
 }
 
+TEST(MotionKeys, APartCountsFromItsBeginningAndCutsContacts) {
+  MotionKeys keys;
+  keys.contacts = {{0, 0.0, 0.5, Vec3(1, 2, 3)},
+                   {1, 0.8, 1.6, Vec3::Zero()},
+                   {2, 1.5, 1.9, Vec3::Zero()},
+                   {3, 0.2, 2.5, Vec3::Zero()}};
+  keys.keytimes = {{0.9, "early"}, {1.0, "begin"}, {1.25, "middle"}, {1.5, "end"}, {1.6, "late"}};
+  const MotionKeys part = part_of(keys, 1.0, 1.5);
+  ASSERT_EQ(part.contacts.size(), 3u);
+  EXPECT_EQ(part.contacts[0].joint, 1);
+  EXPECT_EQ(part.contacts[0].start, 0);
+  EXPECT_EQ(part.contacts[0].end, 0.5);
+  EXPECT_EQ(part.contacts[1].joint, 2);
+  EXPECT_EQ(part.contacts[1].start, 0.5);
+  EXPECT_EQ(part.contacts[2].end, 0.5);
+  ASSERT_EQ(part.keytimes.size(), 3u);
+  EXPECT_EQ(part.keytimes[0].name, "begin");
+  EXPECT_EQ(part.keytimes[0].time, 0);
+  EXPECT_EQ(part.keytimes[1].time, 0.25);
+  EXPECT_EQ(part.keytimes[2].time, 0.5);
+}
+
 }  // namespace
 }  // namespace krok
