@@ -1,0 +1,212 @@
+#include "fit/error_field_internal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.h"
+#include "rbf/sobol.h"
+
+namespace krok::fit::detail {
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kGrain = 8;  // points that a thread takes at once
+constexpr int kClimbSteps = 12;
+constexpr double kLastStride = 1.0 / 16;  // of the first
+constexpr double kAround = 0.25;
+
+// Memory for looking at one point after the other.
+class Probe {
+ public:
+  Probe(const rbf::WeightFunction& function, const rbf::WeightEvaluator& evaluator,
+        const rbf::Measure& measure)
+      : function_(function),
+        evaluator_(evaluator),
+        measure_(measure),
+        d_(static_cast<std::size_t>(function.dimensions)),
+        n_(static_cast<std::size_t>(function.examples)),
+        point_(d_),
+        measured_(d_),
+        weights_(n_),
+        slopes_(d_ * n_),
+        jacobian_(d_ * n_) {}
+
+  // The error's parts at a place, scaled.
+  Status error_at(std::span<const double> place, std::span<double> error) {
+    unscale(function_, place, point_);
+    evaluator_.weights(point_, weights_);
+    if (Status status = measure_(weights_, measured_, {}); !status) return status;
+    return take_error(error);
+  }
+
+  // Also the gradient of half its square.
+  Status gradient_at(std::span<const double> place, std::span<double> error,
+                     std::span<double> gradient) {
+    unscale(function_, place, point_);
+    evaluator_.slopes(point_, weights_, slopes_);
+    if (Status status = measure_(weights_, measured_, jacobian_); !status) return status;
+    if (Status status = take_error(error); !status) return status;
+    for (std::size_t b = 0; b < d_; ++b) {
+      gradient[b] = -error[b];
+      for (std::size_t a = 0; a < d_; ++a) {
+        double slope = 0;
+        for (std::size_t j = 0; j < n_; ++j) slope += jacobian_[a * n_ + j] * slopes_[b * n_ + j];
+        gradient[b] +=
+            error[a] * slope * evaluator_.inverse_ranges()[a] / evaluator_.inverse_ranges()[b];
+      }
+    }
+    return {};
+  }
+
+ private:
+  Status take_error(std::span<double> error) const {
+    for (std::size_t a = 0; a < d_; ++a) {
+      error[a] = (measured_[a] - point_[a]) * evaluator_.inverse_ranges()[a];
+      if (!std::isfinite(error[a])) return Error("fit-measure", "a parameter is no number");
+    }
+    return {};
+  }
+
+  const rbf::WeightFunction& function_;
+  const rbf::WeightEvaluator& evaluator_;
+  const rbf::Measure& measure_;
+  std::size_t d_, n_;
+  std::vector<double> point_, measured_, weights_, slopes_, jacobian_;
+};
+
+double square_of(std::span<const double> values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return sum;
+}
+
+}  // namespace
+
+std::vector<double> ErrorField::at(std::span<const double> places, Error* failure) const {
+  const std::size_t d = dimensions(), count = places.size() / d;
+  std::vector<double> errors(places.size());
+  std::vector<Status> statuses(count);
+  parallel_for(count, kGrain, jobs_, [&](std::size_t begin, std::size_t end) {
+    Probe probe(function_, evaluator_, measure_);
+    for (std::size_t p = begin; p < end; ++p) {
+      const auto error = std::span(errors).subspan(p * d, d);
+      statuses[p] = probe.error_at(places.subspan(p * d, d), error);
+      if (!statuses[p]) std::ranges::fill(error, kNan);
+    }
+  });
+  if (failure != nullptr) {
+    const auto failed = std::ranges::find_if(statuses, [](const Status& s) { return !s.ok(); });
+    if (failed != statuses.end()) *failure = failed->error();
+  }
+  return errors;
+}
+
+std::vector<double> ErrorField::climb(std::span<double> places, double stride) const {
+  const std::size_t d = dimensions();
+  std::vector<double> found(places.size() / d);
+  parallel_for(found.size(), 1, jobs_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      found[p] = climb_from(places.subspan(p * d, d), stride);
+    }
+  });
+  return found;
+}
+
+double ErrorField::climb_from(std::span<double> place, double stride) const {
+  const std::size_t d = dimensions();
+  Probe probe(function_, evaluator_, measure_);
+  std::vector<double> error(d), gradient(d), next(d), point(d), next_error(d), next_gradient(d);
+  if (!probe.gradient_at(place, error, gradient)) return 0;
+  double square = square_of(error);
+  double length = stride;
+  for (int step = 0; step < kClimbSteps && length > kLastStride * stride; ++step) {
+    const double steepness = std::sqrt(square_of(gradient));
+    if (!(steepness > 0)) break;
+    for (std::size_t i = 0; i < d; ++i) {
+      next[i] = std::clamp(place[i] + length / steepness * gradient[i], 0.0, 1.0);
+    }
+    unscale(function_, next, point);
+    const bool higher = (!inside_ || inside_(point)) &&
+                        probe.gradient_at(next, next_error, next_gradient).ok() &&
+                        square_of(next_error) > square;
+    if (!higher) {
+      length *= 0.5;
+      continue;
+    }
+    std::ranges::copy(next, place.begin());
+    gradient.swap(next_gradient);
+    square = square_of(next_error);
+  }
+  return std::sqrt(square);
+}
+
+std::vector<double> ErrorField::lengths(std::span<const double> errors) const {
+  const std::size_t d = dimensions();
+  std::vector<double> result;
+  for (std::size_t p = 0; p < errors.size(); p += d) {
+    const double length = std::sqrt(square_of(errors.subspan(p, d)));
+    result.push_back(std::isfinite(length) ? length : 0);
+  }
+  return result;
+}
+
+std::vector<ParameterError> ErrorField::by_parameter(std::span<const double> errors) const {
+  const std::size_t d = dimensions();
+  std::vector<ParameterError> result(d);
+  for (std::size_t a = 0; a < d; ++a) {
+    std::vector<double> sizes;
+    double sum = 0;
+    for (std::size_t p = a; p < errors.size(); p += d) {
+      if (!std::isfinite(errors[p])) continue;
+      sizes.push_back(std::abs(errors[p]) * (function_.upper[a] - function_.lower[a]));
+      sum += sizes.back();
+    }
+    if (sizes.empty()) continue;
+    std::ranges::sort(sizes);
+    result[a].largest = sizes.back();
+    result[a].mean = sum / static_cast<double>(sizes.size());
+    result[a].most = sizes[(sizes.size() * 95 + 99) / 100 - 1];
+  }
+  return result;
+}
+
+std::vector<double> places_within(const rbf::WeightFunction& function, int count,
+                                  std::uint64_t seed, const rbf::Inside& inside) {
+  const auto d = static_cast<std::size_t>(function.dimensions);
+  const std::vector<double> points = rbf::points_inside(function, count, seed, inside);
+  std::vector<double> places(points.size());
+  for (std::size_t p = 0; p < points.size(); p += d) {
+    function.scale(std::span(points).subspan(p, d), std::span(places).subspan(p, d));
+  }
+  return places;
+}
+
+std::vector<double> places_around(const rbf::WeightFunction& function, int count,
+                                  std::uint64_t seed, const rbf::Inside& inside) {
+  const auto d = static_cast<std::size_t>(function.dimensions);
+  const rbf::Sobol sobol(function.dimensions, seed);
+  std::vector<double> places, place(d), point(d);
+  for (std::uint32_t p = 0; places.size() < static_cast<std::size_t>(count) * d; ++p) {
+    sobol.point(p, place);
+    bool within = true;
+    for (double& value : place) {
+      value = value * (1 + 2 * kAround) - kAround;
+      within = within && value >= 0 && value <= 1;
+    }
+    unscale(function, place, point);
+    if (within && (!inside || inside(point))) continue;
+    places.insert(places.end(), place.begin(), place.end());
+  }
+  return places;
+}
+
+void unscale(const rbf::WeightFunction& function, std::span<const double> place,
+             std::span<double> point) {
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    point[i] = function.lower[i] + place[i] * (function.upper[i] - function.lower[i]);
+  }
+}
+
+}  // namespace krok::fit::detail

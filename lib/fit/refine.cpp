@@ -1,0 +1,408 @@
+#include "fit/refine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "core/parallel.h"
+#include "fit/blend_weights_internal.h"
+#include "fit/error_field_internal.h"
+#include "fit/worst_places_internal.h"
+#include "rbf/weight_figures.h"
+#include "rbf/weight_solver.h"
+
+namespace krok::fit {
+
+namespace {
+
+using rbf::InverseSearch;
+using rbf::WeightEvaluator;
+using rbf::WeightFunction;
+using rbf::WeightSolver;
+
+constexpr int kPointsEach = 40;  // for each parameter
+constexpr int kOutsidePoints = 256;
+constexpr int kFigurePoints = 128;      // for the range and roughness of weights
+constexpr int kSearchSteps = 30;        // for p'
+constexpr double kFound = 1e-9;         // scaled error at which p' is found
+constexpr double kFoundWell = 1e-6;     // where the search may end as well
+constexpr double kLargeResidual = 0.1;  // of the error that is to be mended
+constexpr double kGrowth = 1.25;        // of the mean square error held out, over the least so far
+constexpr int kStalledRounds = 3;
+constexpr int kRefusedRounds = 2;  // for so long a refused point is not tried again
+
+// Which points a random sequence is for.
+enum class Use : std::uint64_t { held_out, outside, sweep };
+std::uint64_t seed_for(std::uint64_t seed, Use use, std::size_t round = 0) {
+  return (seed * 1000003 + round) * 3 + static_cast<std::uint64_t>(use) + 1;
+}
+
+// A point to insert.
+struct Found {
+  std::vector<double> place, point;  // scaled, own units
+  double sought = 0;                 // the error there
+  std::vector<double> row;
+  bool by_point = false;
+  std::optional<Refusal> refusal;
+  double value = 0;  // of the refusal
+};
+
+class Refiner {
+ public:
+  Refiner(Refined state, WeightSolver solver, const rbf::Measure& measure,
+          const RefineOptions& options)
+      : state_(std::move(state)),
+        solver_(std::move(solver)),
+        measure_(measure),
+        options_(options),
+        d_(static_cast<std::size_t>(solver_.function().dimensions)),
+        n_(static_cast<std::size_t>(solver_.function().examples)) {
+    const int held_out =
+        options.held_out > 0 ? options.held_out : std::min(256 * static_cast<int>(d_), 1024);
+    held_out_ = detail::places_within(solver_.function(), held_out,
+                                      seed_for(options.seed, Use::held_out), options.inside);
+    outside_ = detail::places_around(solver_.function(), kOutsidePoints,
+                                     seed_for(options.seed, Use::outside), options.inside);
+  }
+
+  Status begin();
+  Status run(Progress& progress);
+  Refined take() && { return std::move(state_); }
+
+ private:
+  std::optional<Stop> stop(std::size_t rounds_before) const;
+  int points_left() const;
+  Status update();
+  detail::ErrorField field() const {
+    return {solver_.function(), *evaluator_, measure_, options_.inside, options_.jobs};
+  }
+  RefineFigures errors_held_out(Error* failure = nullptr) const;
+  void add_figures(RefineFigures& figures) const;
+  std::vector<Found> seek(double usual, double& worst) const;
+  void find_row(Found& found, double usual) const;
+  // False: there is no error left.
+  Result<bool> make_round();
+  Status insert(std::vector<Found>& found, RefineRound& round);
+  bool has_grown(const RefineFigures& now) const;
+  void refuse(const Found& found, RefineRound& round);
+
+  Refined state_;
+  WeightSolver solver_;
+  std::optional<WeightEvaluator> evaluator_;
+  const rbf::Measure& measure_;
+  const RefineOptions& options_;
+  std::size_t d_, n_;
+  std::vector<double> held_out_, outside_;  // places
+  RefineFigures now_;
+};
+
+// After each change of the functions.
+Status Refiner::update() {
+  auto evaluator = WeightEvaluator::create(solver_.function());
+  if (!evaluator) return evaluator.error();
+  evaluator_ = std::move(*evaluator);
+  return {};
+}
+
+// Of the errors held out, which is what decides.
+RefineFigures Refiner::errors_held_out(Error* failure) const {
+  RefineFigures result;
+  const detail::ErrorField errors = field();
+  const std::vector<double> within = errors.at(held_out_, failure);
+  result.within = errors.by_parameter(within);
+  const std::size_t count = held_out_.size() / d_;
+  for (std::size_t p = 0; p < count; ++p) result.failed += std::isnan(within[p * d_]) ? 1 : 0;
+  for (const double length : errors.lengths(within)) {
+    result.largest = std::max(result.largest, length);
+    result.mean_square += length * length;
+  }
+  const auto measured = static_cast<int>(count) - result.failed;
+  if (measured > 0) result.mean_square /= measured;
+  return result;
+}
+
+// All that is only told.
+void Refiner::add_figures(RefineFigures& figures) const {
+  const detail::ErrorField errors = field();
+  figures.outside = errors.by_parameter(errors.at(outside_));
+  if (const auto weights = rbf::weight_figures(solver_.function(), kFigurePoints, options_.inside);
+      weights.ok()) {
+    figures.least_weight = weights->least;
+    figures.largest_weight = weights->largest;
+    figures.roughness = weights->roughness;
+  }
+  figures.condition = solver_.condition();
+}
+
+Status Refiner::begin() {
+  if (Status status = update(); !status) return status;
+  std::vector<double> places(n_ * d_);
+  for (std::size_t k = 0; k < n_; ++k) {
+    solver_.function().scale(solver_.function().centre(static_cast<int>(k)),
+                             std::span(places).subspan(k * d_, d_));
+  }
+  Error failure;
+  const std::vector<double> at_examples = field().at(places, &failure);
+  const auto wrong = std::ranges::find_if(at_examples, [](double e) { return std::isnan(e); });
+  if (wrong != at_examples.end()) {
+    failure.message = fmt::format("example {} cannot be measured: {}",
+                                  static_cast<std::size_t>(wrong - at_examples.begin()) / d_ + 1,
+                                  failure.message);
+    failure.code = "fit-measure";
+    return failure;
+  }
+  if (state_.rounds.empty()) {
+    state_.example_error = std::ranges::max(field().lengths(at_examples));
+  }
+  if (held_out_.empty()) {
+    return Error("fit-inside", "no point of the parameters' range is where weights are wanted");
+  }
+  now_ = errors_held_out(&failure);
+  if (now_.failed > static_cast<int>(held_out_.size() / d_ / 2)) {
+    failure.message = fmt::format("{} of {} points within the range cannot be measured: {}",
+                                  now_.failed, held_out_.size() / d_, failure.message);
+    failure.code = "fit-measure";
+    return failure;
+  }
+  add_figures(now_);
+  if (state_.rounds.empty()) state_.before = now_;
+  return {};
+}
+
+int Refiner::points_left() const {
+  const int most = options_.points > 0 ? options_.points : kPointsEach * static_cast<int>(d_);
+  return most - solver_.function().inserted();
+}
+
+std::optional<Stop> Refiner::stop(std::size_t rounds_before) const {
+  const auto& rounds = state_.rounds;
+  if (!options_.tolerance.empty()) {
+    bool reached = true;
+    for (std::size_t a = 0; a < d_; ++a) {
+      reached = reached && now_.within[a].largest <= options_.tolerance[a];
+    }
+    if (reached && now_.failed == 0) return Stop::tolerance;
+  }
+  if (points_left() <= 0) return Stop::points;
+  const bool stalled = rounds.size() >= kStalledRounds &&
+                       std::all_of(rounds.end() - kStalledRounds, rounds.end(),
+                                   [](const RefineRound& round) { return round.inserted == 0; });
+  if (stalled) return Stop::stalled;
+  if (options_.rounds > 0 &&
+      rounds.size() - rounds_before >= static_cast<std::size_t>(options_.rounds)) {
+    return Stop::rounds;
+  }
+  return {};
+}
+
+Status Refiner::run(Progress& progress) {
+  const std::size_t rounds_before = state_.rounds.size();
+  progress.begin("refining", static_cast<std::uint64_t>(std::max(points_left(), 0)));
+  for (;;) {
+    if (const auto why = stop(rounds_before)) {
+      state_.stop = *why;
+      break;
+    }
+    const auto made = make_round();
+    if (!made) return made.error();
+    if (!*made) {
+      state_.stop = Stop::exact;
+      break;
+    }
+    progress.advance(static_cast<std::uint64_t>(state_.rounds.back().inserted));
+  }
+  progress.end();
+  state_.function = solver_.function();
+  return {};
+}
+
+// Where the error is greatest: at most as many points as a round takes, the worst first. `worst`:
+// the largest error looked at.
+std::vector<Found> Refiner::seek(double usual, double& worst) const {
+  const int sweep = options_.sweep > 0 ? options_.sweep : 128 * static_cast<int>(d_);
+  const std::vector<double> sweep_places = detail::places_within(
+      solver_.function(), sweep, seed_for(options_.seed, Use::sweep, state_.rounds.size()),
+      options_.inside);
+  std::vector<detail::ErrorPlace> avoided;
+  for (const RefusedPoint& refused : state_.refused) {
+    if (refused.round + kRefusedRounds < static_cast<int>(state_.rounds.size())) continue;
+    avoided.push_back({std::vector<double>(d_), 0});
+    solver_.function().scale(refused.point, avoided.back().place);
+  }
+  const int wanted = std::min(options_.points_a_round, points_left());
+  std::vector<Found> found;
+  for (detail::ErrorPlace& top : detail::worst_places(
+           field(), sweep_places, avoided, static_cast<std::size_t>(wanted), usual, worst)) {
+    found.push_back({});
+    found.back().place = std::move(top.place);
+    found.back().sought = top.error;
+    found.back().point.resize(d_);
+    detail::unscale(solver_.function(), found.back().place, found.back().point);
+  }
+  return found;
+}
+
+void Refiner::find_row(Found& found, double usual) const {
+  const double near = solver_.distance_to_centres(found.point);
+  if (near < detail::kNear * usual) {
+    found.refusal = Refusal::near;
+    found.value = near;
+    return;
+  }
+  InverseSearch search(*evaluator_, measure_);
+  std::vector<double> point = found.point;
+  found.row.resize(n_);
+  double error = search.find_point(found.point, kSearchSteps, kFound, point).after;
+  evaluator_->weights(point, found.row);
+  const auto off = [&] {
+    const auto [least, largest] = std::ranges::minmax(found.row);
+    return std::max(options_.least - least, largest - options_.largest);
+  };
+  found.by_point = error <= kFoundWell && off() <= 0;
+  if (!found.by_point) {
+    evaluator_->weights(found.point, found.row);
+    detail::BlendWeights solved = detail::solve_weights(measure_, evaluator_->inverse_ranges(),
+                                                        found.point, found.row, options_);
+    found.row = std::move(solved.weights);
+    error = solved.error;
+  }
+  if (!(error <= kLargeResidual * found.sought)) {
+    found.refusal = Refusal::residual;
+    found.value = error;
+  } else if (!(off() <= 0)) {
+    found.refusal = Refusal::weights;
+    const auto [least, largest] = std::ranges::minmax(found.row);
+    found.value = options_.least - least > largest - options_.largest ? least : largest;
+  }
+}
+
+bool Refiner::has_grown(const RefineFigures& now) const {
+  double least = std::min(state_.before.mean_square, now_.mean_square);
+  for (const RefineRound& round : state_.rounds) {
+    least = std::min(least, round.after.mean_square);
+  }
+  return now.failed > now_.failed || !(now.mean_square <= kGrowth * least);
+}
+
+void Refiner::refuse(const Found& found, RefineRound& round) {
+  ++round.refused;
+  state_.refused.push_back({static_cast<int>(state_.rounds.size()), found.point,
+                            found.refusal.value_or(Refusal::system), found.value});
+}
+
+// All at once; where that makes the error grow, or cannot be, one after the other.
+Status Refiner::insert(std::vector<Found>& found, RefineRound& round) {
+  const auto try_points = [&](std::span<Found> some) -> Status {
+    std::vector<double> points, rows;
+    for (const Found& each : some) {
+      points.insert(points.end(), each.point.begin(), each.point.end());
+      rows.insert(rows.end(), each.row.begin(), each.row.end());
+    }
+    if (!solver_.insert(points, rows)) {
+      for (Found& each : some) each.refusal = Refusal::system;
+      return {};
+    }
+    if (Status status = update(); !status) return status;
+    RefineFigures figures = errors_held_out();
+    if (has_grown(figures)) {
+      solver_.remove_last(static_cast<int>(some.size()));
+      for (Found& each : some) {
+        each.refusal = Refusal::growth;
+        each.value = figures.largest;
+      }
+      return update();
+    }
+    now_ = std::move(figures);
+    round.inserted += static_cast<int>(some.size());
+    for (Found& each : some) {
+      round.by_point += each.by_point ? 1 : 0;
+      each.refusal.reset();
+    }
+    return {};
+  };
+  if (found.empty()) return {};
+  if (Status status = try_points(found); !status) return status;
+  if (found.front().refusal && found.size() > 1) {
+    for (Found& each : found) {
+      if (Status status = try_points({&each, 1}); !status) return status;
+    }
+  }
+  for (const Found& each : found) {
+    if (each.refusal) refuse(each, round);
+  }
+  return {};
+}
+
+Result<bool> Refiner::make_round() {
+  const double usual = detail::usual_distance(solver_.function());
+  double worst = 0;
+  std::vector<Found> found = seek(usual, worst);
+  if (!(worst > detail::kNegligible)) return false;
+  parallel_for(found.size(), 1, options_.jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) find_row(found[i], usual);
+  });
+  RefineRound round;
+  if (!found.empty()) round.sought = found.front().sought;
+  for (const Found& each : found) {
+    if (each.refusal) refuse(each, round);
+  }
+  std::erase_if(found, [](const Found& each) { return each.refusal.has_value(); });
+  if (Status status = insert(found, round); !status) return status.error();
+  if (round.inserted > 0) add_figures(now_);
+  round.after = now_;
+  state_.rounds.push_back(std::move(round));
+  return true;
+}
+
+Status check_options(const RefineOptions& o, int dimensions) {
+  const auto wrong = [](const char* what) {
+    return Error("fit-options", fmt::format("refinement cannot work with {}", what));
+  };
+  if (o.points < 0 || o.rounds < 0 || o.points_a_round < 1 || o.sweep < 0 || o.held_out < 0) {
+    return wrong("negative numbers of points or rounds");
+  }
+  if (!o.tolerance.empty() && o.tolerance.size() != static_cast<std::size_t>(dimensions)) {
+    return wrong("a tolerance for some of the parameters only");
+  }
+  if (std::ranges::any_of(o.tolerance, [](double t) { return !(t >= 0); })) {
+    return wrong("a tolerance that is negative or no number");
+  }
+  if (!(o.scale > 0) || !(o.stay > 0) || !(o.positive >= 0) || !(o.slack >= 0) || !(o.least <= 0) ||
+      !(o.largest >= 1)) {
+    return wrong("such terms or limits of weights");
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string_view refusal_name(Refusal refusal) {
+  constexpr std::string_view kNames[] = {"weights", "residual", "near", "system", "growth"};
+  return kNames[static_cast<std::size_t>(refusal)];
+}
+
+std::string_view stop_name(Stop stop) {
+  constexpr std::string_view kNames[] = {"none",      "rounds", "points",
+                                         "tolerance", "exact",  "stalled"};
+  return kNames[static_cast<std::size_t>(stop)];
+}
+
+Result<Refined> refine(const Refined& start, const rbf::Measure& measure,
+                       const RefineOptions& options, Progress& progress) {
+  auto solver = WeightSolver::resume(start.function);
+  if (!solver) return solver.error();
+  if (Status status = check_options(options, start.function.dimensions); !status) {
+    return status.error();
+  }
+  Refiner refiner(start, std::move(*solver), measure, options);
+  if (Status status = refiner.begin(); !status) return status.error();
+  if (Status status = refiner.run(progress); !status) return status.error();
+  return std::move(refiner).take();
+}
+
+}  // namespace krok::fit

@@ -1,0 +1,124 @@
+#include "rbf/centre_matrix_internal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "rbf/evaluate_internal.h"
+
+namespace krok::rbf::detail {
+
+namespace {
+
+double square_distance(std::span<const double> a, std::span<const double> b) {
+  double square = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double along = a[i] - b[i];
+    square = std::fma(along, along, square);
+  }
+  return square;
+}
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+CentreMatrix::CentreMatrix(Kernel kernel, std::size_t dimensions, std::vector<std::size_t> base,
+                           std::span<const double> examples)
+    : kernel_(kernel), dimensions_(dimensions), base_(std::move(base)) {
+  const std::size_t size = base_.size();
+  const auto rows = static_cast<Eigen::Index>(size);
+  Eigen::MatrixXd values(rows, rows);
+  for (std::size_t a = 0; a < size; ++a) {
+    const auto row = static_cast<Eigen::Index>(a);
+    const auto place = examples.subspan(base_[a] * dimensions_, dimensions_);
+    base_places_.insert(base_places_.end(), place.begin(), place.end());
+    values(row, 0) = 1;
+    for (std::size_t i = 0; i < dimensions_; ++i) {
+      values(row, static_cast<Eigen::Index>(i) + 1) = place[i];
+    }
+  }
+  if (size > 0) base_inverse_ = values.fullPivLu().inverse();
+  for (std::size_t a = 0; a < size; ++a) {
+    for (std::size_t b = 0; b < size; ++b) {
+      const auto at = [&](std::size_t k) {
+        return std::span<const double>(base_places_).subspan(k * dimensions_, dimensions_);
+      };
+      base_phi_.push_back(basis_scalar(kernel_, square_distance(at(a), at(b)), 1).value);
+    }
+  }
+}
+
+void CentreMatrix::append(std::span<const double> place, double radius) {
+  const std::size_t k = size();
+  const double inverse_square = has_radii(kernel_) ? 1 / (radius * radius) : 1;
+  for (std::size_t i = 0; i < k; ++i) {
+    phi_here_.push_back(phi_between(place, i));
+    phi_there_.push_back(
+        basis_scalar(kernel_, square_distance(place, this->place(i)), inverse_square).value);
+  }
+  places_.insert(places_.end(), place.begin(), place.end());
+  inverse_squares_.push_back(inverse_square);
+  const std::size_t size = base_.size();
+  for (std::size_t a = 0; a < size; ++a) {
+    const auto column = static_cast<Eigen::Index>(a);
+    double plane = base_inverse_(0, column);
+    for (std::size_t i = 0; i < dimensions_; ++i) {
+      plane += base_inverse_(static_cast<Eigen::Index>(i) + 1, column) * place[i];
+    }
+    planes_.push_back(plane);
+    const auto base_place =
+        std::span<const double>(base_places_).subspan(a * dimensions_, dimensions_);
+    to_base_.push_back(basis_scalar(kernel_, square_distance(place, base_place), 1).value);
+  }
+  for (std::size_t a = 0; a < size; ++a) {
+    const auto within = std::span<const double>(base_phi_).subspan(a * size, size);
+    beyond_base_.push_back(to_base_[k * size + a] - dot(within, planes(k)));
+  }
+}
+
+void CentreMatrix::truncate(std::size_t centres) {
+  places_.resize(centres * dimensions_);
+  inverse_squares_.resize(centres);
+  planes_.resize(centres * base_.size());
+  to_base_.resize(centres * base_.size());
+  beyond_base_.resize(centres * base_.size());
+  phi_here_.resize(centres * (centres - 1) / 2);
+  phi_there_.resize(centres * (centres - 1) / 2);
+}
+
+double CentreMatrix::nearest(std::span<const double> place) const {
+  double square = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < size(); ++k) {
+    square = std::min(square, square_distance(place, this->place(k)));
+  }
+  return std::sqrt(square);
+}
+
+double CentreMatrix::phi_between(std::span<const double> place, std::size_t k) const {
+  return basis_scalar(kernel_, square_distance(place, this->place(k)), inverse_squares_[k]).value;
+}
+
+double CentreMatrix::phi(std::size_t i, std::size_t k) const {
+  if (i == k) return basis_scalar(kernel_, 0, inverse_squares_[k]).value;
+  return i > k ? phi_here_[i * (i - 1) / 2 + k] : phi_there_[k * (k - 1) / 2 + i];
+}
+
+double CentreMatrix::kappa(std::size_t i, std::size_t k) const {
+  const std::size_t size = base_.size();
+  const auto row = [&](const std::vector<double>& values, std::size_t centre) {
+    return std::span(values).subspan(centre * size, size);
+  };
+  return phi(i, k) - dot(row(planes_, i), row(beyond_base_, k)) -
+         dot(row(planes_, k), row(to_base_, i));
+}
+
+bool CentreMatrix::in_base(std::size_t k) const {
+  return std::ranges::find(base_, k) != base_.end();
+}
+
+}  // namespace krok::rbf::detail

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+
+#include "rbf/weight_function.h"
+
+// What the scalar reference and the SIMD kernels share: plain pointers and numbers. No inline
+// functions here, see pose/pose_kernels_internal.h.
+//
+// Kernel and reference do the same operations, fused alike and in the same order, so that they give
+// the same bits: each weight is summed over the centres in four parts (centre k in part k % 4), a
+// chunk of centres at a time.
+
+namespace krok::rbf::detail {
+
+inline constexpr std::size_t kLanes = 8;    // centres and weights come in blocks of so many
+inline constexpr std::size_t kChunk = 256;  // centres at a time
+
+struct Job {
+  Kernel kernel;
+  std::size_t dimensions;
+  std::size_t examples;
+  std::size_t centres;            // a multiple of kLanes; what fills up has coefficients of 0
+  const double* places;           // [d x centres], scaled
+  const double* inverse_squares;  // [centres], 1 / radius^2
+  // Block after block of weights, [centres x 8]; a last one of at most four is [centres x 4].
+  const double* coefficients;
+  const double* affine;  // [(d + 1) x examples in blocks of 8]
+};
+
+// `point` is scaled; weights [examples], slopes [d x examples] by scaled parameters, or null.
+void evaluate_scalar(const Job& job, const double* point, double* weights, double* slopes);
+// The best for this machine.
+void evaluate_best(const Job& job, const double* point, double* weights, double* slopes);
+
+// phi by the squared distance, and the slope d phi / d r divided by r.
+struct Basis {
+  double value, slope;
+};
+Basis basis_scalar(Kernel kernel, double square, double inverse_square);
+
+// exp(x) for x <= 0: x = n ln 2 + r, and Taylor's polynomial in r.
+inline constexpr double kLeastExponent = -700;  // under it 0 is given
+inline constexpr double kLog2E = 0x1.71547652b82fep+0;
+inline constexpr double kRounder = 0x1.8p+52;  // brings n into the low bits
+inline constexpr double kLn2High = 0x1.62e42fefa0000p-1;
+inline constexpr double kLn2Low = 0x1.cf79abc9e3b3ap-40;
+inline constexpr int kExpTerms = 14;
+inline constexpr double kInverseFactorials[kExpTerms] = {1.0 / 6227020800.0,
+                                                         1.0 / 479001600.0,
+                                                         1.0 / 39916800.0,
+                                                         1.0 / 3628800.0,
+                                                         1.0 / 362880.0,
+                                                         1.0 / 40320.0,
+                                                         1.0 / 5040.0,
+                                                         1.0 / 720.0,
+                                                         1.0 / 120.0,
+                                                         1.0 / 24.0,
+                                                         1.0 / 6.0,
+                                                         0.5,
+                                                         1.0,
+                                                         1.0};
+inline constexpr double kGaussian = 4;  // exp(-kGaussian t^2)
+
+}  // namespace krok::rbf::detail
