@@ -77,27 +77,6 @@ HWY_INLINE V squared_distance(V dx, V dy, V dz, V dw) {
                  hn::Mul(dw, dw));
 }
 
-// The steps of a search one after the other, a lane each; the last ones are never reached.
-constexpr std::size_t kMostSteps = (kSteps.size() + kLanes - 1) / kLanes * kLanes;
-struct alignas(64) StepTable {
-  std::int64_t first[kMostSteps];  // counted from -kReach
-  double second[kMostSteps];
-};
-constexpr StepTable kStepTable = [] {
-  StepTable table{};
-  for (std::size_t s = 0; s < kMostSteps; ++s) {
-    const Step step = s < kSteps.size() ? kSteps[s] : Step{};
-    table.first[s] = step.first + kReach;
-    table.second[s] = step.second;
-  }
-  return table;
-}();
-
-// A unit quaternion with w <= 0.
-struct Target {
-  double x, y, z, w;
-};
-
 // The components by size, the earlier first where they are equal.
 struct BySize {
   V a, b, c;
@@ -131,7 +110,7 @@ struct Tries {
   V a, b, c, distance;
 };
 
-// What a search goes by; a lane a target, or a target in all lanes.
+// What a search goes by, a lane a target.
 struct Search {
   V a, b, c, w;
   V nearest_a, spacing_a, rest_of_a, rest_of_b;
@@ -172,97 +151,73 @@ struct Search {
   }
 };
 
-// AfterA for each step from -kReach on.
-struct AfterATable {
-  static constexpr std::size_t kSize = (kSide + kLanes - 1) / kLanes * kLanes;
-  HWY_ALIGN double try_a[kSize], left[kSize], nearest_b[kSize], spacing_b[kSize];
-
-  // Fills in what steps up to `reach` need.
-  HWY_INLINE void fill(const Search& search, int reach) {
-    const Doubles d;
-    const auto first = static_cast<std::size_t>(kReach - reach);
-    const auto end = static_cast<std::size_t>(kReach + reach + 1);
-    for (std::size_t i = first; i < end; i += kLanes) {
-      const std::size_t at = std::min(i, kSize - kLanes);
-      const AfterA after = search.after(hn::Iota(d, static_cast<double>(at) - kReach));
-      hn::StoreU(after.try_a, d, try_a + at);
-      hn::StoreU(after.left, d, left + at);
-      hn::StoreU(after.nearest_b, d, nearest_b + at);
-      hn::StoreU(after.spacing_b, d, spacing_b + at);
-    }
-  }
-  HWY_INLINE AfterA at(const std::int64_t* places) const {
-    const Doubles d;
-    const auto place = hn::Load(hn::RebindToSigned<Doubles>(), places);
-    return {hn::GatherIndex(d, try_a, place), hn::GatherIndex(d, left, place),
-            hn::GatherIndex(d, nearest_b, place), hn::GatherIndex(d, spacing_b, place)};
-  }
-};
-
-// The best so far, as if steps were tried one after the other until one is good enough.
-struct Best {
-  double distance;
-  double a, b, c;
-
-  HWY_INLINE bool is_good() const { return !(distance > kGoodEnough); }
-
-  HWY_INLINE void take(const Tries& tries, std::size_t used) {
-    const Doubles d;
-    if (hn::AllFalse(d, hn::Lt(tries.distance, hn::Set(d, distance)))) return;
-    HWY_ALIGN double distances[kLanes], as[kLanes], bs[kLanes], cs[kLanes];
-    hn::Store(tries.distance, d, distances);
-    hn::Store(tries.a, d, as);
-    hn::Store(tries.b, d, bs);
-    hn::Store(tries.c, d, cs);
-    for (std::size_t i = 0; i < used && !is_good(); ++i) {
-      if (distances[i] < distance) *this = {distances[i], as[i], bs[i], cs[i]};
-    }
-  }
-};
-
-// The whole search for one target, the steps side by side.
-void search_on(const Target& target, std::byte* out) {
+// How many steps are worth trying for a target.
+HWY_INLINE V steps_worth_trying(V w) {
   const Doubles d;
-  const BySize sorted = by_size(hn::Set(d, target.x), hn::Set(d, target.y), hn::Set(d, target.z));
-  const Search search(sorted.a, sorted.b, sorted.c, hn::Set(d, target.w));
-  const double size = std::abs(target.w);
-  const int reach = size > kOneRing ? 1 : size > kThreeRings ? 3 : kReach;
-  const auto steps = static_cast<std::size_t>((2 * reach + 1) * (2 * reach + 1));
-  AfterATable after;
-  after.fill(search, reach);
-
-  const Tries nearest = search.nearest();
-  Best best = {hn::GetLane(nearest.distance), hn::GetLane(nearest.a), hn::GetLane(nearest.b),
-               hn::GetLane(nearest.c)};
-  // A try is a long chain of roots and quotients; two vectors of them run side by side.
-  for (std::size_t s = 0; s < steps && !best.is_good(); s += 2 * kLanes) {
-    const std::size_t next = std::min(s + kLanes, kMostSteps - kLanes);
-    const Tries tries =
-        search.solve(after.at(kStepTable.first + s), hn::Load(d, kStepTable.second + s));
-    const Tries next_tries =
-        search.solve(after.at(kStepTable.first + next), hn::Load(d, kStepTable.second + next));
-    best.take(tries, std::min(steps - s, kLanes));
-    if (s + kLanes < steps) best.take(next_tries, std::min(steps - next, kLanes));
-  }
-  const double values[3] = {best.a, best.b, best.c};
-  const double places[3] = {hn::GetLane(sorted.place_a), hn::GetLane(sorted.place_b),
-                            hn::GetLane(sorted.place_c)};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto value = static_cast<float>(values[k]);
-    std::memcpy(out + sizeof(float) * static_cast<std::size_t>(places[k]), &value, sizeof value);
-  }
+  const auto steps = [&](int reach) {
+    return hn::Set(d, static_cast<double>((2 * reach + 1) * (2 * reach + 1)));
+  };
+  const V size = hn::Abs(w);
+  return hn::IfThenElse(
+      hn::Gt(size, hn::Set(d, kOneRing)), steps(1),
+      hn::IfThenElse(hn::Gt(size, hn::Set(d, kThreeRings)), steps(3), steps(kReach)));
 }
 
-// Targets to search for, a lane each.
+// Most targets need only the first step, and few more than a ring. Those that do wait for others
+// like them, so that all lanes have work.
+constexpr std::array<std::size_t, 3> kStages = {1, 9, kSteps.size()};
+static_assert(kSteps[0].first == 0 && kSteps[0].second == 0);
+
+// Unit quaternions with w <= 0 to search for, a lane each.
 struct Targets {
   HWY_ALIGN double x[kLanes], y[kLanes], z[kLanes], w[kLanes];
   std::byte* out[kLanes];
+  std::size_t records[kLanes];  // one after the other that get the result
   std::size_t count = 0;
+
+  HWY_INLINE void add(const Targets& from, std::size_t i) {
+    x[count] = from.x[i];
+    y[count] = from.y[i];
+    z[count] = from.z[i];
+    w[count] = from.w[i];
+    out[count] = from.out[i];
+    records[count] = from.records[i];
+    ++count;
+  }
 };
 
-// Most targets need only the first step; the others are searched for one by one.
-void search(Targets& targets) {
+class Searches {
+ public:
+  // The target whose components are in places `lane` of x, y, z and w.
+  HWY_INLINE void add(const double* const xyzw[4], std::size_t lane, std::byte* out) {
+    Targets& targets = stages_[0];
+    if (targets.count == kLanes) search(0);
+    targets.x[targets.count] = xyzw[0][lane];
+    targets.y[targets.count] = xyzw[1][lane];
+    targets.z[targets.count] = xyzw[2][lane];
+    targets.w[targets.count] = xyzw[3][lane];
+    targets.out[targets.count] = out;
+    targets.records[targets.count] = 1;
+    ++targets.count;
+  }
+  // The record after the last one added, or repeated, has the same target.
+  HWY_INLINE void repeat() { ++stages_[0].records[stages_[0].count - 1]; }
+
+  void finish() {
+    for (std::size_t stage = 0; stage < kStages.size(); ++stage) {
+      if (stages_[stage].count > 0) search(stage);
+    }
+  }
+
+ private:
+  void search(std::size_t stage);
+
+  std::array<Targets, kStages.size()> stages_;
+};
+
+void Searches::search(std::size_t stage) {
   const Doubles d;
+  Targets& targets = stages_[stage];
   // Lanes that are not used take the first one's work and throw it away.
   for (std::size_t i = targets.count; i < kLanes; ++i) {
     targets.x[i] = targets.x[0];
@@ -270,43 +225,75 @@ void search(Targets& targets) {
     targets.z[i] = targets.z[0];
     targets.w[i] = targets.w[0];
   }
-  static_assert(kSteps[0].first == 0 && kSteps[0].second == 0);
   const BySize sorted =
       by_size(hn::Load(d, targets.x), hn::Load(d, targets.y), hn::Load(d, targets.z));
   const Search search(sorted.a, sorted.b, sorted.c, hn::Load(d, targets.w));
-  const Tries nearest = search.nearest();
-  const Tries tries = search.solve(search.after(hn::Zero(d)), hn::Zero(d));
   const V good = hn::Set(d, kGoodEnough);
-  const auto keep = hn::Or(hn::Not(hn::Gt(nearest.distance, good)),
-                           hn::Not(hn::Lt(tries.distance, nearest.distance)));
+  const V worth_trying = steps_worth_trying(search.w);
+  std::array<AfterA, kSide> after;
+  std::array<bool, kSide> known{};
+
+  Tries best = search.nearest();
+  auto open = hn::Gt(best.distance, good);
+  for (std::size_t s = 0; s < kStages[stage] && !hn::AllFalse(d, open); ++s) {
+    const auto first = static_cast<std::size_t>(kSteps[s].first + kReach);
+    if (!known[first]) after[first] = search.after(hn::Set(d, kSteps[s].first));
+    known[first] = true;
+    const Tries tries = search.solve(after[first], hn::Set(d, kSteps[s].second));
+    const auto better = hn::And(open, hn::Lt(tries.distance, best.distance));
+    best.a = hn::IfThenElse(better, tries.a, best.a);
+    best.b = hn::IfThenElse(better, tries.b, best.b);
+    best.c = hn::IfThenElse(better, tries.c, best.c);
+    best.distance = hn::IfThenElse(better, tries.distance, best.distance);
+    open = hn::And(hn::Gt(best.distance, good),
+                   hn::Gt(worth_trying, hn::Set(d, static_cast<double>(s + 1))));
+  }
+
   HWY_ALIGN double values[3][kLanes], places[3][kLanes];
-  hn::Store(hn::IfThenElse(keep, nearest.a, tries.a), d, values[0]);
-  hn::Store(hn::IfThenElse(keep, nearest.b, tries.b), d, values[1]);
-  hn::Store(hn::IfThenElse(keep, nearest.c, tries.c), d, values[2]);
+  hn::Store(best.a, d, values[0]);
+  hn::Store(best.b, d, values[1]);
+  hn::Store(best.c, d, values[2]);
   hn::Store(sorted.place_a, d, places[0]);
   hn::Store(sorted.place_b, d, places[1]);
   hn::Store(sorted.place_c, d, places[2]);
-  std::uint8_t good_bits[8] = {};
-  hn::StoreMaskBits(
-      d, hn::Not(hn::Gt(hn::IfThenElse(keep, nearest.distance, tries.distance), good)), good_bits);
+  std::uint8_t open_bits[8] = {};
+  hn::StoreMaskBits(d, open, open_bits);
   for (std::size_t i = 0; i < targets.count; ++i) {
-    if ((good_bits[0] >> i & 1) == 0) {
-      search_on({targets.x[i], targets.y[i], targets.z[i], targets.w[i]}, targets.out[i]);
+    if ((open_bits[0] >> i & 1) != 0) {
+      if (stages_[stage + 1].count == kLanes) this->search(stage + 1);
+      stages_[stage + 1].add(targets, i);
       continue;
     }
+    float packed[3];
     for (int k = 0; k < 3; ++k) {
-      const auto value = static_cast<float>(values[k][i]);
-      std::memcpy(targets.out[i] + sizeof(float) * static_cast<std::size_t>(places[k][i]), &value,
-                  sizeof value);
+      packed[static_cast<std::size_t>(places[k][i])] = static_cast<float>(values[k][i]);
+    }
+    for (std::size_t r = 0; r < targets.records[i]; ++r) {
+      std::memcpy(targets.out[i] + r * kRecord, packed, sizeof packed);
     }
   }
   targets.count = 0;
 }
 
+// Which of kLanes orientations are those of the record before.
+HWY_INLINE unsigned repeated_bits(const float* orientations) {
+  const Floats f;
+  hn::Vec<Floats> x, y, z, w, x_before, y_before, z_before, w_before;
+  hn::LoadInterleaved4(f, orientations, x, y, z, w);
+  hn::LoadInterleaved4(f, orientations - 4, x_before, y_before, z_before, w_before);
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(f,
+                    hn::And(hn::And(hn::Eq(x, x_before), hn::Eq(y, y_before)),
+                            hn::And(hn::Eq(z, z_before), hn::Eq(w, w_before))),
+                    bits);
+  return bits[0];
+}
+
 // A group of kLanes transforms, of which the first `used` are stored at `out`. Orientations that
-// need the search are added to `targets` and stored later.
+// need the search are added to `searches` and stored later. `follows`: a record stands before, in
+// all three places.
 HWY_INLINE void pack_group(const float* positions, const float* orientations, std::size_t used,
-                           std::byte* out, Targets& targets) {
+                           bool follows, std::byte* out, Searches& searches) {
   const Doubles d;
   const Floats f;
   hn::Vec<Floats> fx, fy, fz, fw;
@@ -353,31 +340,33 @@ HWY_INLINE void pack_group(const float* positions, const float* orientations, st
   hn::Store(tw, d, target[3]);
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(d, searched, bits);
+  // End sites turn as their joints do.
+  const unsigned repeated = follows ? repeated_bits(orientations) : 0;
+  const double* const xyzw[4] = {target[0], target[1], target[2], target[3]};
   for (unsigned left = bits[0]; left != 0; left &= left - 1) {
     const auto i = static_cast<std::size_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-    targets.x[targets.count] = target[0][i];
-    targets.y[targets.count] = target[1][i];
-    targets.z[targets.count] = target[2][i];
-    targets.w[targets.count] = target[3][i];
-    targets.out[targets.count] = out + i * kRecord + kOrientation;
-    if (++targets.count == kLanes) search(targets);
+    if ((repeated >> i & 1) != 0) {
+      searches.repeat();
+    } else {
+      searches.add(xyzw, i, out + i * kRecord + kOrientation);
+    }
   }
 }
 
 void pack(const float* positions, const float* orientations, std::size_t count, std::byte* out) {
-  Targets targets;
+  Searches searches;
   std::size_t i = 0;
   for (; i + kLanes <= count; i += kLanes) {
-    pack_group(positions + 3 * i, orientations + 4 * i, kLanes, out + i * kRecord, targets);
+    pack_group(positions + 3 * i, orientations + 4 * i, kLanes, i > 0, out + i * kRecord, searches);
   }
   if (i < count) {
     // Filled up with identities, which need no search.
     HWY_ALIGN float tail[4 * kLanes] = {};
     for (std::size_t k = 0; k < kLanes; ++k) tail[4 * k + 3] = 1;
     std::copy_n(orientations + 4 * i, 4 * (count - i), tail);
-    pack_group(positions + 3 * i, tail, count - i, out + i * kRecord, targets);
+    pack_group(positions + 3 * i, tail, count - i, false, out + i * kRecord, searches);
   }
-  if (targets.count > 0) search(targets);
+  searches.finish();
 }
 
 #else

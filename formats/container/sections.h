@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -57,6 +58,20 @@ Result<Provenance> read_provenance(const ContainerReader& container);
 // The JSON alone, for formats that are no containers. The same code.
 Result<std::string> provenance_to_text(const Provenance& provenance);
 Result<Provenance> provenance_from_text(std::string_view text);
+
+// A section of exactly `count` elements that are plain numbers, such as floats, vectors and records
+// of them, as the file has them.
+template <typename T>
+Status read_array(const ContainerReader& container, std::string_view name, std::uint64_t count,
+                  std::vector<T>& values) {
+  const auto section = container.section(name, count, sizeof(T));
+  if (!section) return section.error();
+  values.resize(count);
+  if (count > 0) {
+    std::memcpy(static_cast<void*>(values.data()), section->bytes.data(), section->bytes.size());
+  }
+  return {};
+}
 
 // A section of `count` texts, each in UTF-8 and ended by a zero byte.
 Result<std::vector<std::string>> read_texts(const ContainerReader& container, std::string_view name,

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <limits>
 
 #include "formats/container/sections.h"
@@ -43,18 +42,6 @@ Status write_array(std::string_view name, const std::vector<T>& values,
   // arrays of floats (the assertions above).
   return container.section(
       name, {reinterpret_cast<const std::byte*>(values.data()), values.size() * sizeof(T)});
-}
-
-template <typename T>
-Status read_array(const ContainerReader& container, std::string_view name, std::uint64_t count,
-                  std::vector<T>& values) {
-  const auto section = container.section(name, count, sizeof(T));
-  if (!section) return section.error();
-  values.resize(count);
-  if (count > 0) {
-    std::memcpy(static_cast<void*>(values.data()), section->bytes.data(), section->bytes.size());
-  }
-  return {};
 }
 
 template <typename T>

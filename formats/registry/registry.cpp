@@ -133,6 +133,8 @@ std::string_view kind_name(Kind kind) {
       return "model";
     case Kind::cam:
       return "cam";
+    case Kind::steps:
+      return "steps";
     case Kind::bvh:
       return "bvh";
     case Kind::asf:
@@ -174,6 +176,7 @@ Kind kind_of_content(std::span<const std::byte> content) {
   if (text.starts_with(view(kAnimMagic))) return Kind::anim;
   if (text.starts_with(view(kModelMagic))) return Kind::model;
   if (text.starts_with(view(kCamMagic))) return Kind::cam;
+  if (text.starts_with(view(kStepsMagic))) return Kind::steps;
   if (text.starts_with("glTF")) return Kind::glb;
   if (same_word(first_word(text).substr(0, kHierarchy.size()), kHierarchy)) return Kind::bvh;
   if (is_gltf_json(text)) return Kind::gltf;
@@ -183,9 +186,9 @@ Kind kind_of_content(std::span<const std::byte> content) {
 
 Kind kind_of_name(const std::string& path) {
   const std::string ending = extension(path);
-  for (const Kind kind : {Kind::anim, Kind::model, Kind::cam, Kind::bvh, Kind::asf, Kind::amc,
-                          Kind::glb, Kind::gltf, Kind::fbx, Kind::collada, Kind::smd, Kind::ms3d,
-                          Kind::max_3ds, Kind::ase, Kind::md5mesh, Kind::md5anim}) {
+  for (const Kind kind : {Kind::anim, Kind::model, Kind::cam, Kind::steps, Kind::bvh, Kind::asf,
+                          Kind::amc, Kind::glb, Kind::gltf, Kind::fbx, Kind::collada, Kind::smd,
+                          Kind::ms3d, Kind::max_3ds, Kind::ase, Kind::md5mesh, Kind::md5anim}) {
     if (ending.size() > 1 && std::string_view(ending).substr(1) == kind_name(kind)) return kind;
   }
   return Kind::unknown;
@@ -205,6 +208,8 @@ std::string_view describe_content(std::span<const std::byte> content) {
       return "a Krok model (.model)";
     case Kind::cam:
       return "a Krok camera (.cam)";
+    case Kind::steps:
+      return "a Krok step library (.steps)";
     case Kind::bvh:
       return "a BVH text file";
     case Kind::asf:
@@ -254,7 +259,8 @@ std::string advice(Kind found, Kind wanted) {
   const bool capture = found == Kind::bvh || found == Kind::asf || found == Kind::amc;
   if (capture || is_read_through_assimp(found)) return "import it with krok-import";
   if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";
-  const bool own = found == Kind::anim || found == Kind::model || found == Kind::cam;
+  const bool own =
+      found == Kind::anim || found == Kind::model || found == Kind::cam || found == Kind::steps;
   if (own) return "perhaps two arguments are in the wrong order";
   return {};
 }

@@ -16,6 +16,7 @@ enum class Kind : unsigned char {
   anim,
   model,
   cam,
+  steps,
   // captures
   bvh,
   asf,
@@ -38,6 +39,7 @@ using Magic = std::array<char, 8>;
 inline constexpr Magic kAnimMagic = {'K', 'R', 'O', 'K', 'A', 'N', 'I', 'M'};
 inline constexpr Magic kModelMagic = {'K', 'R', 'O', 'K', 'M', 'O', 'D', 'L'};
 inline constexpr Magic kCamMagic = {'K', 'R', 'O', 'K', 'C', 'A', 'M', 'R'};
+inline constexpr Magic kStepsMagic = {'K', 'R', 'O', 'K', 'S', 'T', 'E', 'P'};
 
 // The extension that files of this kind have, without its dot: "anim", "dae", "3ds" and so on;
 // "unknown".

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads .anim, .model and .cam files by the letter of the SPEC.md pages under formats/, with nothing
+"""Reads .anim, .model, .cam and .steps files by the letter of the SPEC.md pages under formats/, with nothing
 but Python's standard library, and prints each as a line of JSON. It shares no code with Krok, so the
 tests hold the two against each other. The checksum is not verified, as the pages allow.
 
@@ -155,7 +155,84 @@ def read_cam(container):
     return {"kind": "cam", "rate": rate, "frames": result}
 
 
-READERS = {b"KROKANIM": read_anim, b"KROKMODL": read_model, b"KROKCAMR": read_cam}
+def kernel(number, t):
+    """The radial functions of formats/steps/SPEC.md."""
+    if number == 0:
+        return t ** 3
+    if number == 1:
+        return t
+    if number == 2:
+        return math.exp(-6 * t * t)
+    if number == 3:
+        return 1 - 6 * t * t * (1 - t) if t <= 0.5 else 2 * max(0, 1 - t) ** 3
+    return max(0, 1 - t) ** 4 * (4 * t + 1)
+
+
+def read_weights(container, dimensions, examples):
+    if "WEIGHTS" not in container.sections:
+        return None
+    number, _, centres = struct.unpack("<IIQ", container.section("WEIGHTS", 16))
+    require(number <= 4 and centres >= examples, "impossible weights")
+    lower, upper = container.numbers("RANGES", "d", dimensions, 2)
+    points = container.numbers("CENTRES", "d", dimensions, centres)
+    radii = [1.0] * centres
+    if number >= 2:
+        radii = [row[0] for row in container.numbers("RADII", "d", 1, centres)]
+    container.numbers("INSERTED", "d", examples, centres - examples)
+    affine = container.numbers("AFFINE", "d", examples, dimensions + 1)
+    coefficients = container.numbers("COEFFS", "d", examples, centres)
+
+    def scaled(point):
+        return [(p - low) / (high - low) for p, low, high in zip(point, lower, upper)]
+
+    def weights_at(point):
+        q = scaled(point)
+        values = [kernel(number, math.dist(q, scaled(c)) / r) for c, r in zip(points, radii)]
+        return [sum(a[i] * f for a, f in zip(affine, [1.0] + q)) +
+                sum(c[i] * v for c, v in zip(coefficients, values)) for i in range(examples)]
+
+    return {"kernel": number, "coefficients": [c for row in coefficients for c in row],
+            "at_centres": [weights_at(point) for point in points]}
+
+
+def read_steps(container):
+    rate, joints, keytimes, parameters, examples, swing, _ = struct.unpack(
+        "<dIIIIII", container.section("INFO", 32))
+    require(keytimes >= 2 and parameters >= 1 and examples >= 1 and swing <= 1, "impossible counts")
+    feet = [{"joint": foot[0], "heel": list(foot[2:5]), "forward": list(foot[5:8]),
+             "length": foot[8]}
+            for foot in struct.iter_unpack("<iI7d", container.section("FEET", 128))]
+    measured = [dict(zip(("quantity", "keytime", "joint", "direction", "tolerance"), record))
+                for record in struct.iter_unpack("<IiiId", container.section("PARAMS",
+                                                                             24 * parameters))]
+    names = container.texts("EXNAMES", examples)
+    times = container.numbers("KEYTIMES", "d", keytimes, examples)
+    values = container.numbers("MEASURED", "d", parameters, examples)
+    heads = list(struct.iter_unpack("<dIIII", container.section("EXAMPLES", 24 * examples)))
+    frames = container.records("FRAMES", joints * sum(head[1] for head in heads))
+    contacts = list(struct.iter_unpack(
+        "<iI5d", container.section("CONTACTS", 48 * sum(head[2] for head in heads))))
+    result = []
+    for i, (own_rate, frame_count, contact_count, flags, _) in enumerate(heads):
+        require(flags & ~1 == 0, "unknown flags of an example")
+        own, frames = frames[:frame_count * joints], frames[frame_count * joints:]
+        stays, contacts = contacts[:contact_count], contacts[contact_count:]
+        result.append({
+            "name": names[i], "rate": own_rate, "mirrored": flags & 1 == 1, "keytimes": times[i],
+            "parameters": values[i],
+            "frames": [own[f * joints:(f + 1) * joints] for f in range(frame_count)],
+            "contacts": [{"joint": stay[0], "start": stay[2], "end": stay[3],
+                          "place": list(stay[4:])} for stay in stays]})
+    report = container.sections.get("REPORT", b"")
+    return {"kind": "steps", "rate": rate, "swing": "right" if swing else "left",
+            "skeleton": container.skeleton(joints), "feet": feet,
+            "keytimes": container.texts("KEYNAMES", keytimes), "parameters": measured,
+            "examples": result, "weights": read_weights(container, parameters, examples),
+            "report": json.loads(report.decode("utf-8")) if report else None}
+
+
+READERS = {b"KROKANIM": read_anim, b"KROKMODL": read_model, b"KROKCAMR": read_cam,
+           b"KROKSTEP": read_steps}
 
 
 def read(path):

@@ -1,5 +1,5 @@
-// If these fail, a damaged or malicious .anim, .model or .cam file crashes a program, or passes for
-// a good one. Best run with the address and undefined-behaviour sanitizers.
+// If these fail, a damaged or malicious .anim, .model, .cam or .steps file crashes a program, or
+// passes for a good one. Best run with the address and undefined-behaviour sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 #include "formats/anim/anim.h"
 #include "formats/cam/cam.h"
 #include "formats/model/model_format.h"
+#include "formats/steps/steps.h"
 #include "golden/samples/samples.h"
 
 namespace krok {
@@ -35,6 +36,7 @@ Status read_and_check(const std::string& ending, const Bytes& bytes) {
   };
   if (ending == ".anim") return judge(anim::read(file));
   if (ending == ".model") return judge(model::read(file));
+  if (ending == ".steps") return judge(steps::read(file));
   return judge(cam::read(file));
 }
 

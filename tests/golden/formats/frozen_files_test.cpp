@@ -13,7 +13,9 @@
 #include "formats/anim/anim.h"
 #include "formats/cam/cam.h"
 #include "formats/model/model_format.h"
+#include "formats/steps/steps.h"
 #include "golden/samples/samples.h"
+#include "rbf/weight_evaluator.h"
 
 namespace krok {
 namespace {
@@ -132,6 +134,53 @@ TEST(FrozenFiles, CameraHoldsEveryValue) {
   }
 }
 
+TEST(FrozenFiles, StepLibrariesHoldEveryValue) {
+  const std::pair<const char*, steps::StepsFile> files[] = {
+      {"fitted.steps", samples::step_library()},
+      {"unfitted_xyzw.steps", samples::unfitted_library()}};
+  for (const auto& [name, expected] : files) {
+    SCOPED_TRACE(name);
+    const auto found = steps::read(open(kFrozen + name).bytes());
+    ASSERT_TRUE(found.ok()) << found.error().message;
+    const auto &library = found->library, &wanted = expected.library;
+    expect_same(library.skeleton, wanted.skeleton);
+    EXPECT_EQ(library.swing, wanted.swing);
+    EXPECT_EQ(library.keytimes, wanted.keytimes);
+    EXPECT_EQ(library.parameters, wanted.parameters);
+    EXPECT_EQ(library.rate, wanted.rate);
+    for (std::size_t f = 0; f < 2; ++f) {
+      EXPECT_EQ(library.feet[f].joint, wanted.feet[f].joint);
+      EXPECT_EQ(library.feet[f].heel, wanted.feet[f].heel);
+      EXPECT_EQ(library.feet[f].forward, wanted.feet[f].forward);
+      EXPECT_EQ(library.feet[f].length, wanted.feet[f].length);
+    }
+    ASSERT_EQ(library.examples.size(), wanted.examples.size());
+    for (std::size_t i = 0; i < wanted.examples.size(); ++i) {
+      const auto &example = library.examples[i], &original = wanted.examples[i];
+      EXPECT_EQ(example.name, original.name);
+      EXPECT_EQ(example.keytimes, original.keytimes);
+      EXPECT_EQ(example.parameters, original.parameters);
+      EXPECT_EQ(example.mirrored, original.mirrored);
+      EXPECT_EQ(example.motion.rate, original.motion.rate);
+      EXPECT_THAT(example.motion.positions, ElementsAreArray(original.motion.positions));
+      for (std::size_t k = 0; k < original.motion.orientations.size(); ++k) {
+        expect_same(example.motion.orientations[k].cast<double>(),
+                    original.motion.orientations[k].cast<double>());
+      }
+      ASSERT_EQ(example.contacts.size(), original.contacts.size());
+      for (std::size_t c = 0; c < original.contacts.size(); ++c) {
+        EXPECT_EQ(example.contacts[c].joint, original.contacts[c].joint);
+        EXPECT_EQ(example.contacts[c].start, original.contacts[c].start);
+        EXPECT_EQ(example.contacts[c].end, original.contacts[c].end);
+        EXPECT_EQ(example.contacts[c].place, original.contacts[c].place);
+      }
+    }
+    EXPECT_EQ(found->weights, expected.weights);
+    EXPECT_EQ(found->report, expected.report);
+    expect_same(found->provenance, expected.provenance);
+  }
+}
+
 TEST(FrozenFiles, WritersStillWriteTheSameBytes) {
   for (const auto& sample : samples::all()) {
     EXPECT_EQ(samples::bytes_of(sample.write), bytes_of_file(kFrozen + sample.file_name))
@@ -152,6 +201,10 @@ TEST(FrozenFiles, ReadingAndWritingGivesTheSameBytes) {
             bytes_of_file(kFrozen + "camera.cam"));
   EXPECT_EQ(samples::bytes_of(*cam::read(open(kFrozen + "camera_xyzw.cam").bytes()), kXyzw),
             bytes_of_file(kFrozen + "camera_xyzw.cam"));
+  EXPECT_EQ(samples::bytes_of(*steps::read(open(kFrozen + "fitted.steps").bytes())),
+            bytes_of_file(kFrozen + "fitted.steps"));
+  EXPECT_EQ(samples::bytes_of(*steps::read(open(kFrozen + "unfitted_xyzw.steps").bytes()), kXyzw),
+            bytes_of_file(kFrozen + "unfitted_xyzw.steps"));
 }
 
 // --- the reader in Python, written from SPEC.md ---
@@ -255,6 +308,73 @@ void expect_camera(const json& found, const CameraTrack& camera) {
   }
 }
 
+void expect_steps(const json& found, const steps::StepsFile& file) {
+  const auto& library = file.library;
+  EXPECT_EQ(found["kind"], "steps");
+  EXPECT_EQ(found["rate"], library.rate);
+  EXPECT_EQ(found["swing"], name_of(library.swing));
+  EXPECT_EQ(found["keytimes"], json(library.keytimes));
+  expect_skeleton(found["skeleton"], library.skeleton);
+  for (std::size_t f = 0; f < 2; ++f) {
+    const auto& foot = library.feet[f];
+    EXPECT_EQ(found["feet"][f], (json{{"joint", foot.joint},
+                                      {"heel", list(foot.heel)},
+                                      {"forward", list(foot.forward)},
+                                      {"length", foot.length}}));
+  }
+  ASSERT_EQ(found["parameters"].size(), library.parameters.size());
+  for (std::size_t d = 0; d < library.parameters.size(); ++d) {
+    const auto& parameter = library.parameters[d];
+    EXPECT_EQ(found["parameters"][d], (json{{"quantity", static_cast<int>(parameter.quantity)},
+                                            {"keytime", parameter.keytime},
+                                            {"joint", parameter.joint},
+                                            {"direction", static_cast<int>(parameter.direction)},
+                                            {"tolerance", parameter.tolerance}}));
+  }
+  ASSERT_EQ(found["examples"].size(), library.examples.size());
+  for (std::size_t i = 0; i < library.examples.size(); ++i) {
+    const auto& example = library.examples[i];
+    const json& one = found["examples"][i];
+    EXPECT_EQ(one["name"], example.name);
+    EXPECT_EQ(one["rate"], example.motion.rate);
+    EXPECT_EQ(one["mirrored"], example.mirrored);
+    EXPECT_EQ(one["keytimes"], json(example.keytimes));
+    EXPECT_EQ(one["parameters"], json(example.parameters));
+    ASSERT_EQ(one["frames"].size(), static_cast<std::size_t>(example.motion.frame_count()));
+    for (int f = 0; f < example.motion.frame_count(); ++f) {
+      for (std::size_t k = 0; k < library.skeleton.names.size(); ++k) {
+        expect_record(one["frames"][static_cast<std::size_t>(f)][k],
+                      example.motion.frame_positions(f)[k],
+                      example.motion.frame_orientations(f)[k]);
+      }
+    }
+    ASSERT_EQ(one["contacts"].size(), example.contacts.size());
+    for (std::size_t c = 0; c < example.contacts.size(); ++c) {
+      EXPECT_EQ(one["contacts"][c], (json{{"joint", example.contacts[c].joint},
+                                          {"start", example.contacts[c].start},
+                                          {"end", example.contacts[c].end},
+                                          {"place", list(example.contacts[c].place)}}));
+    }
+  }
+  if (!file.weights) {
+    EXPECT_TRUE(found["weights"].is_null());
+    return;
+  }
+  EXPECT_EQ(found["weights"]["kernel"], static_cast<int>(file.weights->kernel));
+  EXPECT_EQ(found["weights"]["coefficients"], json(file.weights->coefficients));
+  // The weights that the page's formula gives at each centre.
+  const auto evaluator = rbf::WeightEvaluator::create(*file.weights);
+  ASSERT_TRUE(evaluator.ok());
+  for (int c = 0; c < file.weights->centre_count(); ++c) {
+    std::vector<double> weights(static_cast<std::size_t>(file.weights->examples));
+    evaluator->weights(file.weights->centre(c), weights);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const double by_page = found["weights"]["at_centres"][static_cast<std::size_t>(c)][i];
+      EXPECT_NEAR(by_page, weights[i], 1e-12);
+    }
+  }
+}
+
 void expect_python_agrees(const std::string& path) {
   SCOPED_TRACE(path);
   const json found = read_by_python(path);
@@ -264,6 +384,7 @@ void expect_python_agrees(const std::string& path) {
   if (ending == ".anim") expect_anim(found, *anim::read(file.bytes()));
   if (ending == ".model") expect_model(found, *model::read(file.bytes()));
   if (ending == ".cam") expect_camera(found, *cam::read(file.bytes()));
+  if (ending == ".steps") expect_steps(found, *steps::read(file.bytes()));
 }
 
 TEST(ReaderFromSpecification, ReadsTheFrozenFiles) {

@@ -102,6 +102,58 @@ CameraTrack camera() {
   return camera;
 }
 
+steps::StepsFile step_library() {
+  steps::StepsFile file;
+  parametric::Library& library = file.library;
+  library.skeleton = skeleton();
+  library.swing = FootSide::right;
+  library.feet = {parametric::FootShape{1, Vec3(0, -0.0625, 0.25), Vec3(0, 0.6, 0.8), 0.125},
+                  parametric::FootShape{2, Vec3(0.1, 0, 0), Vec3(0, 0, 1), 0}};
+  library.keytimes = {"stance_strike", "swing strik\xC3\xA9"};
+  library.parameters = {
+      {parametric::Quantity::step_length, 1, -1, parametric::Direction::along, 0.001}};
+  library.rate = 120;
+  for (const bool second : {false, true}) {
+    parametric::Example& example = library.examples.emplace_back();
+    example.name = second ? "z\xC3\xBCgig" : "slow 1";
+    example.motion = clip();
+    example.motion.provenance = {};
+    example.keytimes = second ? std::vector{0.0, 0.03125} : std::vector{0.0078125, 0.025};
+    example.mirrored = second;
+    example.parameters = {second ? 0.75 : 0.5};
+  }
+  library.examples[1].contacts = {{2, 0.015625, 0.03, Vec3(0.125, 0, 0.1)}};
+  file.weights = {rbf::Kernel::bspline,
+                  1,
+                  2,
+                  {0.5},
+                  {0.75},
+                  {0.5, 0.75, 0.625},
+                  {2, 2, 0.5},
+                  {0.625, 0.375},
+                  {1, 0, -1, 1},
+                  {0, 0, 0, 0, 0.125, -0.125}};
+  file.report = R"({"schema":"krok.fit/1","inserted":1})";
+  file.provenance = provenance("krok-fit");
+  return file;
+}
+
+steps::StepsFile unfitted_library() {
+  steps::StepsFile file = step_library();
+  file.library.swing = FootSide::left;
+  file.library.parameters = {
+      {parametric::Quantity::joint, 0, 2, parametric::Direction::across, 0.002},
+      {parametric::Quantity::step_turn, 1, -1, parametric::Direction::along, 0.1},
+      {parametric::Quantity::duration, 1, -1, parametric::Direction::along, 0.001}};
+  for (parametric::Example& example : file.library.examples) {
+    example.parameters = {-0.25, 0.1, example.keytimes[1] - example.keytimes[0]};
+  }
+  file.weights.reset();
+  file.report.clear();
+  file.provenance = {};
+  return file;
+}
+
 std::vector<Sample> all() {
   constexpr auto kXyz = OrientationEncoding::xyz;
   constexpr auto kXyzw = OrientationEncoding::xyzw;
@@ -118,6 +170,12 @@ std::vector<Sample> all() {
        [](OutputFile& file) { return cam::write(camera(), {.orientation = kXyz}, file); }},
       {"camera_xyzw.cam",
        [](OutputFile& file) { return cam::write(camera(), {.orientation = kXyzw}, file); }},
+      {"fitted.steps",
+       [](OutputFile& file) { return steps::write(step_library(), {.orientation = kXyz}, file); }},
+      {"unfitted_xyzw.steps",
+       [](OutputFile& file) {
+         return steps::write(unfitted_library(), {.orientation = kXyzw}, file);
+       }},
   };
 }
 
@@ -159,6 +217,11 @@ std::vector<std::byte> bytes_of(const Model& model, OrientationEncoding encoding
 std::vector<std::byte> bytes_of(const CameraTrack& camera, OrientationEncoding encoding) {
   return bytes_of(
       [&](OutputFile& file) { return cam::write(camera, {.orientation = encoding}, file); });
+}
+
+std::vector<std::byte> bytes_of(const steps::StepsFile& steps, OrientationEncoding encoding) {
+  return bytes_of(
+      [&](OutputFile& file) { return steps::write(steps, {.orientation = encoding}, file); });
 }
 
 void repair_header(std::vector<std::byte>& file) {

@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "formats/container/packed_orientation.h"
+#include "formats/steps/steps.h"
 #include "scene/camera_track.h"
 #include "scene/clip.h"
 #include "scene/model.h"
@@ -31,6 +32,13 @@ Model plain_model();
 // Two frames, 25 a second.
 CameraTrack camera();
 
+// Two examples on the skeleton of clip(), one parameter, contacts, a report; weights by B-splines
+// with one inserted point, chosen so that they are exact.
+steps::StepsFile step_library();
+
+// The same with three parameters, of a joint, a turn and a duration, and no weights or report.
+steps::StepsFile unfitted_library();
+
 // A file of the frozen set: its name and how it is written.
 struct Sample {
   std::string file_name;
@@ -43,6 +51,7 @@ std::vector<std::byte> bytes_of(const std::function<Status(OutputFile&)>& write)
 std::vector<std::byte> bytes_of(const Clip& clip, OrientationEncoding encoding = {});
 std::vector<std::byte> bytes_of(const Model& model, OrientationEncoding encoding = {});
 std::vector<std::byte> bytes_of(const CameraTrack& camera, OrientationEncoding encoding = {});
+std::vector<std::byte> bytes_of(const steps::StepsFile& steps, OrientationEncoding encoding = {});
 
 // The same bytes with the file's size and checksum made right again, so that a reader gets past
 // them to what a test has changed.

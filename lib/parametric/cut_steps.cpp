@@ -1,0 +1,310 @@
+#include "parametric/cut_steps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/numbers.h"
+#include "math/quaternion.h"
+#include "motion/cut.h"
+#include "motion/mirror.h"
+
+namespace krok::parametric {
+
+namespace {
+
+constexpr double kJumpAngle = 60 * kRadiansPerDegree;
+constexpr double kJumpWay = 0.3;  // metres
+constexpr double kTouch = 0.05;   // seconds; less of a contact within a step is none of it
+// What an outlier must be further off than.
+constexpr double kFarLength = 0.1, kFarAngle = 15 * kRadiansPerDegree, kFarTime = 0.3;
+constexpr std::ptrdiff_t kMostOutliers = 10;  // one of so many
+constexpr double kNormal = 1.4826;  // standard deviation of a normal distribution over its MAD
+
+// From a strike of the stance foot to the swing foot's.
+struct Found {
+  FootSide swing = FootSide::left;
+  double start = 0, off = 0, end = 0;  // seconds
+  std::string fault;                   // why it is no whole step; empty where it is
+};
+
+struct Strike {
+  FootSide side;
+  double time;
+};
+
+std::vector<Strike> strikes_of(const MotionKeys& keys) {
+  std::vector<Strike> strikes;
+  for (const Keytime& key : keys.keytimes) {
+    if (key.name == "left_strike") strikes.push_back({FootSide::left, key.time});
+    if (key.name == "right_strike") strikes.push_back({FootSide::right, key.time});
+  }
+  return strikes;
+}
+
+std::vector<Found> find_steps(const MotionKeys& keys, const CutOptions& options) {
+  std::vector<Found> steps;
+  const auto strikes = strikes_of(keys);
+  for (std::size_t i = 0; i + 1 < strikes.size(); ++i) {
+    Found step;
+    step.swing = strikes[i + 1].side;
+    if (step.swing != options.swing && !options.mirror) continue;
+    step.start = strikes[i].time;
+    step.end = strikes[i + 1].time;
+    const std::string off = fmt::format("{}_off", name_of(step.swing));
+    int offs = 0;
+    for (const Keytime& key : keys.keytimes) {
+      if (key.name != off || key.time <= step.start || key.time >= step.end) continue;
+      ++offs;
+      step.off = key.time;
+    }
+    const double lasts = step.end - step.start;
+    if (strikes[i].side == step.swing) {
+      step.fault = fmt::format("the {} foot strikes twice in a row", name_of(step.swing));
+    } else if (offs != 1) {
+      step.fault =
+          fmt::format("{} {} between the strikes", offs == 0 ? "no" : "more than one", off);
+    } else if (lasts < options.shortest || lasts > options.longest) {
+      step.fault = fmt::format("{} s are too {}", readable(lasts, 3),
+                               lasts < options.shortest ? "short" : "long");
+    }
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
+
+// Where the pose jumps from a frame to the next, in words.
+std::string jump_in(const Clip& piece) {
+  std::vector<Transform> before(piece.skeleton.names.size()), pose(before.size()),
+      local(before.size());
+  for (int f = 0; f < piece.frame_count(); ++f) {
+    piece.get_pose(f, pose);
+    world_to_local(piece.skeleton.parents, pose, local);
+    for (std::size_t j = 0; f > 0 && j < local.size(); ++j) {
+      const bool turns = angle_between(before[j].orientation, local[j].orientation) > kJumpAngle;
+      const bool moves = j == 0 && (before[j].position - local[j].position).norm() > kJumpWay;
+      if (turns || moves) return fmt::format("{} jumps", piece.skeleton.names[j]);
+    }
+    std::swap(before, local);
+  }
+  return {};
+}
+
+// The moment at which the swing foot passes the stance foot, along the way of the stance foot's
+// toes.
+std::optional<double> pass_of(const Clip& piece, const Library& library, double from, double to) {
+  const FootShape& stance = library.foot(library.stance());
+  const FootShape& swing = library.foot(library.swing);
+  const auto ahead = [&](int frame) {
+    const auto place = [&](int joint) -> Vec3 {
+      return piece.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>();
+    };
+    const Vec3 toes = piece.frame_orientations(frame)[static_cast<std::size_t>(stance.joint)]
+                          .cast<double>()
+                          .normalized() *
+                      stance.forward;
+    return (place(swing.joint) - place(stance.joint)).dot(Vec3(toes.x(), 0, toes.z()));
+  };
+  std::optional<double> passes;
+  for (int f = static_cast<int>(std::ceil(from * piece.rate)); f + 1 <= to * piece.rate; ++f) {
+    const double now = ahead(f), next = ahead(f + 1);
+    if (!(now < 0 && next >= 0)) continue;
+    if (passes) return std::nullopt;
+    passes = (f - now / (next - now)) / piece.rate;
+  }
+  return passes;
+}
+
+class Cutter {
+ public:
+  Cutter(const RoleMap& roles, const CutOptions& options) : roles_(roles), options_(options) {}
+
+  Status begin(std::span<const Walk> walks, std::span<const std::string> parameters) {
+    Library& library = result_.library;
+    library.skeleton = walks.front().clip->skeleton;
+    library.rate = walks.front().clip->rate;
+    library.swing = options_.swing;
+    library.keytimes = {"stance_strike", "swing_off", "swing_strike"};
+    if (options_.pass) library.keytimes.insert(library.keytimes.end() - 1, "swing_pass");
+    std::vector<ClipContacts> clips;
+    for (const Walk& walk : walks) {
+      if (Status same = same_skeleton(library.skeleton, walk.clip->skeleton); !same) {
+        return std::move(same).error().in_file(walk.name);
+      }
+      clips.push_back({walk.clip, walk.found});
+    }
+    auto feet = find_foot_shapes(clips, roles_);
+    if (!feet) return feet.error();
+    library.feet = *feet;
+    for (const std::string& name : parameters) {
+      auto parameter = parse_parameter(name, library.skeleton, library.keytimes);
+      if (!parameter) return parameter.error();
+      library.parameters.push_back(*parameter);
+    }
+    pairs_ = find_mirror_pairs(library.skeleton, roles_);
+    return check(library);
+  }
+
+  void add(const Walk& walk) {
+    int count = 0;
+    for (const Found& step : find_steps(*walk.keys, options_)) {
+      ++count;
+      std::string fault = step.fault.empty() ? add_step(walk, step, count) : step.fault;
+      if (!fault.empty()) drop(walk.name, step.start, step.end, std::move(fault));
+    }
+  }
+
+  // Outliers are told from all measures at once, so that one does not hide another.
+  void drop_outliers() {
+    Library& library = result_.library;
+    if (options_.outlier <= 0 || library.examples.size() < 5) return;
+    std::vector<std::string> faults(library.examples.size());
+    for (std::size_t d = 0; d <= library.parameters.size(); ++d) find_outliers(d, faults);
+    std::vector<Example> kept;
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+      if (faults[i].empty()) {
+        kept.push_back(std::move(library.examples[i]));
+      } else {
+        drop(origins_[i].walk, origins_[i].start, origins_[i].end, faults[i]);
+      }
+    }
+    library.examples = std::move(kept);
+  }
+
+  Result<StepLibrary> finish() {
+    if (result_.library.examples.empty()) {
+      std::string why;
+      if (!result_.dropped.empty()) why = "; the first: " + result_.dropped.front().reason;
+      return Error(
+          "parametric-none",
+          fmt::format("no step was found, {} dropped{}",
+                      counted(static_cast<long long>(result_.dropped.size()), "was", "were"), why),
+          "krok-keys shows the strikes and offs of a walk");
+    }
+    return std::move(result_);
+  }
+
+ private:
+  struct Origin {
+    std::string walk;
+    double start, end;
+  };
+
+  void drop(const std::string& walk, double start, double end, std::string reason) {
+    result_.dropped.push_back({walk, start, end, std::move(reason)});
+  }
+
+  // Why the step cannot be taken; empty where it was.
+  std::string add_step(const Walk& walk, const Found& step, int number) {
+    Library& library = result_.library;
+    const Clip& clip = *walk.clip;
+    const int first = std::max(0, static_cast<int>(std::floor(step.start * clip.rate + 1e-6)));
+    const int last =
+        std::min(clip.frame_count() - 1, static_cast<int>(std::ceil(step.end * clip.rate - 1e-6)));
+    if (last <= first) return "it lies outside the walk";
+    Clip piece = cut(clip, first, last);
+    if (std::string jump = jump_in(piece); !jump.empty()) return jump;
+    const double shift = first / clip.rate;
+    const auto within = [&](double time) {
+      return std::clamp(time - shift, 0.0, piece.duration());
+    };
+    std::vector<Contact> contacts = contacts_in(*walk.keys, step, shift, piece.duration());
+    const bool flipped = step.swing != library.swing;
+    if (flipped) flip(piece, contacts);
+    std::vector<double> times = {within(step.start), within(step.off), within(step.end)};
+    if (options_.pass) {
+      const auto pass = pass_of(piece, library, times[1], times[2]);
+      if (!pass) return "the swing foot does not pass the stance foot once";
+      times.insert(times.end() - 1, *pass);
+    }
+    auto example =
+        make_example(library, fmt::format("{} {} {}", walk.name, number, name_of(step.swing)),
+                     piece, times, std::move(contacts));
+    if (!example) return example.error().message;
+    example->mirrored = flipped;
+    library.examples.push_back(*std::move(example));
+    origins_.push_back({walk.name, step.start, step.end});
+    return {};
+  }
+
+  static std::vector<Contact> contacts_in(const MotionKeys& keys, const Found& step, double shift,
+                                          double duration) {
+    std::vector<Contact> contacts;
+    for (Contact contact : keys.contacts) {
+      if (std::min(contact.end, step.end) - std::max(contact.start, step.start) < kTouch) continue;
+      contact.start = std::clamp(contact.start - shift, 0.0, duration);
+      contact.end = std::clamp(contact.end - shift, 0.0, duration);
+      contacts.push_back(contact);
+    }
+    return contacts;
+  }
+
+  void flip(Clip& piece, std::vector<Contact>& contacts) const {
+    piece = mirror(piece, pairs_);
+    const auto partner = [&](const Contact& contact) {
+      return pairs_.partners[static_cast<std::size_t>(contact.joint)];
+    };
+    std::erase_if(contacts, [&](const Contact& c) { return partner(c) == MirrorPairs::kNone; });
+    for (Contact& contact : contacts) {
+      contact.joint = partner(contact);
+      contact.place.x() = -contact.place.x();
+    }
+  }
+
+  // The measures of one parameter, the duration behind the last one.
+  void find_outliers(std::size_t d, std::vector<std::string>& faults) const {
+    const Library& library = result_.library;
+    const bool lasts = d == library.parameters.size();
+    const std::string_view unit = lasts ? "s" : unit_of(library.parameters[d]);
+    std::vector<double> values;
+    for (const Example& example : library.examples) {
+      values.push_back(lasts ? example.keytimes.back() - example.keytimes.front()
+                             : example.parameters[d]);
+    }
+    const double middle = median(values);
+    std::vector<double> apart;
+    for (const double value : values) apart.push_back(std::abs(value - middle));
+    const double floor = unit == "rad" ? kFarAngle : unit == "s" ? kFarTime : kFarLength;
+    const double far = std::max(floor, options_.outlier * kNormal * median(apart));
+    // Outliers are few; where they are more, the library is made of such variations.
+    const auto beyond = std::ranges::count_if(apart, [&](double value) { return value > far; });
+    if (beyond * kMostOutliers > static_cast<std::ptrdiff_t>(apart.size())) return;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (apart[i] <= far || !faults[i].empty()) continue;
+      const std::string name =
+          lasts ? "duration" : name_of(library.parameters[d], library.skeleton, library.keytimes);
+      const double scale = unit == "rad" ? 1 / kRadiansPerDegree : 1;
+      faults[i] = fmt::format("an outlier: {} is {} {}, the median {} {}", name,
+                              readable(values[i] * scale, 3), unit == "rad" ? "degrees" : unit,
+                              readable(middle * scale, 3), unit == "rad" ? "degrees" : unit);
+    }
+  }
+
+  static double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  }
+
+  const RoleMap& roles_;
+  const CutOptions& options_;
+  MirrorPairs pairs_;
+  StepLibrary result_;
+  std::vector<Origin> origins_;  // [examples]
+};
+
+}  // namespace
+
+Result<StepLibrary> cut_steps(std::span<const Walk> walks, const RoleMap& roles,
+                              std::span<const std::string> parameters, const CutOptions& options) {
+  if (walks.empty()) return Error("parametric-none", "there is no walk to cut steps out of");
+  Cutter cutter(roles, options);
+  if (Status begun = cutter.begin(walks, parameters); !begun) return begun.error();
+  for (const Walk& walk : walks) cutter.add(walk);
+  cutter.drop_outliers();
+  return cutter.finish();
+}
+
+}  // namespace krok::parametric

@@ -1,0 +1,148 @@
+#include "parametric/footprint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "math/euler.h"
+
+namespace krok::parametric {
+
+namespace {
+
+constexpr double kUpright = 1e-3;  // of the level part of a unit vector
+constexpr double kClimb = 0.15;    // of the leg, between the feet's heights
+
+// Vectors of which the median is wanted, coordinate by coordinate.
+class Medians {
+ public:
+  void add(const Vec3& v) {
+    for (int i = 0; i < 3; ++i) values_[static_cast<std::size_t>(i)].push_back(v[i]);
+  }
+  bool empty() const { return values_[0].empty(); }
+  Vec3 median() {
+    Vec3 result;
+    for (int i = 0; i < 3; ++i) {
+      auto& values = values_[static_cast<std::size_t>(i)];
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      result[i] = *middle;
+    }
+    return result;
+  }
+
+ private:
+  std::array<std::vector<double>, 3> values_;
+};
+
+Quat orientation(const Clip& clip, int frame, int joint) {
+  return clip.frame_orientations(frame)[static_cast<std::size_t>(joint)]
+      .cast<double>()
+      .normalized();
+}
+
+// Up in the foot's frame where heel and ball stay at once.
+void add_flat_frames(const ClipContacts& given, FootSide side, int joint, Medians& up) {
+  if (given.contacts == nullptr) return;
+  const Clip& clip = *given.clip;
+  std::vector<std::uint8_t> heel(static_cast<std::size_t>(clip.frame_count()), 0), front = heel;
+  for (const Stay& stay : given.contacts->stays) {
+    const SolePoint& point = given.contacts->tracks[static_cast<std::size_t>(stay.track)].point;
+    if (point.side != side) continue;
+    auto& marks = point.part == FootPart::heel ? heel : front;
+    const int first = std::max(0, static_cast<int>(std::ceil(stay.start * clip.rate)));
+    const int last =
+        std::min(clip.frame_count() - 1, static_cast<int>(std::floor(stay.end * clip.rate)));
+    for (int f = first; f <= last; ++f) marks[static_cast<std::size_t>(f)] = 1;
+  }
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    if (heel[static_cast<std::size_t>(f)] && front[static_cast<std::size_t>(f)]) {
+      up.add(orientation(clip, f, joint).conjugate() * Vec3::UnitY());
+    }
+  }
+}
+
+// Whether the feet stand at different heights, as on a slope, where a flat foot is tilted.
+bool climbs(const ClipContacts& given) {
+  if (given.contacts == nullptr || given.contacts->stays.empty()) return false;
+  const auto [low, high] = std::ranges::minmax(given.contacts->stays, {},
+                                               [](const Stay& stay) { return stay.place.y(); });
+  return high.place.y() - low.place.y() > kClimb * given.contacts->leg_length;
+}
+
+Vec3 level(const Vec3& v, const Vec3& up) {
+  return v - up * up.dot(v);
+}
+
+// The way from the heel to the front of the foot, a joint before the ankle.
+Vec3 front_of(const Skeleton& skeleton, const SolePoint& front, int foot) {
+  if (front.joint == foot) return front.offset;
+  const Transform& from = skeleton.reference[static_cast<std::size_t>(foot)];
+  return from.inverse() * skeleton.reference[static_cast<std::size_t>(front.joint)].position;
+}
+
+}  // namespace
+
+Transform Footprint::to_world() const {
+  return {place, axis_rotation(Axis::y, heading)};
+}
+
+Vec3 ball_of(const FootShape& foot) {
+  return foot.heel + foot.length * foot.forward;
+}
+
+Footprint footprint(const FootShape& foot, const Transform& foot_to_world) {
+  const Vec3 forward = foot_to_world.orientation * foot.forward;
+  Footprint print;
+  print.place = foot_to_world * foot.heel;
+  if (std::hypot(forward.x(), forward.z()) < kUpright) return print;
+  print.heading = std::atan2(forward.x(), forward.z());
+  if (forward.y() < 0) {
+    print.place += foot.length * (forward - axis_rotation(Axis::y, print.heading) * Vec3::UnitZ());
+  }
+  return print;
+}
+
+Result<std::array<FootShape, 2>> find_foot_shapes(std::span<const ClipContacts> clips,
+                                                  const RoleMap& roles) {
+  std::array<FootShape, 2> shapes;
+  const bool has_level = !std::ranges::all_of(clips, climbs);
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    FootShape& shape = shapes[static_cast<std::size_t>(side)];
+    Medians heel, front, up;
+    for (const ClipContacts& given : clips) {
+      if (has_level && climbs(given)) continue;
+      const Feet feet = find_feet(*given.clip, roles);
+      const auto& points = feet.points[static_cast<std::size_t>(side)];
+      if (points.empty()) continue;
+      shape.joint = points.front().joint;
+      heel.add(points.front().offset);
+      if (points.size() > 1) {
+        front.add(front_of(given.clip->skeleton, points[1], shape.joint));
+      }
+      add_flat_frames(given, side, shape.joint, up);
+    }
+    if (shape.joint < 0) {
+      return Error("parametric-feet", "the skeleton's feet are not known",
+                   "name its feet with --map");
+    }
+    const Skeleton& skeleton = clips.front().clip->skeleton;
+    const Quat world_to_foot =
+        skeleton.reference[static_cast<std::size_t>(shape.joint)].orientation.conjugate();
+    const Vec3 at_reference = world_to_foot * Vec3::UnitY();
+    const Vec3 above = up.empty() ? at_reference : up.median();
+    const Vec3 upward = above.norm() > 0.1 ? Vec3(above.normalized()) : at_reference;
+    shape.heel = heel.median();
+    Vec3 forward = front.empty() ? Vec3::Zero() : level(front.median() - shape.heel, upward);
+    if (forward.norm() > 1e-3) {
+      shape.length = forward.norm();
+    } else {
+      forward = level(world_to_foot * Vec3::UnitZ(), upward);
+    }
+    shape.forward =
+        forward.norm() > 1e-6 ? Vec3(forward.normalized()) : Vec3(upward.unitOrthogonal());
+  }
+  return shapes;
+}
+
+}  // namespace krok::parametric

@@ -1,0 +1,228 @@
+#include "parametric/library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "motion/mirror.h"
+#include "motion/place.h"
+#include "parametric/measure.h"
+#include "pose/sample_pose.h"
+
+namespace krok::parametric {
+
+namespace {
+
+constexpr double kSameOffset = 0.01;  // of the figure's extent
+constexpr double kShortest = 0.01;    // seconds
+constexpr std::size_t kLongestName = 1000;
+
+Error keytime_error(const std::string& name, std::string message) {
+  return {"parametric-keytimes", fmt::format("{}: {}", name, std::move(message)),
+          "krok-keys finds or sets keytimes"};
+}
+
+// What an example's keytimes must be beside the library's.
+Status check_keytimes(const Library& library, const std::string& name, const Clip& motion,
+                      const std::vector<double>& times) {
+  if (times.size() != library.keytimes.size()) {
+    return keytime_error(name, fmt::format("{} keytimes, the library has {}", times.size(),
+                                           library.keytimes.size()));
+  }
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (!(times[k] >= -1e-9 && times[k] <= motion.duration() + 1e-9)) {
+      return keytime_error(
+          name, fmt::format("{} at {} s lies outside the motion's {} s", library.keytimes[k],
+                            readable(times[k]), readable(motion.duration())));
+    }
+    if (k == 0 || times[k] - times[k - 1] >= shortest_interval(library)) continue;
+    return keytime_error(name,
+                         fmt::format("{} s from {} to {} are too short, the least is {} s",
+                                     readable(times[k] - times[k - 1]), library.keytimes[k - 1],
+                                     library.keytimes[k], readable(shortest_interval(library), 3)));
+  }
+  return {};
+}
+
+Transform pose_of_joint(const Clip& motion, int joint, double time) {
+  const PackedClip packed = pack_clip(motion);
+  std::vector<PoseBlock> pose(static_cast<std::size_t>(packed.blocks_per_pose()));
+  sample_pose(packed, time, pose);
+  std::vector<Transform> local(motion.skeleton.names.size());
+  unpack_pose(pose, local);
+  local_to_world(motion.skeleton.parents, local, local);
+  return local[static_cast<std::size_t>(joint)];
+}
+
+void move_contacts(const Transform& world_to_world, std::vector<Contact>& contacts) {
+  for (Contact& contact : contacts) contact.place = world_to_world * contact.place;
+}
+
+void sort_contacts(std::vector<Contact>& contacts) {
+  std::ranges::stable_sort(contacts, [](const Contact& a, const Contact& b) {
+    return a.start != b.start ? a.start < b.start : a.joint < b.joint;
+  });
+}
+
+Error example_error(std::size_t index, std::string message) {
+  return {"parametric-example", fmt::format("example {} {}", index + 1, std::move(message)),
+          "make the library anew"};
+}
+
+Status check_example(const Library& library, std::size_t index) {
+  const Example& example = library.examples[index];
+  if (example.name.empty() || example.name.size() > kLongestName) {
+    return example_error(index, "has no name or one of over 1,000 bytes");
+  }
+  if (example.motion.frame_count() == 0) return example_error(index, "has no frames");
+  if (example.parameters.size() != library.parameters.size() ||
+      !std::ranges::all_of(example.parameters, [](double p) { return std::isfinite(p); })) {
+    return example_error(index, "has not all parameters measured");
+  }
+  if (Status sound = check(example.motion); !sound) return sound;
+  if (Status sound = same_skeleton(library.skeleton, example.motion.skeleton); !sound) return sound;
+  if (Status sound = check({example.contacts, {}}, library.skeleton, example.motion.duration());
+      !sound) {
+    return sound;
+  }
+  return check_keytimes(library, example.name, example.motion, example.keytimes);
+}
+
+Vec3 image(const Vec3& v) {
+  return {-v.x(), v.y(), v.z()};
+}
+
+// What the sole of `joint`'s partner is in a mirror.
+FootShape mirrored_foot(const FootShape& foot, const Skeleton& skeleton, int partner) {
+  const Quat& from = skeleton.reference[static_cast<std::size_t>(foot.joint)].orientation;
+  const Quat& to = skeleton.reference[static_cast<std::size_t>(partner)].orientation;
+  const auto across = [&](const Vec3& v) -> Vec3 { return to.conjugate() * image(from * v); };
+  return {partner, across(foot.heel), across(foot.forward), foot.length};
+}
+
+}  // namespace
+
+double shortest_interval(const Library& library) {
+  return std::min(2 / library.rate, kShortest) * (1 - 1e-9);
+}
+
+Status same_skeleton(const Skeleton& library, const Skeleton& other) {
+  constexpr const char* kRetarget = "krok-retarget brings a motion on another skeleton";
+  const std::string difference = difference_in_structure(library, other);
+  if (!difference.empty()) {
+    return Error("parametric-skeleton", "not the library's skeleton: " + difference, kRetarget);
+  }
+  const double allowed = kSameOffset * std::max(reference_extent(library), reference_extent(other));
+  for (int j = 1; j < library.joint_count(); ++j) {
+    const Vec3 ours = library.reference_local(j).position;
+    const Vec3 theirs = other.reference_local(j).position;
+    if ((ours - theirs).norm() <= allowed) continue;
+    const std::string& name = library.names[static_cast<std::size_t>(j)];
+    Error error("parametric-skeleton",
+                fmt::format("not the library's skeleton: {} stands {} m elsewhere in its parent's "
+                            "frame",
+                            name, readable((ours - theirs).norm(), 3)),
+                kRetarget);
+    error.joint = name;
+    return error;
+  }
+  return {};
+}
+
+Result<Example> make_example(const Library& library, std::string name, const Clip& motion,
+                             std::vector<double> keytimes, std::vector<Contact> contacts) {
+  if (Status same = same_skeleton(library.skeleton, motion.skeleton); !same) return same.error();
+  if (Status fits = check_keytimes(library, name, motion, keytimes); !fits) return fits.error();
+  const FootShape& stance = library.foot(library.stance());
+  const Footprint print = footprint(stance, pose_of_joint(motion, stance.joint, keytimes.front()));
+  const Transform to_stance = print.to_world().inverse();
+
+  Example example;
+  example.name = std::move(name);
+  example.motion = motion;
+  example.motion.skeleton = library.skeleton;
+  example.motion.provenance = {};
+  move_clip(to_stance, example.motion);
+  example.keytimes = std::move(keytimes);
+  example.contacts = std::move(contacts);
+  move_contacts(to_stance, example.contacts);
+  sort_contacts(example.contacts);
+
+  Library alone = library;
+  alone.examples.assign(1, example);
+  const Measure measure(alone, pack_examples(alone));
+  auto scratch = measure.make_scratch();
+  example.parameters.resize(library.parameters.size());
+  const double all = 1;
+  if (Status done = measure({&all, 1}, example.parameters, {}, scratch); !done) {
+    return std::move(done).error().in_file(example.name);
+  }
+  return example;
+}
+
+Status check(const Library& library) {
+  if (Status sound = check(library.skeleton); !sound) return sound;
+  for (const FootShape& foot : library.feet) {
+    if (foot.joint >= 0 && foot.joint < library.skeleton.joint_count() && foot.heel.allFinite() &&
+        foot.length >= 0 && std::isfinite(foot.length) &&
+        std::abs(foot.forward.norm() - 1) <= 1e-4) {
+      continue;
+    }
+    return Error("parametric-feet", "a foot has no joint or no sole", "make the library anew");
+  }
+  if (library.keytimes.size() < 2 ||
+      std::ranges::any_of(library.keytimes, [](const auto& name) { return name.empty(); })) {
+    return Error("parametric-keytimes", "a library needs two keytimes or more, with names");
+  }
+  if (!(library.rate > 0) || !std::isfinite(library.rate)) {
+    return Error("clip-rate", "the rate of a library must be a positive number");
+  }
+  if (Status sound = check(library.parameters, library.skeleton, library.keytimes); !sound) {
+    return sound;
+  }
+  for (std::size_t i = 0; i < library.examples.size(); ++i) {
+    if (Status sound = check_example(library, i); !sound) return sound;
+  }
+  return {};
+}
+
+Result<Library> mirrored(const Library& library, const RoleMap& roles) {
+  const MirrorPairs pairs = find_mirror_pairs(library.skeleton, roles);
+  const auto partner = [&](int joint) { return pairs.partners[static_cast<std::size_t>(joint)]; };
+  Library result = library;
+  result.swing = library.stance();
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    const FootShape& foot = library.foot(side);
+    if (partner(foot.joint) == MirrorPairs::kNone || partner(foot.joint) == foot.joint) {
+      return Error("parametric-feet", "the feet are not each other's mirror image",
+                   "name them with --map");
+    }
+    result.feet[1 - static_cast<std::size_t>(side)] =
+        mirrored_foot(foot, library.skeleton, partner(foot.joint));
+  }
+  for (Parameter& parameter : result.parameters) {
+    if (parameter.joint < 0) continue;
+    parameter.joint = partner(parameter.joint);
+    if (parameter.joint == MirrorPairs::kNone) {
+      return Error("parametric-feet", "a measured joint has no mirror image",
+                   "name the joints with --map");
+    }
+  }
+  for (Example& example : result.examples) {
+    example.motion = mirror(example.motion, pairs);
+    example.mirrored = !example.mirrored;
+    std::erase_if(example.contacts, [&](const Contact& contact) {
+      return partner(contact.joint) == MirrorPairs::kNone;
+    });
+    for (Contact& contact : example.contacts) {
+      contact.joint = partner(contact.joint);
+      contact.place = image(contact.place);
+    }
+    sort_contacts(example.contacts);
+  }
+  return result;
+}
+
+}  // namespace krok::parametric
