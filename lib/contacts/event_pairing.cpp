@@ -9,9 +9,14 @@ namespace krok::contacts {
 
 namespace {
 
-constexpr double kAlike = 0.008;   // seconds
-constexpr double kFar = 0.06;      // seconds
-constexpr double kVeryFar = 0.15;  // seconds
+constexpr double kAlike = 0.006;     // seconds
+constexpr double kFar = 0.06;        // seconds
+constexpr double kVeryFar = 0.15;    // seconds
+constexpr double kScattered = 0.05;  // seconds
+constexpr double kPairWithin = 0.3;  // cycles
+// How long before the toes turn behind the pelvis contacts may have them leave: the published
+// agreement of the two is a frame at 60 Hz.
+constexpr double kEarly = 0.025;  // seconds
 
 // The index of the value nearest to `time` within `reach`, or nothing.
 std::optional<std::size_t> nearest(const std::vector<double>& values, double time, double reach) {
@@ -39,6 +44,8 @@ Offset offset_of(std::vector<double> offsets, double usual, bool jittery) {
   offset.usual = middle(offsets);
   for (double& value : offsets) value = std::abs(value - offset.usual);
   offset.spread = middle(offsets);
+  offset.scattered = offset.spread > kScattered;
+  if (offset.scattered) offset.usual = usual;
   offset.known = offsets.size() >= 4;
   return offset;
 }
@@ -52,7 +59,7 @@ void Pairing::pair() {
   event.assign(seeds->size(), std::nullopt);
   std::vector<int> taken(events.size(), -1);
   for (std::size_t i = 0; i < seeds->size(); ++i) {
-    const auto found = nearest(events, (*seeds)[i], 0.3 * cycle);
+    const auto found = nearest(events, (*seeds)[i], kPairWithin * cycle);
     if (!found) continue;
     const int before = taken[*found];
     if (before >= 0) {
@@ -65,6 +72,17 @@ void Pairing::pair() {
   }
 }
 
+void Pairing::add_early(std::vector<double>& early) const {
+  for (std::size_t i = 0; i < event.size(); ++i) {
+    const auto off = event[i] && rolls_off ? rolls_off((*seeds)[i]) : std::nullopt;
+    if (off) early.push_back(*off - events[*event[i]]);
+  }
+}
+
+bool leave_early(const std::vector<double>& early) {
+  return early.size() >= 2 && middle(early) > kEarly;
+}
+
 void Pairing::add_offsets(std::vector<double>& offsets) const {
   for (std::size_t i = 0; i < event.size(); ++i) {
     if (event[i]) offsets.push_back(events[*event[i]] - (*seeds)[i]);
@@ -75,10 +93,11 @@ Events Pairing::events_with(const Offset& offset) const {
   Events result;
   std::vector<std::uint8_t> used(events.size(), 0);
   for (std::size_t i = 0; i < event.size(); ++i) {
-    const bool unseen = leaves_unseen && leaves_unseen((*seeds)[i]);
-    const double expected = (*seeds)[i] + (unseen ? kOffAfterBack : offset.usual);
+    const auto off = rolls_off ? rolls_off((*seeds)[i]) : std::nullopt;
+    const bool unseen = off && toes_unseen;
+    const double expected = unseen ? *off : (*seeds)[i] + offset.usual;
     if (!event[i]) {
-      if (stands_at(expected) || !is_low((*seeds)[i])) continue;
+      if (offset.scattered || stands_at(expected) || !is_low((*seeds)[i])) continue;
       result.times.push_back(expected);
       ++result.from_seeds;
       continue;
@@ -89,7 +108,10 @@ Events Pairing::events_with(const Offset& offset) const {
       result.times.push_back(std::max(found, expected));
       continue;
     }
-    result.times.push_back(expected + offset.weight_of(found - expected) * (found - expected));
+    double weight = offset.weight_of(found - expected);
+    // A seed is wrong that has the foot stand where it still moves.
+    if (weight == 0 && !offset.jittery && moves(found, expected)) weight = 1;
+    result.times.push_back(expected + weight * (found - expected));
   }
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (!used[i] && !is_seeded(*all, events[i], cycle)) result.times.push_back(events[i]);

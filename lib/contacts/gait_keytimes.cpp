@@ -19,6 +19,8 @@ using contacts::Stance;
 
 constexpr double kApart = 1e-5;      // seconds
 constexpr double kFrame = 1.0 / 60;  // seconds
+constexpr double kWhole = 0.75;      // of a stance
+constexpr double kJerk = 0.1;        // seconds
 
 class Finder {
  public:
@@ -66,6 +68,10 @@ class Finder {
     for (const Stance& stance : foot.stances) {
       if (!stance.open_start) times.push_back(stance.start);
     }
+    // A capture that sets in with a jerk has standing feet come to rest at once.
+    const bool jerk = !times.empty() && times.front() == foot.stances.front().start &&
+                      times.front() < kJerk && is_cut_short(foot, times.front());
+    if (jerk) times.erase(times.begin());
     return times;
   }
   std::vector<double> ends_of(const Foot& foot) const {
@@ -86,8 +92,13 @@ class Finder {
     pair.is_low = [this, &foot, strikes](double seed) {
       return feet_.stays_low(foot, seed, strikes);
     };
-    if (!strikes && !feet_.has_tip(foot)) {
-      pair.leaves_unseen = [this, &foot](double seed) { return feet_.stays_level(foot, seed); };
+    pair.moves = [this, &foot](double from, double to) { return feet_.moves(foot, from, to); };
+    if (!strikes) {
+      pair.toes_unseen = !feet_.has_tip(foot);
+      pair.rolls_off = [this, &foot](double seed) -> std::optional<double> {
+        if (!feet_.rolls_off(foot, seed)) return std::nullopt;
+        return feet_.toes_back(foot, seed) + contacts::kOffAfterToes;
+      };
     }
     pair.events = strikes ? starts_of(foot) : ends_of(foot);
     pair.pair();
@@ -95,9 +106,13 @@ class Finder {
   }
 
   void take_events(bool strikes, Gait& gait) const {
-    const std::array<contacts::Pairing, 2> pairs = {pairing(0, strikes), pairing(1, strikes)};
-    std::vector<double> offsets;
-    for (const contacts::Pairing& pair : pairs) pair.add_offsets(offsets);
+    std::array<contacts::Pairing, 2> pairs = {pairing(0, strikes), pairing(1, strikes)};
+    std::vector<double> offsets, early;
+    for (const contacts::Pairing& pair : pairs) {
+      pair.add_offsets(offsets);
+      pair.add_early(early);
+    }
+    if (contacts::leave_early(early)) pairs[0].toes_unseen = pairs[1].toes_unseen = true;
     const contacts::Offset offset = contacts::offset_of(
         offsets, strikes ? contacts::kStrikeAfterFront : contacts::kOffAfterBack, feet_.jittery());
     for (std::size_t s = 0; s < 2; ++s) {
@@ -137,9 +152,21 @@ class Finder {
     }
     if (rolls.empty() || !(first_roll > 0)) return;
     const double strike = first_roll - contacts::middle(rolls);
+    if (is_cut_short(foot, strike)) return;
     if (strike > -kFrame && strike < first_roll) {
       strikes.insert(strikes.begin(), std::max(0.0, strike));
     }
+  }
+
+  // Whether the first stance is too short to have begun at that strike: the clip begins in the
+  // middle of it.
+  static bool is_cut_short(const Foot& foot, double strike) {
+    std::vector<double> lengths;
+    for (const Stance& stance : foot.stances) {
+      if (!stance.open_start && !stance.open_end) lengths.push_back(stance.end - stance.start);
+    }
+    if (lengths.empty() || foot.stances.front().open_end) return false;
+    return foot.stances.front().end - strike < kWhole * contacts::middle(lengths);
   }
 
   // A clip that is cut at a strike ends with a foot about to touch, a usual swing after its off;

@@ -42,18 +42,28 @@ struct Gait {
 
 // The steps of walking, running, stepping on the spot or jumping. A foot stands while any of its
 // points stays, and a little longer: from when it is slower than touch_speed before that, to when
-// it is faster after, for it rolls over its heel and its toes. Where nothing stays, it stands where
-// it is much slower than in the swing.
+// it is faster after, for it rolls over its heel and its toes. A heel that drifts meanwhile, for
+// the true one is elsewhere in the foot, strikes where what stops it lets go: where its slowing
+// falls to half of the most. Where nothing stays, a foot stands where it is much slower than in the
+// swing.
 //
 // Stances are held against the seeds, the moments at which the foot is furthest before and behind
 // the pelvis in the direction of travel (Zeni, Richards and Higginson, "Two simple methods for
 // determining gait events", Gait & Posture 27, 2008; where the figure travels under 0.3 m/s, in the
 // direction it faces). A break between a foot's front and its back seed is none. A strike or an off
 // that nothing shows, of a foot that is down, is put after its seed by what the others are; so is
-// one that is more than 0.15 s off that, and where the capture jitters all are drawn towards it.
-// Feet without a point for the toes, which leave last, leave at the back seed on level ground. A
-// clip that is cut at a strike has that strike at its end. Nothing is found while the pelvis is
-// low: sitting, lying, crawling.
+// one that is more than 0.15 s off that, unless the foot moves in between, and where the capture
+// jitters all are drawn towards it. Seeds that the contacts scatter about by more than 0.05 s tell
+// nothing.
+//
+// A foot that walks forward on level ground, heel first off, leaves with its toes, when they are
+// furthest behind the pelvis. That tells its offs where it has no point for the toes, or one that
+// leaves more than 25 ms earlier in most steps: the toes of many captures do not bend. In runs
+// (known by a pelvis that is lowest over the standing foot, or by a Froude number over 0.5), on
+// stairs and in steps to the back feet leave otherwise, and contacts alone tell when.
+//
+// A clip that is cut at a strike has that strike at its beginning or end. Nothing is found while
+// the pelvis is low: sitting, lying, crawling.
 //
 // Warnings: gait-none (no step), gait-seeds (strikes or offs that no contact showed), gait-in-place
 // (steps without contacts throughout: the figure walks on a moving ground).

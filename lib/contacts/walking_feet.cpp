@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "contacts/series_internal.h"
 #include "contacts/walking_feet_internal.h"
@@ -13,8 +14,19 @@ constexpr double kSeedCutoff = 6;      // Hz
 constexpr double kTravelCutoff = 0.6;  // Hz
 constexpr double kTravelSpeed = 0.3;   // metres a second
 constexpr double kGap = 0.1;           // seconds
-constexpr double kStair = 0.2;         // metres, a stride's rise
 constexpr double kJitter = 0.001;      // metres, frame to frame
+constexpr double kSlowing = 0.08;      // seconds
+constexpr double kSettling = 0.03;     // seconds
+constexpr double kRest = 0.15;         // metres a second
+constexpr double kJitterTimes = 2;
+constexpr double kSpeedCutoff = 15;  // Hz, of the tracks' speeds
+constexpr double kTogether = 0.06;   // seconds
+constexpr double kWindow = 0.12;     // seconds, to both sides of a break
+constexpr double kJitteryWindow = 0.18;
+constexpr double kHeelUp = 0.02;    // metres over its support
+constexpr double kForward = 0.7;    // cosine between travel and facing
+constexpr double kEnd = 0.12;       // seconds at a clip's ends
+constexpr double kEndMovement = 2;  // metres, times seconds squared: half of a slow landing's
 
 double level_norm(const Vec3& v) {
   return std::hypot(v.x(), v.z());
@@ -76,11 +88,13 @@ WalkingFeet::WalkingFeet(const Clip& clip, const RoleMap& roles, const FoundCont
     const SolePoint& point = found.tracks[t].point;
     raw_.push_back(track_of(clip, point, leg_));
     tracks_.push_back(smoothed(raw_.back(), clip.rate, kSeedCutoff));
-    jittery_ = jittery_ || jitter_of(raw_.back()) > kJitter * leg_ / kUsualLeg;
+    jitters_.push_back(jitter_of(raw_.back()));
+    jittery_ = jittery_ || jitters_.back() > kJitter * leg_ / kUsualLeg;
     feet_[static_cast<std::size_t>(point.side)].tracks.push_back(t);
   }
   take_directions();
   for (const FootSide side : {FootSide::left, FootSide::right}) prepare(side);
+  carriage_ = carriage();
 }
 
 void WalkingFeet::take_directions() {
@@ -89,12 +103,12 @@ void WalkingFeet::take_directions() {
   for (int f = 0; f < clip_.frame_count(); ++f) {
     const Vec3& v = slow[static_cast<std::size_t>(f)];
     const double speed = level_norm(v);
-    if (speed > kTravelSpeed * leg_ / kUsualLeg) {
-      directions_.emplace_back(v.x() / speed, 0, v.z() / speed);
-    } else {
-      const double heading = ground_place(clip_, carrier_, f).heading;
-      directions_.emplace_back(std::sin(heading), 0, std::cos(heading));
-    }
+    const double heading = ground_place(clip_, carrier_, f).heading;
+    const Vec3 facing(std::sin(heading), 0, std::cos(heading));
+    const bool travels = speed > kTravelSpeed * leg_ / kUsualLeg;
+    directions_.push_back(travels ? Vec3(v.x() / speed, 0, v.z() / speed) : facing);
+    speeds_.push_back(speed);
+    forward_.push_back(directions_.back().dot(facing) > kForward ? 1 : 0);
   }
 }
 
@@ -112,6 +126,7 @@ void WalkingFeet::prepare(FootSide side) {
   steps.join([&](double from, double to) { return is_step(foot, from, to); });
   foot.stances = std::move(steps.stances);
   add_sliding(foot);
+  open_ends(foot);
   for (std::size_t i = 0; i < foot.stances.size(); ++i) {
     const double before = i == 0 ? 0 : foot.stances[i - 1].end;
     const double after =
@@ -177,13 +192,36 @@ bool WalkingFeet::has_tip(const Foot& foot) const {
       foot.tracks, [&](std::size_t t) { return found_.tracks[t].point.part == FootPart::tip; });
 }
 
-bool WalkingFeet::stays_level(const Foot& foot, double seed) const {
-  const auto level = [&](double time) {
-    const double frame = std::clamp(time * clip_.rate, 0.0, clip_.frame_count() - 1.0);
-    return lowest_of(foot, static_cast<std::size_t>(frame));
+std::size_t WalkingFeet::frame_at(double time) const {
+  return static_cast<std::size_t>(
+      std::clamp<double>(std::lround(time * clip_.rate), 0, clip_.frame_count() - 1));
+}
+
+bool WalkingFeet::moves(const Foot& foot, double from, double to) const {
+  return std::ranges::all_of(foot.tracks, [&](std::size_t t) {
+    return (tracks_[t][frame_at(from)] - tracks_[t][frame_at(to)]).norm() >
+           options_.least_way * leg_ / kUsualLeg;
+  });
+}
+
+void WalkingFeet::open_ends(Foot& foot) const {
+  if (foot.stances.empty()) return;
+  const auto stays = [&](double from, double to) {
+    const double least = kEndMovement * (to - from) * (to - from) * leg_ / kUsualLeg;
+    return std::ranges::any_of(foot.tracks, [&](std::size_t t) {
+      const double moved = (raw_[t][frame_at(from)] - raw_[t][frame_at(to)]).norm();
+      return moved < least + 2 * jitters_[t];
+    });
   };
-  return std::abs(level(seed + 0.5 * foot.cycle) - level(seed - 0.3 * foot.cycle)) <
-         kStair * leg_ / kUsualLeg;
+  Stance &first = foot.stances.front(), &last = foot.stances.back();
+  if (!first.open_start && first.start < kEnd && stays(0, first.start)) {
+    first.start = 0;
+    first.open_start = true;
+  }
+  if (!last.open_end && last.end > clip_.duration() - kEnd && stays(last.end, clip_.duration())) {
+    last.end = clip_.duration();
+    last.open_end = true;
+  }
 }
 
 std::optional<Stance> WalkingFeet::sliding(const Foot& foot, double front, double back) const {
@@ -218,18 +256,29 @@ std::optional<Stance> WalkingFeet::sliding(const Foot& foot, double front, doubl
 
 void WalkingFeet::to_touches(const Foot& foot, double before, double after, Stance& stance) const {
   if (stance.slides) return;
-  double start = stance.start, end = stance.end;
+  std::vector<double> starts;
+  double end = stance.end;
   for (const std::size_t t : foot.tracks) {
+    std::optional<double> start;
     for (const Stay& stay : found_.stays) {
       if (static_cast<std::size_t>(stay.track) != t) continue;
       if (stay.start < stance.start - 1e-9 || stay.end > stance.end + 1e-9) continue;
-      if (!stance.open_start) start = std::min(start, touch(t, stay.start, before, true));
+      if (!stance.open_start) {
+        start = std::min(start.value_or(stay.start), touch(t, stay.start, before, true));
+      }
       const bool heel = foot.tracks.size() > 1 && t == foot.tracks.front();
       if (!stance.open_end && !heel) end = std::max(end, touch(t, stay.end, after, false));
     }
+    if (start) starts.push_back(*start);
   }
-  stance.start = start;
   stance.end = end;
+  if (starts.empty()) return;
+  stance.start = *std::ranges::min_element(starts);
+  if (!jittery_) return;
+  // The earliest of several that jitter scatters about one moment is too early.
+  std::erase_if(starts, [&](double start) { return start > stance.start + kTogether; });
+  stance.start =
+      std::accumulate(starts.begin(), starts.end(), 0.0) / static_cast<double>(starts.size());
 }
 
 double WalkingFeet::touch(std::size_t t, double from, double limit, bool first) const {
@@ -248,18 +297,55 @@ double WalkingFeet::touch(std::size_t t, double from, double limit, bool first) 
   };
   if (!touches(f)) return from;
   while (touches(f + step)) f += step;
-  const double window = std::max(0.12 * clip_.rate, 4.0);
+  const double seconds = jittery_ ? kJitteryWindow : kWindow;
+  const double window = std::max(seconds * clip_.rate, 4.0);
   const double stiffness = jittery_ ? 0.3 : 0.1;
-  const double found = break_near(raw_[t], f, window, first, stiffness) / clip_.rate;
-  return first ? std::min(found, from) : std::max(found, from);
+  const double found = break_near(raw_[t], f, window, first, stiffness);
+  if (!first) return std::max(found / clip_.rate, from);
+  // The ball and the tip go down evenly while the foot rolls over its heel; that ends no slowing.
+  const bool heel = found_.tracks[t].point.part == FootPart::heel;
+  const double slowed = heel ? end_of_slowing(t, f, last, found) : found;
+  return std::min(slowed / clip_.rate, from);
+}
+
+double WalkingFeet::end_of_slowing(std::size_t t, int frame, int earliest, double rest) const {
+  const std::vector<double>& speed = found_.tracks[t].speed;
+  const auto slowing = [&](int f) {
+    return speed[static_cast<std::size_t>(f)] - speed[static_cast<std::size_t>(f) + 1];
+  };
+  const int last = clip_.frame_count() - 2;
+  const int from = std::max({earliest, 0, frame - static_cast<int>(kSlowing * clip_.rate) - 1});
+  int most = std::min(from, last);
+  for (int f = most; f <= std::min(last, frame + 1); ++f) {
+    if (slowing(f) > slowing(most)) most = f;
+  }
+  const double half = 0.5 * slowing(most);
+  int f = most + 1;
+  while (f <= last && slowing(f) > half) ++f;
+  if (!(half > 0) || f > last) return rest;
+  // Slowing from a frame to the next is that of the moment half-way.
+  const double end = f - 0.5 + (slowing(f - 1) - half) / (slowing(f - 1) - slowing(f));
+  const auto speed_at = [&](double time) {
+    const double at = std::clamp<double>(time, 0, last);
+    const auto i = static_cast<std::size_t>(at);
+    return speed[i] + (at - std::floor(at)) * (speed[i + 1] - speed[i]);
+  };
+  const double jitter = kJitterTimes * speed_jitter(jitters_[t], kSpeedCutoff, clip_.rate);
+  const double settled = std::ceil(rest + std::max(1.0, kSettling * clip_.rate));
+  const bool rests = std::min(speed_at(settled), speed_at(settled + 1)) <
+                     std::hypot(kRest * leg_ / kUsualLeg, jitter);
+  // Speeds of few frames a second, which no filter has smoothed, do not tell that.
+  const bool coarse = clip_.rate < 2.5 * kSpeedCutoff;
+  const bool goes_on =
+      coarse || speed_at(end) - speed_at(rest) + jitter >= 0.5 * half * (rest - end);
+  // A heel that is still up comes down after the ball, as on the way down stairs.
+  const double height = found_.tracks[t].height[static_cast<std::size_t>(std::max(0.0, end))];
+  const bool is_up = height > kHeelUp * leg_ / kUsualLeg;
+  return is_up || (rests && goes_on) ? rest : end;
 }
 
 bool WalkingFeet::is_step(const Foot& foot, double from, double to) const {
-  const auto frame = [&](double time) {
-    return static_cast<std::size_t>(
-        std::clamp<double>(std::lround(time * clip_.rate), 0, clip_.frame_count() - 1));
-  };
-  const std::size_t first = frame(from), last = frame(to);
+  const std::size_t first = frame_at(from), last = frame_at(to);
   const double scale = leg_ / kUsualLeg;
   double lift = 1e9, way = 1e9;
   for (const std::size_t t : foot.tracks) {
@@ -274,9 +360,7 @@ bool WalkingFeet::is_step(const Foot& foot, double from, double to) const {
 }
 
 bool WalkingFeet::upright(double time) const {
-  const double frame = time * clip_.rate;
-  const auto f =
-      static_cast<std::size_t>(std::clamp<double>(std::lround(frame), 0, clip_.frame_count() - 1));
+  const std::size_t f = frame_at(time);
   double lowest = 1e9;
   for (const auto& track : tracks_) lowest = std::min(lowest, track[f].y());
   return pelvis_[f].y() - lowest > options_.least_height * leg_;

@@ -6,6 +6,7 @@
 
 #include "contacts/gait_figures.h"
 #include "contacts/gait_keytimes.h"
+#include "contacts/slide_speed.h"
 #include "core/numbers.h"
 #include "formats/keys/keys.h"
 #include "tools/common/keys_sidecar.h"
@@ -99,7 +100,8 @@ std::string as_table(const keys::Sidecar& sidecar, const Skeleton& skeleton) {
   return text;
 }
 
-Json as_json(const keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitFigures& gait) {
+Json as_json(const keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitFigures& gait,
+             double slide) {
   const auto hand = [](const std::vector<std::uint8_t>& marks, std::size_t i) {
     return i < marks.size() && marks[i] != 0;
   };
@@ -124,14 +126,19 @@ Json as_json(const keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitF
                   {"cycle", gait.cycle},
                   {"cadence", gait.cadence},
                   {"stance", {gait.stance[0], gait.stance[1]}},
-                  {"double_support", gait.double_support}};
+                  {"double_support", gait.double_support},
+                  {"slide_speed", slide}};
   return json;
 }
 
-std::string gait_text(const GaitFigures& gait) {
+std::string gait_text(const GaitFigures& gait, double slide) {
   if (gait.cycles == 0) return {};
-  return fmt::format("; {:.0f} steps a minute, feet down {:.0f} % and {:.0f} % of a cycle",
-                     gait.cadence, 100 * gait.stance[0], 100 * gait.stance[1]);
+  std::string text =
+      fmt::format("; {:.0f} steps a minute, feet down {:.0f} % and {:.0f} % of a cycle",
+                  gait.cadence, 100 * gait.stance[0], 100 * gait.stance[1]);
+  // In a run both feet fly at times, which is no sliding.
+  if (gait.double_support > 0) text += fmt::format(", sliding {:.1f} mm/s", 1e3 * slide);
+  return text;
 }
 
 Status write_results(const Options& options, const Clip& clip, const RoleMap& roles,
@@ -201,7 +208,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!written) return written.error();
 
   const GaitFigures gait = gait_figures(sidecar.keys.keytimes);
-  context.report.result = as_json(sidecar, clip->skeleton, gait);
+  const double slide = slide_speed(*clip, *roles);
+  context.report.result = as_json(sidecar, clip->skeleton, gait, slide);
   context.report.result["found"] = *finding;
   context.report.result["edited"] = sidecar.has_edits();
   if (context.output.empty() && options.plot.empty()) {
@@ -210,7 +218,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   context.say(fmt::format("{}: {}, {}{}", shown_input(options),
                           counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
                           counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
-                          gait_text(gait)));
+                          gait_text(gait, slide)));
   return options.find == Find::steps && sidecar.keys.keytimes.empty() ? kExitNo : kExitDone;
 }
 

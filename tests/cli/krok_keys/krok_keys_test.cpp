@@ -68,6 +68,7 @@ TEST_F(KrokKeys, ReportsAsJson) {
   EXPECT_FALSE(result["edited"].get<bool>());
   EXPECT_NEAR(result["gait"]["cadence"].get<double>(), 109.4, 1);
   EXPECT_NEAR(result["gait"]["stance"][0].get<double>(), 0.62, 0.02);
+  EXPECT_LT(result["gait"]["slide_speed"].get<double>(), 0.005);
 }
 
 TEST_F(KrokKeys, SetMovesMarksAndStays) {

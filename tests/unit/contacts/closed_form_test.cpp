@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "contacts/gait_figures.h"
+#include "contacts/slide_speed.h"
 #include "events.h"
 
 namespace krok {
@@ -233,6 +234,25 @@ TEST(RestPose, BeforeTheCaptureIsPassedOver) {
   const std::vector<Keytime> same = test::keytimes_of(clip);
   ASSERT_EQ(keys.size(), same.size());
   for (std::size_t i = 0; i < keys.size(); ++i) EXPECT_NEAR(keys[i].time, same[i].time, 0.02);
+}
+
+TEST(SlideSpeed, IsThatOfTheSlowerFootAlongTheGround) {
+  const auto slide = [](const Clip& clip) { return slide_speed(clip, find_roles(clip.skeleton)); };
+  EXPECT_NEAR(slide(cycloid_walk(60)), 0, 1e-4);
+  // One foot slides at 0.3 m/s, the other at 0.5; up and down is no sliding.
+  const Clip skating = Legs(60).move(
+      2, still, [](double t) { return Vec3(0.3 * t, 0.05 * std::sin(9 * t), 0); },
+      [](double t) { return Vec3(0, 0, 0.5 * t); });
+  EXPECT_NEAR(slide(skating), 0.3, 1e-4);
+  for (const int frames : {0, 1}) {
+    Clip clip = skating;
+    clip.resize(frames);
+    EXPECT_EQ(slide(clip), 0) << frames;
+  }
+  Clip stick;
+  stick.skeleton.add("a", Skeleton::kNoParent, {});
+  stick.resize(10);
+  EXPECT_EQ(slide(stick), 0);
 }
 
 TEST(Degenerate, ClipsOfFewFramesAndNoFeet) {

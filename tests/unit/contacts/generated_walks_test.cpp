@@ -26,7 +26,7 @@ WalkOptions walk(double length, double turn_degrees = 0, double rise = 0, bool s
   return options;
 }
 
-std::vector<Kind> kinds() {
+std::vector<Kind> travelling() {
   std::vector<Kind> list = {{"ordinary", walk(0.7)},
                             {"short", walk(0.4)},
                             {"slow", walk(0.5)},
@@ -46,10 +46,25 @@ std::vector<Kind> kinds() {
   return list;
 }
 
+// Steps on the spot, in place with turns, and of half a foot's length.
+std::vector<Kind> on_the_spot() {
+  return {{"spot", walk(0)},
+          {"spot from standing", walk(0, 0, 0, true)},
+          {"turning in place", walk(0, -30, 0, true)},
+          {"turning", walk(0.1, 40, 0, true)},
+          {"tiny", walk(0.15)}};
+}
+
+std::vector<Kind> kinds() {
+  std::vector<Kind> list = travelling();
+  for (const Kind& kind : on_the_spot()) list.push_back(kind);
+  return list;
+}
+
 WalkHits hits_at(double rate, const std::vector<std::string>& dropped = {}, double noise_angle = 0,
-                 double noise_position = 0) {
+                 double noise_position = 0, const std::vector<Kind>& list = kinds()) {
   WalkHits hits;
-  for (Kind kind : kinds()) {
+  for (Kind kind : list) {
     kind.options.rate = rate;
     kind.options.noise_angle = noise_angle * kRadiansPerDegree;
     kind.options.noise_position = noise_position;
@@ -66,8 +81,14 @@ TEST(GeneratedWalks, EventsAreWithinAFrame) {
   EXPECT_GE(hits.share(), 0.98);
   EXPECT_LE(hits.strikes.rms(), 0.006);
   EXPECT_LE(hits.offs.rms(), 0.016);
-  EXPECT_EQ(hits.strikes.extra + hits.offs.extra, 0);
-  EXPECT_GT(hits.strikes.known, 150);
+  EXPECT_LE(hits.strikes.extra + hits.offs.extra, 1);
+  EXPECT_GT(hits.strikes.known, 200);
+}
+
+TEST(GeneratedWalks, EventsOnTheSpotAreTooWithinAFrame) {
+  const WalkHits hits = hits_at(60, {}, 0, 0, on_the_spot());
+  EXPECT_GE(hits.strikes.share(), 0.94);
+  EXPECT_GE(hits.offs.share(), 0.98);
 }
 
 TEST(GeneratedWalks, AtOtherRates) {
@@ -83,16 +104,69 @@ TEST(GeneratedWalks, WithoutEndSitesOfTheToes) {
 
 // Nothing shows the toes, which leave last; the back seeds stand in for them.
 TEST(GeneratedWalks, WithAnklesAlone) {
-  const WalkHits hits = hits_at(60, {"ToeBase"});
+  const WalkHits hits = hits_at(60, {"ToeBase"}, 0, 0, travelling());
   EXPECT_GE(hits.strikes.share(), 0.98);
   EXPECT_GE(hits.offs.share(), 0.90);
 }
 
 TEST(GeneratedWalks, WithJitter) {
   const WalkHits little = hits_at(120, {}, 0.05, 0.0003);
-  EXPECT_GE(little.share(), 0.90);
-  const WalkHits more = hits_at(120, {}, 0.2, 0.001);
-  EXPECT_GE(more.share(), 0.75);
+  EXPECT_GE(little.share(), 0.96);
+  EXPECT_GE(hits_at(120, {}, 0.2, 0.001).share(), 0.85);
+  EXPECT_GE(hits_at(60, {}, 0.2, 0.001).share(), 0.80);
+}
+
+// Skeletons have the ankle at other places of the foot than people do, so that the heel is not
+// where it is put, and drifts while the foot rolls over the true one.
+TEST(GeneratedWalks, WithTheAnkleElsewhereInTheFoot) {
+  for (const Vec3f& moved : {Vec3f(0, 0, 0.03F), Vec3f(0, 0, -0.03F), Vec3f(0, 0.02F, 0)}) {
+    WalkHits hits;
+    for (const Kind& kind : travelling()) {
+      const auto made = samples::make_walk(kind.options);
+      ASSERT_TRUE(made.ok());
+      Clip clip = made->clip;
+      const auto scale = static_cast<float>(kind.options.stature / 1.75);
+      for (const char* name : {"LeftFoot", "RightFoot"}) {
+        const auto foot = static_cast<std::size_t>(clip.skeleton.find(name));
+        for (int f = 0; f < clip.frame_count(); ++f) {
+          clip.frame_positions(f)[foot] += clip.frame_orientations(f)[foot] * moved * scale;
+        }
+        clip.skeleton.reference[foot].position += (moved * scale).cast<double>();
+      }
+      match(*made, test::keytimes_of(clip), hits);
+    }
+    EXPECT_GE(hits.strikes.share(), 0.97) << moved.transpose();
+    EXPECT_GE(hits.offs.share(), 0.95) << moved.transpose();
+  }
+}
+
+// Many skeletons have no joint that bends the toes, or captures leave it as it is: the tip of such
+// a stiff foot goes down into the ground while the ball still stands, and leaves early.
+TEST(GeneratedWalks, WithStiffToes) {
+  WalkHits hits;
+  for (const Kind& kind : {Kind{"ordinary", walk(0.7)}, Kind{"fast", walk(0.9)},
+                           Kind{"slow", walk(0.5)}, Kind{"turn", walk(0.65, 15)}}) {
+    const auto made = samples::make_walk(kind.options);
+    ASSERT_TRUE(made.ok());
+    Clip clip = made->clip;
+    for (const std::string side : {"Left", "Right"}) {
+      const auto at = [&](const std::string& name) {
+        return static_cast<std::size_t>(clip.skeleton.find(side + name));
+      };
+      const std::size_t foot = at("Foot"), toes = at("ToeBase"), tip = at("ToeBase_end");
+      const Vec3f ahead =
+          (clip.skeleton.reference[tip].position - clip.skeleton.reference[toes].position)
+              .cast<float>();
+      for (int f = 0; f < clip.frame_count(); ++f) {
+        const Quatf turn = clip.frame_orientations(f)[foot];
+        clip.frame_orientations(f)[toes] = clip.frame_orientations(f)[tip] = turn;
+        clip.frame_positions(f)[tip] = clip.frame_positions(f)[toes] + turn * ahead;
+      }
+    }
+    match(*made, test::keytimes_of(clip), hits);
+  }
+  EXPECT_GE(hits.strikes.share(), 0.95);
+  EXPECT_GE(hits.offs.share(), 0.90);
 }
 
 TEST(GeneratedWalks, EventsOfAFootAlternate) {
