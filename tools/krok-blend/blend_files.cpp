@@ -35,35 +35,6 @@ struct Motion {
   blend::WeightCurve weight;
 };
 
-// Those beside the motion; where none are, found if that is wanted.
-Status take_keys(const Options& options, const std::string& path, const FindRoles& find_roles,
-                 Motion& motion, ToolContext& context) {
-  if (options.keys == KeysChoice::none) return {};
-  auto sidecar = read_keys_beside(path, motion.clip, context);
-  if (!sidecar) return sidecar.error();
-  if (*sidecar) {
-    motion.keys = std::move((*sidecar)->keys);
-    motion.has_keys = true;
-    return {};
-  }
-  if (options.keys == KeysChoice::sidecar) {
-    return Error("keys-missing",
-                 fmt::format("{} stands not beside it", base_name(keys_sidecar_path(path))),
-                 "krok-keys makes it; --keys auto finds keytimes on the spot")
-        .in_file(path);
-  }
-  const auto roles = find_roles(motion.clip.skeleton);
-  if (!roles) return roles.error();
-  auto found = krok::find_keys(motion.clip, *roles, context);
-  if (!found) {
-    context.warn("keys-none", fmt::format("{}: {}", motion.name, found.error().message));
-    return {};
-  }
-  motion.keys = std::move(*found);
-  motion.has_keys = true;
-  return {};
-}
-
 Result<std::vector<Motion>> read_motions(const Options& options, const FindRoles& find_roles,
                                          ToolContext& context) {
   std::vector<Motion> motions;
@@ -82,9 +53,11 @@ Result<std::vector<Motion>> read_motions(const Options& options, const FindRoles
       if (!curve) return curve.error();
       motion.weight = std::move(*curve);
     }
-    if (Status found = take_keys(options, input->path, find_roles, motion, context); !found) {
-      return found.error();
-    }
+    auto found =
+        choose_keys(options.keys, input->path, motion.name, motion.clip, find_roles, context);
+    if (!found) return found.error();
+    motion.has_keys = found->has_value();
+    if (motion.has_keys) motion.keys = std::move(**found);
     motions.push_back(std::move(motion));
   }
   return motions;
@@ -141,25 +114,9 @@ std::string warp_table(const std::vector<Motion>& motions, const Blended& blende
   return text;
 }
 
-// Where the keytimes of the result go: beside it, unless a person wrote there.
-Result<std::string> keys_place(const Blended& blended, ToolContext& context) {
-  if (blended.keys.empty() || context.output == "-") return std::string();
-  const std::string path = keys_sidecar_path(context.output);
-  std::error_code unknown;
-  if (!std::filesystem::exists(path, unknown)) return path;
-  const auto file = InputFile::open(path);
-  if (!file) return file.error();
-  const auto before = keys::read_sidecar(file->text(), path, blended.clip.skeleton, HUGE_VAL);
-  if (before && !before->has_edits()) return path;
-  return Error("keys-edited", "holds what a person wrote, or no keytimes of such a motion",
-               "the keytimes of the result would go there: move it away, or name the result "
-               "otherwise")
-      .in_file(path);
-}
-
 Status write_results(const Options& options, const std::vector<Motion>& motions, Blended& blended,
                      ToolContext& context) {
-  const auto keys_path = keys_place(blended, context);
+  const auto keys_path = place_for_keys(blended.keys, blended.clip.skeleton, context.output);
   if (!keys_path) return keys_path.error();
   blended.clip.provenance = context.provenance();
   for (const Motion& motion : motions) {
@@ -233,15 +190,7 @@ void declare(CLI::App& app, Options& options) {
                  "a number, or @FILE.csv with the columns generic and weight")
       ->type_name("IN:WEIGHT")
       ->required();
-  add_choice<KeysChoice>(app, "--keys", options.keys,
-                         {{"auto", KeysChoice::automatic},
-                          {"sidecar", KeysChoice::sidecar},
-                          {"none", KeysChoice::none}},
-                         "Keytimes: auto (the file NAME.keys.json beside a motion, otherwise "
-                         "found as krok-keys does), sidecar (that file alone), none (beginnings "
-                         "and ends)",
-                         "WHICH", "auto")
-      ->group("Time");
+  add_keys_option(app, options.keys)->group("Time");
   add_choice<WarpChoice>(
       app, "--warp", options.warp,
       {{"pchip", WarpChoice::pchip}, {"linear", WarpChoice::linear}, {"dtw", WarpChoice::dtw}},

@@ -7,11 +7,11 @@
 #include "blend/blend_clips.h"
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
+#include "tools/common/keys_choice.h"
 #include "tools/common/tool.h"
 
 namespace krok::blend_tool {
 
-enum class KeysChoice : unsigned char { automatic, sidecar, none };
 enum class WarpChoice : unsigned char { pchip, linear, dtw };
 
 struct Options {

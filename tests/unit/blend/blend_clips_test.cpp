@@ -69,23 +69,6 @@ TEST(Blend, KeytimesAreWeightedSums) {
   EXPECT_FALSE(result.keys.contacts.empty());
 }
 
-// How fast the slower of both toe joints goes along the ground, in the mean: one of them always
-// stands in a walk. Metres a second.
-double slide(const Clip& clip) {
-  double sum = 0;
-  for (int f = 1; f < clip.frame_count(); ++f) {
-    double slower = HUGE_VAL;
-    for (const char* name : {"LeftToeBase", "RightToeBase"}) {
-      const auto toe = static_cast<std::size_t>(clip.skeleton.find(name));
-      Vec3f way = clip.frame_positions(f)[toe] - clip.frame_positions(f - 1)[toe];
-      way.y() = 0;
-      slower = std::min<double>(slower, way.norm() * clip.rate);
-    }
-    sum += slower;
-  }
-  return sum / (clip.frame_count() - 1);
-}
-
 TEST(Blend, FeetSlideLessWithTheWarpAndLeastWhenPinned) {
   const KeyedWalk slow = keyed_walk(slow_walk()), quick = keyed_walk(quick_walk());
   const std::vector<BlendInput> inputs = {input_of(slow, WeightCurve::constant(0.5)),

@@ -111,4 +111,24 @@ inline double farthest(const Clip& a, const Clip& b) {
   return most;
 }
 
+// How fast the slower of both toe joints goes along the ground, in the mean over some frames: one
+// of them always stands in a walk. Metres a second.
+inline double slide(const Clip& clip, int first, int last) {
+  double sum = 0;
+  for (int f = first + 1; f <= last; ++f) {
+    double slower = HUGE_VAL;
+    for (const char* name : {"LeftToeBase", "RightToeBase"}) {
+      const auto toe = static_cast<std::size_t>(clip.skeleton.find(name));
+      Vec3f way = clip.frame_positions(f)[toe] - clip.frame_positions(f - 1)[toe];
+      way.y() = 0;
+      slower = std::min<double>(slower, way.norm() * clip.rate);
+    }
+    sum += slower;
+  }
+  return sum / (last - first);
+}
+inline double slide(const Clip& clip) {
+  return slide(clip, 0, clip.frame_count() - 1);
+}
+
 }  // namespace krok::blend

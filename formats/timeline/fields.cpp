@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/role_map/nearest_name.h"
+#include "formats/timeline/fields_internal.h"
+#include "math/types.h"
+
+namespace krok::timeline_file {
+
+namespace {
+
+using json::Value;
+using Kind = Value::Kind;
+
+constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kMostEntries = 10'000;
+constexpr double kMost = 1e9;  // of any number
+
+}  // namespace
+
+std::string nearest_hint(std::string_view word, const std::vector<std::string>& known) {
+  const std::string nearest = role_map::nearest_name(word, known);
+  if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
+  return fmt::format("known are {}", fmt::join(known, ", "));
+}
+
+Status Fields::only(const Value& object, std::string_view what,
+                    std::initializer_list<std::string_view> keys) const {
+  if (object.kind != Kind::object) return in_.only(object, what, keys);
+  for (const Value::Member& entry : object.members) {
+    if (std::ranges::find(keys, entry.key) != keys.end()) continue;
+    return json::error_at(text_, entry.key_offset, "timeline-structure",
+                          fmt::format("{} has no '{}'", what, shown(entry.key)),
+                          nearest_hint(entry.key, {keys.begin(), keys.end()}));
+  }
+  return {};
+}
+
+Error Fields::wrong(const Field& field, const std::string& expected,
+                    const std::string& hint) const {
+  std::string found(json::kind_name(field.value->kind));
+  if (field.value->kind == Kind::number) found = readable(field.value->number);
+  if (field.value->kind == Kind::string) found = fmt::format("'{}'", shown(field.value->text));
+  return in_.wrong(
+      *field.value,
+      fmt::format("\"{}\" of {} is {}, expected {}", field.key, field.what, found, expected), hint);
+}
+
+template <typename T, typename Parse, typename Make>
+Result<T> Fields::quantity(const Field& field, const Parse& parse, const Make& make) const {
+  if (field.value->kind == Kind::number) {
+    if (std::isfinite(field.value->number) && std::abs(field.value->number) <= kMost) {
+      return make(field.value->number);
+    }
+    return wrong(field, "a number of a sensible size");
+  }
+  if (field.value->kind != Kind::string) return wrong(field, "a number, or a text with a unit");
+  const auto parsed = parse(field.value->text);
+  if (!parsed) {
+    return wrong(
+        field, "a number with a unit",
+        parsed.error().message + (parsed.error().hint.empty() ? "" : "; " + parsed.error().hint));
+  }
+  return *parsed;
+}
+
+Result<ClipTime> Fields::time(const Field& field) const {
+  auto found = quantity<ClipTime>(field, parse_clip_time, [](double seconds) {
+    return ClipTime{seconds, false};
+  });
+  if (found && !(std::abs(found->value) <= kMost)) return wrong(field, "a time of a sensible size");
+  return found;
+}
+
+Result<double> Fields::length(const Field& field) const {
+  auto found = quantity<double>(field, parse_length, [](double metres) { return metres; });
+  if (found && !(std::abs(*found) <= 1e6)) return wrong(field, "at most 1000 km");
+  return found;
+}
+
+Result<double> Fields::angle(const Field& field) const {
+  auto found = quantity<double>(field, parse_angle,
+                                [](double degrees) { return degrees * kRadiansPerDegree; });
+  if (found && !(std::abs(*found) <= 1e6)) return wrong(field, "an angle of a sensible size");
+  return found;
+}
+
+Result<double> Fields::number(const Field& field) const {
+  if (field.value->kind != Kind::number || !(std::abs(field.value->number) <= kMost)) {
+    return wrong(field, "a number");
+  }
+  return field.value->number;
+}
+
+Result<int> Fields::whole(const Field& field, int low, int high) const {
+  const double value = field.value->number;
+  if (field.value->kind != Kind::number || value != std::floor(value) || value < low ||
+      value > high) {
+    return wrong(field, fmt::format("a whole number from {} to {}", low, high));
+  }
+  return static_cast<int>(value);
+}
+
+Result<bool> Fields::truth(const Field& field) const {
+  if (field.value->kind != Kind::boolean) return wrong(field, "true or false");
+  return field.value->truth;
+}
+
+Result<double> Fields::duration(const Field& field, double rate) const {
+  const auto found = time(field);
+  if (!found) return found.error();
+  if (found->in_frames && rate == 0) {
+    return wrong(field, "seconds", "frames are those of the result: give the file a \"rate\"");
+  }
+  if (!(found->value >= 0)) return wrong(field, "0 s or more");
+  return found->seconds(rate);
+}
+
+Result<const Value*> Fields::entries(const Value& object, std::string_view what,
+                                     std::string_view key) const {
+  auto list = in_.find(object, what, key, Kind::array);
+  if (list && *list != nullptr && (*list)->items.size() > kMostEntries) {
+    return in_.wrong(**list, fmt::format("\"{}\" has {} entries, more than {}", key,
+                                         (*list)->items.size(), kMostEntries));
+  }
+  return list;
+}
+
+Result<std::string> Fields::name(const Field& field) const {
+  const std::string& text = field.value->text;
+  const bool plain = std::ranges::none_of(
+      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+  if (field.value->kind != Kind::string || text.empty() || !plain || text.size() > kLongestName) {
+    return wrong(field, fmt::format("a name of 1 to {} bytes", kLongestName));
+  }
+  return text;
+}
+
+Result<std::size_t> Fields::word_index(const Field& field,
+                                       const std::vector<std::string>& words) const {
+  if (field.value->kind == Kind::string) {
+    const auto found = std::ranges::find(words, field.value->text);
+    if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+    return wrong(field, "one of its words", nearest_hint(field.value->text, words));
+  }
+  return wrong(field, "one of its words", fmt::format("known are {}", fmt::join(words, ", ")));
+}
+
+}  // namespace krok::timeline_file

@@ -1,0 +1,113 @@
+#include "timeline/in_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "blend/time_map.h"
+
+namespace krok::timeline {
+
+namespace {
+
+constexpr double kLongestStep = 10;  // seconds between keytimes that belong together
+constexpr int kParts = 256;          // of a crossfade
+constexpr std::size_t kMostKeys = 4000;
+
+struct Pairs {
+  std::vector<double> previous, next;  // play times of moments in common
+  std::size_t begin = 0;               // the crossfade begins after this one
+};
+
+// The moments in common around the keytimes `p` of the one and `n` of the other.
+Pairs pairs_around(const std::vector<PlayedKey>& previous, std::size_t p,
+                   const std::vector<PlayedKey>& next, std::size_t n) {
+  Pairs pairs;
+  const auto same = [&](std::size_t a, std::size_t b) {
+    return previous[a].key->name == next[b].key->name;
+  };
+  std::size_t back = 0;
+  while (back < 2 && back < p && back < n && same(p - back - 1, n - back - 1)) ++back;
+  pairs.begin = back;
+  for (std::size_t k = 0; p - back + k < previous.size() && n - back + k < next.size() &&
+                          same(p - back + k, n - back + k);
+       ++k) {
+    pairs.previous.push_back(previous[p - back + k].play_time);
+    pairs.next.push_back(next[n - back + k].play_time);
+  }
+  return pairs;
+}
+
+double generic_at(const blend::TimeMap& map, double low, double time) {
+  double high = low + 1;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (map.at(middle) < time ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+InStep integrate(const Pairs& pairs, double previous_play, double duration, const Easing& easing) {
+  const blend::TimeMap a(pairs.previous, blend::Warp::pchip), b(pairs.next, blend::Warp::pchip);
+  double generic = generic_at(a, static_cast<double>(pairs.begin), previous_play);
+  InStep result;
+  result.skipped = b.at(generic);
+  result.previous.push_back(previous_play);
+  result.next.push_back(result.skipped);
+  const double step = duration / kParts;
+  // Generic time a second; a monotone cubic may come to rest at a keytime.
+  const auto speed = [&](double at, double part) {
+    const double weight = std::clamp(easing.at(part / kParts), 0.0, 1.0);
+    return 1 / std::max((1 - weight) * a.slope(at) + weight * b.slope(at), 1e-3);
+  };
+  for (int i = 0; i < kParts; ++i) {
+    if (generic < a.last()) {
+      const double half = generic + 0.5 * step * speed(generic, i);
+      const double moved = std::min(generic + step * speed(half, i + 0.5), a.last());
+      const double went = moved - generic;
+      generic = moved;
+      if (went > 0 && generic < a.last()) {
+        result.previous.push_back(a.at(generic));
+        result.next.push_back(b.at(generic));
+        continue;
+      }
+    }
+    result.previous.push_back(result.previous.back() + step);
+    result.next.push_back(result.next.back() + step);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<InStep> play_in_step(const StepSide& previous, const StepSide& next,
+                                   double previous_play, double duration, const Easing& easing) {
+  if (previous.keys == nullptr || next.keys == nullptr) return std::nullopt;
+  const auto before = played_keys(previous.range, *previous.keys, previous_play - kLongestStep,
+                                  previous_play + 4 * duration + kLongestStep, kMostKeys);
+  const double most = std::min(next.range.duration(), 60.0);
+  const auto after =
+      played_keys(next.range, *next.keys, -kLongestStep, most + 4 * duration, kMostKeys);
+  if (before.size() < 2 || after.size() < 2 || before.size() > kMostKeys ||
+      after.size() > kMostKeys) {
+    return std::nullopt;
+  }
+  // The last keytime with another behind it: a motion that ends with a step is in it.
+  std::size_t p = 0;
+  while (p + 2 < before.size() && before[p + 1].play_time <= previous_play) ++p;
+  if (before[p].play_time > previous_play || before[p + 1].play_time < previous_play) {
+    return std::nullopt;
+  }
+  for (std::size_t n = 0; n + 1 < after.size(); ++n) {
+    if (before[p].key->name != after[n].key->name ||
+        before[p + 1].key->name != after[n + 1].key->name) {
+      continue;
+    }
+    const InStep found =
+        integrate(pairs_around(before, p, after, n), previous_play, duration, easing);
+    if (found.skipped < -1e-9) continue;
+    return found;
+  }
+  return std::nullopt;
+}
+
+}  // namespace krok::timeline

@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/parallel.h"
+#include "core/text.h"
+#include "math/quaternion.h"
+#include "timeline/result_keys_internal.h"
+
+namespace krok::timeline {
+
+namespace {
+
+constexpr std::size_t kMostFrames = 4000;  // of a motion that are looked at for what is usual
+constexpr double kUsual = 0.99;
+
+struct Angle {
+  double angle = 0;
+  int joint = 0;
+};
+
+Angle largest_angle(std::span<const Transform> a, std::span<const Transform> b) {
+  Angle largest;
+  for (std::size_t j = 0; j < a.size(); ++j) {
+    const double angle = angle_between(a[j].orientation, b[j].orientation);
+    if (angle > largest.angle) largest = {angle, static_cast<int>(j)};
+  }
+  return largest;
+}
+
+// How fast a motion's fastest joint turns in its parent in all but one of a hundred frames.
+double usual_speed(const Clip& clip, int jobs) {
+  const int frames = clip.frame_count();
+  if (frames < 2) return 0;
+  const auto steps = static_cast<std::size_t>(frames - 1);
+  const std::size_t stride = (steps + kMostFrames - 1) / kMostFrames;
+  std::vector<double> speeds((steps + stride - 1) / stride);
+  parallel_for(speeds.size(), 64, jobs, [&](std::size_t begin, std::size_t end) {
+    const std::size_t joints = clip.skeleton.names.size();
+    std::vector<Transform> world(joints), before(joints), after(joints);
+    for (std::size_t i = begin; i < end; ++i) {
+      const int frame = static_cast<int>(i * stride);
+      clip.get_pose(frame, world);
+      world_to_local(clip.skeleton.parents, world, before);
+      clip.get_pose(frame + 1, world);
+      world_to_local(clip.skeleton.parents, world, after);
+      // The root's turn is the way the figure goes; it counts as well.
+      speeds[i] = largest_angle(before, after).angle * clip.rate;
+    }
+  });
+  const auto place = static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(speeds.size() - 1));
+  std::nth_element(speeds.begin(), speeds.begin() + place, speeds.end());
+  return speeds[static_cast<std::size_t>(place)];
+}
+
+class ChangeFinder {
+ public:
+  ChangeFinder(const Parts& parts, Diagnostics& warnings) : parts_(parts), warnings_(warnings) {}
+
+  std::vector<ChangeFacts> find() {
+    std::vector<ChangeFacts> changes;
+    for (std::size_t i = 0; i < parts_.base.items().size(); ++i) {
+      check_seams(i);
+      if (i > 0) changes.push_back(change(i));
+    }
+    return changes;
+  }
+
+ private:
+  // At the speed at which an item plays it.
+  double usual(std::size_t item) {
+    const PlayedRange& range = parts_.base.items()[item].range;
+    const auto [found, is_new] = usual_.try_emplace(range.source, 0.0);
+    if (is_new) {
+      found->second =
+          usual_speed(*parts_.sources[static_cast<std::size_t>(range.source)].clip, parts_.jobs);
+    }
+    return found->second * std::abs(range.speed);
+  }
+
+  std::vector<Transform> local_at(double time) const {
+    std::vector<Transform> world(parts_.clip.skeleton.names.size()), local(world.size());
+    parts_.base.pose(time, world);
+    world_to_local(parts_.clip.skeleton.parents, world, local);
+    return local;
+  }
+
+  ChangeFacts change(std::size_t i) {
+    const ScheduledItem& item = parts_.base.items()[i];
+    const ScheduledItem& before = parts_.base.items()[i - 1];
+    ChangeFacts facts;
+    facts.item = static_cast<int>(i);
+    facts.kind = parts_.timeline.base[i].change.kind;
+    facts.begin = item.begin;
+    facts.end = item.settled;
+    facts.in_step = item.in_step;
+    facts.on_feet = parts_.base.on_feet(i);
+    const FigurePose from = parts_.base.player(i - 1).figure(before.play_time(item.begin));
+    const FigurePose to = parts_.base.player(i).figure(item.play_time(item.start));
+    const Angle bridged = largest_angle(from.local, to.local);
+    facts.angle = bridged.angle;
+    facts.angle_joint = bridged.joint;
+    facts.usual = std::max(usual(i - 1), usual(i));
+    const double rate = parts_.clip.rate;
+    const int last = parts_.clip.frame_count() - 1;
+    const int begin = std::clamp(static_cast<int>(std::floor(item.begin * rate)) - 1, 0, last);
+    const int end = std::clamp(static_cast<int>(std::ceil(item.settled * rate)) + 1, 0, last);
+    std::vector<Transform> pose = local_at(begin / rate);
+    for (int f = begin + 1; f <= end; ++f) {
+      std::vector<Transform> next = local_at(f / rate);
+      const Angle turned = largest_angle(pose, next);
+      if (turned.angle * rate > facts.fastest) {
+        facts.fastest = turned.angle * rate;
+        facts.fastest_joint = turned.joint;
+        facts.fastest_frame = f;
+      }
+      pose = std::move(next);
+    }
+    return facts;
+  }
+
+  // A round that does not end as it begins.
+  void check_seams(std::size_t i) {
+    const ScheduledItem& item = parts_.base.items()[i];
+    if (item.range.at(item.play_time(item.end)).round == 0) return;
+    const ItemPlayer& player = parts_.base.player(i);
+    PlayedRange once = item.range;
+    once.rounds = 1;
+    const ItemPlayer round(player.source(), once, parts_.base.carrier(), 0);
+    const Angle jump = largest_angle(round.figure(0).local, round.figure(once.round).local);
+    const double usual_turn = usual(i) / parts_.clip.rate;
+    if (usual_turn == 0 || jump.angle <= usual_turn) return;
+    Diagnostic seam;
+    seam.severity = Severity::warning;
+    seam.code = "timeline-seam";
+    seam.joint = parts_.clip.skeleton.names[static_cast<std::size_t>(jump.joint)];
+    seam.message = fmt::format(
+        "{}: its rounds do not end as they begin: {} jumps by {:.1f} degrees",
+        shown(parts_.timeline.base[i].name), seam.joint, jump.angle / kRadiansPerDegree);
+    seam.hint = "krok-edit --loop makes a motion that repeats without a seam";
+    seam.where = parts_.timeline.base[i].where;
+    warnings_.push_back(std::move(seam));
+  }
+
+  const Parts& parts_;
+  Diagnostics& warnings_;
+  std::map<int, double> usual_;  // of sources
+};
+
+}  // namespace
+
+std::vector<ChangeFacts> result_changes(const Parts& parts, Diagnostics& warnings) {
+  return ChangeFinder(parts, warnings).find();
+}
+
+}  // namespace krok::timeline

@@ -1,0 +1,222 @@
+#include "timeline/schedule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "timeline/in_step.h"
+
+namespace krok::timeline {
+
+namespace {
+
+constexpr double kRounding = 1e-6;  // seconds
+constexpr double kLongest = 1e7;    // seconds; the number of frames is held to its limit by mix()
+
+class Scheduler {
+ public:
+  Scheduler(const Timeline& timeline, std::span<const Source> sources, double rate)
+      : timeline_(timeline), sources_(sources), rate_(rate) {}
+
+  Result<std::vector<ScheduledItem>> run() {
+    if (timeline_.base.empty()) return Error("timeline-empty", "there is nothing to play");
+    for (std::size_t i = 0; i < timeline_.base.size(); ++i) {
+      if (Status placed = add(i); !placed) return located(std::move(placed).error(), i);
+    }
+    ScheduledItem& last = items_.back();
+    const auto end = natural_end(items_.size() - 1, false);
+    if (!end) return located(end.error(), items_.size() - 1);
+    if (!std::isfinite(*end)) {
+      return located(
+          Error("timeline-endless", "nothing ends it", "give it \"until\", or a number of rounds"),
+          items_.size() - 1);
+    }
+    last.end = *end;
+    if (Status lasts = check_length(items_.size() - 1); !lasts) {
+      return located(lasts.error(), items_.size() - 1);
+    }
+    return std::move(items_);
+  }
+
+ private:
+  Error located(Error error, std::size_t i) const {
+    error.where = timeline_.base[i].where;
+    error.message = fmt::format("{}: {}", shown(timeline_.base[i].name), error.message);
+    return error;
+  }
+
+  // When an item ends if nothing follows. `followed`: the next one has a time of its own.
+  Result<double> natural_end(std::size_t i, bool followed) {
+    ScheduledItem& item = items_[i];
+    const BaseItem& told = timeline_.base[i];
+    if (item.range.loops_if_ended && (followed || told.play.until)) item.range.rounds = HUGE_VAL;
+    const double lasts = item.range.duration();
+    const double end = std::isfinite(lasts) ? item.time_of(lasts) : HUGE_VAL;
+    if (!told.play.until) return end;
+    const double until = told.play.until->seconds(rate_);
+    if (!std::isfinite(until) || until > kLongest || until < item.start - kRounding) {
+      return Error("timeline-time", fmt::format("it ends at {} s, before it begins at {} s",
+                                                readable(until), readable(item.start)));
+    }
+    if (until > end + kRounding) {
+      return Error(
+          "timeline-time",
+          fmt::format("it is over at {} s, before its end at {} s", readable(end), readable(until)),
+          "\"loop\": true repeats it until then");
+    }
+    return until;
+  }
+
+  Status check_change(const Change& change) const {
+    if (change.kind == ChangeKind::cut) return {};
+    if (change.duration > 0 && change.duration <= kLongest) return {};
+    return Error("timeline-time", "a change lasts more than 0 s");
+  }
+
+  Status check_length(std::size_t i) const {
+    const ScheduledItem& item = items_[i];
+    if (item.end < item.settled - kRounding) {
+      return Error("timeline-time",
+                   fmt::format("it ends at {} s, before the change into it is over at {} s",
+                               readable(item.end), readable(item.settled)),
+                   "shorten the change, or let it play longer");
+    }
+    if (item.range.round > 0 && (item.end - item.start) / item.range.round > kMostRounds) {
+      return Error("timeline-limit",
+                   fmt::format("it is played more than {} times", grouped(kMostRounds)));
+    }
+    return {};
+  }
+
+  Status add(std::size_t i) {
+    const BaseItem& told = timeline_.base[i];
+    auto range = resolve(told.play, sources_);
+    if (!range) return range.error();
+    ScheduledItem item;
+    item.range = *range;
+    if (i == 0) {
+      if (told.at && told.at->seconds(rate_) != 0) {
+        return Error("timeline-time", "the first item begins at 0");
+      }
+    } else {
+      if (Status sound = check_change(told.change); !sound) return sound;
+      if (Status joined = follow(i, item); !joined) return joined;
+    }
+    items_.push_back(std::move(item));
+    return {};
+  }
+
+  // Ends the item before and begins this one.
+  Status follow(std::size_t i, ScheduledItem& item) {
+    const BaseItem& told = timeline_.base[i];
+    const Change& change = told.change;
+    ScheduledItem& before = items_[i - 1];
+    const auto end = natural_end(i - 1, told.at.has_value());
+    if (!end) return end.error();
+    const bool fades = change.kind == ChangeKind::crossfade;
+    if (!told.at && !std::isfinite(*end)) {
+      return Error("timeline-endless",
+                   fmt::format("nothing ends {}, so that it never begins",
+                               shown(timeline_.base[i - 1].name)),
+                   "give it \"at\", or the one before \"until\" or a number of rounds");
+    }
+    item.begin = told.at ? told.at->seconds(rate_) : *end - (fades ? change.duration : 0);
+    if (!std::isfinite(item.begin) || item.begin > kLongest) {
+      return Error("timeline-time", "it begins at a time that is none");
+    }
+    if (item.begin < before.settled - kRounding) {
+      return Error(
+          "timeline-time",
+          fmt::format("it begins at {} s, before {} is reached at {} s", readable(item.begin),
+                      shown(timeline_.base[i - 1].name), readable(before.settled)),
+          "one change is over before the next begins");
+    }
+    item.begin = std::max(item.begin, before.settled);
+    const double needed = item.begin + (fades ? change.duration : 0);
+    if (needed > *end + kRounding) {
+      return Error("timeline-time",
+                   fmt::format("{} is over at {} s, but is needed until {} s",
+                               shown(timeline_.base[i - 1].name), readable(*end), readable(needed)),
+                   "let it play longer or loop, or begin the next one earlier");
+    }
+    item.settled = item.begin + (change.kind == ChangeKind::cut ? 0 : change.duration);
+    item.start = change.kind == ChangeKind::smooth ? item.settled : item.begin;
+    before.end = needed;
+    if (fades) {
+      if (Status stepped = keep_in_step(told, before, item); !stepped) return stepped;
+    }
+    return check_length(i - 1);
+  }
+
+  Status keep_in_step(const BaseItem& told, ScheduledItem& before, ScheduledItem& item) const {
+    const Change& change = told.change;
+    if (change.sync == Sync::clock) return {};
+    const auto keys = [&](const ScheduledItem& of) {
+      return sources_[static_cast<std::size_t>(of.range.source)].keys;
+    };
+    const double begins_at = before.play_time(item.begin);
+    auto both = play_in_step({before.range, keys(before)}, {item.range, keys(item)}, begins_at,
+                             change.duration, change.easing);
+    if (!both || !(both->next.back() < item.range.duration())) {
+      if (change.sync == Sync::automatic) return {};
+      return Error("timeline-sync",
+                   both ? "in step it would be over before the change into it is"
+                        : "it has no keytimes of the same names, in the same order, as the "
+                          "motion before it has where the change begins",
+                   "krok-keys shows keytimes and sets them; \"sync\": \"clock\" goes without");
+    }
+    item.in_step = true;
+    item.skipped = both->skipped;
+    before.out = {item.begin, item.settled, std::move(both->previous)};
+    item.in = {item.begin, item.settled, std::move(both->next)};
+    return {};
+  }
+
+  const Timeline& timeline_;
+  std::span<const Source> sources_;
+  double rate_;
+  std::vector<ScheduledItem> items_;
+};
+
+}  // namespace
+
+double TimeWarp::at(double time) const {
+  const double last = static_cast<double>(play_times.size() - 1);
+  const double place = std::clamp((time - begin) / (end - begin) * last, 0.0, last);
+  const auto i = std::min(static_cast<std::size_t>(place), play_times.size() - 2);
+  return play_times[i] + (place - static_cast<double>(i)) * (play_times[i + 1] - play_times[i]);
+}
+
+double ScheduledItem::play_time(double time) const {
+  if (in.holds(time)) return in.at(time);
+  if (out.holds(time)) return out.at(time);
+  if (in.play_times.empty()) return skipped + (time - start);
+  return in.play_times.back() + (time - in.end);
+}
+
+double ScheduledItem::time_of(double play) const {
+  const auto inverse = [play](const TimeWarp& warp) {
+    const auto after = std::ranges::upper_bound(warp.play_times, play);
+    const auto i = std::clamp<std::ptrdiff_t>(after - warp.play_times.begin() - 1, 0,
+                                              std::ssize(warp.play_times) - 2);
+    const auto k = static_cast<std::size_t>(i);
+    const double low = warp.play_times[k], high = warp.play_times[k + 1];
+    const double part = static_cast<double>(i) + (high > low ? (play - low) / (high - low) : 0);
+    return warp.begin +
+           part * (warp.end - warp.begin) / static_cast<double>(warp.play_times.size() - 1);
+  };
+  if (!in.play_times.empty() && play <= in.play_times.back()) return inverse(in);
+  if (!out.play_times.empty() && play >= out.play_times.front()) return inverse(out);
+  if (in.play_times.empty()) return start + (play - skipped);
+  return in.end + (play - in.play_times.back());
+}
+
+Result<std::vector<ScheduledItem>> schedule(const Timeline& timeline,
+                                            std::span<const Source> sources, double rate) {
+  return Scheduler(timeline, sources, rate).run();
+}
+
+}  // namespace krok::timeline

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <list>
+#include <vector>
+
+#include "formats/timeline/timeline_file.h"
+#include "tools/krok-mix/mix_files.h"
+
+namespace krok::mix_tool {
+
+// What a timeline's motions are, read; the sources point into it.
+struct TimelineSources {
+  struct Motion {
+    Clip clip;
+    MotionKeys keys;
+  };
+  std::list<Motion> motions;
+  std::vector<timeline::Source> sources;
+};
+
+// Reads the motions, relative to the folder of the timeline at `path`, their named parts and, of
+// those that the base plays, their keys.
+Result<TimelineSources> read_sources(const timeline_file::Document& document,
+                                     const std::string& path, const Options& options,
+                                     const FindRoles& find_roles, ToolContext& context);
+
+}  // namespace krok::mix_tool
