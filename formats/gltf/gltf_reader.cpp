@@ -78,14 +78,29 @@ class Builder {
   Scene scene_;
 };
 
+// A lens over time that is not as Krok writes it is another program's and means something else.
+void take_lens(const CameraEntry& entry, Camera& camera) {
+  const bool good = std::isfinite(entry.lens_rate) && entry.lens_rate > 0 &&
+                    std::ranges::all_of(entry.lens, [](float angle) {
+                      return angle > 0 && angle < static_cast<float>(kPi);
+                    });
+  if (!good || entry.lens.empty()) return;
+  camera.lens_rate = entry.lens_rate;
+  camera.lens = entry.lens;
+}
+
 Status Builder::read_cameras() {
   for (std::size_t i = 0; i < parsed_.cameras.size(); ++i) {
     const CameraEntry& entry = parsed_.cameras[i];
-    scene_.cameras.push_back({entry.name, entry.perspective, 0.0});
+    Camera& camera = scene_.cameras.emplace_back();
+    camera.name = entry.name;
+    camera.perspective = entry.perspective;
     if (!entry.perspective) continue;
-    Camera& camera = scene_.cameras.back();
     camera.field_of_view = entry.field_of_view;
-    if (entry.field_of_view > 0 && entry.field_of_view < kPi) continue;
+    if (entry.field_of_view > 0 && entry.field_of_view < kPi) {
+      take_lens(entry, camera);
+      continue;
+    }
     camera.field_of_view = kUsualFieldOfView;
     warn(scene_, "gltf-camera",
          fmt::format("{} has no field of view between 0 and 180 degrees; 45 degrees are taken",

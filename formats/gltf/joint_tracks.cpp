@@ -140,7 +140,12 @@ class TrackBuilder {
     const auto make = [&](std::size_t block, std::size_t slot) {
       return do_block(block, true, rooms[slot]);
     };
-    const auto take = [](std::size_t, std::size_t) { return Status(); };
+    const auto take = [&](std::size_t block, std::size_t) {
+      if (source_.release) {
+        source_.release(static_cast<int>(std::min((block + 1) * kFramesAtOnce, frames_)));
+      }
+      return Status();
+    };
     if (Status done = make_in_order(blocks_, jobs_, make, take); !done) return done;
     for (const Room& room : rooms) {
       for (std::size_t j = 0; j < room.seen.size(); ++j) seen[j] |= room.seen[j];

@@ -45,8 +45,8 @@ struct JointTracks {
 Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip, double tolerance = 1e-6);
 
 // The same of frames that are made when they are asked for, on `jobs` threads (as in parallel_for);
-// the result does not depend on them. The source's frames may be asked for more than once and
-// release() is not called.
+// the result does not depend on them. The source's frames may be asked for more than once, from
+// the first on each time, and release() is called each time.
 Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source, int jobs,
                                  double tolerance = 1e-6);
 

@@ -163,6 +163,19 @@ std::vector<std::vector<std::string>> read_target_names(const Json& json) {
   return all;
 }
 
+// A lens that changes over time, where the file has one; numbers alone are looked at.
+void read_lens(const Json& entry, CameraEntry& camera) {
+  const Json::json_pointer place("/extras/fieldsOfView");
+  if (!entry.contains(place) || !entry.at(place).is_object()) return;
+  const Json& lens = entry.at(place);
+  if (!lens.contains("rate") || !lens.at("rate").is_number()) return;
+  if (!lens.contains("values") || !lens.at("values").is_array()) return;
+  camera.lens_rate = lens.at("rate").get<double>();
+  for (const Json& value : lens.at("values")) {
+    camera.lens.push_back(value.is_number() ? static_cast<float>(value.get<double>()) : 0.0f);
+  }
+}
+
 // Read here and not by tinygltf, which refuses a whole file for a camera without its clipping
 // planes.
 std::vector<CameraEntry> read_cameras(const Json& json) {
@@ -177,6 +190,7 @@ std::vector<CameraEntry> read_cameras(const Json& json) {
     const Json& lens = entry.at("perspective");
     if (!lens.is_object() || !lens.contains("yfov") || !lens.at("yfov").is_number()) continue;
     camera.field_of_view = lens.at("yfov").get<double>();
+    read_lens(entry, camera);
   }
   return cameras;
 }

@@ -23,6 +23,9 @@ struct CameraEntry {
   std::string name;
   bool perspective = true;
   double field_of_view = 0;  // vertical, radians; 0 where the file gives none that is a number
+  // From extras.fieldsOfView, which formats/gltf/add_camera.h writes; not checked.
+  double lens_rate = 0;
+  std::vector<float> lens;
 };
 
 struct ParsedJson {

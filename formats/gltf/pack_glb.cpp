@@ -1,11 +1,8 @@
 #include "formats/gltf/pack_glb.h"
 
-#include <fmt/format.h>
-
-#include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/bytes.h"
+#include "formats/gltf/assemble_glb_internal.h"
 #include "formats/gltf/buffers_internal.h"
 
 namespace krok::gltf {
@@ -14,7 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kAlignment = 4;
 constexpr const char* kGreyPixel =
     "data:image/png;base64,"
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mNoAAAAggCB2kUIOwAAAABJRU5ErkJggg==";
@@ -47,29 +43,9 @@ class Packer {
   }
 
   Result<PackedGlb> finish() {
-    if (bin_.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
-      return Error("gltf-too-large",
-                   fmt::format("{} bytes are too many for a GLB in a page", bin_.size()));
-    }
-    if (!bin_.empty()) json_["buffers"] = Json::array({{{"byteLength", bin_.size()}}});
-    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
-    while (text.size() % kAlignment != 0) text += ' ';
-    constexpr std::uint32_t kHeader = 12, kChunk = 8;
-    const std::size_t size =
-        kHeader + kChunk + text.size() + (bin_.empty() ? 0 : kChunk + bin_.size());
-    ByteWriter out;
-    out.append_text("glTF");
-    out.write(std::uint32_t{2});
-    out.write(static_cast<std::uint32_t>(size));
-    out.write(static_cast<std::uint32_t>(text.size()));
-    out.append_text("JSON");
-    out.append_text(text);
-    if (!bin_.empty()) {
-      out.write(static_cast<std::uint32_t>(bin_.size()));
-      out.append_text(std::string_view("BIN\0", 4));
-      out.buffer().insert(out.buffer().end(), bin_.begin(), bin_.end());
-    }
-    packed_.bytes = std::move(out.buffer());
+    auto bytes = assemble_glb(json_, bin_);
+    if (!bytes) return bytes.error();
+    packed_.bytes = *std::move(bytes);
     return std::move(packed_);
   }
 
@@ -79,12 +55,7 @@ class Packer {
     return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : 0;
   }
 
-  std::size_t put(std::span<const std::byte> bytes) {
-    const std::size_t begin = bin_.size();
-    bin_.insert(bin_.end(), bytes.begin(), bytes.end());
-    bin_.resize((bin_.size() + kAlignment - 1) / kAlignment * kAlignment);
-    return begin;
-  }
+  std::size_t put(std::span<const std::byte> bytes) { return append_aligned(bytes, bin_); }
 
   void put_image(const std::string& uri, Json& image) {
     const auto file = open_beside(uri, "image", options_.folder, options_.most_bytes);

@@ -63,6 +63,19 @@ void tell_of_scale(const std::vector<Stretch>& worst_of_frames, const Rig& rig,
   diagnostics.push_back(std::move(told));
 }
 
+// The field of view of a perspective camera at a moment of an animation.
+double lens_at(const nodes::Camera& lens, double time) {
+  if (lens.lens.empty()) return lens.field_of_view;
+  const auto last = static_cast<double>(lens.lens.size() - 1);
+  double place = std::clamp(time * lens.lens_rate, 0.0, last);
+  // Key times are floats: a frame's own value is its own.
+  if (std::abs(place - std::round(place)) < 1e-4) place = std::round(place);
+  const auto before = static_cast<std::size_t>(place);
+  const double after = static_cast<double>(lens.lens[std::min(before + 1, lens.lens.size() - 1)]);
+  const double share = place - static_cast<double>(before);
+  return (1 - share) * static_cast<double>(lens.lens[before]) + share * after;
+}
+
 }  // namespace
 
 Result<Skeleton> skeleton_in_krok(const Rig& rig, const Conversion& conversion) {
@@ -183,7 +196,9 @@ Result<CameraTrack> make_camera(const Scene& scene, const nodes::Evaluator& eval
     if (!position.position.cast<float>().allFinite()) return overflow();
     track.positions.push_back(position.position.cast<float>());
     track.orientations.push_back((turn * placed.orientation).cast<float>().normalized());
-    track.fields_of_view.push_back(static_cast<float>(field_of_view));
+    const bool changes = lens.perspective && animation >= 0;
+    track.fields_of_view.push_back(
+        static_cast<float>(changes ? lens_at(lens, sampling.time(frame)) : field_of_view));
   }
   return track;
 }

@@ -83,6 +83,10 @@ struct Camera {
   std::string name;            // may be empty
   bool perspective = true;     // otherwise orthographic, without a field of view
   double field_of_view = 0.0;  // vertical, radians, in (0, pi) for a perspective camera
+  // Of a perspective camera whose field of view changes over time: what it is at the times
+  // i / lens_rate of any animation, linear between them, before and after that the first and last.
+  double lens_rate = 0.0;     // > 0 where there is any
+  std::vector<float> lens{};  // in (0, pi)
 };
 
 // What a file says of the space its nodes are in. Where it says nothing, whoever imports it must

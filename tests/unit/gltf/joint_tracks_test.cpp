@@ -221,6 +221,20 @@ TEST(JointTracks, SuccessiveRotationsOfLongMotionsLieInOneHemisphere) {
   }
 }
 
+TEST(JointTracks, TheSourceIsToldWhatWasRead) {
+  const Clip clip = long_clip();
+  for (const int jobs : {1, 3}) {
+    FrameSource source = frames_of(clip);
+    int released = 0;
+    source.release = [&](int frame) {
+      EXPECT_TRUE(frame > released || released == clip.frame_count()) << "but for another pass";
+      released = frame;
+    };
+    ASSERT_TRUE(joint_tracks(clip.skeleton, source, jobs).ok());
+    EXPECT_EQ(released, clip.frame_count());
+  }
+}
+
 TEST(JointTracks, PassOnWhatTheSourceSays) {
   const Clip clip = long_clip();
   FrameSource source = frames_of(clip);

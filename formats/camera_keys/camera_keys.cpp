@@ -1,0 +1,301 @@
+#include "formats/camera_keys/camera_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/numbers.h"
+#include "core/quantity.h"
+#include "core/text.h"
+#include "formats/json/members.h"
+
+namespace krok::camera_keys {
+
+namespace {
+
+using json::Value;
+using Kind = Value::Kind;
+
+constexpr std::string_view kSchema = "krok.camera-keys/1";
+constexpr std::size_t kMostKeys = 100'000;
+constexpr double kFurthest = 1e6;       // metres
+constexpr double kLatest = 1e6;         // seconds
+constexpr double kSensorHeight = 24.0;  // millimetres
+constexpr double kNearest = 1e-6;       // metres between a camera and what it looks at
+
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : text_(text), in_(text, "camera-keys") {}
+
+  Result<CameraKeyFile> read() {
+    const auto root = json::parse(text_);
+    if (!root) return root.error();
+    if (Status known = in_.only(*root, kWhole,
+                                {"schema", "comment", "length_unit", "angle_unit", "rate",
+                                 "between", "tension", "closed", "keys"});
+        !known) {
+      return known.error();
+    }
+    if (Status schema = in_.has_schema(*root, kWhole, kSchema); !schema) return schema.error();
+    for (const auto part :
+         {&Reader::read_units, &Reader::read_defaults, &Reader::read_keys, &Reader::check_closed}) {
+      if (Status done = (this->*part)(*root); !done) return done.error();
+    }
+    return std::move(file_);
+  }
+
+ private:
+  static constexpr std::string_view kWhole = "the file";
+
+  Status read_units(const Value& root) {
+    const auto length = in_.find(root, kWhole, "length_unit", Kind::string);
+    if (!length) return length.error();
+    if (*length != nullptr) {
+      const std::string& name = (*length)->text;
+      const bool letters =
+          !name.empty() && std::ranges::all_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
+      const auto unit = parse_length("1" + name);
+      if (!letters || !unit) {
+        return in_.wrong(**length, fmt::format("'{}' is no unit of length", shown(name)),
+                         "known are m, cm, mm, in and ft");
+      }
+      metres_ = *unit;
+    }
+    const auto angle = in_.find(root, kWhole, "angle_unit", Kind::string);
+    if (!angle) return angle.error();
+    if (*angle == nullptr) return {};
+    const std::string& name = (*angle)->text;
+    if (name != "deg" && name != "rad") {
+      return in_.wrong(**angle, fmt::format("'{}' is no unit of angle", shown(name)),
+                       "known are deg and rad");
+    }
+    if (name == "rad") radians_ = 1;
+    return {};
+  }
+
+  Status read_defaults(const Value& root) {
+    if (root.find("rate") != nullptr) {
+      const auto rate = number(root, kWhole, "rate", 1e-3, 1e6);
+      if (!rate) return rate.error();
+      file_.rate = *rate;
+      has_rate_ = true;
+    }
+    const auto closed = in_.find(root, kWhole, "closed", Kind::boolean);
+    if (!closed) return closed.error();
+    file_.camera.closed = *closed != nullptr && (*closed)->truth;
+    return read_join(root, kWhole, usual_);
+  }
+
+  // "between" and "tension", where they stand.
+  Status read_join(const Value& object, std::string_view what, CameraKey& key) const {
+    const auto between = in_.find(object, what, "between", Kind::string);
+    if (!between) return between.error();
+    if (*between != nullptr) {
+      const std::string& word = (*between)->text;
+      if (word == "smooth") {
+        key.between = Between::smooth;
+      } else if (word == "linear") {
+        key.between = Between::linear;
+      } else if (word == "ease") {
+        key.between = Between::ease;
+      } else if (word == "step") {
+        key.between = Between::step;
+      } else {
+        return in_.wrong(**between, fmt::format("\"between\" of {} is '{}'", what, shown(word)),
+                         "known are smooth, linear, ease and step");
+      }
+    }
+    if (object.find("tension") == nullptr) return {};
+    const auto tension = number(object, what, "tension", 0, 1);
+    if (!tension) return tension.error();
+    key.tension = *tension;
+    return {};
+  }
+
+  Result<double> number(const Value& object, std::string_view what, std::string_view key,
+                        double least, double most) const {
+    const auto value = in_.get(object, what, key, Kind::number);
+    if (!value) return value.error();
+    const double found = (*value)->number;
+    if (found >= least && found <= most) return found;
+    return in_.wrong(**value, fmt::format("\"{}\" of {} is {}, expected {} to {}", key, what,
+                                          readable(found), readable(least), readable(most)));
+  }
+
+  // `count` finite numbers.
+  Result<std::vector<double>> numbers(const Value& list, std::string_view what,
+                                      std::string_view key, std::size_t count) const {
+    std::vector<double> found;
+    for (const Value& item : list.items) {
+      if (item.kind == Kind::number && std::isfinite(item.number)) found.push_back(item.number);
+    }
+    if (found.size() == count && list.items.size() == count) return found;
+    return in_.wrong(list, fmt::format("\"{}\" of {} is not {} numbers", key, what, count));
+  }
+
+  Result<Vec3> place(const Value& list, std::string_view what, std::string_view key) const {
+    const auto values = numbers(list, what, key, 3);
+    if (!values) return values.error();
+    const Vec3 place = metres_ * Vec3((*values)[0], (*values)[1], (*values)[2]);
+    if (place.cwiseAbs().maxCoeff() <= kFurthest) return place;
+    return in_.wrong(list, fmt::format("\"{}\" of {} is farther away than 1000 km", key, what));
+  }
+
+  // Seconds, or as text "250ms" or "120f".
+  Result<double> time(const Value& object, std::string_view what) const {
+    const Value* value = object.find("time");
+    if (value == nullptr || value->kind != Kind::string) {
+      return number(object, what, "time", 0, kLatest);
+    }
+    const auto parsed = parse_clip_time(value->text);
+    if (!parsed) {
+      return in_.wrong(*value, fmt::format("\"time\" of {}: {}", what, parsed.error().message),
+                       "write 1.5, \"1.5s\", \"250ms\" or \"120f\"");
+    }
+    if (parsed->in_frames && !has_rate_) {
+      return in_.wrong(
+          *value, fmt::format("\"time\" of {} is in frames, but the file has no \"rate\"", what));
+    }
+    const double seconds = parsed->seconds(file_.rate);
+    if (seconds >= 0 && seconds <= kLatest) return seconds;
+    return in_.wrong(*value, fmt::format("\"time\" of {} is {} s, expected 0 to {}", what,
+                                         readable(seconds), readable(kLatest)));
+  }
+
+  Status read_direction(const Value& item, std::string_view what, CameraKey& key) const {
+    const auto target = in_.find(item, what, "target", Kind::array);
+    if (!target) return target.error();
+    const auto orientation = in_.find(item, what, "orientation", Kind::array);
+    if (!orientation) return orientation.error();
+    if ((*target == nullptr) == (*orientation == nullptr)) {
+      return structure(item, fmt::format("{} needs one of \"target\" and \"orientation\"", what));
+    }
+    if (*target != nullptr) {
+      const auto at = place(**target, what, "target");
+      if (!at) return at.error();
+      if ((*at - key.position).norm() < kNearest) {
+        return in_.wrong(**target, fmt::format("\"target\" of {} is where the camera is", what),
+                         "then there is no direction to look in");
+      }
+      key.target = *at;
+      return {};
+    }
+    const auto values = numbers(**orientation, what, "orientation", 4);
+    if (!values) return values.error();
+    const Quat turn((*values)[3], (*values)[0], (*values)[1], (*values)[2]);
+    // People round to a few digits.
+    if (!(std::abs(turn.norm() - 1) < 0.01)) {
+      return in_.wrong(**orientation,
+                       fmt::format("\"orientation\" of {} has the length {}, expected 1", what,
+                                   readable(turn.norm())),
+                       "it is a unit quaternion: x, y, z, w");
+    }
+    key.orientation = turn.normalized();
+    return {};
+  }
+
+  Status read_lens(const Value& item, std::string_view what, CameraKey& key) const {
+    const bool by_angle = item.find("field_of_view") != nullptr;
+    const bool by_length = item.find("focal_length") != nullptr;
+    if (by_angle && by_length) {
+      return structure(item,
+                       fmt::format("{} has both \"field_of_view\" and \"focal_length\"", what));
+    }
+    if (by_angle) {
+      const double straight = kPi / radians_;
+      const auto view = number(item, what, "field_of_view", straight * 1e-4, straight * 0.9999);
+      if (!view) return view.error();
+      key.field_of_view = *view * radians_;
+    } else if (by_length) {
+      const auto length = number(item, what, "focal_length", 0.1, 1e5);
+      if (!length) return length.error();
+      key.field_of_view = 2 * std::atan(kSensorHeight / 2 / *length);
+    }
+    return {};
+  }
+
+  Result<CameraKey> read_key(const Value& item, std::size_t index) const {
+    const std::string what = fmt::format("key {}", index);
+    if (Status known = in_.only(item, what,
+                                {"time", "position", "target", "orientation", "roll",
+                                 "field_of_view", "focal_length", "between", "tension", "comment"});
+        !known) {
+      return known.error();
+    }
+    CameraKey key = usual_;
+    const auto when = time(item, what);
+    if (!when) return when.error();
+    key.time = *when;
+    const auto position = in_.get(item, what, "position", Kind::array);
+    if (!position) return position.error();
+    const auto at = place(**position, what, "position");
+    if (!at) return at.error();
+    key.position = *at;
+    if (Status done = read_direction(item, what, key); !done) return done.error();
+    if (item.find("roll") != nullptr) {
+      const auto roll = number(item, what, "roll", -1e4, 1e4);
+      if (!roll) return roll.error();
+      key.roll = *roll * radians_;
+    }
+    if (Status done = read_lens(item, what, key); !done) return done.error();
+    if (Status done = read_join(item, what, key); !done) return done.error();
+    return key;
+  }
+
+  Status read_keys(const Value& root) {
+    const auto list = in_.get(root, kWhole, "keys", Kind::array);
+    if (!list) return list.error();
+    const std::size_t count = (*list)->items.size();
+    if (count == 0 || count > kMostKeys) {
+      return in_.wrong(**list, fmt::format("{} keys, expected 1 to {}", count, kMostKeys));
+    }
+    std::vector<CameraKey>& keys = file_.camera.keys;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Value& item = (*list)->items[i];
+      auto key = read_key(item, i);
+      if (!key) return key.error();
+      if (i > 0 && !(key->time > keys.back().time)) {
+        return json::error_at(text_, item.find("time")->offset, "camera-keys-time",
+                              fmt::format("key {} is at {} s, not after the key before at {} s", i,
+                                          readable(key->time, 9), readable(keys.back().time, 9)));
+      }
+      keys.push_back(*key);
+    }
+    return {};
+  }
+
+  Status check_closed(const Value& root) {
+    if (!file_.camera.closed) return {};
+    const std::vector<CameraKey>& keys = file_.camera.keys;
+    const Value& list = *root.find("keys");
+    for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+      if (keys[i].between == Between::smooth) continue;
+      return in_.wrong(list.items[i], fmt::format("key {} of a closed movement is not smooth", i));
+    }
+    if (keys.size() > 2 && (keys.back().position - keys.front().position).norm() < 1e-3) return {};
+    return in_.wrong(list.items.back(),
+                     "the movement is closed, but its last key is not where the first is",
+                     "the last key is the first again, one round later");
+  }
+
+  Error structure(const Value& value, std::string message) const {
+    return json::error_at(text_, value.offset, "camera-keys-structure", std::move(message));
+  }
+
+  std::string_view text_;
+  json::Members in_;
+  CameraKeyFile file_;
+  CameraKey usual_;
+  bool has_rate_ = false;
+  double metres_ = 1, radians_ = kRadiansPerDegree;
+};
+
+}  // namespace
+
+Result<CameraKeyFile> read(std::string_view text) {
+  return Reader(text).read();
+}
+
+}  // namespace krok::camera_keys

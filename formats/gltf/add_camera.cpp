@@ -1,0 +1,265 @@
+#include "formats/gltf/add_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/gltf/assemble_glb_internal.h"
+#include "formats/gltf/glb_container.h"
+#include "formats/gltf/joint_tracks.h"
+#include "formats/gltf/pack_glb.h"
+#include "math/quaternion.h"
+
+namespace krok::gltf {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kFloat = 5126;  // glTF's number for the type of components
+
+Json& list_in(Json& object, const char* name) {
+  Json& list = object[name];
+  if (!list.is_array()) list = Json::array();
+  return list;
+}
+
+std::string text_in(const Json& object, const char* name) {
+  if (!object.is_object() || !object.contains(name) || !object[name].is_string()) return {};
+  return object[name].get<std::string>();
+}
+
+std::string free_name(const Json& nodes, const std::string& wanted) {
+  std::set<std::string> taken;
+  for (const Json& node : nodes) taken.insert(text_in(node, "name"));
+  std::string name = wanted;
+  for (int i = 2; taken.contains(name); ++i) name = fmt::format("{}_{}", wanted, i);
+  return name;
+}
+
+template <typename Vector>
+Json numbers(const Vector& vector) {
+  Json list = Json::array();
+  for (const float value : vector) list.push_back(static_cast<double>(value));
+  return list;
+}
+
+Diagnostic warning(std::string code, std::string message, std::string hint) {
+  Diagnostic told;
+  told.severity = Severity::warning;
+  told.code = std::move(code);
+  told.message = std::move(message);
+  told.hint = std::move(hint);
+  return told;
+}
+
+Json provenance_json(const Provenance& provenance) {
+  Json json = {{"tool", provenance.tool}, {"version", provenance.version}};
+  for (const auto& source : provenance.sources) {
+    json["sources"].push_back({{"name", source.name}, {"xxh3", source.xxh3}});
+  }
+  for (const auto& [name, value] : provenance.options) json["options"][name] = value;
+  if (!provenance.conversions.empty()) json["conversions"] = provenance.conversions;
+  if (!provenance.warnings.empty()) json["warnings"] = provenance.warnings;
+  return json;
+}
+
+Status check_all(const CameraTrack& track, const CameraOptions& options) {
+  if (Status sound = check(track); !sound) return sound;
+  if (track.frame_count() == 0) return Error("camera-shape", "the camera has no frames");
+  const bool good_aspect =
+      !options.aspect || (*options.aspect > 0 && std::isfinite(*options.aspect));
+  if (!good_aspect || !(options.near_plane > 0) || !std::isfinite(options.near_plane)) {
+    return Error("gltf-value", "the near plane or the picture's width by height is not positive");
+  }
+  return {};
+}
+
+// Puts a camera into the JSON and the buffer of a file.
+class CameraPutter {
+ public:
+  CameraPutter(const CameraTrack& track, const CameraOptions& options, Json& json,
+               std::vector<std::byte>& data)
+      : track_(track), options_(options), json_(json), data_(data) {}
+
+  Status put(Diagnostics& diagnostics) {
+    // A list added later would move those that are referred to.
+    for (const char* name : {"cameras", "nodes", "scenes"}) list_in(json_, name);
+    if (!json_.contains("scene")) json_["scene"] = 0;
+    if (track_.frame_count() > 1) {
+      for (const char* name : {"animations", "bufferViews", "accessors"}) list_in(json_, name);
+    }
+    const int camera = put_lens(diagnostics);
+    const int node = put_node(camera);
+    return track_.frame_count() > 1 ? put_motion(node, diagnostics) : Status();
+  }
+
+ private:
+  int put_lens(Diagnostics& diagnostics) {
+    Json lens = {{"yfov", static_cast<double>(track_.fields_of_view[0])},
+                 {"znear", options_.near_plane}};
+    if (options_.aspect) lens["aspectRatio"] = *options_.aspect;
+    Json camera = {{"type", "perspective"}, {"name", options_.name}, {"perspective", lens}};
+    if (!track_.provenance.tool.empty()) {
+      camera["extras"]["provenance"] = provenance_json(track_.provenance);
+    }
+    const auto [least, most] = std::ranges::minmax(track_.fields_of_view);
+    if (least != most) {
+      camera["extras"]["fieldsOfView"] = {{"rate", track_.rate},
+                                          {"values", numbers(track_.fields_of_view)}};
+      diagnostics.push_back(warning(
+          "gltf-lens",
+          fmt::format("the field of view goes from {} to {} degrees, which glTF cannot animate: "
+                      "viewers show the first frame's",
+                      readable(static_cast<double>(least) / kRadiansPerDegree, 4),
+                      readable(static_cast<double>(most) / kRadiansPerDegree, 4)),
+          "Krok's tools find all of it in the camera's extras"));
+    }
+    Json& cameras = list_in(json_, "cameras");
+    cameras.push_back(std::move(camera));
+    return static_cast<int>(cameras.size()) - 1;
+  }
+
+  int put_node(int camera) {
+    Json& nodes = list_in(json_, "nodes");
+    const std::size_t index = nodes.size();
+    Json node = {{"name", free_name(nodes, options_.name)}, {"camera", camera}};
+    node["translation"] = numbers(track_.positions[0]);
+    node["rotation"] = numbers(track_.orientations[0].coeffs());
+    Json& scenes = list_in(json_, "scenes");
+    if (scenes.empty()) scenes.push_back({{"nodes", roots_of(nodes)}});
+    const std::size_t shown =
+        json_["scene"].is_number_unsigned() ? json_["scene"].get<std::size_t>() : 0;
+    nodes.push_back(std::move(node));
+    list_in(scenes.at(shown), "nodes").push_back(index);
+    return static_cast<int>(index);
+  }
+
+  static Json roots_of(const Json& nodes) {
+    std::set<std::size_t> children;
+    for (const Json& node : nodes) {
+      if (!node.contains("children")) continue;
+      for (const Json& child : node["children"]) {
+        if (child.is_number_unsigned()) children.insert(child.get<std::size_t>());
+      }
+    }
+    Json roots = Json::array();
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (!children.contains(i)) roots.push_back(i);
+    }
+    return roots;
+  }
+
+  // Returns the accessor.
+  std::size_t put_floats(std::span<const float> values, const char* type, std::size_t count) {
+    const std::size_t begin = append_aligned(std::as_bytes(values), data_);
+    Json& views = list_in(json_, "bufferViews");
+    views.push_back({{"buffer", 0}, {"byteOffset", begin}, {"byteLength", values.size_bytes()}});
+    Json& accessors = list_in(json_, "accessors");
+    accessors.push_back({{"bufferView", views.size() - 1},
+                         {"componentType", kFloat},
+                         {"count", count},
+                         {"type", type}});
+    return accessors.size() - 1;
+  }
+
+  Status put_motion(int node, Diagnostics& diagnostics) {
+    const auto times = key_times(track_.frame_count(), track_.rate);
+    if (!times) return times.error();
+    Json& animations = list_in(json_, "animations");
+    if (animations.empty()) {
+      animations.push_back(
+          {{"name", options_.name}, {"channels", Json::array()}, {"samplers", Json::array()}});
+    }
+    const int chosen = options_.animation.value_or(0);
+    const auto wanted = static_cast<std::size_t>(chosen);
+    if (chosen < 0 || wanted >= animations.size()) {
+      return Error("gltf-animation", fmt::format("the file has no animation {}; it has {}", chosen,
+                                                 animations.size()));
+    }
+    if (!options_.animation && animations.size() > 1) {
+      diagnostics.push_back(
+          warning("gltf-animations",
+                  fmt::format("of {} animations the camera moves in the first, {}",
+                              animations.size(), shown(text_in(animations[0], "name"))),
+                  "--clip takes another by its number"));
+    }
+    // Successive rotations lie in one hemisphere, so that viewers take the shorter way.
+    std::vector<Quatf> rotations = track_.orientations;
+    for (std::size_t i = 1; i < rotations.size(); ++i) {
+      if (rotations[i].dot(rotations[i - 1]) < 0) rotations[i].coeffs() *= -1;
+    }
+    const std::size_t input = put_floats(*times, "SCALAR", times->size());
+    list_in(json_, "accessors")[input]["min"] = numbers(std::span(*times).first(1));
+    list_in(json_, "accessors")[input]["max"] = numbers(std::span(*times).last(1));
+    const std::size_t count = rotations.size();
+    const std::size_t places =
+        put_floats({track_.positions.data()->data(), 3 * count}, "VEC3", count);
+    const std::size_t turns =
+        put_floats({rotations.data()->coeffs().data(), 4 * count}, "VEC4", count);
+    Json& animation = animations[wanted];
+    put_channel(animation, node, "translation", input, places);
+    put_channel(animation, node, "rotation", input, turns);
+    return {};
+  }
+
+  static void put_channel(Json& animation, int node, const char* path, std::size_t input,
+                          std::size_t output) {
+    const std::size_t sampler = list_in(animation, "samplers").size();
+    animation["samplers"].push_back(
+        {{"input", input}, {"interpolation", "LINEAR"}, {"output", output}});
+    list_in(animation, "channels")
+        .push_back({{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}});
+  }
+
+  const CameraTrack& track_;
+  const CameraOptions& options_;
+  Json& json_;
+  std::vector<std::byte>& data_;
+};
+
+Result<WithCamera> with_camera(const CameraTrack& track, const CameraOptions& options, Json json,
+                               std::vector<std::byte> data) {
+  WithCamera result;
+  CameraPutter putter(track, options, json, data);
+  if (Status done = putter.put(result.diagnostics); !done) return done.error();
+  auto bytes = assemble_glb(json, data);
+  if (!bytes) return bytes.error();
+  result.bytes = *std::move(bytes);
+  return result;
+}
+
+}  // namespace
+
+Result<WithCamera> add_camera(std::span<const std::byte> gltf, const CameraTrack& track,
+                              const CameraOptions& options, const ReadOptions& reading) {
+  if (Status sound = check_all(track, options); !sound) return sound.error();
+  auto packed = pack_glb(gltf, reading);
+  if (!packed) return packed.error();
+  const auto container = open_container(packed->bytes);
+  if (!container) return container.error();
+  auto result = with_camera(track, options, Json::parse(container->json, nullptr, false),
+                            {container->bin.begin(), container->bin.end()});
+  if (!result) return result;
+  result->files = std::move(packed->files);
+  result->diagnostics.insert(result->diagnostics.begin(), packed->diagnostics.begin(),
+                             packed->diagnostics.end());
+  return result;
+}
+
+Result<WithCamera> camera_alone(const CameraTrack& track, const CameraOptions& options) {
+  if (Status sound = check_all(track, options); !sound) return sound.error();
+  const std::string& version = track.provenance.version;
+  Json json;
+  json["asset"] = {{"version", "2.0"},
+                   {"generator", version.empty() ? "krok" : fmt::format("krok {}", version)}};
+  return with_camera(track, options, std::move(json), {});
+}
+
+}  // namespace krok::gltf

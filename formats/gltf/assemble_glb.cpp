@@ -1,0 +1,45 @@
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "core/bytes.h"
+#include "formats/gltf/assemble_glb_internal.h"
+
+namespace krok::gltf {
+
+using Json = nlohmann::ordered_json;
+
+std::size_t append_aligned(std::span<const std::byte> bytes, std::vector<std::byte>& buffer) {
+  const std::size_t begin = buffer.size();
+  buffer.insert(buffer.end(), bytes.begin(), bytes.end());
+  buffer.resize((buffer.size() + kAlignment - 1) / kAlignment * kAlignment);
+  return begin;
+}
+
+Result<std::vector<std::byte>> assemble_glb(Json& json, std::span<const std::byte> data) {
+  if (data.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
+    return Error("gltf-too-large",
+                 fmt::format("{} bytes are too many for a GLB in a page", data.size()));
+  }
+  if (!data.empty()) json["buffers"] = Json::array({{{"byteLength", data.size()}}});
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  while (text.size() % kAlignment != 0) text += ' ';
+  constexpr std::uint32_t kHeader = 12, kChunk = 8;
+  const std::size_t size =
+      kHeader + kChunk + text.size() + (data.empty() ? 0 : kChunk + data.size());
+  ByteWriter out;
+  out.append_text("glTF");
+  out.write(std::uint32_t{2});
+  out.write(static_cast<std::uint32_t>(size));
+  out.write(static_cast<std::uint32_t>(text.size()));
+  out.append_text("JSON");
+  out.append_text(text);
+  if (!data.empty()) {
+    out.write(static_cast<std::uint32_t>(data.size()));
+    out.append_text(std::string_view("BIN\0", 4));
+    out.buffer().insert(out.buffer().end(), data.begin(), data.end());
+  }
+  return std::move(out.buffer());
+}
+
+}  // namespace krok::gltf

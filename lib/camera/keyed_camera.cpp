@@ -1,0 +1,238 @@
+#include "camera/keyed_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "camera/keyed_curve_internal.h"
+#include "camera/look_at.h"
+#include "core/numbers.h"
+#include "math/quaternion.h"
+#include "math/squad.h"
+
+namespace krok {
+
+namespace {
+
+constexpr double kMostFrames = 1e7;
+
+struct Point {
+  using Value = Vec3;
+  using Velocity = Vec3;
+  static void velocities(std::span<const double> times, std::span<const Vec3> values, Ends ends,
+                         std::span<Vec3> out) {
+    tension_velocities(times, values, 0, ends, out);
+  }
+  static Vec3 smooth(const Vec3& p0, const Vec3& v0, const Vec3& p1, const Vec3& v1, double span,
+                     double t) {
+    return hermite(p0, v0, p1, v1, span, t);
+  }
+  static Vec3 straight(const Vec3& from, const Vec3& to, double t) {
+    return from + t * (to - from);
+  }
+};
+
+struct Number {
+  using Value = double;
+  using Velocity = double;
+  static void velocities(std::span<const double> times, std::span<const double> values, Ends ends,
+                         std::span<double> out) {
+    tension_velocities(times, values, 0, ends, out);
+  }
+  static double smooth(double p0, double v0, double p1, double v1, double span, double t) {
+    return hermite(p0, v0, p1, v1, span, t);
+  }
+  static double straight(double from, double to, double t) { return from + t * (to - from); }
+};
+
+struct MonotoneNumber : Number {
+  static void velocities(std::span<const double> times, std::span<const double> values, Ends ends,
+                         std::span<double> out) {
+    monotone_velocities(times, values, ends, out);
+  }
+};
+
+struct Rotation {
+  using Value = Quat;
+  using Velocity = Vec3;
+  static void velocities(std::span<const double> times, std::span<const Quat> values, Ends ends,
+                         std::span<Vec3> out) {
+    squad_velocities(times, values, 0, ends, out);
+  }
+  static Quat smooth(const Quat& q0, const Vec3& w0, const Quat& q1, const Vec3& w1, double span,
+                     double t) {
+    return squad(q0, w0, q1, w1, span, t);
+  }
+  static Quat straight(const Quat& from, const Quat& to, double t) { return slerp(from, to, t); }
+};
+
+Error wrong(std::size_t key, const std::string& what) {
+  return Error("camera-keys", fmt::format("key {}: {}", key, what));
+}
+
+Status check_direction(std::size_t index, const CameraKey& key) {
+  if (key.target.has_value() == key.orientation.has_value()) {
+    return wrong(index, "one of target and orientation must be given");
+  }
+  if (key.target) {
+    if (!key.target->allFinite()) return wrong(index, "the target is not finite");
+    if ((*key.target - key.position).norm() < 1e-6) {
+      return wrong(index, "the target is where the camera is, so it has no direction to look in");
+    }
+    return {};
+  }
+  const bool unit = std::abs(key.orientation->norm() - 1) < 1e-3;  // false for NaN
+  return unit ? Status() : wrong(index, "the orientation is not a unit quaternion");
+}
+
+Status check_key(std::size_t index, const CameraKey& key) {
+  if (!(key.time >= 0) || !std::isfinite(key.time)) {
+    return wrong(index, fmt::format("the time is {} s, expected 0 or more", readable(key.time)));
+  }
+  if (!key.position.allFinite() || !std::isfinite(key.roll)) {
+    return wrong(index, "position or roll is not finite");
+  }
+  if (!(key.tension >= 0 && key.tension <= 1)) {
+    return wrong(index, fmt::format("the tension is {}, expected 0 to 1", readable(key.tension)));
+  }
+  if (key.field_of_view && !(*key.field_of_view > 0 && *key.field_of_view < kPi)) {
+    return wrong(index, "the field of view is not between 0 and 180 degrees");
+  }
+  return check_direction(index, key);
+}
+
+Status check(const KeyedCamera& camera) {
+  if (camera.keys.empty()) return Error("camera-keys", "there are no keys");
+  for (std::size_t i = 0; i < camera.keys.size(); ++i) {
+    const CameraKey& key = camera.keys[i];
+    if (Status sound = check_key(i, key); !sound) return sound;
+    if (i > 0 && !(key.time > camera.keys[i - 1].time)) {
+      return wrong(i, fmt::format("its time, {} s, is not after that of the key before",
+                                  readable(key.time)));
+    }
+    if (camera.closed && i + 1 < camera.keys.size() && key.between != Between::smooth) {
+      return wrong(i, "a closed camera movement is smooth from key to key");
+    }
+  }
+  return {};
+}
+
+// The keys that take part in a property.
+template <typename Wanted>
+KeyTimes times_of(const KeyedCamera& camera, const Wanted& wanted) {
+  KeyTimes keys;
+  for (const CameraKey& key : camera.keys) {
+    if (!wanted(key)) continue;
+    keys.times.push_back(key.time);
+    keys.between.push_back(key.between);
+    keys.tensions.push_back(key.tension);
+  }
+  // Whether a property closes: its own first and last keys are those of the whole.
+  keys.closed = camera.closed && keys.times.size() > 1 &&
+                keys.times.front() == camera.keys.front().time &&
+                keys.times.back() == camera.keys.back().time;
+  return keys;
+}
+
+KeyTimes times_of(const KeyedCamera& camera) {
+  return times_of(camera, [](const CameraKey&) { return true; });
+}
+
+template <typename Value, typename Get>
+std::vector<Value> values_of(const KeyedCamera& camera, const Get& get) {
+  std::vector<Value> values;
+  for (const CameraKey& key : camera.keys) values.push_back(get(key));
+  return values;
+}
+
+std::vector<double> lens_over_time(const KeyedCamera& camera, std::span<const double> moments) {
+  KeyTimes keys =
+      times_of(camera, [](const CameraKey& key) { return key.field_of_view.has_value(); });
+  std::vector<double> lens(moments.size(), kUsualFieldOfView);
+  if (keys.times.empty()) return lens;
+  std::vector<double> values;
+  for (const CameraKey& key : camera.keys) {
+    if (key.field_of_view) values.push_back(*key.field_of_view);
+  }
+  const KeyedCurve<MonotoneNumber> curve(std::move(keys), std::move(values));
+  std::ranges::transform(moments, lens.begin(), [&](double time) { return curve.at(time); });
+  return lens;
+}
+
+// Where the camera looks, without the roll.
+std::vector<Quat> directions_over_time(const KeyedCamera& camera, std::span<const double> moments,
+                                       std::span<const Vec3> positions) {
+  std::vector<Vec3> targets;
+  const bool all_aimed =
+      std::ranges::all_of(camera.keys, [](const CameraKey& key) { return key.target.has_value(); });
+  if (all_aimed) {
+    const KeyedCurve<Point> curve(
+        times_of(camera),
+        values_of<Vec3>(camera, [](const CameraKey& key) { return *key.target; }));
+    for (const double time : moments) targets.push_back(curve.at(time));
+    return look_at(positions, targets);
+  }
+  // Keys with a target among keys with an orientation: each looks as it would by itself.
+  std::vector<Quat> at_keys;
+  Quat before = Quat::Identity();
+  for (const CameraKey& key : camera.keys) {
+    before = key.orientation ? key.orientation->normalized()
+                             : look_at(key.position, *key.target, before);
+    at_keys.push_back(before);
+  }
+  const KeyedCurve<Rotation> curve(times_of(camera), std::move(at_keys));
+  std::vector<Quat> directions;
+  for (const double time : moments) directions.push_back(curve.at(time));
+  return directions;
+}
+
+// The times of the frames; the last is not before `end`, up to a millionth of a frame.
+Result<std::vector<double>> frame_times(double end, double rate) {
+  if (!std::isfinite(rate) || !(rate > 0)) {
+    return Error("camera-rate",
+                 fmt::format("the frame rate is {}, expected a positive number", readable(rate)));
+  }
+  const double last = std::ceil(end * rate - 1e-6);
+  if (!(last < kMostFrames)) {
+    return Error("camera-too-long",
+                 fmt::format("{} s at {} frames a second are more than 10 million frames",
+                             readable(end), readable(rate)));
+  }
+  std::vector<double> times;
+  for (int i = 0; i <= static_cast<int>(last); ++i) times.push_back(i / rate);
+  return times;
+}
+
+}  // namespace
+
+Result<CameraTrack> make_track(const KeyedCamera& camera, double rate) {
+  if (Status sound = check(camera); !sound) return sound.error();
+  const auto moments = frame_times(camera.keys.back().time, rate);
+  if (!moments) return moments.error();
+
+  const KeyedCurve<Point> places(
+      times_of(camera), values_of<Vec3>(camera, [](const CameraKey& key) { return key.position; }));
+  std::vector<Vec3> positions;
+  for (const double time : *moments) positions.push_back(places.at(time));
+  const std::vector<Quat> directions = directions_over_time(camera, *moments, positions);
+  const KeyedCurve<Number> rolls(
+      times_of(camera), values_of<double>(camera, [](const CameraKey& key) { return key.roll; }));
+  const std::vector<double> lens = lens_over_time(camera, *moments);
+
+  CameraTrack track;
+  track.rate = rate;
+  for (std::size_t i = 0; i < moments->size(); ++i) {
+    const Quat turned = rolled(directions[i], rolls.at((*moments)[i]));
+    track.positions.push_back(positions[i].cast<float>());
+    track.orientations.push_back(turned.cast<float>().normalized());
+    track.fields_of_view.push_back(static_cast<float>(lens[i]));
+  }
+  if (Status sound = krok::check(track); !sound) {
+    return Error("camera-keys", "between its keys the camera leaves what numbers hold",
+                 "are positions and tensions as they should be?");
+  }
+  return track;
+}
+
+}  // namespace krok

@@ -1,0 +1,380 @@
+#include "tools/krok-cam/options.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/numbers.h"
+#include "core/quantity.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/orientation_option.h"
+#include "tools/common/role_input.h"
+
+namespace krok::cam_tool {
+
+namespace {
+
+constexpr double kSensorHeight = 24;  // millimetres
+constexpr double kUsualElevation = 10 * kRadiansPerDegree;
+
+void declare_subject(CLI::App& app, Arguments& a) {
+  const char* group = "Of a motion, one of these";
+  app.add_option("--follow", a.follow,
+                 "Go along with a joint, by its name or its role: hips, chest, head, left_hand")
+      ->type_name("JOINT")
+      ->group(group);
+  app.add_option("--orbit", a.orbit,
+                 "Go round the figure: 20s is the time of one turn, 1.5turns are so many over the "
+                 "whole motion")
+      ->type_name("TIME")
+      ->group(group);
+  app.add_flag("--still", a.still, "Stand still and show the whole motion")->group(group);
+  add_map_option(app, a.map)->group(group);
+}
+
+void declare_place(CLI::App& app, Arguments& a) {
+  const char* group = "From where";
+  add_choice<View>(app, "--view", a.view,
+                   {{"front", View::front},
+                    {"three-quarter", View::three_quarter},
+                    {"left", View::left},
+                    {"right", View::right},
+                    {"back", View::back},
+                    {"top", View::top}},
+                   "front, three-quarter (between the front and the figure's left), left, right, "
+                   "back or top; an orbit begins there",
+                   "VIEW", "three-quarter")
+      ->group(group);
+  app.add_option("--azimuth", a.azimuth,
+                 "The same as an angle: 0 sees the figure's front, 90deg its left side")
+      ->type_name("ANGLE")
+      ->group(group);
+  app.add_option("--elevation", a.elevation,
+                 "How far from above; 90deg looks straight down [10deg]")
+      ->type_name("ANGLE")
+      ->group(group);
+  add_choice<AzimuthFrom>(app, "--facing", a.facing,
+                          {{"start", AzimuthFrom::start},
+                           {"figure", AzimuthFrom::figure},
+                           {"world", AzimuthFrom::world}},
+                          "What counts as the front: where the figure faces at the start, where it "
+                          "faces at each moment (figure), or +Z (world)",
+                          "WHAT", "start")
+      ->group(group);
+  app.add_flag("--clockwise", a.clockwise, "Orbit the other way round, seen from above")
+      ->group(group);
+  app.add_flag("--fixed-centre", a.fixed_centre,
+               "Orbit about the middle of the whole motion; without it the centre goes with the "
+               "figure")
+      ->group(group);
+}
+
+void declare_picture(CLI::App& app, Arguments& a) {
+  const char* group = "Picture";
+  add_choice<Framing>(
+      app, "--frame", a.frame,
+      {{"full", Framing::full}, {"upper", Framing::upper}, {"head", Framing::head}},
+      "What is in the picture in all frames: the full figure, the upper body with the arms, the "
+      "head",
+      "PART", "full")
+      ->group(group);
+  add_number(app, "--margin", a.margin,
+             "The part of height and width left free at each edge, to 0.45")
+      ->type_name("PART")
+      ->default_str("0.08")
+      ->group(group);
+  app.add_option("--distance", a.distance,
+                 "From what it looks at; without it the least that frames the figure")
+      ->type_name("LENGTH")
+      ->group(group);
+  app.add_option("--fov", a.fov, "The field of view, vertically")
+      ->type_name("ANGLE")
+      ->default_str(a.fov)
+      ->group(group);
+  add_number(app, "--lens", a.lens,
+             "The same by the focal length in millimetres, for a picture 24 mm high")
+      ->type_name("MM")
+      ->group(group);
+  app.add_option(
+         "--aspect", a.aspect,
+         "The picture's shape, width by height, which decides how much is in it; written into "
+         "glTF where a motion is filmed or it is given")
+      ->type_name("W:H")
+      ->default_str(a.aspect)
+      ->group(group);
+}
+
+void declare_movement(CLI::App& app, Arguments& a) {
+  const char* group = "Movement";
+  app.add_option("--smooth", a.smooth,
+                 "How far before and after a moment the path of what is followed is smoothed; 0 "
+                 "not at all [0.5s, an orbit 1s]")
+      ->type_name("TIME")
+      ->group(group);
+  app.add_option("--dead-zone", a.dead_zone,
+                 "So far what is followed may move without taking the camera along [0]")
+      ->type_name("LENGTH")
+      ->group(group);
+  const char* read = "Keys and scenes";
+  add_rate(
+      app, "--rate", a.rate,
+      "Frames a second of the result; otherwise as the keys' file says, or as a scene's keys come")
+      ->group(read);
+  app.add_option("--camera", a.camera, "The camera of a scene that is taken, by its name or number")
+      ->type_name("NAME")
+      ->group(read);
+}
+
+void declare_output(CLI::App& app, Arguments& a) {
+  const char* group = "Output";
+  add_choice<Format>(app, "--format", a.format, {{"cam", Format::cam}, {"glb", Format::glb}},
+                     "cam or glb; without it the output's extension tells", "FORMAT", "")
+      ->default_str("")
+      ->group(group);
+  add_orientation_option(app, a.orientation)->group(group);
+  app.add_option("--into", a.into,
+                 "Write this glTF file with the camera added to its scene and its animation, as "
+                 "GLB")
+      ->type_name("IN.glb")
+      ->group(group);
+  app.add_option("--name", a.name, "glTF: the camera's name")
+      ->type_name("NAME")
+      ->default_str(a.name)
+      ->group(group);
+  add_whole(app, "--clip", a.clip,
+            "--into a file with several animations: the one that the camera moves in, from 0; "
+            "otherwise the first",
+            0, 1000000)
+      ->group(group);
+}
+
+Error usage(std::string message, std::string hint = {}) {
+  return Error("usage", std::move(message), std::move(hint));
+}
+
+template <typename T>
+Result<T> named(Result<T> value, const char* option) {
+  if (value) return value;
+  Error error = std::move(value).error();
+  error.message = fmt::format("{}: {}", option, error.message);
+  return error;
+}
+
+Result<double> positive(Result<double> value, const std::string& text, const char* option,
+                        bool or_zero = false) {
+  value = named(std::move(value), option);
+  if (!value || *value > 0 || (or_zero && *value == 0)) return value;
+  return usage(fmt::format("{} {} is not more than 0", option, text));
+}
+
+// Seconds.
+Result<double> seconds(const std::string& text, const char* option, bool or_zero) {
+  auto time = named(parse_clip_time(text), option);
+  if (!time) return time.error();
+  if (time->in_frames) {
+    return usage(fmt::format("{} {}: a time in seconds is needed", option, text));
+  }
+  return positive(time->value, text, option, or_zero);
+}
+
+// Width by height from "16:9" or "1.78".
+Result<double> parse_aspect(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const auto width = parse_finite(text.substr(0, colon));
+  const auto height =
+      colon == std::string::npos ? std::optional(1.0) : parse_finite(text.substr(colon + 1));
+  if (width && height && *width > 0 && *height > 0 && *width / *height >= 1e-3 &&
+      *width / *height <= 1e3) {
+    return *width / *height;
+  }
+  return usage(fmt::format("--aspect {}: no shape of a picture", text), "write 16:9 or 1.78");
+}
+
+Status understand_view(const Arguments& a, FigureCamera& camera) {
+  // From the top the figure faces up in the picture.
+  constexpr std::array kAzimuths = {0.0, 45.0, 90.0, -90.0, 180.0, 180.0};
+  camera.azimuth = kAzimuths[static_cast<std::size_t>(a.view)] * kRadiansPerDegree;
+  camera.elevation = a.view == View::top ? kPi / 2 : kUsualElevation;
+  if (!a.azimuth.empty()) {
+    if (a.given("--view") && a.view != View::top) {
+      return usage("--view and --azimuth both say from where; choose one");
+    }
+    const auto azimuth = named(parse_angle(a.azimuth), "--azimuth");
+    if (!azimuth) return azimuth.error();
+    camera.azimuth = *azimuth;
+  }
+  if (!a.elevation.empty()) {
+    if (a.view == View::top) return usage("--view top and --elevation both say how far from above");
+    const auto elevation = named(parse_angle(a.elevation), "--elevation");
+    if (!elevation) return elevation.error();
+    if (std::abs(*elevation) > kPi / 2 + 1e-9) {
+      return usage(fmt::format("--elevation {} is not from -90 to 90 degrees", a.elevation));
+    }
+    camera.elevation = *elevation;
+  }
+  camera.azimuth_from = a.facing;
+  return {};
+}
+
+Status understand_picture(const Arguments& a, FigureCamera& camera) {
+  camera.framing = a.frame;
+  if (!(a.margin >= 0 && a.margin <= 0.45)) {
+    return usage(fmt::format("--margin {} is not from 0 to 0.45", readable(a.margin)));
+  }
+  camera.margin = a.margin;
+  if (!a.distance.empty()) {
+    const auto distance = positive(parse_length(a.distance), a.distance, "--distance");
+    if (!distance) return distance.error();
+    if (*distance > 1e4) return usage("--distance is more than 10 km");
+    camera.distance = *distance;
+  }
+  if (a.lens) {
+    if (a.given("--fov")) return usage("--fov and --lens both give the field of view; choose one");
+    if (!(*a.lens >= 0.1 && *a.lens <= 1e5)) {
+      return usage(fmt::format("--lens {} is not from 0.1 to 100000 mm", readable(*a.lens)));
+    }
+    camera.field_of_view = 2 * std::atan(kSensorHeight / 2 / *a.lens);
+  } else {
+    const auto fov = named(parse_angle(a.fov), "--fov");
+    if (!fov) return fov.error();
+    if (!(*fov >= 1e-4 && *fov <= kPi - 1e-4)) {
+      return usage(fmt::format("--fov {} is not between 0 and 180 degrees", a.fov));
+    }
+    camera.field_of_view = *fov;
+  }
+  return {};
+}
+
+Status understand_orbit(const Arguments& a, FilmOptions& film) {
+  constexpr std::string_view kTurns = "turns", kTurn = "turn";
+  std::string_view text = a.orbit;
+  bool turns = false;
+  for (const std::string_view unit : {kTurns, kTurn}) {
+    if (turns || !text.ends_with(unit)) continue;
+    turns = true;
+    text.remove_suffix(unit.size());
+    if (text.ends_with(' ')) text.remove_suffix(1);
+  }
+  const double sign = a.clockwise ? -1 : 1;
+  if (turns) {
+    const auto count = parse_finite(text);
+    if (!count || !(*count > 0 && *count <= 1e4)) {
+      return usage(fmt::format("--orbit {}: how many turns?", a.orbit), "write 20s or 1.5turns");
+    }
+    film.turns = sign * *count;
+    return {};
+  }
+  const auto period = seconds(a.orbit, "--orbit", false);
+  if (!period) return period.error();
+  if (*period < 1e-3) return usage("--orbit: a turn takes a millisecond at least");
+  film.camera.turning = sign * 2 * kPi / *period;
+  return {};
+}
+
+Status understand_movement(const Arguments& a, FilmOptions& film) {
+  if (!a.orbit.empty()) {
+    if (Status done = understand_orbit(a, film); !done) return done;
+    film.camera.smoothing = 1;
+  }
+  film.moving_centre = !a.still && !a.fixed_centre;
+  film.follow = a.follow;
+  if (!a.smooth.empty()) {
+    const auto smooth = seconds(a.smooth, "--smooth", true);
+    if (!smooth) return smooth.error();
+    film.camera.smoothing = *smooth;
+  }
+  if (!a.dead_zone.empty()) {
+    const auto zone = positive(parse_length(a.dead_zone), a.dead_zone, "--dead-zone", true);
+    if (!zone) return zone.error();
+    film.camera.dead_zone = *zone;
+  }
+  return {};
+}
+
+// Options that have no effect without another are mistakes.
+Status check_needs(const Arguments& a, bool films) {
+  constexpr std::array kOfFilms = {"--view",  "--azimuth", "--elevation", "--facing",
+                                   "--frame", "--margin",  "--distance",  "--fov",
+                                   "--lens",  "--smooth",  "--dead-zone", "--map"};
+  for (const char* option : kOfFilms) {
+    if (!films && a.given(option)) {
+      return usage(fmt::format("{} says how a motion is filmed", option),
+                   "say --follow, --orbit or --still too");
+    }
+  }
+  for (const char* option : {"--clockwise", "--fixed-centre"}) {
+    if (a.orbit.empty() && a.given(option)) {
+      return usage(fmt::format("{} is for --orbit", option));
+    }
+  }
+  for (const char* option : {"--smooth", "--dead-zone"}) {
+    if (a.still && a.given(option)) {
+      return usage(fmt::format("{} is for a camera that moves", option));
+    }
+  }
+  if (a.still && a.facing == AzimuthFrom::figure) {
+    return usage("--facing figure is for a camera that moves");
+  }
+  if (a.into.empty() && a.given("--clip")) return usage("--clip is for --into");
+  if (!a.into.empty() && a.format == Format::cam) {
+    return usage("--into makes a GLB, --format cam does not");
+  }
+  if (films && a.rate) {
+    return usage(
+        "--rate is for keys and scenes; a camera that films a motion has the motion's rate");
+  }
+  if (films && !a.camera.empty()) return usage("--camera is for scenes");
+  return {};
+}
+
+}  // namespace
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.add_option(
+         "input", arguments.input,
+         "Keys of a camera (.json, formats/camera_keys/SPEC.md), a .cam file, a glTF file with a "
+         "camera, or a motion: a .anim file or a capture as krok-import reads it by default")
+      ->type_name("IN")
+      ->required();
+  declare_subject(app, arguments);
+  declare_place(app, arguments);
+  declare_picture(app, arguments);
+  declare_movement(app, arguments);
+  declare_output(app, arguments);
+  arguments.given = [&app](const char* option) { return app.count(option) > 0; };
+}
+
+Result<Options> understand(const Arguments& a) {
+  const int ways = (a.follow.empty() ? 0 : 1) + (a.orbit.empty() ? 0 : 1) + (a.still ? 1 : 0);
+  if (ways > 1) return usage("--follow, --orbit and --still are three ways to film; choose one");
+  if (Status fits = check_needs(a, ways == 1); !fits) return fits.error();
+  Options options;
+  options.input = a.input;
+  options.map = a.map;
+  options.format = a.format;
+  options.orientation = a.orientation;
+  options.rate = a.rate;
+  options.camera = a.camera;
+  options.into = a.into;
+  options.name = a.name;
+  options.clip = a.clip;
+  const auto aspect = parse_aspect(a.aspect);
+  if (!aspect) return aspect.error();
+  if (a.given("--aspect")) options.aspect = *aspect;
+  if (a.name.empty()) return usage("--name is empty");
+  if (ways == 0) return options;
+  FilmOptions& film = options.film.emplace();
+  film.camera.aspect = *aspect;
+  if (Status done = understand_view(a, film.camera); !done) return done.error();
+  if (Status done = understand_picture(a, film.camera); !done) return done.error();
+  if (Status done = understand_movement(a, film); !done) return done.error();
+  return options;
+}
+
+std::string ending(const Arguments& arguments) {
+  const bool glb = arguments.format == Format::glb || !arguments.into.empty();
+  return glb ? ".glb" : ".cam";
+}
+
+}  // namespace krok::cam_tool

@@ -1,0 +1,87 @@
+#include "tools/krok-cam/scene_camera.h"
+
+#include <fmt/format.h>
+
+#include "character/motion.h"
+#include "character/sampling.h"
+#include "core/text.h"
+#include "nodes/evaluate.h"
+#include "tools/common/gltf/camera_choice.h"
+#include "tools/common/gltf/gltf_input.h"
+
+namespace krok::cam_tool {
+
+namespace {
+
+void tell(Diagnostics& found, const std::string& path, ToolContext& context) {
+  for (Diagnostic& diagnostic : found) {
+    if (diagnostic.where.file.empty()) diagnostic.where.file = path;
+    context.tell(std::move(diagnostic));
+  }
+  found.clear();
+}
+
+bool moves(const nodes::Scene& scene, const nodes::Animation& animation, int camera) {
+  for (int node = camera; node >= 0; node = scene.nodes[static_cast<std::size_t>(node)].parent) {
+    for (const nodes::Channel& channel : animation.channels) {
+      if (channel.node == node && channel.path != nodes::Path::weights) return true;
+    }
+  }
+  return false;
+}
+
+// The first animation that moves the camera, -1 for none.
+int find_animation(const nodes::Scene& scene, int camera, Diagnostics& found) {
+  int first = -1, count = 0;
+  for (std::size_t i = 0; i < scene.animations.size(); ++i) {
+    if (!moves(scene, scene.animations[i], camera)) continue;
+    if (count++ == 0) first = static_cast<int>(i);
+  }
+  if (count < 2) return first;
+  Diagnostic told;
+  told.severity = Severity::warning;
+  told.code = "cam-animations";
+  told.message =
+      fmt::format("{} animations move the camera; the first of them, {} ({}), is taken", count,
+                  first, shown(scene.animations[static_cast<std::size_t>(first)].name));
+  told.hint = "krok-import --cam takes another with --clip";
+  found.push_back(std::move(told));
+  return first;
+}
+
+}  // namespace
+
+Result<CameraTrack> read_scene_camera(const InputFile& file, const std::string& wanted,
+                                      std::optional<double> rate, ToolContext& context) {
+  const auto scene = read_gltf(file, context);
+  if (!scene) return scene.error();
+  Diagnostics found = scene->diagnostics;
+  const auto evaluator = nodes::Evaluator::create(*scene);
+  if (!evaluator) return Error(evaluator.error()).in_file(file.path());
+  const std::vector<int> cameras = character::camera_nodes(*scene, *evaluator);
+  if (cameras.empty()) {
+    return Error("cam-missing", "no camera is in the scene",
+                 "in glTF a camera must belong to a node of the scene")
+        .in_file(file.path());
+  }
+  const auto camera = choose_camera(*scene, cameras, wanted, file.path(), context);
+  if (!camera) return Error(camera.error()).in_file(file.path());
+  const int animation = find_animation(*scene, *camera, found);
+  character::Sampling sampling;
+  if (animation >= 0) {
+    character::SamplingOptions how;
+    how.rate = rate;
+    const auto chosen = character::choose_sampling(
+        scene->animations[static_cast<std::size_t>(animation)], how, found);
+    if (!chosen) return Error(chosen.error()).in_file(file.path());
+    sampling = chosen->sampling;
+  }
+  // glTF's metres and axes are Krok's.
+  auto track = character::make_camera(*scene, *evaluator, *camera, Conversion(), Mat4::Identity(),
+                                      animation, sampling, found);
+  if (!track) return Error(track.error()).in_file(file.path());
+  tell(found, file.path(), context);
+  return track;
+}
+
+}  // namespace krok::cam_tool

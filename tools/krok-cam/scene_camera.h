@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/file.h"
+#include "core/result.h"
+#include "scene/camera_track.h"
+#include "tools/common/tool.h"
+
+namespace krok::cam_tool {
+
+// A camera of a glTF file in the first animation that moves it or a node above it, at the rate that
+// the keys come at or at `rate`; one frame where no animation does. `wanted` as in choose_camera.
+// Codes: cam-missing, import-camera, and those of reading and sampling.
+Result<CameraTrack> read_scene_camera(const InputFile& file, const std::string& wanted,
+                                      std::optional<double> rate, ToolContext& context);
+
+}  // namespace krok::cam_tool
