@@ -6,8 +6,9 @@
 
 namespace {
 
-void declare(CLI::App& app, krok::SkinOptions& options, std::string& method) {
+void declare(CLI::App& app, krok::SkinOptions& options) {
   using krok::SkinAs;
+  using krok::SkinMethod;
   app.add_option("model", options.model, "The skinned mesh")->type_name("IN.model")->required();
   app.add_option("motion", options.motion, "The motion")->type_name("IN.anim")->required();
   app.add_option("--as", options.as,
@@ -29,15 +30,19 @@ void declare(CLI::App& app, krok::SkinOptions& options, std::string& method) {
   app.add_option("--to", options.to, "Where it ends, that frame included")->type_name("T");
   krok::add_whole(app, "--every", options.every, "Take every Nth frame only", 1, 1000000)
       ->default_str("1");
-  app.add_option("--method", method, "How vertices follow the joints: linear (linear blend)")
+  app.add_option("--method", options.method,
+                 "How vertices follow the joints. linear: linear blend, as viewers do it; thins "
+                 "out where a joint twists. dual-quaternion: keeps the volume there. rigid: each "
+                 "its strongest joint alone")
       ->type_name("METHOD")
-      ->check(CLI::IsMember({"linear"}).description(""))
+      ->transform(krok::one_of<SkinMethod>({{"linear", SkinMethod::linear},
+                                            {"dual-quaternion", SkinMethod::dual_quaternion},
+                                            {"rigid", SkinMethod::rigid}}))
       ->default_str("linear");
 }
 
 krok::ToolSpec make_spec() {
   const auto options = std::make_shared<krok::SkinOptions>();
-  const auto method = std::make_shared<std::string>("linear");
   krok::ToolSpec spec;
   spec.name = "krok-skin";
   spec.summary = "Moves a mesh by a skeleton's motion and writes it as glTF";
@@ -47,7 +52,7 @@ krok::ToolSpec make_spec() {
       {"krok-skin body.model walk.anim --as rig -o walk.glb", "a rig for a game engine or Blender"},
       {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one moment"}};
   spec.batch = {{".anim"}, krok::always(".glb")};
-  spec.declare = [options, method](CLI::App& app) { declare(app, *options, *method); };
+  spec.declare = [options](CLI::App& app) { declare(app, *options); };
   spec.check = [options] { return krok::check(*options); };
   spec.run = [options](krok::ToolContext& context) { return krok::run_skin(*options, context); };
   return spec;

@@ -13,8 +13,7 @@
 #include "motion/cut.h"
 #include "motion/sample.h"
 #include "skin/bind.h"
-#include "skin/linear_blend.h"
-#include "skin/palette.h"
+#include "skin/skin.h"
 #include "tools/common/output_set.h"
 
 namespace krok {
@@ -120,38 +119,21 @@ Result<double> pose_time(const SkinOptions& options, const Clip& clip) {
 // Skins the model in poses one after the other; owns the working memory.
 class Skinner {
  public:
-  Skinner(const Model& model, int jobs)
-      : model_(model),
-        jobs_(jobs),
-        reference_to_joint_(inverse_reference(model.skeleton)),
-        palette_(reference_to_joint_.size()) {}
+  Skinner(const Model& model, const SkinBinding& binding, int jobs)
+      : model_(model), binding_(binding), pose_(binding), jobs_(jobs) {}
 
-  void skin(std::span<const Transform> joint_to_world, std::span<Vec3f> positions,
-            std::span<Vec3f> normals) {
-    make_palette(reference_to_joint_, joint_to_world, palette_);
-    linear_blend_parallel(palette_, skin_vertices(model_), {positions, normals}, jobs_);
-  }
-
-  // Tangents turn like normals.
-  std::vector<Vec4f> skin_tangents() {
-    std::vector<Vec3f> in, out(model_.tangents.size()), places(model_.tangents.size());
-    for (const Vec4f& tangent : model_.tangents) in.push_back(tangent.head<3>());
-    if (in.empty()) return {};
-    SkinVertices vertices = skin_vertices(model_);
-    vertices.normals = in;
-    linear_blend_parallel(palette_, vertices, {places, out}, jobs_);
-    std::vector<Vec4f> tangents;
-    for (std::size_t v = 0; v < out.size(); ++v) {
-      tangents.emplace_back(out[v].x(), out[v].y(), out[v].z(), model_.tangents[v].w());
-    }
-    return tangents;
+  void skin(std::span<const Transform> joint_to_world, const SkinnedSurface& out) {
+    pose_.set(joint_to_world);
+    SkinSurface in = skin_surface(model_);
+    if (out.tangents.empty()) in.tangents = {};
+    krok::skin(binding_, pose_, in, out, jobs_);
   }
 
  private:
   const Model& model_;
+  const SkinBinding& binding_;
+  SkinPose pose_;
   int jobs_;
-  std::vector<Transform> reference_to_joint_;
-  std::vector<SkinMatrix> palette_;
 };
 
 gltf::WriteOptions write_options(const ToolContext& context, const std::string& output) {
@@ -162,22 +144,23 @@ gltf::WriteOptions write_options(const ToolContext& context, const std::string& 
   return options;
 }
 
-Status write_pose(const Scene& scene, std::span<const Transform> joint_to_world, int jobs,
+Status write_pose(const Scene& scene, const SkinBinding& binding,
+                  std::span<const Transform> joint_to_world, int jobs,
                   const gltf::WriteOptions& options, OutputFile& file) {
-  Skinner skinner(scene.model, jobs);
   std::vector<Vec3f> positions(scene.model.positions.size());
   std::vector<Vec3f> normals(scene.model.normals.size());
-  skinner.skin(joint_to_world, positions, normals);
-  const auto tangents = skinner.skin_tangents();
+  std::vector<Vec4f> tangents(scene.model.tangents.size());
+  Skinner(scene.model, binding, jobs).skin(joint_to_world, {positions, normals, tangents});
   return gltf::write_mesh(scene.model, {positions, normals, tangents}, options, file);
 }
 
-Status write_pose_at(const Scene& scene, double seconds, const ToolContext& context,
-                     OutputFile& file) {
+Status write_pose_at(const Scene& scene, const SkinBinding& binding, double seconds,
+                     const ToolContext& context, OutputFile& file) {
   const std::size_t joints = scene.clip.skeleton.names.size();
   std::vector<Transform> pose(joints), scratch(3 * joints);
   sample(scene.clip, seconds, pose, scratch);
-  return write_pose(scene, pose, context.jobs, write_options(context, context.output), file);
+  return write_pose(scene, binding, pose, context.jobs, write_options(context, context.output),
+                    file);
 }
 
 // The smallest --every that brings a motion within the limits; 0 if none does.
@@ -216,15 +199,16 @@ Status check_bakeable(const Scene& scene, ToolContext& context) {
   return {};
 }
 
-Status write_clip(const Scene& scene, const ToolContext& context, OutputFile& file) {
-  Skinner skinner(scene.model, context.jobs);
+Status write_clip(const Scene& scene, const SkinBinding& binding, const ToolContext& context,
+                  OutputFile& file) {
+  Skinner skinner(scene.model, binding, context.jobs);
   std::vector<Transform> pose(scene.clip.skeleton.names.size());
   gltf::BakedMotion motion;
   motion.frames = scene.clip.frame_count();
   motion.rate = scene.clip.rate;
   motion.shape_at = [&](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
     scene.clip.get_pose(frame, pose);
-    skinner.skin(pose, positions, normals);
+    skinner.skin(pose, {positions, normals, {}});
   };
   return gltf::write_baked(scene.model, motion, write_options(context, context.output), file,
                            context.progress);
@@ -239,7 +223,7 @@ std::string frame_path(const std::string& output, int frame, int last_frame) {
 }
 
 // One file a frame, several at a time; all of them appear or none.
-Result<int> write_frames(const Scene& scene, ToolContext& context) {
+Result<int> write_frames(const Scene& scene, const SkinBinding& binding, ToolContext& context) {
   const int frames = scene.clip.frame_count();
   const int last_frame = scene.first_frame + (frames - 1) * scene.every;
   std::vector<std::string> paths;
@@ -253,7 +237,7 @@ Result<int> write_frames(const Scene& scene, ToolContext& context) {
     std::vector<Transform> pose(scene.clip.skeleton.names.size());
     scene.clip.get_pose(static_cast<int>(i), pose);
     context.progress->advance(1);
-    return write_pose(scene, pose, 1, writing, file);
+    return write_pose(scene, binding, pose, 1, writing, file);
   };
   if (Status added = outputs.add_all(paths, context.jobs, write); !added) return added.error();
   if (Status done = outputs.finish(); !done) return done.error();
@@ -261,15 +245,15 @@ Result<int> write_frames(const Scene& scene, ToolContext& context) {
   return kExitDone;
 }
 
-Status write_one(SkinAs as, const Scene& scene, double seconds, ToolContext& context,
-                 OutputFile& file) {
+Status write_one(SkinAs as, const Scene& scene, const SkinBinding& binding, double seconds,
+                 ToolContext& context, OutputFile& file) {
   switch (as) {
     case SkinAs::pose:
-      return write_pose_at(scene, seconds, context, file);
+      return write_pose_at(scene, binding, seconds, context, file);
     case SkinAs::rig:
       return gltf::write_rig(scene.model, scene.clip, write_options(context, context.output), file);
     default:
-      return write_clip(scene, context, file);
+      return write_clip(scene, binding, context, file);
   }
 }
 
@@ -290,6 +274,10 @@ Status check_options(const SkinOptions& options) {
   const bool pose = options.as == SkinAs::pose;
   if (!pose && !options.time.empty()) {
     return Error("usage", "--time is for --as pose", "--from and --to choose a part of the motion");
+  }
+  if (options.as == SkinAs::rig && options.method != SkinMethod::linear) {
+    return Error("usage", "--method is not for --as rig, which leaves skinning to the viewer",
+                 "--as clip writes the mesh as the method moves it");
   }
   if (pose && !(options.from.empty() && options.to.empty() && options.every == 1)) {
     return Error("usage", "--from, --to and --every are not for --as pose", "--time says when");
@@ -339,7 +327,8 @@ Result<int> run_skin(const SkinOptions& options, ToolContext& context) {
   }
   const int frames = options.as == SkinAs::pose ? 1 : scene->clip.frame_count();
   context.report.result = result_of(*scene, frames);
-  if (options.as == SkinAs::frames) return write_frames(*scene, context);
+  const SkinBinding binding(scene->model, options.method);
+  if (options.as == SkinAs::frames) return write_frames(*scene, binding, context);
   if (options.as == SkinAs::clip) {
     Status fits = check_bakeable(*scene, context);
     if (!fits) return std::move(fits.error()).in_file(options.motion);
@@ -351,7 +340,7 @@ Result<int> run_skin(const SkinOptions& options, ToolContext& context) {
   }
 
   const Status written = write_output(context, context.output, [&](OutputFile& file) {
-    return write_one(options.as, *scene, *seconds, context, file);
+    return write_one(options.as, *scene, binding, *seconds, context, file);
   });
   if (!written) return written.error();
   context.say(fmt::format("{}: {}, {}", context.output,

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "skin/skin.h"
 #include "tools/common/tool.h"
 
 namespace krok {
@@ -12,7 +13,8 @@ enum class SkinAs { clip, pose, rig, frames };
 struct SkinOptions {
   std::string model, motion;
   SkinAs as = SkinAs::clip;
-  std::string time;      // --as pose; a ClipTime, empty for the start
+  SkinMethod method = SkinMethod::linear;  // --as rig has no other
+  std::string time;                        // --as pose; a ClipTime, empty for the start
   std::string from, to;  // the part of the motion; ClipTimes, empty for its ends; not --as pose
   int every = 1;         // of the frames; not --as pose
 };

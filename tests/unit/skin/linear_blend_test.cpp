@@ -5,12 +5,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <bit>
 #include <limits>
 #include <random>
 
+#include "core/simd.h"
 #include "skin/palette.h"
 #include "support/test_scenes.h"
 
@@ -81,39 +81,18 @@ testing::AssertionResult same_bits(const std::vector<Vec3f>& a, const std::vecto
   return testing::AssertionSuccess();
 }
 
-// Runs the rest of a test with one instruction set.
-class WithTarget {
- public:
-  explicit WithTarget(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  ~WithTarget() {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-std::vector<std::int64_t> machine_targets() {
-  std::vector<std::int64_t> result;
-  const std::int64_t supported = hwy::SupportedTargets();
-  for (const std::int64_t target : {HWY_AVX2, HWY_AVX3, HWY_AVX3_DL, HWY_SSE4}) {
-    if ((supported & target) != 0) result.push_back(target);
-  }
-  return result;
-}
-
 void expect_same(const std::vector<SkinMatrix>& palette, const SkinVertices& in,
                  const std::string& what) {
   Skinned expected(in);
   linear_blend_reference(palette, in, expected.view());
-  for (const std::int64_t target : machine_targets()) {
-    const WithTarget with(target);
-    Skinned simd(in);
-    linear_blend(palette, in, simd.view());
-    EXPECT_TRUE(same_bits(expected.positions, simd.positions)) << what << " target " << target;
-    EXPECT_TRUE(same_bits(expected.normals, simd.normals)) << what << " target " << target;
+  for (const Simd simd : {Simd::other, Simd::avx2, Simd::avx512}) {
+    limit_simd(simd);
+    Skinned result(in);
+    linear_blend(palette, in, result.view());
+    EXPECT_TRUE(same_bits(expected.positions, result.positions)) << what;
+    EXPECT_TRUE(same_bits(expected.normals, result.normals)) << what;
   }
+  limit_simd(Simd::avx512);
 }
 
 TEST(LinearBlend, SimdGivesTheBitsOfTheReferenceTailsIncluded) {
