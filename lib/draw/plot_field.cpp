@@ -122,7 +122,7 @@ void write_field(const Field& field, const PlotArea& area, std::string& out) {
   out += "</g>\n";
 }
 
-void write_field_bar(const Field& field, double right, double bottom, std::string& out) {
+double write_field_bar(const Field& field, double right, double bottom, std::string& out) {
   const FieldScale scale = scale_of(field);
   const double step = step_size(scale);
   // The ends of the bar are the middles of the outer steps, which are round numbers.
@@ -141,10 +141,11 @@ void write_field_bar(const Field& field, double right, double bottom, std::strin
                  "<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></g>\n",
                  number(begin), number(bottom - kBarHeight), number(end - begin),
                  number(kBarHeight));
+  const double left = begin - kTick - text_width(low);
   fmt::format_to(std::back_inserter(out),
                  "<text x=\"{}\" y=\"{}\">{}</text><text x=\"{}\" y=\"{}\">{}</text>\n",
-                 number(begin - kTick - text_width(low)), number(bottom), low, number(end + kTick),
-                 number(bottom), high);
+                 number(left), number(bottom), low, number(end + kTick), number(bottom), high);
+  return left;
 }
 
 }  // namespace krok::draw

@@ -27,7 +27,7 @@ std::string field_colour(double value, const FieldScale& scale);
 void write_field(const Field& field, const PlotArea& area, std::string& out);
 
 // A bar of the colours with the values at its ends, its right end at `right`, standing on `bottom`
-// (pixels).
-void write_field_bar(const Field& field, double right, double bottom, std::string& out);
+// (pixels). Returns where it begins on the left.
+double write_field_bar(const Field& field, double right, double bottom, std::string& out);
 
 }  // namespace krok::draw

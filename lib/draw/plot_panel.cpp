@@ -50,10 +50,14 @@ void PanelWriter::write() {
   put("<clipPath id=\"panel-{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
       id_, number(left_ - kAroundArea), number(top_ - kAroundArea),
       number(width_ + 2 * kAroundArea), number(height_ + 2 * kAroundArea));
-  if (panel_.field) write_field_bar(*panel_.field, left_ + width_, top_ - 8, out_);
+  double title_room = width_;
+  if (panel_.field) {
+    const double bar = write_field_bar(*panel_.field, left_ + width_, top_ - 8, out_);
+    title_room = std::max(0.0, bar - left_ - kTick);
+  }
   if (!panel_.title.empty()) {
     put("<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n", number(left_), number(top_ - 8),
-        escaped(shortened(panel_.title, width_ * kTextSize / kTitleSize)));
+        escaped(shortened(panel_.title, title_room * kTextSize / kTitleSize)));
   }
   write_x_axis();
   write_y_axis();

@@ -19,6 +19,7 @@ Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& 
 Result<Description> describe_model(const InputFile& file, const SkeletonOptions& how,
                                    ToolContext& context);
 Result<Description> describe_cam(const InputFile& file, ToolContext& context);
+Result<Description> describe_steps(const InputFile& file, ToolContext& context);
 Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& how,
                                  ToolContext& context);
 // A skeleton, or a motion with the skeleton that stands beside it.

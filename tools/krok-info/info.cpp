@@ -20,6 +20,8 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
       return describe_model(file, how, context);
     case Kind::cam:
       return describe_cam(file, context);
+    case Kind::steps:
+      return describe_steps(file, context);
     case Kind::bvh:
       return describe_bvh(file, how, context);
     case Kind::asf:
@@ -28,12 +30,12 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
     default:
       break;
   }
-  return Error(
-      "info-kind",
-      "is " + std::string(registry::describe_content(file.bytes())) +
-          ", which krok-info does not read",
-      "it reads .anim, .model, .cam, .bvh, .asf, .amc, .glb and .gltf files, and characters in "
-      ".fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and .md5anim files");
+  return Error("info-kind",
+               "is " + std::string(registry::describe_content(file.bytes())) +
+                   ", which krok-info does not read",
+               "it reads .anim, .model, .cam, .steps, .bvh, .asf, .amc, .glb and .gltf files, and "
+               "characters in "
+               ".fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and .md5anim files");
 }
 
 Result<Description> describe_path(const std::string& path, const SkeletonOptions& how,

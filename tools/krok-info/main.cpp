@@ -6,7 +6,8 @@ int main(int argc, char** argv) {
   krok::ToolSpec spec;
   spec.name = "krok-info";
   spec.summary =
-      "What is in a file: motions (.anim), models (.model), cameras (.cam), captures (.bvh, .asf, "
+      "What is in a file: motions (.anim), models (.model), cameras (.cam), step libraries "
+      "(.steps), captures (.bvh, .asf, "
       ".amc), characters (glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5)";
   spec.inputs = "FILE...";
   spec.examples = {{"krok-info walk.anim",

@@ -46,15 +46,17 @@ std::vector<Case> cases() {
                             {"downstairs", walk(0.32, 0, -0.16, true)},
                             {"uphill", walk(0.6, 0, 0.06)},
                             {"downhill", walk(0.6, 0, -0.06)},
+                            {"steeply_downhill", walk(0.65, 0, -0.12)},
                             {"child", walk(0.5)},
                             {"slow_and_fine", walk(0.5)}};
   list[9].options.ground = Ground::slope;
   list[10].options.ground = Ground::slope;
-  list[11].options.stature = 1.2;
-  list[12].options.cadence = 60;
-  list[12].options.rate = 240;
-  list[12].options.first_side = Side::right;
-  list[12].options.step_width = 0.2;
+  list[11].options.ground = Ground::slope;
+  list[12].options.stature = 1.2;
+  list[13].options.cadence = 60;
+  list[13].options.rate = 240;
+  list[13].options.first_side = Side::right;
+  list[13].options.step_width = 0.2;
   return list;
 }
 
@@ -125,6 +127,19 @@ TEST_P(AnyWalk, FeetNeverSinkIntoTheGround) {
       for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_GT(points[i].y() - plan.ground_height(points[i]), -5e-4) << name << " frame " << i;
       }
+    }
+  }
+}
+
+// No one lifts a foot to the height of the hips to walk.
+TEST_P(AnyWalk, FeetAreLiftedNoHigherThanTheyNeed) {
+  const FootPlan plan = plan_feet(walk_.options, walk_.figure);
+  const double most = 0.2 * walk_.figure.stature + std::abs(walk_.options.rise);
+  for (const Side side : {Side::left, Side::right}) {
+    const auto heels =
+        test::track(walk_.clip, std::string(test::joint_side(side)) + "Foot", walk_.figure.heel);
+    for (std::size_t i = 0; i < heels.size(); ++i) {
+      EXPECT_LT(heels[i].y() - plan.ground_height(heels[i]), most) << "frame " << i;
     }
   }
 }

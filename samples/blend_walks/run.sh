@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# The walk between two walks, in step and out of step. README.md tells the same story.
+#
+#   run.sh [OUTPUT_FOLDER]
+#
+# Without an argument: out/blend_walks. The tools are found through $KROK_BIN or in build/bin,
+# make-walk through $MAKE_WALK or in build/samples.
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+bin=${KROK_BIN:-$here/../../build/bin}
+make_walk=${MAKE_WALK:-$here/../../build/samples/make-walk}
+weights=(0 0.25 0.5 0.75 1)
+
+usage() { sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+
+fail() {
+  echo "run.sh: error: $1" >&2
+  [ $# -lt 2 ] || echo "  hint: $2" >&2
+  exit 2
+}
+
+case "${1:-}" in -h | --help) usage && exit 0 ;; esac
+[ $# -le 1 ] || fail "$# arguments, at most 1 is taken" "put names with spaces in quotes"
+out=${1:-out/blend_walks}
+for tool in import keys blend edit plot; do
+  [ -x "$bin/krok-$tool" ] || fail "no krok-$tool in $bin" "build with make, or set KROK_BIN"
+done
+[ -x "$make_walk" ] || fail "no make-walk at $make_walk" "build with make, or set MAKE_WALK"
+mkdir -p -- "$out" || fail "cannot make the folder $out"
+cd -- "$out"
+
+say() { printf '\n%s\n' "$1"; }
+other() { awk -v w="$1" 'BEGIN { print 1 - w }'; }
+
+# slide MOTION: how fast its feet slide, in mm/s.
+slide() {
+  "$bin/krok-keys" -q --discard-edits --json=slide.json -- "$1" >slide.txt
+  awk -F'[:,]' '/"slide_speed"/ { printf "%.1f", 1000 * $2 }' slide.json
+  rm -f slide.json slide.txt
+}
+
+# strikes MOTION: name and time of each keytime, found in the motion itself.
+strikes() {
+  "$bin/krok-keys" -q --discard-edits -- "$1" | awk '$2 == "s" && NF == 3 { print $3, $1 }'
+}
+
+say "1. Two walks: short slow steps and long quick ones"
+"$make_walk" -q --steps 8 --step-length 50cm -o slow.bvh
+"$make_walk" -q --steps 8 --step-length 85cm -o quick.bvh
+for walk in slow quick; do
+  "$bin/krok-import" -q -o $walk.anim -- $walk.bvh
+  "$bin/krok-keys" -o $walk.keys.json -- $walk.anim 2>&1 | sed 's/^/  /'
+done
+
+say "2. Half of each: in step, with feet kept in place, and by the clock"
+"$bin/krok-blend" -q --warp pchip -o warped.anim -- slow.anim:0.5 quick.anim:0.5
+"$bin/krok-blend" -q --warp pchip --align stance -o stance.anim -- slow.anim:0.5 quick.anim:0.5
+# The clock runs as long as the shorter walk.
+for walk in slow quick; do "$bin/krok-edit" -q --to 3.6s -o ${walk}_clock.anim -- $walk.anim; done
+"$bin/krok-blend" -q --keys none -o clock.anim -- slow_clock.anim:0.5 quick_clock.anim:0.5
+
+say "3. How fast the feet slide"
+{
+  echo "| blend | feet slide |"
+  echo "|---|---|"
+  echo "| in step (\`--warp pchip\`) | $(slide warped.anim) mm/s |"
+  echo "| in step, feet kept in place (\`--align stance\`) | $(slide stance.anim) mm/s |"
+  echo "| by the clock (\`--keys none\`) | $(slide clock.anim) mm/s |"
+} | tee slide.md
+
+say "4. When the feet strike, in seconds"
+# Times are counted from the strike that each motion begins with.
+{
+  echo "| keytime | slow | quick | half of each | found in the blend |"
+  echo "|---|---|---|---|---|"
+  paste -d' ' <(strikes slow.anim) <(strikes quick.anim) <(strikes warped.anim) |
+    awk 'NR == 1 { slow = $2; quick = $4 }
+         { printf "| `%s` | %.3f | %.3f | %.3f | %.3f |\n", $1, $2 - slow, $4 - quick,
+           0.5 * ($2 - slow + $4 - quick), $6 }' | sed -n '2,7p'
+} | tee strikes.md
+
+say "5. From one walk to the other"
+echo "weight,blend,slide [mm/s]" >sweep.csv
+sheet=()
+for weight in "${weights[@]}"; do
+  rest=$(other "$weight")
+  "$bin/krok-blend" -q -o "weight_$weight.anim" -- "slow.anim:$rest" "quick.anim:$weight"
+  "$bin/krok-blend" -q --keys none -o clocked.anim \
+    -- "slow_clock.anim:$rest" "quick_clock.anim:$weight"
+  echo "$weight,in step,$(slide "weight_$weight.anim")" >>sweep.csv
+  echo "$weight,by the clock,$(slide clocked.anim)" >>sweep.csv
+  sheet+=("weight_$weight.anim")
+done
+rm -f clocked.anim clocked.keys.json
+"$bin/krok-plot" -q --x weight --by blend --style both -o slide.svg \
+  --title "Sliding feet over the weight of the quick walk" -- sweep.csv
+"$bin/krok-plot" -q --sheet sweep.png --sides left --moments 6 --size 110 -- "${sheet[@]}"
+echo "  slide.svg   sliding over the weight"
+echo "  sweep.png   the walks from weight 0 (above) to weight 1 (below)"
+
+say "Done. Play them with krok-view warped.anim clock.anim -o blend.html"

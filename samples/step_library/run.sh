@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# From a handful of walks to steps of any length and height between them. README.md tells the same
+# story.
+#
+#   run.sh [OUTPUT_FOLDER]
+#
+# Without an argument: out/step_library. The tools are found through $KROK_BIN or in build/bin,
+# make-walk through $MAKE_WALK or in build/samples.
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+bin=${KROK_BIN:-$here/../../build/bin}
+make_walk=${MAKE_WALK:-$here/../../build/samples/make-walk}
+
+usage() { sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+
+fail() {
+  echo "run.sh: error: $1" >&2
+  [ $# -lt 2 ] || echo "  hint: $2" >&2
+  exit 2
+}
+
+case "${1:-}" in -h | --help) usage && exit 0 ;; esac
+[ $# -le 1 ] || fail "$# arguments, at most 1 is taken" "put names with spaces in quotes"
+out=${1:-out/step_library}
+for tool in fit synth plot; do
+  [ -x "$bin/krok-$tool" ] || fail "no krok-$tool in $bin" "build with make, or set KROK_BIN"
+done
+[ -x "$make_walk" ] || fail "no make-walk at $make_walk" "build with make, or set MAKE_WALK"
+mkdir -p -- "$out" || fail "cannot make the folder $out"
+cd -- "$out"
+
+say() { printf '\n%s\n' "$1"; }
+
+say "1. Nine walks: three lengths of step on three slopes, and 27 that turn as well"
+for length in 50 65 80; do
+  for rise in -12 0 12; do
+    "$make_walk" -q --steps 6 --step-length ${length}cm --rise ${rise}cm --ground slope \
+      -o walk_${length}_${rise}.bvh
+    for turn in -20 0 20; do
+      "$make_walk" -q --steps 6 --step-length ${length}cm --rise ${rise}cm --turn ${turn}deg \
+        --ground slope -o turn_${length}_${rise}_${turn}.bvh
+    done
+  done
+done
+cp -- "$here/library.json" "$here/library_turns.json" .
+echo "  $(ls walk_*.bvh turn_*.bvh | wc -l) captures"
+
+say "2. Their left steps become a library: weights by length and height, then refined"
+"$bin/krok-fit" library.json -o unrefined.steps --refine 0
+"$bin/krok-fit" library.json -o walking.steps --plots charts --json=fit.json
+
+say "3. With turns it has three parameters"
+"$bin/krok-fit" library_turns.json -o turning.steps --plots charts_turns --json=fit_turns.json
+
+say "4. Steps that no one took"
+"$bin/krok-synth" walking.steps --set length=57cm --set height=3cm -o step.anim
+"$bin/krok-synth" walking.steps --set length=57cm --set height=3cm --correct --side right \
+  -o step_right.anim
+mkdir -p sheet
+"$bin/krok-synth" walking.steps --table "$here/points.csv" -o sheet/step.anim
+"$bin/krok-synth" turning.steps --set length=60cm --set height=0 --set turn=14deg -o bend.anim
+
+say "5. To look at"
+"$bin/krok-plot" -q --sheet=steps.png --sides left --moments 5 --size 150 sheet/step_*.anim
+echo "  steps.png, charts/*.svg, charts_turns/*.svg"

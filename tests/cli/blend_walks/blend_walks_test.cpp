@@ -1,0 +1,98 @@
+// If these fail, the blending story no longer holds: motions blended by keytimes slide about as
+// much as those blended by the clock, feet strike elsewhere than at the weighted keytimes, or
+// samples/blend_walks/README.md tells figures that its script does not print.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "support/folder_test.h"
+#include "support/run_tool.h"
+
+namespace krok {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class BlendWalks : public test::FolderTest {
+ protected:
+  test::ToolRun story(const std::string& arguments, const std::string& bin = KROK_BIN_DIR) {
+    test::ToolOptions options;
+    options.folder = folder_.string();
+    options.timeout = 600;
+    return test::run(
+        {"/bin/sh", "-c",
+         "KROK_BIN='" + bin +
+             "' MAKE_WALK='" KROK_MAKE_WALK "' '" KROK_SOURCE_DIR "/samples/blend_walks/run.sh' " +
+             arguments},
+        options);
+  }
+  static std::string text_of(const fs::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  // The rows of a Markdown table without its head.
+  static std::vector<std::vector<std::string>> rows_of(const std::string& table) {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream lines(table);
+    for (std::string line; std::getline(lines, line);) {
+      std::vector<std::string> cells;
+      std::istringstream row(line);
+      for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
+      rows.push_back(std::move(cells));
+    }
+    rows.erase(rows.begin(), rows.begin() + std::min<std::ptrdiff_t>(2, std::ssize(rows)));
+    return rows;
+  }
+};
+
+TEST_F(BlendWalks, HoldsWhatItsReadmeTells) {
+  const test::ToolRun run = story("'a folder'");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const fs::path out = folder_ / "a folder";
+  const std::string readme = text_of(KROK_SOURCE_DIR "/samples/blend_walks/README.md");
+
+  const std::string slide = text_of(out / "slide.md"), strikes = text_of(out / "strikes.md");
+  EXPECT_THAT(readme, HasSubstr(slide));
+  EXPECT_THAT(readme, HasSubstr(strikes));
+
+  // In step, in step with feet kept in place, by the clock.
+  const auto speeds = rows_of(slide);
+  ASSERT_EQ(speeds.size(), 3U);
+  const double warped = std::stod(speeds[0].at(2)), stance = std::stod(speeds[1].at(2)),
+               clock = std::stod(speeds[2].at(2));
+  EXPECT_GE(clock, 2 * warped);
+  EXPECT_LT(stance, warped);
+
+  const auto keytimes = rows_of(strikes);
+  ASSERT_EQ(keytimes.size(), 6U);
+  for (const auto& row : keytimes) {
+    const double slow = std::stod(row.at(2)), quick = std::stod(row.at(3));
+    EXPECT_NEAR(std::stod(row.at(4)), 0.5 * (slow + quick), 0.001) << row.at(1);
+    EXPECT_NEAR(std::stod(row.at(5)), 0.5 * (slow + quick), 1.0 / 60) << row.at(1);
+  }
+
+  EXPECT_THAT(text_of(out / "slide.svg"), HasSubstr("by the clock"));
+  EXPECT_EQ(text_of(out / "slide.svg"),
+            text_of(KROK_SOURCE_DIR "/samples/blend_walks/pictures/slide.svg"));
+  EXPECT_THAT(text_of(out / "sweep.png"), StartsWith("\x89PNG"));
+  EXPECT_GT(fs::file_size(out / "sweep.png"), 10000U);
+}
+
+TEST_F(BlendWalks, ToolsThatAreNotThereAreNamed) {
+  const test::ToolRun run = story("", "/nowhere");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("no krok-import in /nowhere"));
+  EXPECT_THAT(run.err, HasSubstr("hint:"));
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,257 @@
+// If these fail, krok-fit or krok-synth leave their user with a library that was made of other
+// motions than it says, a step that is not what was asked for, or without knowing why there is
+// none.
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+#include "core/file.h"
+
+namespace krok::test {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+class StepLibrary : public CliTest {
+ protected:
+  // Four walks, two lengths of step by two slopes.
+  void SetUp() override {
+    CliTest::SetUp();
+    for (const char* length : {"50", "70"}) {
+      for (const char* rise : {"0", "8"}) {
+        const ToolRun made =
+            run({KROK_MAKE_WALK, "--steps", "4", "--step-length", std::string(length) + "cm",
+                 "--rise", std::string(rise) + "cm", "--ground", "slope", "-q", "-o",
+                 path(std::string("walk_") + length + "_" + rise + ".bvh")});
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+      }
+    }
+  }
+  void describe(const std::string& more = R"("examples": [{"clip": "walk_*.bvh"}])") const {
+    write("library.json",
+          R"({"schema": "krok.library/1", "steps": "auto",
+ "parameters": [{"name": "length", "measures": "step.length"}, {"measures": "step.height"}],
+ )" + more + "}");
+  }
+  void write(const std::string& name, const std::string& text) const {
+    ASSERT_TRUE(write_file(path(name), text).ok());
+  }
+  ToolRun fit(std::vector<std::string> arguments = {}) const {
+    arguments.insert(arguments.begin(), path("library.json"));
+    arguments.insert(arguments.end(), {"-o", path("out.steps")});
+    return run_tool("krok-fit", arguments);
+  }
+  void fit_well(const std::vector<std::string>& arguments = {}) const {
+    describe();
+    const ToolRun run = fit(arguments);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  ToolRun synth(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), path("out.steps"));
+    if (!testing::Value(arguments, Contains("-o"))) {
+      arguments.insert(arguments.end(), {"-o", path("step.anim")});
+    }
+    return run_tool("krok-synth", arguments);
+  }
+  json synthesised(std::vector<std::string> arguments) const {
+    arguments.emplace_back("--json");
+    const ToolRun run = synth(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.exit_code == 0 ? json::parse(run.out)["result"]["motions"] : json();
+  }
+};
+
+TEST_F(StepLibrary, MakesWhatIsAskedForAndTellsWhatItMeasures) {
+  fit_well();
+  const json made = synthesised({"--set", "length=60cm", "--set", "height=0.04"});
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0]["asked"]["length"], 0.6);
+  EXPECT_NEAR(made[0]["measured"]["length"].get<double>(), 0.6, 1e-3);
+  EXPECT_NEAR(made[0]["measured"]["height"].get<double>(), 0.04, 1e-3);
+  double sum = 0;
+  for (const json& weight : made[0]["weights"]) sum += weight.get<double>();
+  EXPECT_NEAR(sum, 1, 1e-12);
+  EXPECT_THAT(listing(), Contains("step.anim"));
+  EXPECT_THAT(listing(), Contains("step.keys.json"));
+}
+
+TEST_F(StepLibrary, CorrectingComesNearer) {
+  fit_well({"--refine", "0"});
+  const std::vector<std::string> set = {"--set", "length=61cm", "--set", "step.height=3cm"};
+  std::vector<std::string> correct = set;
+  correct.emplace_back("--correct");
+  const json plain = synthesised(set), corrected = synthesised(correct);
+  const double error = std::abs(corrected[0]["measured"]["length"].get<double>() - 0.61);
+  EXPECT_LT(error, 1e-4);
+  EXPECT_LE(corrected[0]["error_in_tolerances"].get<double>(),
+            plain[0]["error_in_tolerances"].get<double>());
+}
+
+TEST_F(StepLibrary, TheOtherSideIsTheMirrorImage) {
+  fit_well();
+  const std::vector<std::string> set = {"--set", "length=60cm", "--set", "height=2cm"};
+  const json left = synthesised(set);
+  std::vector<std::string> right = set;
+  right.insert(right.end(), {"--side", "right", "-o", path("right.anim")});
+  const json other = synthesised(right);
+  EXPECT_NEAR(left[0]["measured"]["length"].get<double>(),
+              other[0]["measured"]["length"].get<double>(), 1e-6);
+  // Mirrored back it is the same motion.
+  const ToolRun mirrored =
+      run_tool("krok-edit", {path("right.anim"), "--mirror", "-o", path("back.anim"), "-q"});
+  ASSERT_EQ(mirrored.exit_code, 0) << mirrored.err;
+  const ToolRun diff =
+      run_tool("krok-diff", {path("step.anim"), path("back.anim"), "--tolerance", "1mm"});
+  EXPECT_EQ(diff.exit_code, 0) << diff.out << diff.err;
+}
+
+TEST_F(StepLibrary, OutsideTheExamplesIsRefusedWithTheNearestInside) {
+  fit_well();
+  const ToolRun refused = synth({"--set", "length=1.2m", "--set", "height=0"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(has_code(refused.err, "parametric-bounds")) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("nearest"));
+  EXPECT_THAT(refused.err, HasSubstr("--extrapolate"));
+  EXPECT_THAT(listing(), Not(Contains("step.anim")));
+  const ToolRun beyond = synth({"--set", "length=0.75m", "--set", "height=0", "--extrapolate"});
+  EXPECT_EQ(beyond.exit_code, 0) << beyond.err;
+}
+
+TEST_F(StepLibrary, WhatIsAskedWronglyIsToldWithWhatTheLibraryTakes) {
+  fit_well();
+  const std::pair<std::vector<std::string>, const char*> mistakes[] = {
+      {{"--set", "length=60cm"}, "nothing is asked for height"},
+      {{"--set", "width=60cm"}, "there is no 'width'"},
+      {{"--set", "length"}, "NAME=VALUE"},
+      {{"--set", "length=1m", "--set", "length=2m"}, "twice"},
+      {{"--set", "length=60deg", "--set", "height=0"}, "'deg'"},
+      {{}, "nothing is asked for"}};
+  for (const auto& [arguments, says] : mistakes) {
+    const ToolRun run = synth(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, HasSubstr(says));
+  }
+}
+
+TEST_F(StepLibrary, ATableMakesAMotionForEachRow) {
+  fit_well();
+  write("points.csv", "height [cm],length\n0,0.55\n4,0.6\n8,0.65\n");
+  const json made = synthesised({"--table", path("points.csv"), "-o", path("s.anim")});
+  ASSERT_EQ(made.size(), 3u);
+  EXPECT_NEAR(made[2]["measured"]["height"].get<double>(), 0.08, 1e-3);
+  EXPECT_NEAR(made[0]["measured"]["length"].get<double>(), 0.55, 1e-3);
+  for (const char* name : {"s_1.anim", "s_2.anim", "s_3.anim"}) {
+    EXPECT_THAT(listing(), Contains(name));
+  }
+  write("points.csv", "height,length\n0,0.55\n0,9\n");
+  const ToolRun outside = synth({"--table", path("points.csv"), "-o", path("t.anim")});
+  EXPECT_EQ(outside.exit_code, 2);
+  EXPECT_THAT(outside.err, HasSubstr("row 2"));
+  EXPECT_THAT(listing(), Not(Contains("t_1.anim")));
+}
+
+TEST_F(StepLibrary, TheSameBytesWhateverTheThreads) {
+  fit_well({"--refine", "12", "--until", "0.001mm", "-j", "1"});
+  const auto first = InputFile::open(path("out.steps"));
+  ASSERT_TRUE(first.ok());
+  const std::string bytes(first->text());
+  fit_well({"--refine", "12", "--until", "0.001mm", "-j", "2"});
+  EXPECT_TRUE(bytes == InputFile::open(path("out.steps"))->text());
+}
+
+// The weights of a library that was stopped and gone on with are those of one made in one go: the
+// same steps come out of both.
+TEST_F(StepLibrary, GoingOnIsAsIfItHadNotStopped) {
+  fit_well({"--refine", "12", "--until", "0.001mm"});
+  const std::vector<std::string> set = {"--set", "length=57cm", "--set", "height=5cm"};
+  const json whole = synthesised(set);
+  fit_well({"--refine", "4", "--until", "0.001mm"});
+  const ToolRun moved = run({"/bin/mv", path("out.steps"), path("half.steps")});
+  ASSERT_EQ(moved.exit_code, 0);
+  fit_well({"--refine", "12", "--until", "0.001mm", "--resume", path("half.steps")});
+  EXPECT_EQ(synthesised(set)[0]["weights"], whole[0]["weights"]);
+}
+
+TEST_F(StepLibrary, ALibraryOfOtherExamplesIsNotGoneOnWith) {
+  fit_well({"--refine", "4"});
+  ASSERT_EQ(run({"/bin/mv", path("out.steps"), path("half.steps")}).exit_code, 0);
+  describe(R"("examples": [{"clip": "walk_*.bvh"}], "spacing": 0)");
+  const ToolRun other = fit({"--resume", path("half.steps")});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_TRUE(has_code(other.err, "fit-resume")) << other.err;
+}
+
+// A motion of another skeleton is refused by name, or left out where that is asked for.
+TEST_F(StepLibrary, AnotherSkeletonIsRefused) {
+  write("walk_odd.bvh", capture(40));
+  describe();
+  const ToolRun refused = fit();
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("walk_odd.bvh: error"));
+  EXPECT_TRUE(has_code(refused.err, "parametric-skeleton")) << refused.err;
+  EXPECT_THAT(listing(), Not(Contains("out.steps")));
+  const ToolRun partly = fit({"--keep-going"});
+  EXPECT_EQ(partly.exit_code, 3) << partly.err;
+  EXPECT_THAT(partly.err, HasSubstr("walk_odd.bvh: warning"));
+  EXPECT_THAT(listing(), Contains("out.steps"));
+}
+
+TEST_F(StepLibrary, MistakesInTheDescriptionHaveTheirPlace) {
+  const std::pair<const char*, const char*> mistakes[] = {
+      {R"("examples": [{"clip": "none_*.bvh"}])", "library.json:3:15: error: no file fits"},
+      {R"("examples": [{"clip": "walk_50_0.bvh"}])", "2 examples for 2 parameters"},
+      {R"("examples": [{"clip": "walk_*.bvh"}], "keytimes": ["a", "b"])", "library-keytimes"},
+      {R"("examples": [{"clip": "nothere.bvh"}])", "nothere.bvh: error: no such file"}};
+  for (const auto& [more, says] : mistakes) {
+    describe(more);
+    const ToolRun run = fit();
+    EXPECT_EQ(run.exit_code, 2) << more;
+    EXPECT_THAT(run.err, HasSubstr(says));
+    EXPECT_THAT(listing(), Not(Contains("out.steps")));
+  }
+  write("library.json", R"({"schema": "krok.library/1", "parameters": [{"measures": "step.size"}],
+ "examples": [{"clip": "walk_50_0.bvh", "from": "0s", "to": "1s"}]})");
+  const ToolRun unknown = fit();
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("library.json:1:45: error"));
+}
+
+// Examples given one by one, with keytimes of their own: the height of a hand at a moment.
+TEST_F(StepLibrary, OtherMotionsThanStepsWork) {
+  write("library.json", R"({"schema": "krok.library/1", "keytimes": ["begin", "middle", "end"],
+ "parameters": [{"name": "reach", "measures": "LeftHand.along@middle"}],
+ "examples": [
+  {"clip": "walk_50_0.bvh", "keytimes": {"begin": 0, "middle": "0.4s", "end": "0.8s"}},
+  {"clip": "walk_70_0.bvh", "keytimes": {"begin": 0, "middle": "0.4s", "end": "0.8s"}}]})");
+  const ToolRun run = fit();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const ToolRun asked = synth({"--set", "reach=9m"});
+  EXPECT_EQ(asked.exit_code, 2);
+  EXPECT_TRUE(has_code(asked.err, "parametric-bounds")) << asked.err;
+}
+
+TEST_F(StepLibrary, AFileThatIsNoLibraryIsRefused) {
+  write("out.steps", "HIERARCHY\n");
+  const ToolRun run = synth({"--set", "length=1m"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("out.steps: error"));
+}
+
+TEST_F(StepLibrary, ChartsAreWritten) {
+  fit_well({"--plots", path("charts")});
+  for (const char* name : {"errors.svg", "weights.svg", "parameters.svg", "measured.svg"}) {
+    const auto file = InputFile::open(path(std::string("charts/") + name));
+    ASSERT_TRUE(file.ok()) << name;
+    EXPECT_THAT(std::string(file->text()), HasSubstr("</svg>"));
+    EXPECT_THAT(std::string(file->text()), Not(HasSubstr("nan")));
+  }
+}
+
+}  // namespace
+}  // namespace krok::test

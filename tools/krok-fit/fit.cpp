@@ -1,0 +1,94 @@
+#include "tools/krok-fit/fit.h"
+
+#include <filesystem>
+#include <optional>
+
+#include "core/file.h"
+#include "formats/steps/steps.h"
+#include "tools/common/output_kind.h"
+#include "tools/common/output_set.h"
+#include "tools/krok-fit/fit_library.h"
+#include "tools/krok-fit/fit_plots.h"
+#include "tools/krok-fit/fit_report.h"
+#include "tools/krok-fit/saved_fit.h"
+
+namespace krok::fit_tool {
+
+namespace {
+
+// The refinement of a library with the same examples.
+Result<fit::Refined> resumed(const std::string& path, const LibraryInput& input,
+                             ToolContext& context) {
+  const auto file = context.open_input(path);
+  if (!file) return file.error();
+  const auto saved = steps::read(file->bytes());
+  if (!saved) return Error(saved.error()).in_file(path);
+  const parametric::Library& library = input.library;
+  bool same = saved->weights && saved->library.parameters == library.parameters &&
+              saved->library.examples.size() == library.examples.size();
+  for (std::size_t i = 0; same && i < library.examples.size(); ++i) {
+    const parametric::Example& was = saved->library.examples[i];
+    same = was.name == library.examples[i].name && was.parameters == library.examples[i].parameters;
+  }
+  if (!same) {
+    return Error("fit-resume", "it was made from other examples or for other parameters",
+                 "fit it anew, without --resume")
+        .in_file(path);
+  }
+  auto refined = read_refinement(saved->report, input, *saved->weights);
+  if (!refined) return std::move(refined).error().in_file(path);
+  return refined;
+}
+
+Status write_results(const Options& options, const LibraryInput& input, const FittedLibrary& fitted,
+                     ToolContext& context) {
+  steps::StepsFile file;
+  file.library = input.library;
+  file.weights = fitted.refined.function;
+  file.report = report_json(input, fitted).dump();
+  file.provenance = context.provenance();
+  OutputSet outputs(context);
+  Status added = outputs.add(context.output,
+                             [&](OutputFile& output) { return steps::write(file, {}, output); });
+  if (!added || options.plots.empty()) return added ? outputs.finish() : added;
+  const auto charts = make_charts(input, fitted);
+  if (!charts) return charts.error();
+  std::error_code failed;
+  std::filesystem::create_directories(options.plots, failed);
+  if (failed) {
+    return Error("file-unwritable", "the folder for charts cannot be made: " + failed.message())
+        .in_file(options.plots);
+  }
+  for (const auto& [name, svg] : *charts) {
+    added = outputs.add((std::filesystem::path(options.plots) / name).string(),
+                        [&text = svg](OutputFile& output) { return output.write(text); });
+    if (!added) return added;
+  }
+  return outputs.finish();
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  if (Status kind = check_output_kind(context.output, "-o", registry::Kind::steps); !kind) {
+    return kind.error();
+  }
+  const auto input = read_library(options.library, options.keep_going, context);
+  if (!input) return input.error();
+  std::optional<fit::Refined> start;
+  if (!options.resume.empty()) {
+    auto saved = resumed(options.resume, *input, context);
+    if (!saved) return saved.error();
+    start = *std::move(saved);
+  }
+  const auto fitted = fit_library(*input, options, start ? &*start : nullptr, context);
+  if (!fitted) return fitted.error();
+  if (Status written = write_results(options, *input, *fitted, context); !written) {
+    return written.error();
+  }
+  context.report.result = report_json(*input, *fitted);
+  say_report(*input, *fitted, context);
+  return input->refused.empty() ? kExitDone : kExitPartly;
+}
+
+}  // namespace krok::fit_tool

@@ -1,0 +1,143 @@
+#include "tools/krok-fit/fit_library.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/quantity.h"
+#include "math/types.h"
+#include "parametric/bounds.h"
+#include "rbf/weight_solver.h"
+
+namespace krok::fit_tool {
+
+namespace {
+
+using parametric::Library;
+
+std::vector<double> parameters_of(const Library& library) {
+  std::vector<double> points;
+  for (const parametric::Example& example : library.examples) {
+    points.insert(points.end(), example.parameters.begin(), example.parameters.end());
+  }
+  return points;
+}
+
+// The two examples that are nearest to each other, for a message.
+std::string nearest_pair(const LibraryInput& input) {
+  const auto& examples = input.library.examples;
+  double least = INFINITY;
+  std::size_t first = 0, second = 0;
+  for (std::size_t i = 0; i < examples.size(); ++i) {
+    for (std::size_t j = i + 1; j < examples.size(); ++j) {
+      double square = 0;
+      for (std::size_t d = 0; d < input.lower.size(); ++d) {
+        const double apart = (examples[i].parameters[d] - examples[j].parameters[d]) /
+                             (input.upper[d] - input.lower[d]);
+        square += apart * apart;
+      }
+      if (square >= least) continue;
+      least = square;
+      first = i;
+      second = j;
+    }
+  }
+  return fmt::format("'{}' and '{}'", examples[first].name, examples[second].name);
+}
+
+Error explained(Error error, const LibraryInput& input) {
+  if (error.code == "rbf-duplicate") {
+    error.message = fmt::format("two examples have the same parameters: {}", nearest_pair(input));
+    error.hint = "leave one out, or let \"spacing\" do so";
+  } else if (error.code == "rbf-examples" || error.code == "rbf-rank") {
+    error.message += fmt::format("; the library has {} examples for {} parameters",
+                                 input.library.examples.size(), input.library.dimensions());
+    error.hint = "add examples that differ in each parameter by itself, or leave a parameter out";
+  }
+  return error;
+}
+
+void warn_of_spread(const LibraryInput& input, const parametric::PackedExamples& packed,
+                    ToolContext& context) {
+  const parametric::Spread spread = parametric::widest_spread(packed);
+  if (spread.angle <= kPi / 2) return;
+  const Library& library = input.library;
+  const auto name = [&](int example) {
+    return library.examples[static_cast<std::size_t>(example)].name;
+  };
+  Diagnostic told;
+  told.severity = Severity::warning;
+  told.code = "fit-spread";
+  told.joint = library.skeleton.names[static_cast<std::size_t>(spread.joint)];
+  told.message = fmt::format(
+      "'{}' and '{}' turn {} {:.0f} degrees apart; a sum of rotations over 90 degrees apart means "
+      "little",
+      name(spread.first), name(spread.second), told.joint, spread.angle / kRadiansPerDegree);
+  told.hint = "look at both; one may be another motion, or have a wrong keytime";
+  context.tell(std::move(told));
+}
+
+std::vector<double> tolerances_of(const Library& library, const Options& options) {
+  std::vector<double> tolerances;
+  for (const parametric::Parameter& parameter : library.parameters) {
+    double tolerance = parameter.tolerance;
+    if (!options.until.empty() && unit_of(parameter) == "m") {
+      if (const auto until = parse_length(options.until)) tolerance = *until;
+    }
+    tolerances.push_back(tolerance);
+  }
+  return tolerances;
+}
+
+}  // namespace
+
+rbf::Measure measure_of(const parametric::Measure& measure) {
+  return [&measure](std::span<const double> weights, std::span<double> parameters,
+                    std::span<double> jacobian) {
+    // A scratch for each thread and library that it works on.
+    thread_local const parametric::Measure* owner = nullptr;
+    thread_local parametric::Measure::Scratch scratch;
+    if (owner != &measure) {
+      scratch = measure.make_scratch();
+      owner = &measure;
+    }
+    return measure(weights, parameters, jacobian, scratch);
+  };
+}
+
+Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& options,
+                                  const fit::Refined* start, ToolContext& context) {
+  const Library& library = input.library;
+  FittedLibrary fitted;
+  fitted.packed = parametric::pack_examples(library);
+  fitted.tolerances = tolerances_of(library, options);
+  warn_of_spread(input, fitted.packed, context);
+  if (start != nullptr) {
+    fitted.start = *start;
+  } else {
+    const auto solver = rbf::WeightSolver::create(library.dimensions(), parameters_of(library),
+                                                  {options.kernel, input.lower, input.upper});
+    if (!solver) return explained(solver.error(), input).in_file(options.library);
+    fitted.start.function = solver->function();
+  }
+
+  const parametric::Measure measure(library, fitted.packed);
+  const parametric::Bounds bounds = parametric::bounds_of(library);
+  fit::RefineOptions how;
+  how.inside = [&bounds](std::span<const double> point) {
+    return parametric::outside(bounds, point).distance <= 0;
+  };
+  how.tolerance = fitted.tolerances;
+  how.points = options.refine.value_or(0);
+  // No points at all: every error is small enough.
+  if (options.refine == 0) how.tolerance.assign(how.tolerance.size(), INFINITY);
+  how.seed = options.seed;
+  how.held_out = options.held_out;
+  how.jobs = context.jobs;
+  auto refined = fit::refine(fitted.start, measure_of(measure), how, *context.progress);
+  if (!refined) return std::move(refined).error().in_file(options.library);
+  fitted.refined = *std::move(refined);
+  return fitted;
+}
+
+}  // namespace krok::fit_tool

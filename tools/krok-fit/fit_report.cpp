@@ -1,0 +1,171 @@
+#include "tools/krok-fit/fit_report.h"
+
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "tools/krok-fit/parameter_text.h"
+
+namespace krok::fit_tool {
+
+namespace {
+
+using fit::ParameterError;
+using fit::RefineFigures;
+
+Json errors_json(const std::vector<ParameterError>& errors, const LibraryInput& input) {
+  Json result = Json::object();
+  for (std::size_t d = 0; d < errors.size(); ++d) {
+    Json entry;
+    entry["largest"] = errors[d].largest;
+    entry["mean"] = errors[d].mean;
+    entry["most_95"] = errors[d].most;
+    result[input.description.parameters[d].name] = std::move(entry);
+  }
+  return result;
+}
+
+Json figures_json(const RefineFigures& figures, const LibraryInput& input) {
+  Json result;
+  result["within"] = errors_json(figures.within, input);
+  result["extrapolated"] = errors_json(figures.outside, input);
+  result["largest_of_range"] = figures.largest;
+  result["mean_square_of_range"] = figures.mean_square;
+  result["not_measured"] = figures.failed;
+  result["least_weight"] = figures.least_weight;
+  result["largest_weight"] = figures.largest_weight;
+  result["roughness"] = figures.roughness;
+  result["condition"] = figures.condition;
+  return result;
+}
+
+Json parameters_json(const LibraryInput& input, const FittedLibrary& fitted) {
+  const parametric::Library& library = input.library;
+  Json list = Json::array();
+  for (std::size_t d = 0; d < library.parameters.size(); ++d) {
+    Json entry;
+    entry["name"] = input.description.parameters[d].name;
+    entry["measures"] = name_of(library.parameters[d], library.skeleton, library.keytimes);
+    entry["unit"] = std::string(unit_of(library.parameters[d]));
+    entry["from"] = input.lower[d];
+    entry["to"] = input.upper[d];
+    entry["tolerance"] = fitted.tolerances[d];
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+Json rounds_json(const LibraryInput& input, const FittedLibrary& fitted) {
+  Json list = Json::array();
+  for (const fit::RefineRound& round : fitted.refined.rounds) {
+    Json entry;
+    entry["inserted"] = round.inserted;
+    entry["refused"] = round.refused;
+    entry["by_other_parameters"] = round.by_point;
+    entry["sought_of_range"] = round.sought;
+    entry["after"] = figures_json(round.after, input);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+Json refused_json(const FittedLibrary& fitted) {
+  Json list = Json::array();
+  for (const fit::RefusedPoint& point : fitted.refined.refused) {
+    Json entry;
+    entry["round"] = point.round;
+    entry["point"] = point.point;
+    entry["reason"] = std::string(fit::refusal_name(point.reason));
+    entry["value"] = point.value;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+const RefineFigures& last_figures(const FittedLibrary& fitted) {
+  return fitted.refined.rounds.empty() ? fitted.refined.before : fitted.refined.rounds.back().after;
+}
+
+std::string with_unit(double value, const ShownUnit& unit) {
+  return fmt::format("{} {}", readable(value * unit.factor, 3), unit.name);
+}
+
+std::string range_text(const LibraryInput& input, std::size_t d) {
+  const ShownUnit unit = unit_for_values(input.library.parameters[d]);
+  return fmt::format("{} to {} {}", readable(input.lower[d] * unit.factor, 3),
+                     readable(input.upper[d] * unit.factor, 3), unit.name);
+}
+
+std::string what_stopped(const fit::Refined& refined) {
+  switch (refined.stop) {
+    case fit::Stop::tolerance:
+      return "the tolerances are reached";
+    case fit::Stop::points:
+      return "as many as were asked for";
+    case fit::Stop::stalled:
+      return "no further point helped";
+    default:
+      return std::string(fit::stop_name(refined.stop));
+  }
+}
+
+}  // namespace
+
+Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
+  const parametric::Library& library = input.library;
+  Json result;
+  result["name"] = input.description.name;
+  result["swing"] = library.swing == FootSide::left ? "left" : "right";
+  result["keytimes"] = library.keytimes;
+  result["parameters"] = parameters_json(input, fitted);
+  Json examples = Json::array();
+  for (const parametric::Example& example : library.examples) {
+    examples.push_back({{"name", example.name},
+                        {"mirrored", example.mirrored},
+                        {"parameters", example.parameters}});
+  }
+  result["examples"] = std::move(examples);
+  result["found"] = input.found;
+  Json dropped = Json::array();
+  for (const parametric::DroppedStep& step : input.dropped) {
+    dropped.push_back(
+        {{"clip", step.walk}, {"start", step.start}, {"end", step.end}, {"reason", step.reason}});
+  }
+  result["dropped"] = std::move(dropped);
+  result["kernel"] = std::string(rbf::kernel_name(fitted.refined.function.kernel));
+  result["inserted"] = fitted.refined.function.inserted();
+  result["example_error_of_range"] = fitted.refined.example_error;
+  result["before"] = figures_json(fitted.refined.before, input);
+  result["rounds"] = rounds_json(input, fitted);
+  result["refused_points"] = refused_json(fitted);
+  result["stop"] = std::string(fit::stop_name(fitted.refined.stop));
+  return result;
+}
+
+void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolContext& context) {
+  const parametric::Library& library = input.library;
+  const auto kept = static_cast<int>(library.examples.size());
+  const auto dropped = static_cast<int>(input.dropped.size());
+  std::string steps = fmt::format("{} ({} mirrored)", counted(kept, "example"), input.mirrored);
+  if (input.found > kept) {
+    steps += fmt::format(", {} more too close to these", input.found - kept);
+  }
+  if (dropped > 0) steps += fmt::format(", {} dropped", dropped);
+  context.say(fmt::format("{}: {}", context.output, steps));
+  const RefineFigures& before = fitted.refined.before;
+  const RefineFigures& after = last_figures(fitted);
+  for (std::size_t d = 0; d < library.parameters.size(); ++d) {
+    const ShownUnit unit = unit_for_errors(library.parameters[d]);
+    context.say(fmt::format("  {}, {}: error {} before, {} after (mean {}; held out)",
+                            input.description.parameters[d].name, range_text(input, d),
+                            with_unit(before.within[d].largest, unit),
+                            with_unit(after.within[d].largest, unit),
+                            with_unit(after.within[d].mean, unit)));
+  }
+  context.say(fmt::format("  {} inserted in {}: {}; weights {} to {}",
+                          counted(fitted.refined.function.inserted(), "point"),
+                          counted(static_cast<long long>(fitted.refined.rounds.size()), "round"),
+                          what_stopped(fitted.refined), readable(after.least_weight, 3),
+                          readable(after.largest_weight, 3)));
+}
+
+}  // namespace krok::fit_tool

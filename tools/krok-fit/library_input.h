@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "formats/library/library_description.h"
+#include "parametric/cut_steps.h"
+#include "parametric/library.h"
+#include "tools/common/tool.h"
+
+// From the description of a library and the motions that it names to the library.
+
+namespace krok::fit_tool {
+
+// A motion that was left out, and why.
+struct RefusedClip {
+  std::string path;
+  Error error;
+};
+
+struct LibraryInput {
+  library::LibraryDescription description;
+  RoleMap roles;
+  parametric::Library library;
+  std::vector<double> lower, upper;  // [parameters], the range that is asked for
+  std::vector<parametric::DroppedStep> dropped;
+  int found = 0;     // examples before those too close to others were left out
+  int mirrored = 0;  // examples that are mirrored steps
+  std::vector<RefusedClip> refused;
+};
+
+// Reads the description at `path` and the motions below its folder. A motion that does not fit, for
+// its skeleton is another one than most have, is an Error, or with `keep_going` is told and left
+// out. Codes: those of library::read and of reading motions; library-clip for a pattern that fits
+// no file; library-keytimes, library-examples; those of parametric::cut_steps and make_example.
+Result<LibraryInput> read_library(const std::string& path, bool keep_going, ToolContext& context);
+
+}  // namespace krok::fit_tool

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/result.h"
+#include "rbf/weight_function.h"
+
+namespace krok::fit_tool {
+
+struct Options {
+  std::string library;  // the description's path
+  bool keep_going = false;
+  rbf::Kernel kernel = rbf::Kernel::cubic;
+  std::optional<int> refine;  // points to insert at most; nothing: 40 for each parameter
+  std::string until;          // a length: the error at which lengths are good enough
+  int held_out = 0;           // 0: as refine() chooses
+  std::uint64_t seed = 1;
+  std::string resume;  // a library to go on with
+  std::string plots;   // a folder
+};
+
+void declare(CLI::App& app, Options& options);
+Status check(const Options& options);
+
+}  // namespace krok::fit_tool

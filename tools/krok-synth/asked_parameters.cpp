@@ -1,0 +1,146 @@
+#include "tools/krok-synth/asked_parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/numbers.h"
+#include "core/quantity.h"
+#include "core/text.h"
+#include "formats/csv/table.h"
+#include "formats/steps/parameter_names.h"
+#include "math/types.h"
+#include "parametric/bounds.h"
+
+namespace krok::synth_tool {
+
+namespace {
+
+Result<double> parse_value(std::string_view text, std::string_view unit) {
+  if (unit == "m") return parse_length(text);
+  if (unit == "rad") return parse_angle(text);
+  const auto time = parse_clip_time(text);
+  if (!time) return time.error();
+  if (time->in_frames) return Error("quantity-unit", "frames are no unit here", "use s or ms");
+  return time->value;
+}
+
+Error usage(std::string message, const std::vector<NamedParameter>& parameters) {
+  return {"usage", std::move(message), "the library takes " + in_words(parameters)};
+}
+
+// By its name, or by what it measures.
+std::optional<std::size_t> find(std::string_view name,
+                                const std::vector<NamedParameter>& parameters) {
+  for (std::size_t d = 0; d < parameters.size(); ++d) {
+    if (parameters[d].name == name || parameters[d].measures == name) return d;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<NamedParameter> parameters_of(const steps::StepsFile& file) {
+  const parametric::Library& library = file.library;
+  const parametric::Bounds bounds = parametric::bounds_of(library);
+  const std::vector<std::string> names = steps::parameter_names(file);
+  std::vector<NamedParameter> parameters;
+  for (std::size_t d = 0; d < library.parameters.size(); ++d) {
+    NamedParameter parameter;
+    parameter.measures = name_of(library.parameters[d], library.skeleton, library.keytimes);
+    parameter.name = names[d];
+    parameter.unit = unit_of(library.parameters[d]);
+    parameter.least = bounds.lower[d];
+    parameter.most = bounds.upper[d];
+    parameters.push_back(std::move(parameter));
+  }
+  return parameters;
+}
+
+std::string in_words(const std::vector<NamedParameter>& parameters) {
+  std::string text;
+  for (const NamedParameter& parameter : parameters) {
+    const bool angle = parameter.unit == "rad";
+    const double factor = angle ? 1 / kRadiansPerDegree : 1;
+    text += fmt::format("{}{} {} to {} {}", text.empty() ? "" : ", ", parameter.name,
+                        readable(parameter.least * factor, 3), readable(parameter.most * factor, 3),
+                        angle ? "degrees" : parameter.unit);
+  }
+  return text;
+}
+
+Result<std::vector<double>> parse_settings(const std::vector<std::string>& words,
+                                           const std::vector<NamedParameter>& parameters) {
+  std::vector<std::optional<double>> values(parameters.size());
+  for (const std::string& word : words) {
+    const std::size_t sign = word.rfind('=');
+    if (sign == std::string::npos) {
+      return usage(fmt::format("--set: '{}' is not NAME=VALUE", shown(word)), parameters);
+    }
+    const auto d = find(word.substr(0, sign), parameters);
+    if (!d) {
+      return usage(fmt::format("--set: there is no '{}'", shown(word.substr(0, sign))), parameters);
+    }
+    if (values[*d]) {
+      return usage(fmt::format("--set: {} is given twice", parameters[*d].name), parameters);
+    }
+    const auto value = parse_value(word.substr(sign + 1), parameters[*d].unit);
+    if (!value) {
+      return Error("usage", fmt::format("--set {}: {}", parameters[*d].name, value.error().message),
+                   value.error().hint);
+    }
+    values[*d] = *value;
+  }
+  std::vector<double> point;
+  for (std::size_t d = 0; d < values.size(); ++d) {
+    if (!values[d]) {
+      return usage(
+          fmt::format("nothing is asked for {}: --set {}=", parameters[d].name, parameters[d].name),
+          parameters);
+    }
+    point.push_back(*values[d]);
+  }
+  return point;
+}
+
+Result<std::vector<std::vector<double>>> read_points(const std::string& path,
+                                                     const std::vector<NamedParameter>& parameters,
+                                                     ToolContext& context) {
+  const auto file = context.open_input(path);
+  if (!file) return file.error();
+  const auto table = csv::Table::read(file->text(), path);
+  if (!table) return table.error();
+  std::vector<std::size_t> columns;
+  std::vector<double> factors;
+  for (const NamedParameter& parameter : parameters) {
+    auto column = table->find(parameter.name);
+    if (!column) return std::move(column).error().in_file(path);
+    columns.push_back(*column);
+    const std::string& unit = table->columns()[*column].unit;
+    const auto factor = parse_value("1" + unit, parameter.unit);
+    if (!factor) {
+      return Error("synth-table", fmt::format("{}: {}", parameter.name, factor.error().message),
+                   factor.error().hint)
+          .in_file(path);
+    }
+    factors.push_back(*factor);
+  }
+  const auto numbers = table->numbers(columns);
+  if (!numbers) return numbers.error();
+  std::vector<std::vector<double>> points(table->row_count());
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    for (std::size_t d = 0; d < parameters.size(); ++d) {
+      const double value = (*numbers)[d][row] * factors[d];
+      if (!std::isfinite(value)) {
+        return Error("synth-table", fmt::format("row {} has no {}", row + 1, parameters[d].name))
+            .in_file(path);
+      }
+      points[row].push_back(value);
+    }
+  }
+  return points;
+}
+
+}  // namespace krok::synth_tool

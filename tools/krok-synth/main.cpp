@@ -1,0 +1,22 @@
+#include "tools/krok-synth/make_motions.h"
+
+int main(int argc, char** argv) {
+  krok::synth_tool::Options options;
+  krok::ToolSpec spec;
+  spec.name = "krok-synth";
+  spec.summary = "Makes a motion with the parameters that are asked for, from a step library";
+  spec.inputs = "IN.steps";
+  spec.examples = {
+      {"krok-synth walking.steps --set length=70cm --set turn=15deg -o step.anim",
+       "one step of that length and turn; what it really measures is told"},
+      {"krok-synth walking.steps --set length=0.7 --correct --side right -o step.anim",
+       "the mirror image, corrected until it is right to a hundredth of the tolerance"},
+      {"krok-synth walking.steps --table points.csv -o steps/step.anim",
+       "a motion for each row of a table with a column for each parameter: step_1.anim, ..."}};
+  spec.declare = [&options](CLI::App& app) { krok::synth_tool::declare(app, options); };
+  spec.check = [&options] { return krok::synth_tool::check(options); };
+  spec.run = [&options](krok::ToolContext& context) {
+    return krok::synth_tool::run(options, context);
+  };
+  return krok::run_tool(spec, argc, argv);
+}
