@@ -60,6 +60,7 @@ class Reader {
     choose_rate();
     if (Status filled = fill_clip(kinematics); !filled) return filled.error();
     fill_freedoms(kinematics);
+    settle_rest();
     asf_.finish();
     amc_.finish();
     return std::move(capture_);
@@ -259,6 +260,17 @@ class Reader {
       fill_frames_between(clip, static_cast<int>(places_[i - 1]), static_cast<int>(places_[i]));
     }
     return {};
+  }
+
+  void settle_rest() {
+    const RestPose rest = find_rest_pose(capture_.clip, capture_.roles);
+    capture_.rest_frame_found = rest.first_frame_is_rest;
+    capture_.rest_frame_dropped =
+        settle_rest_frame(rest, options_.rest_frame, "acclaim", amc_.file_name(), capture_);
+    if (!capture_.rest_frame_dropped || capture_.clip.frame_count() == 0) return;
+    // A frame that was filled in has the number between.
+    capture_.first_frame_number =
+        places_[1] == 1 ? motion_.frame_numbers[1] : motion_.frame_numbers[0] + 1;
   }
 
   void fill_freedoms(const Kinematics& kinematics) {

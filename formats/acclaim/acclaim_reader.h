@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "capture/capture.h"
+#include "capture/rest_frame.h"
 #include "core/result.h"
 #include "math/types.h"
 
@@ -22,7 +23,9 @@ namespace krok::acclaim {
 // A given unit is that of the numbers as printed, whatever :units says. With metres, up +y and
 // forward +z given, numbers pass through unconverted. Where no rate is given and the AMC says none,
 // as few do, it is 120, the rate of most of the CMU collection.
-using ReadOptions = CaptureOptions;
+struct ReadOptions : CaptureOptions {
+  RestFrame rest_frame = RestFrame::keep;
+};
 
 // What a joint can do, as `dof` and `limits` have it.
 struct DegreeOfFreedom {
@@ -48,7 +51,9 @@ struct Capture : krok::Capture {
   std::vector<JointFreedom> freedoms;  // [joints]
   std::string name;                    // of the skeleton
   std::string documentation;
-  long long first_frame_number = 0;  // of the first frame in the AMC; 0 without frames
+  long long first_frame_number = 0;  // of the clip's first frame in the AMC; 0 without frames
+  bool rest_frame_found = false;     // the first frame is a rest pose
+  bool rest_frame_dropped = false;
 };
 
 // Reads a skeleton and a motion for it. Texts need not outlive the call; names are for messages.
@@ -67,7 +72,7 @@ struct Capture : krok::Capture {
 // acclaim-hierarchy, acclaim-unknown-bone, acclaim-values, acclaim-frame, acclaim-cut,
 // acclaim-missing, acclaim-rate, acclaim-limit, direction-parallel. Of warnings and notes besides
 // these: acclaim-keyword, acclaim-name, acclaim-limits, acclaim-root, acclaim-unit, acclaim-up,
-// acclaim-forward, acclaim-repair, acclaim-more.
+// acclaim-forward, acclaim-repair, acclaim-rest-frame, acclaim-more.
 Result<Capture> read(std::string_view asf_text, const std::string& asf_name,
                      std::string_view amc_text, const std::string& amc_name,
                      const ReadOptions& options = {});

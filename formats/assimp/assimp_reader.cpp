@@ -117,7 +117,7 @@ Result<nodes::Scene> read_file(const std::string& path, const ReadOptions& optio
   Companions companions = find_companions(
       path, kind, file->text(), options.most_file_bytes - std::min(size, options.most_file_bytes));
   for (const Companions::Entry& companion : companions.files) {
-    files.push_back({companion.name, companion.file.bytes()});
+    files.push_back({companion.name, companion.bytes()});
   }
   auto scene = read_in_child(files, kind, options);
   if (!scene) return std::move(scene.error()).in_file(path);

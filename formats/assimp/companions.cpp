@@ -99,7 +99,7 @@ void find_md5_motion(Finder& finder, std::string_view mesh) {
     if (md5_joints(file->text()) == md5_joints(mesh)) {
       finder.tell(Severity::note,
                   fmt::format("the motion is that of '{}' beside it", path.filename().string()));
-      finder.found.files.push_back({"file.md5anim", std::move(*file)});
+      finder.found.files.push_back({"file.md5anim", std::move(*file), {}});
     } else {
       finder.tell(Severity::warning,
                   fmt::format("the motion '{}' beside it is for other joints and left out",
@@ -135,7 +135,7 @@ void find_md5_mesh(Finder& finder, std::string_view motion) {
   if (fitting.size() == 1) {
     finder.tell(Severity::note, fmt::format("the mesh is that of '{}' beside it",
                                             fitting[0].first.filename().string()));
-    finder.found.files.push_back({"file.md5mesh", std::move(fitting[0].second)});
+    finder.found.files.push_back({"file.md5mesh", std::move(fitting[0].second), {}});
   } else if (candidates.empty()) {
     finder.tell(Severity::note, "there is no mesh (.md5mesh) beside the motion");
   } else if (fitting.empty()) {
@@ -153,6 +153,32 @@ void find_md5_mesh(Finder& finder, std::string_view motion) {
 }
 
 // A list has a line a motion: its name and its file, or its file alone.
+struct ListedMotion {
+  std::string name;
+  fs::path file;  // in the list's folder
+};
+
+std::vector<ListedMotion> listed_motions(std::string_view text) {
+  std::vector<ListedMotion> motions;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    const std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.empty()) continue;
+    const std::size_t space = line.find_first_of(" \t");
+    if (space == std::string_view::npos) {
+      const fs::path file = std::string(line);
+      motions.push_back({file.stem().string(), file});
+    } else {
+      motions.push_back(
+          {std::string(line.substr(0, space)), std::string(trimmed(line.substr(space)))});
+    }
+  }
+  return motions;
+}
+
+// Assimp goes by base names here, which two of the files may share, and refuses all motions for
+// the want of one. So it is given another list, with a name of its own for each that is there.
 void find_smd_motions(Finder& finder, const std::string& path) {
   const fs::path list_path = finder.folder() / (fs::path(path).stem().string() + "_animation.txt");
   std::error_code trouble;
@@ -160,26 +186,29 @@ void find_smd_motions(Finder& finder, const std::string& path) {
   auto list = finder.open(list_path);
   if (!list) return;
   constexpr std::size_t kMostMotions = 256;
-  std::string_view text = list->text();
-  std::size_t motions = 0;
-  while (!text.empty() && motions < kMostMotions) {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.empty()) continue;
-    const std::size_t space = line.find_first_of(" \t");
-    const std::string_view name =
-        space == std::string_view::npos ? line : trimmed(line.substr(space));
-    auto motion = finder.open(finder.folder() / fs::path(std::string(name)));
-    if (!motion) {
-      finder.tell(Severity::warning, fmt::format("the motion '{}' of '{}' cannot be opened",
-                                                 shown(name), list_path.filename().string()));
-      return;  // Assimp would refuse all
-    }
-    finder.found.files.push_back({base_name(std::string(name)), std::move(*motion)});
-    ++motions;
+  std::vector<ListedMotion> motions = listed_motions(list->text());
+  const std::string list_name = shown(list_path.filename().string());
+  if (motions.size() > kMostMotions) {
+    finder.tell(Severity::warning,
+                fmt::format("of the {} motions of '{}' the first {} are taken", motions.size(),
+                            list_name, kMostMotions),
+                "import the others for themselves");
+    motions.resize(kMostMotions);
   }
-  finder.found.files.push_back({"file_animation.txt", std::move(*list)});
+  std::string text;
+  for (const ListedMotion& motion : motions) {
+    auto file = finder.open(finder.folder() / motion.file);
+    if (!file) {
+      finder.tell(Severity::warning, fmt::format("the motion '{}' of '{}' cannot be opened",
+                                                 shown(motion.file.string()), list_name));
+      continue;
+    }
+    const std::string own_name = fmt::format("motion_{}.smd", finder.found.files.size());
+    text += fmt::format("{} {}\n", motion.name, own_name);
+    finder.found.files.push_back({own_name, std::move(*file), {}});
+  }
+  if (text.empty()) return;
+  finder.found.files.push_back({"file_animation.txt", std::move(*list), std::move(text)});
 }
 
 }  // namespace

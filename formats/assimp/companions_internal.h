@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,11 @@ struct Companions {
   struct Entry {
     std::string name;  // as Assimp will ask for it, without a folder
     InputFile file;
+    std::string text;  // what Assimp is given in place of the file's own, where not empty
+
+    std::span<const std::byte> bytes() const {
+      return text.empty() ? file.bytes() : std::as_bytes(std::span(text));
+    }
   };
   std::vector<Entry> files;
   Diagnostics diagnostics;

@@ -9,6 +9,7 @@
 
 #include "capture/exporter.h"
 #include "capture/fill_frames.h"
+#include "capture/rest_frame.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/bvh/angle_unit_internal.h"
@@ -18,7 +19,6 @@
 #include "formats/bvh/kinematics.h"
 #include "formats/bvh/motion_rows.h"
 #include "formats/bvh/position_choice.h"
-#include "formats/bvh/rest_frame.h"
 #include "formats/bvh/row_frames.h"
 #include "formats/bvh/text_cursor.h"
 
@@ -363,26 +363,11 @@ class Reader {
 
   void report_rest_pose() {
     const RestPose rest = find_rest_pose(capture_.clip, capture_.roles);
-    tell(Severity::note, "bvh-reference", rest.reference);
+    tell(Severity::note, "bvh-reference",
+         fmt::format("the reference pose (OFFSETs, no rotations) is {}", rest.reference));
     capture_.rest_frame_found = rest.first_frame_is_rest;
-    const bool drop = capture_.clip.frame_count() > 0 &&
-                      (options_.rest_frame == RestFrame::drop ||
-                       (options_.rest_frame == RestFrame::automatic && rest.first_frame_is_rest));
-    if (drop) {
-      Clip& clip = capture_.clip;
-      const auto joints = static_cast<std::ptrdiff_t>(clip.joint_count());
-      clip.positions.erase(clip.positions.begin(), clip.positions.begin() + joints);
-      clip.orientations.erase(clip.orientations.begin(), clip.orientations.begin() + joints);
-      clip.provenance.conversions.emplace_back("the first frame, a rest pose, was left out");
-      capture_.rest_frame_dropped = true;
-    }
-    if (rest.first_frame_is_rest) {
-      tell(drop ? Severity::note : Severity::warning, "bvh-rest-frame",
-           fmt::format("{}; it {}", rest.reason, drop ? "was left out" : "was kept"),
-           drop ? "" : "--skip-rest-frame auto leaves it out");
-    } else if (drop) {
-      tell(Severity::note, "bvh-rest-frame", "the first frame was left out, as asked");
-    }
+    capture_.rest_frame_dropped =
+        settle_rest_frame(rest, options_.rest_frame, "bvh", file_name_, capture_);
   }
 
   static constexpr std::size_t kRowsAtOnce = 64;

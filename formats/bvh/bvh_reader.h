@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "capture/capture.h"
+#include "capture/rest_frame.h"
 #include "core/result.h"
 #include "scene/frame_source.h"
 
@@ -18,11 +19,6 @@ namespace krok::bvh {
 // What position channels mean. absolute: they replace the joint's OFFSET. additive: they are added
 // to it. Files do not say; most are absolute.
 enum class Positions { automatic, absolute, additive };
-
-// Many captures begin with a frame that holds a rest pose and is no part of the motion. keep: it
-// stays, and is reported. automatic: it is dropped where it is recognised. drop: the first frame is
-// dropped whatever it is.
-enum class RestFrame { keep, automatic, drop };
 
 // What rotation channels are in. The format has degrees; a file that looks otherwise gets a
 // warning.

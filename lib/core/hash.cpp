@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+// Replaces the functions of the same names by those that look at the machine.
+#ifdef KROK_XXHASH_DISPATCHES
+#include <xxh_x86dispatch.h>
+#endif
+
 #include <new>
 
 namespace krok {

@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
+#include <optional>
 #include <vector>
 
 #include "core/file.h"
@@ -15,14 +15,31 @@
 
 namespace krok {
 
+namespace {
+
+constexpr std::size_t kStretch = std::size_t{4} << 20;  // worth a call; whole pages
+
+}  // namespace
+
 struct InputFile::Content {
   void* mapped = nullptr;
   std::size_t mapped_size = 0;
   std::size_t released = 0;  // what before is given back already
   std::vector<std::byte> owned;
+  // The checksum of what stands before `summed`. A mapped file that is released from front to back
+  // is summed on the way, while its bytes are at hand.
+  std::optional<Xxh3Stream> sum;
+  std::size_t summed = 0;
 
   ~Content() {
     if (mapped != nullptr) munmap(mapped, mapped_size);
+  }
+
+  void sum_up_to(std::size_t end) {
+    if (end <= summed) return;
+    if (!sum) sum.emplace();
+    sum->update({static_cast<const std::byte*>(mapped) + summed, end - summed});
+    summed = end;
   }
 };
 
@@ -45,25 +62,24 @@ std::string_view InputFile::text() const {
 }
 
 std::uint64_t InputFile::checksum() const {
-  constexpr std::size_t kStretch = std::size_t{4} << 20;
-  const auto all = bytes();
-  if (all.size() <= kStretch) return xxh3(all);
-  Xxh3Stream stream;
-  for (std::size_t at = 0; at < all.size(); at += kStretch) {
-    stream.update(all.subspan(at, std::min(kStretch, all.size() - at)));
-    release_before(at + kStretch);
+  Content& content = *content_;
+  if (content.mapped == nullptr) return xxh3(content.owned);
+  while (content.summed < content.mapped_size) {
+    const std::size_t end = std::min(content.summed + kStretch, content.mapped_size);
+    content.sum_up_to(end);
+    if (content.mapped_size > kStretch) release_before(end);
   }
-  return stream.digest();
+  return content.sum->digest();
 }
 
 void InputFile::release_before(std::size_t offset) const {
-  constexpr std::size_t kStretch = std::size_t{4} << 20;  // worth a call; whole pages
   Content& content = *content_;
   if (content.mapped == nullptr) return;
   const std::size_t end = std::min(offset, content.mapped_size) / kStretch * kStretch;
   // Going back means that the file is read once more from its front.
   if (end < content.released) content.released = 0;
   if (end == content.released) return;
+  content.sum_up_to(end);
   // The mapping is private and nothing was written to it, so the file's bytes come back. Where the
   // system does not follow, nothing is lost but memory.
   (void)madvise(static_cast<std::byte*>(content.mapped) + content.released, end - content.released,
@@ -99,10 +115,13 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
   const auto too_large = [&] {
     return file_error("file-too-large", path, fmt::format("is larger than {} bytes", limit));
   };
+  // A map costs each thread of the program a little; small files are sooner read.
+  constexpr std::uint64_t kMappedFrom = std::uint64_t{1} << 16;
   auto content = std::make_unique<Content>();
-  if (S_ISREG(status.st_mode) && status.st_size > 0) {
-    const auto size = static_cast<std::uint64_t>(status.st_size);
-    if (size > limit) return too_large();
+  const auto size =
+      S_ISREG(status.st_mode) ? static_cast<std::uint64_t>(status.st_size) : std::uint64_t{0};
+  if (size > limit) return too_large();
+  if (size >= kMappedFrom) {
     void* mapped = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
     if (mapped != MAP_FAILED) {
       content->mapped = mapped;
@@ -110,20 +129,25 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
       return InputFile(path, std::move(content));
     }
   }
-  // What cannot be mapped takes memory byte by byte, and a device may never end.
+  // What cannot be mapped takes memory as it comes, and a device may never end. Not by way of the
+  // stack: where memory is at an end, a stack that cannot grow ends the program.
   limit = std::min(limit, InputFile::kStreamLimit);
-  std::array<std::byte, 1 << 16> buffer;
+  std::vector<std::byte>& owned = content->owned;
+  std::size_t used = 0;
+  owned.resize(size > 0 && size < kMappedFrom ? size + 1 : kMappedFrom);
   for (;;) {
-    const ssize_t count = ::read(descriptor, buffer.data(), buffer.size());
+    const ssize_t count = ::read(descriptor, owned.data() + used, owned.size() - used);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {
       return file_error("file-unreadable", path,
                         fmt::format("cannot be read: {}", system_text(errno)));
     }
     if (count == 0) break;
-    content->owned.insert(content->owned.end(), buffer.begin(), buffer.begin() + count);
-    if (content->owned.size() > limit) return too_large();
+    used += static_cast<std::size_t>(count);
+    if (used > limit) return too_large();
+    if (used == owned.size()) owned.resize(2 * used);
   }
+  owned.resize(used);
   return InputFile(path, std::move(content));
 }
 

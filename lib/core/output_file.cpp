@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cassert>
 #include <cerrno>
 #include <cstdio>
@@ -48,13 +49,28 @@ Error exists_error(const std::string& path) {
                     "choose another name or leave --no-clobber out");
 }
 
+// How many files without a name wait for their place. Each takes a descriptor, of which a program
+// may have few; further ones get a name to wait under.
+constexpr int kMostKeptOpen = 16;
+std::atomic<int> kept_open{0};
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
 }  // namespace
 
 struct OutputFile::State {
   std::string path;       // as the caller wrote it, for messages
   std::string target;     // what is replaced, through symbolic links
-  std::string temporary;  // empty where bytes go to `path` directly
+  std::string temporary;  // the name until the file is placed; empty where it has none
   int descriptor = -1;
+  // A file that had nothing to replace when it was begun has no name until it is placed, if the
+  // file system allows that.
+  bool unnamed = false;
+  std::string unnamed_path;  // where it can be read meanwhile
+  bool is_kept_open = false;
   std::atomic<int>* slot = nullptr;
   bool sealed = false;
   enum class Placed { no, anew, exchanged, for_good } placed = Placed::no;
@@ -68,18 +84,27 @@ struct OutputFile::State {
 
   ~State() { discard(); }
 
+  // Whether bytes go to `path` as they come.
+  bool direct() const { return temporary.empty() && !unnamed; }
+
   void close() {
     if (descriptor > STDERR_FILENO) ::close(descriptor);
     descriptor = -1;
+    unnamed = false;
+    if (std::exchange(is_kept_open, false)) --kept_open;
+  }
+
+  // The temporary name is no more.
+  void forget_name() {
+    forget_temporary(slot);
+    temporary.clear();
   }
 
   void discard() {
     close();
-    if (!temporary.empty()) {
-      unlink(temporary.c_str());
-      forget_temporary(slot);
-      temporary.clear();
-    }
+    if (temporary.empty()) return;
+    unlink(temporary.c_str());
+    forget_name();
   }
 
   Status fail(int error_number, const char* what) {
@@ -112,7 +137,7 @@ struct OutputFile::State {
   // Only a beginning: what fails here, fsync() tells.
   void start_storing() {
     constexpr std::uint64_t kStretch = std::uint64_t{8} << 20;
-    if (temporary.empty() || given - storing < kStretch) return;
+    if (direct() || given - storing < kStretch) return;
     (void)sync_file_range(descriptor, static_cast<off_t>(storing),
                           static_cast<off_t>(given - storing), SYNC_FILE_RANGE_WRITE);
     storing = given;
@@ -129,10 +154,16 @@ struct OutputFile::State {
     if (sealed) return {};
     if (Status flushed = flush_pending(); !flushed) return flushed;
     std::vector<std::byte>().swap(pending);
-    if (!temporary.empty()) {
+    if (!direct()) {
       if (Status stored = wait_for_disk(); !stored) return stored;
     }
     sealed = true;
+    if (unnamed) {
+      is_kept_open = ++kept_open <= kMostKeptOpen;
+      if (is_kept_open) return {};
+      --kept_open;
+      if (Status named = give_temporary_name(); !named) return named;
+    }
     const int closing = std::exchange(descriptor, -1);
     if (closing > STDERR_FILENO && ::close(closing) != 0) return fail(errno, "cannot be written");
     return {};
@@ -142,7 +173,19 @@ struct OutputFile::State {
   // temporary name.
   Status place(bool can_go_back) {
     placed = Placed::for_good;
-    if (temporary.empty()) return {};
+    if (direct()) return {};
+    if (unnamed) {
+      const int trouble = name_unnamed(descriptor, target);
+      if (trouble == 0) {
+        close();
+        placed = Placed::anew;
+        return {};
+      }
+      if (trouble != EEXIST || no_clobber) return cannot_be_placed(trouble);
+      // Something has come there since.
+      if (Status named = give_temporary_name(); !named) return named;
+      close();
+    }
     bool is_new = no_clobber;
     struct stat status {};
     if (can_go_back && !no_clobber) {
@@ -154,14 +197,27 @@ struct OutputFile::State {
       is_new = !is_file;
     }
     const int trouble = put_in_place(temporary, target, no_clobber);
-    if (trouble == 0) {
-      if (is_new) placed = Placed::anew;
-      return {};
-    }
+    if (trouble != 0) return cannot_be_placed(trouble);
+    if (is_new) placed = Placed::anew;
+    forget_name();
+    return {};
+  }
+
+  Status cannot_be_placed(int trouble) {
     placed = Placed::no;
     failure =
         trouble == EEXIST ? Status(exists_error(path)) : fail(trouble, "cannot be put in place");
     return failure;
+  }
+
+  // The descriptor stays open.
+  Status give_temporary_name() {
+    Temporary named = name_as_temporary(descriptor, folder_of(target));
+    if (named.descriptor < 0) return cannot_be_placed(errno);
+    temporary = std::move(named.path);
+    slot = named.slot;
+    unnamed = false;
+    return {};
   }
 
   void take_back() {
@@ -213,8 +269,15 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
   }
   // Through a link, the file that it points to is replaced, not the link.
   state->target = link_target(path).string();
-  std::string folder = std::filesystem::path(state->target).parent_path().string();
-  if (folder.empty()) folder = ".";
+  const std::string folder = folder_of(state->target);
+  if (!exists) {
+    state->descriptor = create_unnamed(folder);
+    state->unnamed = state->descriptor >= 0;
+    if (state->unnamed) {
+      state->unnamed_path = path_of_unnamed(state->descriptor);
+      return OutputFile(std::move(state));
+    }
+  }
   Temporary temporary = create_temporary(folder);
   if (temporary.descriptor < 0) {
     const int why = errno;
@@ -252,12 +315,12 @@ Status OutputFile::write(std::span<const std::byte> bytes) {
 }
 
 bool OutputFile::can_overwrite() const {
-  return !state_->temporary.empty();
+  return !state_->direct();
 }
 
 Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (!state_->failure) return state_->failure;
-  if (state_->temporary.empty()) {
+  if (state_->direct()) {
     return file_error("file-unwritable", state_->path, "is a stream and cannot be rewritten");
   }
   if (Status flushed = state_->flush_pending(); !flushed) return flushed;
@@ -281,6 +344,7 @@ Status OutputFile::seal() {
 }
 
 const std::string& OutputFile::written_at() const {
+  if (state_->unnamed) return state_->unnamed_path;
   return state_->temporary.empty() ? state_->path : state_->temporary;
 }
 

@@ -11,11 +11,13 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <functional>
 #include <new>
 #include <span>
 
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/temporary_files.h"
 #include "core/temporary_files_internal.h"
 
 namespace krok {
@@ -33,7 +35,7 @@ struct Table {
   std::atomic<Table*> next{nullptr};
 };
 Table first_table;
-std::atomic<bool> ending_by_signal{false};
+std::atomic<bool> ending{false};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait");
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
 static_assert(std::atomic<Table*>::is_always_lock_free, "a signal handler may not wait");
@@ -73,27 +75,14 @@ bool any_is_opening() {
 }
 
 extern "C" void remove_temporaries_and_end(int signal_number) {
-  // Other threads go on until the process ends. One that is just opening a file is waited for, not
-  // for long: it may be the very thread that this handler interrupted.
-  ending_by_signal.store(true);
-  constexpr int kWaits = 50;
-  for (int i = 0; i < kWaits && any_is_opening(); ++i) {
-    const timespec millisecond{0, 1'000'000};
-    nanosleep(&millisecond, nullptr);
-  }
-  for (Table* table = &first_table; table != nullptr; table = table->next.load()) {
-    for (std::size_t i = 0; i < Table::kSlots; ++i) {
-      const int state = table->states[i].load();
-      if (state == slot_opening || state == slot_ready) unlink(table->paths[i]);
-    }
-  }
+  remove_temporaries();
   signal(signal_number, SIG_DFL);
   raise(signal_number);
 }
 
-// Once a signal is about to end the program, no new file is begun.
+// Once the program is about to end, no new file is begun.
 void stop_if_ending(std::atomic<int>* slot) {
-  if (!ending_by_signal.load()) return;
+  if (!ending.load()) return;
   forget_temporary(slot);
   for (;;) pause();
 }
@@ -117,6 +106,31 @@ constexpr int kEndingSignals[] = {SIGINT,    SIGTERM, SIGHUP,  SIGPIPE, SIGQUIT,
                                   SIGVTALRM, SIGPROF, SIGUSR1, SIGUSR2, SIGPOLL, SIGXCPU,
                                   SIGABRT,   SIGBUS,  SIGSEGV, SIGFPE,  SIGILL,  SIGSYS};
 
+// A temporary file at a name that nothing has yet, by `make`, which gives its descriptor or -1 and
+// errno. The name is remembered before the file exists.
+Temporary with_new_name(const std::string& folder,
+                        const std::function<int(const char* path)>& make) {
+  static std::atomic<unsigned> counter{0};
+  constexpr int kAttempts = 1000;  // names that killed programs left behind
+  Temporary temporary;
+  for (int i = 0; i < kAttempts; ++i) {
+    temporary.path =
+        fmt::format("{}/{}{}-{}", folder, temporary_prefix(), getpid(), counter.fetch_add(1));
+    temporary.slot = remember_temporary(temporary.path);
+    stop_if_ending(temporary.slot);
+    temporary.descriptor = make(temporary.path.c_str());
+    if (temporary.descriptor >= 0) {
+      if (temporary.slot != nullptr) temporary.slot->store(slot_ready);
+      break;
+    }
+    const int why = errno;
+    forget_temporary(temporary.slot);
+    errno = why;
+    if (why != EEXIST) break;
+  }
+  return temporary;
+}
+
 }  // namespace
 
 mode_t mode_mask() {
@@ -129,26 +143,51 @@ mode_t mode_mask() {
 }
 
 Temporary create_temporary(const std::string& folder) {
-  static std::atomic<unsigned> counter{0};
-  constexpr int kAttempts = 1000;  // names that killed programs left behind
-  Temporary temporary;
-  for (int i = 0; i < kAttempts; ++i) {
-    temporary.path =
-        fmt::format("{}/{}{}-{}", folder, temporary_prefix(), getpid(), counter.fetch_add(1));
-    temporary.slot = remember_temporary(temporary.path);
-    stop_if_ending(temporary.slot);
-    temporary.descriptor =
-        ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (temporary.descriptor >= 0) {
-      if (temporary.slot != nullptr) temporary.slot->store(slot_ready);
-      break;
-    }
-    const int why = errno;
-    forget_temporary(temporary.slot);
-    errno = why;
-    if (why != EEXIST) break;
+  return with_new_name(folder, [](const char* path) {
+    return ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  });
+}
+
+int create_unnamed(const std::string& folder) {
+  // The name is given through /proc, which some sandboxes lack.
+  static const bool can_be_named = access("/proc/self/fd", X_OK) == 0;
+  if (!can_be_named) return -1;
+  return ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+}
+
+std::string path_of_unnamed(int descriptor) {
+  return fmt::format("/proc/self/fd/{}", descriptor);
+}
+
+int name_unnamed(int descriptor, const std::string& path) {
+  const int done = linkat(AT_FDCWD, path_of_unnamed(descriptor).c_str(), AT_FDCWD, path.c_str(),
+                          AT_SYMLINK_FOLLOW);
+  return done == 0 ? 0 : errno;
+}
+
+Temporary name_as_temporary(int unnamed, const std::string& folder) {
+  return with_new_name(folder, [unnamed](const char* path) {
+    const int trouble = name_unnamed(unnamed, path);
+    errno = trouble;
+    return trouble == 0 ? unnamed : -1;
+  });
+}
+
+void remove_temporaries() {
+  // Other threads go on until the process ends. One that is just opening a file is waited for, not
+  // for long: it may be the very thread that a signal interrupted.
+  ending.store(true);
+  constexpr int kWaits = 50;
+  for (int i = 0; i < kWaits && any_is_opening(); ++i) {
+    const timespec millisecond{0, 1'000'000};
+    nanosleep(&millisecond, nullptr);
   }
-  return temporary;
+  for (Table* table = &first_table; table != nullptr; table = table->next.load()) {
+    for (std::size_t i = 0; i < Table::kSlots; ++i) {
+      const int state = table->states[i].load();
+      if (state == slot_opening || state == slot_ready) unlink(table->paths[i]);
+    }
+  }
 }
 
 void forget_temporary(std::atomic<int>* slot) {

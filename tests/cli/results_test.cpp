@@ -227,5 +227,31 @@ TEST_F(Results, FewerThreadsWillDoForABatchToo) {
   EXPECT_NE(run.err.find("100 files, 100 done"), std::string::npos) << run.err;
 }
 
+TEST_F(Results, WithoutMemoryAToolSaysSoAndLeavesNothing) {
+  if (kSanitized) GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
+  put("in.bvh", capture(20000));
+  put("out.anim", "old");
+  const auto limited = [&](int kibibytes, const std::string& command) {
+    return shell("ulimit -c 0; ulimit -v " + std::to_string(kibibytes) + "; " + command);
+  };
+  // The least with which the program can be loaded.
+  int least = 0;
+  for (int step = 1 << 20; step >= 64; step /= 2) {
+    if (limited(least + step, "krok-import --version").exit_code != 0) least += step;
+  }
+  int failed = 0;
+  for (int more = 200; more < 16000; more += more < 4000 ? 200 : 1000) {
+    const std::string before = get(path("out.anim"));
+    const ToolRun run = limited(least + more, "krok-import in.bvh -o out.anim -j 2 -q");
+    ASSERT_TRUE(run.exit_code == 0 || run.exit_code == 2) << more << ": " << run.err;
+    EXPECT_EQ(listing(), (Names{"in.bvh", "out.anim"}));
+    if (run.exit_code == 0) continue;
+    ++failed;
+    EXPECT_TRUE(has_code(run.err, "out-of-memory")) << run.err;
+    EXPECT_TRUE(get(path("out.anim")) == before);
+  }
+  EXPECT_GT(failed, 3);
+}
+
 }  // namespace
 }  // namespace krok::test

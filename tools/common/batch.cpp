@@ -350,9 +350,17 @@ class Batch {
   }
 
   int finish() {
-    const Status stored = store();
+    // Both wait for the disk; the journal is right whichever is there first, for it is not
+    // believed.
+    Status stored, kept;
+    parallel_for(2, 1, line_.jobs, [&](std::size_t i, std::size_t) {
+      if (i == 0) {
+        stored = store();
+      } else {
+        kept = journal_->tidy();
+      }
+    });
     if (!stored) context_.tell(stored.error());
-    Status kept = journal_->tidy();
     if (!journal_trouble_) kept = journal_trouble_;
     if (!kept) {
       Diagnostic warning = kept.error();

@@ -53,6 +53,12 @@ void ToolContext::print(const std::string& text) {
 }
 
 Result<InputFile> ToolContext::open_input(const std::string& path) {
+  auto file = open_long_input(path);
+  if (file) note_checksum(*file);
+  return file;
+}
+
+Result<InputFile> ToolContext::open_long_input(const std::string& path) {
   const auto replaces = [&](const std::string& destination) {
     return same_file(path, destination);
   };
@@ -67,8 +73,14 @@ Result<InputFile> ToolContext::open_input(const std::string& path) {
     }
   }
   auto file = InputFile::open(path);
-  if (file) report.inputs.push_back({path, hex(file->checksum())});
+  if (file) report.inputs.push_back({path, ""});
   return file;
+}
+
+void ToolContext::note_checksum(const InputFile& input) {
+  for (Report::Input& opened : report.inputs) {
+    if (opened.xxh3.empty() && opened.path == input.path()) opened.xxh3 = hex(input.checksum());
+  }
 }
 
 void ToolContext::chose_beside(const std::string& path, const std::string& ending) {

@@ -25,6 +25,10 @@ std::string text_of(const Json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+std::uint64_t checksum_of_line(std::string_view line) {
+  return xxh3(std::as_bytes(std::span(line)));
+}
+
 std::string checksum(const InputFile& file) {
   return hex(file.checksum());
 }
@@ -55,16 +59,23 @@ std::string from_folder(const std::string& folder, const std::string& path) {
   return relative.empty() ? path : relative.string();
 }
 
-// Of the names and sizes of the files with an ending, ".asf", in a folder.
+// Of the names and sizes of the files with an ending, ".asf", in a folder, or of the one of a name.
 std::string names_checksum(const std::string& folder, const std::string& ending) {
   std::vector<std::string> names;
-  std::error_code unknown;
-  for (fs::directory_iterator entry(folder.empty() ? "." : folder, unknown), end; entry != end;
-       entry.increment(unknown)) {
-    const std::string name = entry->path().filename().string();
-    if (extension(name) != ending) continue;
+  const auto add = [&](const fs::directory_entry& entry) {
     std::error_code no_file;
-    names.push_back(fmt::format("{}\n{}\n", name, entry->file_size(no_file)));
+    names.push_back(
+        fmt::format("{}\n{}\n", entry.path().filename().string(), entry.file_size(no_file)));
+  };
+  std::error_code unknown;
+  if (!ending.starts_with('.')) {
+    const fs::directory_entry file(below(folder, ending), unknown);
+    if (file.exists(unknown)) add(file);
+  } else {
+    for (fs::directory_iterator entry(folder.empty() ? "." : folder, unknown), end; entry != end;
+         entry.increment(unknown)) {
+      if (extension(entry->path().filename().string()) == ending) add(*entry);
+    }
   }
   std::sort(names.begin(), names.end());
   std::string text;
@@ -102,12 +113,20 @@ void Journal::read(const std::string& path) {
     const std::size_t end = text.find('\n', at);
     if (end == std::string_view::npos) break;  // a line that a killed run did not finish
     const std::string_view whole = text.substr(at, end - at);
-    const Json record = Json::parse(whole, nullptr, false);
-    if (record.is_object() && !text_of(record, "output").empty()) {
-      index_[text_of(record, "output")].push_back({files_.size() - 1, at, whole.size()});
+    if (const std::string output = output_of(whole); !output.empty()) {
+      index_[output].push_back({files_.size() - 1, at, whole.size()});
     }
     at = end + 1;
   }
+}
+
+// Empty for what is no record.
+std::string Journal::output_of(std::string_view line) const {
+  // Lines of this run need not be read again.
+  const auto added = added_outputs_.find(checksum_of_line(line));
+  if (added != added_outputs_.end()) return added->second;
+  const Json record = Json::parse(line, nullptr, false);
+  return record.is_object() ? text_of(record, "output") : std::string();
 }
 
 std::string_view Journal::line(const Place& place) const {
@@ -178,6 +197,7 @@ std::optional<Json> Journal::unchanged(const std::string& output, const std::str
 
 Status Journal::add(const Json& record) {
   std::string text = record.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::uint64_t sum = checksum_of_line(std::string_view(text).substr(0, text.size() - 1));
   const std::lock_guard lock(adding_);
   const auto fail = [&] {
     return Error("journal-unwritable", fmt::format("cannot be written: {}", std::strerror(errno)),
@@ -192,7 +212,7 @@ Status Journal::add(const Json& record) {
     char last = '\n';
     if (size > 0 && pread(descriptor_, &last, 1, size - 1) == 1 && last != '\n') text = "\n" + text;
   }
-  added_ = true;
+  added_outputs_[sum] = text_of(record, "output");
   for (std::string_view rest = text; !rest.empty();) {
     const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
     if (count < 0 && errno == EINTR) continue;
@@ -203,7 +223,7 @@ Status Journal::add(const Json& record) {
 }
 
 Status Journal::tidy() {
-  if (!added_) return {};
+  if (added_outputs_.empty()) return {};
   ::close(descriptor_);
   descriptor_ = -1;
   files_.clear();

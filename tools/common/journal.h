@@ -23,8 +23,8 @@
 //    "outputs": [{"path", "size", "xxh3"}], "issues": [], "result": {}}
 //
 // "output" and the paths in "outputs" are below the folder; "made_with" is a checksum of all that
-// makes a result besides the inputs' bytes; a choice is of one of the files with that ending in
-// that folder, its checksum one of their names and sizes. A line is written in one piece when a
+// makes a result besides the inputs' bytes; a choice is of the files with that ending, or of that
+// name, in that folder, its checksum one of their names and sizes. A line is written whole when a
 // result is whole on the disk, so that a killed run loses at most the line that it was at; what is
 // no whole line is passed over. Nothing is believed: a result counts as done only while all its
 // files and all its inputs have the checksums that stand there. A lost or wrong line costs time,
@@ -62,6 +62,7 @@ class Journal {
   using Index = std::unordered_map<std::string, std::vector<Place>>;
 
   void read(const std::string& path);
+  std::string output_of(std::string_view line) const;
   std::string_view line(const Place& place) const;
   Result<std::string> checksum_of_input(const std::string& path) const;
   std::string checksum_of_choice(const std::string& folder, const std::string& ending) const;
@@ -70,8 +71,8 @@ class Journal {
   std::string path_;
   std::vector<InputFile> files_;
   Index index_;
+  std::unordered_map<std::uint64_t, std::string> added_outputs_;  // by the checksums of lines
   int descriptor_ = -1;
-  bool added_ = false;
   std::mutex adding_;
   mutable std::mutex checking_;
   mutable std::map<std::string, std::string> input_checksums_;  // of files that many results share

@@ -38,9 +38,10 @@ Result<keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
 Result<std::optional<keys::Sidecar>> read_keys_beside(const std::string& motion_path,
                                                       const Clip& clip, ToolContext& context) {
   const std::string path = keys_sidecar_path(motion_path);
+  if (path.empty()) return std::optional<keys::Sidecar>();
+  context.chose_beside(motion_path, base_name(path));
   std::error_code ignored;
-  if (path.empty() || !std::filesystem::exists(path, ignored))
-    return std::optional<keys::Sidecar>();
+  if (!std::filesystem::exists(path, ignored)) return std::optional<keys::Sidecar>();
   auto sidecar = read_keys_file(path, clip, context);
   if (!sidecar) return std::move(sidecar).error();
   return std::optional<keys::Sidecar>(std::move(*sidecar));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <new>
+
 #include "formats/acclaim/acclaim_reader.h"
 #include "formats/acclaim/find_skeleton.h"
 #include "formats/anim/anim.h"
@@ -59,6 +61,13 @@ MotionFacts facts_of(const FrameSource& frames, std::vector<std::string> convers
 
 }  // namespace
 
+ChecksumNoted::~ChecksumNoted() {
+  try {
+    context_.note_checksum(input_);
+  } catch (const std::bad_alloc&) {  // the report goes without it
+  }
+}
+
 FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty) {
   FrameSource watching = frames;
   watching.read = [&](int first, int count, std::span<Vec3f> positions,
@@ -96,8 +105,9 @@ Result<Clip> read_motion(const std::string& path, ToolContext& context) {
 
 Result<MotionFacts> use_motion(const std::string& path, ToolContext& context,
                                const std::function<Status(const FrameSource& frames)>& use) {
-  const auto input = context.open_input(path);
+  const auto input = context.open_long_input(path);
   if (!input) return input.error();
+  const ChecksumNoted noted(*input, context);
   if (registry::identify(input->path(), input->bytes()) == Kind::bvh) {
     auto opened =
         bvh::open(input->text(), input->path(), default_options<bvh::ReadOptions>(context),

@@ -22,6 +22,19 @@ Result<Clip> read_motion(const std::string& path, ToolContext& context);
 // The same of a file that is open already.
 Result<Clip> read_motion(const InputFile& input, ToolContext& context);
 
+// Notes the checksum of a long input (ToolContext::open_long_input) when its use ends, whichever
+// way that is. Both arguments must outlive it.
+class ChecksumNoted {
+ public:
+  ChecksumNoted(const InputFile& input, ToolContext& context) : input_(input), context_(context) {}
+  ~ChecksumNoted();
+  ChecksumNoted(const ChecksumNoted&) = delete;
+
+ private:
+  const InputFile& input_;
+  ToolContext& context_;
+};
+
 // The same frames, that note in `faulty` when one cannot be read, whatever their user makes of
 // that. Both arguments must outlive what is returned.
 FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty);

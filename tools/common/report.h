@@ -20,10 +20,10 @@ struct Report {
     std::string xxh3;
   };
   std::vector<Input> inputs;
-  // Where one of several files was chosen; for the journal of a batch, not for the report.
+  // Where files were looked for in a folder; for the journal of a batch, not for the report.
   struct Choice {
     std::string folder;
-    std::string ending;  // ".asf"
+    std::string ending;  // ".asf", or a whole name
   };
   std::vector<Choice> choices;
   Json options = Json::object();

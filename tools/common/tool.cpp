@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <memory>
 #include <new>
 #include <optional>
 
+#include "core/temporary_files.h"
 #include "tools/common/batch.h"
 #include "tools/common/command_line.h"
 #include "tools/common/console_progress.h"
@@ -182,6 +185,37 @@ Error error_of_exception(const std::string& tool) {
   }
 }
 
+constexpr std::size_t kMostName = 64;
+char name_when_ending[kMostName] = "krok";
+
+// Where memory is at an end, even what lets go of memory may ask for some (the destructors of JSON
+// values do), and an exception may find no place for itself. Neither can be caught.
+[[noreturn]] void end_for_want_of_memory() {
+  remove_temporaries();
+  for (const char* words : {static_cast<const char*>(name_when_ending),
+                            ": error: there is not enough memory [out-of-memory]\n"}) {
+    (void)!::write(STDERR_FILENO, words, std::strlen(words));
+  }
+  _exit(kExitTrouble);
+}
+
+// Ends the program when an exception cannot be caught.
+void end_by_exception() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+  } catch (...) {
+    std::abort();  // a bug
+  }
+  end_for_want_of_memory();
+}
+
+void be_ready_for_want_of_memory(const char* path) {
+  const char* slash = std::strrchr(path, '/');
+  std::strncpy(name_when_ending, slash == nullptr ? path : slash + 1, kMostName - 1);
+  std::set_terminate(end_by_exception);
+}
+
 }  // namespace
 
 std::string version() {
@@ -210,6 +244,7 @@ int print_and_end(const std::string& tool, const std::string& text) {
 int run_tool(const MakeToolSpec& make_spec, int argc, char** argv) {
   open_missing_standard_streams();
   remove_temporaries_on_signals();
+  be_ready_for_want_of_memory(argc > 0 ? argv[0] : "krok");
   try {
     return run_arguments(make_spec, arguments_of(argc, argv));
   } catch (const std::exception&) {

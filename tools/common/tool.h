@@ -68,8 +68,14 @@ class ToolContext {
   // nothing changed.
   Result<InputFile> open_input(const std::string& path);
 
-  // Notes that the result depends on which files with this ending, ".asf", stand beside `path`, for
-  // one of them was chosen: when another comes, a batch does the file anew.
+  // The same for a long file that is read from front to back: its checksum is taken on the way
+  // rather than first, and is in the report only once note_checksum() was called; which must be
+  // before provenance() and the end of the run.
+  Result<InputFile> open_long_input(const std::string& path);
+  void note_checksum(const InputFile& input);
+
+  // Notes that the result depends on which files with this ending, ".asf", or of this whole name,
+  // "walk.keys.json", stand beside `path`: when one comes or goes, a batch does the file anew.
   void chose_beside(const std::string& path, const std::string& ending);
 
   // Whether a result may go to `path`: an Error (code usage) for a file that this run reads, its

@@ -11,34 +11,65 @@
 
 namespace krok::import {
 
-double height_of(const FrameSource& motion) {
-  const auto extent = [](const auto& positions) {
-    auto low = positions.front().y();
-    auto high = low;
-    for (const auto& position : positions) {
-      low = std::min(low, position.y());
-      high = std::max(high, position.y());
-    }
-    return static_cast<double>(high - low);
+namespace {
+
+template <typename Vectors>
+double extent(const Vectors& positions) {
+  if (positions.empty()) return 0;
+  auto low = positions.front().y();
+  auto high = low;
+  for (const auto& position : positions) {
+    low = std::min(low, position.y());
+    high = std::max(high, position.y());
+  }
+  return static_cast<double>(high - low);
+}
+
+double height_of(const Skeleton& skeleton) {
+  std::vector<Vec3> positions;
+  for (const Transform& joint : skeleton.reference) positions.push_back(joint.position);
+  return extent(positions);
+}
+
+}  // namespace
+
+HeightWatch::HeightWatch(const FrameSource& motion)
+    : joints_(static_cast<std::size_t>(motion.joint_count())),
+      step_(static_cast<std::size_t>(std::max(1, motion.frame_count / 100))),
+      at_rest_(height_of(motion.skeleton)),
+      heights_((static_cast<std::size_t>(motion.frame_count) + step_ - 1) / step_) {}
+
+FrameSource HeightWatch::watched(const FrameSource& motion) {
+  FrameSource watching = motion;
+  watching.read = [this, read = motion.read](int first, int count, std::span<Vec3f> positions,
+                                             std::span<Quatf> orientations) {
+    Status done = read(first, count, positions, orientations);
+    if (done) see(static_cast<std::size_t>(first), positions);
+    return done;
   };
-  const int frames = motion.frame_count;
-  if (frames == 0) {
-    std::vector<Vec3> positions;
-    for (const Transform& joint : motion.skeleton.reference) positions.push_back(joint.position);
-    return extent(positions);
+  return watching;
+}
+
+void HeightWatch::see(std::size_t first, std::span<const Vec3f> positions) {
+  if (joints_ == 0) return;
+  const std::size_t end = first + positions.size() / joints_;
+  for (std::size_t i = (first + step_ - 1) / step_; i * step_ < end; ++i) {
+    heights_[i] = extent(positions.subspan((i * step_ - first) * joints_, joints_));
   }
-  const auto joints = static_cast<std::size_t>(motion.joint_count());
-  std::vector<Vec3f> positions(joints);
-  std::vector<Quatf> orientations(joints);
-  std::vector<double> heights;
-  const int step = std::max(1, frames / 100);
-  for (int frame = 0; frame < frames; frame += step) {
-    if (motion.read(frame, 1, positions, orientations)) heights.push_back(extent(positions));
-  }
-  if (heights.empty()) return 0;
+}
+
+double HeightWatch::height() const {
+  if (heights_.empty()) return at_rest_;
+  std::vector<double> heights = heights_;
   const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
   std::nth_element(heights.begin(), middle, heights.end());
   return *middle;
+}
+
+double height_of(const Clip& clip) {
+  HeightWatch watch(frames_of(clip));
+  watch.see(0, clip.positions);
+  return watch.height();
 }
 
 Json to_json(const Choice& choice) {
@@ -47,17 +78,13 @@ Json to_json(const Choice& choice) {
           {"reason", choice.reason}};
 }
 
-Json facts_of(const Clip& clip) {
-  return facts_of(frames_of(clip));
-}
-
-Json facts_of(const FrameSource& motion) {
+Json facts_of(const FrameSource& motion, double height) {
   Json facts;
   facts["joints"] = motion.joint_count();
   facts["frames"] = motion.frame_count;
   facts["rate"] = motion.rate;
   facts["duration"] = motion.duration();
-  facts["height"] = height_of(motion);
+  facts["height"] = height;
   return facts;
 }
 
@@ -75,8 +102,9 @@ Json facts_of(const Conventions& c) {
   return facts;
 }
 
-Json result_of(const Capture& capture, const FrameSource& motion, const Json& details) {
-  Json result = facts_of(motion);
+Json result_of(const Capture& capture, const FrameSource& motion, double height,
+               const Json& details) {
+  Json result = facts_of(motion, height);
   result.update(roles_json(motion.skeleton, capture.roles));
   result.update(facts_of(capture.conventions));
   result["source_rate"] = to_json(capture.rate);
@@ -94,16 +122,11 @@ void say_roles(const Skeleton& skeleton, const RoleMap& roles, ToolContext& cont
   context.say(text);
 }
 
-std::string line_about(const std::string& input, const Clip& clip) {
-  return line_about(input, frames_of(clip));
-}
-
-std::string line_about(const std::string& input, const FrameSource& motion) {
+std::string line_about(const std::string& input, const FrameSource& motion, double height) {
   const std::string name = input == "-" ? "standard input" : base_name(input);
   return fmt::format("{}: {}, {} at {} /s ({} s), height {} m", name,
                      counted(motion.joint_count(), "joint"), counted(motion.frame_count, "frame"),
-                     readable(motion.rate), readable(motion.duration(), 2),
-                     readable(height_of(motion), 3));
+                     readable(motion.rate), readable(motion.duration(), 2), readable(height, 3));
 }
 
 }  // namespace krok::import

@@ -7,6 +7,7 @@
 #include "formats/model/model_format.h"
 #include "motion/sample.h"
 #include "scene/model.h"
+#include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
 #include "tools/common/output_set.h"
 #include "tools/common/scene/scene_input.h"
@@ -70,14 +71,17 @@ Result<int> import_capture(const InputFile& input, registry::Kind kind, const Op
                                       readable(clip.rate), readable(options.resample)));
     clip = std::move(*resampled);
   }
+  context.note_checksum(input);
   clip.provenance = context.provenance();
   clip.provenance.conversions = std::move(conversions);
 
   if (Status written = write_outputs(options, context, clip); !written) return written.error();
-  context.report.result = result_of(source->capture, frames_of(clip), source->details);
+  const FrameSource frames = frames_of(clip);
+  const double height = height_of(clip);
+  context.report.result = result_of(source->capture, frames, height, source->details);
   std::string outputs = context.output;
   if (!options.model.empty()) outputs += (outputs.empty() ? "" : ", ") + options.model;
-  context.say(fmt::format("{} -> {}", line_about(options.input, clip), outputs));
+  context.say(fmt::format("{} -> {}", line_about(options.input, frames, height), outputs));
   say_roles(clip.skeleton, source->capture.roles, context);
   return kExitDone;
 }
@@ -99,14 +103,16 @@ Result<int> run(const Options& given, ToolContext& context) {
   if (!options.model.empty() && options.model == context.output) {
     return Error("usage", "-o and --model name the same file");
   }
-  const auto input = context.open_input(options.input);
+  const auto input = context.open_long_input(options.input);
   if (!input) return input.error();
+  const ChecksumNoted noted(*input, context);
   auto roles = open_role_map(options.map, context);
   if (!roles) return roles.error();
   if (!options.map.empty()) options.roles = *std::move(roles);
   const registry::Kind kind = registry::identify(input->path(), input->bytes());
-  return is_scene(kind) ? import_scene(*input, kind, options, context)
-                        : import_capture(*input, kind, options, context);
+  if (!is_scene(kind)) return import_capture(*input, kind, options, context);
+  context.note_checksum(*input);
+  return import_scene(*input, kind, options, context);
 }
 
 }  // namespace krok::import

@@ -102,13 +102,12 @@ void declare_options(CLI::App& app, Options& options) {
       ->group(time);
   add_rate(app, "--resample", options.resample, "Bring the motion to N frames a second")
       ->group(time);
-  add_choice<bvh::RestFrame>(app, "--skip-rest-frame", options.rest_frame,
-                             {{"no", bvh::RestFrame::keep},
-                              {"auto", bvh::RestFrame::automatic},
-                              {"yes", bvh::RestFrame::drop}},
-                             "Leave out the first frame: auto (where it is a rest pose and no part "
-                             "of the motion), yes or no, in BVH",
-                             "WHEN", "no")
+  add_choice<RestFrame>(
+      app, "--skip-rest-frame", options.rest_frame,
+      {{"no", RestFrame::keep}, {"auto", RestFrame::automatic}, {"yes", RestFrame::drop}},
+      "Leave out the first frame of a capture: auto (where it is a rest pose and no part of the "
+      "motion), yes or no",
+      "WHEN", "no")
       ->group(time);
 
   const std::string faults = "Faults in the file";

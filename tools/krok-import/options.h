@@ -28,7 +28,7 @@ struct Options {
   std::string forward = "auto";
   bvh::Positions positions = bvh::Positions::automatic;
   bvh::Angles angles = bvh::Angles::degrees;
-  bvh::RestFrame rest_frame = bvh::RestFrame::keep;
+  RestFrame rest_frame = RestFrame::keep;
   double fps = 0;       // 0: what the file says
   double resample = 0;  // 0: not at all
   OrientationEncoding orientation = OrientationEncoding::xyz;

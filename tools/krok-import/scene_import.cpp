@@ -18,7 +18,7 @@ Status check_options(const Options& options) {
   if (!options.skeleton.empty()) return for_captures("--skeleton");
   if (options.positions != bvh::Positions::automatic) return for_captures("--positions");
   if (options.angles != bvh::Angles::degrees) return for_captures("--angles");
-  if (options.rest_frame != bvh::RestFrame::keep) return for_captures("--skip-rest-frame");
+  if (options.rest_frame != RestFrame::keep) return for_captures("--skip-rest-frame");
   if (options.repair) return for_captures("--repair");
   return {};
 }

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "core/numbers.h"
 #include "core/text.h"
+#include "tools/common/gltf/camera_choice.h"
 #include "tools/common/role_report.h"
 #include "tools/common/scene/scene_conventions.h"
 #include "tools/krok-import/facts.h"
@@ -51,43 +50,14 @@ Error SceneImporter::missing(const std::string& what, const std::string& option,
                std::move(hint));
 }
 
-std::string SceneImporter::label_of_camera(std::size_t index) const {
-  const nodes::Node& node = scene_.nodes[static_cast<std::size_t>(cameras_[index])];
-  const std::string& lens = scene_.cameras[static_cast<std::size_t>(node.camera)].name;
-  return fmt::format("{} ({})", index, shown(node.name.empty() ? lens : node.name));
-}
-
 Status SceneImporter::choose_camera() {
   if (cameras_.empty()) {
     return missing("camera", "--cam", "in glTF a camera must belong to a node of the scene");
   }
-  std::string list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(cameras_.size(), 20); ++i) {
-    list += (i == 0 ? "" : ", ") + label_of_camera(i);
-  }
-  if (options_.camera.empty()) {
-    camera_ = cameras_[0];
-    if (cameras_.size() == 1) return {};
-    warn("import-cameras",
-         fmt::format("of {} cameras the first is taken; they are {}", cameras_.size(), list),
-         "--camera takes another by its name or number");
-    return {};
-  }
-  for (const int node : cameras_) {
-    const nodes::Node& one = scene_.nodes[static_cast<std::size_t>(node)];
-    if (one.name == options_.camera ||
-        scene_.cameras[static_cast<std::size_t>(one.camera)].name == options_.camera) {
-      camera_ = node;
-      return {};
-    }
-  }
-  const auto number = parse_integer(options_.camera);
-  if (number && *number >= 0 && *number < static_cast<long long>(cameras_.size())) {
-    camera_ = cameras_[static_cast<std::size_t>(*number)];
-    return {};
-  }
-  return Error("import-camera", fmt::format("no camera is called {}", shown(options_.camera)),
-               "it has " + list);
+  const auto chosen = krok::choose_camera(scene_, cameras_, options_.camera, path_, context_);
+  if (!chosen) return chosen.error();
+  camera_ = *chosen;
+  return {};
 }
 
 Status SceneImporter::choose() {

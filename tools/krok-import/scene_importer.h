@@ -47,7 +47,6 @@ class SceneImporter {
   // What is taken of the file, and in which unit and axes it is (scene_importer.cpp).
   Status choose();
   Status choose_camera();
-  std::string label_of_camera(std::size_t index) const;
   Status find_rig();
   Status find_space();
 

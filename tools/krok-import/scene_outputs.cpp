@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "capture/rest_frame.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
@@ -105,6 +106,9 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
                                      sampling->sampling, context_.jobs, context_.progress, found);
     if (!clip) return clip.error();
     tell(found);
+    if (const RestPose rest = find_rest_pose(*clip, roles_); rest.first_frame_is_rest) {
+      warn("import-rest-frame", rest.reason + "; it was kept", "krok-edit --from 1f leaves it out");
+    }
     clip->provenance = context_.provenance();
     clip->provenance.conversions = conversions_;
     clip->provenance.conversions.push_back(
@@ -117,9 +121,11 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
       return anim::write(*clip, {.orientation = options_.orientation, .jobs = context_.jobs}, file);
     });
     if (!added) return added;
-    facts.update(facts_of(*clip));
+    const FrameSource frames = frames_of(*clip);
+    const double height = height_of(*clip);
+    facts.update(facts_of(frames, height));
     facts["output"] = *path;
-    line_ = line_about(path_, *clip);
+    line_ = line_about(path_, frames, height);
   }
   tell(found);
   facts["source_rate"] = to_json(sampling->rate);

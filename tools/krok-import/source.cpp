@@ -21,14 +21,24 @@ Result<Source> read_bvh(const InputFile& input, const Options& options, const Ca
   return source;
 }
 
+// What the report says of a first frame that may be no part of the motion.
+template <typename Capture>
+Json rest_frame_of(const Capture& capture) {
+  return {{"found", capture.rest_frame_found}, {"left_out", capture.rest_frame_dropped}};
+}
+
 Result<Source> read_acclaim(const InputFile& skeleton, const InputFile* motion,
-                            const CaptureOptions& how) {
-  auto read = motion == nullptr ? acclaim::read(skeleton.text(), skeleton.path(), {}, {}, how)
+                            const Options& options, const CaptureOptions& how) {
+  acclaim::ReadOptions reading;
+  static_cast<CaptureOptions&>(reading) = how;
+  reading.rest_frame = options.rest_frame;
+  auto read = motion == nullptr ? acclaim::read(skeleton.text(), skeleton.path(), {}, {}, reading)
                                 : acclaim::read(skeleton.text(), skeleton.path(), motion->text(),
-                                                motion->path(), how);
+                                                motion->path(), reading);
   if (!read) return std::move(read).error();
   Source source;
   source.details["first_frame_number"] = read->first_frame_number;
+  if (motion != nullptr) source.details["rest_frame"] = rest_frame_of(*read);
   source.capture = std::move(*read);
   return source;
 }
@@ -68,9 +78,6 @@ Status check_options(const Options& options, bool is_bvh, bool is_motion) {
   if (options.positions != bvh::Positions::automatic) {
     return Error("usage", "--positions is for BVH; Acclaim's format leaves no choice");
   }
-  if (options.rest_frame != bvh::RestFrame::keep) {
-    return Error("usage", "--skip-rest-frame is for BVH");
-  }
   if (options.angles != bvh::Angles::degrees) return Error("usage", "--angles is for BVH");
   return {};
 }
@@ -82,8 +89,7 @@ Json details_of(const bvh::Capture& capture) {
   details["positions"] = to_json(capture.positions);
   if (!capture.exporter.choice.empty()) details["exporter"] = to_json(capture.exporter);
   details["frames_announced"] = capture.frames_announced;
-  details["rest_frame"] = {{"found", capture.rest_frame_found},
-                           {"left_out", capture.rest_frame_dropped}};
+  details["rest_frame"] = rest_frame_of(capture);
   return details;
 }
 
@@ -106,12 +112,12 @@ Result<Source> read_source(const InputFile& input, Kind kind, const Options& opt
   const bool is_bvh = !is_motion && kind != Kind::asf;  // what is neither, the BVH reader refuses
   if (Status fits = check_options(options, is_bvh, is_motion); !fits) return fits.error();
   if (is_bvh) return read_bvh(input, options, *how);
-  if (!is_motion) return read_acclaim(input, nullptr, *how);
+  if (!is_motion) return read_acclaim(input, nullptr, options, *how);
   const auto path = skeleton_for(input.path(), options, context);
   if (!path) return path.error();
   const auto skeleton = context.open_input(*path);
   if (!skeleton) return skeleton.error();
-  return read_acclaim(*skeleton, &input, *how);
+  return read_acclaim(*skeleton, &input, options, *how);
 }
 
 }  // namespace krok::import

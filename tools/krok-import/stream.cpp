@@ -32,10 +32,12 @@ std::optional<Result<int>> stream_capture(const InputFile& input, registry::Kind
   if (!capture) return std::nullopt;
 
   std::atomic<bool> faulty = false;
-  const FrameSource frames = watched(capture->frames, faulty);
+  HeightWatch height(capture->frames);
+  const FrameSource frames = height.watched(watched(capture->frames, faulty));
   Provenance provenance;
   const auto last_words = [&] {
     context.tell(capture->diagnostics);
+    context.note_checksum(input);
     provenance = context.provenance();
     provenance.conversions = capture->clip.provenance.conversions;
     return provenance;
@@ -57,9 +59,10 @@ std::optional<Result<int>> stream_capture(const InputFile& input, registry::Kind
   if (added) added = outputs.finish();
   if (!added) return Result<int>(added.error());
 
-  context.report.result = result_of(*capture, capture->frames, details_of(*capture));
-  context.say(fmt::format("{} -> {}", line_about(options.input, capture->frames), outputs.names()));
-  say_roles(capture->frames.skeleton, capture->roles, context);
+  context.report.result = result_of(*capture, frames, height.height(), details_of(*capture));
+  context.say(
+      fmt::format("{} -> {}", line_about(options.input, frames, height.height()), outputs.names()));
+  say_roles(frames.skeleton, capture->roles, context);
   return Result<int>(kExitDone);
 }
 

@@ -301,6 +301,14 @@ void declare(CLI::App& app, Arguments& arguments) {
   declare_pictures(app, arguments);
 }
 
+Status check(const Arguments& arguments) {
+  if (const auto motion = understand_motions(arguments); !motion) return motion.error();
+  if (const auto columns = understand_tables(arguments); !columns) return columns.error();
+  if (arguments.panel.empty()) return {};
+  const auto panel = parse_panel(arguments.panel);
+  return panel ? Status() : panel.error();
+}
+
 Result<Options> understand(const Arguments& arguments) {
   Options options;
   options.inputs = arguments.inputs;

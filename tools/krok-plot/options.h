@@ -78,6 +78,9 @@ struct Options {
 
 void declare(CLI::App& app, Arguments& arguments);
 
+// What can be said of the options alone, whatever the inputs are.
+Status check(const Arguments& arguments);
+
 // Errors carry the option's name. Code usage for options that do not go together.
 Result<Options> understand(const Arguments& arguments);
 

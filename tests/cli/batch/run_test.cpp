@@ -131,6 +131,34 @@ TEST_F(BatchRun, WhatStandsIsLeftUnlessAnythingChanged) {
   EXPECT_EQ(imported_counts({"--fps", "30", "--model", "{name}.model"}), (Counts{{"done", 4}}));
 }
 
+// The keytimes beside a motion are drawn into its charts; a map says what its joints are.
+TEST_F(BatchRun, OtherFilesThatComeChangeOrGoAreNoticed) {
+  put_captures(2);
+  put("map.json", R"({"schema": "krok.role-map/1", "joints": {}})");
+  const auto plots = [&](const Names& options = {}) {
+    Names arguments = {"takes", "--show", "path", "--out-dir", "plots", "--json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ToolRun run = tool("krok-plot", arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return counts(run.out);
+  };
+  EXPECT_EQ(plots(), (Counts{{"done", 2}}));
+  EXPECT_EQ(plots(), (Counts{{"unchanged", 2}}));
+  const std::string keys =
+      R"({"schema": "krok.keys/1", "keytimes": [{"name": "left_strike", "time": 0.01}]})";
+  put("takes/0001.keys.json", keys);
+  EXPECT_EQ(plots(), (Counts{{"done", 1}, {"unchanged", 1}})) << "come";
+  EXPECT_EQ(plots(), (Counts{{"unchanged", 2}}));
+  put("takes/0001.keys.json", keys + "\n");
+  EXPECT_EQ(plots(), (Counts{{"done", 1}, {"unchanged", 1}})) << "changed";
+  std::filesystem::remove(path("takes/0001.keys.json"));
+  EXPECT_EQ(plots(), (Counts{{"done", 1}, {"unchanged", 1}})) << "gone";
+  EXPECT_EQ(plots({"--map", "map.json"}), (Counts{{"done", 2}}));
+  EXPECT_EQ(plots({"--map", "map.json"}), (Counts{{"unchanged", 2}}));
+  put("map.json", R"({"schema": "krok.role-map/1", "joints": { }})");
+  EXPECT_EQ(plots({"--map", "map.json"}), (Counts{{"done", 2}})) << "another map";
+}
+
 // The name of the source stands in a result, so one of another name is another input.
 TEST_F(BatchRun, AnotherInputOfTheSameContentIsDone) {
   put_capture("a.bvh");

@@ -81,7 +81,7 @@ TEST_F(AcclaimImport, OptionsThatDoNotFitAreUsageErrors) {
       {path("in.bvh"), "--skeleton", path("leg.asf")},
       {path("leg.asf"), "--skeleton", path("leg.asf")},
       {path("walk.amc"), "--positions", "absolute"},
-      {path("walk.amc"), "--skip-rest-frame", "yes"}};
+      {path("walk.amc"), "--angles", "radians"}};
   for (std::vector<std::string> arguments : cases) {
     const std::string option = arguments[1];
     arguments.insert(arguments.end(), {"-o", path("out.anim")});
@@ -90,6 +90,18 @@ TEST_F(AcclaimImport, OptionsThatDoNotFitAreUsageErrors) {
     EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
     EXPECT_THAT(run.err, HasSubstr(option));
   }
+}
+
+TEST_F(AcclaimImport, TheFirstFrameIsLeftOutWhereAsked) {
+  put("leg.asf", small_files::kAsf);
+  put("walk.amc", small_files::kAmc);
+  const ToolRun run = run_tool("krok-import", {path("walk.amc"), "--skip-rest-frame", "yes", "-o",
+                                               path("out.anim"), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json result = Json::parse(run.out)["result"];
+  EXPECT_EQ(result["frames"], 2);
+  EXPECT_EQ(result["first_frame_number"], 2);
+  EXPECT_EQ(result["rest_frame"]["left_out"], true);
 }
 
 TEST_F(AcclaimImport, TwoFilesInTheWrongPlaces) {

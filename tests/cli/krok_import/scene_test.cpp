@@ -173,6 +173,34 @@ TEST_F(SceneImportTest, OptionsForCapturesAreRefused) {
   }
 }
 
+// A capture with a rest pose put before it, by way of a character's file.
+TEST_F(SceneImportTest, ARestFrameBeforeTheMotionIsTold) {
+  std::string text = get(KROK_SOURCE_DIR "/samples/captures/walk.bvh");
+  const std::size_t line = text.find('\n', text.find("Frame Time:")) + 1;
+  std::size_t channels = 0;
+  for (std::size_t at = text.find("CHANNELS "); at != std::string::npos;
+       at = text.find("CHANNELS ", at + 1)) {
+    channels += static_cast<std::size_t>(text[at + 9] - '0');
+  }
+  std::string row;
+  for (std::size_t c = 0; c < channels; ++c) row += c == 1 ? "95 " : "0 ";
+  const std::size_t count = text.find("Frames:") + 7;
+  const int frames = std::stoi(text.substr(count));
+  for (const bool rest : {false, true}) {
+    if (rest) {
+      text.insert(line, row + "\n");
+      text.replace(count, text.find('\n', count) - count, " " + std::to_string(frames + 1));
+    }
+    put("in.bvh", text);
+    const ToolRun made =
+        run_tool("krok-export", {path("in.bvh"), "-o", path("in.glb"), "--no-bones"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const ToolRun run = import({"-o", path("a.anim")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(has_code(run.err, "import-rest-frame"), rest) << run.err;
+  }
+}
+
 TEST_F(SceneImportTest, UnitAndAxesCanBeGiven) {
   put_glb("in.glb", rig());
   const ToolRun run =

@@ -57,6 +57,33 @@ TEST(AcclaimReader, numbers_of_frames_may_begin_anywhere_and_go_up_by_a_step) {
   EXPECT_TRUE(told(*capture, "acclaim-rate", "go up by 4")) << all(*capture);
 }
 
+TEST(AcclaimReader, a_rest_frame_before_the_motion_is_told_and_left_out_where_asked) {
+  std::string amc =
+      ":FULLY-SPECIFIED\n:DEGREES\n5\nroot 0 9 0 0 0 0\nthigh 0 0\nshin 0\ntail 0 2\n";
+  for (int i = 6; i < 16; ++i) {
+    amc += std::to_string(i) + "\nroot " + std::to_string(i) + " 9 0 0 60 0\nthigh " +
+           std::to_string(40 + i) + " 20\nshin 50\ntail 0 2\n";
+  }
+  const auto kept = read(kAsf, amc);
+  ASSERT_TRUE(kept.ok());
+  EXPECT_TRUE(kept->rest_frame_found);
+  EXPECT_TRUE(told(*kept, "acclaim-rest-frame", "it was kept")) << all(*kept);
+  EXPECT_EQ(kept->clip.frame_count(), 11);
+  EXPECT_EQ(kept->first_frame_number, 5);
+  ReadOptions options = plain();
+  options.rest_frame = RestFrame::automatic;
+  const auto dropped = read(kAsf, amc, options);
+  ASSERT_TRUE(dropped.ok());
+  EXPECT_TRUE(dropped->rest_frame_dropped);
+  EXPECT_EQ(dropped->clip.frame_count(), 10);
+  EXPECT_EQ(dropped->first_frame_number, 6);
+  expect_near(position(*dropped, 0, "root"), Vec3(6, 9, 0));
+  options.rest_frame = RestFrame::drop;
+  const auto alone = krok::acclaim::read(kAsf, "s.asf", {}, {}, options);
+  ASSERT_TRUE(alone.ok());
+  EXPECT_EQ(alone->clip.frame_count(), 0);
+}
+
 TEST(AcclaimReader, gaps_close_or_are_filled_or_refused) {
   const std::string amc = with(kAmc, "\n3\n", "\n5\n");
   const auto closed = read(kAsf, amc);

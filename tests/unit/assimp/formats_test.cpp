@@ -138,6 +138,54 @@ TEST(Smd, MotionsOfAList) {
   expect_weights(scene, rig.names);
 }
 
+std::size_t keys_of(const nodes::Animation& animation) {
+  std::size_t most = 0;
+  for (const nodes::Channel& channel : animation.channels) {
+    most = std::max(most, channel.times->size());
+  }
+  return most;
+}
+
+// Files of one name in two folders, one of the name that Assimp knows the mesh by, and one that is
+// not there.
+TEST(Smd, MotionsOfAListAreToldApart) {
+  const MovingRig rig;
+  MovingRig shorter = rig;
+  shorter.frames.resize(2);
+  const Folder folder;
+  const std::string path = folder.add("body.smd", smd(rig, true, false));
+  folder.add("a/walk.smd", smd(rig, false, true));
+  folder.add("b/walk.smd", smd(shorter, false, true));
+  folder.add("b/file.smd", smd(shorter, false, true));
+  folder.add("body_animation.txt",
+             "long a/walk.smd\nshort  b/walk.smd\nnone b/none.smd\nb/file.smd\n");
+  const auto scene = read_or_fail(path);
+  ASSERT_EQ(scene.animations.size(), 3u);
+  EXPECT_EQ(scene.animations[0].name, "long");
+  EXPECT_EQ(scene.animations[1].name, "short");
+  EXPECT_EQ(scene.animations[2].name, "file");
+  EXPECT_EQ(keys_of(scene.animations[0]), 4u);
+  EXPECT_EQ(keys_of(scene.animations[1]), 2u);
+  EXPECT_EQ(keys_of(scene.animations[2]), 2u);
+  EXPECT_TRUE(has_code(scene.diagnostics, "assimp-companion")) << "b/none.smd";
+}
+
+TEST(Smd, OfALongListTheFirstMotionsAreTaken) {
+  const MovingRig rig;
+  const Folder folder;
+  const std::string path = folder.add("body.smd", smd(rig, true, false));
+  std::string list;
+  for (int i = 0; i < 258; ++i) {
+    folder.add(fmt::format("walk{}.smd", i), smd(rig, false, true));
+    list += fmt::format("walk{}.smd\n", i);
+  }
+  folder.add("body_animation.txt", list);
+  const auto scene = read_or_fail(path);
+  ASSERT_EQ(scene.animations.size(), 256u);
+  EXPECT_EQ(scene.animations[255].name, "walk255");
+  EXPECT_TRUE(has_code(scene.diagnostics, "assimp-companion"));
+}
+
 TEST(Smd, OfMoreThanEightJointsTheLargestAreKept) {
   std::string text = "version 1\nnodes\n";
   for (int j = 0; j < 10; ++j) text += fmt::format("{} \"b{}\" {}\n", j, j, j - 1);

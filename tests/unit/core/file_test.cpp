@@ -89,13 +89,50 @@ TEST_F(FileTest, LeavesNothingWithoutCommit) {
 }
 
 TEST_F(FileTest, AnAssignedOverFileIsDiscarded) {
+  // What replaces a file has a name meanwhile.
+  put("first", "old");
+  put("second", "old");
   auto first = OutputFile::create(path("first"));
   auto second = OutputFile::create(path("second"));
-  ASSERT_TRUE(first.ok() && second.ok());
+  ASSERT_TRUE(first.ok() && second.ok() && second->write("new").ok());
   *first = std::move(*second);
-  EXPECT_EQ(listing().size(), 1u);
+  EXPECT_EQ(listing().size(), 3u);
   ASSERT_TRUE(first->commit().ok());
-  EXPECT_EQ(listing(), Names{"second"});
+  EXPECT_EQ(listing(), (Names{"first", "second"}));
+  EXPECT_EQ(get(path("first")), "old");
+  EXPECT_EQ(get(path("second")), "new");
+}
+
+TEST_F(FileTest, WhatComesMeanwhileIsReplaced) {
+  auto file = OutputFile::create(path("out"));
+  ASSERT_TRUE(file.ok() && file->write("new").ok());
+  put("out", "other");
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(get(path("out")), "new");
+  EXPECT_EQ(listing(), Names{"out"});
+}
+
+TEST_F(FileTest, WhatComesMeanwhileIsKeptIfAskedFor) {
+  auto file = OutputFile::create(path("out"), {.no_clobber = true});
+  ASSERT_TRUE(file.ok() && file->write("new").ok());
+  put("out", "other");
+  const Status done = file->commit();
+  ASSERT_FALSE(done.ok());
+  EXPECT_EQ(done.error().code, "file-exists");
+  EXPECT_EQ(get(path("out")), "other");
+  EXPECT_EQ(listing(), Names{"out"});
+}
+
+TEST_F(FileTest, ASealedFileCanBeRead) {
+  for (const bool replaces : {false, true}) {
+    if (replaces) put("out", "old");
+    auto file = OutputFile::create(path("out"));
+    ASSERT_TRUE(file.ok() && file->write("new").ok() && file->seal().ok());
+    EXPECT_EQ(get(file->written_at()), "new");
+    ASSERT_TRUE(file->commit().ok());
+    EXPECT_EQ(get(path("out")), "new");
+    EXPECT_EQ(listing(), Names{"out"});
+  }
 }
 
 TEST_F(FileTest, WritesLargeAndSmallPiecesInOrder) {

@@ -1,4 +1,4 @@
-#include "formats/bvh/rest_frame.h"
+#include "capture/rest_frame.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "math/quaternion.h"
 
-namespace krok::bvh {
+namespace krok {
 
 namespace {
 
@@ -100,8 +100,7 @@ const char* name_of(PoseKind kind) {
 
 RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   RestPose result;
-  result.reference = fmt::format("the reference pose (OFFSETs, no rotations) is {}",
-                                 name_of(kind_of_pose(roles, clip.skeleton.reference)));
+  result.reference = name_of(kind_of_pose(roles, clip.skeleton.reference));
   constexpr int kFewest = 4;
   if (clip.frame_count() < kFewest) return result;
   const Step first_step = step_between(clip, 0, 1);
@@ -131,4 +130,31 @@ RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   return result;
 }
 
-}  // namespace krok::bvh
+bool settle_rest_frame(const RestPose& rest, RestFrame wish, const std::string& prefix,
+                       const std::string& file_name, Capture& capture) {
+  Clip& clip = capture.clip;
+  const bool drop =
+      clip.frame_count() > 0 &&
+      (wish == RestFrame::drop || (wish == RestFrame::automatic && rest.first_frame_is_rest));
+  if (drop) {
+    const auto joints = static_cast<std::ptrdiff_t>(clip.joint_count());
+    clip.positions.erase(clip.positions.begin(), clip.positions.begin() + joints);
+    clip.orientations.erase(clip.orientations.begin(), clip.orientations.begin() + joints);
+    clip.provenance.conversions.emplace_back("the first frame, a rest pose, was left out");
+  }
+  if (!drop && !rest.first_frame_is_rest) return drop;
+  Diagnostic told;
+  told.severity = drop ? Severity::note : Severity::warning;
+  told.code = prefix + "-rest-frame";
+  told.where.file = file_name;
+  if (rest.first_frame_is_rest) {
+    told.message = fmt::format("{}; it {}", rest.reason, drop ? "was left out" : "was kept");
+    if (!drop) told.hint = "--skip-rest-frame auto leaves it out";
+  } else {
+    told.message = "the first frame was left out, as asked";
+  }
+  capture.diagnostics.push_back(std::move(told));
+  return drop;
+}
+
+}  // namespace krok
