@@ -1,6 +1,8 @@
 #include "motion/mirror.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <span>
 
 #include "math/quaternion.h"
 
@@ -54,48 +56,127 @@ std::vector<Quat> lopsidedness(const Skeleton& skeleton, const MirrorPairs& pair
   return turns;
 }
 
+constexpr double kStill = 2 * kRadiansPerDegree;     // in the parent, over the whole clip
+constexpr double kTwisted = 60 * kRadiansPerDegree;  // what a mirror would turn it by
+
+// 1 for joints that are no part of the body and do not turn in their parents.
+std::vector<std::uint8_t> still_joints(const Clip& clip, const MirrorPairs& pairs) {
+  std::vector<std::uint8_t> still(clip.skeleton.names.size(), 0);
+  if (pairs.in_body.empty() || clip.frame_count() == 0) return still;
+  std::vector<Transform> pose(still.size());
+  std::vector<Quat> first(still.size());
+  const auto local = [&](std::size_t j) {
+    const int parent = clip.skeleton.parents[j];
+    return Quat(pose[at(parent)].orientation.conjugate() * pose[j].orientation);
+  };
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    clip.get_pose(f, pose);
+    for (std::size_t j = 1; j < still.size(); ++j) {
+      if (pairs.in_body[j] != 0 || (f > 0 && still[j] == 0)) continue;
+      if (f == 0) first[j] = local(j);
+      still[j] = angle_between(first[j], local(j)) <= kStill ? 1 : 0;
+    }
+  }
+  return still;
+}
+
+// Mirrors poses of one skeleton.
+class PoseMirror {
+ public:
+  PoseMirror(const Skeleton& skeleton, const MirrorPairs& pairs)
+      : skeleton_(skeleton),
+        pairs_(pairs),
+        lopsided_(lopsidedness(skeleton, pairs)),
+        kept_(skeleton.names.size(), 0),
+        turns_(kept_.size()),
+        new_turns_(kept_.size()) {
+    for (std::size_t j = 1; j < kept_.size(); ++j) {
+      kept_[j] = pairs.partners[j] == MirrorPairs::kNone ? 1 : 0;
+    }
+  }
+
+  // Has still joints go along with their parents where the mirror image of `pose` has them turned
+  // far from where they are.
+  void keep_twisted(std::span<const Transform> pose, std::span<const std::uint8_t> still) {
+    std::vector<Transform> mirrored(pose.size());
+    begin(pose);
+    for (int j = 0; j < skeleton_.joint_count(); ++j) {
+      place(j, pose, mirrored);
+      if (still[at(j)] == 0 || kept_[at(j)] != 0 || still[at(pairs_.partners[at(j)])] == 0) {
+        continue;
+      }
+      const auto parent = at(skeleton_.parents[at(j)]);
+      const Quat before = pose[parent].orientation.conjugate() * pose[at(j)].orientation;
+      const Quat after = mirrored[parent].orientation.conjugate() * mirrored[at(j)].orientation;
+      if (angle_between(before, after) <= kTwisted) continue;
+      kept_[at(j)] = 1;
+      place(j, pose, mirrored);
+    }
+  }
+
+  void operator()(std::span<const Transform> pose, std::span<Transform> mirrored) {
+    begin(pose);
+    for (int j = 0; j < skeleton_.joint_count(); ++j) place(j, pose, mirrored);
+  }
+
+ private:
+  const Quat& reference_turn(int joint) const { return skeleton_.reference[at(joint)].orientation; }
+
+  void begin(std::span<const Transform> pose) {
+    for (int j = 0; j < skeleton_.joint_count(); ++j) {
+      turns_[at(j)] = pose[at(j)].orientation * reference_turn(j).conjugate();
+    }
+  }
+
+  // Joints above it are placed already.
+  void place(int j, std::span<const Transform> pose, std::span<Transform> mirrored) {
+    const std::vector<Transform>& reference = skeleton_.reference;
+    const int parent = skeleton_.parents[at(j)];
+    Transform& joint = mirrored[at(j)];
+    if (parent >= 0 && kept_[at(j)] != 0) {
+      joint = mirrored[at(parent)] * (pose[at(parent)].inverse() * pose[at(j)]);
+      new_turns_[at(j)] = joint.orientation * reference_turn(j).conjugate();
+      return;
+    }
+    const int source = parent < 0 ? j : pairs_.partners[at(j)];
+    new_turns_[at(j)] = normalized_or_identity(image(turns_[at(source)]) * lopsided_[at(j)]);
+    joint.orientation = normalized_or_identity(new_turns_[at(j)] * reference_turn(j));
+    if (parent < 0) {
+      // The figure's plane, not the root, is what the mirror holds on to.
+      const Vec3 across(2 * (pairs_.plane - reference[at(j)].position.x()), 0, 0);
+      joint.position = image(Vec3(pose[at(j)].position + turns_[at(j)] * across));
+      return;
+    }
+    // What the joint stands off from where its parent's turn alone would put it.
+    const int above = skeleton_.parents[at(source)];
+    const Vec3 offset = reference[at(source)].position - reference[at(above)].position;
+    const Vec3 stray =
+        pose[at(source)].position - pose[at(above)].position - turns_[at(above)] * offset;
+    const Vec3 own_offset = reference[at(j)].position - reference[at(parent)].position;
+    joint.position =
+        mirrored[at(parent)].position + new_turns_[at(parent)] * own_offset + image(stray);
+  }
+
+  const Skeleton& skeleton_;
+  const MirrorPairs& pairs_;
+  std::vector<Quat> lopsided_;
+  std::vector<std::uint8_t> kept_;       // [joints], go along with their parents
+  std::vector<Quat> turns_, new_turns_;  // from the reference pose
+};
+
 }  // namespace
 
 Clip mirror(const Clip& clip, const MirrorPairs& pairs) {
-  const Skeleton& skeleton = clip.skeleton;
-  const int joints = clip.joint_count();
-  const std::vector<Transform>& reference = skeleton.reference;
-  const std::vector<Quat> lopsided = lopsidedness(skeleton, pairs);
+  PoseMirror mirror_pose(clip.skeleton, pairs);
   Clip result = clip;
-  std::vector<Transform> pose(skeleton.names.size()), mirrored(pose.size());
-  std::vector<Quat> turns(pose.size()), new_turns(pose.size());  // from the reference pose
+  std::vector<Transform> pose(clip.skeleton.names.size()), mirrored(pose.size());
+  if (clip.frame_count() > 0) {
+    clip.get_pose(clip.frame_count() - 1, pose);
+    mirror_pose.keep_twisted(pose, still_joints(clip, pairs));
+  }
   for (int f = 0; f < clip.frame_count(); ++f) {
     clip.get_pose(f, pose);
-    for (int j = 0; j < joints; ++j) {
-      turns[at(j)] = pose[at(j)].orientation * reference[at(j)].orientation.conjugate();
-    }
-    for (int j = 0; j < joints; ++j) {
-      const int other = pairs.partners[at(j)];
-      const int parent = skeleton.parents[at(j)];
-      Transform& joint = mirrored[at(j)];
-      if (parent >= 0 && other == MirrorPairs::kNone) {
-        joint = mirrored[at(parent)] * (pose[at(parent)].inverse() * pose[at(j)]);
-        new_turns[at(j)] = joint.orientation * reference[at(j)].orientation.conjugate();
-        continue;
-      }
-      const int source = parent < 0 ? j : other;
-      new_turns[at(j)] = normalized_or_identity(image(turns[at(source)]) * lopsided[at(j)]);
-      joint.orientation = normalized_or_identity(new_turns[at(j)] * reference[at(j)].orientation);
-      if (parent < 0) {
-        // The figure's plane, not the root, is what the mirror holds on to.
-        const Vec3 across(2 * (pairs.plane - reference[at(j)].position.x()), 0, 0);
-        joint.position = image(Vec3(pose[at(j)].position + turns[at(j)] * across));
-        continue;
-      }
-      // What the joint stands off from where its parent's turn alone would put it.
-      const int above = skeleton.parents[at(source)];
-      const Vec3 offset = reference[at(source)].position - reference[at(above)].position;
-      const Vec3 stray =
-          pose[at(source)].position - pose[at(above)].position - turns[at(above)] * offset;
-      const Vec3 own_offset = reference[at(j)].position - reference[at(parent)].position;
-      joint.position =
-          mirrored[at(parent)].position + new_turns[at(parent)] * own_offset + image(stray);
-    }
+    mirror_pose(pose, mirrored);
     result.set_pose(f, mirrored);
   }
   return result;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "roles/roles.h"
@@ -14,6 +15,8 @@ struct MirrorPairs {
   // For each joint the one on the other side; itself for joints of the middle; kNone where none was
   // found. An involution where it is not kNone. The root is its own.
   std::vector<int> partners;
+  // [joints], 1 for those whose part in a body is known; empty: all are. See mirror().
+  std::vector<std::uint8_t> in_body;
   double plane = 0;  // the figure's plane of symmetry in the reference pose is x = `plane`
 
   std::vector<int> unpaired() const;
@@ -32,7 +35,9 @@ MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles);
 // joints' own axes need not be alike on both sides. Where bones of the reference pose are no mirror
 // images of each other the difference is taken into account, so that the bones of the result are.
 // Bones keep their own lengths. Joints without a partner go along with their parents, their
-// transforms relative to them unchanged.
+// transforms relative to them unchanged. So do joints that are no part of the body (jaws, eyes,
+// tongues), do not move in their parents, and would be turned by over 60 degrees: some exporters'
+// reference poses have them twisted, and what stays that far off is no posture.
 Clip mirror(const Clip& clip, const MirrorPairs& pairs);
 
 }  // namespace krok

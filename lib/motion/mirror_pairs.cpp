@@ -194,7 +194,12 @@ std::vector<int> MirrorPairs::unpaired() const {
 }
 
 MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles) {
-  return PairFinder(skeleton, roles).find();
+  MirrorPairs pairs = PairFinder(skeleton, roles).find();
+  for (const Role role : roles.roles) {
+    const bool unknown = role == Role::none || role == Role::helper || role == Role::end;
+    pairs.in_body.push_back(unknown ? 0 : 1);
+  }
+  return pairs;
 }
 
 }  // namespace krok

@@ -15,6 +15,8 @@ namespace {
 
 using parametric::Library;
 
+constexpr std::size_t kMostLeftOut = 128;
+
 std::vector<double> parameters_of(const Library& library) {
   std::vector<double> points;
   for (const parametric::Example& example : library.examples) {
@@ -137,6 +139,12 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   auto refined = fit::refine(fitted.start, measure_of(measure), how, *context.progress);
   if (!refined) return std::move(refined).error().in_file(options.library);
   fitted.refined = *std::move(refined);
+  if (library.examples.size() <= kMostLeftOut) {
+    // Without one of them some libraries cannot be fitted; that is no fault of this one.
+    if (auto left_out = parametric::leave_one_out(library, fitted.refined.function.kernel)) {
+      fitted.left_out = *std::move(left_out);
+    }
+  }
   return fitted;
 }
 

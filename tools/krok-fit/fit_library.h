@@ -4,6 +4,7 @@
 
 #include "core/result.h"
 #include "fit/refine.h"
+#include "parametric/leave_one_out.h"
 #include "parametric/measure.h"
 #include "tools/krok-fit/library_input.h"
 #include "tools/krok-fit/options.h"
@@ -16,6 +17,9 @@ struct FittedLibrary {
   std::vector<double> tolerances;  // [parameters], own units
   fit::Refined start;              // without what this run inserted
   fit::Refined refined;
+  // Each example by the others alone, by unrefined weights; empty for over 128 examples, for it
+  // takes time with the fourth power of their number.
+  std::vector<parametric::HeldOut> left_out;
 };
 
 // Measures blends of the library; both arguments must outlive it. May be called by several threads.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/numbers.h"
 #include "tools/krok-fit/parameter_text.h"
 
@@ -81,6 +83,46 @@ Json refused_json(const FittedLibrary& fitted) {
   return list;
 }
 
+// Means over the examples that lie between the others, for there alone the others can tell.
+struct LeftOutMeans {
+  int examples = 0;
+  double weighted = 0, linear = 0, nearest = 0;  // metres
+};
+LeftOutMeans means_of(const std::vector<parametric::HeldOut>& left_out) {
+  LeftOutMeans means;
+  for (const parametric::HeldOut& one : left_out) {
+    if (!one.inside || one.failed) continue;
+    ++means.examples;
+    means.weighted += one.weighted;
+    means.linear += one.linear;
+    means.nearest += one.nearest;
+  }
+  for (double* mean : {&means.weighted, &means.linear, &means.nearest}) {
+    *mean /= std::max(1, means.examples);
+  }
+  return means;
+}
+
+Json left_out_json(const std::vector<parametric::HeldOut>& left_out) {
+  Json list = Json::array();
+  for (const parametric::HeldOut& one : left_out) {
+    if (one.failed) continue;
+    list.push_back({{"example", one.example},
+                    {"inside", one.inside},
+                    {"weighted", one.weighted},
+                    {"linear", one.linear},
+                    {"nearest", one.nearest}});
+  }
+  const LeftOutMeans means = means_of(left_out);
+  Json result;
+  result["inside"] = means.examples;
+  result["weighted"] = means.weighted;
+  result["linear"] = means.linear;
+  result["nearest"] = means.nearest;
+  result["examples"] = std::move(list);
+  return result;
+}
+
 const RefineFigures& last_figures(const FittedLibrary& fitted) {
   return fitted.refined.rounds.empty() ? fitted.refined.before : fitted.refined.rounds.back().after;
 }
@@ -137,6 +179,7 @@ Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
   result["before"] = figures_json(fitted.refined.before, input);
   result["rounds"] = rounds_json(input, fitted);
   result["refused_points"] = refused_json(fitted);
+  result["leave_one_out"] = left_out_json(fitted.left_out);
   result["stop"] = std::string(fit::stop_name(fitted.refined.stop));
   return result;
 }
@@ -160,6 +203,13 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
                             with_unit(before.within[d].largest, unit),
                             with_unit(after.within[d].largest, unit),
                             with_unit(after.within[d].mean, unit)));
+  }
+  if (const LeftOutMeans means = means_of(fitted.left_out); means.examples > 0) {
+    context.say(fmt::format(
+        "  {} made from the others: joints {} mm off in the mean; by planes alone {} mm, the "
+        "nearest other one {} mm",
+        counted(means.examples, "inner example"), readable(1e3 * means.weighted, 3),
+        readable(1e3 * means.linear, 3), readable(1e3 * means.nearest, 3)));
   }
   context.say(fmt::format("  {} inserted in {}: {}; weights {} to {}",
                           counted(fitted.refined.function.inserted(), "point"),

@@ -230,6 +230,44 @@ TEST(Mirror, JointsThatMoveInTheirParentsAndThoseWithoutPartner) {
   expect_twice_is_nothing(clip, pairs);
 }
 
+// Some exporters' reference poses have the face's joints twisted against what all frames have.
+TEST(Mirror, FacesTwistedInTheReferencePoseStayFaces) {
+  Skeleton skeleton = test::human_skeleton();
+  const int head = skeleton.find("Head");
+  const Vec3 place = skeleton.reference[static_cast<std::size_t>(head)].position;
+  const int jaw = skeleton.add("JawRoot", head, {place + Vec3(0, 0, 0.05), Quat::Identity()});
+  const int chin = skeleton.add("Tongue", jaw, {place + Vec3(0, 0, 0.1), Quat::Identity()});
+  Clip clip = test::swinging_clip(skeleton, 8, 30);
+  LocalMotion motion = local_motion(clip);
+  for (int f = 0; f < 8; ++f) {
+    Transform local = motion.at(jaw, f);
+    local.orientation = from_rotation_vector(Vec3(0, 0, kPi / 2));
+    motion.set(jaw, f, local);
+    local = motion.at(chin, f);
+    local.orientation = Quat::Identity();
+    motion.set(chin, f, local);
+  }
+  set_local_motion(motion, clip);
+  const MirrorPairs pairs = pairs_of(skeleton);
+  ASSERT_EQ(pairs.partners[static_cast<std::size_t>(jaw)], jaw);
+  const LocalMotion after = local_motion(mirror(clip, pairs));
+  for (int f = 0; f < 8; ++f) {
+    EXPECT_LT(angle_between(after.at(jaw, f).orientation, motion.at(jaw, f).orientation), 1e-5);
+    EXPECT_LT(angle_between(after.at(chin, f).orientation, motion.at(chin, f).orientation), 1e-5);
+  }
+  // What moves is no twist of the reference pose.
+  for (int f = 0; f < 8; ++f) {
+    Transform local = motion.at(jaw, f);
+    local.orientation = from_rotation_vector(Vec3(0, 0, kPi / 2 + 0.1 * f));
+    motion.set(jaw, f, local);
+  }
+  set_local_motion(motion, clip);
+  const LocalMotion moved = local_motion(mirror(clip, pairs));
+  EXPECT_LT(
+      angle_between(moved.at(jaw, 3).orientation, from_rotation_vector(Vec3(0, 0, -kPi / 2 - 0.3))),
+      1e-5);
+}
+
 TEST(Mirror, OneJointAndNoFrames) {
   Skeleton single;
   single.add("root", -1, {Vec3(0.1, 1, 0), from_rotation_vector(Vec3(1, 2, 3))});
