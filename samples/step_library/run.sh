@@ -32,7 +32,7 @@ cd -- "$out"
 
 say() { printf '\n%s\n' "$1"; }
 
-say "1. Nine walks: three lengths of step on three slopes, and 27 that turn as well"
+say "1. Nine walks: three lengths of step on three slopes; 27 that turn as well; 54 of two widths"
 for length in 50 65 80; do
   for rise in -12 0 12; do
     "$make_walk" -q --steps 6 --step-length ${length}cm --rise ${rise}cm --ground slope \
@@ -40,18 +40,23 @@ for length in 50 65 80; do
     for turn in -20 0 20; do
       "$make_walk" -q --steps 6 --step-length ${length}cm --rise ${rise}cm --turn ${turn}deg \
         --ground slope -o turn_${length}_${rise}_${turn}.bvh
+      for width in 8 20; do
+        "$make_walk" -q --steps 4 --step-length ${length}cm --rise ${rise}cm --turn ${turn}deg \
+          --step-width ${width}cm --ground slope -o wide_${length}_${rise}_${turn}_${width}.bvh
+      done
     done
   done
 done
-cp -- "$here/library.json" "$here/library_turns.json" .
-echo "  $(ls walk_*.bvh turn_*.bvh | wc -l) captures"
+cp -- "$here"/library*.json .
+echo "  $(ls walk_*.bvh turn_*.bvh wide_*.bvh | wc -l) captures"
 
 say "2. Their left steps become a library: weights by length and height, then refined"
 "$bin/krok-fit" library.json -o unrefined.steps --refine 0
 "$bin/krok-fit" library.json -o walking.steps --plots charts --json=fit.json
 
-say "3. With turns it has three parameters"
+say "3. With turns it has three parameters, with widths four"
 "$bin/krok-fit" library_turns.json -o turning.steps --plots charts_turns --json=fit_turns.json
+"$bin/krok-fit" library_widths.json -o any.steps --plots charts_widths --json=fit_widths.json
 
 say "4. Steps that no one took"
 "$bin/krok-synth" walking.steps --set length=57cm --set height=3cm -o step.anim
@@ -63,4 +68,4 @@ mkdir -p sheet
 
 say "5. To look at"
 "$bin/krok-plot" -q --sheet=steps.png --sides left --moments 5 --size 150 sheet/step_*.anim
-echo "  steps.png, charts/*.svg, charts_turns/*.svg"
+echo "  steps.png, charts/*.svg, charts_turns/*.svg, charts_widths/*.svg"

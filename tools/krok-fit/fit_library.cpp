@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "core/quantity.h"
@@ -136,9 +137,11 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   how.seed = options.seed;
   how.held_out = options.held_out;
   how.jobs = context.jobs;
+  const auto begin = std::chrono::steady_clock::now();
   auto refined = fit::refine(fitted.start, measure_of(measure), how, *context.progress);
   if (!refined) return std::move(refined).error().in_file(options.library);
   fitted.refined = *std::move(refined);
+  fitted.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (library.examples.size() <= kMostLeftOut) {
     // Without one of them some libraries cannot be fitted; that is no fault of this one.
     if (auto left_out = parametric::leave_one_out(library, fitted.refined.function.kernel)) {

@@ -17,6 +17,7 @@ struct FittedLibrary {
   std::vector<double> tolerances;  // [parameters], own units
   fit::Refined start;              // without what this run inserted
   fit::Refined refined;
+  double seconds = 0;  // that refinement took; no part of any file
   // Each example by the others alone, by unrefined weights; empty for over 128 examples, for it
   // takes time with the fourth power of their number.
   std::vector<parametric::HeldOut> left_out;

@@ -211,11 +211,11 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
         counted(means.examples, "inner example"), readable(1e3 * means.weighted, 3),
         readable(1e3 * means.linear, 3), readable(1e3 * means.nearest, 3)));
   }
-  context.say(fmt::format("  {} inserted in {}: {}; weights {} to {}",
+  context.say(fmt::format("  {} inserted in {} ({:.2g} s): {}; weights {} to {}",
                           counted(fitted.refined.function.inserted(), "point"),
                           counted(static_cast<long long>(fitted.refined.rounds.size()), "round"),
-                          what_stopped(fitted.refined), readable(after.least_weight, 3),
-                          readable(after.largest_weight, 3)));
+                          fitted.seconds, what_stopped(fitted.refined),
+                          readable(after.least_weight, 3), readable(after.largest_weight, 3)));
 }
 
 }  // namespace krok::fit_tool

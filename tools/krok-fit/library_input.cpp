@@ -29,6 +29,7 @@ using library::ParameterEntry;
 using parametric::Library;
 
 constexpr double kUsualSpacing = 0.15;
+constexpr double kUsualTolerance = 0.1;  // of what a parameter's usually is: refining is cheap
 
 // A motion of the list, with the entry that named it.
 struct Motion {
@@ -327,7 +328,7 @@ class Reader {
       auto parameter =
           parametric::parse_parameter(entry.measures, library.skeleton, library.keytimes);
       if (!parameter) return at_entry(std::move(parameter).error(), entry.place);
-      if (entry.tolerance) parameter->tolerance = *entry.tolerance;
+      parameter->tolerance = entry.tolerance.value_or(kUsualTolerance * parameter->tolerance);
       library.parameters.push_back(*parameter);
     }
     return {};

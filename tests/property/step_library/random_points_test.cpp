@@ -1,0 +1,187 @@
+// If these fail, a refined library gives nonsense for some parameters that no test thought of:
+// weights that are no numbers, do not sum to 1, leave their range, or jump; steps that are not what
+// was asked for; examples that do not come back.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "fit/refine.h"
+#include "motion/sample.h"
+#include "parametric/synthesise.h"
+#include "rbf/weight_solver.h"
+#include "unit/parametric/walks.h"
+
+namespace krok::parametric {
+namespace {
+
+constexpr int kPoints = 10'000;
+
+// Nine examples by length and height, or 27 that turn as well, refined.
+class RefinedLibrary : public testing::TestWithParam<bool> {
+ protected:
+  static void SetUpTestSuite() {
+    for (const bool turns : {false, true}) make(turns);
+  }
+  static void TearDownTestSuite() {
+    for (Made*& made : made_) {
+      delete made;
+      made = nullptr;
+    }
+  }
+
+  struct Made {
+    Library library;
+    rbf::WeightFunction weights;
+  };
+  const Made& made() const { return *made_[GetParam() ? 1 : 0]; }
+
+  // A point of the box of the examples' ranges, widened by a part of them.
+  std::vector<double> random_point(const Bounds& bounds, double wider) {
+    std::vector<double> point;
+    for (std::size_t d = 0; d < bounds.lower.size(); ++d) {
+      const double range = bounds.upper[d] - bounds.lower[d];
+      std::uniform_real_distribution<double> within(bounds.lower[d] - wider * range,
+                                                    bounds.upper[d] + wider * range);
+      point.push_back(within(random_));
+    }
+    return point;
+  }
+
+  std::mt19937_64 random_{20'111'122};
+
+ private:
+  static void make(bool turns) {
+    auto* made = new Made;
+    std::vector<std::string> names = {"step.length", "step.height"};
+    if (turns) names.emplace_back("step.turn");
+    made->library =
+        test::library_of(test::grid_walks(turns), names, {.mirror = false, .outlier = 0}).library;
+    std::vector<double> parameters;
+    for (const Example& example : made->library.examples) {
+      parameters.insert(parameters.end(), example.parameters.begin(), example.parameters.end());
+    }
+    const auto solver = rbf::WeightSolver::create(made->library.dimensions(), parameters);
+    ASSERT_TRUE(solver.ok());
+    const PackedExamples packed = pack_examples(made->library);
+    const Measure measure(made->library, packed);
+    const Bounds bounds = bounds_of(made->library);
+    fit::RefineOptions options;
+    options.points = turns ? 40 : 20;
+    options.inside = [&](std::span<const double> point) {
+      return outside(bounds, point).distance <= 0;
+    };
+    fit::Refined start;
+    start.function = solver->function();
+    Progress progress;
+    const auto refined = fit::refine(
+        start,
+        [&](auto weights, auto values, auto jacobian) {
+          auto scratch = measure.make_scratch();
+          return measure(weights, values, jacobian, scratch);
+        },
+        options, progress);
+    ASSERT_TRUE(refined.ok()) << refined.error().message;
+    made->weights = refined->function;
+    made_[turns ? 1 : 0] = made;
+  }
+  static inline Made* made_[2] = {nullptr, nullptr};
+};
+
+INSTANTIATE_TEST_SUITE_P(TwoAndThreeParameters, RefinedLibrary, testing::Values(false, true));
+
+TEST_P(RefinedLibrary, GivesSoundWeightsAnywhereInside) {
+  const auto synthesiser = Synthesiser::create(made().library, made().weights);
+  ASSERT_TRUE(synthesiser.ok());
+  int inside = 0;
+  while (inside < kPoints) {
+    const auto point = random_point(synthesiser->bounds(), 0);
+    if (outside(synthesiser->bounds(), point).distance > 0) continue;
+    ++inside;
+    const auto made_of = synthesiser->weights(point);
+    ASSERT_TRUE(made_of.ok()) << made_of.error().message;
+    const auto& weights = made_of->weights;
+    EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1, 1e-12);
+    for (const double weight : weights) {
+      ASSERT_TRUE(weight > -0.25 && weight < 1.25) << weight;
+    }
+    for (std::size_t d = 0; d < point.size(); ++d) {
+      // Half a millimetre and a tenth of a degree: lengths are metres, turns radians.
+      const bool turn = made().library.parameters[d].quantity == Quantity::step_turn;
+      ASSERT_NEAR(made_of->parameters[d], point[d], turn ? 0.1 * kRadiansPerDegree : 0.6e-3);
+    }
+  }
+}
+
+// What is asked may come from anywhere; an answer is an error or a motion, never nonsense.
+TEST_P(RefinedLibrary, PointsFarOutsideAreRefusedOrAnswered) {
+  const auto synthesiser = Synthesiser::create(made().library, made().weights);
+  ASSERT_TRUE(synthesiser.ok());
+  int refused = 0;
+  for (int k = 0; k < kPoints; ++k) {
+    const auto point = random_point(synthesiser->bounds(), 1);
+    const bool is_outside = outside(synthesiser->bounds(), point).distance > 0;
+    const auto plain = synthesiser->weights(point);
+    EXPECT_EQ(plain.ok(), !is_outside);
+    refused += is_outside ? 1 : 0;
+    const auto beyond = synthesiser->weights(point, {.extrapolate = true});
+    if (!beyond) continue;  // rotations may cancel out there
+    for (const double weight : beyond->weights) ASSERT_TRUE(std::isfinite(weight));
+    for (const double value : beyond->parameters) ASSERT_TRUE(std::isfinite(value));
+  }
+  EXPECT_GT(refused, kPoints / 4);
+  for (const double odd : {std::nan(""), double(INFINITY), 1e300}) {
+    auto point = random_point(synthesiser->bounds(), 0);
+    point[0] = odd;
+    EXPECT_FALSE(synthesiser->weights(point).ok());
+  }
+}
+
+// A hundredth of a per cent of the range changes no weight by more than 20 times as much.
+TEST_P(RefinedLibrary, WeightsAreContinuous) {
+  const auto evaluator = rbf::WeightEvaluator::create(made().weights);
+  ASSERT_TRUE(evaluator.ok());
+  const Bounds bounds = bounds_of(made().library);
+  const std::size_t n = made().library.examples.size();
+  std::vector<double> before(n), after(n);
+  constexpr double kStep = 1e-4;
+  for (int k = 0; k < kPoints; ++k) {
+    auto point = random_point(bounds, 0);
+    evaluator->weights(point, before);
+    const std::size_t d = static_cast<std::size_t>(k) % point.size();
+    point[d] += kStep * (bounds.upper[d] - bounds.lower[d]);
+    evaluator->weights(point, after);
+    for (std::size_t i = 0; i < n; ++i) {
+      ASSERT_LT(std::abs(after[i] - before[i]), 20 * kStep) << i;
+    }
+  }
+}
+
+TEST_P(RefinedLibrary, ExamplesComeBackAtTheirOwnParameters) {
+  const auto synthesiser = Synthesiser::create(made().library, made().weights);
+  ASSERT_TRUE(synthesiser.ok());
+  for (const Example& example : made().library.examples) {
+    const auto synthesis = synthesiser->weights(example.parameters);
+    ASSERT_TRUE(synthesis.ok());
+    const auto motion = synthesiser->motion(synthesis->weights);
+    ASSERT_TRUE(motion.ok());
+    const auto clip = motion->make(example.motion.rate, LastFrame::within);
+    ASSERT_TRUE(clip.ok());
+    const double first = example.keytimes.front();
+    std::vector<Transform> made_pose(example.motion.skeleton.names.size()), pose(made_pose.size()),
+        scratch(3 * pose.size());
+    for (int f = 0; f < clip->clip.frame_count(); ++f) {
+      clip->clip.get_pose(f, made_pose);
+      sample(example.motion, first + f / example.motion.rate, pose, scratch);
+      for (std::size_t j = 0; j < pose.size(); ++j) {
+        ASSERT_LT((made_pose[j].position - pose[j].position).norm(), 1e-5)
+            << example.name << " frame " << f << " " << example.motion.skeleton.names[j];
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace krok::parametric
