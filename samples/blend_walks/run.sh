@@ -4,33 +4,15 @@
 #   run.sh [OUTPUT_FOLDER]
 #
 # Without an argument: out/blend_walks. The tools are found through $KROK_BIN or in build/bin,
-# make-walk through $MAKE_WALK or in build/samples.
-set -euo pipefail
+# make-walk through $SAMPLES_BIN or in build/samples.
+. "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
 
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-bin=${KROK_BIN:-$here/../../build/bin}
-make_walk=${MAKE_WALK:-$here/../../build/samples/make-walk}
+check_arguments 1 "$@"
+need_tools import keys blend edit plot
+need_generators make-walk
 weights=(0 0.25 0.5 0.75 1)
+enter_folder "${1:-out/blend_walks}"
 
-usage() { sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
-
-fail() {
-  echo "run.sh: error: $1" >&2
-  [ $# -lt 2 ] || echo "  hint: $2" >&2
-  exit 2
-}
-
-case "${1:-}" in -h | --help) usage && exit 0 ;; esac
-[ $# -le 1 ] || fail "$# arguments, at most 1 is taken" "put names with spaces in quotes"
-out=${1:-out/blend_walks}
-for tool in import keys blend edit plot; do
-  [ -x "$bin/krok-$tool" ] || fail "no krok-$tool in $bin" "build with make, or set KROK_BIN"
-done
-[ -x "$make_walk" ] || fail "no make-walk at $make_walk" "build with make, or set MAKE_WALK"
-mkdir -p -- "$out" || fail "cannot make the folder $out"
-cd -- "$out"
-
-say() { printf '\n%s\n' "$1"; }
 other() { awk -v w="$1" 'BEGIN { print 1 - w }'; }
 
 # slide MOTION: how fast its feet slide, in mm/s.
@@ -46,8 +28,8 @@ strikes() {
 }
 
 say "1. Two walks: short slow steps and long quick ones"
-"$make_walk" -q --steps 8 --step-length 50cm -o slow.bvh
-"$make_walk" -q --steps 8 --step-length 85cm -o quick.bvh
+"$generators/make-walk" -q --steps 8 --step-length 50cm -o slow.bvh
+"$generators/make-walk" -q --steps 8 --step-length 85cm -o quick.bvh
 for walk in slow quick; do
   "$bin/krok-import" -q -o $walk.anim -- $walk.bvh
   "$bin/krok-keys" -o $walk.keys.json -- $walk.anim 2>&1 | sed 's/^/  /'

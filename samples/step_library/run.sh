@@ -5,49 +5,30 @@
 #   run.sh [OUTPUT_FOLDER]
 #
 # Without an argument: out/step_library. The tools are found through $KROK_BIN or in build/bin,
-# make-walk through $MAKE_WALK or in build/samples.
-set -euo pipefail
+# make-walk through $SAMPLES_BIN or in build/samples.
+. "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
 
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-bin=${KROK_BIN:-$here/../../build/bin}
-make_walk=${MAKE_WALK:-$here/../../build/samples/make-walk}
-
-usage() { sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
-
-fail() {
-  echo "run.sh: error: $1" >&2
-  [ $# -lt 2 ] || echo "  hint: $2" >&2
-  exit 2
-}
-
-case "${1:-}" in -h | --help) usage && exit 0 ;; esac
-[ $# -le 1 ] || fail "$# arguments, at most 1 is taken" "put names with spaces in quotes"
-out=${1:-out/step_library}
-for tool in fit synth plot; do
-  [ -x "$bin/krok-$tool" ] || fail "no krok-$tool in $bin" "build with make, or set KROK_BIN"
-done
-[ -x "$make_walk" ] || fail "no make-walk at $make_walk" "build with make, or set MAKE_WALK"
-mkdir -p -- "$out" || fail "cannot make the folder $out"
-cd -- "$out"
-
-say() { printf '\n%s\n' "$1"; }
+check_arguments 1 "$@"
+need_tools fit synth plot
+need_generators make-walk
+enter_folder "${1:-out/step_library}"
 
 say "1. Nine walks: three lengths of step on three slopes; 27 that turn as well; 54 of two widths"
 for length in 50 65 80; do
   for rise in -12 0 12; do
-    "$make_walk" -q --steps 6 --step-length ${length}cm --rise ${rise}cm --ground slope \
+    "$generators/make-walk" -q --steps 6 --step-length ${length}cm --rise ${rise}cm --ground slope \
       -o walk_${length}_${rise}.bvh
     for turn in -20 0 20; do
-      "$make_walk" -q --steps 6 --step-length ${length}cm --rise ${rise}cm --turn ${turn}deg \
+      "$generators/make-walk" -q --steps 6 --step-length ${length}cm --rise ${rise}cm --turn ${turn}deg \
         --ground slope -o turn_${length}_${rise}_${turn}.bvh
       for width in 8 20; do
-        "$make_walk" -q --steps 4 --step-length ${length}cm --rise ${rise}cm --turn ${turn}deg \
+        "$generators/make-walk" -q --steps 4 --step-length ${length}cm --rise ${rise}cm --turn ${turn}deg \
           --step-width ${width}cm --ground slope -o wide_${length}_${rise}_${turn}_${width}.bvh
       done
     done
   done
 done
-cp -- "$here"/library*.json .
+cp -- "$story"/library*.json .
 echo "  $(ls walk_*.bvh turn_*.bvh wide_*.bvh | wc -l) captures"
 
 say "2. Their left steps become a library: weights by length and height, then refined"
@@ -63,7 +44,7 @@ say "4. Steps that no one took"
 "$bin/krok-synth" walking.steps --set length=57cm --set height=3cm --correct --side right \
   -o step_right.anim
 mkdir -p sheet
-"$bin/krok-synth" walking.steps --table "$here/points.csv" -o sheet/step.anim
+"$bin/krok-synth" walking.steps --table "$story/points.csv" -o sheet/step.anim
 "$bin/krok-synth" turning.steps --set length=60cm --set height=0 --set turn=14deg -o bend.anim
 
 say "5. To look at"

@@ -6,44 +6,23 @@
 #
 # Without an argument: out/timeline. The tools are found through $KROK_BIN or in build/bin, make-walk
 # and make-gesture through $SAMPLES_BIN or in build/samples.
-set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
 
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-bin=${KROK_BIN:-$here/../../build/bin}
-samples=${SAMPLES_BIN:-$here/../../build/samples}
-
-usage() { sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
-
-fail() {
-  echo "run.sh: error: $1" >&2
-  [ $# -lt 2 ] || echo "  hint: $2" >&2
-  exit 2
-}
-
-case "${1:-}" in -h | --help) usage && exit 0 ;; esac
-[ $# -le 1 ] || fail "$# arguments, at most 1 is taken" "put names with spaces in quotes"
-out=${1:-out/timeline}
-for tool in mix cam body skin view plot; do
-  [ -x "$bin/krok-$tool" ] || fail "no krok-$tool in $bin" "build with make, or set KROK_BIN"
-done
-for program in make-walk make-gesture; do
-  [ -x "$samples/$program" ] || fail "no $program in $samples" "build with make, or set SAMPLES_BIN"
-done
-mkdir -p -- "$out" || fail "cannot make the folder $out"
-cd -- "$out"
-
-say() { printf '\n%s\n' "$1"; }
+check_arguments 1 "$@"
+need_tools mix cam body skin view plot
+need_generators make-walk make-gesture
+enter_folder "${1:-out/timeline}"
 
 say "1. Six motions"
-"$samples/make-walk" --steps 8 --from-standing -o standing.bvh
-"$samples/make-walk" --steps 8 -o walk.bvh
-"$samples/make-walk" --steps 6 --step-length 65cm --turn 15deg -o turn.bvh
-"$samples/make-gesture" --kind wave --duration 3s -o wave.bvh
-"$samples/make-gesture" --kind limp --side left --duration 1.1s -o limp.bvh
-"$samples/make-gesture" --kind look --side left --duration 2.5s -o look.bvh
+"$generators/make-walk" --steps 8 --from-standing -o standing.bvh
+"$generators/make-walk" --steps 8 -o walk.bvh
+"$generators/make-walk" --steps 6 --step-length 65cm --turn 15deg -o turn.bvh
+"$generators/make-gesture" --kind wave --duration 3s -o wave.bvh
+"$generators/make-gesture" --kind limp --side left --duration 1.1s -o limp.bvh
+"$generators/make-gesture" --kind look --side left --duration 2.5s -o look.bvh
 
 say "2. One motion, as the timeline tells"
-cp -- "$here/timeline.json" .
+cp -- "$story/timeline.json" .
 "$bin/krok-mix" timeline.json -o story.anim --json=story.report.json
 
 say "3. A body, and a camera that follows"

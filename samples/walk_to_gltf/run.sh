@@ -6,36 +6,21 @@
 #
 # Without arguments: samples/captures/walk.bvh to out/demo. The tools are found through $KROK_BIN, or
 # in build/bin.
-set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
 
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-bin=${KROK_BIN:-$here/../../build/bin}
 # Longest parts to bake, in turn, where a whole capture is too long for that.
 parts=(4s 2s 1s 0.5s)
 
-usage() { sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
-
-fail() {
-  echo "run.sh: error: $1" >&2
-  [ $# -lt 2 ] || echo "  hint: $2" >&2
-  exit 2
-}
-
-case "${1:-}" in -h | --help) usage && exit 0 ;; esac
-[ $# -le 2 ] || fail "$# arguments, at most 2 are taken" "put names with spaces in quotes"
-capture=${1:-$here/../captures/walk.bvh}
+check_arguments 2 "$@"
+need_tools import body skin diff export info keys view plot
+capture=${1:-$story/../captures/walk.bvh}
 out=${2:-out/demo}
-for tool in import body skin diff export info keys view plot; do
-  [ -x "$bin/krok-$tool" ] || fail "no krok-$tool in $bin" "build with make, or set KROK_BIN"
-done
 mkdir -p -- "$out" || fail "cannot make the folder $out"
 out=$(cd -- "$out" && pwd)
 
 name=$(basename -- "$capture")
 name=${name%.*}
 base=$out/$name
-
-say() { printf '\n%s\n' "$1"; }
 
 # made FILE WHAT: a line with the file's size.
 made() {

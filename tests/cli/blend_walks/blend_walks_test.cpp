@@ -27,12 +27,12 @@ class BlendWalks : public test::FolderTest {
     test::ToolOptions options;
     options.folder = folder_.string();
     options.timeout = 600;
-    return test::run(
-        {"/bin/sh", "-c",
-         "KROK_BIN='" + bin +
-             "' MAKE_WALK='" KROK_MAKE_WALK "' '" KROK_SOURCE_DIR "/samples/blend_walks/run.sh' " +
-             arguments},
-        options);
+    return test::run({"/bin/sh", "-c",
+                      "KROK_BIN='" + bin +
+                          "' SAMPLES_BIN='" KROK_SAMPLES_BIN "' '" KROK_SOURCE_DIR
+                          "/samples/blend_walks/run.sh' " +
+                          arguments},
+                     options);
   }
   static std::string text_of(const fs::path& file) {
     std::ostringstream text;

@@ -27,7 +27,7 @@ class StepLibraryStory : public CliTest {
     options.folder = folder_.string();
     options.timeout = 600;
     return run({"/bin/sh", "-c",
-                "KROK_BIN='" KROK_BIN_DIR "' MAKE_WALK='" KROK_MAKE_WALK "' '" + kStory +
+                "KROK_BIN='" KROK_BIN_DIR "' SAMPLES_BIN='" KROK_SAMPLES_BIN "' '" + kStory +
                     "run.sh' " + arguments},
                options);
   }
