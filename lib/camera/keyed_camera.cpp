@@ -17,34 +17,23 @@ namespace {
 
 constexpr double kMostFrames = 1e7;
 
-struct Point {
-  using Value = Vec3;
-  using Velocity = Vec3;
-  static void velocities(std::span<const double> times, std::span<const Vec3> values, Ends ends,
-                         std::span<Vec3> out) {
+// Values that are added: places and numbers.
+template <typename T>
+struct Sum {
+  using Value = T;
+  using Velocity = T;
+  static void velocities(std::span<const double> times, std::span<const T> values, Ends ends,
+                         std::span<T> out) {
     tension_velocities(times, values, 0, ends, out);
   }
-  static Vec3 smooth(const Vec3& p0, const Vec3& v0, const Vec3& p1, const Vec3& v1, double span,
-                     double t) {
+  static T smooth(const T& p0, const T& v0, const T& p1, const T& v1, double span, double t) {
     return hermite(p0, v0, p1, v1, span, t);
   }
-  static Vec3 straight(const Vec3& from, const Vec3& to, double t) {
-    return from + t * (to - from);
-  }
+  static T straight(const T& from, const T& to, double t) { return from + t * (to - from); }
 };
 
-struct Number {
-  using Value = double;
-  using Velocity = double;
-  static void velocities(std::span<const double> times, std::span<const double> values, Ends ends,
-                         std::span<double> out) {
-    tension_velocities(times, values, 0, ends, out);
-  }
-  static double smooth(double p0, double v0, double p1, double v1, double span, double t) {
-    return hermite(p0, v0, p1, v1, span, t);
-  }
-  static double straight(double from, double to, double t) { return from + t * (to - from); }
-};
+using Point = Sum<Vec3>;
+using Number = Sum<double>;
 
 struct MonotoneNumber : Number {
   static void velocities(std::span<const double> times, std::span<const double> values, Ends ends,

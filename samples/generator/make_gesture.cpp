@@ -4,6 +4,7 @@
 #include "core/quantity.h"
 #include "formats/bvh/bvh_writer.h"
 #include "samples/generator/gesture.h"
+#include "tools/common/output_set.h"
 #include "tools/common/tool.h"
 
 // make-gesture: writes a generated gesture as BVH.
@@ -52,11 +53,8 @@ Result<int> run(ToolContext& context, Arguments& arguments) {
   }
   const auto clip = samples::make_gesture(gesture);
   if (!clip) return clip.error();
-  Result<OutputFile> file = OutputFile::create(context.output, context.output_options());
-  if (!file) return std::move(file).error();
-  if (Status done = bvh::write(*clip, {.decimals = 4}, *file); !done) return done.error();
-  if (Status done = file->commit(); !done) return done.error();
-  context.wrote(context.output);
+  const auto write = [&](OutputFile& file) { return bvh::write(*clip, {.decimals = 4}, file); };
+  if (Status done = write_output(context, context.output, write); !done) return done.error();
   context.say(fmt::format("{}: a {}, {} frames at {:g}/s, {:.1f} s", context.output, arguments.kind,
                           clip->frame_count(), clip->rate, clip->duration()));
   return kExitDone;
