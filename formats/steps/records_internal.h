@@ -3,6 +3,9 @@
 #include <array>
 #include <cstdint>
 
+#include "core/result.h"
+#include "scene/skeleton.h"
+
 // The records of a .steps file as they stand in its sections; formats/steps/SPEC.md.
 
 namespace krok::steps::detail {
@@ -66,5 +69,9 @@ inline constexpr std::uint32_t kMostKeytimes = 1000;
 inline constexpr std::uint32_t kMostParameters = 64;
 inline constexpr std::uint32_t kMostExamples = 65535;
 inline constexpr std::size_t kMostReport = std::size_t{16} << 20;
+
+// Each example has the joints' names in memory: no more than this of them in all.
+inline constexpr std::uint64_t kMostNames = std::uint64_t{64} << 20;  // bytes
+Status check_names(const Skeleton& skeleton, std::uint64_t examples);
 
 }  // namespace krok::steps::detail

@@ -199,6 +199,10 @@ Result<StepsFile> read(std::span<const std::byte> file) {
   if (!info) return info.error();
   StepsFile steps;
   if (Status done = read_frame(*container, *info, steps.library); !done) return done.error();
+  // Before each example has a skeleton of its own in memory.
+  if (Status sound = check_names(steps.library.skeleton, info->examples); !sound) {
+    return at_section(std::move(sound).error(), *container, "INFO");
+  }
   if (Status done = read_examples(*container, *info, steps.library); !done) return done.error();
   if (container->find("WEIGHTS")) {
     auto weights = read_weights(*container, *info);

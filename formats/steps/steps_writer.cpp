@@ -109,9 +109,18 @@ bool all_storable(std::span<const std::string> texts) {
 
 }  // namespace
 
+Status detail::check_names(const Skeleton& skeleton, std::uint64_t examples) {
+  std::uint64_t bytes = 0;
+  for (const std::string& name : skeleton.names) bytes += name.size();
+  if (bytes <= kMostNames / std::max<std::uint64_t>(examples, 1)) return {};
+  return shape(
+      fmt::format("{} bytes of joints' names are too many for {} examples", bytes, examples));
+}
+
 Status check(const StepsFile& steps) {
   const Library& library = steps.library;
   if (Status sound = check_storable(library.skeleton); !sound) return sound;
+  if (Status fits = check_names(library.skeleton, library.examples.size()); !fits) return fits;
   if (Status sound = parametric::check(library); !sound) return sound;
   if (library.examples.empty() || library.examples.size() > kMostExamples ||
       library.keytimes.size() > kMostKeytimes || library.parameters.size() > kMostParameters) {

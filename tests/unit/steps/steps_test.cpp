@@ -111,6 +111,10 @@ TEST(Steps, WriterRefusesWhatIsNoLibrary) {
   EXPECT_EQ(code([](StepsFile& f) { f.library.parameters[0].keytime = 2; }),
             "parametric-parameter");
   EXPECT_EQ(code([](StepsFile& f) { f.library.parameters.clear(); }), "parametric-parameter");
+  // Each example would have them in memory.
+  EXPECT_EQ(
+      code([](StepsFile& f) { f.library.skeleton.names[0].assign(std::size_t{40} << 20, 'x'); }),
+      "steps-shape");
   EXPECT_EQ(code([](StepsFile& f) { f.weights->affine[0] = 2; }), "rbf-sum");
   EXPECT_EQ(code([](StepsFile& f) { f.weights->radii.clear(); }), "rbf-shape");
   EXPECT_EQ(code([](StepsFile& f) { f.report = "[]"; }), "steps-report");
