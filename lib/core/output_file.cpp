@@ -1,8 +1,10 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cassert>
 #include <cerrno>
@@ -114,48 +116,55 @@ struct OutputFile::State {
     return failure;
   }
 
-  Status write_now(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+  // Gives what is pending and `more` to the system.
+  Status write_now(std::span<const std::byte> more = {}) {
+    std::span<const std::byte> first = pending;
+    while (!first.empty() || !more.empty()) {
+      const iovec parts[] = {part(first), part(more)};
+      const ssize_t count = ::writev(descriptor, parts, 2);
       if (count < 0 && errno == EINTR) continue;
       if (count < 0) return fail(errno, "cannot be written");
-      bytes = bytes.subspan(static_cast<std::size_t>(count));
-      given += static_cast<std::uint64_t>(count);
+      const auto done = static_cast<std::size_t>(count);
+      const std::size_t of_first = std::min(done, first.size());
+      first = first.subspan(of_first);
+      more = more.subspan(done - of_first);
+      given += done;
     }
-    start_storing();
+    pending.clear();
+    constexpr std::uint64_t kWorthACall = std::uint64_t{8} << 20;
+    if (!direct() && given - storing >= kWorthACall) start_storing();
     return {};
   }
 
-  // Brings what was written to the disk, where that is to be waited for.
-  Status wait_for_disk() {
-    const bool later = stored_later && access(target.c_str(), F_OK) != 0 && errno == ENOENT;
-    if (later || fsync(descriptor) == 0) return {};
-    return fail(errno, "cannot be written");
+  static iovec part(std::span<const std::byte> bytes) {
+    return {const_cast<std::byte*>(bytes.data()), bytes.size()};
   }
 
-  // Has the disk begin with what was written, so that fsync() at the end has little to wait for.
-  // Only a beginning: what fails here, fsync() tells.
+  // Brings what was written to the disk, or on its way, where someone waits for many files later.
+  Status store() {
+    const bool later = stored_later && access(target.c_str(), F_OK) != 0 && errno == ENOENT;
+    if (later) {
+      start_storing();
+      return {};
+    }
+    return fsync(descriptor) == 0 ? Status() : fail(errno, "cannot be written");
+  }
+
+  // Has the disk begin with what was written, so that whoever waits at the end does not wait long.
+  // Only a beginning: what fails here, fsync() or syncfs() tells.
   void start_storing() {
-    constexpr std::uint64_t kStretch = std::uint64_t{8} << 20;
-    if (direct() || given - storing < kStretch) return;
     (void)sync_file_range(descriptor, static_cast<off_t>(storing),
                           static_cast<off_t>(given - storing), SYNC_FILE_RANGE_WRITE);
     storing = given;
   }
 
-  Status flush_pending() {
-    const Status done = write_now(pending);
-    pending.clear();
-    return done;
-  }
-
   Status seal() {
     if (!failure) return failure;
     if (sealed) return {};
-    if (Status flushed = flush_pending(); !flushed) return flushed;
+    if (Status flushed = write_now(); !flushed) return flushed;
     std::vector<std::byte>().swap(pending);
     if (!direct()) {
-      if (Status stored = wait_for_disk(); !stored) return stored;
+      if (Status stored = store(); !stored) return stored;
     }
     sealed = true;
     if (unnamed) {
@@ -301,16 +310,16 @@ Status OutputFile::write(std::span<const std::byte> bytes) {
   assert(!state_->sealed);
   if (!state_->failure) return state_->failure;
   state_->written += bytes.size();
-  constexpr std::size_t kBuffer = std::size_t{1} << 18;
-  // Enough to be worth a call of its own is not copied.
-  constexpr std::size_t kLarge = std::size_t{1} << 16;
-  if (bytes.size() < kLarge && state_->pending.size() + bytes.size() < kBuffer) {
-    state_->pending.insert(state_->pending.end(), bytes.begin(), bytes.end());
-    return {};
+  // Whole stretches of the file, which the system keeps in large pieces at half the cost of others.
+  constexpr std::uint64_t kStretch = std::uint64_t{1} << 18;
+  const std::uint64_t waiting = state_->given + state_->pending.size();
+  const std::uint64_t whole = (waiting + bytes.size()) / kStretch * kStretch;
+  if (whole > waiting) {
+    const auto now = static_cast<std::size_t>(whole - waiting);
+    if (Status written = state_->write_now(bytes.first(now)); !written) return written;
+    bytes = bytes.subspan(now);
   }
-  if (Status flushed = state_->flush_pending(); !flushed) return flushed;
-  if (bytes.size() >= kLarge) return state_->write_now(bytes);
-  state_->pending.assign(bytes.begin(), bytes.end());
+  state_->pending.insert(state_->pending.end(), bytes.begin(), bytes.end());
   return {};
 }
 
@@ -323,7 +332,7 @@ Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> by
   if (state_->direct()) {
     return file_error("file-unwritable", state_->path, "is a stream and cannot be rewritten");
   }
-  if (Status flushed = state_->flush_pending(); !flushed) return flushed;
+  if (Status flushed = state_->write_now(); !flushed) return flushed;
   while (!bytes.empty()) {
     const ssize_t count =
         pwrite(state_->descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));

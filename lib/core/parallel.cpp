@@ -5,10 +5,10 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
-#include <new>
-#include <system_error>
 #include <thread>
 #include <vector>
+
+#include "core/kept_threads_internal.h"
 
 namespace krok {
 
@@ -18,6 +18,7 @@ int thread_count(int jobs) {
 }
 
 void on_threads(std::size_t threads, const std::function<void()>& work) {
+  if (threads <= 1) return work();
   std::exception_ptr failure;
   std::mutex failure_mutex;
   const auto guarded = [&]() noexcept {
@@ -28,16 +29,7 @@ void on_threads(std::size_t threads, const std::function<void()>& work) {
       if (!failure) failure = std::current_exception();
     }
   };
-  {
-    std::vector<std::jthread> helpers;
-    try {
-      helpers.reserve(threads);
-      while (helpers.size() + 1 < threads) helpers.emplace_back(guarded);
-    } catch (const std::system_error&) {  // a limit of the system
-    } catch (const std::bad_alloc&) {
-    }
-    guarded();
-  }
+  call_on_kept_threads(threads - 1, guarded);
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -7,6 +7,12 @@
 
 // Loops over independent items. Results must not depend on the order: each item writes its own
 // place, so that the same bytes come out for every number of threads.
+//
+// The threads are made when they are first needed and kept; they sleep between loops, after a short
+// while in which the next loop finds them awake. Loops can be started on several threads and within
+// each other. Those within others make no further threads beyond the machine's cores, and none of
+// them waits for a thread that does something else. A child that fork() makes has threads of its
+// own, but must not go on with a loop that its parent was in.
 
 namespace krok {
 
@@ -14,7 +20,8 @@ namespace krok {
 int thread_count(int jobs);
 
 // Calls `work` on up to `threads` threads at once, this one included, and returns when all are
-// done. Where the system gives fewer threads, it goes on with those; `work` must be right for any
+// done. It is called on fewer where the system gives fewer threads, where they are busy, and where
+// one is done before others have begun, which then do not begin; `work` must be right for any
 // number of them. If it throws, one of the exceptions is rethrown here.
 void on_threads(std::size_t threads, const std::function<void()>& work);
 

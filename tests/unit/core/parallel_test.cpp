@@ -10,7 +10,10 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <latch>
+#include <mutex>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -94,19 +97,31 @@ TEST(ParallelFor, SkipsTheRestAfterAnException) {
   EXPECT_EQ(calls.load(), 5);
 }
 
-TEST(OnThreads, CallsOnceAThread) {
+TEST(OnThreads, CallsAtMostOnceAThread) {
   for (const std::size_t threads : {0, 1, 2, 5}) {
     std::atomic<std::size_t> calls{0};
-    on_threads(threads, [&] { ++calls; });
-    EXPECT_EQ(calls, std::max<std::size_t>(threads, 1));
+    std::mutex mutex;
+    std::set<std::thread::id> callers;
+    on_threads(threads, [&] {
+      ++calls;
+      const std::lock_guard lock(mutex);
+      EXPECT_TRUE(callers.insert(std::this_thread::get_id()).second);
+    });
+    EXPECT_TRUE(callers.contains(std::this_thread::get_id()));
+    EXPECT_LE(calls, std::max<std::size_t>(threads, 1));
   }
 }
 
 TEST(OnThreads, WhatIsThrownIsThrownOnOnceAllAreDone) {
-  std::atomic<int> done{0};
+  std::atomic<int> begun{0}, done{0};
+  std::latch all(4);
   EXPECT_THROW(on_threads(4,
                           [&] {
-                            if (done++ == 1) throw std::runtime_error("one of them");
+                            const bool second = begun++ == 1;
+                            all.arrive_and_wait();
+                            if (!second) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+                            ++done;
+                            if (second) throw std::runtime_error("one of them");
                           }),
                std::runtime_error);
   EXPECT_EQ(done, 4);
