@@ -3,7 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
+#include "core/nearest_name.h"
+#include "core/numbers.h"
+#include "core/path_inside.h"
+#include "core/quantity.h"
 #include "core/text.h"
 
 namespace krok::json {
@@ -20,9 +25,10 @@ Status Members::only(const Value& object, std::string_view what,
   }
   for (const Value::Member& entry : object.members) {
     if (std::ranges::find(keys, entry.key) != keys.end()) continue;
+    const std::vector<std::string> known(keys.begin(), keys.end());
     return error_at(text_, entry.key_offset, format_ + "-structure",
                     fmt::format("{} has no '{}'", what, shown(entry.key)),
-                    fmt::format("known are {}", fmt::join(keys, ", ")));
+                    nearest_hint(entry.key, known));
   }
   return {};
 }
@@ -63,6 +69,52 @@ Result<std::optional<double>> Members::quantity(const Value& object, std::string
                  number.error().hint);
   }
   return std::optional(*number);
+}
+
+Result<std::string> Members::path(const Value& value, std::string_view what) const {
+  if (value.kind != Value::Kind::string) {
+    return wrong(value,
+                 fmt::format("{} is {}, expected the path of a file", what, kind_name(value.kind)));
+  }
+  const std::string fault = path_fault(value.text);
+  if (fault.empty()) return value.text;
+  return error_at(text_, value.offset, format_ + "-path",
+                  fmt::format("{}, '{}', {}", what, shown(value.text), fault),
+                  "paths are relative to the file and stay in its folder");
+}
+
+Result<double> Members::number(const Value& object, std::string_view what, std::string_view key,
+                               double least, double most) const {
+  const auto value = get(object, what, key, Value::Kind::number);
+  if (!value) return value.error();
+  return within(**value, fmt::format("\"{}\" of {}", key, what), least, most);
+}
+
+Result<double> Members::within(const Value& value, std::string_view name, double least,
+                               double most) const {
+  if (value.kind != Value::Kind::number) {
+    return wrong(value, fmt::format("{} is {}, expected a number", name, kind_name(value.kind)));
+  }
+  if (value.number >= least && value.number <= most) return value.number;
+  return wrong(value, fmt::format("{} is {}, expected {} to {}", name, readable(value.number),
+                                  readable(least), readable(most)));
+}
+
+Result<double> Members::moment(const Value& value, std::string_view name,
+                               std::optional<double> rate, double latest) const {
+  if (value.kind != Value::Kind::string) return within(value, name, 0, latest);
+  const auto parsed = parse_clip_time(value.text);
+  if (!parsed) {
+    return wrong(value, fmt::format("{}: {}", name, parsed.error().message),
+                 "write 1.5, \"1.5s\", \"250ms\" or \"120f\"");
+  }
+  if (parsed->in_frames && !rate) {
+    return wrong(value, fmt::format("{} is in frames, but the file has no \"rate\"", name));
+  }
+  Value seconds = value;
+  seconds.kind = Value::Kind::number;
+  seconds.number = parsed->seconds(rate.value_or(1));
+  return within(seconds, name, 0, latest);
 }
 
 Status Members::has_schema(const Value& object, std::string_view what,

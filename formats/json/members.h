@@ -39,6 +39,22 @@ class Members {
   Result<std::optional<double>> quantity(const Value& object, std::string_view what,
                                          std::string_view key, Parser parse) const;
 
+  // A text that path_fault() of core/path_inside.h finds nothing wrong with; otherwise an Error
+  // (FORMAT-path). `what` is what the path is, for the message.
+  Result<std::string> path(const Value& value, std::string_view what) const;
+
+  // A number that must be there and lie within bounds.
+  Result<double> number(const Value& object, std::string_view what, std::string_view key,
+                        double least, double most) const;
+
+  // The same of a number by itself; `name` is what messages call it.
+  Result<double> within(const Value& value, std::string_view name, double least, double most) const;
+
+  // A moment in seconds from 0 to `latest`: a number, or a text such as "250ms", or "120f" where
+  // there is a rate to count frames at.
+  Result<double> moment(const Value& value, std::string_view name, std::optional<double> rate,
+                        double latest) const;
+
   // Whether the member "schema" is there and says `schema`.
   Status has_schema(const Value& object, std::string_view what, std::string_view schema) const;
 

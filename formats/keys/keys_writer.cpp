@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "core/hash.h"
+#include "formats/json/json_text.h"
 #include "formats/keys/keys.h"
 #include "formats/keys/written_internal.h"
 
 namespace krok::keys {
+
+using json::in_quotes;
 
 namespace {
 
@@ -17,11 +19,6 @@ std::string fixed(double value, int digits) {
   text.erase(text.find_last_not_of('0') + 1);
   if (text.ends_with('.')) text.pop_back();
   return text == "-0" ? "0" : text;
-}
-
-// A text in quotes, as JSON has it.
-std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::string joined(const std::vector<std::string>& lines) {
@@ -74,15 +71,15 @@ std::string write_sidecar(const Sidecar& given, const Skeleton& skeleton) {
   std::vector<std::string> contacts, keytimes;
   for (std::size_t i = 0; i < sidecar.keys.contacts.size(); ++i) {
     const Contact& contact = sidecar.keys.contacts[i];
-    contacts.push_back(fmt::format("{{\"joint\": {}, \"start\": {}, \"end\": {}, \"place\": {}{}}}",
-                                   quoted(skeleton.names[static_cast<std::size_t>(contact.joint)]),
-                                   written_time(contact.start), written_time(contact.end),
-                                   written_place(contact.place),
-                                   by_hand(sidecar.contacts_by_hand, i) ? kMark : ""));
+    contacts.push_back(fmt::format(
+        "{{\"joint\": {}, \"start\": {}, \"end\": {}, \"place\": {}{}}}",
+        in_quotes(skeleton.names[static_cast<std::size_t>(contact.joint)]),
+        written_time(contact.start), written_time(contact.end), written_place(contact.place),
+        by_hand(sidecar.contacts_by_hand, i) ? kMark : ""));
   }
   for (std::size_t i = 0; i < sidecar.keys.keytimes.size(); ++i) {
     const Keytime& key = sidecar.keys.keytimes[i];
-    keytimes.push_back(fmt::format("{{\"name\": {}, \"time\": {}{}}}", quoted(key.name),
+    keytimes.push_back(fmt::format("{{\"name\": {}, \"time\": {}{}}}", in_quotes(key.name),
                                    written_time(key.time),
                                    by_hand(sidecar.keytimes_by_hand, i) ? kMark : ""));
   }

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/nearest_name.h"
 #include "core/text.h"
 #include "formats/json/located_json.h"
-#include "formats/role_map/nearest_name.h"
 
 namespace krok::role_map {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/role_map/nearest_name.h"
 #include "formats/timeline/fields_internal.h"
 #include "math/types.h"
 
@@ -22,22 +22,9 @@ constexpr double kMost = 1e9;  // of any number
 
 }  // namespace
 
-std::string nearest_hint(std::string_view word, const std::vector<std::string>& known) {
-  const std::string nearest = role_map::nearest_name(word, known);
-  if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
-  return fmt::format("known are {}", fmt::join(known, ", "));
-}
-
 Status Fields::only(const Value& object, std::string_view what,
                     std::initializer_list<std::string_view> keys) const {
-  if (object.kind != Kind::object) return in_.only(object, what, keys);
-  for (const Value::Member& entry : object.members) {
-    if (std::ranges::find(keys, entry.key) != keys.end()) continue;
-    return json::error_at(text_, entry.key_offset, "timeline-structure",
-                          fmt::format("{} has no '{}'", what, shown(entry.key)),
-                          nearest_hint(entry.key, {keys.begin(), keys.end()}));
-  }
-  return {};
+  return in_.only(object, what, keys);
 }
 
 Error Fields::wrong(const Field& field, const std::string& expected,

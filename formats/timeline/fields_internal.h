@@ -23,7 +23,7 @@ struct Field {
 
 class Fields {
  public:
-  explicit Fields(std::string_view text) : text_(text), in_(text, "timeline") {}
+  explicit Fields(std::string_view text) : in_(text, "timeline") {}
 
   const json::Members& members() const { return in_; }
 
@@ -78,7 +78,6 @@ class Fields {
   template <typename T, typename Parse, typename Make>
   Result<T> quantity(const Field& field, const Parse& parse, const Make& make) const;
 
-  std::string_view text_;
   json::Members in_;
 };
 
@@ -114,8 +113,5 @@ class Taker {
   std::string_view what_;
   Status status_;
 };
-
-// "did you mean 'duration'?", or what is known.
-std::string nearest_hint(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace krok::timeline_file

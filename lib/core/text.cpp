@@ -87,6 +87,11 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+bool is_name(std::string_view text) {
+  return !text.empty() && text.size() <= kLongestName &&
+         text.find('\0') == std::string_view::npos && is_utf8(text);
+}
+
 std::string to_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
   std::string utf8;

@@ -65,6 +65,11 @@ Location locate(std::string_view text, std::size_t offset, const std::string& fi
 // overlong forms, no surrogates, nothing above U+10FFFF. An empty text is.
 bool is_utf8(std::string_view text);
 
+// Whether `text` can be the name of something: UTF-8 without zero bytes, of 1 to kLongestName
+// bytes.
+inline constexpr std::size_t kLongestName = 1000;
+bool is_name(std::string_view text);
+
 // `text` itself if it is UTF-8, otherwise its bytes read as Latin-1.
 std::string to_utf8(std::string_view text);
 

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/base64.h"
 #include "draw/pack_motion_internal.h"
 #include "math/quaternion.h"
 
@@ -75,24 +76,6 @@ void push(std::vector<float>& values, const Quat& rotation) {
 }
 
 }  // namespace
-
-std::string to_base64(std::span<const std::byte> bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      group = group << 8 | (k < here ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text.push_back(k <= here ? kDigits[group >> (18 - 6 * k) & 63U] : '=');
-    }
-  }
-  return text;
-}
 
 std::string Blob::base64() const {
   return to_base64(bytes_);

@@ -37,8 +37,6 @@ class Blob {
   std::vector<std::byte> bytes_;
 };
 
-std::string to_base64(std::span<const std::byte> bytes);
-
 // A unit quaternion in 48 bits: the largest component, made positive, is left out; of the others,
 // in the order x, y, z, w, 15 bits each stand for the range of +-sqrt(1/2). Which is left out is in
 // the top bits of the first two words.

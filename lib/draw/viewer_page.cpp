@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base64.h"
 #include "draw/pack_motion_internal.h"
 #include "draw/page_text_internal.h"
 

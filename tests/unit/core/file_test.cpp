@@ -392,6 +392,24 @@ TEST_F(FileTest, ChecksumOfAnEmptyFileIsThatOfNoBytes) {
   EXPECT_EQ(InputFile::open(path("empty"))->checksum(), xxh3({}));
 }
 
+// Those of this size are given to the system in two parts.
+TEST_F(FileTest, APipeGetsAllInOrder) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  std::string expected, got;
+  std::thread reader([&] { got = get(path("pipe")); });
+  auto file = OutputFile::create(path("pipe"));
+  ASSERT_TRUE(file.ok());
+  for (int i = 0; i < 30; ++i) {
+    const std::string piece(static_cast<std::size_t>(200000 + i), static_cast<char>('a' + i % 26));
+    expected += piece;
+    EXPECT_TRUE(file->write(piece));
+  }
+  EXPECT_TRUE(file->commit());
+  file = OutputFile::create(path("other"));  // lets go of the pipe
+  reader.join();
+  EXPECT_EQ(got, expected);
+}
+
 TEST_F(FileTest, LargeAndSmallWritesComeInOrder) {
   std::string expected;
   auto file = OutputFile::create(path("out"));
@@ -401,6 +419,11 @@ TEST_F(FileTest, LargeAndSmallWritesComeInOrder) {
                            static_cast<char>('a' + i % 26));
     ASSERT_TRUE(file->write(part));
     expected += part;
+    if (i % 40 == 7) {
+      expected.replace(5 * static_cast<std::size_t>(i), 3, "new");
+      ASSERT_TRUE(
+          file->overwrite(5 * static_cast<std::uint64_t>(i), std::as_bytes(std::span("new", 3))));
+    }
   }
   EXPECT_EQ(file->size(), expected.size());
   ASSERT_TRUE(file->commit());

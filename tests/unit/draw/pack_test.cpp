@@ -20,20 +20,6 @@ ViewedMotion viewed(const Clip& clip, std::string name = "a") {
   return motion;
 }
 
-std::string base64(std::string_view text) {
-  return to_base64(std::as_bytes(std::span(text.data(), text.size())));
-}
-
-TEST(Base64, GivesTheVectorsOfRfc4648) {
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foo"), "Zm9v");
-  EXPECT_EQ(base64("foob"), "Zm9vYg==");
-  EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-}
-
 TEST(PackedRotation, ComesBackWithinTheRoundingOfItsBits) {
   std::mt19937 random(7);
   std::normal_distribution<double> number;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "formats/role_map/nearest_name.h"
+#include "core/nearest_name.h"
 #include "support/human_skeleton.h"
 
 namespace krok {
@@ -83,17 +83,17 @@ TEST(RoleMapFile, AnEmptyOneChangesNothing) {
 
 TEST(NearestName, IsFoundWhateverTheCase) {
   const std::vector<std::string> names = {"LeftHand", "RightHand", "Head"};
-  EXPECT_EQ(role_map::nearest_name("lefthand", names), "LeftHand");
-  EXPECT_EQ(role_map::nearest_name("Rihgt_hand", names), "RightHand");
-  EXPECT_EQ(role_map::nearest_name("Had", names), "Head");
-  EXPECT_EQ(role_map::nearest_name("Pelvis", names), "");
-  EXPECT_EQ(role_map::nearest_name("", names), "");
-  EXPECT_EQ(role_map::nearest_name("x", {}), "");
+  EXPECT_EQ(nearest_name("lefthand", names), "LeftHand");
+  EXPECT_EQ(nearest_name("Rihgt_hand", names), "RightHand");
+  EXPECT_EQ(nearest_name("Had", names), "Head");
+  EXPECT_EQ(nearest_name("Pelvis", names), "");
+  EXPECT_EQ(nearest_name("", names), "");
+  EXPECT_EQ(nearest_name("x", {}), "");
 }
 
 TEST(NearestName, VeryLongNamesAreNoTrouble) {
   const std::vector<std::string> names(200, std::string(100000, 'a'));
-  EXPECT_EQ(role_map::nearest_name(std::string(100000, 'a'), names).size(), 100000u);
+  EXPECT_EQ(nearest_name(std::string(100000, 'a'), names).size(), 100000u);
 }
 
 }  // namespace

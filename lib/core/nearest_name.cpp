@@ -1,0 +1,57 @@
+#include "core/nearest_name.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "core/text.h"
+
+namespace krok {
+
+namespace {
+
+constexpr std::size_t kLongest = 64;
+
+// Levenshtein's distance, row by row.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t exchanged = diagonal + (a[i] == b[k] ? 0 : 1);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({exchanged, row[k] + 1, row[k + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view word, std::span<const std::string> names) {
+  const std::string wanted = ascii_lower(word.substr(0, kLongest));
+  std::string best;
+  std::size_t least = 0;
+  for (const std::string& name : names) {
+    const std::string other = ascii_lower(std::string_view(name).substr(0, kLongest));
+    const std::size_t found = distance(wanted, other);
+    const std::size_t near = std::max<std::size_t>(2, std::max(wanted.size(), other.size()) / 3);
+    if (found > near || (!best.empty() && found >= least)) continue;
+    best = name;
+    least = found;
+  }
+  return best;
+}
+
+std::string nearest_hint(std::string_view word, std::span<const std::string> names) {
+  const std::string nearest = nearest_name(word, names);
+  if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
+  return fmt::format("known are {}", fmt::join(names, ", "));
+}
+
+}  // namespace krok
