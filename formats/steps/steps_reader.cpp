@@ -166,6 +166,9 @@ Result<rbf::WeightFunction> read_weights(const ContainerReader& container, const
   Status done = read_array(container, "RANGES", 2 * d, ranges);
   if (done) done = read_array(container, "CENTRES", m * d, weights.centres);
   if (done && container.find("RADII")) done = read_array(container, "RADII", m, weights.radii);
+  std::vector<double> smoothing;
+  if (done && container.find("SMOOTH")) done = read_array(container, "SMOOTH", 1, smoothing);
+  if (!smoothing.empty()) weights.smoothing = smoothing.front();
   if (done) done = read_array(container, "INSERTED", (m - n) * n, weights.inserted_rows);
   if (done) done = read_array(container, "AFFINE", (d + 1) * n, weights.affine);
   if (done) done = read_array(container, "COEFFS", m * n, weights.coefficients);

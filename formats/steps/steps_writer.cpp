@@ -86,7 +86,9 @@ Status write_examples(const Library& library, OrientationEncoding encoding,
   return done;
 }
 
-constexpr std::size_t kWeightSections = 6;  // and one for radii
+std::size_t weight_sections(const rbf::WeightFunction& weights) {
+  return 6 + (weights.radii.empty() ? 0u : 1u) + (weights.smoothing > 0 ? 1u : 0u);
+}
 
 Status write_weights(const rbf::WeightFunction& weights, ContainerWriter& container) {
   const WeightsInfo info = {static_cast<std::uint32_t>(weights.kernel), 0,
@@ -97,6 +99,9 @@ Status write_weights(const rbf::WeightFunction& weights, ContainerWriter& contai
   if (done) done = container.section("RANGES", bytes_of(ranges));
   if (done) done = container.section("CENTRES", bytes_of(weights.centres));
   if (done && !weights.radii.empty()) done = container.section("RADII", bytes_of(weights.radii));
+  if (done && weights.smoothing > 0) {
+    done = container.section("SMOOTH", std::as_bytes(std::span(&weights.smoothing, 1)));
+  }
   if (done) done = container.section("INSERTED", bytes_of(weights.inserted_rows));
   if (done) done = container.section("AFFINE", bytes_of(weights.affine));
   if (done) done = container.section("COEFFS", bytes_of(weights.coefficients));
@@ -159,7 +164,7 @@ Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& fi
                      static_cast<std::uint32_t>(library.swing),
                      0};
   std::size_t sections = 12 + kSkeletonSections;
-  if (steps.weights) sections += kWeightSections + (steps.weights->radii.empty() ? 0 : 1);
+  if (steps.weights) sections += weight_sections(*steps.weights);
   ContainerWriter container(file, kFormat, orientation_flags(options.orientation), sections);
   Status done = container.section("INFO", std::as_bytes(std::span(&info, 1)));
   if (done) done = write_skeleton(library.skeleton, options.orientation, container);

@@ -10,8 +10,9 @@
 #include <optional>
 
 #include "core/parallel.h"
-#include "fit/blend_weights_internal.h"
 #include "fit/error_field_internal.h"
+#include "fit/low_weights_internal.h"
+#include "fit/new_rows_internal.h"
 #include "fit/worst_places_internal.h"
 #include "rbf/weight_figures.h"
 #include "rbf/weight_solver.h"
@@ -20,20 +21,16 @@ namespace krok::fit {
 
 namespace {
 
-using rbf::InverseSearch;
 using rbf::WeightEvaluator;
 using rbf::WeightFunction;
 using rbf::WeightSolver;
 
 constexpr int kPointsEach = 40;  // for each parameter
 constexpr int kOutsidePoints = 256;
-constexpr int kFigurePoints = 128;      // for the range and roughness of weights
-constexpr int kSearchSteps = 30;        // for p'
-constexpr double kFound = 1e-9;         // scaled error at which p' is found
-constexpr double kFoundWell = 1e-6;     // where the search may end as well
-constexpr double kLargeResidual = 0.1;  // of the error that is to be mended
-constexpr double kGrowth = 1.25;        // of the mean square error held out, over the least so far
+constexpr int kFigurePoints = 128;  // for the range and roughness of weights
+constexpr double kGrowth = 1.25;    // of the mean square error held out, over the least so far
 constexpr int kStalledRounds = 3;
+constexpr double kLowerOnTheWay = 0.02;
 constexpr int kRefusedRounds = 2;  // for so long a refused point is not tried again
 
 // Which points a random sequence is for.
@@ -42,15 +39,7 @@ std::uint64_t seed_for(std::uint64_t seed, Use use, std::size_t round = 0) {
   return (seed * 1000003 + round) * 3 + static_cast<std::uint64_t>(use) + 1;
 }
 
-// A point to insert.
-struct Found {
-  std::vector<double> place, point;  // scaled, own units
-  double sought = 0;                 // the error there
-  std::vector<double> row;
-  bool by_point = false;
-  std::optional<Refusal> refusal;
-  double value = 0;  // of the refusal
-};
+using detail::Found;
 
 class Refiner {
  public:
@@ -76,19 +65,21 @@ class Refiner {
 
  private:
   std::optional<Stop> stop(std::size_t rounds_before) const;
+  bool is_good() const;
   int points_left() const;
   Status update();
   detail::ErrorField field() const {
     return {solver_.function(), *evaluator_, measure_, options_.inside, options_.jobs};
   }
   RefineFigures errors_held_out(Error* failure = nullptr) const;
+  double limit() const { return detail::low_limit(options_); }
   void add_figures(RefineFigures& figures) const;
   std::vector<Found> seek(double usual, double& worst) const;
-  void find_row(Found& found, double usual) const;
   // False: there is no error left.
   Result<bool> make_round();
   Status insert(std::vector<Found>& found, RefineRound& round);
   bool has_grown(const RefineFigures& now) const;
+  double lowest_allowed(double before) const;
   void refuse(const Found& found, RefineRound& round);
 
   Refined state_;
@@ -99,6 +90,7 @@ class Refiner {
   std::size_t d_, n_;
   std::vector<double> held_out_, outside_;  // places
   RefineFigures now_;
+  double lowest_ = 0;  // weight at the points held out
 };
 
 // After each change of the functions.
@@ -106,6 +98,7 @@ Status Refiner::update() {
   auto evaluator = WeightEvaluator::create(solver_.function());
   if (!evaluator) return evaluator.error();
   evaluator_ = std::move(*evaluator);
+  lowest_ = detail::lowest_weight(solver_.function(), *evaluator_, held_out_);
   return {};
 }
 
@@ -179,15 +172,24 @@ int Refiner::points_left() const {
   return most - solver_.function().inserted();
 }
 
+// Whether errors are as small as they are to be.
+bool Refiner::is_good() const {
+  if (options_.tolerance.empty() || now_.failed > 0) return false;
+  for (std::size_t a = 0; a < d_; ++a) {
+    const double range = solver_.function().upper[a] - solver_.function().lower[a];
+    const double error = now_.within[a].largest;
+    const bool gained = error * options_.gain <= state_.before.within[a].largest ||
+                        error <= detail::kNegligible * range;
+    if (error > options_.tolerance[a] || !gained) return false;
+  }
+  return true;
+}
+
 std::optional<Stop> Refiner::stop(std::size_t rounds_before) const {
   const auto& rounds = state_.rounds;
-  if (!options_.tolerance.empty()) {
-    bool reached = true;
-    for (std::size_t a = 0; a < d_; ++a) {
-      reached = reached && now_.within[a].largest <= options_.tolerance[a];
-    }
-    if (reached && now_.failed == 0) return Stop::tolerance;
-  }
+  // Weights that are too low do not hold up what is good otherwise once nothing helps.
+  const bool low = lowest_ < limit() && (rounds.empty() || rounds.back().inserted > 0);
+  if (is_good() && !low) return Stop::tolerance;
   if (points_left() <= 0) return Stop::points;
   const bool stalled = rounds.size() >= kStalledRounds &&
                        std::all_of(rounds.end() - kStalledRounds, rounds.end(),
@@ -234,51 +236,27 @@ std::vector<Found> Refiner::seek(double usual, double& worst) const {
     avoided.push_back({std::vector<double>(d_), 0});
     solver_.function().scale(refused.point, avoided.back().place);
   }
-  const int wanted = std::min(options_.points_a_round, points_left());
+  const auto wanted = static_cast<std::size_t>(std::min(options_.points_a_round, points_left()));
   std::vector<Found> found;
-  for (detail::ErrorPlace& top : detail::worst_places(
-           field(), sweep_places, avoided, static_cast<std::size_t>(wanted), usual, worst)) {
+  const auto take = [&](std::vector<double> place, double error, bool low) {
     found.push_back({});
-    found.back().place = std::move(top.place);
-    found.back().sought = top.error;
     found.back().point.resize(d_);
-    detail::unscale(solver_.function(), found.back().place, found.back().point);
+    detail::unscale(solver_.function(), place, found.back().point);
+    found.back().place = std::move(place);
+    found.back().sought = error;
+    found.back().low = low;
+  };
+  for (std::vector<double>& place :
+       detail::low_places(solver_.function(), *evaluator_, sweep_places, avoided, (wanted + 1) / 2,
+                          limit(), usual)) {
+    avoided.push_back({place, 0});
+    take(std::move(place), field().lengths(field().at(avoided.back().place)).front(), true);
+  }
+  for (detail::ErrorPlace& top :
+       detail::worst_places(field(), sweep_places, avoided, wanted - found.size(), usual, worst)) {
+    if (!is_good()) take(std::move(top.place), top.error, false);
   }
   return found;
-}
-
-void Refiner::find_row(Found& found, double usual) const {
-  const double near = solver_.distance_to_centres(found.point);
-  if (near < detail::kNear * usual) {
-    found.refusal = Refusal::near;
-    found.value = near;
-    return;
-  }
-  InverseSearch search(*evaluator_, measure_);
-  std::vector<double> point = found.point;
-  found.row.resize(n_);
-  double error = search.find_point(found.point, kSearchSteps, kFound, point).after;
-  evaluator_->weights(point, found.row);
-  const auto off = [&] {
-    const auto [least, largest] = std::ranges::minmax(found.row);
-    return std::max(options_.least - least, largest - options_.largest);
-  };
-  found.by_point = error <= kFoundWell && off() <= 0;
-  if (!found.by_point) {
-    evaluator_->weights(found.point, found.row);
-    detail::BlendWeights solved = detail::solve_weights(measure_, evaluator_->inverse_ranges(),
-                                                        found.point, found.row, options_);
-    found.row = std::move(solved.weights);
-    error = solved.error;
-  }
-  if (!(error <= kLargeResidual * found.sought)) {
-    found.refusal = Refusal::residual;
-    found.value = error;
-  } else if (!(off() <= 0)) {
-    found.refusal = Refusal::weights;
-    const auto [least, largest] = std::ranges::minmax(found.row);
-    found.value = options_.least - least > largest - options_.largest ? least : largest;
-  }
 }
 
 bool Refiner::has_grown(const RefineFigures& now) const {
@@ -287,6 +265,13 @@ bool Refiner::has_grown(const RefineFigures& now) const {
     least = std::min(least, round.after.mean_square);
   }
   return now.failed > now_.failed || !(now.mean_square <= kGrowth * least);
+}
+
+// Weights that were high enough stay so. Where some are not, they may fall a little under what they
+// were at first on the way to where all are.
+double Refiner::lowest_allowed(double before) const {
+  if (before >= options_.lowest) return options_.lowest;
+  return std::min(state_.before.least_weight, options_.lowest) - kLowerOnTheWay;
 }
 
 void Refiner::refuse(const Found& found, RefineRound& round) {
@@ -307,14 +292,16 @@ Status Refiner::insert(std::vector<Found>& found, RefineRound& round) {
       for (Found& each : some) each.refusal = Refusal::system;
       return {};
     }
+    const double lowest_before = lowest_;
     if (Status status = update(); !status) return status;
     RefineFigures figures = errors_held_out();
-    if (has_grown(figures)) {
-      solver_.remove_last(static_cast<int>(some.size()));
+    const bool lower = lowest_ < lowest_allowed(lowest_before);
+    if (lower || has_grown(figures)) {
       for (Found& each : some) {
-        each.refusal = Refusal::growth;
-        each.value = figures.largest;
+        each.refusal = lower ? Refusal::weights : Refusal::growth;
+        each.value = lower ? lowest_ : figures.largest;
       }
+      solver_.remove_last(static_cast<int>(some.size()));
       return update();
     }
     now_ = std::move(figures);
@@ -342,9 +329,11 @@ Result<bool> Refiner::make_round() {
   const double usual = detail::usual_distance(solver_.function());
   double worst = 0;
   std::vector<Found> found = seek(usual, worst);
-  if (!(worst > detail::kNegligible)) return false;
+  if (found.empty() && !(worst > detail::kNegligible)) return false;
   parallel_for(found.size(), 1, options_.jobs, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) find_row(found[i], usual);
+    for (std::size_t i = begin; i < end; ++i) {
+      detail::find_row(solver_, *evaluator_, measure_, options_, usual, found[i]);
+    }
   });
   RefineRound round;
   if (!found.empty()) round.sought = found.front().sought;
@@ -369,11 +358,12 @@ Status check_options(const RefineOptions& o, int dimensions) {
   if (!o.tolerance.empty() && o.tolerance.size() != static_cast<std::size_t>(dimensions)) {
     return wrong("a tolerance for some of the parameters only");
   }
+  if (!(o.gain >= 0)) return wrong("a gain that is negative or no number");
   if (std::ranges::any_of(o.tolerance, [](double t) { return !(t >= 0); })) {
     return wrong("a tolerance that is negative or no number");
   }
   if (!(o.scale > 0) || !(o.stay > 0) || !(o.positive >= 0) || !(o.slack >= 0) || !(o.least <= 0) ||
-      !(o.largest >= 1)) {
+      !(o.largest >= 1) || !(o.lowest <= 0)) {
     return wrong("such terms or limits of weights");
   }
   return {};

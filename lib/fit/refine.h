@@ -22,7 +22,12 @@
 //   |(f(w) - p*) / S|^2 + lambda^2 |y|^2 + mu^2 sum_i max(0, -w_i - epsilon)^2.
 //
 // Rows that pass the guards are inserted, and taken back if the mean square of the error at points
-// held out grows by more than a quarter over the least that it has been.
+// held out grows by more than a quarter over the least that it has been, or the lowest weight there
+// falls under `lowest`, or by a fiftieth under what it was at first if that is lower.
+//
+// Where a weight is under `lowest` to begin with (a cubic swings to -0.17 between five examples in
+// a row, to -0.3 between those of captures) up to half of a round's points go there, with the
+// second kind of row.
 
 namespace krok::fit {
 
@@ -32,9 +37,10 @@ struct RefineOptions {
   rbf::Inside inside;
   int points = 0;                 // inserted at most in all; 0: 40 for each parameter
   std::vector<double> tolerance;  // [d] own units, of the largest error held out; empty: go on
-  int rounds = 0;                 // at most in this call; 0: any number
-  std::uint64_t seed = 1;         // of the points looked at and held out
-  int jobs = 0;                   // threads, see thread_count(); the result is the same with any
+  double gain = 0;  // with a tolerance: go on until that error is by so much smaller than at first
+  int rounds = 0;   // at most in this call; 0: any number
+  std::uint64_t seed = 1;  // of the points looked at and held out
+  int jobs = 0;            // threads, see thread_count(); the result is the same with any
 
   int points_a_round = 4;
   int sweep = 0;     // points looked at in each round; 0: 128 for each parameter
@@ -46,6 +52,7 @@ struct RefineOptions {
   double slack = 0.05;   // epsilon
   double least = -0.25;  // what weights of a new row may be
   double largest = 1.25;
+  double lowest = -0.15;  // no weight is to be lower inside
 };
 
 // Of one parameter in its own unit: |f(w(p)) - p| over a set of points.
@@ -71,7 +78,7 @@ struct RefineFigures {
 };
 
 enum class Refusal : unsigned char {
-  weights,   // leave [least, largest]; value: the one furthest off
+  weights,   // leave [least, largest], or fall under `lowest` held out; value: the one furthest off
   residual,  // f(w) stays away from p*; value: by how much, scaled
   near,      // a centre is closer than a quarter of the usual distance; value: how near, scaled
   system,    // the linear system cannot be solved well with it; value: 0

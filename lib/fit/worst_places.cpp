@@ -17,12 +17,12 @@ double distance(std::span<const double> a, std::span<const double> b) {
   return std::sqrt(square);
 }
 
+}  // namespace
+
 bool is_apart(std::span<const double> place, std::span<const ErrorPlace> others, double least) {
   return std::ranges::all_of(
       others, [&](const ErrorPlace& other) { return distance(place, other.place) >= least; });
 }
-
-}  // namespace
 
 double usual_distance(const rbf::WeightFunction& function) {
   const auto d = static_cast<std::size_t>(function.dimensions);

@@ -21,6 +21,9 @@ struct ErrorPlace {
   double error = 0;           // scaled
 };
 
+// Whether no other is nearer than that.
+bool is_apart(std::span<const double> place, std::span<const ErrorPlace> others, double least);
+
 // Climbs from the worst of the places of a sweep, [places x d], that lie apart, and gives the worst
 // few, `wanted` at most, the worst first; none near those `avoided`. `usual`: the usual distance;
 // `worst`: the largest error of the sweep.

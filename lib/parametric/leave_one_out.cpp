@@ -1,10 +1,12 @@
 #include "parametric/leave_one_out.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "core/parallel.h"
 #include "parametric/blended_motion.h"
 #include "parametric/bounds.h"
 #include "rbf/weight_evaluator.h"
@@ -23,9 +25,11 @@ std::vector<double> parameters_of(const Library& library) {
   return all;
 }
 
-Result<rbf::WeightFunction> weights_of(const Library& library, rbf::Kernel kernel) {
+Result<rbf::WeightFunction> weights_of(const Library& library, rbf::Kernel kernel,
+                                       double smoothing) {
   rbf::SolverOptions options;
   options.kernel = kernel;
+  options.smoothing = smoothing;
   const auto solver =
       rbf::WeightSolver::create(library.dimensions(), parameters_of(library), options);
   if (!solver) return solver.error();
@@ -94,33 +98,57 @@ std::optional<double> distance(const Library& library, const PackedExamples& pac
   return std::sqrt(sum / static_cast<double>(found.size()));
 }
 
-HeldOut hold_out(const Library& library, std::size_t index, rbf::Kernel kernel) {
+// A library without one of its examples, and what that is.
+struct Gap {
+  Library others;
+  PackedExamples packed;
+  std::vector<double> point;  // what the example measures
+  std::vector<Vec3> wanted;
+};
+
+std::vector<Vec3> example_poses(const Library& library, std::size_t index) {
+  Library alone = library;
+  alone.examples.assign(1, library.examples[index]);
+  const PackedExamples packed = pack_examples(alone);
+  const double all = 1;
+  return poses_of(*BlendedMotion::create(alone, packed, {&all, 1}), library.skeleton);
+}
+
+Gap gap_of(const Library& library, std::size_t index) {
+  Gap gap;
+  gap.wanted = example_poses(library, index);
+  gap.point = library.examples[index].parameters;
+  gap.others = library;
+  gap.others.examples.erase(gap.others.examples.begin() + static_cast<std::ptrdiff_t>(index));
+  gap.packed = pack_examples(gap.others);
+  return gap;
+}
+
+// How far the weight function of the others is off.
+std::optional<double> weighted_distance(const Gap& gap, rbf::Kernel kernel, double smoothing) {
+  const auto function = weights_of(gap.others, kernel, smoothing);
+  if (!function) return std::nullopt;
+  const auto evaluator = rbf::WeightEvaluator::create(*function);
+  if (!evaluator) return std::nullopt;
+  std::vector<double> weights(gap.others.examples.size());
+  evaluator->weights(gap.point, weights);
+  return distance(gap.others, gap.packed, weights, gap.wanted);
+}
+
+HeldOut hold_out(const Library& library, std::size_t index, rbf::Kernel kernel, double smoothing) {
+  const Gap gap = gap_of(library, index);
+  const Bounds bounds = bounds_of(gap.others);
   HeldOut result;
   result.example = static_cast<int>(index);
-  Library others = library, alone = library;
-  alone.examples.assign(1, library.examples[index]);
-  others.examples.erase(others.examples.begin() + static_cast<std::ptrdiff_t>(index));
-  const PackedExamples packed_alone = pack_examples(alone);
-  const double all = 1;
-  const auto wanted =
-      poses_of(*BlendedMotion::create(alone, packed_alone, {&all, 1}), library.skeleton);
-
-  const auto& point = library.examples[index].parameters;
-  const Bounds bounds = bounds_of(others);
-  result.inside = outside(bounds, point).distance == 0;
-  const PackedExamples packed = pack_examples(others);
-  const auto function = weights_of(others, kernel);
-  result.failed = true;
-  if (!function) return result;
-  const auto evaluator = rbf::WeightEvaluator::create(*function);
-  if (!evaluator) return result;
-  std::vector<double> weights(others.examples.size());
-  evaluator->weights(point, weights);
-  const auto weighted = distance(others, packed, weights, wanted);
-  const auto linear = distance(others, packed, plane_weights(bounds, point), wanted);
-  const auto nearest = distance(others, packed, nearest_weights(bounds, point), wanted);
-  if (!weighted || !linear || !nearest) return result;
-  result.failed = false;
+  result.inside = outside(bounds, gap.point).distance == 0;
+  const auto of = [&](const std::vector<double>& weights) {
+    return distance(gap.others, gap.packed, weights, gap.wanted);
+  };
+  const auto weighted = weighted_distance(gap, kernel, smoothing);
+  const auto linear = of(plane_weights(bounds, gap.point));
+  const auto nearest = of(nearest_weights(bounds, gap.point));
+  result.failed = !weighted || !linear || !nearest;
+  if (result.failed) return result;
   result.weighted = *weighted;
   result.linear = *linear;
   result.nearest = *nearest;
@@ -129,14 +157,83 @@ HeldOut hold_out(const Library& library, std::size_t index, rbf::Kernel kernel) 
 
 }  // namespace
 
-Result<std::vector<HeldOut>> leave_one_out(const Library& library, rbf::Kernel kernel) {
+Result<std::vector<HeldOut>> leave_one_out(const Library& library, rbf::Kernel kernel,
+                                           double smoothing, int jobs) {
   if (Status sound = check(library); !sound) return sound.error();
-  if (const auto all = weights_of(library, kernel); !all) return all.error();
-  std::vector<HeldOut> results;
-  for (std::size_t i = 0; i < library.examples.size(); ++i) {
-    results.push_back(hold_out(library, i, kernel));
-  }
+  if (const auto all = weights_of(library, kernel, smoothing); !all) return all.error();
+  std::vector<HeldOut> results(library.examples.size());
+  parallel_for(results.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      results[i] = hold_out(library, i, kernel, smoothing);
+    }
+  });
   return results;
+}
+
+LeftOutMeans means_of(std::span<const HeldOut> left_out) {
+  LeftOutMeans means;
+  for (const HeldOut& one : left_out) {
+    if (!one.inside || one.failed) continue;
+    ++means.examples;
+    means.weighted += one.weighted;
+    means.linear += one.linear;
+    means.nearest += one.nearest;
+  }
+  for (double* mean : {&means.weighted, &means.linear, &means.nearest}) {
+    *mean /= std::max(1, means.examples);
+  }
+  return means;
+}
+
+Result<std::vector<double>> distances_to_examples(const Library& library,
+                                                  const rbf::WeightFunction& function) {
+  if (Status sound = check(library); !sound) return sound.error();
+  const auto evaluator = rbf::WeightEvaluator::create(function);
+  if (!evaluator) return evaluator.error();
+  if (function.examples != static_cast<int>(library.examples.size()) ||
+      function.dimensions != library.dimensions()) {
+    return Error("parametric-weights",
+                 "the weights are for another number of examples or parameters");
+  }
+  const PackedExamples packed = pack_examples(library);
+  std::vector<double> weights(library.examples.size()), distances;
+  for (std::size_t i = 0; i < library.examples.size(); ++i) {
+    evaluator->weights(library.examples[i].parameters, weights);
+    distances.push_back(distance(library, packed, weights, example_poses(library, i))
+                            .value_or(std::numeric_limits<double>::infinity()));
+  }
+  return distances;
+}
+
+Result<std::vector<SmoothingTrial>> try_smoothings(const Library& library, rbf::Kernel kernel,
+                                                   std::span<const double> smoothings, int jobs) {
+  if (Status sound = check(library); !sound) return sound.error();
+  for (const double smoothing : smoothings) {
+    if (const auto all = weights_of(library, kernel, smoothing); !all) return all.error();
+  }
+  const std::size_t tried = smoothings.size();
+  std::vector<std::optional<double>> distances(library.examples.size() * tried);
+  parallel_for(library.examples.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Gap gap = gap_of(library, i);
+      if (outside(bounds_of(gap.others), gap.point).distance > 0) continue;
+      for (std::size_t s = 0; s < tried; ++s) {
+        distances[i * tried + s] = weighted_distance(gap, kernel, smoothings[s]);
+      }
+    }
+  });
+  std::vector<SmoothingTrial> trials;
+  for (std::size_t s = 0; s < tried; ++s) {
+    SmoothingTrial& trial = trials.emplace_back();
+    trial.smoothing = smoothings[s];
+    for (std::size_t i = s; i < distances.size(); i += tried) {
+      if (!distances[i]) continue;
+      ++trial.examples;
+      trial.weighted += *distances[i];
+    }
+    trial.weighted /= std::max(1, trial.examples);
+  }
+  return trials;
 }
 
 }  // namespace krok::parametric

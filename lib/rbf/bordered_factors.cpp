@@ -4,6 +4,21 @@
 
 namespace krok::rbf::detail {
 
+namespace {
+
+// In four sums, so that one addition need not wait for the other.
+double dot(const double* a, const double* b, std::size_t count) {
+  double sums[4] = {};
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4) {
+    for (std::size_t lane = 0; lane < 4; ++lane) sums[lane] += a[i + lane] * b[i + lane];
+  }
+  for (std::size_t lane = 0; i < count; ++i, ++lane) sums[lane] += a[i] * b[i];
+  return (sums[0] + sums[2]) + (sums[1] + sums[3]);
+}
+
+}  // namespace
+
 bool BorderedFactors::append(std::span<const double> row, std::span<const double> column,
                              double corner, double least) {
   const std::size_t begin = size_ * (size_ + 1) / 2;
@@ -14,13 +29,8 @@ bool BorderedFactors::append(std::span<const double> row, std::span<const double
   for (std::size_t k = 0; k < size_; ++k) {
     const double* above = lower_.data() + k * (k + 1) / 2;
     const double* before = upper_.data() + k * (k + 1) / 2;
-    double in_column = column[k], in_row = row[k];
-    for (std::size_t i = 0; i < k; ++i) {
-      in_column -= above[i] * u[i];
-      in_row -= before[i] * l[i];
-    }
-    u[k] = in_column;
-    l[k] = in_row / before[k];
+    u[k] = column[k] - dot(above, u, k);
+    l[k] = (row[k] - dot(before, l, k)) / before[k];
     corner -= l[k] * u[k];
   }
   if (!(std::abs(corner) >= least) || !std::isfinite(corner)) return false;

@@ -27,9 +27,13 @@ double dot(std::span<const double> a, std::span<const double> b) {
 
 }  // namespace
 
-CentreMatrix::CentreMatrix(Kernel kernel, std::size_t dimensions, std::vector<std::size_t> base,
-                           std::span<const double> examples)
-    : kernel_(kernel), dimensions_(dimensions), base_(std::move(base)) {
+CentreMatrix::CentreMatrix(Kernel kernel, std::size_t dimensions, double smoothing,
+                           std::vector<std::size_t> base, std::span<const double> examples)
+    : kernel_(kernel),
+      dimensions_(dimensions),
+      examples_(examples.size() / dimensions),
+      smoothing_(kernel == Kernel::linear ? -smoothing : smoothing),
+      base_(std::move(base)) {
   const std::size_t size = base_.size();
   const auto rows = static_cast<Eigen::Index>(size);
   Eigen::MatrixXd values(rows, rows);
@@ -48,7 +52,8 @@ CentreMatrix::CentreMatrix(Kernel kernel, std::size_t dimensions, std::vector<st
       const auto at = [&](std::size_t k) {
         return std::span<const double>(base_places_).subspan(k * dimensions_, dimensions_);
       };
-      base_phi_.push_back(basis_scalar(kernel_, square_distance(at(a), at(b)), 1).value);
+      base_phi_.push_back(basis_scalar(kernel_, square_distance(at(a), at(b)), 1).value +
+                          (a == b ? smoothing_ : 0));
     }
   }
 }
@@ -104,7 +109,10 @@ double CentreMatrix::phi_between(std::span<const double> place, std::size_t k) c
 }
 
 double CentreMatrix::phi(std::size_t i, std::size_t k) const {
-  if (i == k) return basis_scalar(kernel_, 0, inverse_squares_[k]).value;
+  if (i == k) {
+    const double here = basis_scalar(kernel_, 0, inverse_squares_[k]).value;
+    return k < examples_ ? here + smoothing_ : here;
+  }
   return i > k ? phi_here_[i * (i - 1) / 2 + k] : phi_there_[k * (k - 1) / 2 + i];
 }
 

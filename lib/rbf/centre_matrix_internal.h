@@ -22,11 +22,14 @@ namespace krok::rbf::detail {
 // and the matrix of kappa over all other centres is definite (Wendland: Scattered Data
 // Approximation, 2005, ch. 10.3), where the usual saddle matrix with planes is neither definite nor
 // easily extended. With other kernels the base is empty and kappa = phi.
+//
+// Smoothing is added to phi of each example at its own place (taken off for linear, whose phi is
+// negative on what is orthogonal to planes), so that the rest need not know of it.
 class CentreMatrix {
  public:
   // The base of examples, [examples x d] scaled: indices. Empty for kernels without planes.
-  CentreMatrix(Kernel kernel, std::size_t dimensions, std::vector<std::size_t> base,
-               std::span<const double> examples);
+  CentreMatrix(Kernel kernel, std::size_t dimensions, double smoothing,
+               std::vector<std::size_t> base, std::span<const double> examples);
 
   // A new centre; examples first. `radius` is not read for kernels without.
   void append(std::span<const double> place, double radius);
@@ -39,7 +42,7 @@ class CentreMatrix {
   // The distance from `place` to the nearest centre; infinite if there is none.
   double nearest(std::span<const double> place) const;
 
-  // phi of centre k at the place of centre i.
+  // phi of centre k at the place of centre i, with the smoothing.
   double phi(std::size_t i, std::size_t k) const;
   // The planes of the base at centre i, [base].
   std::span<const double> planes(std::size_t i) const {
@@ -57,7 +60,8 @@ class CentreMatrix {
   double phi_between(std::span<const double> place, std::size_t k) const;
 
   Kernel kernel_;
-  std::size_t dimensions_;
+  std::size_t dimensions_, examples_;
+  double smoothing_;  // with its sign
   std::vector<std::size_t> base_;
   Eigen::MatrixXd base_inverse_;
   std::vector<double> base_places_, base_phi_;  // [base x d], [base x base]

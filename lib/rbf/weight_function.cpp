@@ -126,6 +126,10 @@ Status WeightFunction::check() const {
       return Error("rbf-radius", fmt::format("a centre has the radius {}", readable(radius)));
     }
   }
+  if (!(smoothing >= 0) || !std::isfinite(smoothing)) {
+    return Error("rbf-number", fmt::format("a smoothing of {}", readable(smoothing)),
+                 "it is 0 or more");
+  }
   const auto n = static_cast<std::size_t>(examples);
   if (!sums_are(affine, n, 1, 0) || !sums_are(coefficients, n, 0, 0) ||
       !sums_are(inserted_rows, n, 1, 1)) {

@@ -19,6 +19,11 @@
 // where q = (p - lower) / (upper - lower) are the parameters scaled by their ranges and q_k are
 // centres: the examples, then points that were inserted with weights given for them. The weights
 // sum to 1 for every p, and without inserted points sum_i w_i(p) p_i = p.
+//
+// Examples that measure alike and look different cannot all be met without weights of large and
+// opposite signs between them. Smoothing lets weights miss them: for cubic and linear the function
+// has the least sum of |w(p_i) - e_i|^2 and smoothing times its roughness (a smoothing spline:
+// Wahba, Spline models for observational data, 1990), and both sums above still hold.
 
 namespace krok::rbf {
 
@@ -50,11 +55,13 @@ bool has_radii(Kernel kernel);
 // read back gives the same bits (see weight_evaluator.h; made by weight_solver.h).
 struct WeightFunction {
   Kernel kernel = Kernel::cubic;
-  int dimensions = 0;                 // d, 1 to kMostDimensions
-  int examples = 0;                   // N, d + 1 at least
-  std::vector<double> lower, upper;   // [d], the range of each parameter in its own unit
-  std::vector<double> centres;        // [centres x d], own units; the examples are the first N
-  std::vector<double> radii;          // [centres], in scaled parameters; empty for cubic, linear
+  int dimensions = 0;                // d, 1 to kMostDimensions
+  int examples = 0;                  // N, d + 1 at least
+  std::vector<double> lower, upper;  // [d], the range of each parameter in its own unit
+  std::vector<double> centres;       // [centres x d], own units; the examples are the first N
+  std::vector<double> radii;         // [centres], in scaled parameters; empty for cubic, linear
+  // 0: examples are met; the more, the nearer to planes through all. Inserted points are met.
+  double smoothing = 0;
   std::vector<double> inserted_rows;  // [inserted x N], the weights given at inserted points
   std::vector<double> affine;         // [(d + 1) x N], by (1, q)
   std::vector<double> coefficients;   // [centres x N]
@@ -76,7 +83,7 @@ struct WeightFunction {
 
   // Whether the numbers belong together. Codes: rbf-dimensions, rbf-examples, rbf-centres for
   // counts; rbf-bounds; rbf-radius; rbf-shape where an array has another length; rbf-number for
-  // what is not finite; rbf-sum where the weights would not sum to 1.
+  // what is not finite, or a smoothing below 0; rbf-sum where the weights would not sum to 1.
   Status check() const;
 
   bool operator==(const WeightFunction&) const = default;

@@ -62,6 +62,7 @@ Result<WeightSolver> WeightSolver::create(int dimensions, std::span<const double
   WeightFunction f;
   f.kernel = options.kernel;
   f.dimensions = dimensions;
+  f.smoothing = options.smoothing;
   if (dimensions >= 1 && dimensions <= kMostDimensions) {
     f.examples = static_cast<int>(std::min<std::size_t>(
         parameters.size() / static_cast<std::size_t>(dimensions), kMostCentres));

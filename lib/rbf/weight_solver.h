@@ -20,6 +20,7 @@ struct SolverOptions {
   Kernel kernel = Kernel::cubic;
   // [d], the parameters' ranges, in their own units; both empty: what the examples span.
   std::vector<double> lower, upper;
+  double smoothing = 0;  // see weight_function.h
 };
 
 // Planes and coefficients solve a linear system. For cubic and linear, the planes belong to it, and
@@ -54,7 +55,7 @@ class WeightSolver {
   // coefficients.
   double condition() const;
 
-  // How far the weights at the centres are from the wanted ones at most.
+  // How far the weights at the centres are at most from the wanted ones, smoothing allowed for.
   double residual() const;
 
   // From a point to the nearest centre, in scaled parameters.

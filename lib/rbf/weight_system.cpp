@@ -64,8 +64,9 @@ Result<std::unique_ptr<WeightSystem>> WeightSystem::start(WeightFunction functio
     }
     std::ranges::sort(base);
   }
-  auto system = std::make_unique<WeightSystem>(WeightSystem{
-      std::move(function), CentreMatrix(function.kernel, d, base, scaled), {}, {}, {}, {}, {}, 0});
+  CentreMatrix matrix(function.kernel, d, function.smoothing, base, scaled);
+  auto system = std::make_unique<WeightSystem>(
+      WeightSystem{std::move(function), std::move(matrix), {}, {}, {}, {}, {}, 0});
   system->wanted.assign(n * n, 0.0);
   for (std::size_t k = 0; k < n; ++k) system->wanted[k * n + k] = 1;
   if (base.empty()) {

@@ -162,7 +162,7 @@ def kernel(number, t):
     if number == 1:
         return t
     if number == 2:
-        return math.exp(-6 * t * t)
+        return math.exp(-4 * t * t)
     if number == 3:
         return 1 - 6 * t * t * (1 - t) if t <= 0.5 else 2 * max(0, 1 - t) ** 3
     return max(0, 1 - t) ** 4 * (4 * t + 1)
@@ -178,6 +178,9 @@ def read_weights(container, dimensions, examples):
     radii = [1.0] * centres
     if number >= 2:
         radii = [row[0] for row in container.numbers("RADII", "d", 1, centres)]
+    if "SMOOTH" in container.sections:
+        ((smoothing,),) = container.numbers("SMOOTH", "d", 1, 1)
+        require(smoothing >= 0, "impossible smoothing")
     container.numbers("INSERTED", "d", examples, centres - examples)
     affine = container.numbers("AFFINE", "d", examples, dimensions + 1)
     coefficients = container.numbers("COEFFS", "d", examples, centres)

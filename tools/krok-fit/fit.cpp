@@ -17,12 +17,12 @@ namespace krok::fit_tool {
 namespace {
 
 // The refinement of a library with the same examples.
-Result<fit::Refined> resumed(const std::string& path, const LibraryInput& input,
-                             ToolContext& context) {
+Result<fit::Refined> resumed(const std::string& path, LibraryInput& input, ToolContext& context) {
   const auto file = context.open_input(path);
   if (!file) return file.error();
   const auto saved = steps::read(file->bytes());
   if (!saved) return Error(saved.error()).in_file(path);
+  if (saved->weights && saved->weights->smoothing > 0) take_all_steps(input);
   const parametric::Library& library = input.library;
   bool same = saved->weights && saved->library.parameters == library.parameters &&
               saved->library.examples.size() == library.examples.size();
@@ -73,7 +73,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status kind = check_output_kind(context.output, "-o", registry::Kind::steps); !kind) {
     return kind.error();
   }
-  const auto input = read_library(options.library, options.keep_going, context);
+  auto input = read_library(options.library, options.keep_going, context);
   if (!input) return input.error();
   std::optional<fit::Refined> start;
   if (!options.resume.empty()) {
@@ -81,7 +81,16 @@ Result<int> run(const Options& options, ToolContext& context) {
     if (!saved) return saved.error();
     start = *std::move(saved);
   }
-  const auto fitted = fit_library(*input, options, start ? &*start : nullptr, context);
+  SmoothingChoice smoothing;
+  if (!start) {
+    auto choice = choose_smoothing(*input, options, context);
+    if (!choice) return choice.error();
+    smoothing = *std::move(choice);
+  } else {
+    smoothing.smoothing = start->function.smoothing;
+  }
+  const auto fitted =
+      fit_library(*input, options, std::move(smoothing), start ? &*start : nullptr, context);
   if (!fitted) return fitted.error();
   if (Status written = write_results(options, *input, *fitted, context); !written) {
     return written.error();

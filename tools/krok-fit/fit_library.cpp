@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "core/quantity.h"
 #include "math/types.h"
@@ -16,7 +18,7 @@ namespace {
 
 using parametric::Library;
 
-constexpr std::size_t kMostLeftOut = 128;
+constexpr double kUsualGain = 20;  // where nobody says what is small enough
 
 std::vector<double> parameters_of(const Library& library) {
   std::vector<double> points;
@@ -80,6 +82,14 @@ void warn_of_spread(const LibraryInput& input, const parametric::PackedExamples&
   context.tell(std::move(told));
 }
 
+// Whether somebody said what is small enough.
+bool has_own_tolerance(const LibraryInput& input, const Options& options) {
+  const auto& parameters = input.description.parameters;
+  return !options.until.empty() || std::ranges::any_of(parameters, [](const auto& entry) {
+    return entry.tolerance.has_value();
+  });
+}
+
 std::vector<double> tolerances_of(const Library& library, const Options& options) {
   std::vector<double> tolerances;
   for (const parametric::Parameter& parameter : library.parameters) {
@@ -109,17 +119,20 @@ rbf::Measure measure_of(const parametric::Measure& measure) {
 }
 
 Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& options,
-                                  const fit::Refined* start, ToolContext& context) {
+                                  SmoothingChoice smoothing, const fit::Refined* start,
+                                  ToolContext& context) {
   const Library& library = input.library;
   FittedLibrary fitted;
+  fitted.smoothing = std::move(smoothing);
   fitted.packed = parametric::pack_examples(library);
   fitted.tolerances = tolerances_of(library, options);
   warn_of_spread(input, fitted.packed, context);
   if (start != nullptr) {
     fitted.start = *start;
   } else {
-    const auto solver = rbf::WeightSolver::create(library.dimensions(), parameters_of(library),
-                                                  {options.kernel, input.lower, input.upper});
+    const auto solver = rbf::WeightSolver::create(
+        library.dimensions(), parameters_of(library),
+        {options.kernel, input.lower, input.upper, fitted.smoothing.smoothing});
     if (!solver) return explained(solver.error(), input).in_file(options.library);
     fitted.start.function = solver->function();
   }
@@ -132,8 +145,13 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   };
   how.tolerance = fitted.tolerances;
   how.points = options.refine.value_or(0);
-  // No points at all: every error is small enough.
-  if (options.refine == 0) how.tolerance.assign(how.tolerance.size(), INFINITY);
+  // No points at all: every error is small enough, and every weight high enough.
+  if (options.refine == 0) {
+    how.tolerance.assign(how.tolerance.size(), INFINITY);
+    how.lowest = -INFINITY;
+  } else if (!has_own_tolerance(input, options)) {
+    how.gain = kUsualGain;
+  }
   how.seed = options.seed;
   how.held_out = options.held_out;
   how.jobs = context.jobs;
@@ -142,9 +160,17 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   if (!refined) return std::move(refined).error().in_file(options.library);
   fitted.refined = *std::move(refined);
   fitted.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (fitted.refined.function.smoothing > 0) {
+    const auto distances = parametric::distances_to_examples(library, fitted.refined.function);
+    if (!distances) return distances.error();
+    fitted.example_distance = std::accumulate(distances->begin(), distances->end(), 0.0) /
+                              static_cast<double>(distances->size());
+  }
   if (library.examples.size() <= kMostLeftOut) {
     // Without one of them some libraries cannot be fitted; that is no fault of this one.
-    if (auto left_out = parametric::leave_one_out(library, fitted.refined.function.kernel)) {
+    const rbf::WeightFunction& function = fitted.refined.function;
+    if (auto left_out =
+            parametric::leave_one_out(library, function.kernel, function.smoothing, context.jobs)) {
       fitted.left_out = *std::move(left_out);
     }
   }

@@ -83,24 +83,13 @@ Json refused_json(const FittedLibrary& fitted) {
   return list;
 }
 
-// Means over the examples that lie between the others, for there alone the others can tell.
-struct LeftOutMeans {
-  int examples = 0;
-  double weighted = 0, linear = 0, nearest = 0;  // metres
-};
-LeftOutMeans means_of(const std::vector<parametric::HeldOut>& left_out) {
-  LeftOutMeans means;
-  for (const parametric::HeldOut& one : left_out) {
-    if (!one.inside || one.failed) continue;
-    ++means.examples;
-    means.weighted += one.weighted;
-    means.linear += one.linear;
-    means.nearest += one.nearest;
+Json smoothings_json(const SmoothingChoice& choice) {
+  Json list = Json::array();
+  for (const parametric::SmoothingTrial& trial : choice.tried) {
+    list.push_back(
+        {{"smoothing", trial.smoothing}, {"inside", trial.examples}, {"weighted", trial.weighted}});
   }
-  for (double* mean : {&means.weighted, &means.linear, &means.nearest}) {
-    *mean /= std::max(1, means.examples);
-  }
-  return means;
+  return list;
 }
 
 Json left_out_json(const std::vector<parametric::HeldOut>& left_out) {
@@ -113,7 +102,7 @@ Json left_out_json(const std::vector<parametric::HeldOut>& left_out) {
                     {"linear", one.linear},
                     {"nearest", one.nearest}});
   }
-  const LeftOutMeans means = means_of(left_out);
+  const parametric::LeftOutMeans means = parametric::means_of(left_out);
   Json result;
   result["inside"] = means.examples;
   result["weighted"] = means.weighted;
@@ -150,6 +139,20 @@ std::string what_stopped(const fit::Refined& refined) {
   }
 }
 
+void say_smoothing(const FittedLibrary& fitted, ToolContext& context) {
+  const double smoothing = fitted.refined.function.smoothing;
+  if (!(smoothing > 0)) return;
+  std::string text = fmt::format("  smoothed by {}", readable(smoothing));
+  if (fitted.smoothing.exact) {
+    text += fmt::format(", for examples contradict each other ({} mm off without)",
+                        readable(1e3 * fitted.smoothing.exact->weighted, 3));
+  }
+  context.say(
+      fmt::format("{}: an example's own joints come back {} mm off in the mean; --smooth 0 "
+                  "brings them back",
+                  text, readable(1e3 * fitted.example_distance, 3)));
+}
+
 }  // namespace
 
 Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
@@ -174,6 +177,12 @@ Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
   }
   result["dropped"] = std::move(dropped);
   result["kernel"] = std::string(rbf::kernel_name(fitted.refined.function.kernel));
+  result["smoothing"] = fitted.refined.function.smoothing;
+  result["example_distance"] = fitted.example_distance;
+  if (fitted.smoothing.exact) {
+    result["exact_left_out"] = fitted.smoothing.exact->weighted;
+    result["smoothings_tried"] = smoothings_json(fitted.smoothing);
+  }
   result["inserted"] = fitted.refined.function.inserted();
   result["example_error_of_range"] = fitted.refined.example_error;
   result["before"] = figures_json(fitted.refined.before, input);
@@ -204,13 +213,15 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
                             with_unit(after.within[d].largest, unit),
                             with_unit(after.within[d].mean, unit)));
   }
-  if (const LeftOutMeans means = means_of(fitted.left_out); means.examples > 0) {
+  if (const parametric::LeftOutMeans means = parametric::means_of(fitted.left_out);
+      means.examples > 0) {
     context.say(fmt::format(
         "  {} made from the others: joints {} mm off in the mean; by planes alone {} mm, the "
         "nearest other one {} mm",
         counted(means.examples, "inner example"), readable(1e3 * means.weighted, 3),
         readable(1e3 * means.linear, 3), readable(1e3 * means.nearest, 3)));
   }
+  say_smoothing(fitted, context);
   context.say(fmt::format("  {} inserted in {} ({:.2g} s): {}; weights {} to {}",
                           counted(fitted.refined.function.inserted(), "point"),
                           counted(static_cast<long long>(fitted.refined.rounds.size()), "round"),

@@ -29,6 +29,7 @@ using library::ParameterEntry;
 using parametric::Library;
 
 constexpr double kUsualSpacing = 0.15;
+constexpr double kSmoothedSpacing = 0.01;
 constexpr double kUsualTolerance = 0.1;  // of what a parameter's usually is: refining is cheap
 
 // A motion of the list, with the entry that named it.
@@ -45,6 +46,42 @@ struct Motion {
 Error at_entry(Error error, const Location& place) {
   if (error.where.file.empty()) error.where = place;
   return error;
+}
+
+void thin_out(LibraryInput& input, double spacing) {
+  std::vector<parametric::Example> chosen;
+  for (const int i : parametric::thin_out(input.library, spacing)) {
+    chosen.push_back(std::move(input.library.examples[static_cast<std::size_t>(i)]));
+  }
+  input.library.examples = std::move(chosen);
+}
+
+void count_mirrored(LibraryInput& input) {
+  input.mirrored = static_cast<int>(
+      std::ranges::count_if(input.library.examples, &parametric::Example::mirrored));
+}
+
+Status find_range(LibraryInput& input) {
+  const Library& library = input.library;
+  input.lower.clear();
+  input.upper.clear();
+  for (std::size_t d = 0; d < library.parameters.size(); ++d) {
+    const ParameterEntry& entry = input.description.parameters[d];
+    double least = INFINITY, most = -INFINITY;
+    for (const parametric::Example& example : library.examples) {
+      least = std::min(least, example.parameters[d]);
+      most = std::max(most, example.parameters[d]);
+    }
+    if (!(most > least)) {
+      return at_entry(
+          Error("library-examples", fmt::format("'{}' is the same in all examples", entry.name),
+                "leave the parameter out, or add examples in which it differs"),
+          entry.place);
+    }
+    input.lower.push_back(entry.least.value_or(least));
+    input.upper.push_back(entry.most.value_or(most));
+  }
+  return {};
 }
 
 // Where the keytimes of a step are in a walk.
@@ -66,7 +103,7 @@ class Reader {
     if (done) done = find_all_keys();
     if (done) done = make_library();
     if (done) done = choose();
-    if (done) done = find_range();
+    if (done) done = find_range(input_);
     if (!done) return done.error();
     return std::move(input_);
   }
@@ -136,7 +173,9 @@ class Reader {
   }
 
   Status read_clip(Motion& motion) {
-    auto clip = read_motion(motion.path, context_);
+    // A jump from a rest pose is in no step that is found.
+    auto clip = read_motion(motion.path, context_,
+                            motion.entry->automatic ? RestFrameTold::note : RestFrameTold::warning);
     if (!clip) return clip.error();
     if (clip->frame_count() < 2) {
       return Error("library-examples", fmt::format("{} has no motion in it", motion.name));
@@ -379,37 +418,10 @@ class Reader {
     const bool all_found =
         std::ranges::all_of(motions_, [](const Motion& m) { return m.entry->automatic; });
     if (all_found) {
-      std::vector<parametric::Example> chosen;
-      const double spacing = description().spacing.value_or(kUsualSpacing);
-      for (const int i : parametric::thin_out(library, spacing)) {
-        chosen.push_back(std::move(library.examples[static_cast<std::size_t>(i)]));
-      }
-      library.examples = std::move(chosen);
+      if (!description().spacing) input_.all_steps = library.examples;
+      thin_out(input_, description().spacing.value_or(kUsualSpacing));
     }
-    input_.mirrored =
-        static_cast<int>(std::ranges::count_if(library.examples, &parametric::Example::mirrored));
-    return {};
-  }
-
-  Status find_range() {
-    const Library& library = input_.library;
-    for (int d = 0; d < library.dimensions(); ++d) {
-      const ParameterEntry& entry = description().parameters[static_cast<std::size_t>(d)];
-      double least = INFINITY, most = -INFINITY;
-      for (const parametric::Example& example : library.examples) {
-        const double value = example.parameters[static_cast<std::size_t>(d)];
-        least = std::min(least, value);
-        most = std::max(most, value);
-      }
-      if (!(most > least)) {
-        return at_entry(
-            Error("library-examples", fmt::format("'{}' is the same in all examples", entry.name),
-                  "leave the parameter out, or add examples in which it differs"),
-            entry.place);
-      }
-      input_.lower.push_back(entry.least.value_or(least));
-      input_.upper.push_back(entry.most.value_or(most));
-    }
+    count_mirrored(input_);
     return {};
   }
 
@@ -425,6 +437,16 @@ class Reader {
 
 Result<LibraryInput> read_library(const std::string& path, bool keep_going, ToolContext& context) {
   return Reader(path, keep_going, context).read();
+}
+
+void take_all_steps(LibraryInput& input) {
+  if (input.all_steps.empty()) return;
+  input.library.examples = std::move(input.all_steps);
+  input.all_steps.clear();
+  thin_out(input, kSmoothedSpacing);
+  count_mirrored(input);
+  // Fewer steps had a range in each parameter already.
+  (void)find_range(input).ok();
 }
 
 }  // namespace krok::fit_tool

@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
        "up to 80 points, until steps are half a millimetre right, and charts of how it went"},
       {"krok-fit walking.json --resume walking.steps --refine 160 -o better.steps",
        "goes on where another run stopped"}};
+  spec.exit_partly = "with --keep-going: some motions were left out, the library is made";
+  spec.report_name = "--report";
   spec.declare = [&options](CLI::App& app) { krok::fit_tool::declare(app, options); };
   spec.check = [&options] { return krok::fit_tool::check(options); };
   spec.run = [&options](krok::ToolContext& context) {

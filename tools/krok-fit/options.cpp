@@ -1,5 +1,6 @@
 #include "tools/krok-fit/options.h"
 
+#include "core/numbers.h"
 #include "core/quantity.h"
 #include "tools/common/option_kinds.h"
 
@@ -22,6 +23,27 @@ void declare(CLI::App& app, Options& options) {
                           "What weights are made of between the examples: cubic, linear, gaussian, "
                           "bspline or wendland",
                           "KERNEL", "cubic")
+      ->group("Fit");
+  app.add_option_function<std::string>(
+         "--smooth",
+         [&options](const std::string& text) {
+           if (text == "auto") return;
+           options.smooth = parse_finite(text);
+         },
+         "0: at an example's parameters the example comes back. More: examples that contradict "
+         "each "
+         "other are averaged, 0.001 hardly, 10 nearly to planes. auto: 0, but for steps that were "
+         "found and that the others make much better so")
+      ->type_name("auto|N")
+      ->default_str("auto")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const auto number = parse_finite(text);
+            return text == "auto" || (number && *number >= 0 && *number <= 1e6)
+                       ? std::string()
+                       : "'" + text + "' is neither auto nor a number from 0 to 1000000";
+          },
+          ""))
       ->group("Fit");
   add_whole(app, "--refine", options.refine,
             "Points to insert at most, 0 for none; otherwise 40 for each parameter", 0, 4000)

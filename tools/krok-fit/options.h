@@ -14,13 +14,18 @@ struct Options {
   std::string library;  // the description's path
   bool keep_going = false;
   rbf::Kernel kernel = rbf::Kernel::cubic;
-  std::optional<int> refine;  // points to insert at most; nothing: 40 for each parameter
-  std::string until;          // a length: the error at which lengths are good enough
-  int held_out = 0;           // 0: as refine() chooses
+  std::optional<int> refine;     // points to insert at most; nothing: 40 for each parameter
+  std::optional<double> smooth;  // 0: weights meet the examples; nothing: chosen
+  std::string until;             // a length: the error at which lengths are good enough
+  int held_out = 0;              // 0: as refine() chooses
   std::uint64_t seed = 1;
   std::string resume;  // a library to go on with
   std::string plots;   // a folder
 };
+
+// Each example is made by the others alone for at most so many of them: it takes time with the
+// fourth power of their number.
+inline constexpr std::size_t kMostLeftOut = 128;
 
 void declare(CLI::App& app, Options& options);
 Status check(const Options& options);

@@ -236,6 +236,26 @@ TEST_F(StepLibrary, OtherMotionsThanStepsWork) {
   EXPECT_TRUE(has_code(asked.err, "parametric-bounds")) << asked.err;
 }
 
+// Generated steps agree: nothing is smoothed unless it is asked for. --report is another name of
+// --json=FILE.
+TEST_F(StepLibrary, WeightsAreSmoothedWhereItIsAskedFor) {
+  const auto report = [&] {
+    return json::parse(InputFile::open(path("r.json"))->text())["result"];
+  };
+  fit_well({"--report", path("r.json")});
+  EXPECT_EQ(report()["smoothing"], 0);
+  fit_well({"--smooth", "0.1", "--report", path("r.json")});
+  EXPECT_EQ(report()["smoothing"], 0.1);
+  EXPECT_GT(report()["example_distance"], 0);
+  // Going on does not lose it.
+  ASSERT_EQ(run({"/bin/mv", path("out.steps"), path("half.steps")}).exit_code, 0);
+  fit_well({"--resume", path("half.steps"), "--refine", "90", "--report", path("r.json")});
+  EXPECT_EQ(report()["smoothing"], 0.1);
+  for (const char* odd : {"-1", "much", "nan", ""}) {
+    EXPECT_EQ(fit({"--smooth", odd}).exit_code, 2) << odd;
+  }
+}
+
 TEST_F(StepLibrary, AFileThatIsNoLibraryIsRefused) {
   write("out.steps", "HIERARCHY\n");
   const ToolRun run = synth({"--set", "length=1m"});

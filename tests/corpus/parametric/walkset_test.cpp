@@ -8,11 +8,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "contacts/gait_keytimes.h"
 #include "core/file.h"
+#include "fit/refine.h"
 #include "formats/bvh/bvh_reader.h"
 #include "parametric/cut_steps.h"
 #include "parametric/leave_one_out.h"
@@ -175,6 +178,101 @@ TEST(Walkset, HeldOutStepsAreNearerThanTheirNeighbours) {
         1000 * linear / count, 1000 * nearest / count);
     EXPECT_LT(weighted, nearest);
     EXPECT_LT(weighted, 1.25 * linear);
+  }
+}
+
+// At 10,000 random points inside: the lowest weight, and how far their sum is from 1 at most.
+double sum_error(const Library& library, const rbf::WeightFunction& function, double& least) {
+  const Bounds bounds = bounds_of(library);
+  const auto evaluator = rbf::WeightEvaluator::create(function);
+  EXPECT_TRUE(evaluator.ok());
+  std::mt19937_64 random(20'11);
+  std::vector<double> weights(library.examples.size()), point(2);
+  double off = 0;
+  for (int inside = 0; inside < 10'000;) {
+    for (std::size_t d = 0; d < 2; ++d) {
+      point[d] = std::uniform_real_distribution<double>(bounds.lower[d], bounds.upper[d])(random);
+    }
+    if (outside(bounds, point).distance > 0) continue;
+    ++inside;
+    evaluator->weights(point, weights);
+    least = std::min(least, std::ranges::min(weights));
+    off = std::max(off, std::abs(std::accumulate(weights.begin(), weights.end(), 0.0) - 1));
+  }
+  return off;
+}
+
+// Refined as krok-fit does it: whether weights meet 15 examples or average all, none falls under
+// -0.15 anywhere inside, and the length is ten times nearer to what was asked for than before.
+TEST(Walkset, RefinedWeightsStayInTheirRange) {
+  CORPUS_OR_SKIP();
+  const Library all = all_steps({"step.length", "duration"}).library;
+  for (const double smoothing : {0.0, 0.1}) {
+    Library library = all;
+    library.examples.clear();
+    std::vector<double> parameters;
+    for (const int i : thin_out(all, smoothing > 0 ? 0.01 : 0.15)) {
+      library.examples.push_back(all.examples[static_cast<std::size_t>(i)]);
+      parameters.insert(parameters.end(), library.examples.back().parameters.begin(),
+                        library.examples.back().parameters.end());
+    }
+    const auto solver =
+        rbf::WeightSolver::create(2, parameters, {rbf::Kernel::cubic, {}, {}, smoothing});
+    ASSERT_TRUE(solver.ok()) << solver.error().message;
+    const PackedExamples packed = pack_examples(library);
+    const Measure measure(library, packed);
+    const Bounds bounds = bounds_of(library);
+    fit::RefineOptions options;
+    options.inside = [&](std::span<const double> point) {
+      return outside(bounds, point).distance <= 0;
+    };
+    fit::Refined start;
+    start.function = solver->function();
+    Progress progress;
+    const auto refined = fit::refine(
+        start,
+        [&](auto weights, auto values, auto jacobian) {
+          auto scratch = measure.make_scratch();
+          return measure(weights, values, jacobian, scratch);
+        },
+        options, progress);
+    ASSERT_TRUE(refined.ok()) << refined.error().message;
+    const fit::RefineFigures& last = refined->rounds.back().after;
+    double least = 0;
+    EXPECT_LE(sum_error(library, refined->function, least), 1e-12);
+    std::printf(
+        "smoothed by %g: least weight %.3f (%.3f before), length %.3f mm off (%.2f before)\n",
+        smoothing, least, refined->before.least_weight, 1e3 * last.within[0].largest,
+        1e3 * refined->before.within[0].largest);
+    EXPECT_GE(least, -0.15);
+    EXPECT_LT(10 * last.within[0].largest, refined->before.within[0].largest);
+    EXPECT_LT(last.roughness, 1.1 * refined->before.roughness);
+  }
+}
+
+// Weights that average all steps make one that was left out better than planes and neighbours do,
+// with steps of one foot and of both.
+TEST(Walkset, SmoothedWeightsMakeHeldOutStepsBest) {
+  CORPUS_OR_SKIP();
+  for (const bool mirror : {true, false}) {
+    Library library = all_steps({"step.length", "duration"}, {.mirror = mirror}).library;
+    std::vector<Example> kept;
+    for (const int i : thin_out(library, 0.01)) {
+      kept.push_back(library.examples[static_cast<std::size_t>(i)]);
+    }
+    library.examples = std::move(kept);
+    const double smoothings[] = {0.1, 0.3, 1};
+    const auto trials = try_smoothings(library, rbf::Kernel::cubic, smoothings);
+    ASSERT_TRUE(trials.ok()) << trials.error().message;
+    const auto best = std::ranges::min_element(*trials, {}, &SmoothingTrial::weighted);
+    const auto held = leave_one_out(library, rbf::Kernel::cubic, best->smoothing);
+    ASSERT_TRUE(held.ok()) << held.error().message;
+    const LeftOutMeans means = means_of(*held);
+    std::printf("%d inside, smoothed by %g: %.1f mm, planes %.1f mm, nearest %.1f mm\n",
+                means.examples, best->smoothing, 1e3 * means.weighted, 1e3 * means.linear,
+                1e3 * means.nearest);
+    EXPECT_LT(means.weighted, means.linear);
+    EXPECT_LT(means.weighted, means.nearest);
   }
 }
 

@@ -12,6 +12,8 @@
 #include "core/hash.h"
 #include "formats/anim/anim.h"
 #include "formats/cam/cam.h"
+#include "formats/character/character_format.h"
+#include "formats/material/material_format.h"
 #include "formats/model/model_format.h"
 
 namespace krok::samples {
@@ -123,15 +125,8 @@ steps::StepsFile step_library() {
     example.parameters = {second ? 0.75 : 0.5};
   }
   library.examples[1].contacts = {{2, 0.015625, 0.03, Vec3(0.125, 0, 0.1)}};
-  file.weights = {rbf::Kernel::bspline,
-                  1,
-                  2,
-                  {0.5},
-                  {0.75},
-                  {0.5, 0.75, 0.625},
-                  {2, 2, 0.5},
-                  {0.625, 0.375},
-                  {1, 0, -1, 1},
+  file.weights = {rbf::Kernel::bspline,       1,           2, {0.5},          {0.75},
+                  {0.5, 0.75, 0.625},         {2, 2, 0.5}, 0, {0.625, 0.375}, {1, 0, -1, 1},
                   {0, 0, 0, 0, 0.125, -0.125}};
   file.report = R"({"schema":"krok.fit/1","inserted":1})";
   file.provenance = provenance("krok-fit");
@@ -152,6 +147,56 @@ steps::StepsFile unfitted_library() {
   file.report.clear();
   file.provenance = {};
   return file;
+}
+
+std::vector<Material> materials() {
+  const auto skin = std::make_shared<const Picture>(Picture{{}, "textures/skin.png", {}});
+  const auto detail =
+      std::make_shared<const Picture>(Picture{{}, "textures/d\xC3\xA9tail 1.jpg", {}});
+  Material full;
+  full.name = "kov \"1\"";
+  full.base_color = {0.1f, 0.25f, 1.0f, 0.5f};
+  full.base_color_texture = {skin, Texture::Wrap::clamp, Texture::Wrap::mirror, false};
+  full.metallic = 0.125f;
+  full.roughness = 0.0f;
+  full.metallic_roughness_texture = {detail};
+  full.normal_texture = {detail, Texture::Wrap::repeat, Texture::Wrap::clamp};
+  full.normal_scale = -2.5f;
+  full.occlusion_texture = {detail};
+  full.occlusion_strength = 0.75f;
+  full.emissive = {0.0f, 1e-5f, 0.3f};
+  full.emissive_texture = {skin};
+  full.alpha = Material::Alpha::mask;
+  full.alpha_cutoff = 0.9f;
+  full.double_sided = true;
+  full.unlit = true;
+  full.shaders = {"skin.vert", "skin.frag"};
+  Material glass;
+  glass.name = "glass";
+  glass.alpha = Material::Alpha::blend;
+  glass.metallic = 1.0f;
+  Material plain;
+  plain.name = "plain";
+  Material painted;
+  painted.name = "painted";
+  painted.base_color = Vec4f::Ones();
+  painted.base_color_texture = {skin};
+  return {full, glass, plain, painted};
+}
+
+Character character() {
+  const Model of = model();
+  Character character;
+  character.name = "\xC5\x98idi\xC4\x8D";
+  character.model = "full.model";
+  character.materials = {"full.material"};
+  character.parts = {{of.parts[0].name, "plain"}, {of.parts[1].name, ""}};
+  character.eyes = {{"left", of.skeleton.names[1], {0.031f, 1.5f, -0.0f}},
+                    {"right", of.skeleton.names[1], {-0.031f, 1.5f, 1e-7f}}};
+  character.morphs = "parts/face.exr";
+  character.expressions = {{"smile", "", 0.1f}, {"blink", "Eyes \"closed\"", 0.0f}};
+  character.role_map = "full.roles.json";
+  return character;
 }
 
 std::vector<Sample> all() {
@@ -176,6 +221,14 @@ std::vector<Sample> all() {
        [](OutputFile& file) {
          return steps::write(unfitted_library(), {.orientation = kXyzw}, file);
        }},
+  };
+}
+
+std::vector<Sample> texts() {
+  return {
+      {"full.material", [](OutputFile& file) { return file.write(*material::write(materials())); }},
+      {"full.character",
+       [](OutputFile& file) { return file.write(*character_file::write(character())); }},
   };
 }
 

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "rbf/weight_solver.h"
 #include "walks.h"
 
 namespace krok::parametric {
@@ -64,6 +65,76 @@ TEST(LeaveOneOut, SaysWhenThereIsTooLittle) {
   const auto held = leave_one_out(few, rbf::Kernel::cubic);
   ASSERT_TRUE(held.ok()) << held.error().message;
   for (const HeldOut& one : *held) EXPECT_TRUE(one.failed);
+}
+
+// Each step twice, once leaning 5 cm to the left and once to the right, and measured a little off:
+// what weights that meet all would follow.
+Library contradicting() {
+  Library result = library();
+  result.examples.clear();
+  for (const Example& example : library().examples) {
+    for (const double sign : {-1.0, 1.0}) {
+      Example& leaning = result.examples.emplace_back(example);
+      const auto& names = leaning.motion.skeleton.names;
+      for (std::size_t i = 0; i < leaning.motion.positions.size(); ++i) {
+        const std::string& name = names[i % names.size()];
+        const bool leg = name == "Hips" || name.ends_with("Leg") || name.ends_with("Foot") ||
+                         name.find("Toe") != std::string::npos;
+        if (!leg) leaning.motion.positions[i].x() += static_cast<float>(sign * 0.05);
+      }
+      leaning.parameters[0] += sign * 0.005;
+      leaning.parameters[1] -= sign * 0.004;
+    }
+  }
+  return result;
+}
+
+TEST(LeaveOneOut, SmoothingMakesContradictingExamplesBetter) {
+  const std::vector<double> smoothings = {0, 0.01, 0.1};
+  const auto trials = try_smoothings(contradicting(), rbf::Kernel::cubic, smoothings);
+  ASSERT_TRUE(trials.ok()) << trials.error().message;
+  ASSERT_EQ(trials->size(), 3u);
+  for (const SmoothingTrial& trial : *trials) {
+    std::printf("smoothed by %g: %.1f mm\n", trial.smoothing, 1000 * trial.weighted);
+  }
+  EXPECT_LT((*trials)[1].weighted, 0.75 * (*trials)[0].weighted);
+  // The same figures as leave_one_out() gives, with any number of threads.
+  const auto held = leave_one_out(contradicting(), rbf::Kernel::cubic, 0.1, 2);
+  ASSERT_TRUE(held.ok());
+  EXPECT_EQ(means_of(*held).weighted, (*trials)[2].weighted);
+  EXPECT_EQ(means_of(*held).examples, (*trials)[2].examples);
+  EXPECT_LT(means_of(*held).weighted, means_of(*held).linear);
+  EXPECT_LT(means_of(*held).weighted, means_of(*held).nearest);
+  // Of examples that agree there is nothing to average.
+  const auto agreed = try_smoothings(library(), rbf::Kernel::cubic, smoothings);
+  ASSERT_TRUE(agreed.ok());
+  EXPECT_LT((*agreed)[0].weighted, (*agreed)[2].weighted);
+}
+
+TEST(LeaveOneOut, TellsHowFarOffExamplesComeBack) {
+  const Library all = contradicting();
+  std::vector<double> parameters;
+  for (const Example& example : all.examples) {
+    parameters.insert(parameters.end(), example.parameters.begin(), example.parameters.end());
+  }
+  for (const double smoothing : {0.0, 0.1}) {
+    const auto solver =
+        rbf::WeightSolver::create(2, parameters, {rbf::Kernel::cubic, {}, {}, smoothing});
+    ASSERT_TRUE(solver.ok());
+    const auto distances = distances_to_examples(all, solver->function());
+    ASSERT_TRUE(distances.ok()) << distances.error().message;
+    ASSERT_EQ(distances->size(), all.examples.size());
+    for (const double distance : *distances) {
+      if (smoothing == 0) {
+        EXPECT_LT(distance, 1e-5);
+      } else {
+        EXPECT_GT(distance, 1e-3);
+        EXPECT_LT(distance, 0.2);
+      }
+    }
+    EXPECT_EQ(distances_to_examples(library(), solver->function()).error().code,
+              "parametric-weights");
+  }
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ namespace {
 using testing::HasSubstr;
 
 // Nine steps cut out of generated walks, with their weights.
-StepsFile walk_library(rbf::Kernel kernel) {
+StepsFile walk_library(rbf::Kernel kernel, double smoothing = 0) {
   StepsFile file;
   file.library = parametric::test::library_of(parametric::test::grid_walks(false),
                                               {"step.length", "step.height"}, {.mirror = false})
@@ -31,7 +31,7 @@ StepsFile walk_library(rbf::Kernel kernel) {
   for (const auto& example : file.library.examples) {
     parameters.insert(parameters.end(), example.parameters.begin(), example.parameters.end());
   }
-  const auto solver = rbf::WeightSolver::create(2, parameters, {kernel, {}, {}});
+  const auto solver = rbf::WeightSolver::create(2, parameters, {kernel, {}, {}, smoothing});
   EXPECT_TRUE(solver.ok());
   file.weights = solver->function();
   return file;
@@ -60,6 +60,18 @@ TEST(Steps, ALibraryFromAFileMakesTheSameMotions) {
       EXPECT_LT((one->clip.positions[i] - other->clip.positions[i]).norm(), 5e-6f);
     }
   }
+}
+
+// Without it points would be inserted into another function.
+TEST(Steps, SmoothingIsKept) {
+  const StepsFile file = walk_library(rbf::Kernel::cubic, 0.1);
+  const auto back = read(samples::bytes_of(file));
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->weights->smoothing, 0.1);
+  EXPECT_EQ(back->weights, file.weights);
+  StepsFile odd = file;
+  odd.weights->smoothing = -1;
+  EXPECT_EQ(check(odd).error().code, "rbf-number");
 }
 
 TEST(Steps, ReadAndWrittenAgainItIsTheSameFile) {

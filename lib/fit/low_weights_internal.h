@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fit/worst_places_internal.h"
+#include "rbf/weight_evaluator.h"
+
+namespace krok::fit::detail {
+
+// The lowest of all weights at scaled places, [places x d].
+double lowest_weight(const rbf::WeightFunction& function, const rbf::WeightEvaluator& evaluator,
+                     std::span<const double> places);
+
+// Of the places those with a weight under `limit`, the lowest first, `wanted` at most, that lie
+// apart from each other and from those avoided. `usual`: the usual distance.
+std::vector<std::vector<double>> low_places(const rbf::WeightFunction& function,
+                                            const rbf::WeightEvaluator& evaluator,
+                                            std::span<const double> places,
+                                            const std::vector<ErrorPlace>& avoided,
+                                            std::size_t wanted, double limit, double usual);
+
+}  // namespace krok::fit::detail

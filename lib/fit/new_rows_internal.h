@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fit/refine.h"
+#include "rbf/weight_evaluator.h"
+#include "rbf/weight_solver.h"
+
+namespace krok::fit::detail {
+
+// A point to insert.
+struct Found {
+  std::vector<double> place, point;  // scaled, own units
+  double sought = 0;                 // the error there
+  bool low = false;                  // a weight is too low there
+  std::vector<double> row;
+  bool by_point = false;
+  std::optional<Refusal> refusal;
+  double value = 0;  // of the refusal
+};
+
+// From which weight on a weight is too low: a little over what none may fall under.
+double low_limit(const RefineOptions& options);
+
+// Finds the row of a point, as refine.h has it, or why there is none. `usual`: the usual distance.
+void find_row(const rbf::WeightSolver& solver, const rbf::WeightEvaluator& evaluator,
+              const rbf::Measure& measure, const RefineOptions& options, double usual,
+              Found& found);
+
+}  // namespace krok::fit::detail
