@@ -1,46 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <ostream>
-#include <sstream>
-#include <streambuf>
 
-#include "core/bytes.h"
 #include "formats/gltf/document_internal.h"
 
 namespace krok::gltf {
 
 namespace {
 
-// GLB states lengths in 32 bits; some room is left for the JSON and the headers.
-constexpr std::uint64_t kMaxBufferBytes = (std::uint64_t{4} << 30) - (std::uint64_t{256} << 20);
-
 int components_of(int type) {
   return tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
 }
-
-// A stream that appends to an OutputFile, so that the file is not held in memory a second time.
-class FileBuffer : public std::streambuf {
- public:
-  explicit FileBuffer(OutputFile& file) : file_(file) {}
-  const Status& status() const { return status_; }
-
- protected:
-  std::streamsize xsputn(const char* text, std::streamsize count) override {
-    if (status_) status_ = file_.write(std::string_view(text, static_cast<std::size_t>(count)));
-    return status_ ? count : 0;
-  }
-  int_type overflow(int_type c) override {
-    const char character = traits_type::to_char_type(c);
-    return xsputn(&character, 1) == 1 ? c : traits_type::eof();
-  }
-
- private:
-  OutputFile& file_;
-  Status status_;
-};
 
 tinygltf::Value text_list(const std::vector<std::string>& texts) {
   tinygltf::Value::Array list;
@@ -90,17 +62,13 @@ std::vector<std::byte>& Document::own_part() {
 
 int Document::add_accessor(std::span<const std::byte> bytes, int component,
                            std::size_t component_size, int type, Use use, Keep keep) {
-  const std::size_t element_size = component_size * static_cast<std::size_t>(components_of(type));
-  tinygltf::BufferView view;
-  view.buffer = 0;
-  view.byteOffset = size_;
-  view.byteLength = bytes.size();
-  if (use == Use::vertices) {
-    view.target = TINYGLTF_TARGET_ARRAY_BUFFER;
-    view.byteStride = element_size;
-  } else if (use == Use::indices) {
-    view.target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
-  }
+  assert(promised_ == 0);
+  const int accessor = add_accessor_of(bytes.size(), component, component_size, type, use);
+  put(bytes, keep);
+  return accessor;
+}
+
+void Document::put(std::span<const std::byte> bytes, Keep keep) {
   if (keep == Keep::view && bytes.size() % 4 == 0) {
     parts_.push_back({{}, bytes});
     size_ += bytes.size();
@@ -111,13 +79,28 @@ int Document::add_accessor(std::span<const std::byte> bytes, int component,
     own.resize((own.size() + 3) / 4 * 4, std::byte{0});
     size_ += own.size() - before;
   }
+}
+
+int Document::add_accessor_of(std::size_t bytes, int component, std::size_t component_size,
+                              int type, Use use) {
+  const std::size_t element_size = component_size * static_cast<std::size_t>(components_of(type));
+  tinygltf::BufferView view;
+  view.buffer = 0;
+  view.byteOffset = size_;
+  view.byteLength = bytes;
+  if (use == Use::vertices) {
+    view.target = TINYGLTF_TARGET_ARRAY_BUFFER;
+    view.byteStride = element_size;
+  } else if (use == Use::indices) {
+    view.target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
+  }
   gltf.bufferViews.push_back(std::move(view));
 
   tinygltf::Accessor accessor;
   accessor.bufferView = static_cast<int>(gltf.bufferViews.size()) - 1;
   accessor.byteOffset = 0;
   accessor.componentType = component;
-  accessor.count = bytes.size() / element_size;
+  accessor.count = bytes / element_size;
   accessor.type = type;
   gltf.accessors.push_back(std::move(accessor));
   return static_cast<int>(gltf.accessors.size()) - 1;
@@ -255,21 +238,9 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
   return static_cast<int>(gltf.skins.size()) - 1;
 }
 
-int Document::add_material(const std::string& name) {
-  const auto [place, made] = materials_.emplace(name, static_cast<int>(gltf.materials.size()));
-  if (made) {
-    tinygltf::Material material;
-    material.name = name.empty() ? "default" : name;
-    material.pbrMetallicRoughness.baseColorFactor = {0.8, 0.8, 0.8, 1.0};
-    material.pbrMetallicRoughness.metallicFactor = 0.0;
-    material.pbrMetallicRoughness.roughnessFactor = 0.8;
-    gltf.materials.push_back(std::move(material));
-  }
-  return place->second;
-}
-
 Result<int> Document::add_mesh(const Model& model, const std::map<std::string, int>& attributes,
                                const std::string& name) {
+  if (Status sound = check(options_.materials); !sound) return sound.error();
   tinygltf::Mesh mesh;
   mesh.name = name;
   const auto largest = static_cast<std::uint32_t>(model.positions.size() - 1);
@@ -279,7 +250,9 @@ Result<int> Document::add_mesh(const Model& model, const std::map<std::string, i
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     primitive.attributes = attributes;
-    primitive.material = add_material(part.material);
+    const auto material = add_material(part.material, attributes);
+    if (!material) return material.error();
+    primitive.material = *material;
     primitive.indices = add_integers(
         {indices + std::size_t{3} * part.first_triangle, std::size_t{3} * part.triangle_count},
         TINYGLTF_TYPE_SCALAR, largest, Use::indices);
@@ -301,92 +274,6 @@ int Document::add_mesh_node(int mesh, int skin, const std::string& name) {
   const int index = static_cast<int>(gltf.nodes.size()) - 1;
   gltf.scenes[0].nodes.push_back(index);
   return index;
-}
-
-void Document::add_morph_motion(int mesh, int node,
-                                const std::vector<std::map<std::string, int>>& targets,
-                                std::span<const float> times, const std::string& name) {
-  for (tinygltf::Primitive& primitive : gltf.meshes[mesh].primitives) primitive.targets = targets;
-  // Blender and three.js show these names.
-  std::vector<std::string> names;
-  for (std::size_t t = 0; t < targets.size(); ++t) names.push_back(fmt::format("frame_{}", t + 1));
-  gltf.meshes[mesh].extras =
-      tinygltf::Value(tinygltf::Value::Object{{"targetNames", text_list(names)}});
-
-  std::vector<float> weights(times.size() * targets.size(), 0.0f);
-  for (std::size_t t = 0; t < targets.size(); ++t) weights[(t + 1) * targets.size() + t] = 1.0f;
-  tinygltf::Animation animation;
-  animation.name = name;
-  const int input = add_floats(times, TINYGLTF_TYPE_SCALAR, Use::data, true);
-  add_channel(animation, node, "weights", input,
-              add_floats(weights, TINYGLTF_TYPE_SCALAR, Use::data, false));
-  gltf.animations.push_back(std::move(animation));
-}
-
-Status Document::write(OutputFile& file) {
-  if (size_ > kMaxBufferBytes) {
-    return Error(
-        "gltf-too-large",
-        fmt::format("the file would hold {} MB, more than glTF's lengths can tell", size_ >> 20),
-        "write fewer frames");
-  }
-  try {
-    return options_.binary ? write_binary(file) : write_text(file);
-  } catch (const nlohmann::json::exception&) {
-    // Its serializer throws for one thing alone.
-    return Error("gltf-name", "a name is not valid UTF-8, which glTF asks for",
-                 "rename the joint or material");
-  }
-}
-
-// tinygltf would copy the buffer twice more.
-Status Document::write_binary(OutputFile& file) {
-  std::ostringstream stream;
-  tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, false, false);
-  auto json = nlohmann::json::parse(stream.str());
-  if (size_ > 0) json["buffers"] = {{{"byteLength", size_}}};
-  std::string text = json.dump();
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-
-  constexpr std::uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
-  const auto json_size = static_cast<std::uint32_t>(text.size());
-  const auto data_size = static_cast<std::uint32_t>(size_);
-  const std::uint32_t data_chunk = size_ > 0 ? 8 + data_size : 0;
-  ByteWriter head;
-  head.append_text("glTF");
-  head.write(std::uint32_t{2});
-  head.write(12 + 8 + json_size + data_chunk);
-  head.write(json_size);
-  head.write(kJson);
-  head.append_text(text);
-  if (size_ > 0) {
-    head.write(data_size);
-    head.write(kBinary);
-  }
-  if (Status done = file.write(head.bytes()); !done) return done;
-  for (const Part& part : parts_) {
-    if (Status done = file.write(part.bytes()); !done) return done;
-  }
-  return {};
-}
-
-Status Document::write_text(OutputFile& file) {
-  if (size_ > 0) {
-    std::vector<unsigned char>& data = gltf.buffers.emplace_back().data;
-    data.reserve(size_);
-    for (const Part& part : parts_) {
-      const auto* bytes = reinterpret_cast<const unsigned char*>(part.bytes().data());
-      data.insert(data.end(), bytes, bytes + part.bytes().size());
-    }
-    parts_.clear();
-  }
-  FileBuffer buffer(file);
-  std::ostream stream(&buffer);
-  tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, true, false);
-  stream.flush();
-  if (!buffer.status()) return buffer.status();
-  if (!stream) return Error("file-unwritable", "the output cannot be written");
-  return {};
 }
 
 }  // namespace krok::gltf

@@ -45,8 +45,14 @@ class Document {
   // skin.
   int add_skeleton(const Skeleton& skeleton, const JointTracks& tracks, const std::string& name);
 
-  // The default material under this name, made once.
-  int add_material(const std::string& name);
+  // The material of this name out of WriteOptions::materials, otherwise the usual one under it;
+  // made once, as are its pictures. Those need texture coordinates, normal textures tangents too:
+  // they are left out for meshes without these attributes (which are the same for all calls).
+  // Codes: those of picture_facts(). (materials.cpp)
+  Result<int> add_material(const std::string& name, const std::map<std::string, int>& attributes);
+
+  // Nodes for eyes under the joints that add_skeleton() made. Code: gltf-structure.
+  Status add_eyes(const Skeleton& skeleton, int skin, std::span<const Character::Eye> eyes);
 
   // Primitives for the parts of a model, all with the same attributes.
   Result<int> add_mesh(const Model& model, const std::map<std::string, int>& attributes,
@@ -55,15 +61,33 @@ class Document {
   // A root of the scene with a mesh; skin -1 for none. Returns the node.
   int add_mesh_node(int mesh, int skin, const std::string& name);
 
-  // Morph targets for every primitive of a mesh, and an animation of its node's weights that shows
-  // the mesh itself at the first time and target i - 1 alone at time i.
-  void add_morph_motion(int mesh, int node, const std::vector<std::map<std::string, int>>& targets,
-                        std::span<const float> times, const std::string& name);
+  // Morph targets for every primitive of a mesh, under names that viewers show.
+  void set_targets(int mesh, const std::vector<std::map<std::string, int>>& targets,
+                   std::span<const std::string> names);
 
-  // Room for so many bytes of data, to save copies.
-  void reserve(std::size_t bytes) { own_part().reserve(own_part().size() + bytes); }
+  // Keys of the weights [times x targets] of a node's mesh, in the animation there is, or in one of
+  // this name.
+  void add_weight_keys(int node, std::span<const float> times, std::span<const float> weights,
+                       const std::string& name);
+  void add_weight_channel(int node, int times, int weights, const std::string& name);
+
+  // The same as add_floats() for data that are told while the file is written, after all others:
+  // append() is given their bytes, in the order in which they were promised.
+  int promise_floats(std::size_t count, int type, Use use);
+  int promise_positions(std::size_t count);  // with bounds
 
   Status write(OutputFile& file);
+
+  // The bounds of what promise_positions() promised, in that order.
+  struct Bounds {
+    Vec3f least, most;
+  };
+  // The same in parts, for promised data: begin() writes what is known, append() what follows,
+  // end() fills in the bounds. A GLB that cannot be overwritten (see OutputFile) needs them in
+  // begin() already; the bytes are the same.
+  Status begin(OutputFile& file, std::span<const Bounds> bounds = {});
+  Status append(std::span<const std::byte> bytes);
+  Status end(std::span<const Bounds> bounds);
 
   tinygltf::Model gltf;
 
@@ -75,19 +99,34 @@ class Document {
     std::span<const std::byte> bytes() const { return own.empty() ? view : own; }
   };
 
+  void put(std::span<const std::byte> bytes, Keep keep);
+  Result<int> add_picture(const Picture& picture);
+  Result<int> add_texture(const Texture& texture);
+  int add_sampler(const Texture& texture);
   int add_accessor(std::span<const std::byte> bytes, int component, std::size_t component_size,
                    int type, Use use, Keep keep = Keep::copy);
+  int add_accessor_of(std::size_t bytes, int component, std::size_t component_size, int type,
+                      Use use);
   std::vector<std::byte>& own_part();
-  Status write_binary(OutputFile& file);
-  Status write_text(OutputFile& file);
+  Status begin_binary();
+  Status begin_text();
+  std::string json_text() const;
+  void fill_in(std::span<const Bounds> bounds);
   void add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
                    int values);
 
   const WriteOptions& options_;
   std::vector<Part> parts_;
-  std::uint64_t size_ = 0;  // of the parts together
+  std::uint64_t size_ = 0;      // of the parts and of what is promised together
+  std::uint64_t promised_ = 0;  // of these, what is promised
+  std::size_t bounds_ = 0;      // how many are not filled in yet
+  OutputFile* file_ = nullptr;
+  std::string json_;                  // with room for the bounds, until they are filled in
+  std::vector<std::byte> unencoded_;  // the last of a text's data
   std::set<std::string> node_names_;
   std::map<std::string, int> materials_;
+  std::map<const Picture*, int> pictures_;
+  std::map<std::pair<int, int>, int> textures_;  // by picture and sampler
 };
 
 }  // namespace krok::gltf

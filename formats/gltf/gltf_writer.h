@@ -1,23 +1,24 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 
 #include "core/file.h"
-#include "core/progress.h"
 #include "core/result.h"
 #include "formats/gltf/joint_tracks.h"
+#include "scene/character.h"
 #include "scene/clip.h"
+#include "scene/material.h"
+#include "scene/mesh_motion.h"
 #include "scene/model.h"
+#include "scene/morph_set.h"
 
 // glTF 2.0 files, binary (GLB) or text with the data inside. Krok's frame is glTF's, so nothing is
 // converted. Each function appends one whole file to an OutputFile to which nothing was written
 // before; the caller commits. The same input gives the same bytes.
 //
-// Codes: gltf-empty-mesh, gltf-times, gltf-too-large, gltf-name, gltf-structure and those of
-// check().
+// Codes: gltf-empty-mesh, gltf-morphs, gltf-times, gltf-too-large, gltf-name, gltf-structure and
+// those of check().
 
 namespace krok::gltf {
 
@@ -26,6 +27,17 @@ struct WriteOptions {
   // Recorded in asset.extras; its version goes into asset.generator.
   Provenance provenance;
   std::string name = "krok";  // of the mesh's node and of the animation
+  // Of the model's parts, by name, with the pictures' bytes; parts of other materials are light
+  // grey. They and what they hold must live until the file is written. Textures need texture
+  // coordinates, normal textures tangents too, which are made where the model has none; baked clips
+  // have neither tangents nor normal textures.
+  std::span<const Material> materials{};
+  // Become nodes under their joints, named as "left_eye"; by write_rig alone.
+  std::span<const Character::Eye> eyes{};
+  // For write_rig and write_mesh: morph targets of the model's vertices, and how much of each shows
+  // over time (of one frame: always), in the same animation as the joints. Codes: gltf-morphs.
+  const MorphSet* morphs = nullptr;
+  const MorphWeights* weights = nullptr;  // of `morphs`, in its order
 };
 
 // A skeleton and its motion: a node a joint, in the reference pose; a skin that tells viewers that
@@ -46,37 +58,9 @@ Status write_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
 Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptions& options,
                  OutputFile& file);
 
-// The vertices of a model in some pose; lengths as Model has them.
-struct MeshShape {
-  std::span<const Vec3f> positions;
-  std::span<const Vec3f> normals;   // or empty
-  std::span<const Vec4f> tangents;  // or empty
-};
-
 // A mesh without a skeleton: the triangles, texture coordinates and parts of `model` with the
-// vertices of `shape`.
+// vertices of `shape`, which is the model's own where there are morph targets.
 Status write_mesh(const Model& model, const MeshShape& shape, const WriteOptions& options,
                   OutputFile& file);
-
-// A motion as whole meshes. `shape_at` fills in the vertices of a frame (normals are empty where
-// the model has none); it is called once for each frame, in order.
-struct BakedMotion {
-  int frames = 0;
-  double rate = 30.0;
-  std::function<void(int frame, std::span<Vec3f> positions, std::span<Vec3f> normals)> shape_at;
-};
-
-// A mesh whose morph targets are the frames after the first (the mesh itself is the first), with
-// weights keyed so that at the time of a frame exactly that frame shows, and between two frames the
-// linear blend of both.
-Status write_baked(const Model& model, const BakedMotion& motion, const WriteOptions& options,
-                   OutputFile& file, Progress* progress = nullptr);
-
-// What a baked motion takes, to be judged before it is made: bytes of vertices and weights.
-std::uint64_t baked_bytes(const Model& model, std::int64_t frames);
-
-// Browsers (WebGL 2) hold morph targets in the layers of one texture; common hardware has this
-// many.
-inline constexpr int kMaxMorphTargets = 2048;
 
 }  // namespace krok::gltf

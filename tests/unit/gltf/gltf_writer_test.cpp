@@ -10,12 +10,16 @@
 #include <cmath>
 #include <set>
 
+#include "formats/gltf/baked_writer.h"
+#include "support/mesh_motions.h"
 #include "support/test_scenes.h"
 #include "unit/gltf/glb.h"
 
 namespace krok {
 namespace {
 
+using test::error_code;
+using test::wobble;
 using testing::Each;
 using testing::HasSubstr;
 
@@ -32,27 +36,6 @@ test::Glb rig(const Model& model, const Clip& clip, const gltf::WriteOptions& op
 }
 test::Glb skeleton(const Clip& clip, const gltf::WriteOptions& options = {}) {
   return test::written([&](OutputFile& file) { return gltf::write_skeleton(clip, options, file); });
-}
-
-// A motion in which every vertex goes its own way, and its normal turns.
-gltf::BakedMotion wobble(const Model& model, int frames) {
-  gltf::BakedMotion result;
-  result.frames = frames;
-  result.rate = 25;
-  result.shape_at = [&model](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-      const float angle = 0.01f * static_cast<float>(v % 100) * static_cast<float>(frame);
-      positions[v] = model.positions[v] + Vec3f(std::sin(angle), 0, 1 - std::cos(angle));
-      if (!normals.empty()) normals[v] = Vec3f(std::cos(angle), std::sin(angle), 0);
-    }
-  };
-  return result;
-}
-
-std::string error_code(const std::function<Status(OutputFile&)>& write) {
-  Status status;
-  test::bytes_of(write, status);
-  return status ? "none" : status.error().code;
 }
 
 TEST(GltfWriter, SkeletonHasANodeAJointAndExactTimes) {

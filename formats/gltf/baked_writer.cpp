@@ -1,0 +1,185 @@
+#include "formats/gltf/baked_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "formats/gltf/document_internal.h"
+#include "formats/gltf/joint_tracks.h"
+#include "formats/gltf/mesh_shape_internal.h"
+
+namespace krok::gltf {
+
+namespace {
+
+// Four vertices: whole registers of SIMD.
+constexpr std::size_t kTogether = 4;
+using Lanes = Eigen::Array<float, 3 * kTogether, 1>;
+
+struct Displaced {
+  Document::Bounds bounds;
+  bool finite = true;
+};
+
+// Turns vertices into displacements from `base` and gives the bounds of these, all in one go.
+Displaced subtract(std::span<const Vec3f> base, std::span<Vec3f> vertices) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Lanes least = Lanes::Constant(kInfinity), most = Lanes::Constant(-kInfinity);
+  Lanes zeros = Lanes::Zero();  // NaN where one was not finite
+  std::size_t v = 0;
+  for (; v + kTogether <= vertices.size(); v += kTogether) {
+    Eigen::Map<Lanes> values(vertices[v].data());
+    const Lanes moved = values - Eigen::Map<const Lanes>(base[v].data());
+    values = moved;
+    least = least.min(moved);
+    most = most.max(moved);
+    zeros += moved * 0.0f;
+  }
+  Displaced result{{least.reshaped(3, kTogether).rowwise().minCoeff(),
+                    most.reshaped(3, kTogether).rowwise().maxCoeff()},
+                   (zeros == 0.0f).all()};
+  for (; v < vertices.size(); ++v) {
+    vertices[v] -= base[v];
+    result.bounds.least = result.bounds.least.cwiseMin(vertices[v]);
+    result.bounds.most = result.bounds.most.cwiseMax(vertices[v]);
+    result.finite = result.finite && vertices[v].allFinite();
+  }
+  return result;
+}
+
+Error not_finite(int frame) {
+  return Error("gltf-structure", fmt::format("a vertex of frame {} is not finite", frame));
+}
+
+// A clip on its way into a file.
+class BakedClip {
+ public:
+  BakedClip(const Model& model, const MeshMotion& motion, const WriteOptions& options,
+            Progress* progress, int jobs)
+      : model_(model),
+        motion_(motion),
+        options_(options),
+        progress_(progress),
+        jobs_(jobs),
+        document_(options),
+        bounds_(static_cast<std::size_t>(motion.frames) - 1) {}
+
+  Status write(std::span<const float> times, OutputFile& file) {
+    if (Status added = add_first_frame(); !added) return added;
+    if (targets() == 0) return document_.write(file);
+    promise_targets(times);
+    const bool twice = options_.binary && !file.can_overwrite();
+    if (progress_ != nullptr) {
+      progress_->begin("baking frames", static_cast<std::uint64_t>(targets()) * (twice ? 2 : 1));
+    }
+    if (twice) {
+      const Status seen = go_through([](const ShapeRoom&) { return Status(); });
+      if (!seen) return seen;
+    }
+    std::span<const Document::Bounds> known;
+    if (twice) known = bounds_;
+    if (Status begun = document_.begin(file, known); !begun) return begun;
+    const Status written = go_through([&](const ShapeRoom& shape) {
+      const Status done = document_.append(std::as_bytes(std::span(shape.positions)));
+      return done ? document_.append(std::as_bytes(std::span(shape.normals))) : done;
+    });
+    if (!written) return written;
+    if (Status done = append_weights(); !done) return done;
+    return document_.end(bounds_);
+  }
+
+ private:
+  std::size_t targets() const { return bounds_.size(); }
+
+  Status add_first_frame() {
+    base_.positions.resize(model_.positions.size());
+    base_.normals.resize(model_.normals.size());
+    motion_.shape_at(0, base_.positions, base_.normals);
+    if (!all_finite(base_.positions) || !all_finite(base_.normals)) return not_finite(0);
+    const auto attributes = add_shape(document_, model_, {base_.positions, base_.normals, {}});
+    const auto mesh = document_.add_mesh(model_, attributes, mesh_name(options_));
+    if (!mesh) return mesh.error();
+    mesh_ = *mesh;
+    node_ = document_.add_mesh_node(mesh_, -1, mesh_name(options_));
+    return {};
+  }
+
+  void promise_targets(std::span<const float> times) {
+    const int input = document_.add_floats(times, TINYGLTF_TYPE_SCALAR, Document::Use::data, true);
+    std::vector<std::map<std::string, int>> morph(targets());
+    std::vector<std::string> names;
+    for (auto& target : morph) {
+      target["POSITION"] = document_.promise_positions(base_.positions.size());
+      if (!base_.normals.empty()) {
+        target["NORMAL"] = document_.promise_floats(base_.normals.size(), TINYGLTF_TYPE_VEC3,
+                                                    Document::Use::vertices);
+      }
+      names.push_back(fmt::format("frame_{}", names.size() + 1));
+    }
+    document_.set_targets(mesh_, morph, names);
+    const int weights = document_.promise_floats(times.size() * targets(), TINYGLTF_TYPE_SCALAR,
+                                                 Document::Use::data);
+    document_.add_weight_channel(node_, input, weights, options_.name);
+  }
+
+  // Makes all targets and their bounds.
+  Status go_through(const std::function<Status(const ShapeRoom&)>& take) {
+    const ShapeRange range{1, motion_.frames, base_.positions.size(), !base_.normals.empty()};
+    return make_shapes(
+        motion_, range, jobs_, [&](int frame, ShapeRoom& shape) { return prepare(frame, shape); },
+        [&](int, const ShapeRoom& shape) {
+          if (progress_ != nullptr) progress_->advance(1);
+          return take(shape);
+        });
+  }
+
+  Status prepare(int frame, ShapeRoom& shape) {
+    const Displaced positions = subtract(base_.positions, shape.positions);
+    const Displaced normals = subtract(base_.normals, shape.normals);
+    if (!positions.finite || !normals.finite) return not_finite(frame);
+    bounds_[static_cast<std::size_t>(frame) - 1] = positions.bounds;
+    return {};
+  }
+
+  // At the time of a frame its target alone.
+  Status append_weights() {
+    std::vector<float> row(targets(), 0.0f);
+    Status done = document_.append(std::as_bytes(std::span(row)));
+    for (std::size_t t = 0; t < targets() && done; ++t) {
+      row[t] = 1.0f;
+      done = document_.append(std::as_bytes(std::span(row)));
+      row[t] = 0.0f;
+    }
+    return done;
+  }
+
+  const Model& model_;
+  const MeshMotion& motion_;
+  const WriteOptions& options_;
+  Progress* progress_;
+  int jobs_;
+  Document document_;
+  ShapeRoom base_;
+  int mesh_ = 0, node_ = 0;
+  std::vector<Document::Bounds> bounds_;
+};
+
+}  // namespace
+
+std::uint64_t baked_bytes(const Model& model, std::int64_t frames) {
+  const std::uint64_t vertex = model.normals.empty() ? 12 : 24;
+  const auto count = static_cast<std::uint64_t>(std::max<std::int64_t>(frames, 1));
+  return count * model.positions.size() * vertex + count * (count - 1) * sizeof(float);
+}
+
+Status write_baked(const Model& model, const MeshMotion& motion, const WriteOptions& options,
+                   OutputFile& file, Progress* progress, int jobs) {
+  if (Status sound = check_mesh(model); !sound) return sound;
+  if (motion.frames < 1) return Error("gltf-structure", "the motion has no frames to bake");
+  const auto times = key_times(motion.frames, motion.rate);
+  if (!times) return times.error();
+  return BakedClip(model, motion, options, progress, jobs).write(*times, file);
+}
+
+}  // namespace krok::gltf

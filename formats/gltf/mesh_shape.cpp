@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <cmath>
+
+#include "formats/gltf/mesh_shape_internal.h"
+
+namespace krok::gltf {
+
+namespace {
+
+using Use = Document::Use;
+
+// glTF wants normals of length 1 whatever the model has.
+Vec3f unit_or_up(const Vec3f& vector) {
+  const Vec3 direction = vector.cast<double>();
+  const double length = direction.norm();
+  if (!(length > 1e-15) || !std::isfinite(length)) return Vec3f::UnitY();
+  return (direction / length).cast<float>();
+}
+
+std::vector<Vec3f> unit_vectors(std::span<const Vec3f> vectors) {
+  std::vector<Vec3f> result(vectors.size());
+  std::transform(vectors.begin(), vectors.end(), result.begin(), unit_or_up);
+  return result;
+}
+
+std::vector<Vec4f> unit_tangents(std::span<const Vec4f> tangents) {
+  std::vector<Vec4f> result;
+  for (const Vec4f& tangent : tangents) {
+    const Vec3f direction = unit_or_up(tangent.head<3>());
+    result.emplace_back(direction.x(), direction.y(), direction.z(), tangent.w() < 0 ? -1.f : 1.f);
+  }
+  return result;
+}
+
+}  // namespace
+
+Status check_mesh(const Model& model) {
+  if (Status sound = check(model); !sound) return sound;
+  if (model.positions.empty() || model.triangles.empty()) {
+    return Error("gltf-empty-mesh", "the model has no triangles, and glTF knows no empty mesh");
+  }
+  return {};
+}
+
+std::string mesh_name(const WriteOptions& options) {
+  return options.name + "_mesh";
+}
+
+std::map<std::string, int> add_shape(Document& document, const Model& model,
+                                     const MeshShape& shape) {
+  std::map<std::string, int> attributes;
+  attributes["POSITION"] = document.add_positions(shape.positions);
+  if (!shape.normals.empty()) {
+    attributes["NORMAL"] = document.add_vectors(unit_vectors(shape.normals));
+  }
+  if (!shape.tangents.empty()) {
+    const auto tangents = unit_tangents(shape.tangents);
+    attributes["TANGENT"] = document.add_floats({tangents.data()->data(), tangents.size() * 4},
+                                                TINYGLTF_TYPE_VEC4, Use::vertices, false);
+  }
+  if (!model.texture_coordinates.empty()) {
+    attributes["TEXCOORD_0"] = document.add_floats(
+        {model.texture_coordinates.data()->data(), model.texture_coordinates.size() * 2},
+        TINYGLTF_TYPE_VEC2, Use::vertices, false);
+  }
+  return attributes;
+}
+
+}  // namespace krok::gltf

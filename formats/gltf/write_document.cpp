@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/base64.h"
+#include "formats/gltf/baked_writer.h"
+#include "formats/gltf/document_internal.h"
+
+namespace krok::gltf {
+
+namespace {
+
+// Stands for a bound that is not known yet. No float has this value, and its text is as long as the
+// longest of a float. JSON allows white space after a number, so that shorter ones fit too.
+constexpr double kUnknown = -1.2345678e-300;
+constexpr std::string_view kRoom = "-1.2345678e-300";
+
+static_assert(std::endian::native == std::endian::little, "glTF's numbers are");
+
+// Where the JSON of a GLB begins.
+constexpr std::size_t kJsonBegin = 20;
+
+// A multiple of three, which base64 turns into four characters.
+constexpr std::size_t kEncodedAtOnce = std::size_t{48} << 10;
+
+void replace_room(std::string& text, std::size_t& at, float value) {
+  at = text.find(kRoom, at);
+  assert(at != std::string::npos);
+  char* const begin = text.data() + at;
+  char* const end = begin + kRoom.size();
+  std::fill(std::to_chars(begin, end, value).ptr, end, ' ');
+  at += kRoom.size();
+}
+
+}  // namespace
+
+int Document::promise_floats(std::size_t count, int type, Use use) {
+  const auto components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type));
+  const std::size_t bytes = count * static_cast<std::size_t>(components) * sizeof(float);
+  const int accessor =
+      add_accessor_of(bytes, TINYGLTF_COMPONENT_TYPE_FLOAT, sizeof(float), type, use);
+  size_ += bytes;
+  promised_ += bytes;
+  return accessor;
+}
+
+int Document::promise_positions(std::size_t count) {
+  const int index = promise_floats(count, TINYGLTF_TYPE_VEC3, Use::vertices);
+  auto& accessor = gltf.accessors[static_cast<std::size_t>(index)];
+  accessor.minValues.assign(3, kUnknown);
+  accessor.maxValues.assign(3, kUnknown);
+  ++bounds_;
+  return index;
+}
+
+Status Document::write(OutputFile& file) {
+  assert(promised_ == 0);
+  if (Status begun = begin(file); !begun) return begun;
+  return end({});
+}
+
+Status Document::begin(OutputFile& file, std::span<const Bounds> bounds) {
+  if (size_ > kMaxDataBytes) {
+    return Error(
+        "gltf-too-large",
+        fmt::format("the file would hold {} MB, more than glTF's lengths can tell", size_ >> 20),
+        "write fewer frames");
+  }
+  file_ = &file;
+  try {
+    json_ = json_text();
+  } catch (const nlohmann::json::exception&) {
+    // Its serializer throws for one thing alone.
+    return Error("gltf-name", "a name is not valid UTF-8, which glTF asks for",
+                 "rename the joint or material");
+  }
+  fill_in(bounds);
+  if (Status begun = options_.binary ? begin_binary() : begin_text(); !begun) return begun;
+  for (const Part& part : parts_) {
+    if (Status done = append(part.bytes()); !done) return done;
+  }
+  return {};
+}
+
+// tinygltf would copy the buffer twice more, so it is told of none.
+std::string Document::json_text() const {
+  std::ostringstream stream;
+  tinygltf::TinyGLTF().WriteGltfSceneToStream(const_cast<tinygltf::Model*>(&gltf), stream,
+                                              !options_.binary, false);
+  std::string text = stream.str();
+  text.pop_back();  // the end of the line
+  if (size_ == 0 || !options_.binary) return text;
+  // Into the order of the alphabet, after the list of views, which holds no other list.
+  const std::size_t views = text.find("\"bufferViews\":[");
+  assert(views != std::string::npos);
+  text.insert(text.find(']', views) + 1,
+              fmt::format(",\"buffers\":[{{\"byteLength\":{}}}]", size_));
+  return text;
+}
+
+// JSON lists keys in the order of the alphabet, so that `max` comes before `min`.
+void Document::fill_in(std::span<const Bounds> bounds) {
+  std::size_t at = 0;
+  for (const Bounds& bound : bounds) {
+    for (const float value : bound.most) replace_room(json_, at, value);
+    for (const float value : bound.least) replace_room(json_, at, value);
+  }
+  bounds_ -= bounds.size();
+}
+
+Status Document::begin_binary() {
+  constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+  json_.resize((json_.size() + 3) / 4 * 4, ' ');
+  const auto json_size = static_cast<std::uint32_t>(json_.size());
+  const auto data_size = static_cast<std::uint32_t>(size_);
+  const std::uint32_t data_chunk = size_ > 0 ? 8 + data_size : 0;
+  const std::array<std::uint32_t, 5> head = {kMagic, 2, 12 + 8 + json_size + data_chunk, json_size,
+                                             kJson};
+  static_assert(sizeof head == kJsonBegin);
+  if (Status done = file_->write(std::as_bytes(std::span(head))); !done) return done;
+  if (Status done = file_->write(json_); !done) return done;
+  if (size_ == 0) return {};
+  const std::array<std::uint32_t, 2> data_head = {data_size, kBinary};
+  return file_->write(std::as_bytes(std::span(data_head)));
+}
+
+// The buffer comes first, so that everything else may be told after it.
+Status Document::begin_text() {
+  if (size_ == 0) return {};
+  return file_->write(
+      fmt::format("{{\n  \"buffers\": [\n    {{\n      \"byteLength\": {},\n      \"uri\": "
+                  "\"data:application/octet-stream;base64,",
+                  size_));
+}
+
+Status Document::append(std::span<const std::byte> bytes) {
+  if (options_.binary) return file_->write(bytes);
+  while (!bytes.empty()) {
+    const auto here = bytes.first(std::min(bytes.size(), kEncodedAtOnce - unencoded_.size()));
+    unencoded_.insert(unencoded_.end(), here.begin(), here.end());
+    bytes = bytes.subspan(here.size());
+    if (unencoded_.size() < kEncodedAtOnce) break;
+    if (Status done = file_->write(to_base64(unencoded_)); !done) return done;
+    unencoded_.clear();
+  }
+  return {};
+}
+
+Status Document::end(std::span<const Bounds> bounds) {
+  const bool later = bounds_ > 0;
+  assert(!later || bounds.size() == bounds_);
+  if (later) fill_in(bounds);
+  if (options_.binary) {
+    return later ? file_->overwrite(kJsonBegin, std::as_bytes(std::span(json_))) : Status();
+  }
+  if (size_ == 0) return file_->write(json_);
+  if (Status done = file_->write(to_base64(unencoded_)); !done) return done;
+  if (Status done = file_->write("\"\n    }\n  ],\n"); !done) return done;
+  return file_->write(std::string_view(json_).substr(2));  // without the brace and its line's end
+}
+
+}  // namespace krok::gltf

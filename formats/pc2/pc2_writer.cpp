@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "formats/pc2/header_internal.h"
+#include "formats/pc2/pc2.h"
+
+namespace krok::pc2 {
+
+namespace {
+
+Status check_option(const char* what, double value) {
+  if (std::isfinite(value) && std::abs(value) <= std::numeric_limits<float>::max()) return {};
+  return Error("pc2-option", fmt::format("a point cache cannot hold the {} {}", what, value));
+}
+
+Status check(const WriteOptions& options) {
+  if (Status fits = check_option("start frame", options.start_frame); !fits) return fits;
+  if (Status fits = check_option("scale", options.scale); !fits) return fits;
+  if (Status fits = check_option("sampling", options.frames_per_sample); !fits) return fits;
+  if (!(options.scale > 0)) return Error("pc2-option", "the scale must be more than 0");
+  if (static_cast<float>(options.frames_per_sample) > 0) return {};
+  return Error("pc2-option", "the frames a sample must be more than 0");
+}
+
+// Brings a shape into the file's axes and units.
+Status convert(const WriteOptions& options, int frame, std::span<Vec3f> positions) {
+  const auto scale = static_cast<float>(options.scale);
+  if (options.up == Up::z) {
+    for (Vec3f& position : positions) position = Vec3f(position.x(), -position.z(), position.y());
+  }
+  if (scale != 1.0f) {
+    for (Vec3f& position : positions) position *= scale;
+  }
+  if (all_finite(positions)) return {};
+  return Error("pc2-value", fmt::format("a vertex of frame {} is not finite", frame));
+}
+
+}  // namespace
+
+Status write(const Model& model, const MeshMotion& motion, const WriteOptions& options,
+             OutputFile& file, Progress* progress, int jobs) {
+  if (Status fits = check(options); !fits) return fits;
+  const std::size_t points = model.positions.size();
+  if (points > kMaxCount) {
+    return Error("pc2-too-large",
+                 fmt::format("{} vertices are more than a PC2 file tells", points));
+  }
+  Header header;
+  header.points = static_cast<std::int32_t>(points);
+  header.start_frame = static_cast<float>(options.start_frame);
+  header.frames_per_sample = static_cast<float>(options.frames_per_sample);
+  header.samples = std::max(motion.frames, 0);
+  if (Status done = file.write(std::as_bytes(std::span(&header, 1))); !done) return done;
+  if (progress != nullptr) {
+    progress->begin("writing frames", static_cast<std::uint64_t>(header.samples));
+  }
+  return make_shapes(
+      motion, {0, header.samples, points, false}, jobs,
+      [&](int frame, ShapeRoom& shape) { return convert(options, frame, shape.positions); },
+      [&](int, const ShapeRoom& shape) {
+        if (progress != nullptr) progress->advance(1);
+        return file.write(std::as_bytes(std::span(shape.positions)));
+      });
+}
+
+}  // namespace krok::pc2

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/result.h"
+#include "math/types.h"
+
+// Meshes in motion as whole shapes, one a frame: what skinning and morphing make and what point
+// caches and baked files hold. Who takes them needs a Model beside them, for triangles, texture
+// coordinates and parts.
+
+namespace krok {
+
+// The vertices of a model in some pose; lengths and units as Model has them.
+struct MeshShape {
+  std::span<const Vec3f> positions;  // [vertices]
+  std::span<const Vec3f> normals;    // [vertices], or none
+  std::span<const Vec4f> tangents;   // [vertices], or none
+};
+
+// A motion as shapes that are made when they are asked for, so that a clip of any length takes the
+// memory of a few frames. Frame f is at f / rate seconds.
+struct MeshMotion {
+  int frames = 0;
+  double rate = 30.0;  // frames a second
+
+  // Fills in the vertices of a frame, 0 <= frame < frames: all positions, [vertices], and the
+  // normals where their span is not empty. Must give the same numbers whenever it is asked for the
+  // same frame. Frames are asked for in rising order, by some writers in two rounds; one at a time,
+  // but not always by the same thread.
+  std::function<void(int frame, std::span<Vec3f> positions, std::span<Vec3f> normals)> shape_at;
+};
+
+bool all_finite(std::span<const Vec3f> vectors);
+
+// Room for the shape of a frame.
+struct ShapeRoom {
+  std::vector<Vec3f> positions, normals;
+};
+
+// What make_shapes() makes.
+struct ShapeRange {
+  int begin = 0, end = 0;    // frames
+  std::size_t vertices = 0;  // of each
+  bool normals = false;
+};
+
+// Goes through frames of a motion in the memory of a few, or of some megabytes: makes each shape,
+// lets `prepare` change it, hands it to `take`. `take` is called for one frame after the other, in
+// order. With `jobs` other than 1 (as in parallel_for) further frames are made and prepared
+// meanwhile, `prepare` of several at once. The first of them that is not ok() ends it; its Error is
+// returned, the same for any `jobs`.
+Status make_shapes(const MeshMotion& motion, const ShapeRange& range, int jobs,
+                   const std::function<Status(int frame, ShapeRoom& shape)>& prepare,
+                   const std::function<Status(int frame, const ShapeRoom& shape)>& take);
+
+}  // namespace krok
