@@ -119,6 +119,7 @@ Status Table::read_header(std::size_t& at) {
     ++at;
     while (at < text_.size() && text_[at] == ' ') ++at;
   }
+  header_ = at;
   delimiter_ = delimiter_of(text_, at);
   bool all_numbers = true;
   for (bool last = false; !last;) {
@@ -231,6 +232,23 @@ Result<std::vector<std::vector<double>>> Table::numbers(
     }
   }
   return values;
+}
+
+Location Table::place_in(std::size_t row_begin, std::size_t column) const {
+  for (std::size_t c = 0; c < column; ++c) {
+    const auto cell = cell_at(row_begin);
+    if (!cell) break;  // read() has seen every cell
+    row_begin = cell->next;
+  }
+  return place_of(row_begin);
+}
+
+Location Table::place(std::size_t row, std::size_t column) const {
+  return place_in(rows_[row], column);
+}
+
+Location Table::header_place(std::size_t column) const {
+  return place_in(header_, column);
 }
 
 std::vector<std::string> Table::texts(std::size_t column) const {

@@ -48,6 +48,10 @@ class Table {
   // infinities, are gaps: NaN. csv-number, with line and column, for a cell that is something else.
   Result<std::vector<std::vector<double>>> numbers(std::span<const std::size_t> columns) const;
 
+  // Where a cell begins, and a column's name; for messages. Takes time with the text before it.
+  Location place(std::size_t row, std::size_t column) const;
+  Location header_place(std::size_t column) const;
+
   // A column's cells as they stand, quotes taken off. [rows]
   std::vector<std::string> texts(std::size_t column) const;
 
@@ -65,11 +69,13 @@ class Table {
   Status read_header(std::size_t& at);
   Status read_rows(std::size_t at);
   Location place_of(std::size_t offset) const;
+  Location place_in(std::size_t row_begin, std::size_t column) const;
 
   std::string_view text_;
   std::string path_;
   char delimiter_ = ',';
   std::vector<ColumnName> columns_;
+  std::size_t header_ = 0;         // where it begins; the first row's place where there is none
   std::vector<std::size_t> rows_;  // where each begins
   std::vector<std::uint8_t> numeric_;
 };

@@ -183,6 +183,12 @@ void write_half(Imf::OutputFile& output, const std::vector<Vec3f>& values, const
 
 }  // namespace
 
+Result<PictureSize> picture_size(std::span<const std::byte> file) {
+  const auto facts = scan_header(file);
+  if (!facts) return facts.error();
+  return PictureSize{static_cast<int>(facts->width), static_cast<int>(facts->height)};
+}
+
 Result<MorphSet> read(std::span<const std::byte> file) {
   const auto facts = scan_header(file);
   if (!facts) return facts.error();

@@ -20,6 +20,12 @@ namespace krok::morph_exr {
 // Trusts nothing in `file`: memory is taken only in proportion to its bytes.
 Result<MorphSet> read(std::span<const std::byte> file);
 
+// How large the picture of such a file is, in texels; both halves together.
+struct PictureSize {
+  int width = 0, height = 0;
+};
+Result<PictureSize> picture_size(std::span<const std::byte> file);
+
 // Appends the whole file to `file`, to which nothing was written before; the caller commits. The
 // same targets give the same bytes, and targets that were read come back bit for bit. An Error for
 // what check() refuses, and for sets without targets or too large for a picture of 16384 by 32768

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_set>
 
 #include "core/text.h"
@@ -57,6 +58,23 @@ Status check(const MorphSet& morphs) {
     return Error("morph-value", "a target has a number that is not finite");
   }
   return {};
+}
+
+void weights_at(const MorphWeights& weights, double seconds, std::vector<float>& at) {
+  const std::size_t targets = weights.names.size();
+  at.assign(targets, 0.0f);
+  const int frames = weights.frame_count();
+  if (frames == 0) return;
+  const double last = frames - 1;
+  const double place = seconds > 0 ? std::min(seconds * weights.rate, last) : 0.0;
+  const auto before = static_cast<std::size_t>(std::floor(place));
+  const auto after = std::min(before + 1, static_cast<std::size_t>(frames) - 1);
+  const double part = place - std::floor(place);
+  for (std::size_t t = 0; t < targets; ++t) {
+    const double first = static_cast<double>(weights.values[before * targets + t]);
+    const double second = static_cast<double>(weights.values[after * targets + t]);
+    at[t] = static_cast<float>(first + (second - first) * part);
+  }
 }
 
 }  // namespace krok

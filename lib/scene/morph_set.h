@@ -44,4 +44,8 @@ struct MorphWeights {
   }
 };
 
+// The weights at `seconds`, one a target: linear between two frames, the first frame's before it
+// and the last one's after; all 0 without frames. A time that is not a number is the beginning.
+void weights_at(const MorphWeights& weights, double seconds, std::vector<float>& at);
+
 }  // namespace krok

@@ -1,0 +1,94 @@
+#include "formats/key_shapes/key_shapes.h"
+
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/json/members.h"
+
+namespace krok::key_shapes {
+
+namespace {
+
+using json::Value;
+using Kind = Value::Kind;
+
+constexpr std::string_view kSchema = "krok.key-shapes/1";
+constexpr std::string_view kWhole = "the file";
+constexpr std::size_t kMostKeys = 100'000;
+constexpr double kLatest = 1e6;  // seconds
+
+Status read_join(const Value& root, const json::Members& in, KeyShapeFile& file) {
+  const auto between = in.find(root, kWhole, "between", Kind::string);
+  if (!between) return between.error();
+  if (*between != nullptr) {
+    const std::string& word = (*between)->text;
+    if (word != "linear" && word != "hermite") {
+      return in.wrong(**between, fmt::format("\"between\" is '{}'", shown(word)),
+                      "known are linear and hermite");
+    }
+    file.join = word == "linear" ? ShapeJoin::linear : ShapeJoin::hermite;
+  }
+  if (root.find("tension") == nullptr) return {};
+  const auto tension = in.number(root, kWhole, "tension", 0, 1);
+  if (!tension) return tension.error();
+  file.tension = *tension;
+  return {};
+}
+
+Status read_key(std::string_view text, const Value& item, const json::Members& in,
+                KeyShapeFile& file) {
+  const std::string what = fmt::format("key {}", file.times.size());
+  if (Status known = in.only(item, what, {"time", "shape", "comment"}); !known) return known;
+  const Value* when = item.find("time");
+  if (when == nullptr) {
+    return json::error_at(text, item.offset, "key-shapes-structure", what + " lacks \"time\"");
+  }
+  const auto time = in.moment(*when, "\"time\" of " + what, file.rate, kLatest);
+  if (!time) return time.error();
+  if (!file.times.empty() && !(*time > file.times.back())) {
+    return json::error_at(text, when->offset, "key-shapes-time",
+                          fmt::format("{} is at {} s, not after the key before at {} s", what,
+                                      readable(*time, 9), readable(file.times.back(), 9)));
+  }
+  const auto shape = in.get(item, what, "shape", Kind::string);
+  if (!shape) return shape.error();
+  auto path = in.path(**shape, "\"shape\" of " + what);
+  if (!path) return path.error();
+  file.times.push_back(*time);
+  file.shapes.push_back(*std::move(path));
+  return {};
+}
+
+}  // namespace
+
+Result<KeyShapeFile> read(std::string_view text) {
+  const auto root = json::parse(text);
+  if (!root) return root.error();
+  const json::Members in(text, "key-shapes");
+  if (Status known =
+          in.only(*root, kWhole, {"schema", "comment", "rate", "between", "tension", "keys"});
+      !known) {
+    return known.error();
+  }
+  if (Status schema = in.has_schema(*root, kWhole, kSchema); !schema) return schema.error();
+  KeyShapeFile file;
+  if (root->find("rate") != nullptr) {
+    const auto rate = in.number(*root, kWhole, "rate", 1e-3, 1e6);
+    if (!rate) return rate.error();
+    file.rate = *rate;
+  }
+  if (Status done = read_join(*root, in, file); !done) return done.error();
+  const auto list = in.get(*root, kWhole, "keys", Kind::array);
+  if (!list) return list.error();
+  const std::size_t count = (*list)->items.size();
+  if (count == 0 || count > kMostKeys) {
+    return in.wrong(**list, fmt::format("{} keys, expected 1 to {}", count, grouped(kMostKeys)));
+  }
+  for (const Value& item : (*list)->items) {
+    if (Status done = read_key(text, item, in, file); !done) return done.error();
+  }
+  return file;
+}
+
+}  // namespace krok::key_shapes

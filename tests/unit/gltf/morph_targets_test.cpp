@@ -1,0 +1,154 @@
+// Would fail if morph targets beside a skeleton moved vertices elsewhere than the set has them,
+// lost their names, or were animated apart from the joints.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "formats/gltf/gltf_writer.h"
+#include "support/test_scenes.h"
+#include "unit/gltf/glb.h"
+
+namespace krok {
+namespace {
+
+struct Face {
+  Model model = test::tube_model(test::human_skeleton());
+  MorphSet morphs;
+  MorphWeights weights;
+  gltf::WriteOptions options;
+
+  explicit Face(int frames) {
+    morphs.names = {"smile", "\xc5\x99\xc3\xadha"};
+    morphs.vertex_count = model.vertex_count();
+    for (int t = 0; t < 2; ++t) {
+      for (int v = 0; v < model.vertex_count(); ++v) {
+        const auto at = static_cast<std::size_t>(v);
+        morphs.positions.push_back(model.positions[at] +
+                                   Vec3f(0, 0.01f * static_cast<float>(t + v % 5), 0));
+        morphs.normals.push_back(Vec3f(static_cast<float>(t), 1, 0).normalized());
+      }
+    }
+    weights = {24, morphs.names, {}};
+    for (int f = 0; f < frames; ++f) {
+      weights.values.push_back(0.25f * static_cast<float>(f));
+      weights.values.push_back(-0.5f);
+    }
+    options.morphs = &morphs;
+    options.weights = &weights;
+  }
+
+  test::Glb rig() const {
+    const Clip clip = test::swinging_clip(model.skeleton, 5, 30);
+    return test::written(
+        [&](OutputFile& file) { return gltf::write_rig(model, clip, options, file); });
+  }
+  test::Glb mesh() const {
+    return test::written([&](OutputFile& file) {
+      return gltf::write_mesh(model, {model.positions, model.normals, {}}, options, file);
+    });
+  }
+  std::string mesh_error() const {
+    Status status;
+    test::bytes_of(
+        [&](OutputFile& file) {
+          return gltf::write_mesh(model, {model.positions, model.normals, {}}, options, file);
+        },
+        status);
+    return status ? "none" : status.error().code;
+  }
+};
+
+TEST(GltfMorphTargets, AreDisplacementsWithNames) {
+  const Face face(3);
+  for (const test::Glb& glb : {face.rig(), face.mesh()}) {
+    const auto& mesh = glb.json["meshes"][0];
+    EXPECT_EQ(mesh["extras"]["targetNames"], nlohmann::json(face.morphs.names));
+    for (const auto& primitive : mesh["primitives"]) {
+      ASSERT_EQ(primitive["targets"].size(), 2u);
+      for (std::size_t t = 0; t < 2; ++t) {
+        const auto moved = glb.values<float>(primitive["targets"][t]["POSITION"]);
+        const auto turned = glb.values<float>(primitive["targets"][t]["NORMAL"]);
+        ASSERT_EQ(moved.size(), 3 * face.model.positions.size());
+        for (std::size_t v = 0; v < face.model.positions.size(); ++v) {
+          const auto target = face.morphs.target_positions(static_cast<int>(t))[v];
+          const auto normal = face.morphs.target_normals(static_cast<int>(t))[v];
+          for (int axis = 0; axis < 3; ++axis) {
+            const std::size_t at = 3 * v + static_cast<std::size_t>(axis);
+            EXPECT_EQ(moved[at], target[axis] - face.model.positions[v][axis]);
+            EXPECT_EQ(turned[at], normal[axis] - face.model.normals[v][axis]);
+          }
+        }
+        EXPECT_TRUE(
+            glb.json["accessors"][primitive["targets"][t]["POSITION"].get<int>()].contains("min"));
+      }
+    }
+  }
+}
+
+TEST(GltfMorphTargets, WeightsAreInTheAnimationOfTheJoints) {
+  const Face face(3);
+  const test::Glb glb = face.rig();
+  ASSERT_EQ(glb.json["animations"].size(), 1u);
+  const auto& animation = glb.json["animations"][0];
+  int found = 0;
+  for (const auto& channel : animation["channels"]) {
+    if (channel["target"]["path"] != "weights") continue;
+    ++found;
+    EXPECT_TRUE(glb.json["nodes"][channel["target"]["node"].get<int>()].contains("mesh"));
+    const auto& sampler = animation["samplers"][channel["sampler"].get<int>()];
+    EXPECT_EQ(glb.values<float>(sampler["input"]),
+              (std::vector<float>{0, static_cast<float>(1 / 24.0), static_cast<float>(2 / 24.0)}));
+    EXPECT_EQ(glb.values<float>(sampler["output"]), face.weights.values);
+  }
+  EXPECT_EQ(found, 1);
+  EXPECT_GT(animation["channels"].size(), 10u);
+}
+
+TEST(GltfMorphTargets, OneFrameIsAShapeForGood) {
+  const test::Glb glb = Face(1).mesh();
+  EXPECT_EQ(glb.json["meshes"][0]["weights"], nlohmann::json({0.0, -0.5}));
+  EXPECT_FALSE(glb.json.contains("animations"));
+}
+
+TEST(GltfMorphTargets, WithoutWeightsTheyStandReady) {
+  Face face(0);
+  face.options.weights = nullptr;
+  const test::Glb glb = face.mesh();
+  EXPECT_EQ(glb.json["meshes"][0]["primitives"][0]["targets"].size(), 2u);
+  EXPECT_FALSE(glb.json.contains("animations"));
+  EXPECT_FALSE(glb.json["meshes"][0].contains("weights"));
+}
+
+TEST(GltfMorphTargets, NormalsMoveOnlyWhereBothHaveThem) {
+  Face face(2);
+  face.morphs.normals.clear();
+  EXPECT_FALSE(face.mesh().json["meshes"][0]["primitives"][0]["targets"][0].contains("NORMAL"));
+  Face bare(2);
+  bare.model.normals.clear();
+  EXPECT_FALSE(bare.mesh().json["meshes"][0]["primitives"][0]["targets"][0].contains("NORMAL"));
+}
+
+TEST(GltfMorphTargets, WhatDoesNotFitIsRefused) {
+  EXPECT_EQ(Face(2).mesh_error(), "none");
+  Face other(2);
+  other.weights.names[0] = "frown";
+  EXPECT_EQ(other.mesh_error(), "gltf-morphs");
+  Face nan(2);
+  nan.weights.values[1] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(nan.mesh_error(), "gltf-morphs");
+  Face torn(2);
+  torn.weights.values.pop_back();
+  EXPECT_EQ(torn.mesh_error(), "gltf-morphs");
+  Face alone(2);
+  alone.options.morphs = nullptr;
+  EXPECT_EQ(alone.mesh_error(), "gltf-morphs");
+  Face fewer(2);
+  --fewer.morphs.vertex_count;
+  fewer.morphs.positions.resize(2 * static_cast<std::size_t>(fewer.morphs.vertex_count));
+  fewer.morphs.normals.clear();
+  EXPECT_EQ(fewer.mesh_error(), "gltf-morphs");
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,23 @@
+#include "tools/common/file_name.h"
+
+#include <string_view>
+
+namespace krok {
+
+std::string file_name_of(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    const bool odd = static_cast<unsigned char>(c) < 32 || c == 127 ||
+                     std::string_view("/\\:*?\"<>|{}$`'&;!").find(c) != std::string_view::npos;
+    result += odd ? '_' : c;
+  }
+  while (result.starts_with('.') || result.starts_with('-')) result[0] = '_';
+  if (result.size() > 100) {
+    std::size_t end = 100;
+    while ((static_cast<unsigned char>(result[end]) & 0xC0) == 0x80) --end;
+    result.resize(end);
+  }
+  return result;
+}
+
+}  // namespace krok

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/result.h"
+#include "tools/common/tool.h"
+#include "tools/krok-morph/options.h"
+
+namespace krok::morph {
+
+// What the tool does, one function an action; the options have been checked. Codes, beside those of
+// what is read and written: morph-input, morph-empty, morph-vertices, morph-triangles, morph-name,
+// morph-target, morph-format, morph-clip-too-long, morph-too-large.
+Result<int> pack(const Options& options, ToolContext& context);
+Result<int> unpack(const Options& options, ToolContext& context);
+Result<int> info(const Options& options, ToolContext& context);
+Result<int> bake(const Options& options, ToolContext& context);
+Result<int> frames(const Options& options, ToolContext& context);
+
+Result<int> run(const Options& options, ToolContext& context);
+
+}  // namespace krok::morph

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "formats/weights/weights.h"
+#include "skin/morph.h"
+#include "tools/krok-morph/actions.h"
+#include "tools/krok-morph/motion_file.h"
+#include "tools/krok-morph/shape_file.h"
+#include "tools/krok-morph/target_file.h"
+
+// Morph targets over time.
+
+namespace krok::morph {
+
+namespace {
+
+MeshMotion motion_of(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
+                     int jobs) {
+  MeshMotion motion;
+  motion.frames = weights.frame_count();
+  motion.rate = weights.rate;
+  motion.shape_at = [&model, &morphs, &weights, jobs](int frame, std::span<Vec3f> positions,
+                                                      std::span<Vec3f> normals) {
+    const std::size_t targets = morphs.names.size();
+    const auto at =
+        std::span(weights.values).subspan(static_cast<std::size_t>(frame) * targets, targets);
+    const std::span<const Vec3f> base =
+        normals.empty() ? std::span<const Vec3f>() : std::span(model.normals);
+    apply_morphs(morphs, at, {model.positions, base}, {positions, normals}, jobs);
+  };
+  return motion;
+}
+
+Status check_as(const Options& options, MotionFormat format) {
+  if (options.as != As::targets || format == MotionFormat::glb || format == MotionFormat::gltf) {
+    return {};
+  }
+  return Error("usage", "--as targets is for glTF; a point cache holds whole shapes");
+}
+
+// A weight that never leaves 0 is most likely one that was forgotten, or misspelt in a table.
+void report(const MorphWeights& weights, ToolContext& context) {
+  const std::size_t targets = weights.names.size();
+  Json list = Json::array();
+  for (std::size_t t = 0; t < targets; ++t) {
+    float least = weights.values[t], most = least;
+    for (std::size_t i = t; i < weights.values.size(); i += targets) {
+      least = std::min(least, weights.values[i]);
+      most = std::max(most, weights.values[i]);
+    }
+    list.push_back({{"name", weights.names[t]}, {"least", least}, {"most", most}});
+  }
+  Json result;
+  result["frames"] = weights.frame_count();
+  result["rate"] = weights.rate;
+  result["targets"] = std::move(list);
+  context.report.result = std::move(result);
+}
+
+}  // namespace
+
+Result<int> bake(const Options& options, ToolContext& context) {
+  const auto format = motion_format(context.output, false);
+  if (!format) return format.error();
+  if (Status fits = check_as(options, *format); !fits) return fits.error();
+  const auto targets = read_targets(options.files[0], context);
+  if (!targets) return targets.error();
+  const MorphSet& morphs = targets->morphs;
+  const auto base = read_shape(options.files[1], options, context);
+  if (!base) return base.error();
+  if (Status fits = check_vertices(*base, morphs, options.files[0]); !fits) return fits.error();
+  const auto weights_file = context.open_input(options.weights);
+  if (!weights_file) return weights_file.error();
+  const auto weights =
+      weights::read_weights(weights_file->text(), options.weights, morphs, options.rate);
+  if (!weights) return weights.error();
+
+  OutputSet outputs(context);
+  const Status added =
+      options.as == As::targets
+          ? add_targets(base->model, morphs, *weights, *format, outputs, context)
+          : add_baked(base->model, motion_of(base->model, morphs, *weights, context.jobs), *format,
+                      outputs, context);
+  if (!added) return added.error();
+  if (Status done = outputs.finish(); !done) return done.error();
+  report(*weights, context);
+  context.say(fmt::format("{}: {} at {} /s, {}", context.output,
+                          counted(weights->frame_count(), "frame"), readable(weights->rate),
+                          counted(morphs.target_count(), "target")));
+  return kExitDone;
+}
+
+}  // namespace krok::morph

@@ -1,0 +1,77 @@
+#include "tools/krok-morph/motion_file.h"
+
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "formats/gltf/baked_writer.h"
+#include "formats/gltf/gltf_writer.h"
+#include "formats/pc2/pc2.h"
+
+namespace krok::morph {
+
+namespace {
+
+// A baked file above this is refused.
+constexpr std::uint64_t kMaxBakedBytes = std::uint64_t{1} << 30;
+
+gltf::WriteOptions gltf_options(MotionFormat format, const ToolContext& context) {
+  gltf::WriteOptions options;
+  options.binary = format == MotionFormat::glb;
+  options.provenance = context.provenance();
+  options.name = "shape";
+  return options;
+}
+
+Status check_bakeable(const Model& model, int frames, const std::string& path) {
+  const std::uint64_t bytes = gltf::baked_bytes(model, frames);
+  if (frames - 1 <= gltf::kMaxMorphTargets && bytes <= kMaxBakedBytes) return {};
+  return Error("morph-clip-too-long",
+               fmt::format("{} of {} make {} morph targets and {} MB; viewers hold at most {}, and "
+                           "{} MB is the limit here",
+                           counted(frames, "frame"),
+                           counted(model.vertex_count(), "vertex", "vertices"), frames - 1,
+                           (bytes >> 20) + 1, gltf::kMaxMorphTargets, kMaxBakedBytes >> 20),
+               "--as targets holds any length, as does a .pc2 file; or a smaller --rate")
+      .in_file(path);
+}
+
+}  // namespace
+
+Result<MotionFormat> motion_format(const std::string& path, bool exr) {
+  const std::string end = extension(path);
+  if (end == ".glb" || path == "-") return MotionFormat::glb;
+  if (end == ".gltf") return MotionFormat::gltf;
+  if (end == ".pc2") return MotionFormat::pc2;
+  if (end == ".exr" && exr) return MotionFormat::exr;
+  return Error("morph-format",
+               end.empty() ? fmt::format("{} has no ending to tell the format by", path)
+                           : fmt::format("this is not written as {}", end),
+               exr ? "known are .glb, .gltf, .pc2 and .exr" : "known are .glb, .gltf and .pc2")
+      .in_file(path);
+}
+
+Status add_baked(const Model& model, const MeshMotion& motion, MotionFormat format,
+                 OutputSet& outputs, ToolContext& context) {
+  if (format == MotionFormat::pc2) {
+    return outputs.add(context.output, [&](OutputFile& file) {
+      return pc2::write(model, motion, {}, file, context.progress, context.jobs);
+    });
+  }
+  if (Status fits = check_bakeable(model, motion.frames, context.output); !fits) return fits;
+  return outputs.add(context.output, [&](OutputFile& file) {
+    return gltf::write_baked(model, motion, gltf_options(format, context), file, context.progress,
+                             context.jobs);
+  });
+}
+
+Status add_targets(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
+                   MotionFormat format, OutputSet& outputs, ToolContext& context) {
+  gltf::WriteOptions options = gltf_options(format, context);
+  options.morphs = &morphs;
+  options.weights = &weights;
+  return outputs.add(context.output, [&](OutputFile& file) {
+    return gltf::write_mesh(model, {model.positions, model.normals, model.tangents}, options, file);
+  });
+}
+
+}  // namespace krok::morph

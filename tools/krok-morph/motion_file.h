@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "core/result.h"
+#include "scene/mesh_motion.h"
+#include "scene/model.h"
+#include "scene/morph_set.h"
+#include "tools/common/output_set.h"
+#include "tools/common/tool.h"
+
+namespace krok::morph {
+
+// What a mesh in motion is written as, by the ending of its file.
+enum class MotionFormat { glb, gltf, pc2, exr };
+
+// An Error (code morph-format) for other endings; `exr` says whether .exr is one.
+Result<MotionFormat> motion_format(const std::string& path, bool exr);
+
+// Adds the motion as whole shapes to the outputs: glTF or a PC2 point cache. An Error (code
+// morph-clip-too-long) for glTF that no viewer would show.
+Status add_baked(const Model& model, const MeshMotion& motion, MotionFormat format,
+                 OutputSet& outputs, ToolContext& context);
+
+// Adds glTF with morph targets and keys for their weights, one a frame.
+Status add_targets(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
+                   MotionFormat format, OutputSet& outputs, ToolContext& context);
+
+}  // namespace krok::morph

@@ -1,0 +1,261 @@
+#include "tools/krok-morph/options.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "capture/conventions.h"
+#include "core/numbers.h"
+#include "core/quantity.h"
+#include "tools/common/option_kinds.h"
+
+namespace krok::morph {
+
+namespace {
+
+constexpr unsigned bit(Action action) {
+  return 1u << static_cast<unsigned>(action);
+}
+constexpr unsigned kPack = bit(Action::pack), kUnpack = bit(Action::unpack),
+                   kInfo = bit(Action::info), kBake = bit(Action::bake),
+                   kFrames = bit(Action::frames);
+
+struct ActionFacts {
+  Action action;
+  const char* name;
+  std::size_t least, most;  // how many files it takes
+  const char* files;
+};
+constexpr std::array kActions = {
+    ActionFacts{Action::pack, "pack", 1, 100'000, "BASE TARGET..."},
+    ActionFacts{Action::unpack, "unpack", 2, 2, "TARGETS.exr BASE"},
+    ActionFacts{Action::info, "info", 1, 2, "TARGETS.exr [BASE]"},
+    ActionFacts{Action::bake, "bake", 2, 2, "TARGETS.exr BASE"},
+    ActionFacts{Action::frames, "frames", 1, 1, "KEYS.json, or FOLDER"},
+};
+
+// What each option is for.
+struct OptionUse {
+  const char* option;
+  unsigned actions;
+};
+constexpr std::array kUses = {
+    OptionUse{"--name", kPack},
+    OptionUse{"--by-order", kPack | kFrames},
+    OptionUse{"--out-dir", kUnpack},
+    OptionUse{"--format", kUnpack},
+    OptionUse{"--target", kUnpack},
+    OptionUse{"--weights", kBake},
+    OptionUse{"--as", kBake | kFrames},
+    OptionUse{"--rate", kBake | kFrames},
+    OptionUse{"--between", kFrames},
+    OptionUse{"--tension", kFrames},
+    OptionUse{"--spacing", kFrames},
+    OptionUse{"--save-weights", kFrames},
+    OptionUse{"--output", kPack | kBake | kFrames},
+};
+
+Error usage(std::string message, std::string hint = {}) {
+  return Error("usage", std::move(message), std::move(hint));
+}
+
+const ActionFacts& facts_of(Action action) {
+  return kActions[static_cast<std::size_t>(action)];
+}
+
+// "pack, bake and frames".
+std::string words_for(unsigned actions) {
+  std::vector<std::string> names;
+  for (const ActionFacts& one : kActions) {
+    if ((actions & bit(one.action)) != 0) names.emplace_back(one.name);
+  }
+  std::string words = names[0];
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    words += (i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return words;
+}
+
+void declare_shapes(CLI::App& app, Options& options) {
+  app.add_option_function<std::string>(
+         "--unit",
+         [&options](const std::string& text) {
+           const auto unit = parse_unit(text);
+           if (unit) options.metres_per_unit = unit->metres;
+         },
+         "What one unit of OBJ files is: m, cm, mm, in, ft or a length such as 5.64cm")
+      ->type_name("UNIT")
+      ->default_str("m")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const auto unit = parse_unit(text);
+            return unit ? std::string() : unit.error().message;
+          },
+          ""))
+      ->group("Shapes");
+  add_choice<Up>(app, "--up", options.up, {{"y", Up::y}, {"z", Up::z}},
+                 "Which axis points up in OBJ files: y, the figure facing +Z, or z, the figure "
+                 "facing -Y",
+                 "AXIS", "y")
+      ->group("Shapes");
+  app.add_flag("--by-order", options.by_order,
+               "Take vertices to correspond by their order alone; otherwise shapes must have the "
+               "triangles of the first too")
+      ->group("Shapes");
+  app.add_option("--name", options.names,
+                 "pack: what a target is called, once for each TARGET in their order; otherwise as "
+                 "its file without the ending")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->group("Shapes");
+}
+
+void declare_unpack(CLI::App& app, Options& options) {
+  app.add_option("--out-dir", options.out_dir, "unpack: where the shapes go, a file each")
+      ->type_name("DIR")
+      ->group("Unpack");
+  add_choice<ShapeFormat>(app, "--format", options.format,
+                          {{"base", ShapeFormat::as_base},
+                           {"obj", ShapeFormat::obj},
+                           {"glb", ShapeFormat::glb},
+                           {"model", ShapeFormat::model}},
+                          "unpack: what the files are: obj, glb, model, or base: as BASE is",
+                          "FORMAT", "base")
+      ->group("Unpack");
+  app.add_option("--target", options.targets,
+                 "unpack: this target only, by its name; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->group("Unpack");
+}
+
+void declare_motion(CLI::App& app, Options& options) {
+  app.add_option("--weights", options.weights,
+                 "bake: how much of each target shows over time: a table as krok-import "
+                 "--morph-weights writes it, or keys (formats/weights/SPEC.md)")
+      ->type_name("IN.csv|IN.json")
+      ->group("Motion");
+  add_choice<As>(app, "--as", options.as, {{"clip", As::clip}, {"targets", As::targets}},
+                 "For glTF. clip: the motion baked, a shape a frame. targets: the shapes once, and "
+                 "keys for their weights",
+                 "WHAT", "clip")
+      ->group("Motion");
+  add_rate(app, "--rate", options.rate,
+           "Frames a second; otherwise as the weights or keys say, or else 30")
+      ->group("Motion");
+  add_choice<Between>(app, "--between", options.between,
+                      {{"linear", Between::linear}, {"hermite", Between::hermite}},
+                      "frames: how a shape becomes the next: linear, or hermite, a curve through "
+                      "all; otherwise as the keys say, or else linear",
+                      "HOW", "")
+      ->group("Motion");
+  add_number(app, "--tension", options.tension,
+             "frames, hermite: 0 goes evenly through the keys, 1 rests at each; otherwise as the "
+             "keys say, or else 0")
+      ->group("Motion");
+  app.add_option("--spacing", options.spacing,
+                 "frames of a folder: the time from shape to shape, as 0.5s, 250ms or 1f")
+      ->type_name("T")
+      ->default_str("1f")
+      ->group("Motion");
+  app.add_option("--save-weights", options.save_weights,
+                 "frames: how much of each key's shape shows in each frame, as a table that bake "
+                 "and krok-skin take beside an .exr of the keys")
+      ->type_name("OUT.csv")
+      ->group("Motion");
+}
+
+Status check_uses(const Options& options) {
+  for (const OptionUse& use : kUses) {
+    if ((use.actions & bit(options.action)) != 0 || !options.given(use.option)) continue;
+    const std::string option = std::string_view(use.option) == "--output" ? "-o" : use.option;
+    return usage(fmt::format("{} is for {}", option, words_for(use.actions)),
+                 options.action == Action::unpack && option == "-o"
+                     ? "say with --out-dir where the shapes go"
+                     : "");
+  }
+  return {};
+}
+
+Status check_files(const Options& options) {
+  const ActionFacts& facts = facts_of(options.action);
+  const std::size_t count = options.files.size();
+  if (count >= facts.least && count <= facts.most) return {};
+  return usage(fmt::format("{} takes {}; here are {}", facts.name, facts.files,
+                           counted(static_cast<long long>(count), "file")));
+}
+
+Status check_needs(const Options& options) {
+  const auto needs = [&](const char* option, const char* hint) -> Status {
+    if (options.given(option)) return {};
+    const std::string shown_option = std::string_view(option) == "--output" ? "-o" : option;
+    return usage(fmt::format("{} needs {}", facts_of(options.action).name, shown_option), hint);
+  };
+  switch (options.action) {
+    case Action::pack:
+      return needs("--output", "such as -o face.exr");
+    case Action::unpack:
+      return needs("--out-dir", "the folder that the shapes go to");
+    case Action::bake:
+      if (Status given = needs("--weights", "how much of each target shows over time"); !given) {
+        return given;
+      }
+      return needs("--output", "such as -o face.glb");
+    case Action::frames:
+      return needs("--output", "such as -o flag.glb");
+    case Action::info:
+      return {};
+  }
+  return {};
+}
+
+}  // namespace
+
+void declare(CLI::App& app, Options& options) {
+  add_choice<Action>(app, "action", options.action,
+                     {{"pack", Action::pack},
+                      {"unpack", Action::unpack},
+                      {"info", Action::info},
+                      {"bake", Action::bake},
+                      {"frames", Action::frames}},
+                     "pack: shapes to an .exr of morph targets. unpack: back to a file a shape. "
+                     "info: what is in an .exr, and with BASE how far each target moves it. bake: "
+                     "the shape over time. frames: shapes at times, a key-frame mesh, over time",
+                     "ACTION", "")
+      ->required();
+  app.add_option("files", options.files,
+                 "What it is done with. BASE and TARGETs: .obj, .glb, .gltf or .model, of the same "
+                 "vertices; pack takes the targets within a glTF BASE too")
+      ->type_name("IN")
+      ->required();
+  declare_shapes(app, options);
+  declare_unpack(app, options);
+  declare_motion(app, options);
+  options.given = [&app](const char* option) { return app.count(option) > 0; };
+}
+
+Status check(const Options& options) {
+  for (const auto step : {check_uses, check_files, check_needs}) {
+    if (Status fits = step(options); !fits) return fits;
+  }
+  if (options.action == Action::pack && !options.names.empty() &&
+      options.names.size() != options.files.size() - 1) {
+    return usage(
+        fmt::format("{} for {}", counted(static_cast<long long>(options.names.size()), "--name"),
+                    counted(static_cast<long long>(options.files.size()) - 1, "target file")),
+        "give one for each, in their order");
+  }
+  if (options.tension && !(*options.tension >= 0 && *options.tension <= 1)) {
+    return usage(fmt::format("--tension {} is not within 0 to 1", readable(*options.tension)));
+  }
+  if (options.tension && options.between == Between::linear) {
+    return usage("--tension is for --between hermite");
+  }
+  if (options.spacing.empty()) return {};
+  const auto spacing = parse_clip_time(options.spacing);
+  if (!spacing) return usage("--spacing: " + spacing.error().message, spacing.error().hint);
+  if (spacing->value > 0) return {};
+  return usage("--spacing is not more than 0");
+}
+
+}  // namespace krok::morph

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+
+namespace krok::morph {
+
+enum class Action { pack, unpack, info, bake, frames };
+enum class As { clip, targets };
+enum class ShapeFormat { as_base, obj, glb, model };
+enum class Up { y, z };
+enum class Between { as_given, linear, hermite };
+
+// What stands on the command line.
+struct Options {
+  Action action = Action::info;
+  std::vector<std::string> files;
+
+  // How OBJ files are read.
+  double metres_per_unit = 1;
+  Up up = Up::y;
+  bool by_order = false;  // triangles need not agree
+
+  std::vector<std::string> names;  // pack
+  std::string out_dir;             // unpack
+  ShapeFormat format = ShapeFormat::as_base;
+  std::vector<std::string> targets;  // of all, those to unpack
+  std::string weights;               // bake
+  As as = As::clip;                  // bake, frames
+  std::optional<double> rate;
+  Between between = Between::as_given;  // frames
+  std::optional<double> tension;
+  std::string spacing;  // between the shapes of a folder; a ClipTime
+  std::string save_weights;
+
+  // Whether an option, "--rate", stands on the command line; set by declare().
+  std::function<bool(const char* option)> given;
+};
+
+// `app` is kept by the options.
+void declare(CLI::App& app, Options& options);
+
+// Whether the options fit what is to be done, and each other. Code usage.
+Status check(const Options& options);
+
+}  // namespace krok::morph

@@ -1,0 +1,192 @@
+#include "tools/krok-morph/shape_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "character/mesh.h"
+#include "character/rig.h"
+#include "core/numbers.h"
+#include "formats/model/model_format.h"
+#include "formats/obj/obj_reader.h"
+#include "formats/registry/registry.h"
+#include "skin/surface_normals.h"
+#include "tools/common/gltf/gltf_input.h"
+
+namespace krok::morph {
+
+namespace {
+
+using registry::Kind;
+using Triangle = std::array<std::uint32_t, 3>;
+
+void tell(Diagnostics found, const std::string& path, ToolContext& context) {
+  for (Diagnostic& diagnostic : found) {
+    if (diagnostic.where.file.empty()) diagnostic.where.file = path;
+    context.tell(std::move(diagnostic));
+  }
+}
+
+// +Z up, facing -Y, becomes +Y up, facing +Z.
+void turn_up(std::vector<Vec3f>& vectors) {
+  for (Vec3f& vector : vectors) vector = Vec3f(vector.x(), vector.z(), -vector.y());
+}
+
+Result<ShapeFile> read_obj(const InputFile& file, const Options& options, ToolContext& context) {
+  auto read = obj::read(file.text(), file.path(), {.metres_per_unit = options.metres_per_unit});
+  if (!read) return read.error();
+  tell(std::move(read->diagnostics), file.path(), context);
+  ShapeFile shape;
+  shape.source = Source::obj;
+  shape.model = std::move(read->model);
+  if (options.up == Up::z) {
+    turn_up(shape.model.positions);
+    turn_up(shape.model.normals);
+  }
+  return shape;
+}
+
+Result<ShapeFile> read_scene(const InputFile& file, ToolContext& context, bool with_morphs) {
+  const auto scene = read_gltf(file, context);
+  if (!scene) return scene.error();
+  tell(scene->diagnostics, file.path(), context);
+  const auto evaluator = nodes::Evaluator::create(*scene);
+  if (!evaluator) return evaluator.error();
+  Diagnostics found;
+  auto joints = character::choose_joints(*scene, *evaluator, "", found);
+  if (!joints) return joints.error();
+  const auto rig = character::make_rig(*scene, *evaluator, std::move(*joints), found);
+  if (!rig) return rig.error();
+  // glTF's metres and axes are Krok's.
+  auto figure = character::make_figure(*scene, *evaluator, *rig, Conversion(),
+                                       {.with_morphs = with_morphs}, found);
+  if (!figure) return figure.error();
+  tell(std::move(found), file.path(), context);
+  ShapeFile shape;
+  shape.source = Source::gltf;
+  shape.model = std::move(figure->model);
+  shape.morphs = std::move(figure->morphs);
+  return shape;
+}
+
+Result<ShapeFile> read_any(const InputFile& file, const Options& options, ToolContext& context,
+                           bool with_morphs) {
+  const Kind kind = registry::identify(file.path(), file.bytes());
+  if (kind == Kind::glb || kind == Kind::gltf) return read_scene(file, context, with_morphs);
+  if (kind == Kind::model) {
+    auto model = model::read(file.bytes());
+    if (!model) return model.error();
+    ShapeFile shape;
+    shape.model = *std::move(model);
+    return shape;
+  }
+  if (kind == Kind::unknown && extension(file.path()) == ".obj") {
+    return read_obj(file, options, context);
+  }
+  return Error("morph-input",
+               fmt::format("this is {}, expected .obj, .glb, .gltf or .model",
+                           registry::describe_content(file.bytes())),
+               registry::is_read_through_assimp(kind)
+                   ? "krok-import --model makes a .model of such characters"
+                   : "");
+}
+
+// Each triangle from its smallest corner on, in rising order.
+std::vector<Triangle> canonical(const std::vector<Triangle>& triangles) {
+  std::vector<Triangle> result = triangles;
+  for (Triangle& one : result) std::ranges::rotate(one, std::ranges::min_element(one));
+  std::ranges::sort(result);
+  return result;
+}
+
+Triangle canonical(Triangle one) {
+  std::ranges::rotate(one, std::ranges::min_element(one));
+  return one;
+}
+
+std::string corners(const Triangle& triangle) {
+  return fmt::format("{}, {}, {}", triangle[0], triangle[1], triangle[2]);
+}
+
+}  // namespace
+
+Result<ShapeFile> read_shape(const std::string& path, const Options& options, ToolContext& context,
+                             bool with_morphs) {
+  const auto file = context.open_input(path);
+  if (!file) return file.error();
+  auto shape = read_any(*file, options, context, with_morphs);
+  if (!shape) return std::move(shape).error().in_file(path);
+  shape->path = path;
+  Model& model = shape->model;
+  if (model.triangles.empty()) {
+    return Error("morph-empty", "there are no triangles in it").in_file(path);
+  }
+  shape->has_normals = !model.normals.empty();
+  if (!shape->has_normals) {
+    model.normals.resize(model.positions.size());
+    normals_of(model.triangles, model.positions, shading_groups(model.positions, {}),
+               model.normals);
+  }
+  return shape;
+}
+
+Status check_same_mesh(const ShapeFile& base, const ShapeFile& shape, const Options& options) {
+  const Model& first = base.model;
+  const Model& other = shape.model;
+  if (first.vertex_count() != other.vertex_count()) {
+    return Error(
+               "morph-vertices",
+               fmt::format("{}, but {} has {}", counted(other.vertex_count(), "vertex", "vertices"),
+                           base_name(base.path), grouped(first.vertex_count())),
+               "shapes of one mesh have the same vertices in the same order; programs that cut "
+               "a mesh along seams may add some")
+        .in_file(shape.path);
+  }
+  if (options.by_order || first.triangles == other.triangles) return {};
+  const std::vector<Triangle> known = canonical(first.triangles);
+  const std::vector<Triangle> found = canonical(other.triangles);
+  if (known == found) return {};
+  const char* hint = "--by-order takes vertices to correspond whatever the triangles are";
+  for (std::size_t t = 0; t < other.triangles.size(); ++t) {
+    if (std::ranges::binary_search(known, canonical(other.triangles[t]))) continue;
+    return Error("morph-triangles",
+                 fmt::format("triangle {} joins the vertices {}, which no triangle of {} does", t,
+                             corners(other.triangles[t]), base_name(base.path)),
+                 hint)
+        .in_file(shape.path);
+  }
+  for (std::size_t t = 0; t < first.triangles.size(); ++t) {
+    if (std::ranges::binary_search(found, canonical(first.triangles[t]))) continue;
+    return Error("morph-triangles",
+                 fmt::format("triangle {} of {}, which joins the vertices {}, is missing", t,
+                             base_name(base.path), corners(first.triangles[t])),
+                 hint)
+        .in_file(shape.path);
+  }
+  return Error("morph-triangles",
+               fmt::format("{}, but {} has {}; some are there twice",
+                           counted(static_cast<long long>(found.size()), "triangle"),
+                           base_name(base.path), known.size()),
+               hint)
+      .in_file(shape.path);
+}
+
+Status check_vertices(const ShapeFile& base, const MorphSet& morphs, const std::string& path) {
+  if (morphs.vertex_count == base.model.vertex_count()) return {};
+  return Error("morph-vertices",
+               fmt::format("the targets have {}, but {} has {}",
+                           counted(morphs.vertex_count, "vertex", "vertices"), base_name(base.path),
+                           grouped(base.model.vertex_count())),
+               "BASE is the mesh that the targets were packed with")
+      .in_file(path);
+}
+
+std::vector<Vec3f> normals_for(const ShapeFile& base, const ShapeFile& shape) {
+  if (shape.has_normals) return shape.model.normals;
+  std::vector<Vec3f> normals(base.model.positions.size());
+  moved_normals(base.model.triangles, base.model.positions, base.model.normals,
+                shape.model.positions, normals);
+  return normals;
+}
+
+}  // namespace krok::morph

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "core/file.h"
+#include "core/result.h"
+#include "scene/morph_set.h"
+#include "tools/common/tool.h"
+
+namespace krok::morph {
+
+// An .exr of morph targets and the file it came from.
+struct TargetFile {
+  InputFile file;
+  MorphSet morphs;
+};
+Result<TargetFile> read_targets(const std::string& path, ToolContext& context);
+
+}  // namespace krok::morph
