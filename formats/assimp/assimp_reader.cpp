@@ -9,6 +9,7 @@
 #include "core/child_process.h"
 #include "core/file.h"
 #include "formats/assimp/companions_internal.h"
+#include "formats/assimp/find_pictures_internal.h"
 #include "formats/assimp/run_assimp_internal.h"
 #include "formats/assimp/scene_transfer.h"
 #include "formats/registry/registry.h"
@@ -91,8 +92,8 @@ Result<nodes::Scene> read_in_child(const std::vector<MemoryFile>& files, Kind ki
       options.most_bytes +
       static_cast<std::uint64_t>(std::max(options.most_expansion, 0.0) * static_cast<double>(size));
   limits.result_bytes = limits.memory_bytes;
-  const ChildReport report = run_in_child(
-      [&] { return pack_result(run_assimp(files, kind, options.frames_per_second)); }, limits);
+  const ChildReport report =
+      run_in_child([&] { return pack_result(run_assimp(files, kind, options)); }, limits);
   if (report.end != ChildEnd::returned) return error_of(report, limits);
   return unpack_result(report.bytes);
 }
@@ -121,6 +122,7 @@ Result<nodes::Scene> read_file(const std::string& path, const ReadOptions& optio
   }
   auto scene = read_in_child(files, kind, options);
   if (!scene) return std::move(scene.error()).in_file(path);
+  if (options.with_materials) find_pictures(path, options.most_file_bytes, *scene);
   scene->diagnostics.insert(scene->diagnostics.begin(), companions.diagnostics.begin(),
                             companions.diagnostics.end());
   for (Diagnostic& diagnostic : scene->diagnostics) diagnostic.where.file = path;

@@ -29,6 +29,11 @@ struct ReadOptions {
   std::uint64_t most_bytes = std::uint64_t{512} << 20;
   double most_expansion = 64;
   std::uint64_t most_file_bytes = std::uint64_t{1} << 31;  // Assimp counts bytes in 32 bits
+  // Scene::materials too, as far as Assimp tells of them: colours, alpha, textures. Pictures are
+  // those in the file (FBX) or files in its folder tree, looked for under the path that the file
+  // names and under the base name alone. One that is not found, or is neither PNG nor JPEG, is left
+  // out with a warning (assimp-picture).
+  bool with_materials = false;
 };
 
 // What a scene is: nodes with the file's names, each of Assimp's meshes a primitive at its node

@@ -28,6 +28,7 @@ struct Conversion {
   registry::Kind kind = registry::Kind::unknown;
   std::string_view text;         // the file itself
   double frames_per_second = 0;  // for formats that count frames without saying how fast
+  bool with_materials = false;
   nodes::Scene scene;
 
   std::unordered_map<const aiNode*, int> node_of;     // Assimp's node -> ours, where it has one

@@ -6,34 +6,19 @@
 #include <optional>
 #include <span>
 
-#include "core/file.h"
 #include "formats/assimp/conversion_internal.h"
 #include "formats/assimp/fbx_text_internal.h"
 #include "formats/assimp/influences_internal.h"
+#include "formats/assimp/materials_internal.h"
 #include "formats/assimp/ms3d_file_internal.h"
 #include "formats/assimp/primitive_internal.h"
+#include "nodes/materials.h"
 
 namespace krok::assimp {
 
 using namespace nodes;
 
 namespace {
-
-// A material's name; of those that Assimp named itself the picture's.
-std::string material_name(const aiScene& source, unsigned index) {
-  if (index >= source.mNumMaterials) return {};
-  const aiMaterial& material = *source.mMaterials[index];
-  aiString name, picture;
-  const bool named = material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS;
-  const std::string text = named ? to_text(name) : std::string();
-  const bool by_assimp = text.empty() || text.starts_with("Texture_");
-  if (by_assimp && material.GetTexture(aiTextureType_DIFFUSE, 0, &picture) == aiReturn_SUCCESS) {
-    std::string path = to_text(picture);
-    std::replace(path.begin(), path.end(), '\\', '/');
-    return base_name(path);
-  }
-  return text == AI_DEFAULT_MATERIAL_NAME ? std::string() : text;
-}
 
 // A mesh that can be shown: with vertices that are numbers.
 bool usable(const aiMesh& mesh) {
@@ -45,7 +30,8 @@ bool usable(const aiMesh& mesh) {
 }
 
 void convert_node_meshes(Conversion& to, const std::vector<const aiMesh*>& meshes, int node,
-                         const std::optional<Ms3dFile>& ms3d, MeshTotals& totals) {
+                         const std::optional<Ms3dFile>& ms3d, MaterialBuilder& materials,
+                         MeshTotals& totals) {
   Mesh mesh;
   SkinBuilder skin(to);
   for (const aiMesh* source : meshes) {
@@ -53,6 +39,7 @@ void convert_node_meshes(Conversion& to, const std::vector<const aiMesh*>& meshe
     if (mesh.name.empty()) mesh.name = to_text(source->mName);
     Primitive primitive = convert_primitive(*source, std::move(influences), totals);
     primitive.material = material_name(to.source, source->mMaterialIndex);
+    if (to.with_materials) primitive.material_index = materials.index_of(source->mMaterialIndex);
     mesh.primitives.push_back(std::move(primitive));
   }
   const aiMesh& first = *meshes[0];
@@ -121,6 +108,7 @@ void report(Conversion& to, const MeshTotals& totals) {
 
 void convert_meshes(Conversion& to) {
   MeshTotals totals;
+  MaterialBuilder materials(to);
   std::optional<Ms3dFile> ms3d;
   if (to.kind == registry::Kind::ms3d) ms3d = read_ms3d(std::as_bytes(std::span(to.text)));
   std::size_t unusable = 0;
@@ -148,7 +136,7 @@ void convert_meshes(Conversion& to) {
         extra.parent = node;
         to.scene.nodes.push_back(std::move(extra));
       }
-      convert_node_meshes(to, meshes, holder, ms3d, totals);
+      convert_node_meshes(to, meshes, holder, ms3d, materials, totals);
       holder = -1;
     }
   }
@@ -160,6 +148,8 @@ void convert_meshes(Conversion& to) {
   }
   if (to.kind == registry::Kind::fbx) fix_fbx_target_weights(to);
   report(to, totals);
+  nodes::make_names_unique(to.scene.materials);
+  materials.report();
 }
 
 }  // namespace krok::assimp

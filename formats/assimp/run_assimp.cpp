@@ -171,11 +171,12 @@ Status convert(Conversion& to, const Input& input) {
 }  // namespace
 
 Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, Kind kind,
-                                double frames_per_second) {
+                                const ReadOptions& options) {
   auto input = prepare(std::move(files), kind);
   if (!input) return input.error();
   Assimp::Importer importer;
   configure(importer);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, options.with_materials);
   importer.SetIOHandler(new MemoryFiles(input->files));  // the importer deletes it
   const aiScene* source = importer.ReadFile(input->name, 0);
   throw_on_bad_alloc(importer);
@@ -190,7 +191,9 @@ Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, Kind kind,
                  fmt::format("the file cannot be read: Assimp says: {}", reason(importer)),
                  "try to open it in another program and to save it again, best as glTF (.glb)");
   }
-  Conversion to{*source, kind, input->text, frames_per_second, {}, {}, {}, {}, {}};
+  Conversion to{
+      *source, kind, input->text, options.frames_per_second, options.with_materials, {}, {},
+      {},      {},   {}};
   if (auto done = convert(to, *input); !done) return done.error();
   if (without_normals > 0) {
     to.note("assimp-normals",

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "formats/assimp/assimp_reader.h"
 #include "formats/assimp/memory_files_internal.h"
 #include "formats/registry/registry.h"
 #include "nodes/scene.h"
@@ -14,6 +15,6 @@ namespace krok::assimp {
 // child. The first file is the one to read, the others its companions; their names end in their
 // kind's extension.
 Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, registry::Kind kind,
-                                double frames_per_second);
+                                const ReadOptions& options);
 
 }  // namespace krok::assimp

@@ -1,23 +1,14 @@
 #include "formats/assimp/scene_transfer.h"
 
-#include "core/bytes.h"
+#include <map>
+
+#include "formats/assimp/material_transfer_internal.h"
 
 namespace krok::assimp {
 
 using namespace nodes;
 
 namespace {
-
-void put_text(ByteWriter& out, std::string_view text) {
-  out.write(static_cast<std::uint64_t>(text.size()));
-  out.append_text(text);
-}
-
-template <typename T>
-void put_array(ByteWriter& out, const std::vector<T>& values) {
-  out.write(static_cast<std::uint64_t>(values.size()));
-  out.append(std::as_bytes(std::span(values)));
-}
 
 template <typename T>
 void put_shared(ByteWriter& out, const Shared<T>& values) {
@@ -45,6 +36,7 @@ void put_node(ByteWriter& out, const Node& node) {
 
 void put_primitive(ByteWriter& out, const Primitive& primitive) {
   put_text(out, primitive.material);
+  out.write(static_cast<std::int32_t>(primitive.material_index));
   put_shared(out, primitive.positions);
   put_shared(out, primitive.normals);
   put_shared(out, primitive.tangents);
@@ -108,6 +100,10 @@ std::vector<std::byte> pack(const Scene& scene) {
   put_list(out, scene.animations, [](ByteWriter& to, const Animation& animation) {
     put_text(to, animation.name);
     put_list(to, animation.channels, put_channel);
+  });
+  std::map<const Picture*, std::int32_t> number_of;
+  put_list(out, scene.materials, [&](ByteWriter& to, const Material& material) {
+    put_material(to, material, number_of);
   });
   out.write(static_cast<std::uint8_t>(scene.space.metres.has_value()));
   out.write(scene.space.metres.value_or(0.0));

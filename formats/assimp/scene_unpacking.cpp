@@ -5,94 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/bytes.h"
-#include "core/text.h"
+#include "formats/assimp/material_transfer_internal.h"
+#include "formats/assimp/parser_internal.h"
 
 namespace krok::assimp {
 
 using namespace nodes;
 
 namespace {
-
-// Reads on after a failure, but gives nothing more: one check at the end is enough.
-class Parser {
- public:
-  explicit Parser(std::span<const std::byte> bytes) : in_(bytes) {}
-
-  bool ok() const { return in_.ok() && fault_.empty(); }
-  const std::string& fault() const { return fault_; }
-  bool at_end() const { return in_.remaining() == 0; }
-
-  void require(bool holds, const char* what) {
-    if (!holds && fault_.empty()) fault_ = what;
-  }
-
-  template <typename T>
-  T number() {
-    return ok() ? in_.read<T>() : T{};
-  }
-
-  double finite() {
-    const double value = number<double>();
-    require(std::isfinite(value), "a number is not finite");
-    return value;
-  }
-
-  // How many things of at least `bytes_each` follow.
-  std::size_t count(std::size_t bytes_each) {
-    const auto count = number<std::uint64_t>();
-    require(count <= in_.remaining() / bytes_each, "a count is larger than the data");
-    return ok() ? static_cast<std::size_t>(count) : 0;
-  }
-
-  std::string text() {
-    const std::size_t size = count(1);
-    const std::string_view text = in_.take_text(size);
-    return to_utf8(text);
-  }
-
-  template <typename T>
-  std::vector<T> array() {
-    std::vector<T> values(count(sizeof(T)));
-    const auto bytes = in_.take(values.size() * sizeof(T));
-    if (!bytes.empty()) std::memcpy(static_cast<void*>(values.data()), bytes.data(), bytes.size());
-    return values;
-  }
-
-  template <typename T>
-  Shared<T> shared() {
-    if (number<std::uint8_t>() == 0) return nullptr;
-    auto values = std::make_shared<const std::vector<T>>(array<T>());
-    const auto* numbers = reinterpret_cast<const float*>(values->data());
-    const std::size_t size = values->size() * sizeof(T) / sizeof(float);
-    require(std::all_of(numbers, numbers + size, [](float v) { return std::isfinite(v); }),
-            "a number is not finite");
-    return values;
-  }
-
-  Mat4 matrix() {
-    Mat4 matrix;
-    for (int k = 0; k < 16; ++k) matrix.data()[k] = finite();
-    return matrix;
-  }
-
-  Vec3 vector() {
-    Vec3 vector;
-    for (int k = 0; k < 3; ++k) vector[k] = finite();
-    return vector;
-  }
-
-  Quat unit_quaternion() {
-    Quat q;
-    for (int k = 0; k < 4; ++k) q.coeffs()[k] = finite();
-    require(std::abs(q.norm() - 1.0) < 1e-6, "a rotation is not of length 1");
-    return q;
-  }
-
- private:
-  ByteReader in_;
-  std::string fault_;
-};
 
 Node take_node(Parser& in) {
   Node node;
@@ -132,6 +52,7 @@ bool are_tangents(const std::vector<Vec4f>& tangents, std::size_t vertices) {
 Primitive take_primitive(Parser& in) {
   Primitive primitive;
   primitive.material = in.text();
+  primitive.material_index = in.number<std::int32_t>();
   primitive.positions = in.shared<Vec3f>();
   in.require(primitive.positions != nullptr, "a mesh has no positions");
   if (!primitive.positions) primitive.positions = std::make_shared<const std::vector<Vec3f>>();
@@ -274,6 +195,13 @@ void check_references(Parser& in, const Scene& scene) {
       in.require(exists(joint, scene.nodes.size()), "a skin has a joint that does not exist");
     }
   }
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Primitive& primitive : mesh.primitives) {
+      const int material = primitive.material_index;
+      in.require(material == -1 || exists(material, scene.materials.size()),
+                 "a material does not exist");
+    }
+  }
   for (const Node& node : scene.nodes) {
     in.require(node.mesh == -1 || exists(node.mesh, scene.meshes.size()), "a mesh does not exist");
     in.require(node.skin == -1 || exists(node.skin, scene.skins.size()), "a skin does not exist");
@@ -326,6 +254,9 @@ Result<Scene> unpack(std::span<const std::byte> bytes) {
     take_list(from, animation.channels, take_channel);
     return animation;
   });
+  std::vector<std::shared_ptr<const Picture>> pictures;
+  take_list(in, scene.materials, [&](Parser& from) { return take_material(from, pictures); });
+  in.require(check(scene.materials).ok(), "a material has values that it cannot have");
   const bool has_metres = in.number<std::uint8_t>() != 0;
   const double metres = in.finite();
   const bool has_turn = in.number<std::uint8_t>() != 0;

@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <optional>
-#include <system_error>
+
+#include "core/path_inside.h"
 
 namespace krok::gltf {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 // For messages: data URIs can be megabytes long.
 std::string shortened(const std::string& uri) {
@@ -43,7 +41,7 @@ std::optional<std::string> decode_percent(const std::string& text) {
 }
 
 // The path of a file, if the URI is a relative path that stays in the folder, links followed.
-Result<std::string> path_inside(const std::string& uri, const std::string& what,
+Result<std::string> path_of_uri(const std::string& uri, const std::string& what,
                                 const std::string& folder) {
   const auto refuse = [&](const char* why) {
     return Error("gltf-buffer", fmt::format("the {} '{}' {}", what, shortened(uri), why),
@@ -51,36 +49,30 @@ Result<std::string> path_inside(const std::string& uri, const std::string& what,
   };
   if (folder.empty()) return refuse("is a file of its own, and no folder is known for it");
   const auto decoded = decode_percent(uri);
-  if (!decoded || decoded->empty()) return refuse("is no valid path");
-  const fs::path relative(*decoded);
-  if (relative.is_absolute() || decoded->find("://") != std::string::npos ||
-      decoded->find('\\') != std::string::npos) {
-    return refuse("is not a relative path");
-  }
-  for (const fs::path& part : relative) {
-    if (part == "..") return refuse("leaves the file's folder");
-  }
-  std::error_code error;
-  const fs::path root = fs::weakly_canonical(folder, error);
-  if (error) return refuse("cannot be looked for");
-  const fs::path full = fs::weakly_canonical(root / relative, error);
-  if (error) return refuse("cannot be looked for");
-  const fs::path inside = full.lexically_relative(root);
-  if (inside.empty() || *inside.begin() == "..") return refuse("leaves the file's folder");
-  return (fs::path(folder) / relative).string();
+  if (!decoded) return refuse("is no valid path");
+  auto path = path_inside(folder, *decoded);
+  if (path) return path;
+  return Error("gltf-buffer", fmt::format("the {}: {}", what, path.error().message),
+               path.error().hint);
+}
+
+}  // namespace
+
+bool is_data_uri(const std::string& uri) {
+  return uri.starts_with("data:");
 }
 
 // Any media type: what matters is that it is base64.
-Result<std::vector<unsigned char>> decode_data_uri(const std::string& uri, std::size_t index) {
+Result<std::vector<unsigned char>> decode_data_uri(const std::string& uri,
+                                                   const std::string& what) {
   constexpr std::string_view kMarker = ";base64,";
   const std::size_t marker = uri.find(kMarker);
   if (marker == std::string::npos || marker > 200) {
-    return Error("gltf-buffer", fmt::format("buffer {} is a data URI but not base64", index));
+    return Error("gltf-buffer", fmt::format("{} is a data URI but not base64", what));
   }
   // tinygltf counts in ints, and knows few media types.
   if (uri.size() > 0x7FFFFFFFu) {
-    return Error("gltf-too-large",
-                 fmt::format("buffer {} is a data URI of {} bytes", index, uri.size()),
+    return Error("gltf-too-large", fmt::format("{} is a data URI of {} bytes", what, uri.size()),
                  "save it as .glb");
   }
   std::vector<unsigned char> bytes;
@@ -90,15 +82,9 @@ Result<std::vector<unsigned char>> decode_data_uri(const std::string& uri, std::
   return bytes;
 }
 
-}  // namespace
-
-bool is_data_uri(const std::string& uri) {
-  return uri.starts_with("data:");
-}
-
 Result<InputFile> open_beside(const std::string& uri, const std::string& what,
                               const std::string& folder, std::uint64_t most_bytes) {
-  const auto path = path_inside(uri, what, folder);
+  const auto path = path_of_uri(uri, what, folder);
   if (!path) return path.error();
   return InputFile::open(*path, most_bytes);
 }
@@ -118,7 +104,7 @@ Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Cont
       }
       bytes = container.bin;
     } else if (is_data_uri(entry.uri)) {
-      auto decoded = decode_data_uri(entry.uri, i);
+      auto decoded = decode_data_uri(entry.uri, fmt::format("buffer {}", i));
       if (!decoded) return decoded.error();
       buffers.decoded.push_back(std::move(*decoded));
       bytes = std::as_bytes(std::span(buffers.decoded.back()));

@@ -28,6 +28,9 @@ Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Cont
 
 bool is_data_uri(const std::string& uri);
 
+// What a data URI holds; `what` is what it is, "buffer 2". Codes: gltf-buffer, gltf-too-large.
+Result<std::vector<unsigned char>> decode_data_uri(const std::string& uri, const std::string& what);
+
 // Opens a file that a glTF in `folder` names by a relative URI; `what` is what it is to it,
 // "buffer". Codes: gltf-buffer for a URI that leads out of the folder, and those of InputFile.
 Result<InputFile> open_beside(const std::string& uri, const std::string& what,

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "core/file.h"
+#include "core/path_inside.h"
 #include "formats/gltf/accessors_internal.h"
 #include "formats/gltf/buffers_internal.h"
 #include "formats/gltf/glb_container.h"
 #include "formats/gltf/json_text_internal.h"
+#include "formats/gltf/material_reader_internal.h"
 #include "formats/gltf/mesh_reader_internal.h"
 #include "math/quaternion.h"
 
@@ -429,15 +430,14 @@ Result<Scene> read(std::span<const std::byte> bytes, const ReadOptions& options)
   auto scene = Builder(*parsed, accessors).build();
   if (!scene) return scene;
   for (const InputFile& file : buffers->files) scene->files.push_back(file.path());
+  if (options.with_materials) read_materials(*parsed, buffers->views, options, *scene);
   return scene;
 }
 
-Result<Scene> read_file(const std::string& path) {
+Result<Scene> read_file(const std::string& path, ReadOptions options) {
   const auto file = InputFile::open(path);
   if (!file) return file.error();
-  ReadOptions options;
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  options.folder = folder.empty() ? "." : folder.string();
+  options.folder = folder_of(path);
   auto asset = read(file->bytes(), options);
   if (!asset) return std::move(asset.error()).in_file(path);
   for (Diagnostic& diagnostic : asset->diagnostics) diagnostic.where.file = path;

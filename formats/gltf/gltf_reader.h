@@ -23,12 +23,16 @@ struct ReadOptions {
   // folder. Empty: buffers in files are refused.
   std::string folder;
   std::uint64_t most_bytes = std::uint64_t{4} << 30;  // of the input and all its buffers together
+  // Scene::materials too, with pictures out of buffers, data URIs and files beside the file, under
+  // the same rules. A picture that cannot be used is left out with a warning (gltf-picture), as is
+  // what Material does not know (gltf-material).
+  bool with_materials = false;
 };
 
 Result<nodes::Scene> read(std::span<const std::byte> bytes, const ReadOptions& options = {});
 
 // Opens `path` and reads it with its own folder as ReadOptions::folder. Also the codes of
 // InputFile.
-Result<nodes::Scene> read_file(const std::string& path);
+Result<nodes::Scene> read_file(const std::string& path, ReadOptions options = {});
 
 }  // namespace krok::gltf

@@ -206,12 +206,17 @@ void drop_extras(Json& json) {
   }
 }
 
-Json used_parts(Json& json) {
-  Json used = Json::object();
-  for (const char* part : {"asset", "scene", "scenes", "nodes", "meshes", "skins", "animations",
-                           "accessors", "bufferViews"}) {
-    if (const auto found = json.find(part); found != json.end()) used[part] = std::move(*found);
+Json take_parts(Json& json, std::initializer_list<const char*> parts) {
+  Json taken = Json::object();
+  for (const char* part : parts) {
+    if (const auto found = json.find(part); found != json.end()) taken[part] = std::move(*found);
   }
+  return taken;
+}
+
+Json used_parts(Json& json) {
+  Json used = take_parts(json, {"asset", "scene", "scenes", "nodes", "meshes", "skins",
+                                "animations", "accessors", "bufferViews"});
   drop_extras(used);
   return used;
 }
@@ -281,6 +286,7 @@ Result<ParsedJson> parse_json(const Container& container) {
   result.target_names = read_target_names(json);
   result.cameras = read_cameras(json);
 
+  result.look = take_parts(json, {"materials", "textures", "images", "samplers"});
   const Json used = used_parts(json);
   json = Json();
   if (auto ok = check_integers(used); !ok) return ok.error();

@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct ParsedJson {
   tinygltf::Model model;  // without buffers, materials, images, cameras, extras and extensions
   std::vector<BufferEntry> buffers;
   std::vector<std::string> material_names;
+  nlohmann::json look;  // an object: materials, textures, images and samplers as the file has them
   std::vector<CameraEntry> cameras;
   std::vector<std::vector<std::string>> target_names;  // [meshes], each possibly empty
 };

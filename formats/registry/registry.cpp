@@ -63,13 +63,17 @@ Kind acclaim_kind(std::string_view text) {
   return Kind::unknown;
 }
 
-bool is_gltf_json(std::string_view text) {
-  if (!first_word(text).starts_with('{')) return false;
+Kind json_kind(std::string_view text) {
+  if (!first_word(text).starts_with('{')) return Kind::unknown;
   constexpr std::size_t kWindow = std::size_t{64} << 10;
   const std::string_view head = text.substr(0, kWindow);
   const std::string_view tail = text.substr(text.size() - std::min(text.size(), kWindow));
-  return head.find("\"asset\"") != std::string_view::npos ||
-         tail.find("\"asset\"") != std::string_view::npos;
+  const auto has = [](std::string_view part, std::string_view word) {
+    return part.find(word) != std::string_view::npos;
+  };
+  if (has(head, "\"krok.material/")) return Kind::material;
+  if (has(head, "\"krok.character/")) return Kind::character;
+  return has(head, "\"asset\"") || has(tail, "\"asset\"") ? Kind::gltf : Kind::unknown;
 }
 
 // 3DS: the main chunk, whose length is that of the file or whose first part is one that opens it.
@@ -135,12 +139,18 @@ std::string_view kind_name(Kind kind) {
       return "cam";
     case Kind::steps:
       return "steps";
+    case Kind::material:
+      return "material";
+    case Kind::character:
+      return "character";
     case Kind::bvh:
       return "bvh";
     case Kind::asf:
       return "asf";
     case Kind::amc:
       return "amc";
+    case Kind::pc2:
+      return "pc2";
     case Kind::glb:
       return "glb";
     case Kind::gltf:
@@ -177,18 +187,21 @@ Kind kind_of_content(std::span<const std::byte> content) {
   if (text.starts_with(view(kModelMagic))) return Kind::model;
   if (text.starts_with(view(kCamMagic))) return Kind::cam;
   if (text.starts_with(view(kStepsMagic))) return Kind::steps;
+  if (text.starts_with(std::string_view("POINTCACHE2", 12))) return Kind::pc2;
   if (text.starts_with("glTF")) return Kind::glb;
   if (same_word(first_word(text).substr(0, kHierarchy.size()), kHierarchy)) return Kind::bvh;
-  if (is_gltf_json(text)) return Kind::gltf;
+  if (const Kind kind = json_kind(text); kind != Kind::unknown) return kind;
   const Kind scene = scene_kind(text);
   return scene != Kind::unknown ? scene : acclaim_kind(text);
 }
 
 Kind kind_of_name(const std::string& path) {
   const std::string ending = extension(path);
-  for (const Kind kind : {Kind::anim, Kind::model, Kind::cam, Kind::steps, Kind::bvh, Kind::asf,
-                          Kind::amc, Kind::glb, Kind::gltf, Kind::fbx, Kind::collada, Kind::smd,
-                          Kind::ms3d, Kind::max_3ds, Kind::ase, Kind::md5mesh, Kind::md5anim}) {
+  for (const Kind kind :
+       {Kind::anim,      Kind::model,   Kind::cam, Kind::steps,   Kind::material,
+        Kind::character, Kind::bvh,     Kind::asf, Kind::amc,     Kind::pc2,
+        Kind::glb,       Kind::gltf,    Kind::fbx, Kind::collada, Kind::smd,
+        Kind::ms3d,      Kind::max_3ds, Kind::ase, Kind::md5mesh, Kind::md5anim}) {
     if (ending.size() > 1 && std::string_view(ending).substr(1) == kind_name(kind)) return kind;
   }
   return Kind::unknown;
@@ -210,12 +223,18 @@ std::string_view describe_content(std::span<const std::byte> content) {
       return "a Krok camera (.cam)";
     case Kind::steps:
       return "a Krok step library (.steps)";
+    case Kind::material:
+      return "Krok materials (.material)";
+    case Kind::character:
+      return "a Krok character (.character)";
     case Kind::bvh:
       return "a BVH text file";
     case Kind::asf:
       return "an Acclaim skeleton (ASF)";
     case Kind::amc:
       return "an Acclaim motion (AMC)";
+    case Kind::pc2:
+      return "a point cache (.pc2)";
     case Kind::glb:
       return "a binary glTF file (.glb)";
     case Kind::gltf:
@@ -259,8 +278,7 @@ std::string advice(Kind found, Kind wanted) {
   const bool capture = found == Kind::bvh || found == Kind::asf || found == Kind::amc;
   if (capture || is_read_through_assimp(found)) return "import it with krok-import";
   if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";
-  const bool own =
-      found == Kind::anim || found == Kind::model || found == Kind::cam || found == Kind::steps;
+  const bool own = found >= Kind::anim && found <= Kind::character;
   if (own) return "perhaps two arguments are in the wrong order";
   return {};
 }

@@ -17,10 +17,13 @@ enum class Kind : unsigned char {
   model,
   cam,
   steps,
+  material,
+  character,
   // captures
   bvh,
   asf,
   amc,
+  pc2,  // a point cache
   // scenes: glTF, and what formats/assimp reads
   glb,
   gltf,
@@ -49,9 +52,10 @@ std::string_view kind_name(Kind kind);
 bool is_read_through_assimp(Kind kind);
 
 // What the bytes show, whatever the file is called. Acclaim's files are known by their first
-// section, such as :version or :fully-specified, after comments. glTF's JSON is recognised by an
-// "asset" key in the first or last 64 KiB of a text that begins with a brace, COLLADA by its root
-// element, SMD by its version and nodes, MD5 by its version and what it counts.
+// section, such as :version or :fully-specified, after comments. Texts that begin with a brace:
+// Krok's own by the schema in their first 64 KiB, glTF's by an "asset" key in the first or last
+// 64 KiB. COLLADA by its root element, SMD by its version and nodes, MD5 by its version and what it
+// counts.
 Kind kind_of_content(std::span<const std::byte> content);
 
 // What the name promises, by its extension in any case.

@@ -80,8 +80,8 @@ class Shooting {
         camera_(camera),
         shape_(std::move(shape)),
         frames_(clip.frame_count()),
-        wanted_(Picture::of(camera.field_of_view, camera.aspect, camera.margin)),
-        edges_(Picture::of(camera.field_of_view, camera.aspect, 0)) {
+        wanted_(PictureExtent::of(camera.field_of_view, camera.aspect, camera.margin)),
+        edges_(PictureExtent::of(camera.field_of_view, camera.aspect, 0)) {
     find_ground(foot_joints(clip.skeleton, roles));
     find_azimuths(carrying_joint(roles));
   }
@@ -266,7 +266,7 @@ class Shooting {
   const FigureCamera& camera_;
   FigureShape shape_;
   int frames_;
-  Picture wanted_, edges_;  // with the margin, and the whole
+  PictureExtent wanted_, edges_;  // with the margin, and the whole
   double ground_ = 0, distance_ = 0;
   std::vector<double> azimuths_;
   std::vector<Vec3> path_, eyes_;

@@ -27,15 +27,15 @@ double reach(double half, double radius) {
 
 }  // namespace
 
-Picture Picture::of(double field_of_view, double aspect, double margin) {
+PictureExtent PictureExtent::of(double field_of_view, double aspect, double margin) {
   const double whole = std::tan(field_of_view / 2);
-  Picture picture;
+  PictureExtent picture;
   picture.half_height = whole * (1 - 2 * margin);
   picture.half_width = whole * aspect * (1 - 2 * margin);
   return picture;
 }
 
-double distance_to_frame(const Picture& picture, const Quat& orientation, const Vec3& aim,
+double distance_to_frame(const PictureExtent& picture, const Quat& orientation, const Vec3& aim,
                          std::span<const Ball> balls) {
   if (balls.empty()) return 0;
   double distance = -std::numeric_limits<double>::infinity();
@@ -52,7 +52,7 @@ double distance_to_frame(const Picture& picture, const Quat& orientation, const 
   return distance;
 }
 
-bool shows_all(const Picture& picture, const Vec3& eye, const Quat& orientation,
+bool shows_all(const PictureExtent& picture, const Vec3& eye, const Quat& orientation,
                std::span<const Ball> balls) {
   return balls.empty() || distance_to_frame(picture, orientation, eye, balls) <= kTouching;
 }

@@ -9,10 +9,11 @@
 
 #include "core/result.h"
 #include "math/types.h"
+#include "scene/material.h"
 
 // A character file as other programs write it: a tree of nodes with meshes, morph targets, skins,
 // cameras, and animations whose keys are at times of their own. It has the shape of glTF 2.0, into
-// which the other formats fit too. Materials are known by name; images and lights are left aside.
+// which the other formats fit too. Lights are left aside.
 // Indices between the parts are checked by the reader and always in range.
 // Source: Khronos Group, glTF 2.0 Specification (ISO/IEC 12113).
 
@@ -48,7 +49,8 @@ struct MorphTarget {
 struct Primitive {
   static constexpr int kMostInfluences = 8;
 
-  std::string material;     // its name; may be empty
+  std::string material;     // its name as the file has it; may be empty
+  int material_index = -1;  // in Scene::materials; -1: none, or materials were not asked for
   Shared<Vec3f> positions;  // never null
   Shared<Vec3f> normals;
   Shared<Vec4f> tangents;  // as glTF has them: unit xyz; w, 1 or -1, is the third axis' side
@@ -123,6 +125,9 @@ struct Scene {
   std::vector<Skin> skins;
   std::vector<Camera> cameras;
   std::vector<Animation> animations;
+  // With names of their own, which are the file's where those are unique and not empty; pictures
+  // with their bytes. Only where they were asked for.
+  std::vector<Material> materials;
   Space space;
   std::vector<std::string> files;  // paths of those that were read besides the one asked for
   Diagnostics diagnostics;         // what was left aside or is doubtful

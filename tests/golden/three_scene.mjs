@@ -6,6 +6,9 @@ import {dirname} from 'node:path';
 // What the loader expects of a browser and Node lacks.
 globalThis.self ??= globalThis;
 globalThis.ProgressEvent ??= class ProgressEvent extends Event {};
+// A picture is not decoded: `file` is what it is decoded from.
+globalThis.createImageBitmap ??= async (blob) => (
+    {file: new Uint8Array(await blob.arrayBuffer()), width: 1, height: 1, close() {}});
 
 const THREE = await import('three');
 const {GLTFLoader} = await import('three/addons/loaders/GLTFLoader.js');

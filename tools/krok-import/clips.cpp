@@ -7,6 +7,7 @@
 #include "capture/unique_names.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "tools/common/file_name.h"
 
 namespace krok::import {
 
@@ -18,23 +19,6 @@ constexpr std::size_t kMostListed = 20;
 std::string name_of(const nodes::Scene& scene, std::size_t index) {
   const std::string& name = scene.animations[index].name;
   return name.empty() ? fmt::format("animation {}", index) : to_utf8(name);
-}
-
-// Without characters that separate folders or that shells and other systems mind.
-std::string file_name_of(const std::string& name) {
-  std::string result;
-  for (const char c : name) {
-    const bool odd = static_cast<unsigned char>(c) < 32 || c == 127 ||
-                     std::string_view("/\\:*?\"<>|{}$`'&;!").find(c) != std::string_view::npos;
-    result += odd ? '_' : c;
-  }
-  while (result.starts_with('.') || result.starts_with('-')) result[0] = '_';
-  if (result.size() > 100) {
-    std::size_t end = 100;
-    while ((static_cast<unsigned char>(result[end]) & 0xC0) == 0x80) --end;
-    result.resize(end);
-  }
-  return result;
 }
 
 std::vector<ChosenClip> all_clips(const nodes::Scene& scene) {

@@ -42,6 +42,7 @@ Status check_capture_options(const Options& options, const std::string& path) {
                  fmt::format("a capture has no {}: {} cannot be used", what, option))
         .in_file(path);
   };
+  if (!options.character.empty()) return missing("materials", "--character");
   if (!options.cam.empty()) return missing("camera", "--cam");
   if (!options.camera.empty()) return missing("camera", "--camera");
   if (!options.morphs.empty()) return missing("morph targets", "--morphs");
@@ -90,14 +91,26 @@ Result<int> import_capture(const InputFile& input, registry::Kind kind, const Op
 
 Status check(const Options& options) {
   if (const auto how = read_options(options); !how) return how.error();
+  if (!options.character.empty() && !(options.model.empty() && options.morphs.empty())) {
+    return Error("usage", "--character writes model and morph targets itself, beside the character",
+                 "leave --model and --morphs out");
+  }
+  if (Status fits = check_output_kind(options.character, "--character", registry::Kind::character);
+      !fits) {
+    return fits;
+  }
+  if (options.character == "-") {
+    return Error("usage", "--character -: several files do not go to standard output");
+  }
   return check_output_kind(options.model, "--model", registry::Kind::model);
 }
 
 Result<int> run(const Options& given, ToolContext& context) {
   Options options = given;
   if (context.output.empty() && options.model.empty() && options.cam.empty() &&
-      options.morphs.empty() && options.weights.empty()) {
-    return Error("usage", "nothing to write: neither -o nor --model, --cam, --morphs is given",
+      options.character.empty() && options.morphs.empty() && options.weights.empty()) {
+    return Error("usage",
+                 "nothing to write: neither -o nor --model, --character, --cam, --morphs is given",
                  "-o OUTPUT.anim takes the motion");
   }
   if (!options.model.empty() && options.model == context.output) {

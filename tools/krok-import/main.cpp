@@ -22,6 +22,8 @@ krok::ToolSpec make_spec() {
        "an animation of a character, its mesh and skin, and the camera"},
       {"krok-import hero.glb --clip all -o 'hero_{clip}.anim' --morphs face.exr",
        "all animations, a file each, and the morph targets"},
+      {"krok-import hero.glb --character hero.character",
+       "the whole character: mesh, materials, textures and expressions, files beside each other"},
       {"krok-import broken.bvh -o broken.anim --repair --json",
        "fills faulty frames and lists the repairs for a script"},
       {"krok-import captures --out-dir motions --keep-going",

@@ -39,6 +39,13 @@ void declare_options(CLI::App& app, Options& options) {
       ->type_name("OUT.model");
 
   const std::string scene = "Characters";
+  app.add_option(
+         "--character", options.character,
+         "Also, or alone, write the whole character: OUT.character and beside it OUT.model, "
+         "OUT.material, the textures in OUT_textures/, the morph targets in "
+         "OUT_morphs.exr; in place of --model and --morphs")
+      ->type_name("OUT.character")
+      ->group(scene);
   app.add_option("--clip", options.clip,
                  "Which animation: its name, its number from 0, or all; for all the output's name "
                  "has {clip} where the animation's goes [the first]")

@@ -14,15 +14,16 @@ namespace krok::import {
 // What stands on the command line, as text where the library says what it means.
 struct Options {
   std::string input;
-  std::string skeleton;  // --skeleton, empty where it is to be found
-  std::string map;       // --map, empty where none is given
-  std::string model;     // --model, empty where none is wanted
-  std::string clip;      // --clip, empty for the first
-  std::string skin;      // --skin, empty for the largest skeleton
-  std::string cam;       // --cam, empty where none is wanted
-  std::string camera;    // --camera, empty for the first
-  std::string morphs;    // --morphs, empty where none are wanted
-  std::string weights;   // --morph-weights, likewise
+  std::string skeleton;   // --skeleton, empty where it is to be found
+  std::string map;        // --map, empty where none is given
+  std::string model;      // --model, empty where none is wanted
+  std::string character;  // --character, empty where none is wanted
+  std::string clip;       // --clip, empty for the first
+  std::string skin;       // --skin, empty for the largest skeleton
+  std::string cam;        // --cam, empty where none is wanted
+  std::string camera;     // --camera, empty for the first
+  std::string morphs;     // --morphs, empty where none are wanted
+  std::string weights;    // --morph-weights, likewise
   std::string unit = "auto";
   std::string up = "auto";
   std::string forward = "auto";

@@ -43,7 +43,7 @@ Result<int> import_scene(const InputFile& input, registry::Kind kind, const Opti
   if (Status fits = check_options(options); !fits) return fits.error();
   auto how = read_options(options);
   if (!how) return how.error();
-  auto scene = read_scene(input, kind, context);
+  auto scene = read_scene(input, kind, context, !options.character.empty());
   if (!scene) return scene.error();
   if (Status fits = check_strict(options, *scene); !fits) {
     return std::move(fits.error()).in_file(input.path());

@@ -20,6 +20,7 @@ Result<int> SceneImporter::run() {
   tell_what_else_is_there();
   const std::string written = outputs_.names();
   if (Status done = outputs_.finish(); !done) return done.error();
+  textures_.keep();
   report();
   context_.say(fmt::format("{} -> {}", line_, written));
   if (rig_) say_roles(rig_->skeleton, roles_, context_);
@@ -70,7 +71,7 @@ Status SceneImporter::choose() {
   clips_ = std::move(*clips);
   // In a batch nobody asked for the motion of this very file.
   still_ = clips_.empty() && context_.kept_messages != nullptr &&
-           (wants_model() || wants_camera() || wants_morphs());
+           (wants_model() || wants_character() || wants_camera() || wants_morphs());
   if (wants_motion() && clips_.empty()) {
     return missing("animation", "-o", "--model alone takes the character, --cam alone a camera");
   }
@@ -79,7 +80,7 @@ Status SceneImporter::choose() {
 
 Status SceneImporter::find_rig() {
   const bool known = scene_.space.metres && scene_.space.file_to_krok;
-  const bool needed = wants_motion() || wants_model() || wants_morphs();
+  const bool needed = wants_motion() || wants_model() || wants_character() || wants_morphs();
   if (!needed && known) return {};
   Diagnostics found;
   auto joints = character::choose_joints(scene_, evaluator_, options_.skin, found);
@@ -133,10 +134,10 @@ void SceneImporter::tell_what_else_is_there() {
   };
   std::size_t targets = 0, meshes = 0;
   for (const nodes::Mesh& mesh : scene_.meshes) targets += mesh.target_count();
-  if (!wants_model()) meshes = scene_.meshes.size();
+  if (!wants_model() && !wants_character()) meshes = scene_.meshes.size();
   if (meshes > 0) more.push_back(meshes == 1 ? "a mesh (--model)" : "meshes (--model)");
   if (!wants_camera()) has(cameras_.size(), "camera", "--cam");
-  if (!wants_morphs()) has(targets, "morph target", "--morphs");
+  if (!wants_morphs() && !wants_character()) has(targets, "morph target", "--morphs");
   if (more.empty()) return;
   warn("import-more", fmt::format("the file also holds {}", fmt::join(more, ", ")), "",
        Severity::note);

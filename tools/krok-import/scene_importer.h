@@ -13,6 +13,7 @@
 #include "tools/common/output_set.h"
 #include "tools/common/tool.h"
 #include "tools/krok-import/clips.h"
+#include "tools/krok-import/new_folder.h"
 #include "tools/krok-import/options.h"
 
 namespace krok::import {
@@ -36,6 +37,7 @@ class SceneImporter {
  private:
   bool wants_motion() const { return !context_.output.empty() && !still_; }
   bool wants_model() const { return !options_.model.empty(); }
+  bool wants_character() const { return !options_.character.empty(); }
   bool wants_camera() const { return !options_.cam.empty(); }
   bool wants_morphs() const { return !options_.morphs.empty() || !options_.weights.empty(); }
   // Tells what the library found, as said of this file.
@@ -53,6 +55,8 @@ class SceneImporter {
   // What is written (scene_outputs.cpp).
   Status add_figure();
   Status add_model();
+  void tell_of_model();
+  Status add_whole_character();
   Status add_morphs();
   Status add_weights(const ChosenClip& clip, const character::ChosenSampling& sampling);
   Status add_clips();
@@ -68,6 +72,7 @@ class SceneImporter {
   ToolContext& context_;
   const nodes::Scene& scene_;
   const nodes::Evaluator& evaluator_;
+  NewFolder textures_;  // before what is in it
   OutputSet outputs_;
 
   std::vector<ChosenClip> clips_;

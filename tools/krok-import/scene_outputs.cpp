@@ -9,6 +9,7 @@
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "tools/common/output_kind.h"
+#include "tools/krok-import/character_files.h"
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_importer.h"
 
@@ -19,14 +20,17 @@ namespace krok::import {
 using registry::Kind;
 
 Status SceneImporter::add_figure() {
-  if (!wants_model() && !wants_morphs()) return {};
+  if (!wants_model() && !wants_character() && !wants_morphs()) return {};
   Diagnostics found;
   auto figure = character::make_figure(scene_, evaluator_, *rig_, conversion_,
-                                       {.with_morphs = wants_morphs()}, found);
+                                       {.with_morphs = wants_morphs() || wants_character()}, found);
   if (!figure) return figure.error();
   tell(found);
   figure_ = std::move(*figure);
   if (Status added = add_model(); !added) return added;
+  if (wants_character()) {
+    if (Status added = add_whole_character(); !added) return added;
+  }
   return wants_morphs() ? add_morphs() : Status();
 }
 
@@ -35,6 +39,14 @@ Status SceneImporter::add_model() {
   Model& model = figure_.model;
   model.provenance = context_.provenance();
   model.provenance.conversions = conversions_;
+  tell_of_model();
+  return outputs_.add(options_.model, [&](OutputFile& file) {
+    return model::write(model, {.orientation = options_.orientation}, file);
+  });
+}
+
+void SceneImporter::tell_of_model() {
+  const Model& model = figure_.model;
   result_["model"] = {{"vertices", model.vertex_count()},
                       {"triangles", model.triangles.size()},
                       {"parts", model.parts.size()},
@@ -43,9 +55,26 @@ Status SceneImporter::add_model() {
                       counted(model.skeleton.joint_count(), "joint"),
                       counted(model.vertex_count(), "vertex", "vertices"),
                       counted(static_cast<long long>(model.triangles.size()), "triangle"));
-  return outputs_.add(options_.model, [&](OutputFile& file) {
-    return model::write(model, {.orientation = options_.orientation}, file);
-  });
+}
+
+Status SceneImporter::add_whole_character() {
+  CharacterFiles files{options_.character, options_.orientation, {}, context_.provenance()};
+  files.provenance.conversions = conversions_;
+  if (!figure_.morphs.names.empty()) {
+    auto weights = character::make_weights(figure_, evaluator_, -1, {});
+    if (!weights) return weights.error();
+    files.weights = std::move(weights->values);
+  }
+  const auto added = add_character(files, scene_, figure_, outputs_, textures_);
+  if (!added) return added.error();
+  tell_of_model();
+  result_["character"] = {{"materials", added->materials},
+                          {"textures", added->pictures},
+                          {"expressions", added->character.expressions.size()},
+                          {"eyes", added->character.eyes.size()}};
+  line_ += fmt::format(", {}, {}", counted(static_cast<long long>(added->materials), "material"),
+                       counted(static_cast<long long>(added->pictures), "texture"));
+  return {};
 }
 
 Status SceneImporter::add_morphs() {

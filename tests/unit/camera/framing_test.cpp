@@ -46,12 +46,12 @@ std::vector<Ball> some_balls(unsigned seed) {
 
 TEST(Framing, OneBallByHand) {
   // 90 degrees: a ball of radius r touches the edges at the distance r sqrt(2).
-  const Picture picture = Picture::of(kPi / 2, 1, 0);
+  const PictureExtent picture = PictureExtent::of(kPi / 2, 1, 0);
   const std::vector<Ball> ball = {{Vec3::Zero(), 0.5}};
   EXPECT_NEAR(distance_to_frame(picture, Quat::Identity(), Vec3::Zero(), ball),
               0.5 * std::sqrt(2.0), 1e-12);
   // Nearer than its own radius and the near plane it may never be, however wide the lens.
-  const Picture wide = Picture::of(3.1, 1, 0);
+  const PictureExtent wide = PictureExtent::of(3.1, 1, 0);
   EXPECT_NEAR(distance_to_frame(wide, Quat::Identity(), Vec3::Zero(), ball), 0.55, 1e-9);
   EXPECT_EQ(distance_to_frame(picture, Quat::Identity(), Vec3::Zero(), {}), 0);
 }
@@ -61,7 +61,7 @@ TEST(Framing, AtItsDistanceAllIsInsideAndNotAnyNearer) {
     const auto balls = some_balls(seed);
     const double fov = 0.3 + 0.05 * seed, aspect = 0.5 + 0.1 * seed;
     const Quat orientation = looking_from(0.7 * seed, 0.1 * (static_cast<double>(seed) - 10));
-    const Picture picture = Picture::of(fov, aspect, 0);
+    const PictureExtent picture = PictureExtent::of(fov, aspect, 0);
     const Vec3 aim(0.1, 0.2, -0.1);
     const double distance = distance_to_frame(picture, orientation, aim, balls);
     const Vec3 eye = aim + distance * (orientation * Vec3::UnitZ());
@@ -80,7 +80,7 @@ TEST(Framing, AtItsDistanceAllIsInsideAndNotAnyNearer) {
 
 TEST(Framing, TheMarginStaysFree) {
   const auto balls = some_balls(3);
-  const Picture picture = Picture::of(0.7, 1.5, 0.1);
+  const PictureExtent picture = PictureExtent::of(0.7, 1.5, 0.1);
   const Quat orientation = looking_from(0.4, 0.2);
   const double distance = distance_to_frame(picture, orientation, Vec3::Zero(), balls);
   for (const Ball& ball : balls) {
@@ -94,7 +94,7 @@ TEST(Framing, TheTightPlaceTouchesOppositeEdges) {
     const auto balls = some_balls(seed);
     const double fov = 0.3 + 0.05 * seed, aspect = 0.5 + 0.1 * seed;
     const Quat orientation = looking_from(1.1 * seed, 0.05 * seed);
-    const Picture picture = Picture::of(fov, aspect, 0);
+    const PictureExtent picture = PictureExtent::of(fov, aspect, 0);
     TightPlace tight(picture, orientation);
     for (const Ball& ball : balls) tight.add(ball);
     const Vec3 eye = tight.place();
@@ -110,7 +110,7 @@ TEST(Framing, TheTightPlaceTouchesOppositeEdges) {
     EXPECT_GT(tight.nearest(), 0);
     EXPECT_GT(tight.farthest(), tight.nearest());
   }
-  EXPECT_EQ(TightPlace(Picture::of(1, 1, 0), Quat::Identity()).place(), Vec3::Zero());
+  EXPECT_EQ(TightPlace(PictureExtent::of(1, 1, 0), Quat::Identity()).place(), Vec3::Zero());
 }
 
 }  // namespace

@@ -1,16 +1,14 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
-#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "core/file.h"
+#include "support/written_bytes.h"
 
 // A reader of GLB for tests, of its own so that a fault of the project's reader cannot hide one of
 // its writer.
@@ -38,23 +36,6 @@ struct Glb {
     return result;
   }
 };
-
-// What `write` puts into a file; `status` receives what it returns.
-inline std::string bytes_of(const std::function<Status(OutputFile&)>& write, Status& status) {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  const std::string path =
-      testing::TempDir() + "krok_gltf_" + info->name() + std::to_string(getpid());
-  auto file = OutputFile::create(path);
-  EXPECT_TRUE(file.ok());
-  status = write(*file);
-  if (!status) return {};
-  EXPECT_TRUE(file->commit().ok());
-  const auto input = InputFile::open(path);
-  EXPECT_TRUE(input.ok());
-  std::string bytes(input->text());
-  std::filesystem::remove(path);
-  return bytes;
-}
 
 inline Glb written(const std::function<Status(OutputFile&)>& write) {
   Status status;

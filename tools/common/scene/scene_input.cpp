@@ -11,8 +11,9 @@ bool is_scene(Kind kind) {
   return kind == Kind::glb || kind == Kind::gltf || registry::is_read_through_assimp(kind);
 }
 
-Result<nodes::Scene> read_scene(const InputFile& input, Kind kind, ToolContext& context) {
-  if (!registry::is_read_through_assimp(kind)) return read_gltf(input, context);
+Result<nodes::Scene> read_scene(const InputFile& input, Kind kind, ToolContext& context,
+                                bool with_materials) {
+  if (!registry::is_read_through_assimp(kind)) return read_gltf(input, context, with_materials);
   if (input.path() == "-") {
     return Error("assimp-kind",
                  "only BVH, Acclaim's formats and GLB can be read from standard input")
@@ -20,7 +21,9 @@ Result<nodes::Scene> read_scene(const InputFile& input, Kind kind, ToolContext& 
   }
   if (kind == Kind::md5anim) context.chose_beside(input.path(), ".md5mesh");
   if (kind == Kind::md5mesh) context.chose_beside(input.path(), ".md5anim");
-  return with_its_files(assimp::read_file(input.path()), input, context);
+  assimp::ReadOptions options;
+  options.with_materials = with_materials;
+  return with_its_files(assimp::read_file(input.path(), options), input, context);
 }
 
 }  // namespace krok

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/bytes.h"
+#include "formats/assimp/parser_internal.h"
+#include "scene/material.h"
+
+// Private to this folder: materials between the child and its caller.
+
+namespace krok::assimp {
+
+inline void put_text(ByteWriter& out, std::string_view text) {
+  out.write(static_cast<std::uint64_t>(text.size()));
+  out.append_text(text);
+}
+
+template <typename T>
+void put_array(ByteWriter& out, const std::vector<T>& values) {
+  out.write(static_cast<std::uint64_t>(values.size()));
+  out.append(std::as_bytes(std::span(values)));
+}
+
+// Pictures that several textures share are put once: `number_of` has those before.
+void put_material(ByteWriter& out, const Material& material,
+                  std::map<const Picture*, std::int32_t>& number_of);
+
+// `pictures` are those that were taken before.
+Material take_material(Parser& in, std::vector<std::shared_ptr<const Picture>>& pictures);
+
+}  // namespace krok::assimp

@@ -1,0 +1,220 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/gltf/material_reader_internal.h"
+#include "formats/gltf/picture_reader_internal.h"
+#include "nodes/materials.h"
+
+namespace krok::gltf {
+
+namespace {
+
+using Json = nlohmann::json;
+
+const Json kNothing = Json::object();
+
+// A member that is an object; an empty one where there is none.
+const Json& object_in(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_object() ? *found : kNothing;
+}
+
+// A member of a list that a member numbers.
+const Json* entry_of(const Json& root, const char* list, const Json& number) {
+  const auto entries = root.find(list);
+  if (entries == root.end() || !entries->is_array() || !number.is_number_unsigned()) return nullptr;
+  const auto index = number.get<std::uint64_t>();
+  if (index >= entries->size() || !(*entries)[index].is_object()) return nullptr;
+  return &(*entries)[index];
+}
+
+bool truth_in(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_boolean() && found->get<bool>();
+}
+
+class MaterialReader {
+ public:
+  MaterialReader(const ParsedJson& parsed, std::span<const std::span<const std::byte>> buffers,
+                 const ReadOptions& options, nodes::Scene& scene)
+      : parsed_(parsed), scene_(scene), pictures_(parsed, buffers, options) {}
+
+  void read() {
+    const auto list = parsed_.look.find("materials");
+    if (list == parsed_.look.end() || !list->is_array()) return;
+    for (std::size_t m = 0; m < list->size(); ++m) {
+      scene_.materials.push_back(read_material((*list)[m]));
+      scene_.materials.back().name = parsed_.material_names[m];
+    }
+    nodes::make_names_unique(scene_.materials);
+    for (const std::string& file : pictures_.files()) scene_.files.push_back(file);
+    tell();
+  }
+
+ private:
+  Material read_material(const Json& json) {
+    Material material;
+    if (!json.is_object()) return material;
+    read_surface(json, material);
+    const Json& normal = object_in(json, "normalTexture");
+    material.normal_texture = texture(normal);
+    material.normal_scale = factor(normal, "scale", 1, -kMostNormalScale, kMostNormalScale);
+    const Json& occlusion = object_in(json, "occlusionTexture");
+    material.occlusion_texture = texture(occlusion);
+    material.occlusion_strength = factor(occlusion, "strength", 1);
+    material.emissive_texture = texture(object_in(json, "emissiveTexture"));
+    material.emissive = factors<3>(json, "emissiveFactor", 0);
+    const auto mode = json.find("alphaMode");
+    if (mode != json.end() && *mode == "BLEND") material.alpha = Material::Alpha::blend;
+    if (mode != json.end() && *mode == "MASK") material.alpha = Material::Alpha::mask;
+    material.alpha_cutoff = factor(json, "alphaCutoff", 0.5f);
+    material.double_sided = truth_in(json, "doubleSided");
+    return material;
+  }
+
+  // What says how the surface takes light: the metallic-roughness model, or as much of the older
+  // specular-glossiness one as that can tell.
+  void read_surface(const Json& json, Material& material) {
+    const Json& extensions = object_in(json, "extensions");
+    material.unlit = extensions.contains("KHR_materials_unlit");
+    for (const auto& [name, value] : extensions.items()) {
+      if (name != "KHR_materials_unlit") left_aside_.insert(name);
+    }
+    const Json& surface = object_in(json, "pbrMetallicRoughness");
+    const Json& glossy = object_in(extensions, "KHR_materials_pbrSpecularGlossiness");
+    if (surface.empty() && !glossy.empty()) {
+      material.base_color = factors<4>(glossy, "diffuseFactor", 1);
+      material.base_color_texture = texture(object_in(glossy, "diffuseTexture"));
+      material.roughness = 1.0f - factor(glossy, "glossinessFactor", 1);
+      return;
+    }
+    material.base_color = factors<4>(surface, "baseColorFactor", 1);
+    material.base_color_texture = texture(object_in(surface, "baseColorTexture"));
+    material.metallic = factor(surface, "metallicFactor", 1);
+    material.roughness = factor(surface, "roughnessFactor", 1);
+    material.metallic_roughness_texture = texture(object_in(surface, "metallicRoughnessTexture"));
+  }
+
+  Texture texture(const Json& info) {
+    Texture texture;
+    if (info.empty()) return texture;
+    const Json& transform = object_in(object_in(info, "extensions"), "KHR_texture_transform");
+    const auto coordinates = transform.contains("texCoord") ? transform : info;
+    if (const auto set = coordinates.find("texCoord"); set != coordinates.end() && *set != 0) {
+      ++of_other_coordinates_;
+      return texture;
+    }
+    if (!transform.empty()) left_aside_.insert("KHR_texture_transform");
+    const Json* entry = entry_of(parsed_.look, "textures", info.value("index", Json()));
+    const auto source = entry == nullptr ? kNothing.end() : entry->find("source");
+    if (entry == nullptr || source == entry->end() || !source->is_number_unsigned()) {
+      ++without_picture_;
+      return texture;
+    }
+    texture.picture = pictures_.get(source->get<std::size_t>(), scene_.diagnostics);
+    const Json* sampler = entry_of(parsed_.look, "samplers", entry->value("sampler", Json()));
+    if (sampler == nullptr || !texture) return texture;
+    texture.wrap_u = wrap(*sampler, "wrapS");
+    texture.wrap_v = wrap(*sampler, "wrapT");
+    const auto filter = sampler->find("magFilter");
+    texture.smooth = filter == sampler->end() || *filter != TINYGLTF_TEXTURE_FILTER_NEAREST;
+    return texture;
+  }
+
+  static Texture::Wrap wrap(const Json& sampler, const char* key) {
+    const auto found = sampler.find(key);
+    if (found == sampler.end()) return Texture::Wrap::repeat;
+    if (*found == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Texture::Wrap::clamp;
+    return *found == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Texture::Wrap::mirror
+                                                           : Texture::Wrap::repeat;
+  }
+
+  // A number brought into its range.
+  float in_range(const Json& number, float usual, float least = 0, float most = 1) {
+    const double value = number.is_number() ? number.get<double>() : usual;
+    if (!number.is_number() || !(value >= least && value <= most)) ++out_of_range_;
+    return static_cast<float>(
+        std::clamp<double>(value, static_cast<double>(least), static_cast<double>(most)));
+  }
+
+  float factor(const Json& object, const char* key, float usual, float least = 0, float most = 1) {
+    const auto found = object.find(key);
+    return found == object.end() ? usual : in_range(*found, usual, least, most);
+  }
+
+  template <int kCount>
+  Eigen::Matrix<float, kCount, 1> factors(const Json& object, const char* key, float usual) {
+    Eigen::Matrix<float, kCount, 1> values;
+    values.setConstant(usual);
+    const auto found = object.find(key);
+    if (found == object.end()) return values;
+    if (!found->is_array() || found->size() != kCount) {
+      ++out_of_range_;
+      return values;
+    }
+    for (int i = 0; i < kCount; ++i) {
+      values[i] = in_range((*found)[static_cast<std::size_t>(i)], usual);
+    }
+    return values;
+  }
+
+  void warn(std::string message, std::string hint = {}) {
+    Diagnostic warning;
+    warning.severity = Severity::warning;
+    warning.code = "gltf-material";
+    warning.message = std::move(message);
+    warning.hint = std::move(hint);
+    scene_.diagnostics.push_back(std::move(warning));
+  }
+
+  // What was left out, once for the whole file.
+  void tell() {
+    if (!left_aside_.empty()) {
+      std::vector<std::string> names;
+      for (const std::string& name : left_aside_) names.push_back(shown(name));
+      constexpr std::size_t kMostNames = 10;
+      if (names.size() > kMostNames) names.resize(kMostNames);
+      warn(fmt::format("materials use what is left aside: {}", fmt::join(names, ", ")),
+           "they may look otherwise than in other programs");
+    }
+    const auto left_out = [&](int count, const char* what) {
+      if (count > 0) warn(fmt::format("{} {}: left out", counted(count, "texture"), what));
+    };
+    left_out(of_other_coordinates_, "laid out by other texture coordinates than the first");
+    left_out(without_picture_, "without an image that can be used");
+    if (out_of_range_ > 0) {
+      warn(fmt::format("{} of materials out of range: brought into it",
+                       counted(out_of_range_, "factor")));
+    }
+  }
+
+  const ParsedJson& parsed_;
+  nodes::Scene& scene_;
+  Pictures pictures_;
+  std::set<std::string> left_aside_;
+  int of_other_coordinates_ = 0, without_picture_ = 0, out_of_range_ = 0;
+};
+
+}  // namespace
+
+void read_materials(const ParsedJson& parsed, std::span<const std::span<const std::byte>> buffers,
+                    const ReadOptions& options, nodes::Scene& scene) {
+  MaterialReader(parsed, buffers, options, scene).read();
+  const auto count = static_cast<int>(scene.materials.size());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) {
+      const int material = parsed.model.meshes[m].primitives[p].material;
+      if (material >= 0 && material < count) {
+        scene.meshes[m].primitives[p].material_index = material;
+      }
+    }
+  }
+}
+
+}  // namespace krok::gltf

@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/gltf/document_internal.h"
+
+// What a file that is written says of how its surfaces look.
+
+namespace krok::gltf {
+
+namespace {
+
+// The double that people mean by a float: 0.8f as 0.8.
+double as_meant(float value) {
+  return parse_finite(shortest(value)).value_or(value);
+}
+
+template <typename Vector>
+std::vector<double> list_of(const Vector& values) {
+  std::vector<double> list;
+  for (const float value : values) list.push_back(as_meant(value));
+  return list;
+}
+
+int wrap_code(Texture::Wrap wrap) {
+  if (wrap == Texture::Wrap::clamp) return TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+  if (wrap == Texture::Wrap::mirror) return TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
+  return TINYGLTF_TEXTURE_WRAP_REPEAT;
+}
+
+tinygltf::Sampler sampler_of(const Texture& texture) {
+  tinygltf::Sampler sampler;
+  sampler.magFilter =
+      texture.smooth ? TINYGLTF_TEXTURE_FILTER_LINEAR : TINYGLTF_TEXTURE_FILTER_NEAREST;
+  sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+  sampler.wrapS = wrap_code(texture.wrap_u);
+  sampler.wrapT = wrap_code(texture.wrap_v);
+  return sampler;
+}
+
+// All but its textures.
+tinygltf::Material factors_of(const Material& from) {
+  tinygltf::Material material;
+  material.name = from.name;
+  material.pbrMetallicRoughness.baseColorFactor = list_of(from.base_color);
+  material.pbrMetallicRoughness.metallicFactor = as_meant(from.metallic);
+  material.pbrMetallicRoughness.roughnessFactor = as_meant(from.roughness);
+  material.emissiveFactor = list_of(from.emissive);
+  if (from.alpha == Material::Alpha::blend) material.alphaMode = "BLEND";
+  if (from.alpha == Material::Alpha::mask) {
+    material.alphaMode = "MASK";
+    material.alphaCutoff = as_meant(from.alpha_cutoff);
+  }
+  material.doubleSided = from.double_sided;
+  return material;
+}
+
+constexpr const char* kUnlit = "KHR_materials_unlit";
+
+}  // namespace
+
+Result<int> Document::add_picture(const Picture& picture) {
+  if (const auto known = pictures_.find(&picture); known != pictures_.end()) return known->second;
+  auto facts = picture_facts(picture.bytes);
+  if (!facts) return std::move(facts.error()).in_file(picture.path);
+  tinygltf::BufferView view;
+  view.buffer = 0;
+  view.byteOffset = size_;
+  view.byteLength = picture.bytes.size();
+  put(picture.bytes, Keep::view);
+  tinygltf::Image image;
+  image.name = picture.name;
+  image.mimeType = media_type(facts->kind);
+  image.bufferView = static_cast<int>(gltf.bufferViews.size());
+  gltf.bufferViews.push_back(std::move(view));
+  const int index = static_cast<int>(gltf.images.size());
+  gltf.images.push_back(std::move(image));
+  pictures_.emplace(&picture, index);
+  return index;
+}
+
+int Document::add_sampler(const Texture& texture) {
+  const tinygltf::Sampler sampler = sampler_of(texture);
+  const auto known = std::ranges::find(gltf.samplers, sampler);
+  const int index = static_cast<int>(known - gltf.samplers.begin());
+  if (known == gltf.samplers.end()) gltf.samplers.push_back(sampler);
+  return index;
+}
+
+// The index of a texture, -1 for none.
+Result<int> Document::add_texture(const Texture& texture) {
+  if (!texture) return -1;
+  const auto picture = add_picture(*texture.picture);
+  if (!picture) return picture;
+  // The usual needs no words.
+  const Texture usual{texture.picture};
+  const int sampler = texture == usual ? -1 : add_sampler(texture);
+  const auto [place, made] =
+      textures_.emplace(std::pair(*picture, sampler), static_cast<int>(gltf.textures.size()));
+  if (made) {
+    tinygltf::Texture added;
+    added.source = *picture;
+    added.sampler = sampler;
+    gltf.textures.push_back(std::move(added));
+  }
+  return place->second;
+}
+
+Result<int> Document::add_material(const std::string& name,
+                                   const std::map<std::string, int>& attributes) {
+  const auto [place, made] = materials_.emplace(name, static_cast<int>(gltf.materials.size()));
+  if (!made) return place->second;
+  Material usual;
+  usual.name = name.empty() ? "default" : name;
+  const Material* const given = find_material(options_.materials, name);
+  const Material& from = given != nullptr ? *given : usual;
+  tinygltf::Material material = factors_of(from);
+  if (attributes.contains("TEXCOORD_0")) {
+    const Texture none;
+    const bool with_tangents = attributes.contains("TANGENT");
+    for (const auto& [texture, index] :
+         {std::pair{&from.base_color_texture,
+                    &material.pbrMetallicRoughness.baseColorTexture.index},
+          {&from.metallic_roughness_texture,
+           &material.pbrMetallicRoughness.metallicRoughnessTexture.index},
+          {with_tangents ? &from.normal_texture : &none, &material.normalTexture.index},
+          {&from.occlusion_texture, &material.occlusionTexture.index},
+          {&from.emissive_texture, &material.emissiveTexture.index}}) {
+      const auto added = add_texture(*texture);
+      if (!added) return added;
+      *index = *added;
+    }
+    material.normalTexture.scale = as_meant(from.normal_scale);
+    material.occlusionTexture.strength = as_meant(from.occlusion_strength);
+  }
+  if (from.unlit) {
+    material.extensions[kUnlit] = tinygltf::Value(tinygltf::Value::Object{});
+    if (std::ranges::find(gltf.extensionsUsed, kUnlit) == gltf.extensionsUsed.end()) {
+      gltf.extensionsUsed.emplace_back(kUnlit);
+    }
+  }
+  gltf.materials.push_back(std::move(material));
+  return place->second;
+}
+
+Status Document::add_eyes(const Skeleton& skeleton, int skin,
+                          std::span<const Character::Eye> eyes) {
+  const int first = gltf.skins[static_cast<std::size_t>(skin)].joints.front();
+  for (const Character::Eye& eye : eyes) {
+    const auto found = std::ranges::find(skeleton.names, eye.joint);
+    if (found == skeleton.names.end()) {
+      return Error("gltf-structure", fmt::format("eye '{}' moves with the joint '{}', which the "
+                                                 "skeleton has not",
+                                                 shown(eye.name), shown(eye.joint)));
+    }
+    const auto joint = static_cast<std::size_t>(found - skeleton.names.begin());
+    const Vec3f place =
+        (skeleton.reference[joint].inverse() * eye.position.cast<double>()).cast<float>();
+    tinygltf::Node node;
+    node.name = unique_node_name(eye.name + "_eye");
+    if (!place.isZero(0)) node.translation = {place.x(), place.y(), place.z()};
+    gltf.nodes[static_cast<std::size_t>(first) + joint].children.push_back(
+        static_cast<int>(gltf.nodes.size()));
+    gltf.nodes.push_back(std::move(node));
+  }
+  return {};
+}
+
+}  // namespace krok::gltf

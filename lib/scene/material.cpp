@@ -1,0 +1,72 @@
+#include "scene/material.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "core/text.h"
+
+namespace krok {
+
+namespace {
+
+// The first factor that is out of its range, or the text "".
+std::string fault_of(const Material& material) {
+  const auto outside = [](float value) { return !(value >= 0.0f && value <= 1.0f); };
+  const auto any = [&](const auto& values) {
+    return std::any_of(values.data(), values.data() + values.size(), outside);
+  };
+  const auto out_of_range = [](const char* what) {
+    return fmt::format("its {} is not from 0 to 1", what);
+  };
+  if (any(material.base_color)) return out_of_range("base colour");
+  if (outside(material.metallic)) return out_of_range("metallic factor");
+  if (outside(material.roughness)) return out_of_range("roughness");
+  if (outside(material.occlusion_strength)) return out_of_range("occlusion strength");
+  if (any(material.emissive)) return out_of_range("emissive colour");
+  if (outside(material.alpha_cutoff)) return out_of_range("alpha cutoff");
+  if (!(std::abs(material.normal_scale) <= kMostNormalScale)) {
+    return fmt::format("its normal scale is not within {}", kMostNormalScale);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::array<Texture*, 5> textures_of(Material& material) {
+  return {&material.base_color_texture, &material.metallic_roughness_texture,
+          &material.normal_texture, &material.occlusion_texture, &material.emissive_texture};
+}
+
+std::array<const Texture*, 5> textures_of(const Material& material) {
+  return {&material.base_color_texture, &material.metallic_roughness_texture,
+          &material.normal_texture, &material.occlusion_texture, &material.emissive_texture};
+}
+
+Status check(std::span<const Material> materials) {
+  std::unordered_set<std::string_view> seen;
+  for (const Material& material : materials) {
+    if (!is_name(material.name)) {
+      return Error("material-name",
+                   "a material's name is empty, too long, not UTF-8 or has a zero byte");
+    }
+    if (!seen.insert(material.name).second) {
+      return Error("material-name",
+                   fmt::format("two materials are called '{}'", shown(material.name)));
+    }
+    std::string fault = fault_of(material);
+    if (!std::ranges::all_of(material.shaders, is_utf8)) fault = "a shader's name is not UTF-8";
+    if (fault.empty()) continue;
+    return Error("material-value", fmt::format("material '{}': {}", shown(material.name), fault));
+  }
+  return {};
+}
+
+const Material* find_material(std::span<const Material> materials, std::string_view name) {
+  const auto found = std::ranges::find(materials, name, &Material::name);
+  return found == materials.end() ? nullptr : &*found;
+}
+
+}  // namespace krok

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "math/types.h"
+#include "scene/picture.h"
+
+namespace krok {
+
+// A picture on a surface, at the model's texture coordinates: u to the right, v down, the picture
+// from 0 to 1.
+struct Texture {
+  enum class Wrap : unsigned char { repeat, clamp, mirror };  // beyond 0 .. 1
+
+  std::shared_ptr<const Picture> picture;  // null: no texture. Several textures may share one
+  Wrap wrap_u = Wrap::repeat;
+  Wrap wrap_v = Wrap::repeat;
+  bool smooth = true;  // false: from near each pixel is a square
+
+  explicit operator bool() const { return picture != nullptr; }
+  friend bool operator==(const Texture&, const Texture&) = default;  // the very same picture
+};
+
+// How a surface looks: glTF's metallic-roughness model. Factors are linear and multiply what their
+// texture has at a place, or stand alone where there is none. As constructed: light grey and matt.
+// Source: Khronos Group, glTF 2.0 Specification (ISO/IEC 12113), section 3.9.
+struct Material {
+  enum class Alpha : unsigned char {
+    opaque,  // alpha does not count
+    mask,    // drawn where alpha >= alpha_cutoff
+    blend    // over what is behind
+  };
+
+  std::string name;  // is_name(), unique among those of one file
+
+  Vec4f base_color{0.8f, 0.8f, 0.8f, 1.0f};  // red, green, blue, alpha; 0 .. 1
+  Texture base_color_texture;                // sRGB and alpha
+  float metallic = 0.0f;                     // 0 .. 1
+  float roughness = 0.8f;                    // 0 .. 1
+  Texture metallic_roughness_texture;        // roughness in green, metallic in blue
+  Texture normal_texture;                    // in the frame of normal and tangent; 0.5 is 0
+  float normal_scale = 1.0f;                 // of its x and y, +-kMostNormalScale
+  Texture occlusion_texture;                 // in red: how much light from around gets there
+  float occlusion_strength = 1.0f;           // 0 .. 1
+  Vec3f emissive = Vec3f::Zero();            // 0 .. 1
+  Texture emissive_texture;                  // sRGB
+
+  Alpha alpha = Alpha::opaque;
+  float alpha_cutoff = 0.5f;  // 0 .. 1
+  bool double_sided = false;  // backs of triangles are drawn too
+  bool unlit = false;         // shows base_color whatever the light
+
+  // Programs that other software draws it with, by name; kept and not used.
+  std::vector<std::string> shaders;
+};
+
+inline constexpr float kMostNormalScale = 1000.0f;
+
+// All its textures, those that are none too: base colour, metallic-roughness, normal, occlusion,
+// emissive.
+std::array<Texture*, 5> textures_of(Material& material);
+std::array<const Texture*, 5> textures_of(const Material& material);
+
+// Whether what the comments above promise holds of the materials of one file. Codes:
+// material-name, material-value.
+Status check(std::span<const Material> materials);
+
+// The one with this name, or nullptr.
+const Material* find_material(std::span<const Material> materials, std::string_view name);
+
+}  // namespace krok

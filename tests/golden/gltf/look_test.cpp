@@ -1,0 +1,120 @@
+// Would fail if a glTF file with materials broke the standard, or three.js showed other colours,
+// textures or eyes than the character has.
+
+#include <nlohmann/json.hpp>
+
+#include "formats/gltf/baked_writer.h"
+#include "formats/gltf/gltf_writer.h"
+#include "golden/gltf/judges.h"
+#include "support/mesh_motions.h"
+#include "support/small_pictures.h"
+#include "support/test_scenes.h"
+
+namespace krok {
+namespace {
+
+class GltfLook : public GltfJudges {
+ protected:
+  GltfLook() : model_(test::tube_model(test::with_turned_joints(test::human_skeleton()))) {
+    model_.texture_coordinates.assign(model_.positions.size(), Vec2f(0.25f, 0.75f));
+    const auto count = static_cast<std::uint32_t>(model_.triangles.size());
+    model_.parts = {{"a", "skin", 0, 10}, {"b", "glass", 10, 10}, {"c", "", 20, count - 20}};
+    const auto color = test::picture(test::png()), detail = test::picture(test::jpeg());
+    Material skin;
+    skin.name = "skin";
+    skin.base_color = {1, 0.5f, 0.25f, 1};
+    skin.base_color_texture = {color, Texture::Wrap::clamp, Texture::Wrap::mirror, false};
+    skin.metallic = 0.25f;
+    skin.roughness = 0.5f;
+    skin.metallic_roughness_texture = {detail};
+    skin.normal_texture = {detail};
+    skin.normal_scale = -0.5f;
+    skin.occlusion_texture = {detail};
+    skin.emissive = {0, 0, 0.5f};
+    skin.emissive_texture = {color};
+    skin.alpha = Material::Alpha::mask;
+    skin.alpha_cutoff = 0.75f;
+    Material glass;
+    glass.name = "glass";
+    glass.base_color.w() = 0.25f;
+    glass.alpha = Material::Alpha::blend;
+    glass.double_sided = true;
+    glass.unlit = true;
+    materials_ = {skin, glass};
+    options_.materials = materials_;
+    options_.eyes = eyes_;
+  }
+
+  void write(const std::string& name, const std::function<Status(OutputFile&)>& write) {
+    auto file = OutputFile::create(path(name));
+    ASSERT_TRUE(file.ok());
+    const Status done = write(*file);
+    ASSERT_TRUE(done.ok()) << done.error().message;
+    ASSERT_TRUE(file->commit().ok());
+  }
+  nlohmann::json look_at(const std::string& name) {
+    judge("three_look.mjs", name);
+    return nlohmann::json::parse(content("log.txt"), nullptr, false);
+  }
+  static std::string hexadecimal(const std::vector<std::byte>& bytes) {
+    std::string text;
+    for (const std::byte byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned>(byte));
+    return text;
+  }
+
+  Model model_;
+  std::vector<Material> materials_;
+  std::vector<Character::Eye> eyes_ = {{"left", "Head", {0.03f, 1.7f, 0.1f}}};
+  gltf::WriteOptions options_;
+};
+
+TEST_F(GltfLook, ShowsMaterialsTexturesAndEyes) {
+  const Clip clip = test::swinging_clip(model_.skeleton, 3, 30);
+  write("rig.glb", [&](OutputFile& file) { return gltf::write_rig(model_, clip, options_, file); });
+  write("mesh.glb", [&](OutputFile& file) {
+    return gltf::write_mesh(model_, {model_.positions, model_.normals, {}}, options_, file);
+  });
+  write("baked.glb", [&](OutputFile& file) {
+    return gltf::write_baked(model_, test::wobble(model_, 3), options_, file);
+  });
+  options_.binary = false;
+  write("rig.gltf",
+        [&](OutputFile& file) { return gltf::write_rig(model_, clip, options_, file); });
+  model_.texture_coordinates.clear();
+  write("bare.gltf",
+        [&](OutputFile& file) { return gltf::write_rig(model_, clip, options_, file); });
+  valid("rig.glb rig.gltf mesh.glb baked.glb bare.gltf");
+
+  for (const char* name : {"rig.glb", "rig.gltf", "mesh.glb", "baked.glb"}) {
+    SCOPED_TRACE(name);
+    const auto look = look_at(name);
+    ASSERT_TRUE(look.is_object()) << content("log.txt");
+    ASSERT_EQ(look["meshes"].size(), 3u);
+    const auto& skin = look["meshes"][0];
+    EXPECT_EQ(skin["material"], "skin");
+    EXPECT_EQ(skin["type"], "MeshStandardMaterial");
+    EXPECT_EQ(skin["color"], nlohmann::json({1.0, 0.5, 0.25}));
+    EXPECT_EQ(skin["metalness"], 0.25);
+    EXPECT_EQ(skin["roughness"], 0.5);
+    EXPECT_EQ(skin["emissive"], nlohmann::json({0.0, 0.0, 0.5}));
+    EXPECT_EQ(skin["alphaTest"], 0.75);
+    const auto png = hexadecimal(test::png()), jpeg = hexadecimal(test::jpeg());
+    nlohmann::json maps = {{"map", png},        {"metalnessMap", jpeg}, {"roughnessMap", jpeg},
+                           {"normalMap", jpeg}, {"aoMap", jpeg},        {"emissiveMap", png}};
+    if (std::string_view(name) == "baked.glb") maps.erase("normalMap");  // it has no tangents
+    EXPECT_EQ(skin["maps"], maps);
+    const auto& glass = look["meshes"][1];
+    EXPECT_EQ(glass["type"], "MeshBasicMaterial");  // unlit
+    EXPECT_EQ(glass["opacity"], 0.25);
+    EXPECT_EQ(glass["transparent"], true);
+    EXPECT_EQ(glass["doubleSided"], true);
+    EXPECT_EQ(look["meshes"][2]["material"], "default");
+    if (std::string_view(name).starts_with("rig")) {
+      // The motion's first frame moves the eye; that it is there and near the head is enough here.
+      ASSERT_TRUE(look["places"].contains("left_eye")) << look["places"];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace krok

@@ -1,0 +1,101 @@
+// If these fail, a character's file is misread, or a mistake in it is passed over, reported at the
+// wrong place, or fatal.
+
+#include "formats/character/character_format.h"
+
+#include <gtest/gtest.h>
+
+namespace krok::character_file {
+namespace {
+
+constexpr const char* kGood = R"({
+  "schema": "krok.character/1",
+  "model": "hero.model",
+  "materials": ["hero.material"],
+  "parts": [{"name": "body", "material": "Skin"}],
+  "eyes": [{"name": "left", "joint": "Head", "position": [0.03, 1.7, 0.1]}],
+  "morphs": "hero.exr",
+  "expressions": [{"name": "smile", "weight": 0.5},
+                  {"name": "blink", "target": "Eyes"}]
+})";
+
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = kGood;
+  const auto place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  return text.replace(place, from.size(), to);
+}
+
+TEST(CharacterFile, ReadsWhatTheSpecSays) {
+  const auto character = read(kGood);
+  ASSERT_TRUE(character.ok()) << character.error().message;
+  EXPECT_EQ(character->name, "");
+  EXPECT_EQ(character->model, "hero.model");
+  EXPECT_EQ(character->materials, std::vector<std::string>{"hero.material"});
+  EXPECT_EQ(character->parts.at(0).material, "Skin");
+  EXPECT_EQ(character->eyes.at(0).joint, "Head");
+  EXPECT_EQ(character->eyes.at(0).position, Vec3f(0.03f, 1.7f, 0.1f));
+  EXPECT_EQ(character->expressions.at(0).weight, 0.5f);
+  EXPECT_EQ(character->expressions.at(0).target, "");
+  EXPECT_EQ(character->expressions.at(1).target, "Eyes");
+  EXPECT_EQ(character->expressions.at(1).weight, 0);
+  EXPECT_EQ(character->role_map, "");
+  EXPECT_TRUE(check(*character).ok());
+}
+
+TEST(CharacterFile, AModelAloneIsEnough) {
+  const auto character = read(R"({"schema": "krok.character/1", "model": "a.model"})");
+  ASSERT_TRUE(character.ok()) << character.error().message;
+  const auto written = write(*character);
+  ASSERT_TRUE(written.ok());
+  EXPECT_EQ(*write(*read(*written)), *written);
+}
+
+struct Fault {
+  const char* from;
+  const char* to;
+  const char* code;
+  int line, column;
+  const char* says;  // in the message or the hint
+};
+
+TEST(CharacterFile, FaultsAreToldWithTheirPlace) {
+  const Fault faults[] = {
+      {"\"morphs\"", "\"morps\"", "character-structure", 7, 3, "did you mean 'morphs'?"},
+      {"\"model\": \"hero.model\",", "", "character-structure", 1, 1, "lacks \"model\""},
+      {"hero.model", "../hero.model", "character-path", 3, 12, "leaves the folder"},
+      {"hero.material", "a/../../b", "character-path", 4, 17, "leaves the folder"},
+      {"\"hero.material\"", "3", "character-value", 4, 17, "expected the path"},
+      {"\"material\": \"Skin\"", "\"materal\": \"Skin\"", "character-structure", 5, 30,
+       "did you mean 'material'?"},
+      {"\"Skin\"", "null", "character-value", 5, 42, "expected a text"},
+      {"\"Head\"", "\"\"", "character-value", 6, 38, "no name"},
+      {"[0.03, 1.7, 0.1]", "[0.03, 1.7]", "character-value", 6, 58, "three numbers"},
+      {"1.7", "1e9", "character-value", 6, 58, "three numbers"},
+      {"0.5", "1e9", "character-value", 8, 47, "expected -1000 to 1000"},
+      {"\"blink\"", "\"smile\"", "character-value", 9, 28, "as one before"},
+      {"  \"morphs\": \"hero.exr\",\n", "", "character-value", 7, 18, "no \"morphs\""}};
+  for (const Fault& fault : faults) {
+    const auto found = read(changed(fault.from, fault.to));
+    ASSERT_FALSE(found.ok()) << fault.to;
+    const Error& error = found.error();
+    EXPECT_EQ(error.code, fault.code) << fault.to;
+    EXPECT_EQ(error.where.line, fault.line) << fault.to;
+    EXPECT_EQ(error.where.column, fault.column) << fault.to << ": " << error.message;
+    EXPECT_NE((error.message + error.hint).find(fault.says), std::string::npos)
+        << error.message << " / " << error.hint;
+  }
+}
+
+TEST(CharacterFile, WritingRefusesWhatReadingWould) {
+  Character character;
+  EXPECT_EQ(write(character).error().code, "character-value");
+  character.model = "/a.model";
+  EXPECT_EQ(write(character).error().code, "character-path");
+  character.model = "a.model";
+  character.materials = {"../a.material"};
+  EXPECT_EQ(write(character).error().code, "character-path");
+}
+
+}  // namespace
+}  // namespace krok::character_file

@@ -1,0 +1,227 @@
+#include "tools/common/character/character_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/nearest_name.h"
+#include "core/path_inside.h"
+#include "core/text.h"
+#include "formats/character/character_format.h"
+#include "formats/material/material_format.h"
+#include "formats/model/model_format.h"
+#include "formats/morph_exr/morph_exr.h"
+#include "tools/common/role_input.h"
+
+namespace krok {
+
+namespace {
+
+class Loader {
+ public:
+  Loader(const InputFile& input, ToolContext& context)
+      : path_(input.path()), text_(input.text()), context_(context) {}
+
+  Result<LoadedCharacter> load() {
+    auto character = character_file::read(text_);
+    if (!character) return std::move(character.error()).in_file(path_);
+    loaded_.character = *std::move(character);
+    for (const auto part : {&Loader::load_model, &Loader::load_materials, &Loader::dress_parts,
+                            &Loader::load_morphs, &Loader::check_eyes, &Loader::load_roles}) {
+      if (Status done = (this->*part)(); !done) return std::move(done.error()).in_file(path_);
+    }
+    return std::move(loaded_);
+  }
+
+ private:
+  // A file that `from` names.
+  Result<InputFile> open(const std::string& from, const std::string& path) {
+    auto place = path_inside(folder_of(from), path);
+    if (!place) return std::move(place.error()).in_file(from);
+    return context_.open_input(*place);
+  }
+
+  Status load_model() {
+    const auto file = open(path_, loaded_.character.model);
+    if (!file) return file.error();
+    auto model = model::read(file->bytes());
+    if (!model) return std::move(model.error()).in_file(file->path());
+    loaded_.model = *std::move(model);
+    return {};
+  }
+
+  Status load_materials() {
+    for (const std::string& path : loaded_.character.materials) {
+      const auto file = open(path_, path);
+      if (!file) return file.error();
+      auto materials = material::read(file->text());
+      if (!materials) return std::move(materials.error()).in_file(file->path());
+      for (Material& material : *materials) {
+        if (find_material(loaded_.materials, material.name) != nullptr) {
+          return Error(
+              "character-material",
+              fmt::format("two of its material files have a material '{}'", shown(material.name)));
+        }
+        loaded_.materials.push_back(std::move(material));
+        files_.push_back(file->path());
+      }
+    }
+    return {};
+  }
+
+  // Gives the model's parts their materials, and lets go of materials that none has.
+  Status dress_parts() {
+    Model& model = loaded_.model;
+    std::vector<std::string> names, materials;
+    for (const Model::Part& part : model.parts) names.push_back(part.name);
+    for (const Material& material : loaded_.materials) materials.push_back(material.name);
+    for (const Character::Part& given : loaded_.character.parts) {
+      if (std::ranges::find(names, given.name) == names.end()) {
+        return Error("character-part", fmt::format("the model has no part '{}'", shown(given.name)),
+                     nearest_hint(given.name, names));
+      }
+      if (!given.material.empty() &&
+          std::ranges::find(materials, given.material) == materials.end()) {
+        return Error("character-material",
+                     fmt::format("part '{}' has the material '{}', which is in none of its "
+                                 "material files",
+                                 shown(given.name), shown(given.material)),
+                     nearest_hint(given.material, materials));
+      }
+      for (Model::Part& part : model.parts) {
+        if (part.name == given.name) part.material = given.material;
+      }
+    }
+    tell_of_missing_materials();
+    return load_pictures();
+  }
+
+  // Of the model's own; a character without materials is no fault.
+  void tell_of_missing_materials() {
+    std::set<std::string> told;
+    for (const Model::Part& part : loaded_.model.parts) {
+      if (loaded_.materials.empty() || part.material.empty()) continue;
+      if (find_material(loaded_.materials, part.material) != nullptr) continue;
+      if (!told.insert(part.material).second) continue;
+      Diagnostic warning = Error(
+          "character-material",
+          fmt::format("the material '{}' of part '{}' is in none of its material files; it is "
+                      "light grey",
+                      shown(part.material), shown(part.name)));
+      warning.severity = Severity::warning;
+      warning.where.file = path_;
+      context_.tell(std::move(warning));
+    }
+  }
+
+  Status load_pictures() {
+    std::vector<Material> used;
+    for (std::size_t m = 0; m < loaded_.materials.size();) {
+      // Materials of one file share their pictures.
+      const std::string& from = files_[m];
+      const std::size_t begin = used.size();
+      for (; m < loaded_.materials.size() && files_[m] == from; ++m) {
+        const auto has = [&](const Model::Part& part) {
+          return part.material == loaded_.materials[m].name;
+        };
+        if (std::ranges::any_of(loaded_.model.parts, has)) {
+          used.push_back(std::move(loaded_.materials[m]));
+        }
+      }
+      const Status done =
+          material::load_pictures(std::span(used).subspan(begin),
+                                  [&](const std::string& path) { return open(from, path); });
+      if (!done) return done;
+    }
+    loaded_.materials = std::move(used);
+    return {};
+  }
+
+  Status load_morphs() {
+    const Character& character = loaded_.character;
+    if (character.morphs.empty()) return {};
+    const auto file = open(path_, character.morphs);
+    if (!file) return file.error();
+    auto morphs = morph_exr::read(file->bytes());
+    if (!morphs) return std::move(morphs.error()).in_file(file->path());
+    if (morphs->vertex_count != loaded_.model.vertex_count()) {
+      return Error("character-morphs",
+                   fmt::format("the morph targets are of {} vertices, the model has {}",
+                               morphs->vertex_count, loaded_.model.vertex_count()))
+          .in_file(file->path());
+    }
+    if (character.expressions.empty()) {
+      loaded_.weights.assign(morphs->names.size(), 0.0f);
+      loaded_.morphs = *std::move(morphs);
+      return {};
+    }
+    MorphSet& chosen = loaded_.morphs;
+    chosen.vertex_count = morphs->vertex_count;
+    chosen.provenance = morphs->provenance;
+    for (const Character::Expression& expression : character.expressions) {
+      const std::string& name = expression.target.empty() ? expression.name : expression.target;
+      const int target = morphs->find(name);
+      if (target < 0) {
+        return Error(
+            "character-target",
+            fmt::format("'{}' has no morph target '{}'", shown(character.morphs), shown(name)),
+            nearest_hint(name, morphs->names));
+      }
+      chosen.names.push_back(expression.name);
+      const auto positions = morphs->target_positions(target);
+      const auto normals = morphs->target_normals(target);
+      chosen.positions.insert(chosen.positions.end(), positions.begin(), positions.end());
+      chosen.normals.insert(chosen.normals.end(), normals.begin(), normals.end());
+      loaded_.weights.push_back(expression.weight);
+    }
+    return {};
+  }
+
+  Status check_eyes() {
+    const std::vector<std::string>& joints = loaded_.model.skeleton.names;
+    for (const Character::Eye& eye : loaded_.character.eyes) {
+      if (std::ranges::find(joints, eye.joint) != joints.end()) continue;
+      return Error("character-joint",
+                   fmt::format("eye '{}' moves with the joint '{}', which the model has not",
+                               shown(eye.name), shown(eye.joint)),
+                   nearest_hint(eye.joint, joints));
+    }
+    return {};
+  }
+
+  Status load_roles() {
+    std::string path;
+    if (!loaded_.character.role_map.empty()) {
+      auto place = path_inside(folder_of(path_), loaded_.character.role_map);
+      if (!place) return place.error();
+      path = *std::move(place);
+    }
+    const auto find_roles = open_role_map(path, context_);
+    if (!find_roles) return find_roles.error();
+    auto roles = (*find_roles)(loaded_.model.skeleton);
+    if (!roles) return std::move(roles.error()).in_file(path);
+    loaded_.roles = *std::move(roles);
+    return {};
+  }
+
+  const std::string path_;
+  std::string_view text_;
+  ToolContext& context_;
+  std::vector<std::string> files_;  // [materials] the file that each is from
+  LoadedCharacter loaded_;
+};
+
+}  // namespace
+
+Result<LoadedCharacter> load_character(const InputFile& input, ToolContext& context) {
+  return Loader(input, context).load();
+}
+
+Result<LoadedCharacter> load_character(const std::string& path, ToolContext& context) {
+  const auto input = context.open_input(path);
+  if (!input) return input.error();
+  return load_character(*input, context);
+}
+
+}  // namespace krok

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "character/mesh.h"
+#include "formats/container/packed_orientation.h"
+#include "nodes/scene.h"
+#include "scene/character.h"
+#include "tools/common/output_set.h"
+#include "tools/krok-import/new_folder.h"
+
+namespace krok::import {
+
+// What --character hero.character writes, beside each other: hero.model, hero.material with its
+// pictures in hero_textures/, hero_morphs.exr, and hero.character, which names them. Files for
+// which the scene has nothing are left out.
+struct CharacterFiles {
+  std::string path;  // of the .character file
+  OrientationEncoding orientation = OrientationEncoding::xyz;
+  std::vector<float> weights;  // [targets] of the figure, at rest
+  Provenance provenance;       // of model and targets
+};
+
+// What was added, for the report.
+struct AddedCharacter {
+  Character character;
+  std::size_t materials = 0, pictures = 0;
+};
+
+// Adds the files to `outputs`; `folder` is that of the pictures. The figure's parts get names of
+// their own, and the names of the scene's materials. Codes: those of the writers.
+Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
+                                     character::Figure& figure, OutputSet& outputs,
+                                     NewFolder& folder);
+
+}  // namespace krok::import

@@ -1,0 +1,201 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+
+#include "core/path_inside.h"
+#include "core/text.h"
+#include "describe.h"
+#include "formats/material/material_format.h"
+#include "tools/common/character/character_input.h"
+
+// Materials and characters.
+
+namespace krok::info {
+
+namespace {
+
+// The pictures of a file that can be used; the others are warned of.
+class PictureSizes {
+ public:
+  PictureSizes(std::string path, ToolContext& context)
+      : path_(std::move(path)), context_(context) {}
+
+  // "1024 x 512 PNG", or why it cannot be used.
+  const std::string& of(const Picture& picture) {
+    const auto [place, added] = known_.try_emplace(picture.path);
+    if (added) place->second = look_at(picture.path);
+    return place->second;
+  }
+
+ private:
+  std::string look_at(const std::string& name) {
+    const auto facts = facts_of(name);
+    if (facts) {
+      const std::string_view kind = facts->kind == PictureKind::png ? "PNG" : "JPEG";
+      return fmt::format("{} x {} {}", facts->width, facts->height, kind);
+    }
+    Diagnostic warning = facts.error();
+    warning.severity = Severity::warning;
+    const std::string why = warning.message;
+    context_.tell(std::move(warning));
+    return why;
+  }
+
+  Result<PictureFacts> facts_of(const std::string& name) {
+    auto place = path_inside(folder_of(path_), name);
+    if (!place) return std::move(place.error()).in_file(path_);
+    const auto file = context_.open_input(*place);
+    if (!file) return file.error();
+    auto facts = picture_facts(file->bytes());
+    if (!facts) return std::move(facts.error()).in_file(*place);
+    return facts;
+  }
+
+  const std::string path_;
+  ToolContext& context_;
+  std::map<std::string, std::string> known_;
+};
+
+// "1, 0.8, 0.6".
+template <typename Vector>
+std::string numbers_of(const Vector& values) {
+  std::vector<std::string> texts;
+  for (const float value : values) texts.push_back(readable(value, 3));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+template <typename Vector>
+Json json_of(const Vector& values) {
+  Json list = Json::array();
+  for (const float value : values) list.push_back(value);
+  return list;
+}
+
+std::string kind_of(const Material& material) {
+  std::string text = material.unlit ? "unlit" : "";
+  const auto add = [&](const std::string& more) { text += (text.empty() ? "" : ", ") + more; };
+  if (!material.unlit) {
+    add(fmt::format("metallic {}, roughness {}", readable(material.metallic, 3),
+                    readable(material.roughness, 3)));
+  }
+  if (material.alpha == Material::Alpha::blend) add("transparent");
+  if (material.alpha == Material::Alpha::mask) {
+    add(fmt::format("cut out below alpha {}", readable(material.alpha_cutoff, 3)));
+  }
+  if (material.double_sided) add("double-sided");
+  if (!material.shaders.empty()) {
+    std::vector<std::string> names;
+    for (const std::string& name : material.shaders) names.push_back(shown(name));
+    add(fmt::format("shaders {}", fmt::join(names, ", ")));
+  }
+  return text;
+}
+
+constexpr std::array<const char*, 5> kTextureNames = {"base colour", "metallic-roughness", "normal",
+                                                      "occlusion", "emissive"};
+
+// Its colour and kind, and a line for each of its textures.
+template <typename SizeOf>
+void add_material(const Material& material, SizeOf size_of, Description& out, Json& list) {
+  std::vector<std::string> lines = {fmt::format("{}: colour {}; {}", shown(material.name),
+                                                numbers_of(material.base_color),
+                                                kind_of(material))};
+  Json textures = Json::array();
+  const auto all = textures_of(material);
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    if (!*all[t]) continue;
+    const Picture& picture = *all[t]->picture;
+    const std::string size = size_of(picture);
+    lines.push_back(fmt::format("{}: {} ({})", kTextureNames[t], shown(picture.path), size));
+    textures.push_back({{"of", kTextureNames[t]}, {"file", picture.path}, {"picture", size}});
+  }
+  out.add("material", std::move(lines));
+  list.push_back({{"name", material.name},
+                  {"base_color", json_of(material.base_color)},
+                  {"metallic", material.metallic},
+                  {"roughness", material.roughness},
+                  {"double_sided", material.double_sided},
+                  {"unlit", material.unlit},
+                  {"shaders", material.shaders},
+                  {"textures", std::move(textures)}});
+}
+
+void add_expressions(const LoadedCharacter& loaded, Description& out) {
+  Json list = Json::array();
+  std::vector<std::string> texts;
+  for (std::size_t t = 0; t < loaded.morphs.names.size(); ++t) {
+    const std::string& name = loaded.morphs.names[t];
+    const float weight = loaded.weights[t];
+    texts.push_back(weight == 0 ? shown(name)
+                                : fmt::format("{} ({})", shown(name), readable(weight, 3)));
+    list.push_back({{"name", name}, {"weight", weight}});
+  }
+  out.json["expressions"] = std::move(list);
+  if (texts.empty()) return;
+  constexpr std::size_t kShown = 20;
+  const std::string more =
+      texts.size() > kShown ? fmt::format(" and {} more", texts.size() - kShown) : "";
+  texts.resize(std::min(texts.size(), kShown));
+  out.add("expressions", fmt::format("{}{}", fmt::join(texts, ", "), more));
+}
+
+}  // namespace
+
+Result<Description> describe_material(const InputFile& file, ToolContext& context) {
+  const auto materials = material::read(file.text());
+  if (!materials) return materials.error();
+  Description out;
+  out.what = "materials (.material)";
+  out.json["kind"] = "material";
+  PictureSizes sizes(file.path(), context);
+  Json list = Json::array();
+  for (const Material& material : *materials) {
+    add_material(
+        material, [&](const Picture& picture) { return sizes.of(picture); }, out, list);
+  }
+  out.json["materials"] = std::move(list);
+  return out;
+}
+
+Result<Description> describe_character(const InputFile& file, ToolContext& context) {
+  const auto loaded = load_character(file, context);
+  if (!loaded) return loaded.error();
+  const Character& character = loaded->character;
+  const Model& model = loaded->model;
+  Description out;
+  out.what = "a character (.character)";
+  out.json["kind"] = "character";
+  out.json["name"] = character.name;
+  if (!character.name.empty()) out.add("name", shown(character.name));
+  out.add("model", fmt::format("{}: {}, {}, {}", shown(character.model),
+                               count_of(static_cast<std::size_t>(model.vertex_count()), "vertex",
+                                        "vertices"),
+                               count_of(model.triangles.size(), "triangle"),
+                               count_of(model.skeleton.names.size(), "joint")));
+  out.json["model"] = character.model;
+  add_parts(model, out);
+  std::vector<std::string> eyes;
+  Json eye_list = Json::array();
+  for (const Character::Eye& eye : character.eyes) {
+    eyes.push_back(fmt::format("{} at {} m, on {}", shown(eye.name), numbers_of(eye.position),
+                               shown(eye.joint)));
+    eye_list.push_back(
+        {{"name", eye.name}, {"joint", eye.joint}, {"position", json_of(eye.position)}});
+  }
+  out.add("eyes", std::move(eyes));
+  out.json["eyes"] = std::move(eye_list);
+  add_expressions(*loaded, out);
+  Json materials = Json::array();
+  for (const Material& material : loaded->materials) {
+    const auto size_of = [](const Picture& picture) {
+      const auto facts = picture_facts(picture.bytes);
+      return facts ? fmt::format("{} x {}", facts->width, facts->height) : std::string();
+    };
+    add_material(material, size_of, out, materials);
+  }
+  out.json["materials"] = std::move(materials);
+  return out;
+}
+
+}  // namespace krok::info
