@@ -15,49 +15,68 @@ Error of_which(Error error, const char* which) {
   return error;
 }
 
+void compare_references(const Skeleton& first, const Skeleton& second, const Pairs& joints,
+                        ClipDifference& result) {
+  for (const auto& [i, j] : joints) {
+    const Transform& a = first.reference[static_cast<std::size_t>(i)];
+    const Transform& b = second.reference[static_cast<std::size_t>(j)];
+    const Place place{.joint = i};
+    result.reference_positions.add((a.position - b.position).norm(), place);
+    result.reference_orientations.add(angle_between(a.orientation, b.orientation), place);
+  }
+}
+
+void compare_frames(const Clip& first, const Clip& second, const Pairs& joints,
+                    const FrameMatch& frames, ClipDifference& result) {
+  for (const auto& pair : joints) {
+    result.joints.push_back({pair.first, result.positions, result.orientations});
+  }
+  std::vector<Transform> a(static_cast<std::size_t>(first.joint_count()));
+  std::vector<Transform> b(static_cast<std::size_t>(second.joint_count()));
+  for (const auto& [frame_a, frame_b] : frames.frames) {
+    first.get_pose(frame_a, a);
+    second.get_pose(frame_b, b);
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      const Transform& one = a[static_cast<std::size_t>(joints[k].first)];
+      const Transform& other = b[static_cast<std::size_t>(joints[k].second)];
+      const Place place{.joint = joints[k].first, .frame = frame_a, .time = frame_a / first.rate};
+      const double distance = (one.position - other.position).norm();
+      const double angle = angle_between(one.orientation, other.orientation);
+      result.positions.add(distance, place);
+      result.orientations.add(angle, place);
+      result.joints[k].positions.add(distance, place);
+      result.joints[k].orientations.add(angle, place);
+    }
+  }
+}
+
 }  // namespace
 
-Result<ClipDifference> difference(const Clip& first, const Clip& second,
-                                  const Tolerance& tolerance) {
+Result<ClipDifference> difference(const Clip& first, const Clip& second, const Tolerance& tolerance,
+                                  Matching matching) {
   if (auto ok = check(first); !ok) return of_which(ok.error(), "the first clip");
   if (auto ok = check(second); !ok) return of_which(ok.error(), "the second clip");
 
   ClipDifference result;
-  result.reference_positions = result.positions = Measure(tolerance.length);
-  result.reference_orientations = result.orientations = Measure(tolerance.angle);
+  result.reference_positions = result.positions = Measure(tolerance.of_joint_positions());
+  result.reference_orientations = result.orientations = Measure(tolerance.of_joint_orientations());
 
-  SkeletonMatch skeletons = match_skeletons(first.skeleton, second.skeleton);
-  if (!skeletons.difference.empty()) {
-    result.structure.push_back(std::move(skeletons.difference));
-    return result;
+  const SkeletonMatch skeletons = match_skeletons(first.skeleton, second.skeleton, matching);
+  if (!skeletons.difference.empty()) result.structure.push_back(skeletons.difference);
+  Pairs joints;
+  for (std::size_t j = 0; j < skeletons.second_of_first.size(); ++j) {
+    const int other = skeletons.second_of_first[j];
+    if (other >= 0) joints.emplace_back(static_cast<int>(j), other);
   }
-  const auto joints = static_cast<std::size_t>(first.joint_count());
-  const auto& second_of_first = skeletons.second_of_first;
-  for (std::size_t j = 0; j < joints; ++j) {
-    const Transform& a = first.skeleton.reference[j];
-    const Transform& b = second.skeleton.reference[static_cast<std::size_t>(second_of_first[j])];
-    const Place place{.joint = static_cast<int>(j)};
-    result.reference_positions.add((a.position - b.position).norm(), place);
-    result.reference_orientations.add(angle_between(a.orientation, b.orientation), place);
-  }
+  if (joints.empty()) return result;
+  compare_references(first.skeleton, second.skeleton, joints, result);
 
-  FrameMatch frames =
-      match_frames(first.frame_count(), first.rate, second.frame_count(), second.rate);
-  result.structure = std::move(frames.differences);
+  FrameMatch frames = match_frames(first.frame_count(), first.rate, second.frame_count(),
+                                   second.rate, tolerance.time);
+  result.structure.insert(result.structure.end(), frames.differences.begin(),
+                          frames.differences.end());
   result.compared_frames = static_cast<int>(frames.frames.size());
-
-  std::vector<Transform> a(joints), b(joints);
-  for (const auto& [frame_a, frame_b] : frames.frames) {
-    first.get_pose(frame_a, a);
-    second.get_pose(frame_b, b);
-    for (std::size_t j = 0; j < joints; ++j) {
-      const Transform& other = b[static_cast<std::size_t>(second_of_first[j])];
-      const Place place{
-          .joint = static_cast<int>(j), .frame = frame_a, .time = frame_a / first.rate};
-      result.positions.add((a[j].position - other.position).norm(), place);
-      result.orientations.add(angle_between(a[j].orientation, other.orientation), place);
-    }
-  }
+  compare_frames(first, second, joints, frames, result);
   return result;
 }
 

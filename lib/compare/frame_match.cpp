@@ -29,10 +29,13 @@ std::vector<std::pair<int, int>> frames_at_common_times(int first_frames, double
 
 }  // namespace
 
-FrameMatch match_frames(int first_frames, double first_rate, int second_frames,
-                        double second_rate) {
+FrameMatch match_frames(int first_frames, double first_rate, int second_frames, double second_rate,
+                        double same_time) {
   FrameMatch match;
-  const bool same_rate = std::abs(first_rate - second_rate) <= kSameRate * first_rate;
+  const int last = std::min(first_frames, second_frames) - 1;
+  const bool same_rate =
+      std::abs(first_rate - second_rate) <= kSameRate * first_rate ||
+      (last > 0 && std::abs(last / first_rate - last / second_rate) <= same_time);
   if (!same_rate) {
     match.differences.push_back(fmt::format("{} frames/s in the first, {} in the second",
                                             readable(first_rate), readable(second_rate)));

@@ -12,7 +12,9 @@ struct FrameMatch {
   std::vector<std::string> differences;     // sentences for people
 };
 
-// Rates are positive and finite.
-FrameMatch match_frames(int first_frames, double first_rate, int second_frames, double second_rate);
+// Rates are positive and finite. Two rates are the same if they agree within 1e-6, or if none of
+// the frames that both have is parted by more than `same_time` (seconds).
+FrameMatch match_frames(int first_frames, double first_rate, int second_frames, double second_rate,
+                        double same_time = 0);
 
 }  // namespace krok::compare

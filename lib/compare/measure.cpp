@@ -1,10 +1,11 @@
 #include "compare/measure.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace krok::compare {
 
-void Measure::merge(const Measure& later) {
+void Totals::merge(const Totals& later) {
   if (later.largest > largest) {
     largest = later.largest;
     where = later.where;
@@ -14,8 +15,17 @@ void Measure::merge(const Measure& later) {
   over += later.over;
 }
 
-double Measure::rms() const {
+double Totals::rms() const {
   return count == 0 ? 0.0 : std::sqrt(square_sum / static_cast<double>(count));
+}
+
+void Measure::merge(const Measure& later) {
+  Totals::merge(later);
+  spread.merge(later.spread);
+}
+
+double Measure::percentile(double share) const {
+  return std::min(largest, spread.percentile(share));
 }
 
 double angle_between_directions(const Vec3& a, const Vec3& b) {

@@ -67,6 +67,7 @@ std::string difference_in_triangles(std::span<const Triangle> first,
   if (first.size() != second.size()) {
     return fmt::format("{} triangles in the first, {} in the second", first.size(), second.size());
   }
+  if (std::equal(first.begin(), first.end(), second.begin())) return {};
   std::size_t i = 0;
   while (i < first.size() && from_smallest(first[i]) == from_smallest(second[i])) ++i;
   if (i == first.size() || sorted(first) == sorted(second)) return {};

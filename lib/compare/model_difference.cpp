@@ -76,19 +76,26 @@ void compare_tangents(const Model& first, const Model& second, Measure& measure)
 void compare_skeletons(const Model& first, const Model& second, const SkeletonMatch& match,
                        ModelDifference& result) {
   for (std::size_t j = 0; j < match.second_of_first.size(); ++j) {
+    if (match.second_of_first[j] < 0) continue;
     const Transform& a = first.skeleton.reference[j];
     const Transform& b =
         second.skeleton.reference[static_cast<std::size_t>(match.second_of_first[j])];
     const Place place{.joint = static_cast<int>(j)};
-    result.reference_positions.add((a.position - b.position).norm(), place);
-    result.reference_orientations.add(angle_between(a.orientation, b.orientation), place);
+    JointDifference joint{place.joint, Measure(result.reference_positions.tolerance),
+                          Measure(result.reference_orientations.tolerance)};
+    joint.positions.add((a.position - b.position).norm(), place);
+    joint.orientations.add(angle_between(a.orientation, b.orientation), place);
+    result.reference_positions.merge(joint.positions);
+    result.reference_orientations.merge(joint.orientations);
+    result.joints.push_back(std::move(joint));
   }
 }
 
 void compare_weights(const Model& first, const Model& second, const SkeletonMatch& match,
                      Measure& measure) {
-  std::vector<int> first_of_second(match.second_of_first.size());
+  std::vector<int> first_of_second(static_cast<std::size_t>(second.skeleton.joint_count()), -1);
   for (std::size_t i = 0; i < match.second_of_first.size(); ++i) {
+    if (match.second_of_first[i] < 0) continue;
     first_of_second[static_cast<std::size_t>(match.second_of_first[i])] = static_cast<int>(i);
   }
   const auto influences = [](const Model& model) {
@@ -106,7 +113,7 @@ bool ModelDifference::same() const {
 }
 
 Result<ModelDifference> difference(const Model& first, const Model& second,
-                                   const Tolerance& tolerance) {
+                                   const Tolerance& tolerance, Matching matching) {
   for (const Model* model : {&first, &second}) {
     if (auto ok = check(*model); !ok) {
       Error error = ok.error();
@@ -116,14 +123,15 @@ Result<ModelDifference> difference(const Model& first, const Model& second,
     }
   }
   ModelDifference result;
-  result.positions = result.reference_positions = Measure(tolerance.length);
-  result.normals = result.tangents = result.reference_orientations = Measure(tolerance.angle);
+  result.positions = Measure(tolerance.length);
+  result.normals = result.tangents = Measure(tolerance.of_normals());
+  result.reference_positions = Measure(tolerance.of_joint_positions());
+  result.reference_orientations = Measure(tolerance.of_joint_orientations());
   result.texture_coordinates = result.weights = Measure(tolerance.ratio);
 
-  SkeletonMatch skeletons = match_skeletons(first.skeleton, second.skeleton);
-  if (skeletons.difference.empty()) {
-    compare_skeletons(first, second, skeletons, result);
-  } else {
+  const SkeletonMatch skeletons = match_skeletons(first.skeleton, second.skeleton, matching);
+  compare_skeletons(first, second, skeletons, result);
+  if (!skeletons.difference.empty()) {
     result.structure.push_back("skeletons differ: " + skeletons.difference);
   }
 
@@ -147,7 +155,7 @@ Result<ModelDifference> difference(const Model& first, const Model& second,
   if (both_have("tangents", first.tangents, second.tangents, result.structure)) {
     compare_tangents(first, second, result.tangents);
   }
-  if (skeletons.difference.empty()) compare_weights(first, second, skeletons, result.weights);
+  if (!skeletons.second_of_first.empty()) compare_weights(first, second, skeletons, result.weights);
   return result;
 }
 

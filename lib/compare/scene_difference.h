@@ -1,62 +1,47 @@
 #pragma once
 
-#include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "compare/mesh_difference.h"
+#include "compare/matching.h"
+#include "compare/measure.h"
+#include "compare/scene.h"
 #include "core/progress.h"
 #include "core/result.h"
-#include "math/transform.h"
 
 // Comparing two animated scenes by what a viewer shows: both are evaluated at the same moments, and
-// vertices and joints compared in world space. How a scene is animated (a skin, morph targets,
-// nodes that move) does not matter; so a rig can be held against the same motion baked into morph
-// targets.
+// vertices and joints compared in world space. So a rig can be held against the same motion baked
+// into morph targets.
 
 namespace krok::compare {
 
-// A mesh as it stands in the scene. The spans belong to whoever made the description.
-struct SceneMesh {
-  std::string name;  // for people and for matching; may be empty
-  std::size_t vertex_count = 0;
-  bool has_normals = false;
-  std::span<const Triangle> triangles;
-  std::span<const Vec2f> texture_coordinates;  // [vertices] or none
-
-  // Displacements of a shape, [vertices] or none.
-  struct Target {
-    std::string name;
-    std::span<const Vec3f> positions;
-    std::span<const Vec3f> normals;
-  };
-  std::vector<Target> targets;
-
-  Influences influences;  // joints are indices into Scene::joint_names; none: per_vertex = 0
+struct SceneOptions {
+  Tolerance tolerance;
+  Matching matching = Matching::automatic;  // of meshes, joints and morph targets
+  bool keep_vertices = false;               // whether vertex_largest is wanted
 };
 
-// Vertices and joints at one moment, in world space, metres.
-struct SceneState {
-  std::vector<std::vector<Vec3>> positions;  // [meshes][vertices]
-  std::vector<std::vector<Vec3>> normals;    // [meshes][vertices], or none for a mesh without
-  std::vector<Transform> joints;             // [joints]
+// One quantity at one moment. Floats, since there may be a million moments.
+struct MomentValue {
+  float largest = 0;
+  float rms = 0;
+  int mesh = -1;  // where the largest is; -1 for joints
+  int item = -1;  // vertex or joint
+  bool in_second = false;
 };
 
-struct Scene {
-  std::vector<SceneMesh> meshes;
-  std::vector<std::string> joint_names;  // may be empty or repeat; then places decide
-  std::vector<int> joint_parents;        // the nearest ancestor that is a joint, or -1
+struct MomentDifference {
+  int animation = -1;  // of the first; -1 for the pose without any
+  int frame = -1;      // counted from 0 in each animation; -1 for the pose without any
+  double time = 0;     // seconds
+  MomentValue positions, normals, joint_positions, joint_orientations;
+};
 
-  struct Animation {
-    std::string name;
-    std::vector<double> key_times;  // seconds, rising
-  };
-  std::vector<Animation> animations;
-
-  // Fills `state` for a moment of an animation, or (-1) for the pose without any. Called from many
-  // threads at once, each with a state of its own. Never fails.
-  std::function<void(int animation, double time, SceneState& state)> evaluate;
+// A mesh over all moments.
+struct PartDifference {
+  int mesh = -1;
+  bool in_second = false;  // one of the second's, against the first (Matching::nearest)
+  Measure positions, normals;
 };
 
 struct SceneDifference {
@@ -75,17 +60,32 @@ struct SceneDifference {
   Measure target_normals;       // length of the difference of normals' displacements, no unit
   Measure texture_coordinates;  // the larger of u and v
   Measure weights;              // of skins, where both have one
+  Measure times;                // seconds: key times that are one moment
+
+  std::vector<MomentDifference> moments;  // in the order in which they were compared
+  std::vector<PartDifference> parts;      // of the meshes that were compared
+  std::vector<JointDifference> joints;    // of the joints that were compared
+
+  // [meshes of the first][their vertices]: the largest distance over all moments, metres. Empty for
+  // a mesh that was not compared; empty altogether unless asked for.
+  std::vector<std::vector<float>> vertex_largest;
 
   bool same() const;
 };
 
-// Meshes are matched by name where all names of both are unique and the same, otherwise by place;
-// joints and animations too. Each pair of animations is compared at the key times of both (times
-// within 0.1 ms are one) as far as both last; without animations the pose without any is compared.
-// A scene whose meshes are skinned may be held against one without joints: joints are then not
-// compared. An Error (code compare-value) if a scene gives values that are not finite, (code
-// compare-too-long) for more than a million moments. Deterministic for any number of jobs.
+// Each pair of animations (by name where all names of both are unique and the same, otherwise by
+// place) is compared at the key times of both, times within the tolerance being one, as far as both
+// last; without animations the pose without any is compared. A scene whose meshes are skinned may
+// be held against one without joints: joints are then not compared. An Error (code compare-value)
+// if a scene gives values that are not finite, (code compare-too-long) for more than a million
+// moments. Deterministic for any number of jobs.
+//
+// With Matching::nearest, all meshes of each are one surface where they cannot be matched by name.
+// The nearest points are found at the first moment that is compared and kept: each moves with its
+// triangle. Where several surfaces touch there, the one that stays closest is taken. A mesh without
+// triangles is the points of its vertices. Shapes and weights themselves are not compared, only
+// what they make.
 Result<SceneDifference> difference(const Scene& first, const Scene& second,
-                                   const Tolerance& tolerance, int jobs, Progress& progress);
+                                   const SceneOptions& options, int jobs, Progress& progress);
 
 }  // namespace krok::compare

@@ -4,6 +4,8 @@
 
 #include <unordered_map>
 
+#include "core/numbers.h"
+
 namespace krok::compare {
 
 namespace {
@@ -32,10 +34,17 @@ std::string only_in(Names names, const NameIndex& other) {
   return list;
 }
 
+std::string name_of_joint(Names names, int joint) {
+  const std::string& name = names[static_cast<std::size_t>(joint)];
+  return name.empty() ? fmt::format("joint {}", joint) : name;
+}
+
 std::string name_of_parent(Names names, int parent) {
-  if (parent < 0) return "none";
-  const std::string& name = names[static_cast<std::size_t>(parent)];
-  return name.empty() ? fmt::format("joint {}", parent) : name;
+  return parent < 0 ? "none" : name_of_joint(names, parent);
+}
+
+std::string joints(std::size_t count) {
+  return counted(static_cast<long long>(count), "joint");
 }
 
 std::string difference_in_names(Names first, const NameIndex& first_index, Names second,
@@ -45,8 +54,8 @@ std::string difference_in_names(Names first, const NameIndex& first_index, Names
   if (first_only.empty() && second_only.empty()) return {};
   std::string text =
       first.size() == second.size()
-          ? fmt::format("both have {} joints", first.size())
-          : fmt::format("{} joints in the first, {} in the second", first.size(), second.size());
+          ? fmt::format("both have {}", joints(first.size()))
+          : fmt::format("{} in the first, {} in the second", joints(first.size()), second.size());
   if (!first_only.empty()) text += fmt::format("; only in the first: {}", first_only);
   if (!second_only.empty()) text += fmt::format("; only in the second: {}", second_only);
   return text;
@@ -55,49 +64,53 @@ std::string difference_in_names(Names first, const NameIndex& first_index, Names
 }  // namespace
 
 SkeletonMatch match_joints(Names first_names, std::span<const int> first_parents,
-                           Names second_names, std::span<const int> second_parents) {
+                           Names second_names, std::span<const int> second_parents,
+                           Matching matching) {
   SkeletonMatch match;
   const NameIndex first_index = index_of_names(first_names);
   const NameIndex second_index = index_of_names(second_names);
-  const bool by_name = !first_index.empty() && !second_index.empty();
-  if (by_name) {
+  const bool unique = !first_index.empty() && !second_index.empty();
+  const bool by_name = matching == Matching::name || (unique && matching != Matching::order);
+  if (by_name && unique) {
     match.difference = difference_in_names(first_names, first_index, second_names, second_index);
   } else if (first_names.size() != second_names.size()) {
-    match.difference = fmt::format("{} joints in the first, {} in the second", first_names.size(),
+    match.difference = fmt::format("{} in the first, {} in the second", joints(first_names.size()),
                                    second_names.size());
   }
-  if (!match.difference.empty()) return match;
+  if (!match.difference.empty() && matching != Matching::name) return match;
 
-  std::vector<int> second_of_first(first_names.size());
-  for (std::size_t i = 0; i < first_names.size(); ++i) {
-    second_of_first[i] = by_name ? second_index.at(first_names[i]) : static_cast<int>(i);
-  }
-  for (std::size_t i = 0; i < first_names.size(); ++i) {
-    const int first_parent = first_parents[i];
-    const int second_parent = second_parents[static_cast<std::size_t>(second_of_first[i])];
+  std::vector<int> second_of_first(first_names.size(), -1);
+  const ListMatch list =
+      match_lists(first_names, second_names, by_name ? Matching::name : Matching::order);
+  for (const auto& [i, j] : list.pairs) second_of_first[static_cast<std::size_t>(i)] = j;
+  for (const auto& [i, j] : list.pairs) {
+    if (!match.difference.empty()) break;
+    const int first_parent = first_parents[static_cast<std::size_t>(i)];
+    const int second_parent = second_parents[static_cast<std::size_t>(j)];
     const int expected =
         first_parent < 0 ? -1 : second_of_first[static_cast<std::size_t>(first_parent)];
     if (second_parent == expected) continue;
-    match.difference = fmt::format("the parent of {} is {} in the first and {} in the second",
-                                   name_of_parent(first_names, static_cast<int>(i)),
-                                   name_of_parent(first_names, first_parent),
-                                   name_of_parent(second_names, second_parent));
-    return match;
+    match.difference = fmt::format(
+        "the parent of {} is {} in the first and {} in the second", name_of_joint(first_names, i),
+        name_of_parent(first_names, first_parent), name_of_parent(second_names, second_parent));
   }
-  match.second_of_first = std::move(second_of_first);
+  if (match.difference.empty() || matching == Matching::name) {
+    match.second_of_first = std::move(second_of_first);
+  }
   return match;
 }
 
-SkeletonMatch match_skeletons(const Skeleton& first, const Skeleton& second) {
-  SkeletonMatch match = match_joints(first.names, first.parents, second.names, second.parents);
-  for (std::size_t i = 0; i < match.second_of_first.size(); ++i) {
+SkeletonMatch match_skeletons(const Skeleton& first, const Skeleton& second, Matching matching) {
+  SkeletonMatch match =
+      match_joints(first.names, first.parents, second.names, second.parents, matching);
+  for (std::size_t i = 0; i < match.second_of_first.size() && match.difference.empty(); ++i) {
+    if (match.second_of_first[i] < 0) continue;
     const auto j = static_cast<std::size_t>(match.second_of_first[i]);
     if ((first.end_sites[i] != 0) == (second.end_sites[j] != 0)) continue;
     match.difference = fmt::format("{} is {} in the first and {} in the second", first.names[i],
                                    first.end_sites[i] != 0 ? "an end site" : "a joint",
                                    second.end_sites[j] != 0 ? "an end site" : "a joint");
-    match.second_of_first.clear();
-    break;
+    if (matching != Matching::name) match.second_of_first.clear();
   }
   return match;
 }

@@ -9,6 +9,7 @@
 
 #include "compare/frame_match.h"
 #include "compare/skeleton_match.h"
+#include "core/numbers.h"
 #include "draw/chart_style_internal.h"
 #include "math/quaternion.h"
 
@@ -81,20 +82,6 @@ void add_frame(const ChartedMotion& first, const ChartedMotion& second,
   result.rms_turn.push_back(angles.rms());
 }
 
-Panel panel_of(const std::vector<double>& times, std::string title, Axis axis, Scale scale,
-               std::vector<double> largest, std::vector<double> rms) {
-  Panel panel;
-  panel.title = std::move(title);
-  panel.x = {"time", "s"};
-  panel.y = std::move(axis);
-  panel.y.scale = scale;
-  if (scale == Scale::linear) panel.y.low = 0;
-  const int black = motion_colour(0), blue = kLeftColour;
-  panel.series.push_back({"largest of all joints", times, std::move(largest), {}, black, 0});
-  panel.series.push_back({"root mean square", times, std::move(rms), {}, blue, 1});
-  return panel;
-}
-
 }  // namespace
 
 Result<MotionDifference> difference_over_time(const ChartedMotion& first,
@@ -125,18 +112,67 @@ Result<MotionDifference> difference_over_time(const ChartedMotion& first,
   return result;
 }
 
-std::vector<Panel> difference_panels(const MotionDifference& difference, Scale scale) {
-  const bool small = difference.positions.largest < 0.1;
-  std::vector<double> largest = difference.largest, rms = difference.rms;
-  if (small) {
-    for (auto* values : {&largest, &rms}) {
-      for (double& value : *values) value *= 1000;
-    }
+Panel difference_panel(const ChartedDifference& difference, Scale scale) {
+  double most = 0;
+  for (const double value : difference.largest) most = std::max(most, value);
+  const bool small = !difference.is_angle && most < 0.1;
+  const double unit = small ? 1000 : 1;
+  const char* const name = difference.is_angle ? "\u00B0" : small ? "mm" : "m";
+  const auto in_unit = [unit](std::vector<double> values) {
+    for (double& value : values) value *= unit;
+    return values;
+  };
+  const SeriesStyle style =
+      difference.times.size() == 1 ? SeriesStyle::line_and_points : SeriesStyle::line;
+  Panel panel;
+  panel.title = difference.title;
+  panel.x = {"time", "s"};
+  panel.y = {difference.is_angle ? "angle" : "distance", name, scale};
+  if (scale == Scale::linear) panel.y.low = 0;
+  const int black = motion_colour(0), blue = kLeftColour, orange = kRightColour;
+  panel.series.push_back({"largest of all " + difference.of, difference.times,
+                          in_unit(difference.largest), style, black, 0});
+  panel.series.push_back(
+      {"root mean square", difference.times, in_unit(difference.rms), style, blue, 1});
+  if (difference.tolerance && !difference.times.empty()) {
+    const double level = *difference.tolerance * unit;
+    const std::string told = readable(level, 4) + (difference.is_angle ? "" : " ") + name;
+    panel.series.push_back({"tolerance, " + told,
+                            {difference.times.front(), difference.times.back()},
+                            {level, level},
+                            SeriesStyle::line,
+                            orange,
+                            2});
   }
-  return {panel_of(difference.times, "Distance between joints", {"distance", small ? "mm" : "m"},
-                   scale, std::move(largest), std::move(rms)),
-          panel_of(difference.times, "Angle between joints", {"angle", "\u00B0"}, scale,
-                   difference.largest_turn, difference.rms_turn)};
+  if (difference.worst_moment) {
+    panel.moments.push_back(
+        {*difference.worst_moment, "largest, " + readable(*difference.worst_moment, 4) + " s"});
+  }
+  return panel;
+}
+
+std::array<ChartedDifference, 2> difference_charts(const MotionDifference& difference) {
+  ChartedDifference distances, angles;
+  distances.title = "Distance between joints";
+  angles.title = "Angle between joints";
+  angles.is_angle = true;
+  for (ChartedDifference* chart : {&distances, &angles}) {
+    chart->of = "joints";
+    chart->times = difference.times;
+  }
+  distances.largest = difference.largest;
+  distances.rms = difference.rms;
+  angles.largest = difference.largest_turn;
+  angles.rms = difference.rms_turn;
+  return {std::move(distances), std::move(angles)};
+}
+
+std::vector<Panel> difference_panels(const MotionDifference& difference, Scale scale) {
+  std::vector<Panel> panels;
+  for (const ChartedDifference& chart : difference_charts(difference)) {
+    panels.push_back(difference_panel(chart, scale));
+  }
+  return panels;
 }
 
 }  // namespace krok::draw

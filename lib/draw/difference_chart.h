@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +29,23 @@ struct MotionDifference {
 Result<MotionDifference> difference_over_time(const ChartedMotion& first,
                                               const ChartedMotion& second,
                                               std::span<const std::string> joints);
+
+// How far apart two things are over time, in one quantity.
+struct ChartedDifference {
+  std::string title;                   // "Distance between vertices"
+  std::string of;                      // whose largest it is: "vertices"
+  bool is_angle = false;               // degrees; otherwise metres
+  std::vector<double> times;           // seconds
+  std::vector<double> largest, rms;    // one value a time
+  std::optional<double> tolerance;     // a line
+  std::optional<double> worst_moment;  // a mark, seconds
+};
+
+// The largest and the root of the mean square. Distances under 10 cm are told in millimetres.
+Panel difference_panel(const ChartedDifference& difference, Scale scale);
+
+// Distances and angles between joints over time.
+std::array<ChartedDifference, 2> difference_charts(const MotionDifference& difference);
 
 // Two panels, distances and angles: the largest of all joints and the root of the mean square.
 // Distances under 10 cm are told in millimetres.

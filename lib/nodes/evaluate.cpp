@@ -57,9 +57,7 @@ void add_targets(const Primitive& primitive, std::span<const double> weights, bo
 }
 
 void load_vectors(const Shared<Vec3f>& source, std::vector<Vec3>& values) {
-  values.clear();
-  if (!source) return;
-  values.resize(source->size());
+  values.resize(source ? source->size() : 0);
   for (std::size_t v = 0; v < values.size(); ++v) values[v] = (*source)[v].cast<double>();
 }
 
@@ -77,23 +75,37 @@ void skin(const Primitive& primitive, const std::vector<Affine>& palette,
   }
 }
 
-void place(const Mat4& node_to_world, std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
-  const Mat3 linear = node_to_world.topLeftCorner<3, 3>();
-  const Vec3 offset = node_to_world.topRightCorner<3, 1>();
-  // The inverse transpose up to a positive factor, without a division.
+// The inverse transpose of a linear map up to a positive factor, without a division.
+Mat3 cofactors_of(const Mat3& linear) {
   Mat3 cofactors;
   for (int c = 0; c < 3; ++c) {
     cofactors.col(c) = linear.col((c + 1) % 3).cross(linear.col((c + 2) % 3));
   }
-  if (linear.determinant() < 0) cofactors = -cofactors;
+  return linear.determinant() < 0 ? Mat3(-cofactors) : cofactors;
+}
+
+void place(const Mat4& node_to_world, std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
+  if (node_to_world == Mat4::Identity()) return;
+  const Mat3 linear = node_to_world.topLeftCorner<3, 3>();
+  const Vec3 offset = node_to_world.topRightCorner<3, 1>();
+  const Mat3 cofactors = cofactors_of(linear);
   for (Vec3& position : positions) position = linear * position + offset;
   for (Vec3& normal : normals) normal = cofactors * normal;
 }
 
 void normalize(std::vector<Vec3>& normals) {
+  constexpr double kNearUnit = 1e-5;
   for (Vec3& normal : normals) {
-    const double length = normal.stableNorm();
-    if (length > 0) normal /= length;
+    const double square = normal.squaredNorm();
+    const double excess = square - 1;
+    if (std::abs(excess) < kNearUnit) {
+      // What a file's floats are: 1 / sqrt(1 + excess), what the series leaves out is under 1e-15.
+      normal *= 1 - excess * (0.5 - 0.375 * excess);
+    } else if (square > 1e-200 && square < 1e200) {
+      normal /= std::sqrt(square);
+    } else if (const double length = normal.stableNorm(); length > 0) {
+      normal /= length;
+    }
   }
 }
 

@@ -2,9 +2,11 @@
 
 #include <string>
 
+#include "compare/matching.h"
 #include "compare/measure.h"
 #include "core/result.h"
 #include "difference_sheet.h"
+#include "folders.h"
 #include "outcome.h"
 #include "tools/common/tool.h"
 
@@ -12,9 +14,12 @@ namespace krok::diff {
 
 struct Options {
   std::string first, second;  // paths
+  compare::Matching matching = compare::Matching::automatic;
   compare::Tolerance tolerance;
   SheetOptions sheet;
-  std::string plot;  // a path; empty for none
+  std::string plot;     // a path; empty for none
+  std::string heatmap;  // the same
+  FolderOptions folders;
 };
 
 // Reads both files, compares them and draws what is wanted of the difference. Codes diff-kind (a

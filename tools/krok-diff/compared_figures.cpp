@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compare/frame_match.h"
+#include "compare/matching.h"
 #include "compare/skeleton_match.h"
 #include "difference_sheet.h"
 #include "motion/ground_place.h"
@@ -195,13 +196,17 @@ class ScenePart {
 
 class ScenePair {
  public:
-  ScenePair(const compare::Scene& first, const compare::Scene& second)
-      : first_(first), second_(second) {
-    const auto same_size = [](const compare::SceneMesh& a, const compare::SceneMesh& b) {
-      return a.vertex_count == b.vertex_count;
-    };
-    corresponds_ = std::equal(first.meshes.begin(), first.meshes.end(), second.meshes.begin(),
-                              second.meshes.end(), same_size);
+  ScenePair(const compare::Scene& first, const compare::Scene& second, compare::Matching matching)
+      : first_(first), second_(second), first_of_second_(second.meshes.size(), 0) {
+    const auto match = compare::match_lists(mesh_names(first), mesh_names(second), matching);
+    corresponds_ = matching != compare::Matching::nearest && match.only_first.empty() &&
+                   match.only_second.empty();
+    for (const auto& [i, j] : match.pairs) {
+      const auto a = static_cast<std::size_t>(i);
+      const auto b = static_cast<std::size_t>(j);
+      first_of_second_[b] = a;
+      corresponds_ = corresponds_ && first.meshes[a].vertex_count == second.meshes[b].vertex_count;
+    }
     if (!second_.has_surface()) {
       corresponds_ = corresponds_ && first.joint_names == second.joint_names;
     }
@@ -230,7 +235,8 @@ class ScenePair {
     result.coloured = result.second;
     if (corresponds_ && second_.has_surface()) {
       for (std::size_t i = 0; i < result.coloured.surfaces.size(); ++i) {
-        auto colours = colours_of(b.positions[i], a.positions[i], key, result.largest);
+        auto colours =
+            colours_of(b.positions[i], a.positions[first_of_second_[i]], key, result.largest);
         if (!colours.empty()) result.coloured.surfaces[i].colours = std::move(colours);
       }
     } else if (corresponds_) {
@@ -247,7 +253,14 @@ class ScenePair {
   }
 
  private:
+  static std::vector<std::string> mesh_names(const compare::Scene& scene) {
+    std::vector<std::string> names;
+    for (const compare::SceneMesh& mesh : scene.meshes) names.push_back(mesh.name);
+    return names;
+  }
+
   ScenePart first_, second_;
+  std::vector<std::size_t> first_of_second_;  // of meshes
   bool corresponds_ = false;
 };
 
@@ -297,8 +310,8 @@ DifferenceSheet sheet_of(const Model& first, const Model& second, const compare:
 }
 
 DifferenceSheet sheet_of(const compare::Scene& first, const compare::Scene& second,
-                         const compare::Measure& found) {
-  const auto pair = std::make_shared<const ScenePair>(first, second);
+                         const compare::Measure& found, compare::Matching matching) {
+  const auto pair = std::make_shared<const ScenePair>(first, second, matching);
   DifferenceSheet sheet;
   sheet.measured = pair->corresponds();
   sheet.largest = found.largest;

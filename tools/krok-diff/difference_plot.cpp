@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
 #include "core/file.h"
 #include "core/text.h"
 #include "draw/difference_chart.h"
@@ -9,6 +12,83 @@
 #include "tools/common/output_set.h"
 
 namespace krok::diff {
+
+namespace {
+
+using draw::ChartedDifference;
+using draw::Scale;
+
+constexpr std::size_t kMostAnimations = 8;
+
+Status not_drawn(const std::string& path, const std::string& why, ToolContext& context) {
+  context.warn("diff-plot", fmt::format("{} is not drawn: {}", path, why));
+  return {};
+}
+
+Status write_figure(const draw::Figure& figure, const std::string& path, ToolContext& context) {
+  const auto svg = draw::to_svg(figure);
+  if (!svg) return svg.error();
+  return write_output(context, path, [&](OutputFile& file) { return file.write(*svg); });
+}
+
+// Adds what the measure of all moments tells.
+void add_measure(const compare::Measure& measure, ChartedDifference& chart) {
+  chart.tolerance = chart.is_angle ? measure.tolerance / kRadiansPerDegree : measure.tolerance;
+  if (measure.largest > 0) chart.worst_moment = measure.where.time;
+}
+
+// One quantity of scenes.
+struct Quantity {
+  const char* title;
+  const char* of;
+  bool is_angle;
+  compare::MomentValue compare::MomentDifference::*value;
+  compare::Measure compare::SceneDifference::*measure;
+};
+constexpr Quantity kQuantities[] = {
+    {"Distance between vertices", "vertices", false, &compare::MomentDifference::positions,
+     &compare::SceneDifference::positions},
+    {"Angle between normals", "vertices", true, &compare::MomentDifference::normals,
+     &compare::SceneDifference::normals},
+    {"Distance between joints", "joints", false, &compare::MomentDifference::joint_positions,
+     &compare::SceneDifference::joint_positions},
+    {"Angle between joints", "joints", true, &compare::MomentDifference::joint_orientations,
+     &compare::SceneDifference::joint_orientations},
+};
+
+using Moments = std::vector<const compare::MomentDifference*>;
+
+ChartedDifference chart_of(const Quantity& quantity, const Moments& moments,
+                           const compare::SceneDifference& found) {
+  ChartedDifference chart;
+  chart.title = quantity.title;
+  chart.of = quantity.of;
+  chart.is_angle = quantity.is_angle;
+  const double unit = quantity.is_angle ? 1 / kRadiansPerDegree : 1;
+  for (const compare::MomentDifference* moment : moments) {
+    const compare::MomentValue& value = moment->*quantity.value;
+    chart.times.push_back(moment->time);
+    chart.largest.push_back(unit * static_cast<double>(value.largest));
+    chart.rms.push_back(unit * static_cast<double>(value.rms));
+  }
+  const compare::Measure& measure = found.*quantity.measure;
+  add_measure(measure, chart);
+  // The largest of all may be in another animation.
+  if (std::max(0, measure.where.animation) != std::max(0, moments.front()->animation)) {
+    chart.worst_moment.reset();
+  }
+  return chart;
+}
+
+bool differs(const Moments& moments, const compare::SceneDifference& found) {
+  return std::any_of(moments.begin(), moments.end(), [&](const compare::MomentDifference* moment) {
+    return std::any_of(std::begin(kQuantities), std::end(kQuantities), [&](const Quantity& one) {
+      return static_cast<double>((moment->*one.value).largest) > (found.*one.measure).tolerance;
+    });
+  });
+}
+
+}  // namespace
 
 Status check_plot_name(const std::string& path) {
   const std::string ending = extension(path);
@@ -19,7 +99,8 @@ Status check_plot_name(const std::string& path) {
       "call it .svg");
 }
 
-Status write_plot(const PlottedClip& first, const PlottedClip& second, const std::string& path,
+Status write_plot(const PlottedClip& first, const PlottedClip& second,
+                  const compare::ClipDifference& found, const std::string& path,
                   ToolContext& context) {
   const RoleMap first_roles = find_roles(first.clip->skeleton);
   const RoleMap second_roles = find_roles(second.clip->skeleton);
@@ -28,16 +109,56 @@ Status write_plot(const PlottedClip& first, const PlottedClip& second, const std
   a.frames = {0, first.clip->frame_count() - 1};
   b.frames = {0, second.clip->frame_count() - 1};
   const auto difference = draw::difference_over_time(a, b, {});
-  if (!difference) {
-    context.warn("diff-plot", fmt::format("{} is not drawn: {}", path, difference.error().message));
-    return {};
-  }
+  if (!difference) return not_drawn(path, difference.error().message, context);
   draw::Figure figure;
   figure.title = fmt::format("{} and {}", first.name, second.name);
-  figure.panels = draw::difference_panels(*difference, draw::Scale::linear);
-  const auto svg = draw::to_svg(figure);
-  if (!svg) return svg.error();
-  return write_output(context, path, [&](OutputFile& file) { return file.write(*svg); });
+  auto [distances, angles] = draw::difference_charts(*difference);
+  add_measure(found.positions, distances);
+  add_measure(found.orientations, angles);
+  for (const ChartedDifference* chart : {&distances, &angles}) {
+    figure.panels.push_back(draw::difference_panel(*chart, Scale::linear));
+  }
+  return write_figure(figure, path, context);
+}
+
+Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolContext& context) {
+  const compare::SceneDifference& found = *scenes.found;
+  std::map<int, Moments> animations;
+  for (const compare::MomentDifference& moment : found.moments) {
+    if (moment.frame >= 0) animations[moment.animation].push_back(&moment);
+  }
+  if (animations.empty()) return not_drawn(path, "nothing moves in both of the two", context);
+  const bool any = std::any_of(animations.begin(), animations.end(),
+                               [&](const auto& one) { return differs(one.second, found); });
+  const bool several = animations.size() > 1;
+  draw::Figure figure;
+  figure.title = fmt::format("{} and {}", scenes.first_name, scenes.second_name);
+  std::size_t drawn = 0, left = 0;
+  for (const auto& [animation, moments] : animations) {
+    if (several && any && !differs(moments, found)) continue;
+    if (drawn == kMostAnimations) {
+      ++left;
+      continue;
+    }
+    ++drawn;
+    const auto place = static_cast<std::size_t>(std::max(0, animation));
+    std::string name =
+        place < scenes.first->animations.size() ? scenes.first->animations[place].name : "";
+    if (name.empty()) name = fmt::format("animation {}", animation);
+    for (const Quantity& quantity : kQuantities) {
+      if ((found.*quantity.measure).count == 0) continue;
+      ChartedDifference chart = chart_of(quantity, moments, found);
+      if (several) chart.title = name + ": " + chart.title;
+      figure.panels.push_back(draw::difference_panel(chart, Scale::linear));
+    }
+  }
+  if (left > 0) {
+    context.warn("diff-plot", fmt::format("{} more animations that differ are not drawn", left));
+  }
+  if (figure.panels.empty()) {
+    return not_drawn(path, "the two have neither meshes nor joints in common", context);
+  }
+  return write_figure(figure, path, context);
 }
 
 }  // namespace krok::diff

@@ -25,17 +25,6 @@ LengthUnit unit_for(double metres) {
   return {"m", 1};
 }
 
-render::ColourKey key_of(const DifferenceSheet& sheet, const LengthUnit& unit) {
-  render::ColourKey key;
-  key.label = "distance between the two";
-  key.unit = unit.name;
-  key.low = sheet.tolerance * unit.in_a_metre;
-  key.high = sheet.largest * unit.in_a_metre;
-  // Two that are the same have a scale too.
-  if (!(key.high > key.low)) key.high = key.low > 0 ? 2 * key.low : 1;
-  return key;
-}
-
 Result<std::vector<PictureMoment>> moments_of(const DifferenceSheet& sheet,
                                               const SheetOptions& options) {
   auto moments = choose_moments(options.picture.moments, kDifferenceMoments, sheet.span);
@@ -101,6 +90,20 @@ void add_rows(const DifferenceSheet& sheet, const PictureSide& side,
 
 }  // namespace
 
+DistanceColours distance_colours(double tolerance, double largest) {
+  const LengthUnit unit = unit_for(largest);
+  DistanceColours colours;
+  render::ColourKey& key = colours.key;
+  key.label = "distance between the two";
+  key.unit = unit.name;
+  key.low = tolerance * unit.in_a_metre;
+  key.high = largest * unit.in_a_metre;
+  // Two that are the same have a scale too.
+  if (!(key.high > key.low)) key.high = key.low > 0 ? 2 * key.low : 1;
+  colours.in_a_metre = unit.in_a_metre;
+  return colours;
+}
+
 Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
                    ToolContext& context) {
   const auto sides = parse_sides(options.picture);
@@ -108,7 +111,7 @@ Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
   const auto moments = moments_of(sheet, options);
   if (!moments) return moments.error();
   const LengthUnit unit = unit_for(sheet.largest);
-  const render::ColourKey key = key_of(sheet, unit);
+  const render::ColourKey key = distance_colours(sheet.tolerance, sheet.largest).key;
   std::vector<Compared> compared;
   for (const PictureMoment& moment : *moments) compared.push_back(sheet.at(moment, key));
 

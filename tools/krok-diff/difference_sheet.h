@@ -48,7 +48,16 @@ struct DifferenceSheet {
 DifferenceSheet sheet_of(const Clip& first, const Clip& second, const compare::Measure& found);
 DifferenceSheet sheet_of(const Model& first, const Model& second, const compare::Measure& found);
 DifferenceSheet sheet_of(const compare::Scene& first, const compare::Scene& second,
-                         const compare::Measure& found);
+                         const compare::Measure& found, compare::Matching matching);
+
+// Colours of distances: grey up to the tolerance, then from blue over yellow to red at the largest.
+struct DistanceColours {
+  render::ColourKey key;
+  double in_a_metre = 1;  // of the key's unit
+
+  render::Colour at(double metres) const { return key.at(metres * in_a_metre); }
+};
+DistanceColours distance_colours(double tolerance, double largest);
 
 // Draws it, writes the picture and notes it in the report.
 Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options, ToolContext& context);

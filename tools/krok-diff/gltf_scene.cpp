@@ -4,7 +4,6 @@
 
 #include "core/numbers.h"
 #include "nodes/evaluate.h"
-#include "outcome.h"
 
 namespace krok::diff {
 

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "compare_files.h"
-#include "core/numbers.h"
-#include "core/quantity.h"
 #include "difference_plot.h"
+#include "heatmap.h"
+#include "tolerance_options.h"
 #include "tools/common/tool.h"
 
 namespace krok::diff {
@@ -13,68 +13,45 @@ namespace {
 // The options as they were typed.
 struct Arguments {
   std::string first, second;
-  std::string length = "0.01mm";
-  std::string angle = "0.01deg";
-  std::string ratio = "0.0001";
+  ToleranceArguments tolerance;
   SheetOptions sheet;
   std::string plot;
+  std::string heatmap;
+  FolderOptions folders;
 };
-
-Result<double> not_negative(Result<double> value, const char* option, const std::string& text) {
-  if (!value) {
-    Error error = std::move(value).error();
-    error.message = fmt::format("{}: {}", option, error.message);
-    return error;
-  }
-  if (*value < 0) {
-    return Error("quantity-range", fmt::format("{} {} is less than 0", option, text),
-                 "a tolerance is 0 or more");
-  }
-  return value;
-}
-
-Result<double> parse_ratio(const std::string& text) {
-  const auto value = parse_finite(text);
-  if (!value) return Error("quantity-number", fmt::format("'{}' is not a number", text));
-  return *value;
-}
 
 Result<Options> parse(const Arguments& arguments) {
   Options options;
   options.first = arguments.first;
   options.second = arguments.second;
-  const auto length = not_negative(parse_length(arguments.length), "--tolerance", arguments.length);
-  if (!length) return length.error();
-  const auto angle = not_negative(parse_angle(arguments.angle), "--angle", arguments.angle);
-  if (!angle) return angle.error();
-  const auto ratio = not_negative(parse_ratio(arguments.ratio), "--ratio", arguments.ratio);
-  if (!ratio) return ratio.error();
-  options.tolerance = {*length, *angle, *ratio};
+  const auto tolerance = parse_tolerances(arguments.tolerance);
+  if (!tolerance) return tolerance.error();
+  options.tolerance = *tolerance;
+  options.matching = arguments.tolerance.matching;
   options.sheet = arguments.sheet;
   options.plot = arguments.plot;
+  options.heatmap = arguments.heatmap;
+  options.folders = arguments.folders;
   if (Status fits = check_picture_name(options.sheet.path, "--sheet"); !fits) return fits.error();
   if (Status fits = check_plot_name(options.plot); !fits) return fits.error();
+  if (Status fits = check_heatmap_name(options.heatmap); !fits) return fits.error();
+  if (Status fits = check_summary_name(options.folders.summary); !fits) return fits.error();
   return options;
 }
 
 void declare(CLI::App& app, Arguments& arguments) {
-  app.add_option("A", arguments.first, "A .anim, .model, .cam, .glb or .gltf file")
+  app.add_option(
+         "A", arguments.first,
+         "A motion (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, .pc2 or .exr file, or a folder")
       ->type_name("")
       ->required();
-  app.add_option("B", arguments.second, "Another of the same kind")->type_name("")->required();
-  app.add_option("--tolerance", arguments.length,
-                 "Distances up to this are the same: 0.1mm, 0.2cm; a bare number is metres")
-      ->type_name("LENGTH")
-      ->default_str(arguments.length);
-  app.add_option("--angle", arguments.angle,
-                 "Angles up to this are the same: 0.1deg, 0.002rad; a bare number is degrees")
-      ->type_name("ANGLE")
-      ->default_str(arguments.angle);
-  app.add_option("--ratio", arguments.ratio,
-                 "Differences up to this are the same in what has no unit: weights, texture "
-                 "coordinates")
-      ->type_name("NUMBER")
-      ->default_str(arguments.ratio);
+  app.add_option(
+         "B", arguments.second,
+         "Another of the same kind (glTF goes with motions, models and point caches too), or "
+         "another folder")
+      ->type_name("")
+      ->required();
+  declare_tolerances(app, arguments.tolerance);
   app.add_option("--sheet", arguments.sheet.path,
                  "A picture of both figures and of where they differ, as PNG; of motions, models "
                  "and glTF")
@@ -84,13 +61,21 @@ void declare(CLI::App& app, Arguments& arguments) {
     app.get_option(name)->needs("--sheet");
   }
   app.add_option("--plot", arguments.plot,
-                 "Charts of the distances and angles between two motions over time, as SVG")
+                 "Charts of the distances and angles over time, as SVG; of motions and glTF")
       ->type_name("OUT.svg");
+  app.add_option("--heatmap", arguments.heatmap,
+                 "A's mesh, where the difference is largest in time, each vertex coloured by its "
+                 "largest distance of all times; of glTF and models")
+      ->type_name("OUT.glb");
+  declare_folder_options(app, arguments.folders);
 }
 
 Result<int> run(const Arguments& arguments, ToolContext& context) {
   const auto options = parse(arguments);
   if (!options) return options.error();
+  const auto folders = are_folders(*options);
+  if (!folders) return folders.error();
+  if (*folders) return run_folders(*options, context);
   const auto outcome = compare_files(*options, context);
   if (!outcome) return outcome.error();
   context.report.result = to_json(*outcome, options->tolerance);
@@ -116,10 +101,19 @@ int main(int argc, char** argv) {
        "Largest and RMS difference of joints, with joint and frame; exit code 1 if beyond."},
       {"krok-diff walk_rig.glb walk_clip.glb --json=diff.json",
        "A skinned rig against the same motion baked into morph targets; all figures as JSON."},
+      {"krok-diff golden.glb new.glb --match nearest --tolerance 0.1mm --normals 1deg",
+       "Meshes whose vertices stand in another order, or are split otherwise at seams."},
       {"krok-diff raw.anim clean.anim --sheet change.png --plot change.svg",
-       "Both figures side by side and where they differ, and the distance over time."}};
+       "Both figures side by side and where they differ, and the distance over time."},
+      {"krok-diff golden out --tolerance 0.1mm --keep-going --summary diff.html",
+       "Each file in out against the one of its name in golden; --update makes them the golden "
+       "ones."}};
   spec.exit_done = "the same within the tolerance";
-  spec.exit_no = "the files differ: beyond tolerance, or in skeleton, topology, frames or rate";
+  spec.exit_no =
+      "the files differ: beyond tolerance, or in skeleton, topology, frames or rate; of folders, a "
+      "file differs or is in one alone";
+  spec.exit_partly =
+      "of folders, with --keep-going: some files cannot be read, the others were compared";
   spec.has_output = false;
   spec.declare = [&](CLI::App& app) { krok::diff::declare(app, arguments); };
   spec.run = [&](krok::ToolContext& context) { return krok::diff::run(arguments, context); };

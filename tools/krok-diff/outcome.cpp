@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/numbers.h"
@@ -20,6 +21,9 @@ std::string in_unit(double value, Unit unit) {
                          : readable(value, kDigits) + " m";
     case Unit::angle:
       return readable(value / kRadiansPerDegree, kDigits) + " deg";
+    case Unit::time:
+      return value < 1.0 ? readable(value * 1000, kDigits) + " ms"
+                         : readable(value, kDigits) + " s";
     case Unit::ratio:
       break;
   }
@@ -32,6 +36,8 @@ const char* unit_name(Unit unit) {
       return "m";
     case Unit::angle:
       return "rad";
+    case Unit::time:
+      return "s";
     case Unit::ratio:
       break;
   }
@@ -49,16 +55,23 @@ std::string named(const char* kind, const std::vector<std::string>& names, int i
   return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {}", kind, name);
 }
 
+const std::vector<std::string>& mesh_names(const compare::Place& place, const PlaceNames& names) {
+  return place.in_second ? names.second_meshes : names.meshes;
+}
+
 std::vector<std::string> target_names(const PlaceNames& names, int mesh) {
-  const auto i = static_cast<std::size_t>(mesh);
-  return mesh >= 0 && i < names.targets.size() ? names.targets[i] : std::vector<std::string>();
+  const auto i = static_cast<std::size_t>(std::max(mesh, 0));  // morph targets alone: no mesh
+  return i < names.targets.size() ? names.targets[i] : std::vector<std::string>();
 }
 
 std::string to_text(const compare::Place& place, const PlaceNames& names) {
   std::vector<std::string> parts;
   if (place.vertex >= 0) {
     parts.push_back(fmt::format("vertex {}", place.vertex));
-    if (place.mesh >= 0) parts.back() += " of " + named("mesh", names.meshes, place.mesh);
+    if (place.mesh >= 0) {
+      parts.back() += place.in_second ? " of the second's " : " of ";
+      parts.back() += named("mesh", mesh_names(place, names), place.mesh);
+    }
   }
   if (place.target >= 0) {
     parts.push_back(named("target", target_names(names, place.mesh), place.target));
@@ -80,7 +93,8 @@ Json to_json(const compare::Place& place, const PlaceNames& names) {
     json[std::string(key) + "_index"] = index;
     if (!name.empty()) json[key] = name;
   };
-  add("mesh", place.mesh, name_at(names.meshes, place.mesh));
+  if (place.in_second) json["in"] = "second";
+  add("mesh", place.mesh, name_at(mesh_names(place, names), place.mesh));
   if (place.vertex >= 0) json["vertex"] = place.vertex;
   add("target", place.target, name_at(target_names(names, place.mesh), place.target));
   add("joint", place.joint, name_at(names.joints, place.joint));
@@ -98,11 +112,83 @@ std::string to_text(const Row& row, const PlaceNames& names) {
     return fmt::format("{}: equal in all {}", row.what, grouped(measure.count));
   }
   std::string text =
-      fmt::format("{}: largest {} at {}; RMS {}", row.what, in_unit(measure.largest, row.unit),
-                  to_text(measure.where, names), in_unit(measure.rms(), row.unit));
+      fmt::format("{}: largest {} at {}; RMS {}, 95 % {}", row.what,
+                  in_unit(measure.largest, row.unit), to_text(measure.where, names),
+                  in_unit(measure.rms(), row.unit), in_unit(measure.percentile(0.95), row.unit));
   text += measure.over == 0 ? fmt::format("; within in all {}", grouped(measure.count))
                             : fmt::format("; over tolerance in {} of {}", grouped(measure.over),
                                           grouped(measure.count));
+  return text;
+}
+
+Json to_json(const Row& row, const PlaceNames& names) {
+  const compare::Measure& measure = row.measure;
+  Json entry;
+  entry["what"] = row.what;
+  entry["unit"] = unit_name(row.unit);
+  entry["largest"] = measure.largest;
+  entry["rms"] = measure.rms();
+  entry["percentile_95"] = measure.percentile(0.95);
+  entry["tolerance"] = measure.tolerance;
+  entry["over"] = measure.over;
+  entry["count"] = measure.count;
+  entry["where"] = measure.largest > 0 ? to_json(measure.where, names) : Json();
+  return entry;
+}
+
+Json to_json(const std::vector<Item>& items, const PlaceNames& names) {
+  Json list = Json::array();
+  for (const Item& item : items) {
+    Json entry = to_json(item.place, names);
+    entry["measures"] = Json::array();
+    for (const Row& row : item.rows) entry["measures"].push_back(to_json(row, names));
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+// How many times its tolerance the worst of an item is; 0 where all is within.
+double excess_of(const Item& item) {
+  double most = 0;
+  for (const Row& row : item.rows) {
+    if (row.measure.within()) continue;
+    most = std::max(most, row.measure.largest / std::max(row.measure.tolerance, 1e-12));
+  }
+  return most;
+}
+
+// "LeftHand: positions up to 0.32 mm, RMS 0.04 mm, 95 % 0.1 mm (frame 37 (0.6167 s))"
+std::string to_text(const Item& item, const PlaceNames& names) {
+  std::string text = item.place.joint >= 0
+                         ? named("joint", names.joints, item.place.joint)
+                         : named("mesh", mesh_names(item.place, names), item.place.mesh);
+  if (item.place.in_second) text = "the second's " + text;
+  const char* before = ": ";
+  for (const Row& row : item.rows) {
+    if (row.measure.within()) continue;
+    text += fmt::format(
+        "{}{} up to {}, RMS {}, 95 % {}", before, row.what, in_unit(row.measure.largest, row.unit),
+        in_unit(row.measure.rms(), row.unit), in_unit(row.measure.percentile(0.95), row.unit));
+    before = "; ";
+  }
+  return text;
+}
+
+// The few that differ most, where there are several to choose from.
+std::string worst_items(const std::vector<Item>& items, const char* title,
+                        const PlaceNames& names) {
+  constexpr std::size_t kShown = 5;
+  std::vector<const Item*> worst;
+  for (const Item& item : items) {
+    if (excess_of(item) > 0) worst.push_back(&item);
+  }
+  if (worst.empty() || items.size() < 2) return {};
+  std::stable_sort(worst.begin(), worst.end(),
+                   [](const Item* a, const Item* b) { return excess_of(*a) > excess_of(*b); });
+  std::string text = fmt::format("  {} beyond tolerance, {} of {}{}:\n", title, worst.size(),
+                                 items.size(), worst.size() > kShown ? "; the worst" : "");
+  worst.resize(std::min(worst.size(), kShown));
+  for (const Item* item : worst) text += "    " + to_text(*item, names) + "\n";
   return text;
 }
 
@@ -110,9 +196,15 @@ std::string to_text(const Row& row, const PlaceNames& names) {
 std::string tolerances(const Outcome& outcome, const compare::Tolerance& tolerance) {
   std::string text = fmt::format("{}, {}", in_unit(tolerance.length, Unit::length),
                                  in_unit(tolerance.angle, Unit::angle));
-  for (const Row& row : outcome.rows) {
-    if (row.unit != Unit::ratio) continue;
-    return text + ", ratio " + readable(tolerance.ratio);
+  const bool ratio = std::any_of(outcome.rows.begin(), outcome.rows.end(),
+                                 [](const Row& row) { return row.unit == Unit::ratio; });
+  if (ratio) text += ", ratio " + readable(tolerance.ratio);
+  if (tolerance.normals) text += ", normals " + in_unit(*tolerance.normals, Unit::angle);
+  if (tolerance.joint_positions) {
+    text += ", joints " + in_unit(*tolerance.joint_positions, Unit::length);
+  }
+  if (tolerance.joint_orientations) {
+    text += " and " + in_unit(*tolerance.joint_orientations, Unit::angle);
   }
   return text;
 }
@@ -121,6 +213,25 @@ std::string tolerances(const Outcome& outcome, const compare::Tolerance& toleran
 
 void Outcome::add_row(std::string what, Unit unit, const compare::Measure& measure) {
   if (measure.count > 0) rows.push_back({std::move(what), unit, measure});
+}
+
+void Outcome::add_parts(const std::vector<compare::PartDifference>& parts) {
+  for (const compare::PartDifference& part : parts) {
+    Item item;
+    item.place = {.mesh = part.mesh, .in_second = part.in_second};
+    if (part.positions.count > 0) item.rows.push_back({"positions", Unit::length, part.positions});
+    if (part.normals.count > 0) item.rows.push_back({"normals", Unit::angle, part.normals});
+    meshes.push_back(std::move(item));
+  }
+}
+
+void Outcome::add_joints(const std::vector<compare::JointDifference>& found) {
+  for (const compare::JointDifference& joint : found) {
+    if (joint.positions.count == 0) continue;
+    joints.push_back({{.joint = joint.joint},
+                      {{"positions", Unit::length, joint.positions},
+                       {"orientations", Unit::angle, joint.orientations}}});
+  }
 }
 
 std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance) {
@@ -133,6 +244,8 @@ std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance)
     text += "  " + to_text(row, outcome.names) + "\n";
     measured_over = measured_over || !row.measure.within();
   }
+  text += worst_items(outcome.meshes, "meshes", outcome.names);
+  text += worst_items(outcome.joints, "joints", outcome.names);
   if (outcome.same) {
     text += fmt::format("the same within {}\n", tolerances(outcome, tolerance));
   } else if (measured_over) {
@@ -143,29 +256,42 @@ std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance)
   return text;
 }
 
+std::string worst_of(const Outcome& outcome) {
+  if (!outcome.structure.empty()) return outcome.structure.front();
+  const auto excess = [](const Row& row) {
+    return row.measure.within() ? 0.0
+                                : row.measure.largest / std::max(row.measure.tolerance, 1e-12);
+  };
+  const auto worst =
+      std::max_element(outcome.rows.begin(), outcome.rows.end(),
+                       [&](const Row& a, const Row& b) { return excess(a) < excess(b); });
+  if (worst == outcome.rows.end()) return {};
+  return fmt::format("{} {} at {}", worst->what, in_unit(worst->measure.largest, worst->unit),
+                     to_text(worst->measure.where, outcome.names));
+}
+
+Json to_json(const compare::Tolerance& tolerance) {
+  return {{"length", tolerance.length},
+          {"angle", tolerance.angle},
+          {"ratio", tolerance.ratio},
+          {"time", tolerance.time},
+          {"normals", tolerance.of_normals()},
+          {"joint_positions", tolerance.of_joint_positions()},
+          {"joint_orientations", tolerance.of_joint_orientations()}};
+}
+
 Json to_json(const Outcome& outcome, const compare::Tolerance& tolerance) {
   Json json;
   json["kind"] = outcome.kind;
   json["same"] = outcome.same;
   json["summary"] = outcome.summary;
-  json["tolerance"] = {
-      {"length", tolerance.length}, {"angle", tolerance.angle}, {"ratio", tolerance.ratio}};
+  json["tolerance"] = to_json(tolerance);
   json["structure"] = outcome.structure;
   json["notes"] = outcome.notes;
   json["measures"] = Json::array();
-  for (const Row& row : outcome.rows) {
-    const compare::Measure& measure = row.measure;
-    Json entry;
-    entry["what"] = row.what;
-    entry["unit"] = unit_name(row.unit);
-    entry["largest"] = measure.largest;
-    entry["rms"] = measure.rms();
-    entry["tolerance"] = measure.tolerance;
-    entry["over"] = measure.over;
-    entry["count"] = measure.count;
-    entry["where"] = measure.largest > 0 ? to_json(measure.where, outcome.names) : Json();
-    json["measures"].push_back(std::move(entry));
-  }
+  for (const Row& row : outcome.rows) json["measures"].push_back(to_json(row, outcome.names));
+  if (!outcome.meshes.empty()) json["meshes"] = to_json(outcome.meshes, outcome.names);
+  if (!outcome.joints.empty()) json["joints"] = to_json(outcome.joints, outcome.names);
   return json;
 }
 

@@ -198,14 +198,19 @@ TEST_F(KrokDiff, NotANumberIsTrouble) {
 TEST_F(KrokDiff, KindsThatDifferAreTrouble) {
   write("a.anim", make_clip());
   write("b.glb", test::square());
-  write_text("c.bvh", "HIERARCHY\nROOT Hips\n");
-  const Outcome two = run("a.anim b.glb");
+  write_text("points.pc2", std::string("POINTCACHE2\0\1\0\0\0", 16) + std::string(16, '\0'));
+  write_text("c.fbx", "not read here");
+  const Outcome two = run("a.anim points.pc2");
   EXPECT_EQ(two.exit_code, 2);
   EXPECT_THAT(two.err, HasSubstr("[diff-kinds]"));
-  const Outcome bvh = run("a.anim c.bvh");
-  EXPECT_EQ(bvh.exit_code, 2);
-  EXPECT_THAT(bvh.err, HasSubstr("[diff-kind]"));
-  EXPECT_THAT(bvh.err, HasSubstr("krok-import"));
+  const Outcome fbx = run("a.anim c.fbx");
+  EXPECT_EQ(fbx.exit_code, 2);
+  EXPECT_THAT(fbx.err, HasSubstr("[diff-kind]"));
+  EXPECT_THAT(fbx.err, HasSubstr("krok-import"));
+  // A motion and glTF can be compared, but here they have nothing in common.
+  const Outcome nothing = run("a.anim b.glb");
+  EXPECT_EQ(nothing.exit_code, 1) << nothing.err;
+  EXPECT_THAT(nothing.out, HasSubstr("only the first has joints (2)"));
 }
 
 TEST_F(KrokDiff, TroubleWithFilesAndOptionsIsExitCode2) {

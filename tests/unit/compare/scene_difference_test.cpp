@@ -210,6 +210,92 @@ TEST(SceneDifference, ComparesMorphTargetsAndWeightsThemselves) {
   EXPECT_EQ(skins.weights.where.vertex, 2);
 }
 
+TEST(SceneDifference, TellsMomentsPartsJointsAndVertices) {
+  const Scene other = changed([](double time, SceneState& state) {
+    if (std::abs(time - 0.7) < 1e-9) state.positions[0][2].y() += 1e-3;
+    if (std::abs(time - 0.3) < 1e-9) state.joints[0].position.z() += 2e-3;
+  });
+  for (const int jobs : {1, 3}) {
+    Progress progress;
+    SceneOptions options;
+    options.keep_vertices = true;
+    const auto found = difference(make_scene(), other, options, jobs, progress);
+    ASSERT_TRUE(found.ok());
+    ASSERT_EQ(found->moments.size(), 11u);
+    for (int f = 0; f < 11; ++f) {
+      const MomentDifference& moment = found->moments[static_cast<std::size_t>(f)];
+      EXPECT_EQ(moment.frame, f);
+      EXPECT_NEAR(moment.time, 0.1 * f, 1e-12);
+      EXPECT_NEAR(moment.positions.largest, f == 7 ? 1e-3 : 0, 1e-9);
+      EXPECT_NEAR(moment.positions.rms, f == 7 ? 1e-3 / std::sqrt(3.0) : 0, 1e-9);
+      EXPECT_NEAR(moment.joint_positions.largest, f == 3 ? 2e-3 : 0, 1e-9);
+    }
+    EXPECT_EQ(found->moments[7].positions.item, 2);
+    EXPECT_EQ(found->moments[3].joint_positions.item, 0);
+    ASSERT_EQ(found->parts.size(), 1u);
+    EXPECT_EQ(found->parts[0].positions.where.frame, 7);
+    EXPECT_EQ(found->parts[0].positions.count, 33);
+    ASSERT_EQ(found->joints.size(), 1u);
+    EXPECT_EQ(found->joints[0].positions.over, 1);
+    // 1 of 33 differs: 95 % do not, 98 % do.
+    EXPECT_EQ(found->positions.percentile(0.95), 0);
+    EXPECT_NEAR(found->positions.percentile(0.98), 1e-3, 1e-12);
+    EXPECT_EQ(found->vertex_largest.at(0).at(1), 0.0F);
+    EXPECT_NEAR(found->vertex_largest.at(0).at(2), 1e-3, 1e-9);
+  }
+  EXPECT_TRUE(compare(make_scene(), other).vertex_largest.empty());
+}
+
+TEST(SceneDifference, KeyTimesWithinTheToleranceAreOneMomentEachAtItsOwnTime) {
+  // The same poses at keys that stand 3 ms later.
+  Scene late = make_scene();
+  for (double& time : late.animations[0].key_times) time += 3e-3;
+  late.evaluate = [plain = late.evaluate](int which, double time, SceneState& state) {
+    plain(which, time - 3e-3, state);
+  };
+  EXPECT_FALSE(compare(make_scene(), late).same());
+  Progress progress;
+  SceneOptions options;
+  options.tolerance.time = 4e-3;
+  const auto found = difference(make_scene(), late, options, 1, progress);
+  ASSERT_TRUE(found.ok());
+  EXPECT_TRUE(found->same());
+  EXPECT_EQ(found->compared_times, 11);
+  EXPECT_NEAR(found->times.largest, 3e-3, 1e-12);
+  // A tolerance wider than the keys are apart neither drops nor shifts any.
+  options.tolerance.time = 0.25;
+  EXPECT_EQ(difference(make_scene(), make_scene(), options, 1, progress)->compared_times, 11);
+  EXPECT_TRUE(difference(make_scene(), make_scene(), options, 1, progress)->same());
+}
+
+TEST(SceneDifference, MatchingByNameComparesWhatBothHave) {
+  Scene other = make_scene();
+  other.meshes.push_back(other.meshes[0]);
+  other.meshes[0].name = "Hat";
+  other.joint_names = {"Pelvis"};
+  other.evaluate = [plain = other.evaluate](int which, double time, SceneState& state) {
+    plain(which, time, state);
+    state.positions.push_back(state.positions[0]);
+    state.normals.push_back(state.normals[0]);
+    for (Vec3& position : state.positions[0]) position.x() += 5;  // the hat is elsewhere
+  };
+  Progress progress;
+  SceneOptions options;
+  options.matching = Matching::name;
+  const auto found = difference(make_scene(), other, options, 1, progress);
+  ASSERT_TRUE(found.ok());
+  ASSERT_EQ(found->structure.size(), 2u);
+  EXPECT_EQ(found->structure[0],
+            "skeletons differ: both have 1 joint; only in the first: Hips; only in the second: "
+            "Pelvis");
+  EXPECT_EQ(found->structure[1], "only in the second: mesh Hat");
+  EXPECT_EQ(found->positions.count, 33);
+  EXPECT_TRUE(found->positions.within());
+  EXPECT_EQ(found->joint_positions.count, 0);
+  options.matching = Matching::order;
+  EXPECT_EQ(difference(make_scene(), other, options, 1, progress)->positions.largest, 5);
+}
+
 TEST(SceneDifference, ValuesThatAreNotNumbersAreTrouble) {
   Progress progress;
   const Scene bad = changed([](double, SceneState& state) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "formats/gltf/gltf_reader.h"
 #include "math/quaternion.h"
@@ -148,6 +149,24 @@ TEST(GltfEvaluate, NormalsStayPerpendicularUnderUnevenAndMirroringScales) {
   builder.json["nodes"][0]["scale"] = {-2, 1, 1};
   // The plane x + y = 0 becomes -x / 2 + y = 0.
   expect_near(play(builder, -1, 0).state.normals.at(0)[0], Vec3(-1, 2, 0).normalized());
+}
+
+TEST(GltfEvaluate, NormalsComeOutUnitWhateverTheirLengthInTheFile) {
+  GlbBuilder builder = test::square();
+  const std::vector<float> lengths = {1.000003F, 0.999996F, 3e-30F, 0};
+  const auto view = builder.json["accessors"][1]["bufferView"].get<std::size_t>();
+  const auto offset = builder.json["bufferViews"][view]["byteOffset"].get<std::size_t>();
+  for (std::size_t v = 0; v < 4; ++v) {
+    const float normal[3] = {0, 0.6F * lengths[v], 0.8F * lengths[v]};
+    std::memcpy(builder.bin.data() + offset + 12 * v, normal, sizeof normal);
+  }
+  const Played played = play(builder, -1, 0);
+  for (std::size_t v = 0; v < 3; ++v) {
+    const Vec3& normal = played.state.normals.at(0)[v];
+    EXPECT_NEAR(normal.norm(), 1, 1e-15) << v;
+    expect_near(normal, Vec3(0, 0.6, 0.8), 1e-6);
+  }
+  EXPECT_EQ(played.state.normals.at(0)[3], Vec3::Zero());
 }
 
 TEST(GltfEvaluate, AnimatedNodesGivenByAMatrixKeepWhatIsNotAnimated) {

@@ -14,6 +14,7 @@ export class GltfFigure {
     this.item = item;
     this.group = new Group();
     this.group.add(file.scene);
+    this.meshes = file.scene;
     this.bonesOf = [];
     file.scene.traverse((node) => {
       if (node.isMesh) {
@@ -47,15 +48,33 @@ export class GltfFigure {
     const shift = this.group.position.clone();
     this.group.position.set(0, 0, 0);
     this.group.updateMatrixWorld(true);
-    const box = new Box3();
+    const box = this.bonesOf.length > 1 ? this.jointBox() : new Box3().setFromObject(this.group);
     if (this.bonesOf.length > 1) {
-      this.bonesOf.forEach((_, joint) => box.expandByPoint(this.jointPosition(joint)));
-    } else {
-      box.setFromObject(this.group);
+      this.beyondJoints ??= this.findBeyondJoints(box);
+      box.min.sub(this.beyondJoints.min);
+      box.max.add(this.beyondJoints.max);
     }
     this.group.position.copy(shift);
     this.group.updateMatrixWorld(true);
     return box;
+  }
+
+  jointBox() {
+    const box = new Box3();
+    this.bonesOf.forEach((_, joint) => box.expandByPoint(this.jointPosition(joint)));
+    return box;
+  }
+
+  // How far the meshes reach beyond the joints, which may be few. To skin them takes long, so that
+  // one moment stands for all.
+  findBeyondJoints(joints) {
+    const meshes = new Box3().setFromObject(this.meshes);
+    const none = new Vector3();
+    if (meshes.isEmpty()) return { min: none, max: none };
+    return {
+      min: joints.min.clone().sub(meshes.min).max(none),
+      max: meshes.max.clone().sub(joints.max).max(none),
+    };
   }
 
   show({ skeleton }) {

@@ -1,0 +1,63 @@
+#include "compare/matching.h"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+namespace krok::compare {
+
+namespace {
+
+using Names = std::span<const std::string>;
+
+// The k-th item of a name with the k-th of that name.
+ListMatch match_by_name(Names first, Names second) {
+  ListMatch match;
+  match.by_name = true;
+  std::map<std::string_view, std::vector<int>> places;  // in reverse
+  for (std::size_t i = second.size(); i-- > 0;) places[second[i]].push_back(static_cast<int>(i));
+  std::vector<char> taken(second.size(), 0);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const auto found = places.find(first[i]);
+    if (found == places.end() || found->second.empty()) {
+      match.only_first.push_back(static_cast<int>(i));
+      continue;
+    }
+    match.pairs.emplace_back(static_cast<int>(i), found->second.back());
+    taken[static_cast<std::size_t>(found->second.back())] = 1;
+    found->second.pop_back();
+  }
+  for (std::size_t i = 0; i < second.size(); ++i) {
+    if (!taken[i]) match.only_second.push_back(static_cast<int>(i));
+  }
+  return match;
+}
+
+ListMatch match_by_place(std::size_t first, std::size_t second) {
+  ListMatch match;
+  const auto both = static_cast<int>(std::min(first, second));
+  for (int i = 0; i < both; ++i) match.pairs.emplace_back(i, i);
+  for (int i = both; i < static_cast<int>(first); ++i) match.only_first.push_back(i);
+  for (int i = both; i < static_cast<int>(second); ++i) match.only_second.push_back(i);
+  return match;
+}
+
+bool unique(Names names) {
+  std::vector<std::string_view> sorted(names.begin(), names.end());
+  std::sort(sorted.begin(), sorted.end());
+  return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+}
+
+}  // namespace
+
+ListMatch match_lists(Names first, Names second, Matching matching) {
+  if (matching == Matching::order) return match_by_place(first.size(), second.size());
+  if (matching == Matching::name) return match_by_name(first, second);
+  if (first.size() == second.size() && unique(first)) {
+    ListMatch match = match_by_name(first, second);
+    if (match.only_first.empty()) return match;
+  }
+  return match_by_place(first.size(), second.size());
+}
+
+}  // namespace krok::compare

@@ -1,0 +1,57 @@
+#include "compare/morph_difference.h"
+
+#include <fmt/format.h>
+
+#include "compare/mesh_difference.h"
+
+namespace krok::compare {
+
+namespace {
+
+void say_only_in(const char* which, const MorphSet& morphs, const std::vector<int>& targets,
+                 MorphDifference& result) {
+  for (const int target : targets) {
+    result.structure.push_back(fmt::format("the target {} is only in the {}",
+                                           morphs.names[static_cast<std::size_t>(target)], which));
+  }
+}
+
+}  // namespace
+
+Result<MorphDifference> difference(const MorphSet& first, const MorphSet& second,
+                                   const Tolerance& tolerance, Matching matching) {
+  for (const MorphSet* morphs : {&first, &second}) {
+    if (auto ok = check(*morphs); !ok) {
+      Error error = ok.error();
+      error.message = fmt::format("the {} morph targets: {}", morphs == &first ? "first" : "second",
+                                  error.message);
+      return error;
+    }
+  }
+  MorphDifference result;
+  result.positions = Measure(tolerance.length);
+  result.normals = Measure(tolerance.of_normals());
+  if (first.vertex_count != second.vertex_count) {
+    result.structure.push_back(fmt::format("{} vertices in the first, {} in the second",
+                                           first.vertex_count, second.vertex_count));
+    return result;
+  }
+  if (first.normals.empty() != second.normals.empty()) {
+    result.structure.push_back(
+        fmt::format("only the {} has normals", first.normals.empty() ? "second" : "first"));
+  }
+  if (matching != Matching::order) matching = Matching::name;
+  const ListMatch match = match_lists(first.names, second.names, matching);
+  say_only_in("first", first, match.only_first, result);
+  say_only_in("second", second, match.only_second, result);
+  for (const auto& [i, j] : match.pairs) {
+    const Place place{.target = i};
+    add_distances(first.target_positions(i), second.target_positions(j), place, result.positions);
+    if (first.normals.empty() || second.normals.empty()) continue;
+    add_angles(first.target_normals(i), second.target_normals(j), place, result.normals);
+  }
+  result.compared_targets = static_cast<int>(match.pairs.size());
+  return result;
+}
+
+}  // namespace krok::compare

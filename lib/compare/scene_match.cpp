@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compare/scene_comparison_internal.h"
+#include "compare/skeleton_match.h"
+#include "core/numbers.h"
+
+namespace krok::compare {
+
+namespace {
+
+constexpr std::size_t kShown = 5;
+
+// "Hat, Scarf and 3 more"
+std::string list_of(const char* kind, const std::vector<std::string>& names,
+                    const std::vector<int>& items) {
+  std::string list;
+  for (std::size_t i = 0; i < std::min(items.size(), kShown); ++i) {
+    list += i == 0 ? "" : ", ";
+    list += label(kind, names[static_cast<std::size_t>(items[i])], items[i]);
+  }
+  if (items.size() > kShown) list += fmt::format(" and {} more", items.size() - kShown);
+  return list;
+}
+
+void say_partners_missing(SceneComparison& comparison, const ListMatch& match,
+                          const std::vector<std::string>& first,
+                          const std::vector<std::string>& second) {
+  if (comparison.options.matching == Matching::name) {
+    if (!match.only_first.empty()) {
+      comparison.say("only in the first: " + list_of("mesh", first, match.only_first));
+    }
+    if (!match.only_second.empty()) {
+      comparison.say("only in the second: " + list_of("mesh", second, match.only_second));
+    }
+  } else if (first.size() != second.size()) {
+    comparison.say(fmt::format("{} in the first, {} in the second",
+                               counted(static_cast<long long>(first.size()), "mesh", "meshes"),
+                               second.size()));
+  }
+}
+
+// One group for each pair of names, or one of all.
+std::vector<SurfaceGroup> groups_of(const ListMatch& match, std::size_t first, std::size_t second) {
+  std::vector<SurfaceGroup> groups;
+  if (match.by_name) {
+    for (const auto& [i, j] : match.pairs) groups.push_back({{i}, {j}});
+    return groups;
+  }
+  SurfaceGroup all;
+  for (std::size_t i = 0; i < first; ++i) all.first.push_back(static_cast<int>(i));
+  for (std::size_t i = 0; i < second; ++i) all.second.push_back(static_cast<int>(i));
+  if (first > 0 && second > 0) groups.push_back(std::move(all));
+  return groups;
+}
+
+std::size_t vertices_of(const std::vector<SceneMesh>& meshes) {
+  std::size_t count = 0;
+  for (const SceneMesh& mesh : meshes) count += mesh.vertex_count;
+  return count;
+}
+
+void group_meshes(SceneComparison& comparison, const ListMatch& match) {
+  const auto& first = comparison.first.meshes;
+  const auto& second = comparison.second.meshes;
+  comparison.groups = groups_of(match, first.size(), second.size());
+  const auto have_normals = [](const std::vector<SceneMesh>& meshes) {
+    return std::any_of(meshes.begin(), meshes.end(),
+                       [](const SceneMesh& mesh) { return mesh.has_normals || mesh.only_points; });
+  };
+  if (!first.empty() && !second.empty() && have_normals(first) != have_normals(second)) {
+    comparison.say(
+        fmt::format("only the {} has normals", have_normals(first) ? "first" : "second"));
+  }
+  if (first.empty() != second.empty()) {
+    comparison.say(fmt::format("only the {} has meshes", first.empty() ? "second" : "first"));
+  } else if (first.size() != second.size() || vertices_of(first) != vertices_of(second)) {
+    const auto all = [](const std::vector<SceneMesh>& meshes) {
+      return counted(static_cast<long long>(vertices_of(meshes)), "vertex", "vertices") + " in " +
+             counted(static_cast<long long>(meshes.size()), "mesh", "meshes");
+    };
+    comparison.note(fmt::format("{} in the first, {} in the second", all(first), all(second)));
+  }
+}
+
+}  // namespace
+
+std::string label(const char* kind, const std::string& name, int index) {
+  return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {}", kind, name);
+}
+
+void match_scene_joints(SceneComparison& comparison) {
+  const Scene& first = comparison.first;
+  const Scene& second = comparison.second;
+  if (first.joint_names.empty() && second.joint_names.empty()) return;
+  if (first.joint_names.empty() || second.joint_names.empty()) {
+    const bool first_has = second.joint_names.empty();
+    std::string text = fmt::format(
+        "only the {} has joints ({}), so joints are not compared", first_has ? "first" : "second",
+        first_has ? first.joint_names.size() : second.joint_names.size());
+    // Without meshes there is nothing else that could be the same.
+    if (!first.meshes.empty() && !second.meshes.empty()) {
+      comparison.note(std::move(text));
+    } else {
+      comparison.say(std::move(text));
+    }
+    return;
+  }
+  const SkeletonMatch match =
+      match_joints(first.joint_names, first.joint_parents, second.joint_names, second.joint_parents,
+                   comparison.options.matching);
+  if (!match.difference.empty()) comparison.say("skeletons differ: " + match.difference);
+  comparison.first_joint_of_second.assign(second.joint_names.size(), -1);
+  for (std::size_t i = 0; i < match.second_of_first.size(); ++i) {
+    const int j = match.second_of_first[i];
+    if (j < 0) continue;
+    comparison.joints.emplace_back(static_cast<int>(i), j);
+    comparison.first_joint_of_second[static_cast<std::size_t>(j)] = static_cast<int>(i);
+  }
+}
+
+void match_scene_meshes(SceneComparison& comparison) {
+  const auto first = names_of(comparison.first.meshes);
+  const auto second = names_of(comparison.second.meshes);
+  if (comparison.first.only_joints != comparison.second.only_joints) {
+    comparison.note(fmt::format("only the {} can have meshes, so joints alone are compared",
+                                comparison.first.only_joints ? "second" : "first"));
+    return;
+  }
+  const ListMatch match = match_lists(first, second, comparison.options.matching);
+  if (comparison.options.matching == Matching::nearest) {
+    group_meshes(comparison, match);
+    return;
+  }
+  say_partners_missing(comparison, match, first, second);
+  for (const auto& [i, j] : match.pairs) {
+    const std::size_t a = comparison.first.meshes[static_cast<std::size_t>(i)].vertex_count;
+    const std::size_t b = comparison.second.meshes[static_cast<std::size_t>(j)].vertex_count;
+    if (a != b) {
+      comparison.say(fmt::format("{}: {} vertices in the first, {} in the second",
+                                 label("mesh", first[static_cast<std::size_t>(i)], i), a, b));
+      continue;
+    }
+    compare_shapes(comparison, i, j);
+    comparison.meshes.emplace_back(i, j);
+  }
+}
+
+}  // namespace krok::compare

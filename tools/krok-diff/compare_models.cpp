@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include "compare/model_difference.h"
+#include "compare/morph_difference.h"
+#include "compare_two.h"
+#include "comparisons.h"
+#include "core/numbers.h"
+#include "formats/model/model_format.h"
+#include "formats/morph_exr/morph_exr.h"
+#include "heatmap.h"
+
+namespace krok::diff {
+
+Result<Outcome> compare_models(const InputFile& first, const InputFile& second,
+                               const Options& options, ToolContext& context) {
+  auto models = read_both<Model>(first, second,
+                                 [](const InputFile& file) { return model::read(file.bytes()); });
+  if (!models) return models.error();
+  const auto found =
+      compare::difference(models->first, models->second, options.tolerance, options.matching);
+  if (!found) return found.error();
+  const Status drawn = draw_sheet(
+      options, context, [&] { return sheet_of(models->first, models->second, found->positions); });
+  if (!drawn) return drawn.error();
+  if (!options.heatmap.empty()) {
+    const compare::SceneOptions how{options.tolerance, options.matching};
+    const Status coloured =
+        write_heatmap(models->first, models->second, how, options.heatmap, context);
+    if (!coloured) return coloured.error();
+  }
+  Outcome outcome;
+  outcome.kind = word_of(InputKind::model);
+  outcome.summary = {
+      fmt::format("models: {}, {}, {}", counted(models->first.vertex_count(), "vertex", "vertices"),
+                  counted(static_cast<std::int64_t>(models->first.triangles.size()), "triangle"),
+                  counted(models->first.skeleton.joint_count(), "joint"))};
+  outcome.structure = found->structure;
+  outcome.names.joints = models->first.skeleton.names;
+  outcome.add_row("joint positions", Unit::length, found->reference_positions);
+  outcome.add_row("joint orientations", Unit::angle, found->reference_orientations);
+  outcome.add_row("positions", Unit::length, found->positions);
+  outcome.add_row("normals", Unit::angle, found->normals);
+  outcome.add_row("texture coordinates", Unit::ratio, found->texture_coordinates);
+  outcome.add_row("tangents", Unit::angle, found->tangents);
+  outcome.add_row("weights", Unit::ratio, found->weights);
+  outcome.add_joints(found->joints);
+  outcome.same = found->same();
+  return outcome;
+}
+
+Result<Outcome> compare_morphs(const InputFile& first, const InputFile& second,
+                               const Options& options) {
+  auto morphs = read_both<MorphSet>(
+      first, second, [](const InputFile& file) { return morph_exr::read(file.bytes()); });
+  if (!morphs) return morphs.error();
+  const auto found =
+      compare::difference(morphs->first, morphs->second, options.tolerance, options.matching);
+  if (!found) return found.error();
+  Outcome outcome;
+  outcome.kind = word_of(InputKind::morphs);
+  outcome.summary = {fmt::format("morph targets: {}, {} compared",
+                                 counted(morphs->first.vertex_count, "vertex", "vertices"),
+                                 counted(found->compared_targets, "target"))};
+  outcome.structure = found->structure;
+  outcome.names.targets = {morphs->first.names};
+  outcome.add_row("positions", Unit::length, found->positions);
+  outcome.add_row("normals", Unit::angle, found->normals);
+  outcome.same = found->same();
+  return outcome;
+}
+
+}  // namespace krok::diff

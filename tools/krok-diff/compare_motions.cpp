@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include "compare/camera_difference.h"
+#include "compare/clip_difference.h"
+#include "compare_two.h"
+#include "comparisons.h"
+#include "core/numbers.h"
+#include "difference_plot.h"
+#include "formats/cam/cam.h"
+#include "tools/common/motion_input.h"
+
+namespace krok::diff {
+
+Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
+                                const Options& options, ToolContext& context) {
+  auto clips = read_both<Clip>(first, second,
+                               [&](const InputFile& file) { return read_motion(file, context); });
+  if (!clips) return clips.error();
+  const auto found =
+      compare::difference(clips->first, clips->second, options.tolerance, options.matching);
+  if (!found) return found.error();
+  const Status drawn = draw_sheet(
+      options, context, [&] { return sheet_of(clips->first, clips->second, found->positions); });
+  if (!drawn) return drawn.error();
+  if (!options.plot.empty()) {
+    const auto [first_name, second_name] = picture_names(options);
+    const PlottedClip a{first_name, &clips->first};
+    const PlottedClip b{second_name, &clips->second};
+    if (Status plotted = write_plot(a, b, *found, options.plot, context); !plotted) {
+      return plotted.error();
+    }
+  }
+  Outcome outcome;
+  outcome.kind = word_of(InputKind::motion);
+  outcome.summary = {fmt::format("motions: {}, {} compared",
+                                 counted(clips->first.joint_count(), "joint"),
+                                 counted(found->compared_frames, "frame"))};
+  outcome.structure = found->structure;
+  outcome.names.joints = clips->first.skeleton.names;
+  outcome.add_row("reference positions", Unit::length, found->reference_positions);
+  outcome.add_row("reference orientations", Unit::angle, found->reference_orientations);
+  outcome.add_row("positions", Unit::length, found->positions);
+  outcome.add_row("orientations", Unit::angle, found->orientations);
+  outcome.add_joints(found->joints);
+  outcome.same = found->same();
+  return outcome;
+}
+
+Result<Outcome> compare_cameras(const InputFile& first, const InputFile& second,
+                                const Options& options) {
+  auto cameras = read_both<CameraTrack>(
+      first, second, [](const InputFile& file) { return cam::read(file.bytes()); });
+  if (!cameras) return cameras.error();
+  const auto found = compare::difference(cameras->first, cameras->second, options.tolerance);
+  if (!found) return found.error();
+  Outcome outcome;
+  outcome.kind = word_of(InputKind::camera);
+  outcome.summary = {fmt::format("cameras: {} compared", counted(found->compared_frames, "frame"))};
+  outcome.structure = found->structure;
+  outcome.add_row("positions", Unit::length, found->positions);
+  outcome.add_row("orientations", Unit::angle, found->orientations);
+  outcome.add_row("fields of view", Unit::angle, found->fields_of_view);
+  outcome.same = found->same();
+  return outcome;
+}
+
+}  // namespace krok::diff

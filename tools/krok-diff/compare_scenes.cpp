@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "compare/scene_difference.h"
+#include "compare_two.h"
+#include "comparisons.h"
+#include "core/numbers.h"
+#include "difference_plot.h"
+#include "formats/model/model_format.h"
+#include "gltf_scene.h"
+#include "heatmap.h"
+#include "other_scenes.h"
+#include "tools/common/gltf/gltf_input.h"
+#include "tools/common/motion_input.h"
+
+namespace krok::diff {
+
+namespace {
+
+// A file as a scene, with what the scene refers to.
+struct Opened {
+  InputKind kind = InputKind::gltf;
+  std::optional<nodes::Scene> asset;
+  std::optional<Model> model;
+  std::optional<Clip> clip;
+  std::optional<pc2::PointCache> points;
+  compare::Scene scene;
+
+  // What stands in the file, and the scene unless it depends on the partner's.
+  Status read(const InputFile& file, ToolContext& context);
+  Status read_gltf_scene(const InputFile& file, ToolContext& context);
+  // Of a point cache, which says little of itself.
+  Status finish(const Opened& partner);
+};
+
+Status Opened::read_gltf_scene(const InputFile& file, ToolContext& context) {
+  auto read = read_gltf(file, context);
+  if (!read) return std::move(read).error();
+  context.tell(read->diagnostics);
+  asset = std::move(*read);
+  auto made = scene_of(*asset);
+  if (!made) return std::move(made).error();
+  scene = std::move(*made);
+  return {};
+}
+
+Status Opened::read(const InputFile& file, ToolContext& context) {
+  if (kind == InputKind::gltf) return read_gltf_scene(file, context);
+  if (kind == InputKind::model) {
+    auto read = model::read(file.bytes());
+    if (!read) return std::move(read).error();
+    model = std::move(*read);
+    if (Status good = check(*model); !good) return good;
+    scene = scene_of(*model);
+  } else if (kind == InputKind::motion) {
+    auto read = read_motion(file, context);
+    if (!read) return std::move(read).error();
+    clip = std::move(*read);
+    if (Status good = check(*clip); !good) return good;
+    scene = scene_of(*clip);
+  } else {
+    auto read = pc2::PointCache::read(file.bytes());
+    if (!read) return std::move(read).error();
+    points = *read;
+  }
+  return {};
+}
+
+Status Opened::finish(const Opened& partner) {
+  if (!points) return {};
+  auto made = scene_of(*points, partner.points ? nullptr : &partner.scene);
+  if (!made) return std::move(made).error();
+  scene = std::move(*made);
+  return {};
+}
+
+PlaceNames names_of(const compare::Scene& first, const compare::Scene& second) {
+  PlaceNames names;
+  names.joints = first.joint_names;
+  for (const compare::SceneMesh& mesh : first.meshes) {
+    names.meshes.push_back(mesh.name);
+    auto& targets = names.targets.emplace_back();
+    for (const auto& target : mesh.targets) targets.push_back(target.name);
+  }
+  for (const compare::SceneMesh& mesh : second.meshes) names.second_meshes.push_back(mesh.name);
+  for (const auto& animation : first.animations) names.animations.push_back(animation.name);
+  return names;
+}
+
+std::vector<std::string> summary_lines(const Opened& first, const Opened& second, int moments) {
+  const auto text = [](const Opened& one) {
+    const char* kind = one.kind == InputKind::gltf     ? "glTF"
+                       : one.kind == InputKind::model  ? "model"
+                       : one.kind == InputKind::motion ? "motion"
+                                                       : "points";
+    return fmt::format("{}: {}", kind, summary_of(one.scene));
+  };
+  std::vector<std::string> lines = {text(first)};
+  if (text(second) != lines.front()) lines.push_back("against " + text(second));
+  const bool moving = !first.scene.animations.empty() && !second.scene.animations.empty();
+  lines.push_back(moving ? fmt::format("compared at {}", counted(moments, "moment"))
+                         : "compared without animation");
+  return lines;
+}
+
+Outcome outcome_of(const Opened& first, const Opened& second,
+                   const compare::SceneDifference& found) {
+  Outcome outcome;
+  outcome.kind = word_of(first.kind);
+  outcome.summary = summary_lines(first, second, found.compared_times);
+  outcome.structure = found.structure;
+  outcome.notes = found.notes;
+  outcome.names = names_of(first.scene, second.scene);
+  outcome.add_row("positions", Unit::length, found.positions);
+  outcome.add_row("normals", Unit::angle, found.normals);
+  outcome.add_row("joint positions", Unit::length, found.joint_positions);
+  outcome.add_row("joint orientations", Unit::angle, found.joint_orientations);
+  outcome.add_row("morph targets", Unit::length, found.target_positions);
+  outcome.add_row("morph targets' normals", Unit::ratio, found.target_normals);
+  outcome.add_row("texture coordinates", Unit::ratio, found.texture_coordinates);
+  outcome.add_row("weights", Unit::ratio, found.weights);
+  // Floats round key times; that is not worth a line.
+  if (found.times.largest > 1e-6) outcome.add_row("key times", Unit::time, found.times);
+  outcome.add_parts(found.parts);
+  outcome.add_joints(found.joints);
+  outcome.same = found.same();
+  return outcome;
+}
+
+}  // namespace
+
+Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
+                               const InputFile& second, InputKind second_kind,
+                               const Options& options, ToolContext& context) {
+  Opened a{first_kind, {}, {}, {}, {}, {}};
+  Opened b{second_kind, {}, {}, {}, {}, {}};
+  if (Status read = a.read(first, context); !read) return Error(read.error()).in_file(first.path());
+  if (Status read = b.read(second, context); !read) {
+    return Error(read.error()).in_file(second.path());
+  }
+  if (Status done = a.finish(b); !done) return Error(done.error()).in_file(first.path());
+  if (Status done = b.finish(a); !done) return Error(done.error()).in_file(second.path());
+  compare::SceneOptions how;
+  how.tolerance = options.tolerance;
+  how.matching = options.matching;
+  how.keep_vertices = !options.heatmap.empty();
+  const auto found = compare::difference(a.scene, b.scene, how, context.jobs, *context.progress);
+  if (!found) return found.error();
+  const bool bare = a.scene.meshes.empty() || b.scene.meshes.empty();
+  const Status drawn = draw_sheet(options, context, [&] {
+    return sheet_of(a.scene, b.scene, bare ? found->joint_positions : found->positions,
+                    options.matching);
+  });
+  if (!drawn) return drawn.error();
+  if (!options.plot.empty()) {
+    const auto [first_name, second_name] = picture_names(options);
+    const PlottedScenes scenes{first_name, second_name, &a.scene, &*found};
+    if (Status plotted = write_plot(scenes, options.plot, context); !plotted) {
+      return plotted.error();
+    }
+  }
+  if (!options.heatmap.empty()) {
+    const Status coloured = write_heatmap(a.scene, *found, options.heatmap, context);
+    if (!coloured) return coloured.error();
+  }
+  return outcome_of(a, b, *found);
+}
+
+}  // namespace krok::diff

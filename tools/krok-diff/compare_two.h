@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "compare_files.h"
+#include "core/file.h"
+#include "core/result.h"
+
+// What the comparisons of files of all kinds share.
+
+namespace krok::diff {
+
+// Both files read by the same reader, errors with the file's path.
+template <typename T, typename Read>
+Result<std::pair<T, T>> read_both(const InputFile& first, const InputFile& second, Read read) {
+  Result<T> a = read(first);
+  if (!a) return std::move(a.error()).in_file(first.path());
+  Result<T> b = read(second);
+  if (!b) return std::move(b.error()).in_file(second.path());
+  return std::pair<T, T>(std::move(*a), std::move(*b));
+}
+
+// What the files are called in pictures: their base names or, where these are the same, with the
+// folder that each is in.
+inline std::pair<std::string, std::string> picture_names(const Options& options) {
+  const auto name = [](const std::string& path) {
+    const std::string folder = std::filesystem::path(path).parent_path().filename().string();
+    return (folder.empty() ? "" : folder + "/") + base_name(path);
+  };
+  std::pair<std::string, std::string> names(base_name(options.first), base_name(options.second));
+  if (names.first == names.second) names = {name(options.first), name(options.second)};
+  return names;
+}
+
+// Draws the sheet of two things, where one is wanted.
+inline Status draw_sheet(const Options& options, ToolContext& context,
+                         const std::function<DifferenceSheet()>& make) {
+  if (options.sheet.path.empty()) return {};
+  DifferenceSheet sheet = make();
+  std::tie(sheet.first_name, sheet.second_name) = picture_names(options);
+  return write_sheet(sheet, options.sheet, context);
+}
+
+}  // namespace krok::diff

@@ -1,0 +1,122 @@
+// The first folder made what the second is.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <set>
+
+#include "compare_files.h"
+#include "folders.h"
+#include "tools/common/paths.h"
+
+namespace krok::diff {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Folders that were made, removed again unless what belongs into them is in place.
+class NewFolders {
+ public:
+  ~NewFolders() {
+    std::error_code ignored;
+    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
+      fs::remove(*folder, ignored);
+    }
+  }
+
+  // Makes `folder` and those that it lies in. Below `root` links are refused: what they lead to is
+  // not compared either.
+  Status make(const fs::path& folder, const fs::path& root) {
+    std::error_code unknown;
+    if (folder != root) {
+      if (Status above = make(folder.parent_path(), root); !above) return above;
+      if (fs::is_symlink(fs::symlink_status(folder, unknown))) {
+        return Error("file-unwritable", "is a link, which is not followed here",
+                     "put a folder in its place")
+            .in_file(folder.string());
+      }
+    }
+    if (fs::is_directory(folder, unknown)) return {};
+    std::vector<fs::path> missing;
+    for (fs::path path = folder; !path.empty() && !fs::exists(path, unknown);
+         path = path.parent_path()) {
+      missing.push_back(path);
+    }
+    std::error_code trouble;
+    for (auto path = missing.rbegin(); path != missing.rend() && !trouble; ++path) {
+      if (fs::create_directory(*path, trouble)) made_.push_back(*path);
+    }
+    if (trouble || !fs::is_directory(folder, unknown)) {
+      return Error("file-unwritable",
+                   fmt::format("cannot be made: {}",
+                               trouble ? trouble.message() : "a file has its name"))
+          .in_file(folder.string());
+    }
+    return {};
+  }
+
+  void keep() { made_.clear(); }
+
+ private:
+  std::vector<fs::path> made_;
+};
+
+Result<OutputFile> copy_of(const std::string& source, const std::string& target) {
+  const auto from = InputFile::open(source);
+  if (!from) return from.error();
+  auto to = OutputFile::create(target);
+  if (!to) return to.error();
+  if (Status written = to->write(from->bytes()); !written) return written.error();
+  if (Status sealed = to->seal(); !sealed) return sealed.error();
+  return to;
+}
+
+}  // namespace
+
+Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& outcome,
+                                  ToolContext& context) {
+  const bool prune = options.folders.prune;
+  if (prune && outcome.count(FileStatus::only_in_first) == outcome.files.size()) {
+    return Error("diff-empty",
+                 fmt::format("{} has no file, and --prune would remove all of {}", options.second,
+                             options.first),
+                 "check that the files were made");
+  }
+  FolderUpdate update;
+  NewFolders folders;
+  std::vector<OutputFile> copies;
+  std::set<std::string> places;
+  // Without a slash at its end, so that it is the parent of what is in it.
+  const fs::path root = fs::path(options.first).has_filename()
+                            ? fs::path(options.first)
+                            : fs::path(options.first).parent_path();
+  for (const FileResult& file : outcome.files) {
+    if (prune && file.status == FileStatus::only_in_first) update.removed.push_back(file.path);
+    const bool differs = file.status == FileStatus::differs;
+    if (!differs && file.status != FileStatus::only_in_second) continue;
+    (differs ? update.replaced : update.added).push_back(file.path);
+    const fs::path target = root / file.path;
+    if (Status made = folders.make(target.parent_path(), root); !made) return made.error();
+    // Two links to one file.
+    if (!places.insert(place_of(target.string())).second) return twice_error(target.string());
+    auto copy = copy_of(below(options.second, file.path), target.string());
+    if (!copy) return std::move(copy.error()).in_file(target.string());
+    copies.push_back(std::move(*copy));
+  }
+  if (Status placed = OutputFile::place_all(copies); !placed) return placed.error();
+  folders.keep();
+  for (const auto* paths : {&update.replaced, &update.added}) {
+    for (const std::string& path : *paths) context.wrote(below(options.first, path));
+  }
+  for (const std::string& path : update.removed) {
+    std::error_code trouble;
+    if (!fs::remove(root / path, trouble) && trouble) {
+      return Error("file-unwritable", fmt::format("cannot be removed: {}", trouble.message()))
+          .in_file((root / path).string());
+    }
+  }
+  return update;
+}
+
+}  // namespace krok::diff

@@ -1,0 +1,398 @@
+#include "folders.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <set>
+
+#include "compare_files.h"
+#include "core/hash.h"
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "formats/registry/registry.h"
+#include "tools/common/in_order.h"
+#include "tools/common/paths.h"
+
+namespace krok::diff {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// How far ahead of the first file that is not told of yet others may be compared.
+constexpr std::size_t kWindow = 64;
+
+// One pair, and what is to be told of it.
+struct Compared {
+  FileResult result;
+  Diagnostics issues;
+  std::vector<Report::Input> inputs;
+};
+
+bool is_gltf_text(const std::string& path, const InputFile& file) {
+  return registry::identify(path, file.bytes()) == registry::Kind::gltf;
+}
+
+// How two files differ that are compared byte by byte.
+Outcome byte_outcome(const InputFile& first, const InputFile& second) {
+  const auto a = first.bytes(), b = second.bytes();
+  const auto apart = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin();
+  Outcome outcome;
+  outcome.kind = "bytes";
+  outcome.summary = {"compared byte by byte"};
+  std::string sentence = fmt::format("byte {} is the first that differs", grouped(apart));
+  if (a.size() != b.size()) {
+    sentence = fmt::format("{} in the first, {} in the second; {}",
+                           counted(static_cast<long long>(a.size()), "byte"),
+                           counted(static_cast<long long>(b.size()), "byte"), sentence);
+  }
+  outcome.structure = {sentence};
+  return outcome;
+}
+
+class Comparison {
+ public:
+  Comparison(const Options& options, ToolContext& context) : options_(options), context_(context) {}
+
+  Result<FolderOutcome> run() {
+    if (Status listed = list(); !listed) return listed.error();
+    // Files that a glTF refers to are compared with it; so those come first.
+    std::vector<std::size_t> gltf, others;
+    for (std::size_t i = 0; i < outcome_.files.size(); ++i) {
+      if (outcome_.files[i].status != FileStatus::not_compared) continue;
+      (extension(outcome_.files[i].path) == ".gltf" ? gltf : others).push_back(i);
+    }
+    context_.progress->begin("comparing files", gltf.size() + others.size());
+    compare(gltf);
+    others.erase(std::remove_if(others.begin(), others.end(),
+                                [&](std::size_t i) {
+                                  if (stopped_ || !is_part(outcome_.files[i].path)) return false;
+                                  outcome_.files[i].status = FileStatus::same;
+                                  context_.progress->advance(1);
+                                  return true;
+                                }),
+                 others.end());
+    compare(others);
+    context_.progress->end();
+    return std::move(outcome_);
+  }
+
+ private:
+  std::string first_path(const std::string& path) const { return below(options_.first, path); }
+  std::string second_path(const std::string& path) const { return below(options_.second, path); }
+
+  Status list() {
+    const PathFilter& filter = options_.folders.filter;
+    FolderFiles first, second;
+    std::error_code unknown;
+    // Golden files that are yet to be made.
+    const bool begun = !options_.folders.update || fs::exists(options_.first, unknown);
+    if (begun) {
+      auto found = files_in(options_.first, filter, options_.second, context_.destinations);
+      if (!found) return found.error();
+      first = std::move(*found);
+    }
+    auto found = files_in(options_.second, filter, options_.first, context_.destinations);
+    if (!found) return found.error();
+    second = std::move(*found);
+    if (first.paths.empty() && second.paths.empty()) {
+      return Error(
+          "diff-empty",
+          fmt::format("neither {} nor {} has a file to compare", options_.first, options_.second),
+          filter.include.empty() && filter.exclude.empty()
+              ? "check that the files were made"
+              : "see which files --include and --exclude leave");
+    }
+    outcome_.notes = std::move(first.notes);
+    std::move(second.notes.begin(), second.notes.end(), std::back_inserter(outcome_.notes));
+    pair(first.paths, second.paths);
+    return {};
+  }
+
+  void pair(const std::vector<std::string>& first, const std::vector<std::string>& second) {
+    auto a = first.begin();
+    auto b = second.begin();
+    while (a != first.end() || b != second.end()) {
+      FileResult& file = outcome_.files.emplace_back();
+      if (b == second.end() || (a != first.end() && *a < *b)) {
+        file.path = *a++;
+        file.status = FileStatus::only_in_first;
+      } else if (a == first.end() || *b < *a) {
+        file.path = *b++;
+        file.status = FileStatus::only_in_second;
+      } else {
+        file.path = *a++;
+        ++b;
+      }
+    }
+  }
+
+  // Whether both files of this name were read as parts of others.
+  bool is_part(const std::string& path) const {
+    return parts_.count(place_of(first_path(path))) > 0 &&
+           parts_.count(place_of(second_path(path))) > 0;
+  }
+
+  void compare(const std::vector<std::size_t>& chosen) {
+    if (stopped_) return;
+    const int threads = thread_count(context_.jobs);
+    const int workers = static_cast<int>(
+        std::clamp<std::size_t>(chosen.size(), 1, static_cast<std::size_t>(threads)));
+    jobs_of_a_file_ = std::max(1, threads / workers);
+    in_order<Compared>(
+        chosen.size(), workers, kWindow,
+        [&](std::size_t i) { return compare_pair(outcome_.files[chosen[i]].path); },
+        [&](std::size_t i, Compared compared) {
+          return take(outcome_.files[chosen[i]], std::move(compared));
+        });
+  }
+
+  bool take(FileResult& file, Compared compared) {
+    context_.progress->advance(1);
+    context_.tell(compared.issues);
+    for (std::size_t i = 0; i < compared.inputs.size(); ++i) {
+      Report::Input& input = compared.inputs[i];
+      if (input.path != first_path(file.path) && input.path != second_path(file.path)) {
+        parts_.insert(place_of(input.path));
+      }
+      context_.report.inputs.push_back(std::move(input));
+    }
+    file = std::move(compared.result);
+    if (file.status == FileStatus::unreadable && !options_.folders.keep_going) stopped_ = true;
+    return !stopped_;
+  }
+
+  // Called from several threads.
+  Compared compare_pair(const std::string& path) const {
+    Compared compared;
+    compared.result.path = path;
+    Options one = options_;
+    one.first = first_path(path);
+    one.second = second_path(path);
+    one.folders = {};
+    std::string messages;  // told later, in order
+    Progress no_progress;
+    ToolContext context;
+    context.report.tool = context_.report.tool;
+    context.jobs = jobs_of_a_file_;
+    context.quiet = true;
+    context.progress = &no_progress;
+    context.kept_messages = &messages;
+    context.destinations = context_.destinations;
+    auto outcome = outcome_of(one, context);
+    if (!outcome) {
+      Error error = outcome.error();
+      if (error.where.file.empty()) error.where.file = one.second;
+      compared.result.status = FileStatus::unreadable;
+      compared.result.what = fmt::format("{} [{}]", error.message, error.code);
+      context.report.issues.push_back(std::move(error));
+    } else if (outcome->same) {
+      compared.result.status = FileStatus::same;
+    } else {
+      compared.result.status = FileStatus::differs;
+      compared.result.what = worst_of(*outcome);
+      if (!context_.report_path.empty()) {
+        // The tables of each joint would make a report of thousands of files too long to hold.
+        outcome->meshes.clear();
+        outcome->joints.clear();
+        compared.result.outcome = to_json(*outcome, options_.tolerance);
+      }
+    }
+    for (Diagnostic& issue : context.report.issues) {
+      if (issue.where.file.empty()) issue.where.file = one.second;
+    }
+    compared.issues = std::move(context.report.issues);
+    compared.inputs = std::move(context.report.inputs);
+    return compared;
+  }
+
+  // Equal bytes are the same without a look at what they mean, but for glTF's text, which refers to
+  // other files. What is of no kind that can be compared is held against the other byte by byte.
+  static Result<Outcome> outcome_of(const Options& one, ToolContext& context) {
+    const auto first = InputFile::open(one.first);
+    if (!first) return first.error();
+    const auto second = InputFile::open(one.second);
+    if (!second) return second.error();
+    const auto a = first->bytes(), b = second->bytes();
+    const bool equal = std::equal(a.begin(), a.end(), b.begin(), b.end());
+    const auto note_inputs = [&] {
+      context.report.inputs.clear();
+      for (const InputFile* file : {&*first, &*second}) {
+        context.report.inputs.push_back({file->path(), hex(file->checksum())});
+      }
+    };
+    if (equal && !is_gltf_text(one.first, *first)) {
+      note_inputs();
+      Outcome outcome;
+      outcome.same = true;
+      return outcome;
+    }
+    auto outcome = compare_files(one, context);
+    if (outcome) return outcome;
+    if (outcome.error().code == "diff-kind") {
+      note_inputs();
+      return byte_outcome(*first, *second);
+    }
+    if (outcome.error().code == "diff-kinds") {
+      Outcome other;
+      other.structure = {outcome.error().message};
+      return other;
+    }
+    return outcome;
+  }
+
+  const Options& options_;
+  ToolContext& context_;
+  FolderOutcome outcome_;
+  std::set<std::string> parts_;
+  int jobs_of_a_file_ = 1;
+  bool stopped_ = false;
+};
+
+// The error that a run ends with where files could not be read.
+Error unreadable_error(const FolderOutcome& outcome, const FolderOptions& options) {
+  constexpr std::size_t kNamed = 10;
+  std::string names;
+  std::size_t named = 0;
+  const std::size_t all = outcome.count(FileStatus::unreadable);
+  for (const FileResult& file : outcome.files) {
+    if (file.status != FileStatus::unreadable || named == kNamed) continue;
+    names += (named++ == 0 ? "" : ", ") + file.path;
+  }
+  if (all > named) names += fmt::format(" and {} more", all - named);
+  const std::string end = options.update ? "; nothing was updated" : "";
+  if (!options.keep_going) {
+    return Error("batch-stopped",
+                 fmt::format("stopped at {}, the first file that cannot be read; {} left{}", names,
+                             outcome.count(FileStatus::not_compared), end),
+                 "--keep-going compares the others");
+  }
+  return Error("batch-failed",
+               fmt::format("{} cannot be read: {}{}", counted(static_cast<long long>(all), "file"),
+                           names, end));
+}
+
+// The update, and what it says.
+Result<FolderUpdate> run_update(const Options& options, const FolderOutcome& outcome,
+                                ToolContext& context) {
+  auto update = update_first(options, outcome, context);
+  if (!update) return update;
+  if (context.quiet) return update;
+  const auto tell = [&](const char* what, const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) {
+      context.say(fmt::format("{} {}", what, below(options.first, path)));
+    }
+  };
+  tell("replaced", update->replaced);
+  tell("added", update->added);
+  tell("removed", update->removed);
+  return update;
+}
+
+}  // namespace
+
+std::size_t FolderOutcome::count(FileStatus status) const {
+  return static_cast<std::size_t>(
+      std::count_if(files.begin(), files.end(),
+                    [status](const FileResult& file) { return file.status == status; }));
+}
+
+void declare_folder_options(CLI::App& app, FolderOptions& options) {
+  constexpr const char* kGroup = "Folders";
+  const auto patterns = [&](const char* name, std::vector<std::string>& list, const char* help) {
+    app.add_option(name, list, help)->type_name("PATTERN")->expected(1)->take_all()->group(kGroup);
+  };
+  patterns("--include", options.filter.include,
+           "Only files that fit, '*.glb' or 'walks/**/*.glb'; may be given again and again");
+  patterns("--exclude", options.filter.exclude, "Not files that fit; may be given again and again");
+  app.add_flag("--keep-going", options.keep_going,
+               "Go on after a file that cannot be read and end with exit code 3; otherwise the "
+               "first one ends the run")
+      ->group(kGroup);
+  app.add_option("--summary", options.summary,
+                 "A page with a row for each file that is not the same, as HTML or, called .md, as "
+                 "Markdown")
+      ->type_name("OUT.html")
+      ->group(kGroup);
+  app.add_flag(
+         "--update", options.update,
+         "Copy what differs, or is new, from B over A; nothing where a file cannot be read. A "
+         "need not be there yet")
+      ->group(kGroup);
+  app.add_flag("--prune", options.prune, "With --update: remove what only A has")
+      ->needs("--update")
+      ->group(kGroup);
+}
+
+Result<bool> are_folders(const Options& options) {
+  std::error_code unknown;
+  const bool first = fs::is_directory(options.first, unknown);
+  const bool second = fs::is_directory(options.second, unknown);
+  const bool first_to_come =
+      options.folders.update && !fs::exists(fs::symlink_status(options.first, unknown));
+  if (!first && !second) {
+    if (!options.folders.any()) return false;
+    if (first_to_come ||
+        (fs::exists(options.first, unknown) && fs::exists(options.second, unknown))) {
+      return Error("usage",
+                   "--include, --exclude, --keep-going, --summary, --update and --prune "
+                   "are for folders, and these are none",
+                   "name two folders");
+    }
+    return false;  // what is not there is told when it is opened
+  }
+  if (second && first_to_come) return true;
+  if (first && second) return true;
+  const std::string& folder = first ? options.first : options.second;
+  const std::string& other = first ? options.second : options.first;
+  if (!fs::exists(other, unknown)) {
+    return Error("file-missing", "there is no such folder",
+                 second ? "--update makes it, with all that is in the other" : "")
+        .in_file(other);
+  }
+  return Error("diff-kinds", fmt::format("{} is a folder, but {} is none", folder, other),
+               "name two folders or two files");
+}
+
+Result<FolderOutcome> compare_folders(const Options& options, ToolContext& context) {
+  return Comparison(options, context).run();
+}
+
+Result<int> run_folders(const Options& options, ToolContext& context) {
+  if (!options.sheet.path.empty() || !options.plot.empty() || !options.heatmap.empty()) {
+    return Error("usage", "--sheet, --plot and --heatmap show two files, not folders",
+                 "--summary gives a page of folders");
+  }
+  const FolderOptions& folders = options.folders;
+  const auto outcome = compare_folders(options, context);
+  if (!outcome) return outcome.error();
+  const auto some = [&](FileStatus status) { return outcome->count(status) > 0; };
+  const bool failed = some(FileStatus::unreadable);
+  context.report.result = to_json(*outcome, options);
+  if (!context.quiet) context.print(to_text(*outcome, options, context.verbose));
+  if (failed && !folders.keep_going) return unreadable_error(*outcome, folders);
+
+  FolderUpdate update;
+  if (folders.update && !failed) {
+    auto done = run_update(options, *outcome, context);
+    if (!done) return done.error();
+    update = std::move(*done);
+    context.report.result["update"] = {
+        {"replaced", update.replaced}, {"added", update.added}, {"removed", update.removed}};
+  }
+  if (Status written = write_summary(*outcome, update, options, context); !written) {
+    return written.error();
+  }
+  if (failed) {
+    context.tell(unreadable_error(*outcome, folders));
+    return kExitPartly;
+  }
+  const bool missing = some(FileStatus::only_in_first) && !(folders.update && folders.prune);
+  const bool other = some(FileStatus::differs) || some(FileStatus::only_in_second);
+  return missing || (other && !folders.update) ? kExitNo : kExitDone;
+}
+
+}  // namespace krok::diff

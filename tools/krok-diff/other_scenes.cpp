@@ -1,0 +1,170 @@
+#include "other_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "core/numbers.h"
+#include "math/quaternion.h"
+
+namespace krok::diff {
+
+namespace {
+
+constexpr double kSamplesPerSecond = 30;
+
+// A place between two keys: `share` of the way from `key` to the next.
+struct KeyPlace {
+  std::size_t key = 0;
+  double share = 0;
+};
+
+KeyPlace place_of(double time, const std::vector<double>& times) {
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  if (after == times.begin()) return {};
+  const auto key = static_cast<std::size_t>(after - times.begin()) - 1;
+  if (after == times.end()) return {key, 0};
+  return {key, (time - times[key]) / (*after - times[key])};
+}
+
+std::vector<double> frame_times(int frames, double rate) {
+  std::vector<double> times;
+  for (int i = 0; i < frames; ++i) times.push_back(i / rate);
+  return times;
+}
+
+void add_skeleton(const Skeleton& skeleton, compare::Scene& scene) {
+  scene.joint_names = skeleton.names;
+  scene.joint_parents.assign(skeleton.parents.begin(), skeleton.parents.end());
+}
+
+std::vector<Vec3> in_doubles(std::span<const Vec3f> values) {
+  std::vector<Vec3> result;
+  result.reserve(values.size());
+  for (const Vec3f& value : values) result.push_back(value.cast<double>());
+  return result;
+}
+
+// How many of the points belong to each mesh, and where they begin.
+struct Run {
+  std::size_t begin = 0, count = 0;
+};
+
+std::vector<Run> runs_of(std::size_t points, const compare::Scene* partner) {
+  std::vector<Run> runs;
+  if (partner != nullptr) {
+    std::size_t begin = 0;
+    bool each = !partner->meshes.empty();
+    for (const compare::SceneMesh& mesh : partner->meshes) {
+      runs.push_back({begin, mesh.vertex_count});
+      begin += mesh.vertex_count;
+      each = each && mesh.vertex_count == points;
+    }
+    if (each) return std::vector<Run>(runs.size(), {0, points});
+    if (begin == points) return runs;
+  }
+  return {{0, points}};
+}
+
+}  // namespace
+
+compare::Scene scene_of(const Clip& clip) {
+  compare::Scene scene;
+  scene.only_joints = true;
+  add_skeleton(clip.skeleton, scene);
+  const auto times = frame_times(clip.frame_count(), clip.rate);
+  scene.animations.push_back({"", times});
+  scene.evaluate = [&clip, times](int animation, double time, compare::SceneState& state) {
+    state.positions.clear();
+    state.normals.clear();
+    state.joints = clip.skeleton.reference;
+    if (animation < 0 || times.empty()) return;
+    const KeyPlace place = place_of(time, times);
+    clip.get_pose(static_cast<int>(place.key), state.joints);
+    if (place.share == 0) return;
+    std::vector<Transform> next(state.joints.size());
+    clip.get_pose(static_cast<int>(place.key) + 1, next);
+    for (std::size_t j = 0; j < next.size(); ++j) {
+      Transform& joint = state.joints[j];
+      joint.position += place.share * (next[j].position - joint.position);
+      joint.orientation = slerp(joint.orientation, next[j].orientation, place.share);
+    }
+  };
+  return scene;
+}
+
+compare::Scene scene_of(const Model& model) {
+  compare::Scene scene;
+  scene.only_still = true;
+  add_skeleton(model.skeleton, scene);
+  compare::SceneMesh mesh;
+  mesh.vertex_count = model.positions.size();
+  mesh.has_normals = !model.normals.empty();
+  mesh.triangles = model.triangles;
+  mesh.texture_coordinates = model.texture_coordinates;
+  mesh.influences = {model.influences_per_vertex, model.influence_joints, model.influence_weights};
+  scene.meshes.push_back(mesh);
+  scene.evaluate = [&model](int, double, compare::SceneState& state) {
+    state.positions = {in_doubles(model.positions)};
+    state.normals = {in_doubles(model.normals)};
+    state.joints = model.skeleton.reference;
+  };
+  return scene;
+}
+
+Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Scene* partner) {
+  const auto count = static_cast<std::size_t>(points.points());
+  if (points.samples() == 0) return Error("pc2-value", "it holds no samples");
+  std::vector<Vec3f> sample(count);
+  for (std::int64_t i = 0; i < points.samples(); ++i) {
+    if (Status good = points.get(i, sample); !good) return good.error();
+  }
+  compare::Scene scene;
+  const std::vector<Run> runs = runs_of(count, partner);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    compare::SceneMesh mesh;
+    mesh.only_points = true;
+    mesh.vertex_count = runs[i].count;
+    if (runs.size() > 1) mesh.name = partner->meshes[i].name;
+    scene.meshes.push_back(std::move(mesh));
+  }
+  const auto samples = static_cast<std::size_t>(points.samples());
+  std::vector<double> times = frame_times(static_cast<int>(samples), kSamplesPerSecond);
+  if (partner != nullptr && !partner->animations.empty() &&
+      partner->animations.front().key_times.size() == samples) {
+    times = partner->animations.front().key_times;
+  }
+  // One sample is a shape, not a motion.
+  if (samples != 1 || (partner != nullptr && !partner->animations.empty())) {
+    scene.animations.push_back({"", times});
+  }
+  scene.evaluate = [&points, runs, times, count](int, double time, compare::SceneState& state) {
+    std::vector<Vec3f> one, next;
+    const KeyPlace place = place_of(time, times);
+    // Never fails: all samples were looked at before.
+    const auto get = [&](std::size_t key, std::vector<Vec3f>& values) {
+      values.resize(count);
+      const Status got = points.get(static_cast<std::int64_t>(key), values);
+      if (!got) values.assign(count, Vec3f::Zero());
+    };
+    get(place.key, one);
+    if (place.share > 0) get(place.key + 1, next);
+    state.positions.resize(runs.size());
+    state.normals.assign(runs.size(), {});
+    state.joints.clear();
+    for (std::size_t m = 0; m < runs.size(); ++m) {
+      const auto of_mesh = [&](const std::vector<Vec3f>& values) {
+        return in_doubles(std::span(values).subspan(runs[m].begin, runs[m].count));
+      };
+      state.positions[m] = of_mesh(one);
+      if (next.empty()) continue;
+      const std::vector<Vec3> after = of_mesh(next);
+      for (std::size_t i = 0; i < after.size(); ++i) {
+        state.positions[m][i] += place.share * (after[i] - state.positions[m][i]);
+      }
+    }
+  };
+  return scene;
+}
+
+}  // namespace krok::diff

@@ -1,0 +1,137 @@
+#include "tolerance_options.h"
+
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "core/quantity.h"
+#include "tools/common/option_kinds.h"
+
+namespace krok::diff {
+
+namespace {
+
+using compare::Matching;
+
+// The value of an option, 0 or more.
+Result<double> not_negative(Result<double> value, const char* option, const std::string& text) {
+  if (!value) {
+    Error error = std::move(value).error();
+    error.message = fmt::format("{}: {}", option, error.message);
+    return error;
+  }
+  if (*value < 0) {
+    return Error("quantity-range", fmt::format("{} {} is less than 0", option, text),
+                 "a tolerance is 0 or more");
+  }
+  return value;
+}
+
+Result<double> parse_ratio(const std::string& text) {
+  const auto value = parse_finite(text);
+  if (!value) return Error("quantity-number", fmt::format("'{}' is not a number", text));
+  return *value;
+}
+
+Result<double> parse_seconds(const std::string& text) {
+  const auto time = parse_clip_time(text);
+  if (!time) return time.error();
+  if (!time->in_frames) return time->value;
+  return Error("quantity-unit", fmt::format("'{}' is not a time in seconds", text),
+               "write 1ms or 0.001s");
+}
+
+// LENGTH, or LENGTH,ANGLE.
+Status parse_joints(const std::string& text, compare::Tolerance& tolerance) {
+  const std::size_t comma = text.find(',');
+  const auto length = not_negative(parse_length(text.substr(0, comma)), "--joints", text);
+  if (!length) return length.error();
+  tolerance.joint_positions = *length;
+  if (comma == std::string::npos) return {};
+  const auto angle = not_negative(parse_angle(text.substr(comma + 1)), "--joints", text);
+  if (!angle) return angle.error();
+  tolerance.joint_orientations = *angle;
+  return {};
+}
+
+}  // namespace
+
+const char* word_of(Matching matching) {
+  switch (matching) {
+    case Matching::order:
+      return "order";
+    case Matching::name:
+      return "name";
+    case Matching::nearest:
+      return "nearest";
+    case Matching::automatic:
+      break;
+  }
+  return "auto";
+}
+
+void declare_tolerances(CLI::App& app, ToleranceArguments& arguments) {
+  std::vector<std::pair<std::string, Matching>> words;
+  for (const Matching matching :
+       {Matching::automatic, Matching::order, Matching::name, Matching::nearest}) {
+    words.emplace_back(word_of(matching), matching);
+  }
+  add_choice(app, "--match", arguments.matching, std::move(words),
+             "What belongs to what: order, meshes and joints by their place in the file; name, by "
+             "name, and those that only one has are named; auto, by name where all names are "
+             "unique and the same, else by place; nearest, each vertex with the nearest point of "
+             "the other surface, for meshes with other vertices, triangles or parts",
+             "HOW", "auto");
+  app.add_option("--tolerance", arguments.length,
+                 "Distances up to this are the same: 0.1mm, 0.2cm; a bare number is metres")
+      ->type_name("LENGTH")
+      ->default_str(arguments.length);
+  app.add_option("--angle", arguments.angle,
+                 "Angles up to this are the same: 0.1deg, 0.002rad; a bare number is degrees")
+      ->type_name("ANGLE")
+      ->default_str(arguments.angle);
+  app.add_option("--ratio", arguments.ratio,
+                 "Differences up to this are the same in what has no unit: weights, texture "
+                 "coordinates")
+      ->type_name("NUMBER")
+      ->default_str(arguments.ratio);
+  app.add_option("--normals", arguments.normals,
+                 "The same for normals and tangents alone (default: that of --angle)")
+      ->type_name("ANGLE");
+  app.add_option("--joints", arguments.joints,
+                 "The same for joints alone, 1mm or 1mm,0.5deg (default: those of --tolerance and "
+                 "--angle)")
+      ->type_name("LENGTH[,ANGLE]");
+  app.add_option("--times", arguments.times,
+                 "Times up to this apart are one: key times of glTF, and frames of motions whose "
+                 "rates differ: 1ms, 0.02s")
+      ->type_name("TIME")
+      ->default_str(arguments.times);
+}
+
+Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments) {
+  compare::Tolerance tolerance;
+  const auto length = not_negative(parse_length(arguments.length), "--tolerance", arguments.length);
+  if (!length) return length.error();
+  const auto angle = not_negative(parse_angle(arguments.angle), "--angle", arguments.angle);
+  if (!angle) return angle.error();
+  const auto ratio = not_negative(parse_ratio(arguments.ratio), "--ratio", arguments.ratio);
+  if (!ratio) return ratio.error();
+  const auto times = not_negative(parse_seconds(arguments.times), "--times", arguments.times);
+  if (!times) return times.error();
+  tolerance.time = *times;
+  tolerance.length = *length;
+  tolerance.angle = *angle;
+  tolerance.ratio = *ratio;
+  if (!arguments.normals.empty()) {
+    const auto normals =
+        not_negative(parse_angle(arguments.normals), "--normals", arguments.normals);
+    if (!normals) return normals.error();
+    tolerance.normals = *normals;
+  }
+  if (!arguments.joints.empty()) {
+    if (Status joints = parse_joints(arguments.joints, tolerance); !joints) return joints.error();
+  }
+  return tolerance;
+}
+
+}  // namespace krok::diff

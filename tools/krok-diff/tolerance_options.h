@@ -1,0 +1,32 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "compare/matching.h"
+#include "compare/measure.h"
+#include "core/result.h"
+
+// The options that say what belongs together and what still counts as the same.
+
+namespace krok::diff {
+
+// As they were typed; empty: not given.
+struct ToleranceArguments {
+  compare::Matching matching = compare::Matching::automatic;
+  std::string length = "0.01mm";
+  std::string angle = "0.01deg";
+  std::string ratio = "0.0001";
+  std::string times = "0.1ms";
+  std::string normals, joints;
+};
+
+void declare_tolerances(CLI::App& app, ToleranceArguments& arguments);
+
+// Codes quantity-number, quantity-unit, quantity-range.
+Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments);
+
+// The word of --match.
+const char* word_of(compare::Matching matching);
+
+}  // namespace krok::diff
