@@ -1,0 +1,60 @@
+// If these fail, the story of golden files no longer holds: a changed build passes, an equal one
+// fails, or samples/mesh_regression/README.md tells figures that its script does not print.
+
+#include <gmock/gmock.h>
+
+#include "support/folder_test.h"
+#include "support/run_tool.h"
+
+namespace krok {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string kStory = KROK_SOURCE_DIR "/samples/mesh_regression/";
+
+class MeshRegression : public test::FolderTest {
+ protected:
+  test::ToolRun story(const std::string& arguments, const std::string& bin = KROK_BIN_DIR) const {
+    test::ToolOptions options;
+    options.folder = folder_.string();
+    options.timeout = 600;
+    return test::run({"/bin/sh", "-c",
+                      "KROK_BIN='" + bin + "' SAMPLES_BIN='" KROK_SAMPLES_BIN "' '" + kStory +
+                          "run.sh' " + arguments},
+                     options);
+  }
+};
+
+TEST_F(MeshRegression, HoldsWhatItsReadmeTells) {
+  const test::ToolRun run = story("'a folder'");
+  ASSERT_EQ(run.exit_code, 0) << run.out << run.err;
+  const fs::path out = folder_ / "a folder";
+  const std::string changed = get((out / "changed.txt").string());
+  EXPECT_THAT(changed, StartsWith("differs: turn.glb: positions "));
+  EXPECT_THAT(changed, HasSubstr("  the same      2\n")) << "the walk and the body did not change";
+  std::string indented = "    " + changed;
+  for (std::size_t at = 0; (at = indented.find('\n', at)) + 1 < indented.size();) {
+    indented.insert(at + 1, "    ");
+    at += 5;
+  }
+  EXPECT_THAT(get(kStory + "README.md"), HasSubstr(indented));
+  EXPECT_THAT(get((out / "changed.html").string()), HasSubstr("<code>turn.glb</code>"));
+  EXPECT_THAT(run.out, HasSubstr("  replaced golden/turn.glb\n"));
+  EXPECT_EQ(get((out / "golden/turn.glb").string()), get((out / "out/turn.glb").string()));
+
+  EXPECT_THAT(get((out / "turn_heat.glb").string()), HasSubstr("COLOR_0"));
+  EXPECT_EQ(get((out / "turn.svg").string()), get(kStory + "pictures/turn.svg"));
+  EXPECT_THAT(get((out / "turn.png").string()), StartsWith("\x89PNG"));
+}
+
+TEST_F(MeshRegression, ToolsThatAreNotThereAreNamed) {
+  const test::ToolRun run = story("", "/nowhere");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("no krok-import in /nowhere"));
+}
+
+}  // namespace
+}  // namespace krok
