@@ -1,28 +1,12 @@
 #pragma once
 
-#include <optional>
-#include <string>
-
-#include "skin/skin.h"
+#include "core/result.h"
 #include "tools/common/tool.h"
+#include "tools/krok-skin/options.h"
 
-namespace krok {
+namespace krok::skinning {
 
-enum class SkinAs { clip, pose, rig, frames };
+// Reads what is to be skinned and its motion, skins, and writes what is wanted.
+Result<int> run(const Options& options, ToolContext& context);
 
-struct SkinOptions {
-  std::string model, motion;
-  SkinAs as = SkinAs::clip;
-  SkinMethod method = SkinMethod::linear;  // --as rig has no other
-  std::string time;                        // --as pose; a ClipTime, empty for the start
-  std::string from, to;  // the part of the motion; ClipTimes, empty for its ends; not --as pose
-  int every = 1;         // of the frames; not --as pose
-};
-
-// Whether the options have values that fit some file or other.
-Status check(const SkinOptions& options);
-
-// Reads a model and a motion, skins, and writes glTF.
-Result<int> run_skin(const SkinOptions& options, ToolContext& context);
-
-}  // namespace krok
+}  // namespace krok::skinning

@@ -1,0 +1,98 @@
+// krok-skin on a .character. Would fail if materials, pictures, eyes or expressions got lost on the
+// way into glTF, if an expression at rest did not show, or if a character could name files outside
+// of its folder.
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+#include "support/small_pictures.h"
+
+namespace krok::test {
+namespace {
+
+using nlohmann::json;
+
+class SkinCharacter : public CliTest {
+ protected:
+  void SetUp() override {
+    put("in.bvh", capture(20));
+    tool("krok-import", {"in.bvh", "-o", "in.anim"});
+    tool("krok-body", {"in.anim", "--detail", "low", "-o", "in.model"});
+    tool("krok-skin", {"in.model", "in.anim", "--as", "pose", "--time", "15f", "-o", "bent.obj"});
+    tool("krok-skin", {"in.model", "in.anim", "--as", "pose", "--time", "15f", "-o", "bent.glb"});
+    tool("krok-morph", {"pack", "in.model", "bent.obj", "-o", "bent.exr"});
+    const auto picture = png();
+    put("skin.png", std::string(reinterpret_cast<const char*>(picture.data()), picture.size()));
+    put("in.material",
+        R"({"schema": "krok.material/1", "materials": [
+             {"name": "Skin", "base_color_texture": "skin.png", "roughness": 0.25}]})");
+    put_character(R"([{"name": "bow", "target": "bent", "weight": 1}])");
+  }
+
+  void put_character(const std::string& expressions, const std::string& model = "in.model") {
+    put("hero.character", R"({"schema": "krok.character/1", "model": ")" + model +
+                              R"(", "materials": ["in.material"],
+             "parts": [{"name": "body", "material": "Skin"}],
+             "eyes": [{"name": "left", "joint": "Head", "position": [0.1, 1.8, 0.1]}],
+             "morphs": "bent.exr", "expressions": )" +
+                              expressions + "}\n");
+  }
+
+  ToolRun tool(const std::string& name, const std::vector<std::string>& arguments,
+               int expected = 0) {
+    ToolOptions here;
+    here.folder = folder_.string();
+    const ToolRun run = run_tool(name, arguments, here);
+    EXPECT_EQ(run.exit_code, expected) << name << ' ' << run.err;
+    return run;
+  }
+
+  json gltf(const std::string& name) { return json::parse(get(path(name))); }
+};
+
+TEST_F(SkinCharacter, ARigHasItsMaterialsEyesAndExpressions) {
+  tool("krok-skin", {"hero.character", "in.anim", "--as", "rig", "-o", "hero.gltf"});
+  const json made = gltf("hero.gltf");
+  ASSERT_EQ(made["materials"].size(), 1u);
+  EXPECT_EQ(made["materials"][0]["name"], "Skin");
+  EXPECT_EQ(made["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"], 0.25);
+  EXPECT_EQ(made["images"].size(), 1u);
+  EXPECT_EQ(made["meshes"][0]["extras"]["targetNames"], json({"bow"}));
+  // The eye hangs on the head, where it is in the reference pose: 1.8 m up in all.
+  bool found = false;
+  for (const json& node : made["nodes"]) {
+    for (const json& child : node.value("children", json::array())) {
+      found = found || (node["name"] == "Head" &&
+                        made["nodes"][child.get<std::size_t>()]["name"] == "left_eye");
+    }
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST_F(SkinCharacter, AnExpressionAtRestShows) {
+  tool("krok-skin", {"hero.character", "--as", "pose", "-o", "pose.glb"});
+  tool("krok-diff", {"pose.glb", "bent.glb", "--tolerance", "0.01mm", "--angle", "0.05deg"});
+}
+
+TEST_F(SkinCharacter, WeightsChangeWhatTheyNameAndNothingElse) {
+  put("bow.json",
+      R"({"schema": "krok.weights/1", "curves": [{"target": "bow", "keys": [[0, 0]]}]})");
+  put("none.json", R"({"schema": "krok.weights/1", "curves": []})");
+  tool("krok-skin", {"hero.character", "--weights", "bow.json", "--as", "pose", "-o", "up.glb"});
+  tool("krok-skin", {"in.model", "--as", "pose", "-o", "plain.glb"});
+  tool("krok-diff", {"up.glb", "plain.glb", "--tolerance", "0.01mm"});
+  tool("krok-skin", {"hero.character", "--weights", "none.json", "--as", "pose", "-o", "rest.glb"});
+  tool("krok-diff", {"rest.glb", "bent.glb", "--tolerance", "0.01mm", "--angle", "0.05deg"});
+}
+
+TEST_F(SkinCharacter, FilesOutsideOfItsFolderAreRefused) {
+  put_character("[]", "../in.model");
+  const std::string told = tool("krok-skin", {"hero.character", "-o", "x.glb"}, 2).err;
+  EXPECT_NE(told.find("hero.character:1:"), std::string::npos) << told;
+  put_character("[]");
+  tool("krok-skin", {"hero.character", "--morph", "bent.exr", "-o", "x.glb"}, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("x.glb")));
+}
+
+}  // namespace
+}  // namespace krok::test

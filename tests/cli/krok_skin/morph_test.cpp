@@ -1,0 +1,128 @@
+// krok-skin --morph, --weights and the files that are no glTF. Would fail if shapes did not reach
+// the vertices before the skeleton moves them, if weights were taken at other moments than the
+// motion's, or if a file held other vertices than the glTF of the same moment.
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+
+namespace krok::test {
+namespace {
+
+class SkinMorphs : public CliTest {
+ protected:
+  // The body as it stands in frame 15 is the one target of its mesh.
+  void SetUp() override {
+    put("in.bvh", capture(20));
+    tool("krok-import", {"in.bvh", "-o", "in.anim"});
+    tool("krok-body", {"in.anim", "--detail", "low", "-o", "in.model"});
+    tool("krok-skin", {"in.model", "in.anim", "--as", "pose", "--time", "15f", "-o", "bent.obj"});
+    tool("krok-skin", {"in.model", "in.anim", "--as", "pose", "--time", "15f", "-o", "bent.glb"});
+    tool("krok-morph", {"pack", "in.model", "bent.obj", "-o", "bent.exr"});
+    put("full.json", weights("[0, 1]"));
+    put("rising.csv", "frame,time,bent\n0,0,0\n1,0.5,1\n");
+  }
+
+  static std::string weights(const std::string& keys, const std::string& target = "bent") {
+    return R"({"schema": "krok.weights/1", "curves": [{"target": ")" + target + R"(", "keys": [)" +
+           keys + "]}]}\n";
+  }
+
+  ToolRun tool(const std::string& name, const std::vector<std::string>& arguments,
+               int expected = 0) {
+    ToolOptions here;
+    here.folder = folder_.string();
+    const ToolRun run = run_tool(name, arguments, here);
+    EXPECT_EQ(run.exit_code, expected) << name << ' ' << run.err;
+    return run;
+  }
+
+  void expect_same(const std::string& a, const std::string& b) {
+    tool("krok-diff", {a, b, "--tolerance", "0.01mm", "--angle", "0.05deg"});
+  }
+};
+
+TEST_F(SkinMorphs, AFullTargetInTheReferencePoseIsTheTarget) {
+  tool("krok-skin", {"in.model", "--morph", "bent.exr", "--weights", "full.json", "--as", "pose",
+                     "-o", "morphed.glb"});
+  expect_same("morphed.glb", "bent.glb");
+}
+
+TEST_F(SkinMorphs, TheSkeletonMovesTheChangedShape) {
+  const std::vector<std::string> morph = {"in.model", "in.anim",   "--morph",
+                                          "bent.exr", "--weights", "full.json"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), morph.begin(), morph.end());
+    return more;
+  };
+  tool("krok-skin", with({"--as", "rig", "-o", "rig.glb"}));
+  tool("krok-skin", with({"-o", "baked.glb"}));
+  expect_same("rig.glb", "baked.glb");  // the viewer's arithmetic against the tool's
+  tool("krok-skin", with({"--as", "pose", "--time", "10f", "-o", "morphed.glb"}));
+  tool("krok-skin", {"in.model", "in.anim", "--as", "pose", "--time", "10f", "-o", "plain.glb"});
+  tool("krok-diff", {"morphed.glb", "plain.glb"}, 1);
+}
+
+TEST_F(SkinMorphs, WeightsAreTakenAtTheMotionsMoments) {
+  const std::vector<std::string> rising = {"in.model", "in.anim",   "--morph",
+                                           "bent.exr", "--weights", "rising.csv"};
+  const auto pose = [&](const std::vector<std::string>& time, const std::string& name) {
+    std::vector<std::string> arguments = rising;
+    arguments.insert(arguments.end(), time.begin(), time.end());
+    arguments.insert(arguments.end(), {"-o", name});
+    tool("krok-skin", arguments);
+  };
+  pose({"--as", "pose", "--time", "8f"}, "pose.glb");
+  pose({"--as", "frames", "--from", "4f", "--every", "4"}, "part.glb");
+  expect_same("part_0008.glb", "pose.glb");
+}
+
+TEST_F(SkinMorphs, AStillFigureIsHeldAsLongAsTheWeightsLast) {
+  put("half_second.json", weights("[0, 0], [0.5, 1]"));
+  const ToolRun run = tool("krok-skin", {"in.model", "--morph", "bent.exr", "--weights",
+                                         "half_second.json", "-o", "still.glb", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(run.out)["result"]["frames"],
+            16);  // half a second at 30 a second
+}
+
+TEST_F(SkinMorphs, PointCachesAndObjFilesHoldTheSameVertices) {
+  tool("krok-skin", {"in.model", "in.anim", "-o", "walk.pc2", "-j", "1"});
+  tool("krok-skin", {"in.model", "in.anim", "-o", "again.pc2", "-j", "3"});
+  EXPECT_EQ(get(path("walk.pc2")), get(path("again.pc2")));
+  tool("krok-skin", {"in.model", "in.anim", "--as", "frames", "-o", "f.obj"});
+  // An OBJ file packed as a target and shown in full is the glTF of the same frame.
+  tool("krok-morph", {"pack", "in.model", "f_0015.obj", "-o", "f.exr"});
+  put("f.json", weights("[0, 1]", "f_0015"));
+  tool("krok-skin",
+       {"in.model", "--morph", "f.exr", "--weights", "f.json", "--as", "pose", "-o", "f15.glb"});
+  expect_same("f15.glb", "bent.glb");
+}
+
+TEST_F(SkinMorphs, WhatCannotBeIsToldAndNothingIsWritten) {
+  put("wrong.json", weights("[0, 1]", "bend"));
+  const std::string told =
+      tool("krok-skin",
+           {"in.model", "in.anim", "--morph", "bent.exr", "--weights", "wrong.json", "-o", "x.glb"},
+           2)
+          .err;
+  EXPECT_NE(told.find("wrong.json:1:"), std::string::npos) << told;
+  EXPECT_NE(told.find("bent"), std::string::npos) << told;
+  tool("krok-skin", {"in.model", "in.anim", "--weights", "full.json", "-o", "x.glb"}, 2);
+  tool("krok-skin", {"in.model", "in.anim", "--morph", "bent.exr", "-o", "x.glb"}, 2);
+  tool("krok-skin", {"in.model", "in.anim", "--as", "rig", "-o", "x.pc2"}, 2);
+  tool("krok-skin", {"in.model", "in.anim", "--as", "clip", "-o", "x.obj"}, 2);
+  // Targets of another mesh.
+  tool("krok-body", {"in.anim", "--detail", "high", "-o", "other.model"});
+  const std::string other = tool("krok-skin",
+                                 {"other.model", "in.anim", "--morph", "bent.exr", "--weights",
+                                  "full.json", "-o", "x.glb"},
+                                 2)
+                                .err;
+  EXPECT_NE(other.find("bent.exr"), std::string::npos) << other;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    EXPECT_NE(entry.path().stem(), "x") << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace krok::test

@@ -1,0 +1,208 @@
+#include "tools/krok-skin/outputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+
+#include "core/numbers.h"
+#include "formats/gltf/baked_writer.h"
+#include "formats/gltf/gltf_writer.h"
+#include "formats/obj/obj_writer.h"
+#include "formats/pc2/pc2.h"
+#include "tools/common/output_set.h"
+#include "tools/krok-skin/posed_mesh.h"
+
+namespace krok::skinning {
+
+namespace {
+
+// More morph targets than this fit in no browser on common hardware, or only just.
+constexpr int kManyMorphTargets = 1000;
+// The default name of what is written, for viewers' lists of objects.
+constexpr const char* kMeshName = "body";
+
+gltf::WriteOptions write_options(const Subject& subject, const ToolContext& context) {
+  gltf::WriteOptions options;
+  options.binary = extension(context.output) != ".gltf";
+  options.provenance = context.provenance();
+  options.name = kMeshName;
+  options.materials = subject.materials;
+  return options;
+}
+
+obj::WriteOptions obj_options(const ToolContext& context) {
+  return {.provenance = context.provenance(), .name = kMeshName};
+}
+
+// The places of a mesh's vertices in one pose.
+struct Vertices {
+  std::vector<Vec3f> positions, normals;
+  std::vector<Vec4f> tangents;
+
+  explicit Vertices(const Model& model)
+      : positions(model.positions.size()),
+        normals(model.normals.size()),
+        tangents(model.tangents.size()) {}
+  SkinnedSurface surface() { return {positions, normals, tangents}; }
+  MeshShape shape() const { return {positions, normals, tangents}; }
+};
+
+// Writes meshes of one model, each to a file of its own; from several threads at once.
+using WriteMesh = std::function<Status(const MeshShape& shape, OutputFile& file)>;
+
+Result<WriteMesh> mesh_writer(const Subject& subject, const ToolContext& context) {
+  if (extension(context.output) == ".obj") {
+    auto writer = obj::Writer::create(subject.model, obj_options(context));
+    if (!writer) return writer.error();
+    return WriteMesh(
+        [writer = std::make_shared<const obj::Writer>(std::move(*writer))](
+            const MeshShape& shape, OutputFile& file) { return writer->write(shape, file); });
+  }
+  return WriteMesh([&model = subject.model, options = write_options(subject, context)](
+                       const MeshShape& shape, OutputFile& file) {
+    return gltf::write_mesh(model, shape, options, file);
+  });
+}
+
+// The smallest --every that brings a motion within the limits; 0 if none does.
+int fitting_step(const Model& model, int frames) {
+  for (int step = 2; step < frames; ++step) {
+    const int kept = (frames - 1) / step + 1;
+    if (kept <= gltf::kMaxMorphTargets && gltf::baked_bytes(model, kept) <= gltf::kMaxDataBytes) {
+      return step;
+    }
+  }
+  return 0;
+}
+
+Status check_bakeable(const Subject& subject, ToolContext& context) {
+  const int frames = subject.clip.frame_count();
+  const std::uint64_t bytes = gltf::baked_bytes(subject.model, frames);
+  const auto megabytes = (bytes >> 20) + 1;
+  if (frames - 1 > gltf::kMaxMorphTargets || bytes > gltf::kMaxDataBytes) {
+    const int step = fitting_step(subject.model, frames);
+    return Error(
+        "skin-clip-too-long",
+        fmt::format("{} frames of {} vertices make {} morph targets and {} MB; viewers hold at "
+                    "most {} targets, and {} MB is the most that glTF holds",
+                    frames, subject.model.vertex_count(), frames - 1, megabytes,
+                    gltf::kMaxMorphTargets, gltf::kMaxDataBytes >> 20),
+        step > 0 ? fmt::format("--as rig holds any length; or --every {}, or a part by --from and "
+                               "--to",
+                               step * subject.every)
+                 : "--as rig and -o OUT.pc2 hold any number of vertices and frames");
+  }
+  if (frames - 1 > kManyMorphTargets) {
+    context.warn("skin-many-targets",
+                 fmt::format("{} morph targets are more than some viewers show", frames - 1),
+                 "--as rig, or --every 2");
+  }
+  return {};
+}
+
+// "walk.glb" and frame 7 of 1500 give "walk_0007.glb".
+std::string frame_path(const std::string& output, int frame, int last_frame) {
+  const std::size_t digits = std::max<std::size_t>(4, fmt::format("{}", last_frame).size());
+  const std::string end = extension(output);
+  const std::string stem = output.substr(0, output.size() - end.size());
+  return fmt::format("{}_{:0{}}{}", stem, frame, digits, output.substr(stem.size()));
+}
+
+}  // namespace
+
+Status check_output(As as, const std::string& output) {
+  const std::string end = extension(output);
+  if (as == As::frames && output == "-") {
+    return Error("skin-output", "--as frames writes many files, which standard output cannot take",
+                 "give -o OUT.glb for OUT_0000.glb, OUT_0001.glb, ...");
+  }
+  if (output == "-" || end == ".glb" || end == ".gltf") return {};
+  if (end == ".pc2") {
+    if (as == As::clip) return {};
+    return Error("skin-format",
+                 "a point cache (.pc2) holds a whole motion's vertices, nothing else",
+                 "--as clip, and the mesh by --as pose -o OUT.obj")
+        .in_file(output);
+  }
+  if (end == ".obj") {
+    if (as == As::pose || as == As::frames) return {};
+    return Error("skin-format", "an OBJ file holds one mesh that does not move",
+                 "--as frames writes one a frame, --as pose that of one moment")
+        .in_file(output);
+  }
+  return Error("skin-format",
+               end.empty() ? fmt::format("{} has no extension to tell the format by", output)
+                           : fmt::format("no format of this tool has the extension {}", end),
+               "known are .glb, .gltf, .pc2 and .obj")
+      .in_file(output);
+}
+
+Status write_pose(const Subject& subject, const SkinBinding& binding, double seconds,
+                  ToolContext& context) {
+  Vertices vertices(subject.model);
+  PosedMesh(subject, binding, context.jobs).at_time(seconds, vertices.surface());
+  const auto write = mesh_writer(subject, context);
+  if (!write) return write.error();
+  return write_output(context, context.output,
+                      [&](OutputFile& file) { return (*write)(vertices.shape(), file); });
+}
+
+Status write_clip(const Subject& subject, const SkinBinding& binding, pc2::Up up,
+                  ToolContext& context) {
+  const bool cache = extension(context.output) == ".pc2";
+  if (!cache) {
+    if (Status fits = check_bakeable(subject, context); !fits) return fits;
+  }
+  PosedMesh mesh(subject, binding, 1);
+  MeshMotion motion;
+  motion.frames = subject.clip.frame_count();
+  motion.rate = subject.clip.rate;
+  motion.shape_at = [&](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
+    mesh.at_frame(frame, {positions, normals, {}});
+  };
+  return write_output(context, context.output, [&](OutputFile& file) {
+    if (cache) {
+      return pc2::write(subject.model, motion, {.up = up}, file, context.progress, context.jobs);
+    }
+    return gltf::write_baked(subject.model, motion, write_options(subject, context), file,
+                             context.progress, context.jobs);
+  });
+}
+
+Status write_rig(const Subject& subject, ToolContext& context) {
+  return write_output(context, context.output, [&](OutputFile& file) {
+    gltf::WriteOptions options = write_options(subject, context);
+    options.eyes = subject.eyes;
+    if (subject.morphs.target_count() > 0) options.morphs = &subject.morphs;
+    if (subject.changes_shape()) options.weights = &subject.weights;
+    return gltf::write_rig(subject.model, subject.clip, options, file);
+  });
+}
+
+Result<std::string> write_frames(const Subject& subject, const SkinBinding& binding,
+                                 ToolContext& context) {
+  const int frames = subject.clip.frame_count();
+  const int last_frame = subject.first_frame + (frames - 1) * subject.every;
+  std::vector<std::string> paths;
+  for (int i = 0; i < frames; ++i) {
+    paths.push_back(
+        frame_path(context.output, subject.first_frame + i * subject.every, last_frame));
+  }
+  const auto write_mesh = mesh_writer(subject, context);
+  if (!write_mesh) return write_mesh.error();
+  OutputSet outputs(context);
+  context.progress->begin("writing frames", static_cast<std::uint64_t>(frames));
+  const auto write = [&](std::size_t i, OutputFile& file) {
+    Vertices vertices(subject.model);
+    PosedMesh(subject, binding, 1).at_frame(static_cast<int>(i), vertices.surface());
+    context.progress->advance(1);
+    return (*write_mesh)(vertices.shape(), file);
+  };
+  if (Status added = outputs.add_all(paths, context.jobs, write); !added) return added.error();
+  if (Status done = outputs.finish(); !done) return done.error();
+  return fmt::format("{} to {}", paths.front(), paths.back());
+}
+
+}  // namespace krok::skinning

@@ -1,0 +1,203 @@
+#include "tools/krok-skin/subject.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "core/numbers.h"
+#include "formats/model/model_format.h"
+#include "formats/morph_exr/morph_exr.h"
+#include "formats/weights/weights.h"
+#include "motion/cut.h"
+#include "skin/bind.h"
+#include "tools/common/character/character_input.h"
+#include "tools/common/motion_input.h"
+
+namespace krok::skinning {
+
+namespace {
+
+constexpr double kStillRate = 30.0;  // frames a second, where neither motion nor weights tell
+
+class Loader {
+ public:
+  Loader(const Options& options, ToolContext& context) : options_(options), context_(context) {}
+
+  Result<Subject> load() {
+    for (const auto step : {&Loader::read_subject, &Loader::read_morphs, &Loader::read_weights,
+                            &Loader::read_clip, &Loader::take_weights, &Loader::take_part}) {
+      if (Status done = (this->*step)(); !done) return done.error();
+    }
+    return std::move(subject_);
+  }
+
+ private:
+  Status read_subject() {
+    if (Status done = is_character(options_.subject) ? read_character() : read_model(); !done) {
+      return done;
+    }
+    if (!subject_.model.triangles.empty()) return {};
+    return Error("skin-empty-model", "the model has no triangles",
+                 "krok-body makes a model with a mesh")
+        .in_file(options_.subject);
+  }
+
+  Status read_model() {
+    const auto file = context_.open_input(options_.subject);
+    if (!file) return file.error();
+    auto model = model::read(file->bytes());
+    if (!model) return std::move(model.error()).in_file(options_.subject);
+    subject_.model = std::move(*model);
+    return {};
+  }
+
+  Status read_character() {
+    auto loaded = load_character(options_.subject, context_);
+    if (!loaded) return loaded.error();
+    subject_.model = std::move(loaded->model);
+    subject_.materials = std::move(loaded->materials);
+    subject_.eyes = std::move(loaded->character.eyes);
+    subject_.morphs = std::move(loaded->morphs);
+    rest_weights_ = std::move(loaded->weights);
+    return {};
+  }
+
+  Status read_morphs() {
+    if (options_.morphs.empty()) return {};
+    const auto file = context_.open_input(options_.morphs);
+    if (!file) return file.error();
+    auto morphs = morph_exr::read(file->bytes());
+    if (!morphs) return std::move(morphs.error()).in_file(options_.morphs);
+    if (morphs->vertex_count != subject_.model.vertex_count()) {
+      return Error("skin-morphs",
+                   fmt::format("the targets are of a mesh with {}, the model has {}",
+                               counted(morphs->vertex_count, "vertex", "vertices"),
+                               subject_.model.vertex_count()),
+                   "krok-import --model --morphs writes both of one file")
+          .in_file(options_.morphs);
+    }
+    subject_.morphs = std::move(*morphs);
+    return {};
+  }
+
+  Status read_weights() {
+    if (!options_.weights.empty()) {
+      const auto file = context_.open_input(options_.weights);
+      if (!file) return file.error();
+      auto weights = weights::read(file->text(), options_.weights, subject_.morphs.names);
+      if (!weights) return weights.error();
+      weights_ = std::move(*weights);
+    }
+    // What the weights leave out stays as the character has it.
+    for (std::size_t t = 0; t < rest_weights_.size(); ++t) {
+      if (rest_weights_[t] == 0.0f) continue;
+      if (!weights_) {
+        weights_.emplace();
+        weights_->curves.names = subject_.morphs.names;
+        weights_->curves.curves.resize(subject_.morphs.names.size());
+      }
+      MorphCurve& curve = weights_->curves.curves[t];
+      if (curve.times.empty()) curve = {{0.0}, {static_cast<double>(rest_weights_[t])}, {}};
+    }
+    return {};
+  }
+
+  Status read_clip() {
+    Clip& clip = subject_.clip;
+    if (options_.motion.empty()) {
+      clip.skeleton = subject_.model.skeleton;
+      clip.rate = weights_ && weights_->rate ? *weights_->rate : kStillRate;
+      clip.resize(1);
+      clip.set_pose(0, clip.skeleton.reference);
+      return {};
+    }
+    auto read = read_motion(options_.motion, context_);
+    if (!read) return read.error();
+    clip = std::move(*read);
+    auto bound = bind_to(std::move(subject_.model), clip.skeleton);
+    if (!bound) return std::move(bound.error()).in_file(options_.motion);
+    subject_.model = std::move(*bound);
+    std::erase_if(subject_.eyes, [&](const Character::Eye& eye) {  // those of joints left out
+      return subject_.model.skeleton.find(eye.joint) < 0;
+    });
+    for (Diagnostic difference : reference_differences(subject_.model.skeleton, clip)) {
+      difference.where.file = options_.motion;
+      context_.tell(std::move(difference));
+    }
+    return {};
+  }
+
+  // The weights at the frames of the motion; a pose that stands still is held as long as they last.
+  Status take_weights() {
+    if (!weights_) return {};
+    Clip& clip = subject_.clip;
+    const auto needed = frames_of(weights_->curves, clip.rate);
+    if (!needed) return Error(needed.error()).in_file(options_.weights);
+    if (clip.frame_count() == 1 && *needed > 1) {
+      clip = hold(clip, *needed);
+    } else if (const double over = weights_->curves.duration() - clip.duration();
+               over > 1 / clip.rate) {
+      context_.tell(
+          warning("skin-weights-longer",
+                  fmt::format("the weights last {} s, the motion {} s; what is over is left out",
+                              readable(weights_->curves.duration()), readable(clip.duration()))));
+    }
+    auto weights = sample(weights_->curves, clip.rate, std::max(1, clip.frame_count()));
+    if (!weights) return Error(weights.error()).in_file(options_.weights);
+    subject_.weights = std::move(*weights);
+    return {};
+  }
+
+  Status take_part() {
+    const auto range = chosen_range(options_, subject_.clip);
+    if (!range) return Error(range.error()).in_file(options_.motion);
+    if (!*range) return {};
+    const auto [first, last, every] = **range;
+    subject_.clip = cut(subject_.clip, first, last, every);
+    subject_.first_frame = first;
+    subject_.every = every;
+    if (!subject_.changes_shape()) return {};
+    MorphWeights part{subject_.clip.rate, subject_.weights.names, {}};
+    const auto targets = static_cast<std::ptrdiff_t>(part.names.size());
+    for (int frame = first; frame <= last; frame += every) {
+      const auto row = subject_.weights.values.begin() + frame * targets;
+      part.values.insert(part.values.end(), row, row + targets);
+    }
+    subject_.weights = std::move(part);
+    return {};
+  }
+
+  Diagnostic warning(std::string code, std::string message) const {
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::warning;
+    diagnostic.code = std::move(code);
+    diagnostic.message = std::move(message);
+    diagnostic.where.file = options_.weights;
+    return diagnostic;
+  }
+
+  static Clip hold(const Clip& still, int frames) {
+    Clip held = still;
+    held.resize(frames);
+    for (int frame = 1; frame < frames; ++frame) {
+      std::ranges::copy(still.frame_positions(0), held.frame_positions(frame).begin());
+      std::ranges::copy(still.frame_orientations(0), held.frame_orientations(frame).begin());
+    }
+    return held;
+  }
+
+  const Options& options_;
+  ToolContext& context_;
+  Subject subject_;
+  std::vector<float> rest_weights_;  // [targets], of a character
+  std::optional<weights::WeightFile> weights_;
+};
+
+}  // namespace
+
+Result<Subject> load(const Options& options, ToolContext& context) {
+  return Loader(options, context).load();
+}
+
+}  // namespace krok::skinning
