@@ -7,6 +7,7 @@
 #include "describe_skeleton.h"
 #include "description.h"
 #include "formats/registry/registry.h"
+#include "scene/model.h"
 #include "tools/common/tool.h"
 
 // One function a kind of file. Each reads the whole file, so that what is described is also known
@@ -20,6 +21,8 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
                                    ToolContext& context);
 Result<Description> describe_cam(const InputFile& file, ToolContext& context);
 Result<Description> describe_steps(const InputFile& file, ToolContext& context);
+Result<Description> describe_material(const InputFile& file, ToolContext& context);
+Result<Description> describe_character(const InputFile& file, ToolContext& context);
 Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& how,
                                  ToolContext& context);
 // A skeleton, or a motion with the skeleton that stands beside it.
@@ -28,5 +31,8 @@ Result<Description> describe_acclaim(const InputFile& file, const SkeletonOption
 // glTF, and what is read through Assimp.
 Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
                                    const SkeletonOptions& how, ToolContext& context);
+
+// The parts of a mesh and their materials.
+void add_parts(const Model& model, Description& out);
 
 }  // namespace krok::info

@@ -8,6 +8,7 @@
 #include "formats/cam/cam.h"
 #include "formats/container/sections.h"
 #include "formats/model/model_format.h"
+#include "volumes.h"
 
 namespace krok::info {
 
@@ -29,6 +30,8 @@ std::string or_none(const std::string& name) {
   return name.empty() ? "(no name)" : name;
 }
 
+}  // namespace
+
 void add_parts(const Model& model, Description& out) {
   out.json["parts"] = Json::array();
   std::vector<std::string> lines;
@@ -41,8 +44,6 @@ void add_parts(const Model& model, Description& out) {
   }
   out.add("parts", std::move(lines));
 }
-
-}  // namespace
 
 Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how, ToolContext&) {
   const auto clip = anim::read(file.bytes());
@@ -86,6 +87,9 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
   if (Status added = add_skeleton(model->skeleton, how, out); !added) return added.error();
   if (vertices > 0) {
     add_size<Vec3f>(model->positions, "mesh in the reference pose", out);
+    std::vector<Vec3> positions;
+    for (const Vec3f& position : model->positions) positions.push_back(position.cast<double>());
+    add_volumes({{"", mesh_volume(positions, model->triangles)}}, out);
   } else {
     add_reference_size(model->skeleton, out);
   }

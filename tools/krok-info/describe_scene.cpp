@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "character/rig.h"
@@ -10,6 +11,7 @@
 #include "nodes/evaluate.h"
 #include "tools/common/scene/scene_conventions.h"
 #include "tools/common/scene/scene_input.h"
+#include "volumes.h"
 
 namespace krok::info {
 
@@ -125,29 +127,57 @@ Result<std::optional<character::Rig>> find_rig(const nodes::Scene& scene,
   return std::optional(*std::move(rig));
 }
 
+// The meshes' volumes; `positions` as an Evaluation has them, but in metres. The primitives of a
+// mesh at a node are one body.
+void add_volumes(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
+                 const std::vector<std::vector<Vec3>>& positions, Description& out) {
+  std::vector<NamedVolume> volumes;
+  const auto& instances = evaluator.instances();
+  for (std::size_t i = 0; i < instances.size();) {
+    const nodes::Instance& first = instances[i];
+    std::vector<Vec3> points;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (; i < instances.size() && instances[i].node == first.node; ++i) {
+      const auto before = static_cast<std::uint32_t>(points.size());
+      points.insert(points.end(), positions[i].begin(), positions[i].end());
+      for (const auto& [a, b, c] : evaluator.primitive(instances[i]).triangles) {
+        triangles.push_back({before + a, before + b, before + c});
+      }
+    }
+    if (triangles.empty()) continue;
+    const auto mesh = static_cast<std::size_t>(first.mesh);
+    volumes.push_back({named(scene.meshes[mesh].name, mesh), mesh_volume(points, triangles)});
+  }
+  add_volumes(volumes, out);
+}
+
 // What a viewer shows before it plays an animation, in metres.
 Status add_shown_size(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
                       const Conventions& conventions, Description& out) {
   const auto conversion = Conversion::make(conventions);
   if (!conversion) return conversion.error();
   const Mat4 turn = character::rotation_to_apply(scene.space);
-  Eigen::AlignedBox3d box;
-  const auto extend = [&](const Vec3& position) {
+  const auto converted = [&](const Vec3& position) {
     const Vec3 turned = turn.topLeftCorner<3, 3>() * position;
-    box.extend(conversion->pose({turned, Quat::Identity()}).position);
+    return conversion->pose({turned, Quat::Identity()}).position;
   };
+  Eigen::AlignedBox3d box;
   nodes::Evaluation shown;
   evaluator.evaluate(-1, 0, shown);
-  for (const auto& positions : shown.positions) {
-    for (const Vec3& position : positions) extend(position);
+  for (auto& positions : shown.positions) {
+    for (Vec3& position : positions) {
+      position = converted(position);
+      box.extend(position);
+    }
   }
   if (!box.isEmpty()) {
     add_size(box, "meshes as shown without animation", out);
+    add_volumes(scene, evaluator, shown.positions, out);
     return {};
   }
   for (const int joint : evaluator.joints()) {
     const Mat4& to_world = shown.node_to_world[static_cast<std::size_t>(joint)];
-    extend(to_world.topRightCorner<3, 1>());
+    box.extend(converted(to_world.topRightCorner<3, 1>()));
   }
   add_size(box, "nodes as shown without animation", out);
   return {};

@@ -22,6 +22,10 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
       return describe_cam(file, context);
     case Kind::steps:
       return describe_steps(file, context);
+    case Kind::material:
+      return describe_material(file, context);
+    case Kind::character:
+      return describe_character(file, context);
     case Kind::bvh:
       return describe_bvh(file, how, context);
     case Kind::asf:
@@ -33,7 +37,8 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
   return Error("info-kind",
                "is " + std::string(registry::describe_content(file.bytes())) +
                    ", which krok-info does not read",
-               "it reads .anim, .model, .cam, .steps, .bvh, .asf, .amc, .glb and .gltf files, and "
+               "it reads .anim, .model, .cam, .steps, .material, .character, .bvh, .asf, .amc, "
+               ".glb and .gltf files, and "
                "characters in "
                ".fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and .md5anim files");
 }

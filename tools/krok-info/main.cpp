@@ -7,8 +7,8 @@ int main(int argc, char** argv) {
   spec.name = "krok-info";
   spec.summary =
       "What is in a file: motions (.anim), models (.model), cameras (.cam), step libraries "
-      "(.steps), captures (.bvh, .asf, "
-      ".amc), characters (glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5)";
+      "(.steps), materials (.material), characters (.character; glTF, FBX, COLLADA, SMD, MS3D, "
+      "3DS, ASE, MD5), captures (.bvh, .asf, .amc)";
   spec.inputs = "FILE...";
   spec.examples = {{"krok-info walk.anim",
                     "Frames, rate, duration, size, provenance, and what the joints are in a body."},

@@ -270,7 +270,7 @@ bool has_picture_options(const SheetOptions& options) {
          options.picture.sides != usual.picture.sides ||
          options.picture.elevation != usual.picture.elevation ||
          options.picture.size != usual.picture.size || options.front != usual.front ||
-         options.body != usual.body;
+         options.body != usual.body || options.method != usual.method;
 }
 
 }  // namespace
@@ -335,7 +335,8 @@ Result<Options> understand(const Arguments& arguments) {
   options.sheet.to = arguments.to;
   if (!options.sheet.wanted() && has_picture_options(options.sheet)) {
     return usage(
-        "--moments, --sides, --elevation, --size, --front and --body are for --sheet and --strip");
+        "--moments, --sides, --elevation, --size, --front, --body and --method are for --sheet and "
+        "--strip");
   }
   if (options.table && options.sheet.wanted()) {
     return usage("--sheet and --strip show figures, and a table was given");

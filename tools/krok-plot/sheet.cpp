@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/quantity.h"
 #include "render/strip.h"
+#include "tools/common/figures/skin_method_option.h"
 #include "tools/common/one_of.h"
 
 namespace krok::plot {
@@ -254,6 +255,9 @@ void declare_sheet(CLI::App& app, SheetOptions& options) {
   add_body_option(app, options.body,
                   "A body for motions without a model: low (2,500 vertices), medium (10,000), high "
                   "(40,000), auto: low for more than two files, else medium; none: all as bones");
+  add_skin_method(app, options.method,
+                  "How motions move their bodies: linear, as viewers do it, dual-quaternion, which "
+                  "keeps the volume where a joint twists, or rigid; not of glTF files");
 }
 
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
@@ -264,7 +268,7 @@ Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& o
        {std::pair("--sheet", options.sheet), std::pair("--strip", options.strip)}) {
     if (Status fits = check_picture_name(path, option); !fits) return fits;
   }
-  const auto figures = read_figures(inputs, options.body, context);
+  const auto figures = read_figures(inputs, options.body, options.method, context);
   if (!figures) return figures.error();
   if (!options.sheet.empty()) {
     if (Status made = make_sheet(*figures, *sides, options, context); !made) return made;

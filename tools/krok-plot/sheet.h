@@ -25,6 +25,7 @@ struct SheetOptions {
   std::string from, to;
   Front front = Front::figure;
   BodyChoice body = BodyChoice::automatic;
+  SkinMethod method = SkinMethod::linear;
 
   bool wanted() const { return !sheet.empty() || !strip.empty(); }
 };

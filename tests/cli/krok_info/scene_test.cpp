@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
@@ -84,6 +85,30 @@ TEST_F(InfoOfScenes, AThingWithoutASkeletonHasNoRoles) {
   EXPECT_EQ(file["unit"]["choice"], "m");
   EXPECT_EQ(file["size"], (Json{1.0, 1.0, 0.0}));
   EXPECT_THAT(run_tool("krok-info", {path("square.glb")}).out, Not(HasSubstr("missing")));
+}
+
+// Would fail if a body's scale or its unit did not count, or an open mesh had a volume.
+TEST_F(InfoOfScenes, ClosedMeshesHaveAVolume) {
+  put_glb("square.glb", square());
+  Json file = info_of({path("square.glb")});
+  EXPECT_EQ(file["volumes"], (Json{{{"mesh", "Square"}, {"volume", nullptr}, {"area", 1.0}}}));
+  EXPECT_THAT(run_tool("krok-info", {path("square.glb")}).out, Not(HasSubstr("volume")));
+
+  // A corner of a cube with edges of 1 m, shown twice as large.
+  GlbBuilder corner = square();
+  auto& primitive = corner.json["meshes"][0]["primitives"][0];
+  primitive["attributes"] = {
+      {"POSITION", corner.add(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, "VEC3")}};
+  primitive["indices"] =
+      corner.add(std::vector<std::uint16_t>{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, "SCALAR");
+  corner.json["nodes"][0]["scale"] = {2, 2, 2};
+  put_glb("corner.glb", corner);
+  file = info_of({path("corner.glb")});
+  ASSERT_EQ(file["volumes"].size(), 1u);
+  EXPECT_NEAR(file["volumes"][0]["volume"].get<double>(), 8.0 / 6, 1e-9);
+  EXPECT_NEAR(file["volumes"][0]["area"].get<double>(), 6 + 2 * std::sqrt(3.0), 1e-9);
+  EXPECT_THAT(run_tool("krok-info", {path("corner.glb")}).out,
+              HasSubstr("  volume   Square: 1333 litres\n"));
 }
 
 TEST_F(InfoOfScenes, FilesReadBesideItAreInputsToo) {

@@ -197,6 +197,27 @@ TEST_F(KrokPlotSheet, DrawsModelsAndGlbFiles) {
   EXPECT_EQ(report()["sheet"]["cells"].size(), 2U) << "alone it stands still, seen from two sides";
 }
 
+// If it fails, --method does not reach the mesh, or changes what is drawn without it.
+TEST_F(KrokPlotSheet, MovesModelsByTheMethodAskedFor) {
+  const std::string model = path("own.model"), anim = path("own.anim");
+  ASSERT_EQ(run_tool("krok-import", {kWalk, "-o", anim}).exit_code, 0);
+  ASSERT_EQ(run_tool("krok-body", {anim, "--detail", "low", "-o", model}).exit_code, 0);
+  const auto drawn = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {model,     anim,   "--sheet",   path("s.png"),
+                                          "--sides", "left", "--moments", "20f"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    EXPECT_EQ(run_tool("krok-plot", arguments).exit_code, 0);
+    return get(path("s.png"));
+  };
+  const std::string plain = drawn({}), linear = drawn({"--method", "linear"}),
+                    dual = drawn({"--method", "dual-quaternion"}),
+                    rigid = drawn({"--method", "rigid"});
+  EXPECT_EQ(plain, linear);
+  EXPECT_NE(dual, linear);
+  EXPECT_NE(rigid, linear);
+  EXPECT_NE(rigid, dual);
+}
+
 TEST_F(KrokPlotSheet, GivesTheSameBytesForAnyNumberOfThreads) {
   for (const char* jobs : {"1", "2"}) {
     ASSERT_EQ(run_tool("krok-plot", {kWalk, "--sheet", path(std::string(jobs) + ".png"),
@@ -225,6 +246,7 @@ TEST_F(KrokPlotSheet, RefusesWhatMakesNoSense) {
       {"--from", "99s"},
       {"--from", "2s", "--to", "1s"},
       {"--body", "fat"},
+      {"--method", "stiff"},
       {"--front", "back"},
   };
   for (std::vector<std::string> arguments : wrong) {

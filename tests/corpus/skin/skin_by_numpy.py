@@ -2,8 +2,9 @@
 
     skin_by_numpy.py RIG SECONDS METHOD POSE
 
-RIG has a skin and an animation, POSE the mesh that Krok made of it at that moment with METHOD
-(linear, dual-quaternion, rigid). Prints the largest distance of two vertices in metres.
+RIG has a skin and an animation, POSE the mesh that Krok made of it SECONDS after the animation's
+first key with METHOD (linear, dual-quaternion, rigid). Prints the largest distance of two vertices
+in metres and, where RIG has normals, the largest angle between two normals in degrees.
 """
 
 import base64
@@ -96,6 +97,7 @@ def sampled(times, values, seconds):
 def palette(gltf, seconds):
     nodes = [dict(node) for node in gltf.json["nodes"]]
     animation = gltf.json["animations"][0]
+    seconds += min(gltf.array(sampler["input"])[0, 0] for sampler in animation["samplers"])
     for channel in animation["channels"]:
         sampler = animation["samplers"][channel["sampler"]]
         assert sampler.get("interpolation", "LINEAR") == "LINEAR"
@@ -153,16 +155,24 @@ def main(rig_path, seconds, method, pose_path):
     positions, = rig.vertices(["POSITION"])
     joints = np.concatenate(rig.vertices([f"JOINTS_{i}" for i in sets]), axis=1)
     weights = np.concatenate(rig.vertices([f"WEIGHTS_{i}" for i in sets]), axis=1).astype(float)
-    found, = Gltf(pose_path).vertices(["POSITION"])
-    assert len(found) == len(positions), (len(found), len(positions))
-    largest = 0.0
-    for v, position in enumerate(positions.astype(float)):
+    attributes = ["POSITION", "NORMAL"] if "NORMAL" in names else ["POSITION"]
+    found = [values.astype(float) for values in Gltf(pose_path).vertices(attributes)]
+    given = [values.astype(float) for values in rig.vertices(attributes)]
+    assert len(found[0]) == len(positions), (len(found[0]), len(positions))
+    distance = angle = 0.0
+    for v, position in enumerate(given[0]):
         order = [k for k in np.argsort(-weights[v], kind="stable") if weights[v, k] > 0]
         w = weights[v, order] / weights[v, order].sum()
         m = blended([matrices[joints[v, k]] for k in order], w, method)
-        largest = max(largest, float(np.linalg.norm(m[:3, :3] @ position + m[:3, 3] - found[v])))
+        moved = m[:3, :3] @ position + m[:3, 3]
+        distance = max(distance, float(np.linalg.norm(moved - found[0][v])))
+        if len(given) > 1:
+            normal = m[:3, :3] @ given[1][v]
+            across = np.linalg.norm(np.cross(normal, found[1][v]))
+            angle = max(angle, float(np.degrees(np.arctan2(across, normal @ found[1][v]))))
     print(f"{len(positions)} vertices, {sum((weights > 0).sum(axis=1) > 1)} with several joints")
-    print(f"{largest:.3e}")
+    print(f"{distance:.3e}")
+    print(f"{angle:.3e}")
 
 
 main(*sys.argv[1:])

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "body/body.h"
 #include "core/numbers.h"
@@ -13,7 +14,6 @@
 #include "formats/registry/registry.h"
 #include "motion/ground_place.h"
 #include "nodes/evaluate.h"
-#include "skin/linear_blend.h"
 #include "tools/common/figures/bone_figure.h"
 #include "tools/common/gltf/gltf_input.h"
 #include "tools/common/motion_input.h"
@@ -31,13 +31,13 @@ std::string name_of(const std::string& path) {
 // A clip and, if it has one, its body, with what drawing them at any moment needs.
 class ClipFigure {
  public:
-  ClipFigure(Clip clip, std::shared_ptr<const Model> body)
+  ClipFigure(Clip clip, std::shared_ptr<const Model> body, SkinMethod method)
       : clip_(std::move(clip)),
         body_(std::move(body)),
         style_(bone_style(clip_.skeleton)),
         carrier_(carrying_joint(find_roles(clip_.skeleton))) {
     if (body_ == nullptr) return;
-    from_reference_ = inverse_reference(body_->skeleton);
+    binding_.emplace(*body_, method);
     triangles_ = std::make_shared<render::Triangles>(body_->triangles);
   }
 
@@ -77,12 +77,13 @@ class ClipFigure {
   }
 
   render::Surface skinned(const std::vector<Transform>& pose) const {
-    std::vector<SkinMatrix> palette(pose.size());
-    make_palette(from_reference_, pose, palette);
+    SkinPose posed(*binding_);
+    posed.set(pose);
     render::Surface surface;
     surface.positions.resize(body_->positions.size());
     surface.normals.resize(body_->normals.size());
-    linear_blend(palette, skin_vertices(*body_), {surface.positions, surface.normals});
+    skin(*binding_, posed, {body_->positions, body_->normals, {}},
+         {surface.positions, surface.normals, {}});
     surface.triangles = triangles_;
     surface.colours = {kBodyColour};
     return surface;
@@ -90,13 +91,14 @@ class ClipFigure {
 
   Clip clip_;
   std::shared_ptr<const Model> body_;
-  std::vector<Transform> from_reference_;
+  std::optional<SkinBinding> binding_;  // of the body
   std::shared_ptr<const render::Triangles> triangles_;
   BoneStyle style_;
   int carrier_ = 0;
 };
 
-MovingFigure figure_of(const std::string& path, Clip clip, std::shared_ptr<const Model> body) {
+MovingFigure figure_of(const std::string& path, Clip clip, std::shared_ptr<const Model> body,
+                       SkinMethod method) {
   MovingFigure figure;
   figure.path = path;
   figure.name = name_of(path);
@@ -109,7 +111,7 @@ MovingFigure figure_of(const std::string& path, Clip clip, std::shared_ptr<const
     figure.facts += fmt::format(", {}, {} a second", counted(figure.frame_count, "frame"),
                                 readable(clip.rate, 4));
   }
-  const auto source = std::make_shared<const ClipFigure>(std::move(clip), std::move(body));
+  const auto source = std::make_shared<const ClipFigure>(std::move(clip), std::move(body), method);
   figure.at = [source](double time) { return source->at(time); };
   figure.carrier = [source](double time) { return source->carrier(time); };
   figure.heading = [source](double time) { return source->heading(time); };
@@ -295,7 +297,7 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
 }
 
 // Each model to the motions of its skeleton; one that no motion moves stands still.
-void share_models(bool bones, Read& read) {
+void share_models(bool bones, SkinMethod method, Read& read) {
   for (Read::Character& character : read.models) {
     for (Read::Motion& motion : read.motions) {
       if (motion.body != nullptr ||
@@ -312,7 +314,7 @@ void share_models(bool bones, Read& read) {
     still.skeleton = character.model->skeleton;
     const bool drawn = !bones && !character.model->triangles.empty();
     read.figures.emplace(character.place, figure_of(character.path, std::move(still),
-                                                    drawn ? character.model : nullptr));
+                                                    drawn ? character.model : nullptr, method));
   }
 }
 
@@ -334,7 +336,8 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
 }  // namespace
 
 Result<std::vector<MovingFigure>> read_figures(const std::vector<std::string>& paths,
-                                               BodyChoice body, ToolContext& context) {
+                                               BodyChoice body, SkinMethod method,
+                                               ToolContext& context) {
   Read read;
   const bool bones = body == BodyChoice::none;
   for (std::size_t place = 0; place < paths.size(); ++place) {
@@ -342,11 +345,11 @@ Result<std::vector<MovingFigure>> read_figures(const std::vector<std::string>& p
       return added.error();
     }
   }
-  share_models(bones, read);
+  share_models(bones, method, read);
   if (Status made = make_bodies(body, context, read); !made) return made.error();
   for (Read::Motion& motion : read.motions) {
-    read.figures.emplace(motion.place,
-                         figure_of(motion.path, std::move(motion.clip), std::move(motion.body)));
+    read.figures.emplace(motion.place, figure_of(motion.path, std::move(motion.clip),
+                                                 std::move(motion.body), method));
   }
   std::vector<MovingFigure> figures;
   for (auto& [place, figure] : read.figures) figures.push_back(std::move(figure));

@@ -7,6 +7,7 @@
 #include "core/result.h"
 #include "nodes/scene.h"
 #include "render/figure.h"
+#include "skin/skin.h"
 #include "tools/common/body_choice.h"
 #include "tools/common/tool.h"
 
@@ -33,9 +34,10 @@ struct MovingFigure {
 // Motions (captures, .anim), models (.model, moved by the motions of their skeleton or standing
 // alone) and glTF files, in the order of `paths`. With BodyChoice::none motions are drawn as bones,
 // and so are models and glTF files that have joints; automatic is low for more than two motions
-// that come without a body, otherwise medium. Code figure-input for a file that shows no
-// figure.
+// that come without a body, otherwise medium. `method` is how motions move their bodies; glTF files
+// are skinned as viewers do it. Code figure-input for a file that shows no figure.
 Result<std::vector<MovingFigure>> read_figures(const std::vector<std::string>& paths,
-                                               BodyChoice body, ToolContext& context);
+                                               BodyChoice body, SkinMethod method,
+                                               ToolContext& context);
 
 }  // namespace krok

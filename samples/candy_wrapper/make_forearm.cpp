@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include "formats/anim/anim.h"
+#include "formats/model/model_format.h"
+#include "samples/candy_wrapper/forearm.h"
+#include "tools/common/output_set.h"
+#include "tools/common/tool.h"
+
+// make-forearm: writes a generated forearm as .model, and the motion that twists it as .anim.
+
+namespace {
+
+using namespace krok;
+
+Result<int> run(ToolContext& context, const std::string& model_path) {
+  const Model model = samples::make_forearm();
+  const Clip clip = samples::make_twist();
+  OutputSet outputs(context);
+  const auto write_model = [&](OutputFile& file) { return model::write(model, {}, file); };
+  if (Status done = outputs.add(model_path, write_model); !done) return done.error();
+  const auto write_clip = [&](OutputFile& file) { return anim::write(clip, {}, file); };
+  if (Status done = outputs.add(context.output, write_clip); !done) return done.error();
+  if (Status done = outputs.finish(); !done) return done.error();
+  context.say(fmt::format("{}: {} vertices, {} triangles", model_path, model.positions.size(),
+                          model.triangles.size()));
+  context.say(
+      fmt::format("{}: the wrist twisted from 0 to 180 degrees, one a frame", context.output));
+  return kExitDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string model_path;
+  ToolSpec spec;
+  spec.name = "make-forearm";
+  spec.summary = "Makes a forearm with a hand, and a motion that twists its wrist";
+  spec.inputs = "";
+  spec.examples = {{"make-forearm --model forearm.model -o twist.anim",
+                    "the mesh on two joints, and half a turn of the wrist in three seconds"}};
+  spec.declare = [&](CLI::App& app) {
+    app.add_option("--model", model_path, "Where the mesh goes")
+        ->type_name("OUT.model")
+        ->required()
+        ->group("Forearm");
+  };
+  spec.run = [&](ToolContext& context) { return run(context, model_path); };
+  return run_tool(spec, argc, argv);
+}

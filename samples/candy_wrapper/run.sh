@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# The candy wrapper: what linear blend does to a twisted forearm. README.md tells the same story.
+#
+#   run.sh [OUTPUT_FOLDER]
+#
+# Without an argument: out/candy_wrapper. The tools are found through $KROK_BIN or in build/bin,
+# make-forearm through $SAMPLES_BIN or in build/samples.
+. "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
+
+check_arguments 1 "$@"
+need_tools skin info plot
+need_generators make-forearm
+methods=(linear dual-quaternion rigid)
+enter_folder "${1:-out/candy_wrapper}"
+
+# Between elbow and wrist the arm is a prism, 250 mm long, on an ellipse of 35 by 45 mm half axes
+# with 96 corners. Litres.
+stretch=$(awk 'BEGIN { print 0.25 * 0.035 * 0.045 * 48 * sin(3.141592653589793 / 48) * 1000 }')
+
+# volume METHOD FRAME: litres within the mesh.
+volume() {
+  "$bin/krok-skin" -q --as pose --method "$1" --time "$2f" -o pose.glb -- forearm.model \
+    twist.anim &&
+    "$bin/krok-info" --json -- pose.glb | awk -F'[:,]' '/"volume":/ { printf "%.9f", 1000 * $2 }'
+}
+
+say "1. A forearm, and half a turn of its wrist"
+"$generators/make-forearm" -q --model forearm.model -o twist.anim
+"$bin/krok-info" -- forearm.model | grep -E '^  (mesh|volume) '
+
+say "2. Skinned by each method"
+for method in "${methods[@]}"; do
+  "$bin/krok-skin" -q --method "$method" --every 45 -o "$method.glb" -- forearm.model twist.anim
+done
+"$bin/krok-plot" -q --sheet twist.png --sides front --moments 0s,0.75s,1.5s,2.25s,3s --size 150 \
+  -- "${methods[@]/%/.glb}"
+echo "  twist.png   twisted by 0, 45, 90, 135 and 180 degrees"
+
+say "3. The volume lost between elbow and wrist"
+# A frame is a degree. What is lost of the whole arm is lost there: the rest moves as it is.
+whole=$(volume linear 0)
+echo "twist [deg],method,volume lost [percent]" >volume.csv
+for degrees in $(seq 0 15 180); do
+  for method in "${methods[@]}"; do
+    left=$(volume "$method" "$degrees")
+    awk -v whole="$whole" -v left="$left" -v stretch="$stretch" -v place="$degrees,$method" \
+      'BEGIN { tenths = 1000 * (whole - left) / stretch
+               printf "%s,%.1f\n", place, int(tenths + 0.5) / 10 }'
+  done
+done >>volume.csv
+rm -f pose.glb
+"$bin/krok-plot" -q --x "twist" --by method --style both -o volume.svg \
+  --title "Volume lost between elbow and wrist" -- volume.csv
+lost() { awk -F, -v at="$1" -v by="$2" '$1 == at && $2 == by { print $3 " %" }' volume.csv; }
+{
+  echo "| twist | linear | dual quaternion | rigid | (1 - cos twist) / 3 |"
+  echo "|---|---|---|---|---|"
+  for degrees in 45 90 135 180; do
+    closed=$(awk -v a="$degrees" \
+      'BEGIN { printf "%.1f %%", 100 * (1 - cos(a * 3.141592653589793 / 180)) / 3 }')
+    echo "| $degrees° | $(lost $degrees linear) | $(lost $degrees dual-quaternion) |" \
+      "$(lost $degrees rigid) | $closed |"
+  done
+} | tee volume.md
+
+say "Done. linear.glb, dual-quaternion.glb and rigid.glb play in any viewer"

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "skin/skin.h"
+#include "tools/common/option_kinds.h"
+
+namespace krok {
+
+// --method, for tools that move meshes by joints.
+inline CLI::Option* add_skin_method(CLI::App& app, SkinMethod& method,
+                                    const std::string& description) {
+  return add_choice(app, "--method", method,
+                    {{"linear", SkinMethod::linear},
+                     {"dual-quaternion", SkinMethod::dual_quaternion},
+                     {"rigid", SkinMethod::rigid}},
+                    description, "METHOD", "linear");
+}
+
+}  // namespace krok
