@@ -9,6 +9,7 @@
 #include <map>
 
 #include "capture/unique_names.h"
+#include "character/mesh_vertices_internal.h"
 #include "character/morph_targets_internal.h"
 #include "core/numbers.h"
 #include "core/text.h"
@@ -84,6 +85,7 @@ class Builder {
     tell_of_what_is_left();
     look_at_attributes();
     for (const nodes::Instance& instance : wanted_) add(instance);
+    if (with_normals_) make_missing_normals(figure_.model);
     if (Status finished = finish(); !finished) return finished.error();
     if (options_.with_morphs) {
       if (Status added = add_targets(); !added) return added.error();
@@ -103,10 +105,10 @@ class Builder {
   void look_at_attributes();
   void find_placements(const nodes::Instance& instance);
   void add(const nodes::Instance& instance);
+  void add_vertices(const nodes::Instance& instance);
   void add_influences(const nodes::Instance& instance, std::size_t vertices);
   void add_normals(const nodes::Primitive& shape);
   void add_triangles(const nodes::Instance& instance, std::uint32_t first);
-  void make_normals(std::size_t first_vertex, std::size_t first_triangle);
   Status finish();
   Status add_targets();
   const Affine& placement(std::size_t vertex) const {
@@ -121,6 +123,7 @@ class Builder {
   Affine to_krok_;
   nodes::Evaluation rest_;
   std::vector<nodes::Instance> wanted_;
+  std::vector<std::size_t> first_vertices_;  // in the model, of those of wanted_ that are added
   TargetNames targets_;
   Figure figure_;
   NameList elsewhere_, other_skeleton_, without_triangles_;
@@ -286,6 +289,7 @@ void Builder::add_triangles(const nodes::Instance& instance, std::uint32_t first
                          to_utf8(shape.material),
                          static_cast<std::uint32_t>(model.triangles.size()),
                          static_cast<std::uint32_t>(shape.triangles.size())});
+  figure_.part_materials.push_back(shape.material_index);
   for (auto triangle : shape.triangles) {
     if (placement(triangle[0]).leftCols<3>().determinant() < 0) std::swap(triangle[1], triangle[2]);
     for (std::uint32_t& corner : triangle) corner += first;
@@ -293,32 +297,23 @@ void Builder::add_triangles(const nodes::Instance& instance, std::uint32_t first
   }
 }
 
-// Normals from the triangles for the vertices from `first_vertex` on that have none, each triangle
-// counting by its area.
-void Builder::make_normals(std::size_t first_vertex, std::size_t first_triangle) {
-  Model& model = figure_.model;
-  std::vector<Vec3> sums(model.positions.size() - first_vertex, Vec3::Zero());
-  for (std::size_t t = first_triangle; t < model.triangles.size(); ++t) {
-    const auto& corners = model.triangles[t];
-    const auto corner = [&](int k) -> Vec3 { return model.positions[corners[k]].cast<double>(); };
-    const Vec3 area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-    for (const std::uint32_t one : corners) sums[one - first_vertex] += area;
-  }
-  for (std::size_t v = 0; v < sums.size(); ++v) {
-    Vec3f& normal = model.normals[first_vertex + v];
-    if (normal.squaredNorm() > 0.5f) continue;
-    const double length = sums[v].stableNorm();
-    normal = length > 0 && std::isfinite(length) ? Vec3f((sums[v] / length).cast<float>())
-                                                 : Vec3f(Vec3f::UnitY());
-  }
-}
-
 void Builder::add(const nodes::Instance& instance) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
-  Model& model = figure_.model;
-  const std::size_t first_vertex = model.positions.size();
-  const std::size_t first_triangle = model.triangles.size();
   find_placements(instance);
+  const std::size_t place = first_vertices_.size();
+  if (place > 0 && wanted_[place - 1].node == instance.node &&
+      same_vertices(evaluator_.primitive(wanted_[place - 1]), shape)) {
+    first_vertices_.push_back(first_vertices_.back());
+  } else {
+    first_vertices_.push_back(figure_.model.positions.size());
+    add_vertices(instance);
+  }
+  add_triangles(instance, static_cast<std::uint32_t>(first_vertices_.back()));
+}
+
+void Builder::add_vertices(const nodes::Instance& instance) {
+  const nodes::Primitive& shape = evaluator_.primitive(instance);
+  Model& model = figure_.model;
   for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
     const Vec3 position = (*shape.positions)[v].cast<double>();
     model.positions.push_back((placement(v) * position.homogeneous()).cast<float>());
@@ -334,8 +329,6 @@ void Builder::add(const nodes::Instance& instance) {
     }
   }
   add_influences(instance, shape.vertex_count());
-  add_triangles(instance, static_cast<std::uint32_t>(first_vertex));
-  if (with_normals_) make_normals(first_vertex, first_triangle);
 }
 
 Status Builder::finish() {
@@ -376,13 +369,13 @@ Status Builder::add_targets() {
     morphs.positions.insert(morphs.positions.end(), base.positions.begin(), base.positions.end());
     morphs.normals.insert(morphs.normals.end(), base.normals.begin(), base.normals.end());
   }
-  std::size_t first = 0;
-  for (const nodes::Instance& instance : wanted_) {
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    const nodes::Instance& instance = wanted_[i];
     const nodes::Primitive& shape = evaluator_.primitive(instance);
     if (!shape.targets.empty()) find_placements(instance);
     for (std::size_t k = 0; k < shape.targets.size(); ++k) {
       const int target = targets_.index_of(instance, static_cast<int>(k));
-      const std::size_t offset = at(target) * vertices + first;
+      const std::size_t offset = at(target) * vertices + first_vertices_[i];
       const nodes::MorphTarget& moved = shape.targets[k];
       for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
         const Mat3 linear = placement(v).leftCols<3>();
@@ -400,7 +393,6 @@ Status Builder::add_targets() {
         }
       }
     }
-    first += shape.vertex_count();
   }
   return check(morphs);
 }

@@ -23,6 +23,8 @@ struct Figure {
     int target = 0;
   };
   std::vector<WeightSource> weight_sources;  // [targets]
+
+  std::vector<int> part_materials;  // [parts] of the model, in the scene's materials; -1 for none
 };
 
 struct FigureOptions {
@@ -32,7 +34,8 @@ struct FigureOptions {
 // All triangles of the scene that is shown whose mesh is bound by one of the rig's skins, or hangs
 // without a skin on one of its joints (then each vertex follows that joint alone). Meshes elsewhere
 // are left out and reported (code scene-mesh), as are points and lines. One part a primitive, named
-// as its material, or as its mesh if it has none.
+// as its material, or as its mesh if it has none. Primitives of a mesh that have the very same
+// vertices, one after the other, keep sharing them.
 //
 // Vertices are brought into the reference pose by sum_j w_j F_j B_j v, which for a skin that agrees
 // with the bind pose is one transform for all. Normals are made from the triangles for primitives

@@ -157,6 +157,34 @@ TEST(ImportedShape, UnitAndAxesThatTheUserGives) {
   EXPECT_NEAR(imported.clip.skeleton.reference[0].position.y(), 0.9, 1e-9);
 }
 
+// A mesh with two materials, as exporters and krok-skin write it: what goes by the vertices'
+// numbers (morph targets, point caches) would fit no more if each part got vertices of its own.
+TEST(ImportedShape, PartsOfOneMeshShareTheirVertices) {
+  nodes::Scene scene = armature_scene();
+  const auto whole = import(scene, *nodes::Evaluator::create(scene)).figure.model;
+  for (nodes::Mesh& mesh : scene.meshes) {
+    nodes::Primitive second = mesh.primitives[0];
+    auto& triangles = mesh.primitives[0].triangles;
+    second.triangles.assign(triangles.begin() + 4, triangles.end());
+    second.material = "other";
+    triangles.resize(4);
+    mesh.primitives.push_back(second);
+  }
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Model parted = import(scene, evaluator).figure.model;
+  EXPECT_EQ(parted.positions, whole.positions);
+  EXPECT_EQ(parted.normals, whole.normals);
+  EXPECT_EQ(parted.influence_weights, whole.influence_weights);
+  EXPECT_EQ(parted.triangles, whole.triangles);
+  EXPECT_EQ(parted.parts.size(), 2 * whole.parts.size());
+  // Primitives with places of their own keep them.
+  nodes::Primitive& second = scene.meshes[0].primitives[1];
+  second.positions = shared(std::vector<Vec3f>(*second.positions));
+  const auto again = *nodes::Evaluator::create(scene);
+  EXPECT_EQ(import(scene, again).figure.model.positions.size(),
+            whole.positions.size() + second.vertex_count());
+}
+
 TEST(ImportedShape, MeshesHungOnJointsFollowThem) {
   nodes::Scene scene = armature_scene();
   const int holder = add_node(scene, "Hand", 2, Vec3(5, 1, 2), from_rotation_vector(Vec3(1, 0, 0)));
