@@ -12,7 +12,7 @@ BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev
   libcli11-dev help2man libembree-dev libpng-dev libfreetype-dev libceres-dev \
   fonts-dejavu-core
 TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3 \
-  chromium python3-jsonschema
+  chromium openexr python3-jsonschema
 LINT_PACKAGES := clang-tidy
 
 SOURCES = git ls-files --cached --others --exclude-standard '*.cpp' '*.h'

@@ -40,7 +40,7 @@ ALLOWED = {
     "formats/registry": {"lib/core"},
     "formats/json": {"lib/core"},
     "formats/role_map": BASE | {"lib/roles", "formats/json"},
-    "formats/timeline": BASE | {"lib/motion", "lib/blend", "lib/timeline", "formats/json", "formats/role_map"},
+    "formats/timeline": BASE | {"lib/motion", "lib/blend", "lib/timeline", "formats/json"},
     "formats/sequences": {"lib/core", "formats/json"},
     "formats/library": {"lib/core", "formats/json"},
     "formats/keys": BASE | {"formats/json"},
@@ -56,6 +56,12 @@ ALLOWED = {
     "formats/gltf": BASE | {"lib/nodes", "lib/tracks"},
     "formats/assimp": BASE | {"lib/nodes", "formats/registry"},
     "formats/csv": BASE,
+    "formats/obj": BASE,
+    "formats/pc2": BASE,
+    "formats/weights": BASE | {"lib/skin", "formats/csv", "formats/json"},
+    "formats/material": BASE | {"formats/json"},
+    "formats/character": BASE | {"formats/json"},
+    "formats/key_shapes": BASE | {"lib/skin", "formats/json"},
     "formats/morph_exr": BASE | {"formats/container"},
 }
 TOP = {

@@ -99,7 +99,8 @@ void CommandLine::declare_common(const ToolSpec& spec) {
   }
   app_.add_flag("-q,--quiet", quiet, "Errors only")->group(kCommon);
   app_.add_flag("-v,--verbose", verbose, "Notes too")->group(kCommon);
-  app_.add_option("--json", json_path,
+  const std::string& more_names = spec.report_name;
+  app_.add_option(more_names.empty() ? "--json" : "--json," + more_names, json_path,
                   "A report in JSON on standard output, or with --json=FILE in a file")
       ->type_name("[=FILE]")
       ->group(kCommon);

@@ -33,6 +33,7 @@ std::string footer(const ToolSpec& spec) {
   text += fmt::format("\nExit codes:\n  0  {}\n", spec.exit_done);
   if (!spec.exit_no.empty()) text += fmt::format("  1  {}\n", spec.exit_no);
   text += "  2  trouble: usage, input or output; nothing is left half-written\n";
+  if (!spec.exit_partly.empty()) text += fmt::format("  3  {}\n", spec.exit_partly);
   if (spec.batch) text += "  3  with --keep-going: some of the files failed, the others are done\n";
   return text;
 }

@@ -25,13 +25,19 @@ Options default_options(const ToolContext& context) {
 }
 
 template <typename Capture>
-Result<Clip> told(Result<Capture> capture, ToolContext& context) {
+Result<Clip> told(Result<Capture> capture, RestFrameTold rest_frame, ToolContext& context) {
   if (!capture) return std::move(capture).error();
+  for (Diagnostic& diagnostic : capture->diagnostics) {
+    if (rest_frame == RestFrameTold::note && diagnostic.severity == Severity::warning &&
+        diagnostic.code.ends_with("-rest-frame")) {
+      diagnostic.severity = Severity::note;
+    }
+  }
   context.tell(capture->diagnostics);
   return std::move(capture->clip);
 }
 
-Result<Clip> read_acclaim(const InputFile& motion, ToolContext& context) {
+Result<Clip> read_acclaim(const InputFile& motion, RestFrameTold rest_frame, ToolContext& context) {
   context.chose_beside(motion.path(), ".asf");
   const auto found = acclaim::find_skeleton(motion.path());
   if (!found) return found.error();
@@ -46,7 +52,7 @@ Result<Clip> read_acclaim(const InputFile& motion, ToolContext& context) {
   context.tell(std::move(note));
   return told(acclaim::read(skeleton->text(), skeleton->path(), motion.text(), motion.path(),
                             default_options<acclaim::ReadOptions>(context)),
-              context);
+              rest_frame, context);
 }
 
 bool is_capture(const InputFile& input) {
@@ -79,13 +85,13 @@ FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty) {
   return watching;
 }
 
-Result<Clip> read_motion(const InputFile& input, ToolContext& context) {
+Result<Clip> read_motion(const InputFile& input, ToolContext& context, RestFrameTold rest_frame) {
   switch (registry::identify(input.path(), input.bytes())) {
     case Kind::bvh:
       return told(bvh::read(input.text(), input.path(), default_options<bvh::ReadOptions>(context)),
-                  context);
+                  rest_frame, context);
     case Kind::amc:
-      return read_acclaim(input, context);
+      return read_acclaim(input, rest_frame, context);
     case Kind::asf:
       return Error("usage", "is a skeleton without a motion", "give the .amc file beside it")
           .in_file(input.path());
@@ -97,10 +103,10 @@ Result<Clip> read_motion(const InputFile& input, ToolContext& context) {
   return clip;
 }
 
-Result<Clip> read_motion(const std::string& path, ToolContext& context) {
+Result<Clip> read_motion(const std::string& path, ToolContext& context, RestFrameTold rest_frame) {
   const auto input = context.open_input(path);
   if (!input) return input.error();
-  return read_motion(*input, context);
+  return read_motion(*input, context, rest_frame);
 }
 
 Result<MotionFacts> use_motion(const std::string& path, ToolContext& context,

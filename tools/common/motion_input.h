@@ -16,11 +16,15 @@ namespace krok {
 // A motion from a file that a tool takes in place of a .anim file: a .anim file itself, or a
 // capture (BVH; AMC with the ASF beside it), read as krok-import reads it when it is given no
 // options. What the reader chose and found odd is told; the clip's provenance tells its
-// conversions.
-Result<Clip> read_motion(const std::string& path, ToolContext& context);
+// conversions. That its first frame is a rest pose may be no more than a note to a user who takes
+// parts of the motion in which it is not.
+enum class RestFrameTold : unsigned char { warning, note };
+Result<Clip> read_motion(const std::string& path, ToolContext& context,
+                         RestFrameTold rest_frame = RestFrameTold::warning);
 
 // The same of a file that is open already.
-Result<Clip> read_motion(const InputFile& input, ToolContext& context);
+Result<Clip> read_motion(const InputFile& input, ToolContext& context,
+                         RestFrameTold rest_frame = RestFrameTold::warning);
 
 // Notes the checksum of a long input (ToolContext::open_long_input) when its use ends, whichever
 // way that is. Both arguments must outlive it.

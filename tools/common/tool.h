@@ -136,6 +136,8 @@ struct ToolSpec {
   std::vector<Example> examples;   // at least two
   std::string exit_done = "done";  // what exit code 0 means here
   std::string exit_no;             // what exit code 1 means here; empty where it does not happen
+  std::string exit_partly;         // what exit code 3 means to a tool without a Batch, or empty
+  std::string report_name;         // another name of --json, "--report", or empty
   bool has_output = true;          // takes -o
   bool needs_output = true;        // -o must be given
   std::optional<Batch> batch;

@@ -27,6 +27,7 @@ constexpr std::array kVerbs = {
     Verb{"info", "what is in a file"},
     Verb{"body", "a smooth skinned body for any skeleton"},
     Verb{"skin", "a model and a motion to glTF: a rig, a baked clip, a pose"},
+    Verb{"morph", "morph targets: packed, taken out, over time; key-frame meshes"},
     Verb{"retarget", "a motion on another skeleton"},
     Verb{"edit", "cut, clean, mirror, loop, join, scale and place a motion"},
     Verb{"keys", "contacts of the feet and keytimes of a gait, found, shown, edited"},

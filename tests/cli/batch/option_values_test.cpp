@@ -123,7 +123,7 @@ TEST_F(BatchTest, EveryToolThatTakesManyHasItsValuesChecked) {
     if (!name.starts_with("krok-")) continue;
     const std::string help = get((entry.path() / "README.md").string());
     // A timeline tells all; krok-mix has options of words and paths alone.
-    if (help.find("--out-dir") == std::string::npos || name == "krok-mix") continue;
+    if (help.find("--manifest") == std::string::npos || name == "krok-mix") continue;
     ++found;
     EXPECT_TRUE(std::any_of(values().begin(), values().end(), [&](const Value& value) {
       return value.tool == name;

@@ -9,6 +9,7 @@
 #include "formats/gltf/gltf_reader.h"
 #include "nodes/evaluate.h"
 #include "support/glb_builder.h"
+#include "support/small_pictures.h"
 
 namespace krok {
 namespace {
@@ -25,9 +26,17 @@ void expect_consistent(const nodes::Scene& asset) {
     ASSERT_TRUE(node.mesh == -1 || in(node.mesh, asset.meshes.size()));
     ASSERT_TRUE(node.skin == -1 || in(node.skin, asset.skins.size()));
   }
+  ASSERT_TRUE(check(asset.materials).ok());
+  for (const Material& material : asset.materials) {
+    for (const Texture* texture : textures_of(material)) {
+      ASSERT_TRUE(!*texture || picture_facts(texture->picture->bytes).ok());
+    }
+  }
   for (const nodes::Mesh& mesh : asset.meshes) {
     ASSERT_EQ(mesh.weights.size(), mesh.target_count());
     for (const nodes::Primitive& primitive : mesh.primitives) {
+      ASSERT_TRUE(primitive.material_index == -1 ||
+                  in(primitive.material_index, asset.materials.size()));
       const std::size_t vertices = primitive.vertex_count();
       ASSERT_TRUE(!primitive.normals || primitive.normals->size() == vertices);
       ASSERT_EQ(primitive.influence_weights.size(),
@@ -44,7 +53,9 @@ void expect_consistent(const nodes::Scene& asset) {
 bool survive(const Bytes& bytes) {
   const std::unique_ptr<std::byte[]> copy(new std::byte[bytes.size()]);
   std::copy(bytes.begin(), bytes.end(), copy.get());
-  const auto asset = gltf::read(std::span<const std::byte>(copy.get(), bytes.size()));
+  gltf::ReadOptions options;
+  options.with_materials = true;
+  const auto asset = gltf::read(std::span<const std::byte>(copy.get(), bytes.size()), options);
   if (!asset) {
     EXPECT_FALSE(asset.error().code.empty());
     EXPECT_FALSE(asset.error().message.empty());
@@ -63,8 +74,31 @@ bool survive(const Bytes& bytes) {
   return true;
 }
 
+// A square with a material that has every texture.
+test::GlbBuilder dressed() {
+  test::GlbBuilder builder = test::square();
+  builder.json["images"] = {{{"bufferView", builder.add_view(test::png())}},
+                            {{"bufferView", builder.add_view(test::jpeg())}}};
+  builder.json["samplers"] = {{{"wrapS", 33071}, {"magFilter", 9728}}};
+  builder.json["textures"] = {{{"source", 0}, {"sampler", 0}}, {{"source", 1}}};
+  const nlohmann::ordered_json first = {{"index", 0}}, second = {{"index", 1}};
+  builder.json["materials"] = {
+      {{"name", "Skin"},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {1, 0.5, 0, 1}},
+         {"baseColorTexture", first},
+         {"metallicRoughnessTexture", second}}},
+       {"normalTexture", second},
+       {"emissiveFactor", {1, 0, 0}},
+       {"emissiveTexture", first},
+       {"alphaMode", "MASK"},
+       {"extensions", {{"KHR_materials_unlit", nlohmann::ordered_json::object()}}}}};
+  builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+  return builder;
+}
+
 std::vector<Bytes> files() {
-  return {test::rig().glb(), test::baked_rig().glb()};
+  return {test::rig().glb(), test::baked_rig().glb(), dressed().glb()};
 }
 
 TEST(DamagedGltf, EveryTruncationIsAnError) {
@@ -93,7 +127,7 @@ TEST(DamagedGltf, EveryChangedByteIsSurvived) {
 
 TEST(DamagedGltf, EveryNumberOfTheJsonMayBeAnother) {
   // Each run of digits becomes numbers that are wrong in different ways.
-  for (const auto& builder : {test::rig(), test::baked_rig()}) {
+  for (const auto& builder : {test::rig(), test::baked_rig(), dressed()}) {
     const std::string text = builder.json.dump();
     for (std::size_t i = 0; i < text.size(); ++i) {
       const auto is_digit = [&](std::size_t k) { return text[k] >= '0' && text[k] <= '9'; };

@@ -10,7 +10,9 @@
 #include "formats/container/packed_orientation.h"
 #include "formats/steps/steps.h"
 #include "scene/camera_track.h"
+#include "scene/character.h"
 #include "scene/clip.h"
+#include "scene/material.h"
 #include "scene/model.h"
 
 // Tiny scenes that use every feature of the formats, with values that are exact in floats or chosen
@@ -39,12 +41,19 @@ steps::StepsFile step_library();
 // The same with three parameters, of a joint, a turn and a duration, and no weights or report.
 steps::StepsFile unfitted_library();
 
+// Every key, with textures that share a picture, and one with none.
+std::vector<Material> materials();
+
+// For model(), with every key.
+Character character();
+
 // A file of the frozen set: its name and how it is written.
 struct Sample {
   std::string file_name;
   std::function<Status(OutputFile&)> write;
 };
-std::vector<Sample> all();
+std::vector<Sample> all();    // that are binary
+std::vector<Sample> texts();  // the others
 
 // The bytes that `write` puts into a file.
 std::vector<std::byte> bytes_of(const std::function<Status(OutputFile&)>& write);

@@ -10,7 +10,9 @@ int main(int argc, char** argv) {
     std::fputs("usage: write_samples FOLDER\n", stderr);
     return 2;
   }
-  for (const auto& sample : krok::samples::all()) {
+  auto samples = krok::samples::all();
+  for (auto& text : krok::samples::texts()) samples.push_back(std::move(text));
+  for (const auto& sample : samples) {
     const std::string path = std::string(argv[1]) + "/" + sample.file_name;
     auto file = krok::OutputFile::create(path);
     krok::Status done = file ? sample.write(*file) : krok::Status(file.error());

@@ -14,6 +14,7 @@ namespace {
 
 using testing::DoubleNear;
 using testing::Each;
+using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
@@ -55,6 +56,33 @@ TEST(DifferenceChart, ComparesMomentsOfDifferentRatesAndOnlyChosenJoints) {
   EXPECT_THAT(difference->rms, Each(DoubleNear(0.2, 1e-6)));
   EXPECT_THAT(difference->differences, Not(IsEmpty()));  // the rates
   EXPECT_EQ(difference_panels(*difference, Scale::linear)[0].y.unit, "m");
+}
+
+TEST(DifferenceChart, ShowsTheToleranceAndTheWorstMoment) {
+  ChartedDifference chart;
+  chart.title = "Distance between vertices";
+  chart.of = "vertices";
+  chart.times = {0, 0.5, 1};
+  chart.largest = {0, 0.004, 0.002};
+  chart.rms = {0, 0.001, 0.001};
+  chart.tolerance = 1e-3;
+  chart.worst_moment = 0.5;
+  const Panel panel = difference_panel(chart, Scale::linear);
+  EXPECT_EQ(panel.y.unit, "mm");
+  ASSERT_THAT(panel.series, SizeIs(3));
+  EXPECT_THAT(panel.series[0].y, ElementsAre(0, 4, 2));
+  EXPECT_EQ(panel.series[2].name, "tolerance, 1 mm");
+  EXPECT_THAT(panel.series[2].x, ElementsAre(0, 1));
+  EXPECT_THAT(panel.series[2].y, ElementsAre(1, 1));
+  ASSERT_THAT(panel.moments, SizeIs(1));
+  EXPECT_EQ(panel.moments[0].at, 0.5);
+
+  chart.is_angle = true;
+  EXPECT_THAT(difference_panel(chart, Scale::linear).series[0].y, ElementsAre(0, 0.004, 0.002));
+  chart.times = {0};
+  chart.largest = chart.rms = {0.2};
+  EXPECT_EQ(difference_panel(chart, Scale::linear).series[0].style, SeriesStyle::line_and_points)
+      << "a line of one moment cannot be seen";
 }
 
 TEST(DifferenceChart, NeedsSomethingInCommon) {

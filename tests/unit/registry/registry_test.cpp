@@ -27,8 +27,15 @@ TEST(Registry, ContentTellsTheKind) {
   EXPECT_EQ(kind_of_content(bytes_of(":degrees")), Kind::amc);
   EXPECT_EQ(kind_of_content(bytes_of(":unheard-of\n")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("# a comment alone")), Kind::unknown);
+  EXPECT_EQ(kind_of_content(bytes_of(std::string_view("POINTCACHE2\0\1", 13))), Kind::pc2);
+  EXPECT_EQ(kind_of_content(bytes_of("POINTCACHE2")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("glTF\2")), Kind::glb);
   EXPECT_EQ(kind_of_content(bytes_of(" {\n \"asset\": {\"version\": \"2.0\"}}")), Kind::gltf);
+  // A material called "asset" is none of glTF.
+  EXPECT_EQ(kind_of_content(bytes_of("{\"schema\": \"krok.material/1\", \"asset\": 1}")),
+            Kind::material);
+  EXPECT_EQ(kind_of_content(bytes_of("\n{ \"schema\":\"krok.character/1\"}")), Kind::character);
+  EXPECT_EQ(kind_of_content(bytes_of("{\"schema\": \"krok.timeline/1\"}")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("{\"a\":1}")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("HIER")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("KROKANI")), Kind::unknown);
@@ -65,8 +72,9 @@ TEST(Registry, ScenesOfOtherProgramsGoThroughAssimp) {
     EXPECT_EQ(kind_of_name("a." + std::string(kind_name(kind))), kind);
     EXPECT_EQ(advice(kind, Kind::anim), "import it with krok-import");
   }
-  for (const Kind kind : {Kind::unknown, Kind::anim, Kind::model, Kind::cam, Kind::bvh, Kind::asf,
-                          Kind::amc, Kind::glb, Kind::gltf}) {
+  for (const Kind kind :
+       {Kind::unknown, Kind::anim, Kind::model, Kind::cam, Kind::material, Kind::character,
+        Kind::bvh, Kind::asf, Kind::amc, Kind::pc2, Kind::glb, Kind::gltf}) {
     EXPECT_FALSE(is_read_through_assimp(kind)) << kind_name(kind);
   }
 }
@@ -84,6 +92,7 @@ TEST(Registry, NameTellsTheKindInAnyCase) {
   EXPECT_EQ(kind_of_name("Walk.BVH"), Kind::bvh);
   EXPECT_EQ(kind_of_name("01.ASF"), Kind::asf);
   EXPECT_EQ(kind_of_name("01_01.amc"), Kind::amc);
+  EXPECT_EQ(kind_of_name("b.PC2"), Kind::pc2);
   EXPECT_EQ(kind_of_name("b.glb"), Kind::glb);
   EXPECT_EQ(kind_of_name("b.gltf"), Kind::gltf);
   EXPECT_EQ(kind_of_name("b.FBX"), Kind::fbx);
@@ -112,6 +121,8 @@ TEST(Registry, ForeignFilesAreDescribed) {
   EXPECT_EQ(describe_content(bytes_of("Kaydara FBX Binary  ")), "an FBX file");
   EXPECT_EQ(describe_content(bytes_of("\x89PNG\r\n")), "a PNG picture");
   EXPECT_EQ(describe_content(bytes_of("<?xml version")), "an XML text file");
+  EXPECT_EQ(describe_content(bytes_of(std::string_view("POINTCACHE2", 12))),
+            "a point cache (.pc2)");
   EXPECT_EQ(describe_content(bytes_of("hello\n")), "a text file of unknown kind");
   EXPECT_EQ(describe_content(bytes_of("\x01\x02")), "a binary file of unknown kind");
 }

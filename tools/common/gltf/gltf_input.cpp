@@ -1,7 +1,6 @@
 #include "tools/common/gltf/gltf_input.h"
 
-#include <filesystem>
-
+#include "core/path_inside.h"
 #include "formats/gltf/gltf_reader.h"
 
 namespace krok {
@@ -19,12 +18,10 @@ Result<nodes::Scene> with_its_files(Result<nodes::Scene> scene, const InputFile&
   return scene;
 }
 
-Result<nodes::Scene> read_gltf(const InputFile& input, ToolContext& context) {
+Result<nodes::Scene> read_gltf(const InputFile& input, ToolContext& context, bool with_materials) {
   gltf::ReadOptions options;
-  if (input.path() != "-") {
-    const std::string folder = std::filesystem::path(input.path()).parent_path().string();
-    options.folder = folder.empty() ? "." : folder;
-  }
+  options.with_materials = with_materials;
+  if (input.path() != "-") options.folder = folder_of(input.path());
   return with_its_files(gltf::read(input.bytes(), options), input, context);
 }
 

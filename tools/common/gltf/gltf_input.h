@@ -12,8 +12,10 @@ namespace krok {
 Result<nodes::Scene> with_its_files(Result<nodes::Scene> scene, const InputFile& input,
                                     ToolContext& context);
 
-// Reads glTF, of both kinds, with the files in its folder that it refers to. What the reader found
-// odd is left in the scene's diagnostics. Standard input holds no folder to find other files in.
-Result<nodes::Scene> read_gltf(const InputFile& input, ToolContext& context);
+// Reads glTF, of both kinds, with the files in its folder that it refers to; materials and pictures
+// where they are asked for. What the reader found odd is left in the scene's diagnostics. Standard
+// input holds no folder to find other files in.
+Result<nodes::Scene> read_gltf(const InputFile& input, ToolContext& context,
+                               bool with_materials = false);
 
 }  // namespace krok
