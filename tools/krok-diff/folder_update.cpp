@@ -7,6 +7,7 @@
 
 #include "compare_files.h"
 #include "folders.h"
+#include "tools/common/new_folders.h"
 #include "tools/common/paths.h"
 
 namespace krok::diff {
@@ -15,52 +16,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders that were made, removed again unless what belongs into them is in place.
-class NewFolders {
- public:
-  ~NewFolders() {
-    std::error_code ignored;
-    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
-      fs::remove(*folder, ignored);
-    }
-  }
-
-  // Makes `folder` and those that it lies in. Below `root` links are refused: what they lead to is
-  // not compared either.
-  Status make(const fs::path& folder, const fs::path& root) {
-    std::error_code unknown;
-    if (folder != root) {
-      if (Status above = make(folder.parent_path(), root); !above) return above;
-      if (fs::is_symlink(fs::symlink_status(folder, unknown))) {
-        return Error("file-unwritable", "is a link, which is not followed here",
-                     "put a folder in its place")
-            .in_file(folder.string());
-      }
-    }
-    if (fs::is_directory(folder, unknown)) return {};
-    std::vector<fs::path> missing;
-    for (fs::path path = folder; !path.empty() && !fs::exists(path, unknown);
-         path = path.parent_path()) {
-      missing.push_back(path);
-    }
-    std::error_code trouble;
-    for (auto path = missing.rbegin(); path != missing.rend() && !trouble; ++path) {
-      if (fs::create_directory(*path, trouble)) made_.push_back(*path);
-    }
-    if (trouble || !fs::is_directory(folder, unknown)) {
-      return Error("file-unwritable",
-                   fmt::format("cannot be made: {}",
-                               trouble ? trouble.message() : "a file has its name"))
+// Makes `folder` in the folder tree of `root`, where links are refused: what they lead to is not
+// compared either.
+Status make_folder(const fs::path& folder, const fs::path& root, NewFolders& folders) {
+  std::error_code unknown;
+  if (folder != root) {
+    if (Status above = make_folder(folder.parent_path(), root, folders); !above) return above;
+    if (fs::is_symlink(fs::symlink_status(folder, unknown))) {
+      return Error("file-unwritable", "is a link, which is not followed here",
+                   "put a folder in its place")
           .in_file(folder.string());
     }
-    return {};
   }
-
-  void keep() { made_.clear(); }
-
- private:
-  std::vector<fs::path> made_;
-};
+  return folders.make(folder.string());
+}
 
 Result<OutputFile> copy_of(const std::string& source, const std::string& target) {
   const auto from = InputFile::open(source);
@@ -97,7 +66,9 @@ Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& o
     if (!differs && file.status != FileStatus::only_in_second) continue;
     (differs ? update.replaced : update.added).push_back(file.path);
     const fs::path target = root / file.path;
-    if (Status made = folders.make(target.parent_path(), root); !made) return made.error();
+    if (Status made = make_folder(target.parent_path(), root, folders); !made) {
+      return made.error();
+    }
     // Two links to one file.
     if (!places.insert(place_of(target.string())).second) return twice_error(target.string());
     auto copy = copy_of(below(options.second, file.path), target.string());

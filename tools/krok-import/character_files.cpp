@@ -32,8 +32,8 @@ std::string usable_name(const std::string& name, const std::string& fallback) {
 class Adder {
  public:
   Adder(const CharacterFiles& files, const nodes::Scene& scene, character::Figure& figure,
-        OutputSet& outputs, NewFolder& folder)
-      : files_(files), scene_(scene), figure_(figure), outputs_(outputs), new_folder_(folder) {
+        OutputSet& outputs, NewFolders& folder)
+      : files_(files), scene_(scene), figure_(figure), outputs_(outputs), new_folders_(folder) {
     const std::string end = extension(files.path);
     stem_ = files.path.substr(0, files.path.size() - end.size());
     name_ = base_name(stem_);
@@ -41,8 +41,9 @@ class Adder {
 
   Result<AddedCharacter> add() {
     name_parts();
+    // The model first: where its folder is missing, none is made for the pictures.
     for (const auto step :
-         {&Adder::add_materials, &Adder::add_model, &Adder::add_morphs, &Adder::add_character}) {
+         {&Adder::add_model, &Adder::add_materials, &Adder::add_morphs, &Adder::add_character}) {
       if (Status done = (this->*step)(); !done) return done.error();
     }
     return std::move(added_);
@@ -97,7 +98,7 @@ class Adder {
       const auto facts = picture_facts(picture.bytes);
       if (!facts) return facts.error();
       const std::string file = picture_names_.make(picture, facts->kind, fallback);
-      if (Status made = new_folder_.make(stem_ + "_textures"); !made) return made;
+      if (Status made = new_folders_.make(stem_ + "_textures"); !made) return made;
       const Status done = outputs_.add(stem_ + "_textures/" + file, [&](OutputFile& output) {
         return output.write(picture.bytes);
       });
@@ -148,7 +149,7 @@ class Adder {
   const nodes::Scene& scene_;
   character::Figure& figure_;
   OutputSet& outputs_;
-  NewFolder& new_folder_;
+  NewFolders& new_folders_;
   std::string stem_, name_;  // of all files, with and without their folder
   PictureNames picture_names_;
   std::map<const Picture*, std::shared_ptr<const Picture>> pictures_;  // to those with paths
@@ -159,7 +160,7 @@ class Adder {
 
 Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
                                      character::Figure& figure, OutputSet& outputs,
-                                     NewFolder& folder) {
+                                     NewFolders& folder) {
   return Adder(files, scene, figure, outputs, folder).add();
 }
 

@@ -7,8 +7,8 @@
 #include "formats/container/packed_orientation.h"
 #include "nodes/scene.h"
 #include "scene/character.h"
+#include "tools/common/new_folders.h"
 #include "tools/common/output_set.h"
-#include "tools/krok-import/new_folder.h"
 
 namespace krok::import {
 
@@ -32,6 +32,6 @@ struct AddedCharacter {
 // their own, and the names of the scene's materials. Codes: those of the writers.
 Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
                                      character::Figure& figure, OutputSet& outputs,
-                                     NewFolder& folder);
+                                     NewFolders& folder);
 
 }  // namespace krok::import

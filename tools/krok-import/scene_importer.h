@@ -10,10 +10,10 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "nodes/evaluate.h"
+#include "tools/common/new_folders.h"
 #include "tools/common/output_set.h"
 #include "tools/common/tool.h"
 #include "tools/krok-import/clips.h"
-#include "tools/krok-import/new_folder.h"
 #include "tools/krok-import/options.h"
 
 namespace krok::import {
@@ -72,7 +72,7 @@ class SceneImporter {
   ToolContext& context_;
   const nodes::Scene& scene_;
   const nodes::Evaluator& evaluator_;
-  NewFolder textures_;  // before what is in it
+  NewFolders textures_;  // before what is in it
   OutputSet outputs_;
 
   std::vector<ChosenClip> clips_;

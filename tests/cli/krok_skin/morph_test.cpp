@@ -4,21 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
+#include "bent_body.h"
 
 namespace krok::test {
 namespace {
 
-class SkinMorphs : public CliTest {
+class SkinMorphs : public BentBody {
  protected:
-  // The body as it stands in frame 15 is the one target of its mesh.
   void SetUp() override {
-    put("in.bvh", capture(20));
-    tool("krok-import", {"in.bvh", "-o", "in.anim"});
-    tool("krok-body", {"in.anim", "--detail", "low", "-o", "in.model"});
-    tool("krok-skin", {"in.model", "in.anim", "--as", "pose", "--time", "15f", "-o", "bent.obj"});
-    tool("krok-skin", {"in.model", "in.anim", "--as", "pose", "--time", "15f", "-o", "bent.glb"});
-    tool("krok-morph", {"pack", "in.model", "bent.obj", "-o", "bent.exr"});
+    BentBody::SetUp();
     put("full.json", weights("[0, 1]"));
     put("rising.csv", "frame,time,bent\n0,0,0\n1,0.5,1\n");
   }
@@ -26,19 +20,6 @@ class SkinMorphs : public CliTest {
   static std::string weights(const std::string& keys, const std::string& target = "bent") {
     return R"({"schema": "krok.weights/1", "curves": [{"target": ")" + target + R"(", "keys": [)" +
            keys + "]}]}\n";
-  }
-
-  ToolRun tool(const std::string& name, const std::vector<std::string>& arguments,
-               int expected = 0) {
-    ToolOptions here;
-    here.folder = folder_.string();
-    const ToolRun run = run_tool(name, arguments, here);
-    EXPECT_EQ(run.exit_code, expected) << name << ' ' << run.err;
-    return run;
-  }
-
-  void expect_same(const std::string& a, const std::string& b) {
-    tool("krok-diff", {a, b, "--tolerance", "0.01mm", "--angle", "0.05deg"});
   }
 };
 
