@@ -28,6 +28,9 @@ inline std::atomic<long> allocations{0};
 void* operator new(std::size_t size) {
   return krok::test::counted(size == 0 ? 1 : size, alignof(std::max_align_t));
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return krok::test::counted(size == 0 ? 1 : size, alignof(std::max_align_t));
+}
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return krok::test::counted(size == 0 ? 1 : size, static_cast<std::size_t>(alignment));
 }
