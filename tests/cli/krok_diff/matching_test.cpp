@@ -233,7 +233,8 @@ TEST_F(KrokDiffMatching, AMotionIsHeldAgainstItsBvhAndItsGlb) {
   const auto bvh = diff({"walk.anim", "walk.bvh", "--joints", "0.1mm,0.1deg"});
   EXPECT_THAT(bvh.out, HasSubstr("600 frames compared"));
   EXPECT_THAT(bvh.out, Not(HasSubstr("frames/s in the first")));
-  for (const auto& measure : result_of({"walk.anim", "walk.bvh"})["measures"]) {
+  const auto result = result_of({"walk.anim", "walk.bvh"});
+  for (const auto& measure : result["measures"]) {
     // BVH holds no reference pose, so what stands there is made up.
     const std::string what = measure["what"];
     if (what == "positions" || what == "orientations") {
