@@ -3,50 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/joint_tracks.h"
 #include "formats/gltf/mesh_shape_internal.h"
+#include "math/vector_arrays.h"
 
 namespace krok::gltf {
 
 namespace {
-
-// Four vertices: whole registers of SIMD.
-constexpr std::size_t kTogether = 4;
-using Lanes = Eigen::Array<float, 3 * kTogether, 1>;
-
-struct Displaced {
-  Document::Bounds bounds;
-  bool finite = true;
-};
-
-// Turns vertices into displacements from `base` and gives the bounds of these, all in one go.
-Displaced subtract(std::span<const Vec3f> base, std::span<Vec3f> vertices) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Lanes least = Lanes::Constant(kInfinity), most = Lanes::Constant(-kInfinity);
-  Lanes zeros = Lanes::Zero();  // NaN where one was not finite
-  std::size_t v = 0;
-  for (; v + kTogether <= vertices.size(); v += kTogether) {
-    Eigen::Map<Lanes> values(vertices[v].data());
-    const Lanes moved = values - Eigen::Map<const Lanes>(base[v].data());
-    values = moved;
-    least = least.min(moved);
-    most = most.max(moved);
-    zeros += moved * 0.0f;
-  }
-  Displaced result{{least.reshaped(3, kTogether).rowwise().minCoeff(),
-                    most.reshaped(3, kTogether).rowwise().maxCoeff()},
-                   (zeros == 0.0f).all()};
-  for (; v < vertices.size(); ++v) {
-    vertices[v] -= base[v];
-    result.bounds.least = result.bounds.least.cwiseMin(vertices[v]);
-    result.bounds.most = result.bounds.most.cwiseMax(vertices[v]);
-    result.finite = result.finite && vertices[v].allFinite();
-  }
-  return result;
-}
 
 Error not_finite(int frame) {
   return Error("gltf-structure", fmt::format("a vertex of frame {} is not finite", frame));
@@ -95,7 +60,7 @@ class BakedClip {
   Status add_first_frame() {
     base_.positions.resize(model_.positions.size());
     base_.normals.resize(model_.normals.size());
-    motion_.shape_at(0, base_.positions, base_.normals);
+    motion_.source()(0, base_.positions, base_.normals);
     if (!all_finite(base_.positions) || !all_finite(base_.normals)) return not_finite(0);
     const auto attributes = add_shape(document_, model_, {base_.positions, base_.normals, {}});
     const auto mesh = document_.add_mesh(model_, attributes, mesh_name(options_));
@@ -135,10 +100,10 @@ class BakedClip {
   }
 
   Status prepare(int frame, ShapeRoom& shape) {
-    const Displaced positions = subtract(base_.positions, shape.positions);
-    const Displaced normals = subtract(base_.normals, shape.normals);
+    const VectorBounds positions = subtract(base_.positions, shape.positions);
+    const VectorBounds normals = subtract(base_.normals, shape.normals);
     if (!positions.finite || !normals.finite) return not_finite(frame);
-    bounds_[static_cast<std::size_t>(frame) - 1] = positions.bounds;
+    bounds_[static_cast<std::size_t>(frame) - 1] = {positions.least, positions.most};
     return {};
   }
 

@@ -1,4 +1,5 @@
 #include "formats/obj/obj_writer.h"
+#include "math/vector_arrays.h"
 
 #include <fmt/compile.h>
 #include <fmt/format.h>

@@ -6,6 +6,7 @@
 
 #include "formats/pc2/header_internal.h"
 #include "formats/pc2/pc2.h"
+#include "math/vector_arrays.h"
 
 namespace krok::pc2 {
 

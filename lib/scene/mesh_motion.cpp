@@ -1,10 +1,7 @@
 #include "scene/mesh_motion.h"
 
 #include <algorithm>
-#include <bit>
-#include <condition_variable>
-#include <cstdint>
-#include <mutex>
+#include <utility>
 
 #include "core/parallel.h"
 
@@ -12,97 +9,75 @@ namespace krok {
 
 namespace {
 
-// One thread asks the motion for a shape, one prepares the shape before it and one hands over that
-// before: more would wait.
-constexpr int kMostThreads = 3;
+// Who takes is one thread; what it takes is made by about as much work, so that with more threads
+// than these the others would wait.
+constexpr int kMostThreads = 8;
+
+std::size_t frame_bytes(const ShapeRange& range) {
+  return range.vertices * sizeof(Vec3f) * (range.normals ? 2 : 1);
+}
 
 // How many frames are handed over in one go: threads that wait for each other after little work
 // wait longer than they work.
 int frames_together(const ShapeRange& range) {
   constexpr std::size_t kBytes = std::size_t{1} << 20;
   constexpr std::size_t kMostFrames = 16;
-  const std::size_t frame = range.vertices * sizeof(Vec3f) * (range.normals ? 2 : 1);
-  return static_cast<int>(
-      std::clamp<std::size_t>(kBytes / std::max<std::size_t>(frame, 1), 1, kMostFrames));
+  return static_cast<int>(std::clamp<std::size_t>(
+      kBytes / std::max<std::size_t>(frame_bytes(range), 1), 1, kMostFrames));
 }
 
-// Lets threads pass one after the other, by number. Numbers are drawn in order, so that whoever
-// waits, waits for threads that are at work.
-class Turns {
- public:
-  // Holds the turn as long as it lives.
-  class Turn {
-   public:
-    Turn(Turns& turns, std::size_t number) : turns_(turns) {
-      std::unique_lock lock(turns_.mutex_);
-      turns_.passed_.wait(lock, [&] { return turns_.next_ == number; });
-    }
-    ~Turn() {
-      {
-        const std::lock_guard lock(turns_.mutex_);
-        ++turns_.next_;
-      }
-      turns_.passed_.notify_all();
-    }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
+// Frames of many vertices are held by few threads.
+int threads_for(const ShapeRange& range, int jobs) {
+  constexpr std::size_t kBytes = std::size_t{256} << 20;
+  const std::size_t each = 2 * std::max<std::size_t>(frame_bytes(range), 1);
+  const auto fit = static_cast<int>(std::clamp<std::size_t>(kBytes / each, 2, kMostThreads));
+  return std::min(thread_count(jobs), fit);
+}
 
-   private:
-    Turns& turns_;
-  };
-
- private:
-  std::mutex mutex_;
-  std::condition_variable passed_;
-  std::size_t next_ = 0;
+// What belongs to a slot of make_in_order().
+struct Slot {
+  ShapeSource source;
+  std::vector<ShapeRoom> rooms;
 };
 
 }  // namespace
 
-bool all_finite(std::span<const Vec3f> vectors) {
-  const float* values = vectors.empty() ? nullptr : vectors.front().data();
-  // The exponent of what is not finite is all ones: one more carries into the sign's place. Plain
-  // integers, so that a compiler takes many at a time.
-  std::uint32_t carried = 0;
-  for (std::size_t i = 0; i < 3 * vectors.size(); ++i) {
-    carried |= (std::bit_cast<std::uint32_t>(values[i]) & 0x7FFFFFFFu) + 0x00800000u;
-  }
-  return (carried & 0x80000000u) == 0;
+std::function<ShapeSource()> copies_of(ShapeSource source) {
+  return [source = std::move(source)] { return source; };
 }
 
 Status make_shapes(const MeshMotion& motion, const ShapeRange& range, int jobs,
                    const std::function<Status(int, ShapeRoom&)>& prepare,
                    const std::function<Status(int, const ShapeRoom&)>& take) {
   if (range.end <= range.begin) return {};
-  const int threads = std::min(thread_count(jobs), kMostThreads);
+  const int threads = threads_for(range, jobs);
   const int together = threads == 1 ? 1 : frames_together(range);
-  std::vector<std::vector<ShapeRoom>> rooms(slots_for(threads));
+  const int items = (range.end - range.begin + together - 1) / together;
+  std::vector<Slot> slots(std::min(slots_for(threads), static_cast<std::size_t>(items)));
+  for (Slot& slot : slots) {
+    slot.source = motion.source();
+    slot.rooms.resize(static_cast<std::size_t>(together));
+    for (ShapeRoom& room : slot.rooms) {
+      room.positions.resize(range.vertices);
+      room.normals.resize(range.normals ? range.vertices : 0);
+    }
+  }
   const auto for_each = [&](std::size_t item, std::size_t slot, const auto& work) -> Status {
     const int first = range.begin + static_cast<int>(item) * together;
     const int end = std::min(first + together, range.end);
     for (int frame = first; frame < end; ++frame) {
-      ShapeRoom& room = rooms[slot][static_cast<std::size_t>(frame - first)];
+      ShapeRoom& room = slots[slot].rooms[static_cast<std::size_t>(frame - first)];
       if (Status done = work(frame, room); !done) return done;
     }
     return {};
   };
-  Turns turns;
-  const auto ask = [&](int frame, ShapeRoom& room) -> Status {
-    room.positions.resize(range.vertices);
-    room.normals.resize(range.normals ? range.vertices : 0);
-    motion.shape_at(frame, room.positions, room.normals);
-    return {};
-  };
-  const auto items = (range.end - range.begin + together - 1) / together;
   return make_in_order(
       static_cast<std::size_t>(items), threads,
       [&](std::size_t item, std::size_t slot) {
-        rooms[slot].resize(static_cast<std::size_t>(together));
-        {
-          const Turns::Turn turn(turns, item);
-          (void)for_each(item, slot, ask).ok();
-        }
-        return for_each(item, slot, prepare);
+        return for_each(item, slot, [&](int frame, ShapeRoom& room) {
+          slots[slot].source(frame, room.positions, room.normals);
+          return prepare(frame, room);
+        });
       },
       [&](std::size_t item, std::size_t slot) { return for_each(item, slot, take); });
 }

@@ -21,20 +21,26 @@ struct MeshShape {
   std::span<const Vec4f> tangents;   // [vertices], or none
 };
 
+// Fills in the vertices of a frame, 0 <= frame < MeshMotion::frames: all positions, [vertices], and
+// the normals where their span is not empty. Gives the same numbers whenever it is asked for the
+// same frame. May own working memory: one thread at a time uses it.
+using ShapeSource =
+    std::function<void(int frame, std::span<Vec3f> positions, std::span<Vec3f> normals)>;
+
 // A motion as shapes that are made when they are asked for, so that a clip of any length takes the
 // memory of a few frames. Frame f is at f / rate seconds.
 struct MeshMotion {
   int frames = 0;
   double rate = 30.0;  // frames a second
 
-  // Fills in the vertices of a frame, 0 <= frame < frames: all positions, [vertices], and the
-  // normals where their span is not empty. Must give the same numbers whenever it is asked for the
-  // same frame. Frames are asked for in rising order, by some writers in two rounds; one at a time,
-  // but not always by the same thread.
-  std::function<void(int frame, std::span<Vec3f> positions, std::span<Vec3f> normals)> shape_at;
+  // One more source of the motion's shapes. Sources are used at once on several threads, each for
+  // some of the frames, in rising order, by some writers in two rounds. Is called by one thread
+  // after the other.
+  std::function<ShapeSource()> source;
 };
 
-bool all_finite(std::span<const Vec3f> vectors);
+// For MeshMotion::source: each a copy of this one.
+std::function<ShapeSource()> copies_of(ShapeSource source);
 
 // Room for the shape of a frame.
 struct ShapeRoom {
@@ -51,8 +57,8 @@ struct ShapeRange {
 // Goes through frames of a motion in the memory of a few, or of some megabytes: makes each shape,
 // lets `prepare` change it, hands it to `take`. `take` is called for one frame after the other, in
 // order. With `jobs` other than 1 (as in parallel_for) further frames are made and prepared
-// meanwhile, `prepare` of several at once. The first of them that is not ok() ends it; its Error is
-// returned, the same for any `jobs`.
+// meanwhile, several at once, each thread's by a source of its own. The first of `prepare` and
+// `take` that is not ok() ends it; its Error is returned, the same for any `jobs`.
 Status make_shapes(const MeshMotion& motion, const ShapeRange& range, int jobs,
                    const std::function<Status(int frame, ShapeRoom& shape)>& prepare,
                    const std::function<Status(int frame, const ShapeRoom& shape)>& take);

@@ -16,6 +16,7 @@
 #include <ctime>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -38,13 +39,9 @@ struct Scene {
   Clip clip = test::swinging_clip(test::human_skeleton(), kFrames, 60);
   Model model;
   SkinBinding binding;
-  SkinPose pose;
-  std::vector<Transform> joints;
 
   // Rings are added until there are about 10,000 vertices.
-  Scene() : model(mesh(clip.skeleton)), binding(model, SkinMethod::linear), pose(binding) {
-    joints.resize(clip.skeleton.names.size());
-  }
+  Scene() : model(mesh(clip.skeleton)), binding(model, SkinMethod::linear) {}
 
   static Model mesh(const Skeleton& skeleton) {
     int rings = 2;
@@ -56,13 +53,17 @@ struct Scene {
     MeshMotion motion;
     motion.frames = kFrames;
     motion.rate = clip.rate;
-    motion.shape_at = [this](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
-      clip.get_pose(frame, joints);
-      pose.set(joints);
-      SkinSurface in = skin_surface(model);
-      in.tangents = {};
-      if (normals.empty()) in.normals = {};
-      skin(binding, pose, in, {positions, normals, {}});
+    motion.source = [this]() -> ShapeSource {
+      return [this, pose = std::make_shared<SkinPose>(binding),
+              joints = std::vector<Transform>(clip.skeleton.names.size())](
+                 int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) mutable {
+        clip.get_pose(frame, joints);
+        pose->set(joints);
+        SkinSurface in = skin_surface(model);
+        in.tangents = {};
+        if (normals.empty()) in.normals = {};
+        skin(binding, *pose, in, {positions, normals, {}});
+      };
     };
     return motion;
   }
@@ -143,9 +144,10 @@ int main(int argc, char** argv) {
   Scene scene;
   const MeshMotion motion = scene.motion();
   std::printf("%d vertices, %d frames\n", scene.model.vertex_count(), motion.frames);
+  const ShapeSource source = motion.source();
   std::vector<Vec3f> positions(scene.model.positions.size()), normals(positions.size());
   const auto begin = std::chrono::steady_clock::now();
-  for (int f = 0; f < kFrames; ++f) motion.shape_at(f, positions, normals);
+  for (int f = 0; f < kFrames; ++f) source(f, positions, normals);
   std::printf("skinning alone: %.3f seconds\n", seconds_since(begin));
   const auto glb = [&](int jobs) {
     return [&, jobs](OutputFile& file) {

@@ -14,20 +14,19 @@ namespace krok::morph {
 
 namespace {
 
-MeshMotion motion_of(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
-                     int jobs) {
+MeshMotion motion_of(const Model& model, const MorphSet& morphs, const MorphWeights& weights) {
   MeshMotion motion;
   motion.frames = weights.frame_count();
   motion.rate = weights.rate;
-  motion.shape_at = [&model, &morphs, &weights, jobs](int frame, std::span<Vec3f> positions,
-                                                      std::span<Vec3f> normals) {
-    const std::size_t targets = morphs.names.size();
-    const auto at =
-        std::span(weights.values).subspan(static_cast<std::size_t>(frame) * targets, targets);
-    const std::span<const Vec3f> base =
-        normals.empty() ? std::span<const Vec3f>() : std::span(model.normals);
-    apply_morphs(morphs, at, {model.positions, base}, {positions, normals}, jobs);
-  };
+  motion.source = copies_of(
+      [&model, &morphs, &weights](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
+        const std::size_t targets = morphs.names.size();
+        const auto at =
+            std::span(weights.values).subspan(static_cast<std::size_t>(frame) * targets, targets);
+        const std::span<const Vec3f> base =
+            normals.empty() ? std::span<const Vec3f>() : std::span(model.normals);
+        apply_morphs(morphs, at, {model.positions, base}, {positions, normals}, 1);
+      });
   return motion;
 }
 
@@ -76,11 +75,10 @@ Result<int> bake(const Options& options, ToolContext& context) {
   if (!weights) return weights.error();
 
   OutputSet outputs(context);
-  const Status added =
-      options.as == As::targets
-          ? add_targets(base->model, morphs, *weights, *format, outputs, context)
-          : add_baked(base->model, motion_of(base->model, morphs, *weights, context.jobs), *format,
-                      outputs, context);
+  const Status added = options.as == As::targets
+                           ? add_targets(base->model, morphs, *weights, *format, outputs, context)
+                           : add_baked(base->model, motion_of(base->model, morphs, *weights),
+                                       *format, outputs, context);
   if (!added) return added.error();
   if (Status done = outputs.finish(); !done) return done.error();
   report(*weights, context);

@@ -93,9 +93,9 @@ Status add_motion(KeyShapes& keys, int frames, MotionFormat format, As as, Outpu
   MeshMotion motion;
   motion.frames = frames;
   motion.rate = keys.rate;
-  motion.shape_at = [&](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
-    shape_at(mesh, keys.join, keys.tension, frame / keys.rate, {positions, normals}, context.jobs);
-  };
+  motion.source = copies_of([&](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
+    shape_at(mesh, keys.join, keys.tension, frame / keys.rate, {positions, normals}, 1);
+  });
   return add_baked(keys.base.model, motion, format, outputs, context);
 }
 

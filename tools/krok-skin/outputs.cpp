@@ -155,12 +155,14 @@ Status write_clip(const Subject& subject, const SkinBinding& binding, pc2::Up up
   if (!cache) {
     if (Status fits = check_bakeable(subject, context); !fits) return fits;
   }
-  PosedMesh mesh(subject, binding, 1);
   MeshMotion motion;
   motion.frames = subject.clip.frame_count();
   motion.rate = subject.clip.rate;
-  motion.shape_at = [&](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
-    mesh.at_frame(frame, {positions, normals, {}});
+  motion.source = [&]() -> ShapeSource {
+    return [mesh = std::make_shared<PosedMesh>(subject, binding, 1)](
+               int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
+      mesh->at_frame(frame, {positions, normals, {}});
+    };
   };
   return write_output(context, context.output, [&](OutputFile& file) {
     if (cache) {

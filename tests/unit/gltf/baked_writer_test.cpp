@@ -66,11 +66,12 @@ TEST(BakedWriter, EachTargetHasItsOwnBounds) {
 TEST(BakedWriter, BoundsOfAnyLengthFit) {
   const Model model = odd_model();
   const float longest = -1.17549435e-38f;
-  MeshMotion motion{3, 30, [&](int frame, auto positions, auto normals) {
-                      std::ranges::copy(model.normals, normals.begin());
-                      std::ranges::fill(positions, Vec3f::Zero());
-                      if (frame == 1) positions[1] = Vec3f(longest, -1.23456789e-30f, 3e38f);
-                    }};
+  const ShapeSource source = [&](int frame, auto positions, auto normals) {
+    std::ranges::copy(model.normals, normals.begin());
+    std::ranges::fill(positions, Vec3f::Zero());
+    if (frame == 1) positions[1] = Vec3f(longest, -1.23456789e-30f, 3e38f);
+  };
+  const MeshMotion motion{3, 30, copies_of(source)};
   const auto glb = baked(model, motion);
   const auto& targets = glb.json["meshes"][0]["primitives"][0]["targets"];
   const auto& first = glb.json["accessors"][targets[0]["POSITION"].get<int>()];
@@ -83,26 +84,24 @@ TEST(BakedWriter, BoundsOfAnyLengthFit) {
 TEST(BakedWriter, WritesAFrameBeforeItAsksForTheOneAfterTheNext) {
   const Model model = test::tube_model(test::human_skeleton(), 1, 40, 40);
   const std::uint64_t frame_bytes = 24 * model.positions.size();
-  const MeshMotion shapes = test::wobble(model, 30);
-  for (const int jobs : {1, 2}) {
-    std::vector<int> asked;
-    (void)test::bytes_of([&](OutputFile& file) {
-      MeshMotion motion = shapes;
-      motion.shape_at = [&](int frame, auto positions, auto normals) {
-        const auto before = static_cast<std::uint64_t>(frame);
-        // Frame 0 is in the file's head; the size is read on the thread that writes.
-        if (jobs == 1 && frame > 1) {
-          EXPECT_GE(file.size(), before * frame_bytes);
-        }
-        asked.push_back(frame);
-        shapes.shape_at(frame, positions, normals);
-      };
-      return gltf::write_baked(model, motion, {}, file, nullptr, jobs);
+  MeshMotion motion = test::wobble(model, 30);
+  const ShapeSource wobble = motion.source();
+  std::vector<int> asked;
+  (void)test::bytes_of([&](OutputFile& file) {
+    motion.source = copies_of([&](int frame, auto positions, auto normals) {
+      const auto before = static_cast<std::uint64_t>(frame);
+      // Frame 0 is in the file's head.
+      if (frame > 1) {
+        EXPECT_GE(file.size(), before * frame_bytes);
+      }
+      asked.push_back(frame);
+      wobble(frame, positions, normals);
     });
-    std::vector<int> in_order(30);
-    for (int f = 0; f < 30; ++f) in_order[static_cast<std::size_t>(f)] = f;
-    EXPECT_EQ(asked, in_order);
-  }
+    return gltf::write_baked(model, motion, {}, file, nullptr, 1);
+  });
+  std::vector<int> in_order(30);
+  for (int f = 0; f < 30; ++f) in_order[static_cast<std::size_t>(f)] = f;
+  EXPECT_EQ(asked, in_order);
 }
 
 TEST(BakedWriter, ThreadsDoNotChangeTheBytes) {
@@ -161,11 +160,12 @@ TEST(BakedWriter, AVertexThatIsNotFiniteIsToldByItsFrame) {
   for (const int bad : {0, 3}) {
     for (const bool in_normals : {false, true}) {
       MeshMotion motion = test::wobble(model, 5);
-      motion.shape_at = [&, shapes = motion.shape_at](int frame, auto positions, auto normals) {
-        shapes(frame, positions, normals);
+      const auto wobble = motion.source();
+      motion.source = copies_of([&](int frame, auto positions, auto normals) {
+        wobble(frame, positions, normals);
         auto& vector = in_normals ? normals[2] : positions[positions.size() - 1];
         if (frame == bad) vector.y() = std::numeric_limits<float>::quiet_NaN();
-      };
+      });
       Status status;
       test::bytes_of([&](OutputFile& file) { return gltf::write_baked(model, motion, {}, file); },
                      status);
@@ -179,10 +179,11 @@ TEST(BakedWriter, AVertexThatIsNotFiniteIsToldByItsFrame) {
 TEST(BakedWriter, MoreThanGltfCanTellIsRefusedBeforeItIsMade) {
   const Model model = odd_model();
   // Weights for each pair of frames: 40,000 of them take 6.4 GB.
-  MeshMotion motion{40'000, 30, [&](int frame, auto positions, auto) {
-                      EXPECT_EQ(frame, 0);
-                      std::ranges::fill(positions, Vec3f::Zero());
-                    }};
+  const ShapeSource source = [&](int frame, auto positions, auto) {
+    EXPECT_EQ(frame, 0);
+    std::ranges::fill(positions, Vec3f::Zero());
+  };
+  const MeshMotion motion{40'000, 30, copies_of(source)};
   Model bare = model;
   bare.normals.clear();
   EXPECT_EQ(

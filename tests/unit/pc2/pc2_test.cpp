@@ -30,11 +30,11 @@ Model pair() {
   return model;
 }
 MeshMotion motion_of_pair(int frames) {
-  return {frames, 30, [](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
+  return {frames, 30, copies_of([](int frame, auto positions, auto normals) {
             EXPECT_TRUE(normals.empty());
             positions[0] = Vec3f(1, 2, 3);
             positions[1] = Vec3f(0, 0, static_cast<float>(frame));
-          }};
+          })};
 }
 
 std::string written(const MeshMotion& motion, const pc2::WriteOptions& options = {}) {
@@ -119,7 +119,7 @@ TEST(Pc2, GivesBackTheMotionToTheBitWithAnyThreads) {
   ASSERT_EQ(cache->points(), model.vertex_count());
   std::vector<Vec3f> expected(model.positions.size()), positions(expected.size());
   for (int f = 0; f < 20; ++f) {
-    motion.shape_at(f, expected, {});
+    motion.source()(f, expected, {});
     ASSERT_TRUE(cache->get(f, positions).ok());
     EXPECT_EQ(positions, expected) << f;
   }
@@ -159,10 +159,10 @@ TEST(Pc2, RefusesOptionsThatTheFileCannotHold) {
 
 TEST(Pc2, WritesNoVertexThatIsNotFinite) {
   MeshMotion motion = motion_of_pair(4);
-  motion.shape_at = [](int frame, std::span<Vec3f> positions, std::span<Vec3f>) {
+  motion.source = copies_of([](int frame, auto positions, auto) {
     std::ranges::fill(positions, Vec3f::Zero());
     if (frame == 2) positions[1].z() = kNan;
-  };
+  });
   Status status;
   test::bytes_of([&](OutputFile& file) { return pc2::write(pair(), motion, {}, file); }, status);
   ASSERT_FALSE(status.ok());

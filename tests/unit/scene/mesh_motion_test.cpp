@@ -1,5 +1,5 @@
 // If these fail, files of meshes in motion hold frames in another order, or other frames than the
-// motion has, or a vertex that is no number gets into one.
+// motion has.
 
 #include "scene/mesh_motion.h"
 
@@ -7,7 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <limits>
+#include <latch>
+#include <memory>
 #include <stdexcept>
 
 namespace krok {
@@ -16,16 +17,18 @@ namespace {
 using testing::ElementsAre;
 
 // Vertex v of frame f is at (f, v, 0), with a normal of (0, f, v).
+void number(int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
+  const auto f = static_cast<float>(frame);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    positions[v] = Vec3f(f, static_cast<float>(v), 0);
+  }
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    normals[v] = Vec3f(0, f, static_cast<float>(v));
+  }
+}
+
 MeshMotion numbered(int frames) {
-  return {frames, 30, [](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
-            const auto f = static_cast<float>(frame);
-            for (std::size_t v = 0; v < positions.size(); ++v) {
-              positions[v] = Vec3f(f, static_cast<float>(v), 0);
-            }
-            for (std::size_t v = 0; v < normals.size(); ++v) {
-              normals[v] = Vec3f(0, f, static_cast<float>(v));
-            }
-          }};
+  return {frames, 30, copies_of(number)};
 }
 
 Status nothing(int, ShapeRoom&) {
@@ -59,23 +62,57 @@ TEST(MakeShapes, HandsOverEachFrameOnceAndInOrder) {
   }
 }
 
-TEST(MakeShapes, AsksForOneFrameAtATimeInOrder) {
+// Sources have working memory of their own and some, as those that read files, cannot go back.
+TEST(MakeShapes, AsksASourceOnOneThreadAtATimeForFramesThatRise) {
   for (const int jobs : {1, 2, 8}) {
+    std::vector<std::atomic<int>> asked(200);
     MeshMotion motion = numbered(200);
-    std::atomic<int> inside = 0;
-    int next = 0;
-    motion.shape_at = [&, shapes = motion.shape_at](int frame, auto positions, auto normals) {
-      EXPECT_EQ(++inside, 1);
-      EXPECT_EQ(frame, next++);
-      EXPECT_TRUE(normals.empty());
-      shapes(frame, positions, normals);
-      --inside;
+    motion.source = [&asked]() -> ShapeSource {
+      struct Use {
+        std::atomic<int> inside = 0;
+        int last = -1;
+      };
+      return [&asked, use = std::make_shared<Use>()](int frame, auto positions, auto normals) {
+        EXPECT_EQ(++use->inside, 1);
+        EXPECT_GT(frame, use->last);
+        EXPECT_TRUE(normals.empty());
+        use->last = frame;
+        ++asked[static_cast<std::size_t>(frame)];
+        number(frame, positions, normals);
+        --use->inside;
+      };
     };
     const Status done = make_shapes(motion, {0, 200, 3, false}, jobs, nothing,
                                     [](int, const ShapeRoom&) { return Status(); });
     EXPECT_TRUE(done.ok());
-    EXPECT_EQ(next, 200);
+    for (const auto& times : asked) EXPECT_EQ(times, 1);
   }
+}
+
+// If it were not so, two threads would take as long as one: all frames would wait for one source.
+TEST(MakeShapes, MakesShapesOnSeveralThreadsAtOnce) {
+  // Frames of more than a megabyte are handed over one by one.
+  constexpr std::size_t kVertices = 100'000;
+  std::latch both(2);
+  MeshMotion motion = numbered(2);
+  motion.source = copies_of([&both](int, auto, auto) { both.arrive_and_wait(); });
+  EXPECT_TRUE(make_shapes(motion, {0, 2, kVertices, false}, 2, nothing, [](int, const ShapeRoom&) {
+                return Status();
+              }).ok());
+}
+
+TEST(MakeShapes, HoldsFewFramesOfManyVertices) {
+  std::atomic<int> sources = 0;
+  MeshMotion motion = numbered(100);
+  motion.source = [&]() -> ShapeSource {
+    ++sources;
+    return [](int, auto, auto) {};
+  };
+  constexpr std::size_t kVertices = 4'000'000;  // 48 MB a frame
+  const Status done = make_shapes(motion, {0, 8, kVertices, false}, 64, nothing,
+                                  [](int, const ShapeRoom&) { return Status(); });
+  EXPECT_TRUE(done.ok());
+  EXPECT_EQ(sources, 4);
 }
 
 TEST(MakeShapes, GivesTheFirstErrorWhateverTheThreads) {
@@ -95,13 +132,13 @@ TEST(MakeShapes, GivesTheFirstErrorWhateverTheThreads) {
   }
 }
 
-// A motion that throws must not leave others waiting for their turn.
+// A motion that throws must not leave other threads waiting.
 TEST(MakeShapes, PassesOnWhatIsThrown) {
   for (const int jobs : {1, 3}) {
     MeshMotion motion = numbered(30);
-    motion.shape_at = [](int frame, auto, auto) {
+    motion.source = copies_of([](int frame, auto, auto) {
       if (frame == 5) throw std::runtime_error("five");
-    };
+    });
     EXPECT_THROW((void)make_shapes(motion, {0, 30, 2, false}, jobs, nothing,
                                    [](int, const ShapeRoom&) { return Status(); })
                      .ok(),
@@ -110,26 +147,10 @@ TEST(MakeShapes, PassesOnWhatIsThrown) {
 }
 
 TEST(MakeShapes, OfNoFramesAsksForNothing) {
-  MeshMotion motion;  // shape_at is empty: calling it would throw
+  MeshMotion motion;  // source is empty: calling it would throw
   const auto refuse = [](int, const ShapeRoom&) { return Status(Error("no", "")); };
   EXPECT_TRUE(make_shapes(motion, {0, 0, 3, true}, 2, nothing, refuse).ok());
   EXPECT_TRUE(make_shapes(motion, {4, 2, 3, true}, 2, nothing, refuse).ok());
-}
-
-TEST(AllFinite, FindsOneAmongMany) {
-  std::vector<Vec3f> vectors(37, Vec3f(3.4e38f, -3.4e38f, 1e-45f));
-  EXPECT_TRUE(all_finite(vectors));
-  EXPECT_TRUE(all_finite({}));
-  for (std::size_t v = 0; v < vectors.size(); ++v) {
-    for (const float bad :
-         {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
-          std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::quiet_NaN()}) {
-      const Vec3f was = vectors[v];
-      vectors[v][static_cast<int>(v % 3)] = bad;
-      EXPECT_FALSE(all_finite(vectors)) << v << " " << bad;
-      vectors[v] = was;
-    }
-  }
 }
 
 }  // namespace

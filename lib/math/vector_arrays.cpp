@@ -1,0 +1,148 @@
+#include "math/vector_arrays_internal.h"
+
+// Nothing is compiled that KROK_BEST_VERSION does not choose.
+#include <hwy/detect_targets.h>
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "math/vector_arrays.cpp"
+#include <hwy/foreach_target.h>
+// The order matters: foreach_target.h sets up what highway.h reads.
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+#include "core/simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace krok::vector_arrays_detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::CappedTag<float, 16>;
+using Bits = hn::RebindToUnsigned<Lanes>;
+using V = hn::Vec<Lanes>;
+using VBits = hn::Vec<Bits>;
+// Three registers hold as many whole vectors as one holds numbers: x, y and z come round again.
+constexpr std::size_t kLanes = hn::MaxLanes(Lanes());
+
+// The exponent of what is not finite is all ones: one more carries into the sign's place.
+HWY_INLINE VBits carry(V value) {
+  const Bits d;
+  const VBits size = hn::And(hn::BitCast(d, value), hn::Set(d, 0x7FFFFFFFu));
+  return hn::Add(size, hn::Set(d, 0x00800000u));
+}
+
+HWY_INLINE bool none_carried(VBits carried) {
+  const Bits d;
+  return hn::AllFalse(d, hn::Ne(hn::And(carried, hn::Set(d, 0x80000000u)), hn::Zero(d)));
+}
+
+bool all_finite_wide(const Vec3f* vectors, std::size_t count) {
+  const Lanes d;
+  const Bits bits;
+  VBits a = hn::Zero(bits), b = a, c = a;
+  for (std::size_t v = 0; v < count; v += kLanes) {
+    const float* from = vectors[v].data();
+    a = hn::Or(a, carry(hn::LoadU(d, from)));
+    b = hn::Or(b, carry(hn::LoadU(d, from + kLanes)));
+    c = hn::Or(c, carry(hn::LoadU(d, from + 2 * kLanes)));
+  }
+  return none_carried(hn::Or(a, hn::Or(b, c)));
+}
+
+struct Register {
+  V least, most;
+  VBits carried;
+};
+
+HWY_INLINE void subtract(const float* base, float* to, Register& sum) {
+  const Lanes d;
+  const V moved = hn::Sub(hn::LoadU(d, to), hn::LoadU(d, base));
+  hn::StoreU(moved, d, to);
+  sum.least = hn::Min(sum.least, moved);
+  sum.most = hn::Max(sum.most, moved);
+  sum.carried = hn::Or(sum.carried, carry(moved));
+}
+
+VectorBounds subtract_wide(const Vec3f* base, Vec3f* vectors, std::size_t count) {
+  const Lanes d;
+  VectorBounds bounds = no_bounds();
+  const Register none = {hn::Set(d, bounds.least.x()), hn::Set(d, bounds.most.x()),
+                         hn::Zero(Bits())};
+  Register a = none, b = none, c = none;
+  for (std::size_t v = 0; v < count; v += kLanes) {
+    const float* from = base[v].data();
+    float* to = vectors[v].data();
+    subtract(from, to, a);
+    subtract(from + kLanes, to + kLanes, b);
+    subtract(from + 2 * kLanes, to + 2 * kLanes, c);
+  }
+  HWY_ALIGN float least[3 * kLanes], most[3 * kLanes];
+  std::size_t at = 0;
+  for (const Register& r : {a, b, c}) {
+    hn::Store(r.least, d, least + at);
+    hn::Store(r.most, d, most + at);
+    at += kLanes;
+  }
+  for (std::size_t i = 0; i < 3 * kLanes; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i % 3);
+    bounds.least[axis] = std::min(bounds.least[axis], least[i]);
+    bounds.most[axis] = std::max(bounds.most[axis], most[i]);
+  }
+  bounds.finite = none_carried(hn::Or(a.carried, hn::Or(b.carried, c.carried)));
+  return bounds;
+}
+
+std::size_t lanes() {
+  return kLanes;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace krok::vector_arrays_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace krok {
+
+namespace vector_arrays_detail {
+
+// How many of them the wide versions take.
+std::size_t whole(std::size_t count) {
+  const auto lanes_of_best = KROK_BEST_VERSION(lanes);
+  return count - count % lanes_of_best();
+}
+
+bool all_finite_best(std::span<const Vec3f> vectors) {
+  const std::size_t wide = whole(vectors.size());
+  const auto best = KROK_BEST_VERSION(all_finite_wide);
+  return best(vectors.data(), wide) && all_finite(vectors.subspan(wide));
+}
+
+VectorBounds subtract_best(std::span<const Vec3f> base, std::span<Vec3f> vectors) {
+  const std::size_t wide = whole(vectors.size());
+  const auto best = KROK_BEST_VERSION(subtract_wide);
+  VectorBounds bounds = best(base.data(), vectors.data(), wide);
+  subtract(base.subspan(wide), vectors.subspan(wide), bounds);
+  // Of 0 and -0 either may be the least: which one depends on the order.
+  bounds.least.array() += 0.0f;
+  bounds.most.array() += 0.0f;
+  return bounds;
+}
+
+}  // namespace vector_arrays_detail
+
+bool all_finite(std::span<const Vec3f> vectors) {
+  return vector_arrays_detail::all_finite_best(vectors);
+}
+
+VectorBounds subtract(std::span<const Vec3f> base, std::span<Vec3f> vectors) {
+  return vector_arrays_detail::subtract_best(base, vectors);
+}
+
+}  // namespace krok
+
+#endif  // HWY_ONCE
