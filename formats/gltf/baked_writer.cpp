@@ -8,10 +8,25 @@
 #include "formats/gltf/joint_tracks.h"
 #include "formats/gltf/mesh_shape_internal.h"
 #include "math/vector_arrays.h"
+#include "scene/tangents.h"
 
 namespace krok::gltf {
 
 namespace {
+
+// Displacements of tangents have three numbers, for the fourth does not change. They take the place
+// of the tangents that they are made of, one behind the other.
+void subtract_and_pack(std::span<const Vec4f> base, std::span<Vec4f> tangents) {
+  float* to = tangents.empty() ? nullptr : tangents.front().data();
+  for (std::size_t v = 0; v < tangents.size(); ++v, to += 3) {
+    const Vec3f moved = tangents[v].head<3>() - base[v].head<3>();
+    std::copy_n(moved.data(), 3, to);
+  }
+}
+
+std::span<const std::byte> packed_bytes(std::span<const Vec4f> tangents) {
+  return std::as_bytes(tangents).first(tangents.size() * 3 * sizeof(float));
+}
 
 Error not_finite(int frame) {
   return Error("gltf-structure", fmt::format("a vertex of frame {} is not finite", frame));
@@ -46,8 +61,10 @@ class BakedClip {
     if (twice) known = bounds_;
     if (Status begun = document_.begin(file, known); !begun) return begun;
     const Status written = go_through([&](const ShapeRoom& shape) {
-      const Status done = document_.append(std::as_bytes(std::span(shape.positions)));
-      return done ? document_.append(std::as_bytes(std::span(shape.normals))) : done;
+      Status done = document_.append(std::as_bytes(std::span(shape.positions)));
+      if (done) done = document_.append(std::as_bytes(std::span(shape.normals)));
+      if (done) done = document_.append(packed_bytes(shape.tangents));
+      return done;
     });
     if (!written) return written;
     if (Status done = append_weights(); !done) return done;
@@ -57,12 +74,20 @@ class BakedClip {
  private:
   std::size_t targets() const { return bounds_.size(); }
 
+  bool with_tangents() const {
+    return motion_.tangents && needs_tangents(model_, options_.materials);
+  }
+
   Status add_first_frame() {
     base_.positions.resize(model_.positions.size());
     base_.normals.resize(model_.normals.size());
-    motion_.source()(0, base_.positions, base_.normals);
-    if (!all_finite(base_.positions) || !all_finite(base_.normals)) return not_finite(0);
-    const auto attributes = add_shape(document_, model_, {base_.positions, base_.normals, {}});
+    base_.tangents.resize(with_tangents() ? model_.positions.size() : 0);
+    motion_.source()(0, base_.place());
+    if (!all_finite(base_.positions) || !all_finite(base_.normals) || !all_finite(base_.tangents)) {
+      return not_finite(0);
+    }
+    const auto attributes =
+        add_shape(document_, model_, {base_.positions, base_.normals, base_.tangents});
     const auto mesh = document_.add_mesh(model_, attributes, mesh_name(options_));
     if (!mesh) return mesh.error();
     mesh_ = *mesh;
@@ -80,6 +105,10 @@ class BakedClip {
         target["NORMAL"] = document_.promise_floats(base_.normals.size(), TINYGLTF_TYPE_VEC3,
                                                     Document::Use::vertices);
       }
+      if (!base_.tangents.empty()) {
+        target["TANGENT"] = document_.promise_floats(base_.tangents.size(), TINYGLTF_TYPE_VEC3,
+                                                     Document::Use::vertices);
+      }
       names.push_back(fmt::format("frame_{}", names.size() + 1));
     }
     document_.set_targets(mesh_, morph, names);
@@ -90,7 +119,8 @@ class BakedClip {
 
   // Makes all targets and their bounds.
   Status go_through(const std::function<Status(const ShapeRoom&)>& take) {
-    const ShapeRange range{1, motion_.frames, base_.positions.size(), !base_.normals.empty()};
+    const ShapeRange range{1, motion_.frames, base_.positions.size(), !base_.normals.empty(),
+                           !base_.tangents.empty()};
     return make_shapes(
         motion_, range, jobs_, [&](int frame, ShapeRoom& shape) { return prepare(frame, shape); },
         [&](int, const ShapeRoom& shape) {
@@ -102,7 +132,9 @@ class BakedClip {
   Status prepare(int frame, ShapeRoom& shape) {
     const VectorBounds positions = subtract(base_.positions, shape.positions);
     const VectorBounds normals = subtract(base_.normals, shape.normals);
-    if (!positions.finite || !normals.finite) return not_finite(frame);
+    const bool tangents_finite = all_finite(shape.tangents);
+    if (!positions.finite || !normals.finite || !tangents_finite) return not_finite(frame);
+    subtract_and_pack(base_.tangents, shape.tangents);
     bounds_[static_cast<std::size_t>(frame) - 1] = {positions.least, positions.most};
     return {};
   }
@@ -132,8 +164,10 @@ class BakedClip {
 
 }  // namespace
 
-std::uint64_t baked_bytes(const Model& model, std::int64_t frames) {
-  const std::uint64_t vertex = model.normals.empty() ? 12 : 24;
+std::uint64_t baked_bytes(const Model& model, std::int64_t frames,
+                          std::span<const Material> materials) {
+  const std::uint64_t vertex =
+      (model.normals.empty() ? 12 : 24) + (needs_tangents(model, materials) ? 12 : 0);
   const auto count = static_cast<std::uint64_t>(std::max<std::int64_t>(frames, 1));
   return count * model.positions.size() * vertex + count * (count - 1) * sizeof(float);
 }

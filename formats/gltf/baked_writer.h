@@ -28,8 +28,10 @@ namespace krok::gltf {
 Status write_baked(const Model& model, const MeshMotion& motion, const WriteOptions& options,
                    OutputFile& file, Progress* progress = nullptr, int jobs = 1);
 
-// What a baked motion takes, to be judged before it is made: bytes of vertices and weights.
-std::uint64_t baked_bytes(const Model& model, std::int64_t frames);
+// What a baked motion takes, to be judged before it is made: bytes of vertices and weights. With
+// tangents where `materials` need them.
+std::uint64_t baked_bytes(const Model& model, std::int64_t frames,
+                          std::span<const Material> materials = {});
 
 // The most bytes of data that write_baked and its neighbours put into a file (code gltf-too-large):
 // GLB tells lengths in 32 bits, and some room is left for the JSON.

@@ -50,12 +50,8 @@ void add_influences(Document& document, const Model& model,
 // Tangents that a normal texture needs and the mesh has not.
 std::vector<Vec4f> missing_tangents(const Model& model, const MeshShape& shape,
                                     const WriteOptions& options) {
-  const auto needs = [&](const Model::Part& part) {
-    const Material* const material = find_material(options.materials, part.material);
-    return material != nullptr && material->normal_texture;
-  };
-  if (!shape.tangents.empty() || shape.normals.empty() || model.texture_coordinates.empty() ||
-      !std::ranges::any_of(model.parts, needs)) {
+  if (!shape.tangents.empty() || shape.normals.empty() ||
+      !needs_tangents(model, options.materials)) {
     return {};
   }
   return make_tangents(shape.positions, shape.normals, model.texture_coordinates, model.triangles);

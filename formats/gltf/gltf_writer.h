@@ -29,8 +29,8 @@ struct WriteOptions {
   std::string name = "krok";  // of the mesh's node and of the animation
   // Of the model's parts, by name, with the pictures' bytes; parts of other materials are light
   // grey. They and what they hold must live until the file is written. Textures need texture
-  // coordinates, normal textures tangents too, which are made where the model has none; baked clips
-  // have neither tangents nor normal textures.
+  // coordinates, normal textures tangents too, which are made where the model has none; in baked
+  // clips where the motion has none, normal textures are left out.
   std::span<const Material> materials{};
   // Become nodes under their joints, named as "left_eye"; by write_rig alone.
   std::span<const Character::Eye> eyes{};

@@ -40,12 +40,12 @@ HWY_INLINE bool none_carried(VBits carried) {
   return hn::AllFalse(d, hn::Ne(hn::And(carried, hn::Set(d, 0x80000000u)), hn::Zero(d)));
 }
 
-bool all_finite_wide(const Vec3f* vectors, std::size_t count) {
+bool all_finite_wide(const float* numbers, std::size_t count) {
   const Lanes d;
   const Bits bits;
   VBits a = hn::Zero(bits), b = a, c = a;
-  for (std::size_t v = 0; v < count; v += kLanes) {
-    const float* from = vectors[v].data();
+  for (std::size_t i = 0; i < count; i += 3 * kLanes) {
+    const float* from = numbers + i;
     a = hn::Or(a, carry(hn::LoadU(d, from)));
     b = hn::Or(b, carry(hn::LoadU(d, from + kLanes)));
     c = hn::Or(c, carry(hn::LoadU(d, from + 2 * kLanes)));
@@ -110,20 +110,16 @@ namespace krok {
 
 namespace vector_arrays_detail {
 
-// How many of them the wide versions take.
-std::size_t whole(std::size_t count) {
+bool all_finite_best(std::span<const float> numbers) {
   const auto lanes_of_best = KROK_BEST_VERSION(lanes);
-  return count - count % lanes_of_best();
-}
-
-bool all_finite_best(std::span<const Vec3f> vectors) {
-  const std::size_t wide = whole(vectors.size());
+  const std::size_t wide = numbers.size() - numbers.size() % (3 * lanes_of_best());
   const auto best = KROK_BEST_VERSION(all_finite_wide);
-  return best(vectors.data(), wide) && all_finite(vectors.subspan(wide));
+  return best(numbers.data(), wide) && all_finite(numbers.subspan(wide));
 }
 
 VectorBounds subtract_best(std::span<const Vec3f> base, std::span<Vec3f> vectors) {
-  const std::size_t wide = whole(vectors.size());
+  const auto lanes_of_best = KROK_BEST_VERSION(lanes);
+  const std::size_t wide = vectors.size() - vectors.size() % lanes_of_best();
   const auto best = KROK_BEST_VERSION(subtract_wide);
   VectorBounds bounds = best(base.data(), vectors.data(), wide);
   subtract(base.subspan(wide), vectors.subspan(wide), bounds);
@@ -136,7 +132,13 @@ VectorBounds subtract_best(std::span<const Vec3f> base, std::span<Vec3f> vectors
 }  // namespace vector_arrays_detail
 
 bool all_finite(std::span<const Vec3f> vectors) {
-  return vector_arrays_detail::all_finite_best(vectors);
+  if (vectors.empty()) return true;
+  return vector_arrays_detail::all_finite_best({vectors.front().data(), 3 * vectors.size()});
+}
+
+bool all_finite(std::span<const Vec4f> vectors) {
+  if (vectors.empty()) return true;
+  return vector_arrays_detail::all_finite_best({vectors.front().data(), 4 * vectors.size()});
 }
 
 VectorBounds subtract(std::span<const Vec3f> base, std::span<Vec3f> vectors) {

@@ -11,6 +11,7 @@ namespace krok {
 
 // True where there are none.
 bool all_finite(std::span<const Vec3f> vectors);
+bool all_finite(std::span<const Vec4f> vectors);
 
 // The box around vectors, and whether all of them are finite: the box means nothing otherwise.
 struct VectorBounds {

@@ -6,7 +6,7 @@
 
 namespace krok::vector_arrays_detail {
 
-bool all_finite(std::span<const Vec3f> vectors);
+bool all_finite(std::span<const float> numbers);
 
 // Goes on with `bounds`.
 void subtract(std::span<const Vec3f> base, std::span<Vec3f> vectors, VectorBounds& bounds);

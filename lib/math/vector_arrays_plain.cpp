@@ -1,14 +1,13 @@
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "math/vector_arrays_internal.h"
 
 namespace krok::vector_arrays_detail {
 
-bool all_finite(std::span<const Vec3f> vectors) {
-  for (const Vec3f& vector : vectors) {
-    if (!vector.allFinite()) return false;
-  }
-  return true;
+bool all_finite(std::span<const float> numbers) {
+  return std::ranges::all_of(numbers, [](float number) { return std::isfinite(number); });
 }
 
 void subtract(std::span<const Vec3f> base, std::span<Vec3f> vectors, VectorBounds& bounds) {

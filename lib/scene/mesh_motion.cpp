@@ -14,7 +14,8 @@ namespace {
 constexpr int kMostThreads = 8;
 
 std::size_t frame_bytes(const ShapeRange& range) {
-  return range.vertices * sizeof(Vec3f) * (range.normals ? 2 : 1);
+  return range.vertices *
+         (sizeof(Vec3f) * (range.normals ? 2 : 1) + (range.tangents ? sizeof(Vec4f) : 0));
 }
 
 // How many frames are handed over in one go: threads that wait for each other after little work
@@ -60,6 +61,7 @@ Status make_shapes(const MeshMotion& motion, const ShapeRange& range, int jobs,
     for (ShapeRoom& room : slot.rooms) {
       room.positions.resize(range.vertices);
       room.normals.resize(range.normals ? range.vertices : 0);
+      room.tangents.resize(range.tangents ? range.vertices : 0);
     }
   }
   const auto for_each = [&](std::size_t item, std::size_t slot, const auto& work) -> Status {
@@ -75,7 +77,7 @@ Status make_shapes(const MeshMotion& motion, const ShapeRange& range, int jobs,
       static_cast<std::size_t>(items), threads,
       [&](std::size_t item, std::size_t slot) {
         return for_each(item, slot, [&](int frame, ShapeRoom& room) {
-          slots[slot].source(frame, room.positions, room.normals);
+          slots[slot].source(frame, room.place());
           return prepare(frame, room);
         });
       },

@@ -21,11 +21,17 @@ struct MeshShape {
   std::span<const Vec4f> tangents;   // [vertices], or none
 };
 
-// Fills in the vertices of a frame, 0 <= frame < MeshMotion::frames: all positions, [vertices], and
-// the normals where their span is not empty. Gives the same numbers whenever it is asked for the
-// same frame. May own working memory: one thread at a time uses it.
-using ShapeSource =
-    std::function<void(int frame, std::span<Vec3f> positions, std::span<Vec3f> normals)>;
+// Where the vertices of a shape go: [vertices] each, or none.
+struct ShapePlace {
+  std::span<Vec3f> positions;
+  std::span<Vec3f> normals;
+  std::span<Vec4f> tangents;
+};
+
+// Fills in the vertices of a frame, 0 <= frame < MeshMotion::frames: all positions, and the normals
+// and tangents that have a place. Gives the same numbers whenever it is asked for the same frame.
+// May own working memory: one thread at a time uses it.
+using ShapeSource = std::function<void(int frame, const ShapePlace& to)>;
 
 // A motion as shapes that are made when they are asked for, so that a clip of any length takes the
 // memory of a few frames. Frame f is at f / rate seconds.
@@ -37,6 +43,8 @@ struct MeshMotion {
   // some of the frames, in rising order, by some writers in two rounds. Is called by one thread
   // after the other.
   std::function<ShapeSource()> source;
+
+  bool tangents = false;  // whether the sources make them
 };
 
 // For MeshMotion::source: each a copy of this one.
@@ -45,6 +53,9 @@ std::function<ShapeSource()> copies_of(ShapeSource source);
 // Room for the shape of a frame.
 struct ShapeRoom {
   std::vector<Vec3f> positions, normals;
+  std::vector<Vec4f> tangents;
+
+  ShapePlace place() { return {positions, normals, tangents}; }
 };
 
 // What make_shapes() makes.
@@ -52,6 +63,7 @@ struct ShapeRange {
   int begin = 0, end = 0;    // frames
   std::size_t vertices = 0;  // of each
   bool normals = false;
+  bool tangents = false;
 };
 
 // Goes through frames of a motion in the memory of a few, or of some megabytes: makes each shape,

@@ -61,4 +61,12 @@ std::vector<Vec4f> make_tangents(std::span<const Vec3f> positions, std::span<con
   return tangents;
 }
 
+bool needs_tangents(const Model& model, std::span<const Material> materials) {
+  if (model.normals.empty() || model.texture_coordinates.empty()) return false;
+  return std::ranges::any_of(model.parts, [&](const Model::Part& part) {
+    const Material* const material = find_material(materials, part.material);
+    return material != nullptr && material->normal_texture;
+  });
+}
+
 }  // namespace krok

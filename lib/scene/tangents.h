@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "math/types.h"
+#include "scene/material.h"
+#include "scene/model.h"
 
 namespace krok {
 
@@ -21,5 +23,9 @@ namespace krok {
 std::vector<Vec4f> make_tangents(std::span<const Vec3f> positions, std::span<const Vec3f> normals,
                                  std::span<const Vec2f> coordinates,
                                  std::span<const std::array<std::uint32_t, 3>> triangles);
+
+// Whether some part of the model has a material with a normal texture, and all that its tangents
+// are made of is there.
+bool needs_tangents(const Model& model, std::span<const Material> materials);
 
 }  // namespace krok

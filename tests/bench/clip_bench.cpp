@@ -56,13 +56,13 @@ struct Scene {
     motion.source = [this]() -> ShapeSource {
       return [this, pose = std::make_shared<SkinPose>(binding),
               joints = std::vector<Transform>(clip.skeleton.names.size())](
-                 int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) mutable {
+                 int frame, const ShapePlace& to) mutable {
         clip.get_pose(frame, joints);
         pose->set(joints);
         SkinSurface in = skin_surface(model);
         in.tangents = {};
-        if (normals.empty()) in.normals = {};
-        skin(binding, *pose, in, {positions, normals, {}});
+        if (to.normals.empty()) in.normals = {};
+        skin(binding, *pose, in, {to.positions, to.normals, {}});
       };
     };
     return motion;
@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
   const ShapeSource source = motion.source();
   std::vector<Vec3f> positions(scene.model.positions.size()), normals(positions.size());
   const auto begin = std::chrono::steady_clock::now();
-  for (int f = 0; f < kFrames; ++f) source(f, positions, normals);
+  for (int f = 0; f < kFrames; ++f) source(f, {positions, normals, {}});
   std::printf("skinning alone: %.3f seconds\n", seconds_since(begin));
   const auto glb = [&](int jobs) {
     return [&, jobs](OutputFile& file) {

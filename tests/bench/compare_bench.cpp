@@ -86,25 +86,24 @@ MeshMotion skinned(const Model& model, const Clip& clip) {
   MeshMotion motion;
   motion.frames = clip.frame_count();
   motion.rate = clip.rate;
-  motion.source =
-      copies_of([&model, &clip](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
-        std::vector<Transform> pose(model.skeleton.reference.size());
-        clip.get_pose(frame, pose);
-        for (std::size_t v = 0; v < model.positions.size(); ++v) {
-          Vec3 position = Vec3::Zero();
-          Vec3 normal = Vec3::Zero();
-          for (std::size_t k = 2 * v; k < 2 * v + 2; ++k) {
-            const auto joint = static_cast<std::size_t>(model.influence_joints[k]);
-            const auto weight = static_cast<double>(model.influence_weights[k]);
-            const Vec3 local =
-                model.positions[v].cast<double>() - model.skeleton.reference[joint].position;
-            position += weight * (pose[joint].orientation * local + pose[joint].position);
-            normal += weight * (pose[joint].orientation * model.normals[v].cast<double>());
-          }
-          positions[v] = position.cast<float>();
-          if (!normals.empty()) normals[v] = normal.normalized().cast<float>();
-        }
-      });
+  motion.source = copies_of([&model, &clip](int frame, const ShapePlace& to) {
+    std::vector<Transform> pose(model.skeleton.reference.size());
+    clip.get_pose(frame, pose);
+    for (std::size_t v = 0; v < model.positions.size(); ++v) {
+      Vec3 position = Vec3::Zero();
+      Vec3 normal = Vec3::Zero();
+      for (std::size_t k = 2 * v; k < 2 * v + 2; ++k) {
+        const auto joint = static_cast<std::size_t>(model.influence_joints[k]);
+        const auto weight = static_cast<double>(model.influence_weights[k]);
+        const Vec3 local =
+            model.positions[v].cast<double>() - model.skeleton.reference[joint].position;
+        position += weight * (pose[joint].orientation * local + pose[joint].position);
+        normal += weight * (pose[joint].orientation * model.normals[v].cast<double>());
+      }
+      to.positions[v] = position.cast<float>();
+      if (!to.normals.empty()) to.normals[v] = normal.normalized().cast<float>();
+    }
+  });
   return motion;
 }
 

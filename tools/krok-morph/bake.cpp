@@ -18,15 +18,14 @@ MeshMotion motion_of(const Model& model, const MorphSet& morphs, const MorphWeig
   MeshMotion motion;
   motion.frames = weights.frame_count();
   motion.rate = weights.rate;
-  motion.source = copies_of(
-      [&model, &morphs, &weights](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
-        const std::size_t targets = morphs.names.size();
-        const auto at =
-            std::span(weights.values).subspan(static_cast<std::size_t>(frame) * targets, targets);
-        const std::span<const Vec3f> base =
-            normals.empty() ? std::span<const Vec3f>() : std::span(model.normals);
-        apply_morphs(morphs, at, {model.positions, base}, {positions, normals}, 1);
-      });
+  motion.source = copies_of([&model, &morphs, &weights](int frame, const ShapePlace& to) {
+    const std::size_t targets = morphs.names.size();
+    const auto at =
+        std::span(weights.values).subspan(static_cast<std::size_t>(frame) * targets, targets);
+    const std::span<const Vec3f> base =
+        to.normals.empty() ? std::span<const Vec3f>() : std::span(model.normals);
+    apply_morphs(morphs, at, {model.positions, base}, {to.positions, to.normals}, 1);
+  });
   return motion;
 }
 

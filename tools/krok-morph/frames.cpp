@@ -93,8 +93,8 @@ Status add_motion(KeyShapes& keys, int frames, MotionFormat format, As as, Outpu
   MeshMotion motion;
   motion.frames = frames;
   motion.rate = keys.rate;
-  motion.source = copies_of([&](int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
-    shape_at(mesh, keys.join, keys.tension, frame / keys.rate, {positions, normals}, 1);
+  motion.source = copies_of([&](int frame, const ShapePlace& to) {
+    shape_at(mesh, keys.join, keys.tension, frame / keys.rate, {to.positions, to.normals}, 1);
   });
   return add_baked(keys.base.model, motion, format, outputs, context);
 }

@@ -67,10 +67,11 @@ Result<WriteMesh> mesh_writer(const Subject& subject, const ToolContext& context
 }
 
 // The smallest --every that brings a motion within the limits; 0 if none does.
-int fitting_step(const Model& model, int frames) {
+int fitting_step(const Model& model, std::span<const Material> materials, int frames) {
   for (int step = 2; step < frames; ++step) {
     const int kept = (frames - 1) / step + 1;
-    if (kept <= gltf::kMaxMorphTargets && gltf::baked_bytes(model, kept) <= gltf::kMaxDataBytes) {
+    if (kept <= gltf::kMaxMorphTargets &&
+        gltf::baked_bytes(model, kept, materials) <= gltf::kMaxDataBytes) {
       return step;
     }
   }
@@ -79,10 +80,10 @@ int fitting_step(const Model& model, int frames) {
 
 Status check_bakeable(const Subject& subject, ToolContext& context) {
   const int frames = subject.clip.frame_count();
-  const std::uint64_t bytes = gltf::baked_bytes(subject.model, frames);
+  const std::uint64_t bytes = gltf::baked_bytes(subject.model, frames, subject.materials);
   const auto megabytes = (bytes >> 20) + 1;
   if (frames - 1 > gltf::kMaxMorphTargets || bytes > gltf::kMaxDataBytes) {
-    const int step = fitting_step(subject.model, frames);
+    const int step = fitting_step(subject.model, subject.materials, frames);
     return Error(
         "skin-clip-too-long",
         fmt::format("{} frames of {} vertices make {} morph targets and {} MB; viewers hold at "
@@ -158,11 +159,12 @@ Status write_clip(const Subject& subject, const SkinBinding& binding, pc2::Up up
   MeshMotion motion;
   motion.frames = subject.clip.frame_count();
   motion.rate = subject.clip.rate;
+  motion.tangents = !subject.model.tangents.empty();
   motion.source = [&]() -> ShapeSource {
-    return [mesh = std::make_shared<PosedMesh>(subject, binding, 1)](
-               int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
-      mesh->at_frame(frame, {positions, normals, {}});
-    };
+    return
+        [mesh = std::make_shared<PosedMesh>(subject, binding, 1)](int frame, const ShapePlace& to) {
+          mesh->at_frame(frame, {to.positions, to.normals, to.tangents});
+        };
   };
   return write_output(context, context.output, [&](OutputFile& file) {
     if (cache) {

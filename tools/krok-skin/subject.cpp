@@ -10,6 +10,7 @@
 #include "formats/morph_exr/morph_exr.h"
 #include "formats/weights/weights.h"
 #include "motion/cut.h"
+#include "scene/tangents.h"
 #include "skin/bind.h"
 #include "tools/common/character/character_input.h"
 #include "tools/common/motion_input.h"
@@ -57,6 +58,11 @@ class Loader {
     if (!loaded) return loaded.error();
     subject_.model = std::move(loaded->model);
     subject_.materials = std::move(loaded->materials);
+    Model& model = subject_.model;
+    if (model.tangents.empty() && needs_tangents(model, subject_.materials)) {
+      model.tangents =
+          make_tangents(model.positions, model.normals, model.texture_coordinates, model.triangles);
+    }
     subject_.eyes = std::move(loaded->character.eyes);
     subject_.morphs = std::move(loaded->morphs);
     rest_weights_ = std::move(loaded->weights);

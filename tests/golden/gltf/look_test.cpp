@@ -77,15 +77,19 @@ TEST_F(GltfLook, ShowsMaterialsTexturesAndEyes) {
   write("baked.glb", [&](OutputFile& file) {
     return gltf::write_baked(model_, test::wobble(model_, 3), options_, file);
   });
+  MeshMotion with_tangents = test::wobble(model_, 3);
+  with_tangents.tangents = true;
+  write("whole.glb",
+        [&](OutputFile& file) { return gltf::write_baked(model_, with_tangents, options_, file); });
   options_.binary = false;
   write("rig.gltf",
         [&](OutputFile& file) { return gltf::write_rig(model_, clip, options_, file); });
   model_.texture_coordinates.clear();
   write("bare.gltf",
         [&](OutputFile& file) { return gltf::write_rig(model_, clip, options_, file); });
-  valid("rig.glb rig.gltf mesh.glb baked.glb bare.gltf");
+  valid("rig.glb rig.gltf mesh.glb baked.glb whole.glb bare.gltf");
 
-  for (const char* name : {"rig.glb", "rig.gltf", "mesh.glb", "baked.glb"}) {
+  for (const char* name : {"rig.glb", "rig.gltf", "mesh.glb", "baked.glb", "whole.glb"}) {
     SCOPED_TRACE(name);
     const auto look = look_at(name);
     ASSERT_TRUE(look.is_object()) << content("log.txt");

@@ -66,10 +66,10 @@ TEST(BakedWriter, EachTargetHasItsOwnBounds) {
 TEST(BakedWriter, BoundsOfAnyLengthFit) {
   const Model model = odd_model();
   const float longest = -1.17549435e-38f;
-  const ShapeSource source = [&](int frame, auto positions, auto normals) {
-    std::ranges::copy(model.normals, normals.begin());
-    std::ranges::fill(positions, Vec3f::Zero());
-    if (frame == 1) positions[1] = Vec3f(longest, -1.23456789e-30f, 3e38f);
+  const ShapeSource source = [&](int frame, const ShapePlace& to) {
+    std::ranges::copy(model.normals, to.normals.begin());
+    std::ranges::fill(to.positions, Vec3f::Zero());
+    if (frame == 1) to.positions[1] = Vec3f(longest, -1.23456789e-30f, 3e38f);
   };
   const MeshMotion motion{3, 30, copies_of(source)};
   const auto glb = baked(model, motion);
@@ -88,14 +88,14 @@ TEST(BakedWriter, WritesAFrameBeforeItAsksForTheOneAfterTheNext) {
   const ShapeSource wobble = motion.source();
   std::vector<int> asked;
   (void)test::bytes_of([&](OutputFile& file) {
-    motion.source = copies_of([&](int frame, auto positions, auto normals) {
+    motion.source = copies_of([&](int frame, const ShapePlace& to) {
       const auto before = static_cast<std::uint64_t>(frame);
       // Frame 0 is in the file's head.
       if (frame > 1) {
         EXPECT_GE(file.size(), before * frame_bytes);
       }
       asked.push_back(frame);
-      wobble(frame, positions, normals);
+      wobble(frame, to);
     });
     return gltf::write_baked(model, motion, {}, file, nullptr, 1);
   });
@@ -161,9 +161,9 @@ TEST(BakedWriter, AVertexThatIsNotFiniteIsToldByItsFrame) {
     for (const bool in_normals : {false, true}) {
       MeshMotion motion = test::wobble(model, 5);
       const auto wobble = motion.source();
-      motion.source = copies_of([&](int frame, auto positions, auto normals) {
-        wobble(frame, positions, normals);
-        auto& vector = in_normals ? normals[2] : positions[positions.size() - 1];
+      motion.source = copies_of([&](int frame, const ShapePlace& to) {
+        wobble(frame, to);
+        auto& vector = in_normals ? to.normals[2] : to.positions.back();
         if (frame == bad) vector.y() = std::numeric_limits<float>::quiet_NaN();
       });
       Status status;
@@ -179,9 +179,9 @@ TEST(BakedWriter, AVertexThatIsNotFiniteIsToldByItsFrame) {
 TEST(BakedWriter, MoreThanGltfCanTellIsRefusedBeforeItIsMade) {
   const Model model = odd_model();
   // Weights for each pair of frames: 40,000 of them take 6.4 GB.
-  const ShapeSource source = [&](int frame, auto positions, auto) {
+  const ShapeSource source = [&](int frame, const ShapePlace& to) {
     EXPECT_EQ(frame, 0);
-    std::ranges::fill(positions, Vec3f::Zero());
+    std::ranges::fill(to.positions, Vec3f::Zero());
   };
   const MeshMotion motion{40'000, 30, copies_of(source)};
   Model bare = model;

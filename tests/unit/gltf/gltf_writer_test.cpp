@@ -182,7 +182,7 @@ TEST(GltfWriter, BakedFramesAddUpToTheShapes) {
   ASSERT_EQ(primitive["targets"].size(), 5u);
   std::vector<Vec3f> positions(model.positions.size()), normals(model.positions.size());
   for (int f = 0; f < 6; ++f) {
-    baked.source()(f, positions, normals);
+    baked.source()(f, {positions, normals, {}});
     std::vector<float> delta(base.size(), 0), delta_normals(base.size(), 0);
     if (f > 0) {
       delta = glb.values<float>(primitive["targets"][f - 1]["POSITION"]);

@@ -160,6 +160,44 @@ TEST(GltfMaterials, NormalTexturesComeWithTangents) {
   EXPECT_FALSE(baked.json["materials"][0].contains("normalTexture"));
 }
 
+TEST(GltfMaterials, TangentsOfBakedFramesAddUp) {
+  const auto materials = look();
+  gltf::WriteOptions options;
+  const Model model = dressed_model();
+  MeshMotion motion = test::wobble(model, 3);
+  motion.tangents = true;
+  const auto bake = [&] {
+    return test::written([&](OutputFile& file) {
+      return gltf::write_baked(model, motion, options, file, nullptr, 2);
+    });
+  };
+  // Nothing needs them.
+  const auto plain = bake();
+  EXPECT_FALSE(plain.json["meshes"][0]["primitives"][0]["targets"][0].contains("TANGENT"));
+  options.materials = materials;
+  const auto glb = bake();
+  // That is told beforehand, to judge by; pictures come on top.
+  EXPECT_GE(glb.data.size() - plain.data.size(),
+            gltf::baked_bytes(model, 3, materials) - gltf::baked_bytes(model, 3));
+  EXPECT_TRUE(glb.json["materials"][0].contains("normalTexture"));
+  const auto& primitive = glb.json["meshes"][0]["primitives"][0];
+  const auto base = glb.values<float>(primitive["attributes"]["TANGENT"]);
+  ASSERT_EQ(base.size(), 4 * model.positions.size());
+  std::vector<Vec3f> positions(model.positions.size());
+  std::vector<Vec4f> tangents(positions.size());
+  for (int f = 1; f < 3; ++f) {
+    motion.source()(f, {positions, {}, tangents});
+    const auto moved = glb.values<float>(primitive["targets"][f - 1]["TANGENT"]);
+    ASSERT_EQ(moved.size(), 3 * positions.size());
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      EXPECT_EQ(base[4 * v + 3], -1);
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(base[4 * v + i] + moved[3 * v + i], tangents[v][static_cast<int>(i)], 1e-6);
+      }
+    }
+  }
+}
+
 TEST(GltfMaterials, MeshesBakesAndTextsHaveThemToo) {
   const auto materials = look();
   const Model model = dressed_model();

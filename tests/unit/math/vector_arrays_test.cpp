@@ -53,7 +53,8 @@ TEST(AllFinite, FindsOneAmongMany) {
     const WithSimd with(simd);
     std::vector<Vec3f> vectors(37, Vec3f(3.4e38f, -3.4e38f, 1e-45f));
     EXPECT_TRUE(all_finite(vectors));
-    EXPECT_TRUE(all_finite({}));
+    EXPECT_TRUE(all_finite(std::span<const Vec3f>()));
+    EXPECT_TRUE(all_finite(std::span<const Vec4f>()));
     for (std::size_t v = 0; v < vectors.size(); ++v) {
       for (const float bad : {kInfinity, -kInfinity, kNan, -kNan}) {
         const Vec3f was = vectors[v];
@@ -61,6 +62,13 @@ TEST(AllFinite, FindsOneAmongMany) {
         EXPECT_FALSE(all_finite(vectors)) << v << " " << bad;
         vectors[v] = was;
       }
+    }
+    std::vector<Vec4f> tangents(37, Vec4f(0, 1, 0, -1));
+    for (Vec4f& tangent : tangents) {
+      EXPECT_TRUE(all_finite(tangents));
+      tangent.w() = kNan;
+      EXPECT_FALSE(all_finite(tangents));
+      tangent.w() = 1;
     }
   }
 }

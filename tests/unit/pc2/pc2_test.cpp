@@ -30,10 +30,10 @@ Model pair() {
   return model;
 }
 MeshMotion motion_of_pair(int frames) {
-  return {frames, 30, copies_of([](int frame, auto positions, auto normals) {
-            EXPECT_TRUE(normals.empty());
-            positions[0] = Vec3f(1, 2, 3);
-            positions[1] = Vec3f(0, 0, static_cast<float>(frame));
+  return {frames, 30, copies_of([](int frame, const ShapePlace& to) {
+            EXPECT_TRUE(to.normals.empty());
+            to.positions[0] = Vec3f(1, 2, 3);
+            to.positions[1] = Vec3f(0, 0, static_cast<float>(frame));
           })};
 }
 
@@ -119,7 +119,7 @@ TEST(Pc2, GivesBackTheMotionToTheBitWithAnyThreads) {
   ASSERT_EQ(cache->points(), model.vertex_count());
   std::vector<Vec3f> expected(model.positions.size()), positions(expected.size());
   for (int f = 0; f < 20; ++f) {
-    motion.source()(f, expected, {});
+    motion.source()(f, {expected, {}, {}});
     ASSERT_TRUE(cache->get(f, positions).ok());
     EXPECT_EQ(positions, expected) << f;
   }
@@ -159,9 +159,9 @@ TEST(Pc2, RefusesOptionsThatTheFileCannotHold) {
 
 TEST(Pc2, WritesNoVertexThatIsNotFinite) {
   MeshMotion motion = motion_of_pair(4);
-  motion.source = copies_of([](int frame, auto positions, auto) {
-    std::ranges::fill(positions, Vec3f::Zero());
-    if (frame == 2) positions[1].z() = kNan;
+  motion.source = copies_of([](int frame, const ShapePlace& to) {
+    std::ranges::fill(to.positions, Vec3f::Zero());
+    if (frame == 2) to.positions[1].z() = kNan;
   });
   Status status;
   test::bytes_of([&](OutputFile& file) { return pc2::write(pair(), motion, {}, file); }, status);

@@ -17,13 +17,13 @@ namespace {
 using testing::ElementsAre;
 
 // Vertex v of frame f is at (f, v, 0), with a normal of (0, f, v).
-void number(int frame, std::span<Vec3f> positions, std::span<Vec3f> normals) {
+void number(int frame, const ShapePlace& to) {
   const auto f = static_cast<float>(frame);
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    positions[v] = Vec3f(f, static_cast<float>(v), 0);
+  for (std::size_t v = 0; v < to.positions.size(); ++v) {
+    to.positions[v] = Vec3f(f, static_cast<float>(v), 0);
   }
-  for (std::size_t v = 0; v < normals.size(); ++v) {
-    normals[v] = Vec3f(0, f, static_cast<float>(v));
+  for (std::size_t v = 0; v < to.normals.size(); ++v) {
+    to.normals[v] = Vec3f(0, f, static_cast<float>(v));
   }
 }
 
@@ -72,13 +72,13 @@ TEST(MakeShapes, AsksASourceOnOneThreadAtATimeForFramesThatRise) {
         std::atomic<int> inside = 0;
         int last = -1;
       };
-      return [&asked, use = std::make_shared<Use>()](int frame, auto positions, auto normals) {
+      return [&asked, use = std::make_shared<Use>()](int frame, const ShapePlace& to) {
         EXPECT_EQ(++use->inside, 1);
         EXPECT_GT(frame, use->last);
-        EXPECT_TRUE(normals.empty());
+        EXPECT_TRUE(to.normals.empty());
         use->last = frame;
         ++asked[static_cast<std::size_t>(frame)];
-        number(frame, positions, normals);
+        number(frame, to);
         --use->inside;
       };
     };
@@ -95,7 +95,7 @@ TEST(MakeShapes, MakesShapesOnSeveralThreadsAtOnce) {
   constexpr std::size_t kVertices = 100'000;
   std::latch both(2);
   MeshMotion motion = numbered(2);
-  motion.source = copies_of([&both](int, auto, auto) { both.arrive_and_wait(); });
+  motion.source = copies_of([&both](int, const ShapePlace&) { both.arrive_and_wait(); });
   EXPECT_TRUE(make_shapes(motion, {0, 2, kVertices, false}, 2, nothing, [](int, const ShapeRoom&) {
                 return Status();
               }).ok());
@@ -106,7 +106,7 @@ TEST(MakeShapes, HoldsFewFramesOfManyVertices) {
   MeshMotion motion = numbered(100);
   motion.source = [&]() -> ShapeSource {
     ++sources;
-    return [](int, auto, auto) {};
+    return [](int, const ShapePlace&) {};
   };
   constexpr std::size_t kVertices = 4'000'000;  // 48 MB a frame
   const Status done = make_shapes(motion, {0, 8, kVertices, false}, 64, nothing,
@@ -136,7 +136,7 @@ TEST(MakeShapes, GivesTheFirstErrorWhateverTheThreads) {
 TEST(MakeShapes, PassesOnWhatIsThrown) {
   for (const int jobs : {1, 3}) {
     MeshMotion motion = numbered(30);
-    motion.source = copies_of([](int frame, auto, auto) {
+    motion.source = copies_of([](int frame, const ShapePlace&) {
       if (frame == 5) throw std::runtime_error("five");
     });
     EXPECT_THROW((void)make_shapes(motion, {0, 30, 2, false}, jobs, nothing,
