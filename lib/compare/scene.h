@@ -9,6 +9,7 @@
 #include "compare/mesh_difference.h"
 #include "math/transform.h"
 #include "math/types.h"
+#include "scene/material.h"
 
 // An animated scene as a comparison sees it: what it has, and how to get it at any moment. How it
 // is animated (a skin, morph targets, nodes that move, frames of points) does not matter.
@@ -32,6 +33,8 @@ struct SceneMesh {
   };
   std::vector<Target> targets;
 
+  const Material* material = nullptr;  // null: none
+
   Influences influences;  // joints are indices into Scene::joint_names; none: per_vertex = 0
 };
 
@@ -48,6 +51,7 @@ struct Scene {
   bool only_still = false;   // no animations
 
   std::vector<SceneMesh> meshes;
+  bool knows_materials = false;          // whether a mesh without one has none
   std::vector<std::string> joint_names;  // may be empty or repeat; then places decide
   std::vector<int> joint_parents;        // the nearest ancestor that is a joint, or -1
 

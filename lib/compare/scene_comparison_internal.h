@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +35,7 @@ struct SceneComparison {
   std::vector<SurfaceGroup> groups{};    // those whose vertices are compared by nearest points
   std::vector<SurfaceMatch> surfaces{};  // of the groups, both ways
   std::vector<Moment> moments{};
+  std::set<std::pair<const Material*, const Material*>> materials{};  // those that were compared
 
   void say(std::string sentence) { result.structure.push_back(std::move(sentence)); }
   void note(std::string sentence) { result.notes.push_back(std::move(sentence)); }
@@ -54,7 +56,7 @@ void match_scene_joints(SceneComparison& comparison);
 void match_scene_meshes(SceneComparison& comparison);
 
 // What two meshes are made of whose vertices correspond by number: triangles, texture coordinates,
-// morph targets, weights.
+// morph targets, weights, materials.
 void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh);
 
 // Fills `moments`; code compare-too-long.

@@ -19,6 +19,7 @@ struct SceneOptions {
   Tolerance tolerance;
   Matching matching = Matching::automatic;  // of meshes, joints and morph targets
   bool keep_vertices = false;               // whether vertex_largest is wanted
+  bool materials = false;                   // whether other materials are a fault
 };
 
 // One quantity at one moment. Floats, since there may be a million moments.
@@ -49,7 +50,8 @@ struct SceneDifference {
   // joints or animations that do not correspond. Sentences for people. What can be measured all the
   // same, is.
   std::vector<std::string> structure;
-  // What differs but is no fault: joints that only one has where the other is baked, key times.
+  // What differs but is no fault: joints that only one has where the other is baked, key times,
+  // and materials unless SceneOptions::materials makes them one.
   std::vector<std::string> notes;
 
   int compared_times = 0;  // moments at which both were evaluated, of all animations together

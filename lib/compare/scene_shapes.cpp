@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "compare/material_difference.h"
 #include "compare/scene_comparison_internal.h"
 
 namespace krok::compare {
@@ -65,6 +67,28 @@ void say_only_one_has(SceneComparison& comparison, const std::string& name, cons
   comparison.say(fmt::format("{}: only the {} has {}", name, first_has ? "first" : "second", what));
 }
 
+// Meshes often share a material; what differs in it is told once.
+void compare_materials(SceneComparison& comparison, const SceneMesh& a, const SceneMesh& b,
+                       const std::string& name) {
+  if (!comparison.first.knows_materials || !comparison.second.knows_materials) return;
+  if (!comparison.materials.emplace(a.material, b.material).second) return;
+  std::string text;
+  if (a.material != nullptr && b.material != nullptr) {
+    text = fmt::format(
+        "{}",
+        fmt::join(differences(*a.material, *b.material, comparison.options.tolerance.ratio), "; "));
+  } else if (a.material != b.material) {
+    text = fmt::format("only the {} has one", a.material != nullptr ? "first" : "second");
+  }
+  if (text.empty()) return;
+  text = fmt::format("{}, material: {}", name, text);
+  if (comparison.options.materials) {
+    comparison.say(std::move(text));
+  } else {
+    comparison.note(std::move(text));
+  }
+}
+
 }  // namespace
 
 void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh) {
@@ -85,6 +109,7 @@ void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh
   }
   compare_targets(comparison, a, b, name, place);
   compare_weights(comparison, a, b, name, place);
+  compare_materials(comparison, a, b, name);
 }
 
 }  // namespace krok::compare

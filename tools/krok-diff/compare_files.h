@@ -15,6 +15,7 @@ namespace krok::diff {
 struct Options {
   std::string first, second;  // paths
   compare::Matching matching = compare::Matching::automatic;
+  bool materials = false;  // whether other materials are a difference
   compare::Tolerance tolerance;
   SheetOptions sheet;
   std::string plot;     // a path; empty for none

@@ -36,7 +36,7 @@ struct Opened {
 };
 
 Status Opened::read_gltf_scene(const InputFile& file, ToolContext& context) {
-  auto read = read_gltf(file, context);
+  auto read = read_gltf(file, context, true);
   if (!read) return std::move(read).error();
   context.tell(read->diagnostics);
   asset = std::move(*read);
@@ -145,6 +145,7 @@ Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
   compare::SceneOptions how;
   how.tolerance = options.tolerance;
   how.matching = options.matching;
+  how.materials = options.materials;
   how.keep_vertices = !options.heatmap.empty();
   const auto found = compare::difference(a.scene, b.scene, how, context.jobs, *context.progress);
   if (!found) return found.error();

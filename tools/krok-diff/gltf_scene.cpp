@@ -40,6 +40,9 @@ compare::SceneMesh mesh_of(const nodes::Scene& asset, const nodes::Instance& ins
   for (const nodes::MorphTarget& target : primitive.targets) {
     mesh.targets.push_back({target.name, view(target.positions), view(target.normals)});
   }
+  if (primitive.material_index >= 0) {
+    mesh.material = &asset.materials[static_cast<std::size_t>(primitive.material_index)];
+  }
   const int skin = asset.nodes[static_cast<std::size_t>(instance.node)].skin;
   if (skin >= 0 && primitive.influences_per_vertex > 0) {
     const auto& joints = asset.skins[static_cast<std::size_t>(skin)].joints;
@@ -83,6 +86,7 @@ Result<compare::Scene> scene_of(const nodes::Scene& asset) {
   const nodes::Evaluator& from = player->evaluator;
 
   compare::Scene scene;
+  scene.knows_materials = true;
   std::vector<int> scene_joint_of_node(asset.nodes.size(), -1);
   for (std::size_t i = 0; i < from.joints().size(); ++i) {
     const auto node = static_cast<std::size_t>(from.joints()[i]);

@@ -28,6 +28,7 @@ Result<Options> parse(const Arguments& arguments) {
   if (!tolerance) return tolerance.error();
   options.tolerance = *tolerance;
   options.matching = arguments.tolerance.matching;
+  options.materials = arguments.tolerance.materials;
   options.sheet = arguments.sheet;
   options.plot = arguments.plot;
   options.heatmap = arguments.heatmap;

@@ -106,6 +106,9 @@ void declare_tolerances(CLI::App& app, ToleranceArguments& arguments) {
                  "rates differ: 1ms, 0.02s")
       ->type_name("TIME")
       ->default_str(arguments.times);
+  app.add_flag("--materials", arguments.materials,
+               "Other materials, colours or textures are a difference; without it they are told, "
+               "and meshes that look otherwise are the same; of glTF");
 }
 
 Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments) {

@@ -19,6 +19,7 @@ struct ToleranceArguments {
   std::string ratio = "0.0001";
   std::string times = "0.1ms";
   std::string normals, joints;
+  bool materials = false;
 };
 
 void declare_tolerances(CLI::App& app, ToleranceArguments& arguments);

@@ -278,5 +278,23 @@ TEST_F(KrokDiffMatching, MorphTargetsInExrAreCompared) {
   EXPECT_THAT(mixed.err, HasSubstr("[diff-kinds]"));
 }
 
+TEST_F(KrokDiffMatching, OtherColoursAreToldAndWithMaterialsADifference) {
+  const auto square = [](double metallic) {
+    test::GlbBuilder builder = test::square();
+    builder.json["materials"] = {{{"pbrMetallicRoughness", {{"metallicFactor", metallic}}}}};
+    builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+    return builder;
+  };
+  write("dull.glb", square(0.25));
+  write("shiny.glb", square(1));
+  const auto told = diff({"dull.glb", "shiny.glb"});
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_THAT(told.out, HasSubstr("note: mesh Body, material: metallic 0.25 and 1\n"));
+  const auto strict = diff({"dull.glb", "shiny.glb", "--materials"});
+  EXPECT_EQ(strict.exit_code, 1) << strict.err;
+  EXPECT_THAT(strict.out, HasSubstr("differs: mesh Body, material: metallic 0.25 and 1\n"));
+  EXPECT_EQ(diff({"dull.glb", "dull.glb", "--materials"}).exit_code, 0);
+}
+
 }  // namespace
 }  // namespace krok

@@ -306,5 +306,53 @@ TEST(SceneDifference, ValuesThatAreNotNumbersAreTrouble) {
   EXPECT_EQ(found.error().code, "compare-value");
 }
 
+// Materials are no fault of a mesh's motion, but who compares is to know.
+TEST(SceneDifference, OtherMaterialsAreTold) {
+  Material grey, red;
+  red.base_color = {1, 0, 0, 1};
+  const auto scene_with = [](const Material* material) {
+    Scene scene = make_scene();
+    scene.knows_materials = true;
+    scene.meshes[0].material = material;
+    return scene;
+  };
+  const std::string told = "mesh Body, material: base colour 0.8, 0.8, 0.8, 1 and 1, 0, 0, 1";
+  SceneDifference found = compare(scene_with(&grey), scene_with(&red));
+  EXPECT_TRUE(found.same());
+  EXPECT_EQ(found.notes, std::vector<std::string>{told});
+
+  SceneOptions strict;
+  strict.materials = true;
+  Progress progress;
+  const Scene first = scene_with(&grey), second = scene_with(&red);
+  found = *difference(first, second, strict, 1, progress);
+  EXPECT_FALSE(found.same());
+  EXPECT_EQ(found.structure, std::vector<std::string>{told});
+  const Scene bare = scene_with(nullptr);
+  EXPECT_FALSE(difference(first, bare, strict, 1, progress)->same());
+  EXPECT_TRUE(difference(bare, bare, strict, 1, progress)->same());
+  // A file of another kind, which cannot tell.
+  EXPECT_TRUE(difference(first, make_scene(), strict, 1, progress)->same());
+}
+
+TEST(SceneDifference, AMaterialOfManyMeshesIsToldOnce) {
+  Material grey, red;
+  red.base_color = {1, 0, 0, 1};
+  const auto two = [](const Material* material) {
+    Scene scene = make_scene();
+    scene.knows_materials = true;
+    scene.meshes[0].material = material;
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].name = "Hat";
+    scene.evaluate = [plain = scene.evaluate](int which, double time, SceneState& state) {
+      plain(which, time, state);
+      state.positions.push_back(state.positions[0]);
+      state.normals.push_back(state.normals[0]);
+    };
+    return scene;
+  };
+  EXPECT_EQ(compare(two(&grey), two(&red)).notes.size(), 1u);
+}
+
 }  // namespace
 }  // namespace krok::compare
