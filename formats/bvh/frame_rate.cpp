@@ -55,10 +55,15 @@ PrintedRate printed_rate(std::string_view text, double frame_time) {
     return distance(rate) <= 0.5 * tolerance ||
            (1.0 / rate > frame_time && distance(rate) < tolerance);
   };
+  // Common rates also as far as a time kept in single precision allows: 1 / 30 is 0.03333334 then.
+  const auto agrees_in_single_precision = [&](double rate) {
+    return agrees(rate) || distance(rate) <= 0.5 * tolerance + 0x1p-24 / rate;
+  };
   const auto nearest = [&](const auto& rates) {
     double best = 0;
     for (const double rate : rates) {
-      if (agrees(rate) && (best == 0 || distance(rate) < distance(best))) best = rate;
+      if (!agrees_in_single_precision(rate)) continue;
+      if (best == 0 || distance(rate) < distance(best)) best = rate;
     }
     return best;
   };

@@ -27,6 +27,11 @@ Kinematics::Kinematics(const Hierarchy& hierarchy, Positions positions,
     : reference_to_motion_(conversion.reference_to_motion()),
       degrees_per_angle_(hierarchy.degrees_per_angle) {
   const Mat3& to_krok = conversion.reference_axes();
+  parents_.reserve(hierarchy.joints.size());
+  offsets_.reserve(hierarchy.joints.size());
+  base_.reserve(hierarchy.joints.size());
+  steps_.reserve(hierarchy.channels.size());
+  step_begins_.reserve(hierarchy.joints.size() + 1);
   step_begins_.push_back(0);
   for (const Hierarchy::Joint& joint : hierarchy.joints) {
     parents_.push_back(joint.parent);

@@ -26,8 +26,10 @@ struct PositionChoice {
 
 // Whether position channels replace OFFSETs or are added to them. Each joint with a non-zero OFFSET
 // beside position channels is asked where its values lie along the OFFSET: near it (absolute) or
-// near zero (additive), in the median row. Joints below the root decide, if there are any; a root
-// travels, so only its height is asked where `up` is known and the OFFSET has a height.
+// near zero (additive), in the median row. Joints below the root decide, if there are any. A root
+// travels, and so does a joint that carries the whole figure under it: where `up` is known, the
+// reading that has the figure on the ground is taken, and where that does not tell, only the root's
+// height is asked if the OFFSET has one.
 PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& rows,
                                 std::optional<Direction> up);
 

@@ -42,8 +42,9 @@ struct Conventions {
   Direction up = Direction::plus_y;
   Direction forward = Direction::plus_z;
   // The axes of the reference pose where its bones show that they are others than the motion's (a
-  // figure stored y-up whose root turns it upright in a z-up world in every frame); otherwise equal
-  // to `up` and `forward`. The reference pose is brought to Krok's frame by
+  // figure stored y-up whose root turns it upright in a z-up world in every frame); of a reference
+  // pose that does not stand at all those of its pelvis, so that the hips face where they do in the
+  // motion; otherwise equal to `up` and `forward`. The reference pose is brought to Krok's frame by
   // rotation_to_krok(reference_up, reference_forward), so that it stands upright and faces +Z too;
   // a reader whose user named the axes sets them alike.
   Direction reference_up = Direction::plus_y;
@@ -61,7 +62,8 @@ struct Conventions {
 // what the figure does not show is a default with confidence `guess`.
 //
 // Up: where the head is above the feet in most samples, or in the reference pose for want of
-// samples; a motion that is upside down does not turn over an upright reference pose. Forward: to
+// samples; a motion that is upside down does not turn over an upright reference pose, nor one that
+// lies in most samples a world in which it stands in others. Forward: to
 // the left of the right side (left x up) in the reference pose, held against the toes; in the first
 // sample where the reference pose does not stand as the motion does. Unit: the one that makes the
 // figure, from the lengths of its legs and spine, most like an adult of 1.5 to 2.0 m.

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <optional>
+
 #include "capture/figure_internal.h"
 
 namespace krok::figure {
@@ -39,6 +42,65 @@ bool detect_forward_in_reference(const Evidence& evidence, Conventions& found) {
   return true;
 }
 
+// Three joints that the hips alone carry: both legs, and the spine above them.
+struct Pelvis {
+  int hips = -1, left_leg = -1, right_leg = -1, spine = -1;
+
+  explicit Pelvis(const Evidence& evidence) {
+    const auto& parents = evidence.skeleton.parents;
+    const auto parent = [&](int joint) { return parents[static_cast<std::size_t>(joint)]; };
+    const Landmarks& marks = evidence.marks;
+    hips = marks.hips;
+    if (hips < 0 || marks.left_leg < 0 || marks.right_leg < 0 || marks.head < 0) return;
+    if (parent(marks.left_leg) != hips || parent(marks.right_leg) != hips) return;
+    int above = marks.head;
+    while (above >= 0 && parent(above) != hips) above = parent(above);
+    left_leg = marks.left_leg;
+    right_leg = marks.right_leg;
+    spine = above;
+  }
+
+  bool known() const { return spine >= 0; }
+
+  // How the pelvis stands in a pose: to its left, and at right angles to that towards the spine.
+  std::optional<Mat3> frame(Positions pose) const {
+    const Vec3 left = at(pose, left_leg) - at(pose, right_leg);
+    const Vec3 middle = 0.5 * (at(pose, left_leg) + at(pose, right_leg));
+    const Vec3 spine_at = at(pose, spine) - middle;
+    const Vec3 up = spine_at - spine_at.dot(left) / left.squaredNorm() * left;
+    if (!left.allFinite() || !up.allFinite() || !(up.norm() > 0.05 * left.norm())) return {};
+    Mat3 axes;
+    axes.col(0) = left.normalized();
+    axes.col(1) = up.normalized();
+    axes.col(2) = axes.col(0).cross(axes.col(1));
+    return axes;
+  }
+};
+
+// A reference pose that does not stand (rigs whose bones all lie along one of their axes) still has
+// a pelvis: it stands upright there as it does in the motion on average.
+void detect_reference_axes_by_pelvis(const Evidence& evidence, Conventions& found) {
+  const Pelvis pelvis(evidence);
+  if (!pelvis.known()) return;
+  const auto reference = pelvis.frame(evidence.reference);
+  if (!reference) return;
+  const Vec3 vertical = direction_vector(found.up);
+  Vec3 up = Vec3::Zero();
+  for (std::size_t i = 0; i < evidence.sample_count; ++i) {
+    const auto turned = pelvis.frame(evidence.sample(i));
+    if (turned) up += *reference * (turned->transpose() * vertical);
+  }
+  const NearestAxis upright = nearest_axis(up);
+  constexpr double kUpright = 0.8;  // within 37 degrees
+  if (upright.cosine < kUpright || !(up.norm() > 0.5 * static_cast<double>(evidence.sample_count)))
+    return;
+  const Vec3 left = reference->col(0);
+  const NearestAxis ahead = nearest_axis(left.cross(direction_vector(upright.direction)));
+  if (ahead.cosine < kUpright) return;
+  found.reference_up = upright.direction;
+  found.reference_forward = ahead.direction;
+}
+
 }  // namespace
 
 void detect_forward(const Evidence& evidence, Conventions& found) {
@@ -60,12 +122,13 @@ void detect_forward(const Evidence& evidence, Conventions& found) {
                                      signed_name(found.forward));
 }
 
-// The axes of a reference pose that stands, but otherwise than the motion.
+// The axes of a reference pose that stands otherwise than the motion, or not at all.
 void detect_reference_axes(const Evidence& evidence, Conventions& found) {
   found.reference_up = found.up;
   found.reference_forward = found.forward;
   const auto& stands = evidence.reference_stands;
-  if (!stands || stands->direction == found.up) return;
+  if (!stands) return detect_reference_axes_by_pelvis(evidence, found);
+  if (stands->direction == found.up) return;
   const auto forward = facing(evidence.reference, evidence.marks, stands->direction);
   if (!forward) return;
   found.reference_up = stands->direction;

@@ -55,6 +55,10 @@ void detect_up_without_motion(const Evidence& evidence, Conventions& found) {
       evidence.marks.lower_end(), signed_name(found.up));
 }
 
+bool is_usual(Direction up) {
+  return up == Direction::plus_y || up == Direction::plus_z;
+}
+
 // The floor of a world is at 0, and a figure that stands in it has its lowest joint there. One that
 // seems to stand along an axis for which this is not so, and whose reference pose does not stand
 // along it either, may lie: then its lowest joint is near 0 along the true one.
@@ -62,15 +66,16 @@ void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
   constexpr double kNear = 0.08;  // all of the figure's height
   constexpr double kBelow = -0.03;
   constexpr double kLeastHips = 0.03;  // flesh is between a body and the ground
+  const auto& reference = evidence.reference_stands;
+  const bool unusual = !is_usual(found.up) && reference && is_usual(reference->direction);
   const auto standing = heights_along(evidence, found.up);
-  if (!standing || std::abs(standing->lowest) <= kNear) return;
+  if (!standing || (std::abs(standing->lowest) <= kNear && !unusual)) return;
   const auto lies = [&](Direction up) {
     if (on_one_axis(up, found.up)) return false;
     const auto lying = heights_along(evidence, up);
     return lying && lying->lowest >= kBelow && lying->lowest <= kNear && lying->hips >= kLeastHips;
   };
   std::optional<Direction> ground;
-  const auto& reference = evidence.reference_stands;
   if (reference) {
     if (lies(reference->direction)) ground = reference->direction;
   } else {
@@ -86,13 +91,11 @@ void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
     found.up_confidence = Confidence::guess;
     return;
   }
+  if (std::abs(standing->lowest) <= kNear) return;
   found.up_reason += "; there it is not near the ground";
-  const auto usual = [](Direction up) {
-    return up == Direction::plus_y || up == Direction::plus_z;
-  };
-  const bool other_is_usual = reference && usual(reference->direction);
-  if (!usual(found.up) || other_is_usual) {
-    if (other_is_usual && !usual(found.up)) {
+  const bool other_is_usual = reference && is_usual(reference->direction);
+  if (!is_usual(found.up) || other_is_usual) {
+    if (other_is_usual && !is_usual(found.up)) {
       found.up = reference->direction;
       found.up_reason += ", and hardly any file has that axis up; the reference pose's is taken";
     }
@@ -102,13 +105,23 @@ void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
   }
 }
 
+// Whether the figure stands as its reference pose does in part of the motion, and is along `other`
+// in the rest of it: it lies there, or falls.
+bool stands_at_times(const Evidence& evidence, const UpVotes& votes, Direction other) {
+  constexpr double kPart = 0.2;
+  const auto& reference = evidence.reference_stands;
+  return reference && reference->direction != other && is_usual(reference->direction) &&
+         votes.share(reference->direction) >= kPart;
+}
+
 void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Conventions& found) {
   const auto& reference = evidence.reference_stands;
   const Direction winner = votes.winner();
   const double share = votes.share(winner);
   const int percent = static_cast<int>(std::lround(100 * share));
   const bool agrees = reference && reference->direction == winner;
-  if (share >= 0.5 && !(reference && reference->direction == opposite(winner))) {
+  const bool turned_over = reference && reference->direction == opposite(winner);
+  if (share >= 0.5 && !turned_over && !stands_at_times(evidence, votes, winner)) {
     found.up = winner;
     found.up_confidence = agrees || share >= 0.8 ? Confidence::certain : Confidence::likely;
     found.up_reason =
@@ -133,6 +146,10 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
         "the reference pose stands along {}; the motion is upright along "
         "it in {}% of the frames looked at only",
         signed_name(found.up), static_cast<int>(std::lround(100 * votes.share(found.up))));
+    if (turned_over && share >= 0.8) {
+      found.up_confidence = Confidence::guess;
+      found.up_reason += fmt::format(", and upside down in {}%", percent);
+    }
     return;
   }
   found.up = nearest_axis(votes.sum).direction;

@@ -50,21 +50,40 @@ struct Step {
   int many_degrees = 0;  // joints that turn by 5 degrees or more
 };
 
-Step step_between(const Clip& clip, int first, int second) {
-  const auto joints = static_cast<std::size_t>(clip.joint_count());
-  std::vector<Transform> world(joints), a(joints), b(joints);
-  clip.get_pose(first, world);
-  world_to_local(clip.skeleton.parents, world, a);
-  clip.get_pose(second, world);
-  world_to_local(clip.skeleton.parents, world, b);
-  Step step;
-  for (std::size_t j = 0; j < joints; ++j) {
-    const double turn = angle_between(a[j].orientation, b[j].orientation) / kRadiansPerDegree;
-    step.largest = std::max(step.largest, turn);
-    if (turn >= 5.0) ++step.many_degrees;
+// The steps from one frame to the next, from the front.
+class Steps {
+ public:
+  explicit Steps(const Clip& clip)
+      : clip_(clip),
+        world_(static_cast<std::size_t>(clip.joint_count())),
+        before_(world_.size()),
+        now_(world_.size()) {
+    read_next();
   }
-  return step;
-}
+
+  Step next() {
+    std::swap(before_, now_);
+    read_next();
+    Step step;
+    for (std::size_t j = 0; j < world_.size(); ++j) {
+      const double turn =
+          angle_between(before_[j].orientation, now_[j].orientation) / kRadiansPerDegree;
+      step.largest = std::max(step.largest, turn);
+      if (turn >= 5.0) ++step.many_degrees;
+    }
+    return step;
+  }
+
+ private:
+  void read_next() {
+    clip_.get_pose(frame_++, world_);
+    world_to_local(clip_.skeleton.parents, world_, now_);
+  }
+
+  const Clip& clip_;
+  int frame_ = 0;
+  std::vector<Transform> world_, before_, now_;  // joints against their parents
+};
 
 // The share of joints with children that stand unturned against their parents, the root left out.
 double unturned_share(const Clip& clip, int frame) {
@@ -103,11 +122,12 @@ RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   result.reference = name_of(kind_of_pose(roles, clip.skeleton.reference));
   constexpr int kFewest = 4;
   if (clip.frame_count() < kFewest) return result;
-  const Step first_step = step_between(clip, 0, 1);
+  Steps steps(clip);
+  const Step first_step = steps.next();
   double later_step = 0;
   const int last = std::min(clip.frame_count() - 1, 11);
   for (int frame = 1; frame < last; ++frame) {
-    later_step = std::max(later_step, step_between(clip, frame, frame + 1).largest);
+    later_step = std::max(later_step, steps.next().largest);
   }
   std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
   clip.get_pose(0, pose);

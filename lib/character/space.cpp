@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "core/numbers.h"
@@ -36,6 +37,15 @@ void take_axes(const nodes::Space& space, Conventions& found) {
   found.up_reason = found.forward_reason = "the file's format or header says so";
 }
 
+void warn(const char* code, std::string message, std::string hint, Diagnostics& diagnostics) {
+  Diagnostic told;
+  told.severity = Severity::warning;
+  told.code = code;
+  told.message = std::move(message);
+  told.hint = std::move(hint);
+  diagnostics.push_back(std::move(told));
+}
+
 }  // namespace
 
 Mat4 rotation_to_apply(const nodes::Space& space) {
@@ -68,32 +78,33 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig, const Ro
   return found;
 }
 
+void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
+  if (!roles.humanoid) return;
+  // Dolls and giants are left in peace.
+  constexpr double kSmallest = 0.3;
+  constexpr double kTallest = 5.0;
+  Eigen::AlignedBox3d box;
+  for (const Transform& joint : skeleton.reference) box.extend(joint.position);
+  const double size = box.sizes().maxCoeff();
+  if (size >= kSmallest && size <= kTallest) return;
+  warn("scene-unit",
+       fmt::format("the figure is {} m large in the unit that is taken from the file, which is no "
+                   "person's size",
+                   readable(size, 3)),
+       "say what the file's unit is with --unit", diagnostics);
+}
+
 void check_figure(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
   if (!roles.humanoid) return;
   const Conventions found = detect_conventions(skeleton, roles, {});
-  const auto warn = [&](const char* code, std::string message, std::string hint) {
-    Diagnostic told;
-    told.severity = Severity::warning;
-    told.code = code;
-    told.message = std::move(message);
-    told.hint = std::move(hint);
-    diagnostics.push_back(std::move(told));
-  };
-  const double metres = found.unit.metres;
-  if (found.unit_confidence == Confidence::certain && (metres < 0.2 || metres > 5)) {
-    warn("scene-unit",
-         fmt::format("as the file's unit is taken the figure has an odd size: {} would fit {}",
-                     found.unit.name, "a person"),
-         "say the unit with --unit");
-  }
   if (found.up_confidence != Confidence::guess && found.up != Direction::plus_y) {
     warn("scene-up", fmt::format("the figure does not stand along +y: {}", found.up_reason),
-         "if it should, say which of the file's axes points up with --up");
+         "if it should, say which of the file's axes points up with --up", diagnostics);
   } else if (found.forward_confidence != Confidence::guess && found.forward != Direction::plus_z) {
     warn("scene-forward",
          fmt::format("the figure does not face +z: {}; it is left as it stands",
                      found.forward_reason),
-         fmt::format("--forward {} turns it to +z", direction_name(found.forward)));
+         fmt::format("--forward {} turns it to +z", direction_name(found.forward)), diagnostics);
   }
 }
 

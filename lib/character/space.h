@@ -23,10 +23,15 @@ Mat4 rotation_to_apply(const nodes::Space& space);
 Conventions find_conventions(const nodes::Space& space, const Rig* rig, const RoleMap& roles,
                              std::span<const Vec3> samples, const GivenConventions& given);
 
-// Holds a skeleton in Krok's frame against what a figure should be: upright, facing +Z, of a human
-// size. What is otherwise is warned of with the option that mends it (codes scene-up,
-// scene-forward, scene-unit); figures that are not humanoid pass. For scenes whose conventions were
-// not detected, but said by the file or the user.
+// Warns of a figure in Krok's frame that is far from a person's size (code scene-unit); figures
+// that are not humanoid pass. For scenes whose unit was not detected, but said by the file or the
+// user.
+void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics);
+
+// Holds a skeleton in Krok's frame against what a figure should be: upright, facing +Z. What is
+// otherwise is warned of with the option that mends it (codes scene-up, scene-forward); figures
+// that are not humanoid pass. For scenes whose axes were not detected, but said by the file or the
+// user.
 void check_figure(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics);
 
 }  // namespace krok::character

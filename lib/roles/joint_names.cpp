@@ -20,12 +20,16 @@ struct Word {
 };
 
 // Words of joints that each side has. The spellings are those of the exporters listed in roles.h;
-// Acclaim's bone names (humerus, radius, femur, tibia) are named after their first joint too.
+// Acclaim's bone names (humerus, radius, femur, tibia) are named after their first joint too. The
+// names of single joints (sternoclavicular, midtarsal, skullbase) are those of H-Anim, ISO/IEC
+// 19774, which SmartBody has too.
 constexpr std::array kSidedWords = {Word{"clavicle", Part::collar},
                                     Word{"clav", Part::collar},
                                     Word{"collar", Part::collar},
                                     Word{"collarbone", Part::collar},
                                     Word{"scapula", Part::collar},
+                                    Word{"sternoclavicular", Part::collar},
+                                    Word{"acromioclavicular", Part::collar},
                                     Word{"shoulder", Part::shoulder},
                                     Word{"shldr", Part::shoulder},
                                     Word{"shldrbend", Part::upper_arm},
@@ -74,14 +78,16 @@ constexpr std::array kSidedWords = {Word{"clavicle", Part::collar},
                                     Word{"toes", Part::toes},
                                     Word{"toebase", Part::toes},
                                     Word{"forefoot", Part::toes},
+                                    Word{"midtarsal", Part::toes},
                                     Word{"ball", Part::toes}};
 
 constexpr std::array kMiddleWords = {
-    Word{"hips", Part::hips},       Word{"hip", Part::hips},      Word{"pelvis", Part::hips},
-    Word{"head", Part::head},       Word{"skull", Part::head},    Word{"lowerback", Part::spine},
-    Word{"upperback", Part::spine}, Word{"back", Part::spine},    Word{"abdomen", Part::spine},
-    Word{"ab", Part::spine},        Word{"waist", Part::spine},   Word{"torso", Part::spine},
-    Word{"thorax", Part::spine},    Word{"tospine", Part::spine}, Word{"ribcage", Part::spine}};
+    Word{"hips", Part::hips},      Word{"hip", Part::hips},        Word{"pelvis", Part::hips},
+    Word{"head", Part::head},      Word{"skull", Part::head},      Word{"lowerback", Part::spine},
+    Word{"skullbase", Part::head}, Word{"upperback", Part::spine}, Word{"back", Part::spine},
+    Word{"abdomen", Part::spine},  Word{"ab", Part::spine},        Word{"waist", Part::spine},
+    Word{"torso", Part::spine},    Word{"thorax", Part::spine},    Word{"tospine", Part::spine},
+    Word{"ribcage", Part::spine}};
 
 // Anywhere in the name.
 constexpr std::array<std::string_view, 27> kHelperWords = {

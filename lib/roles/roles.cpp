@@ -296,7 +296,9 @@ class RoleFinder {
     if (head_ >= 0) role(head_) = Role::head;
     int upward = head_ >= 0 ? parent(head_) : neck_;
     for (; upward >= 0 && !placed(upward); upward = parent(upward)) {
-      const bool spine = part(upward) == Part::spine || (arms < 0 && part(upward) != Part::neck);
+      // Between arms and head is the neck, unless another joint is named so.
+      const bool spine =
+          part(upward) != Part::neck && (arms < 0 || (part(upward) == Part::spine && neck_ >= 0));
       role(upward) = is_helper(upward) ? Role::helper : spine ? Role::spine : Role::neck;
     }
   }

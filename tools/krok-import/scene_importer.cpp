@@ -118,6 +118,7 @@ Status SceneImporter::find_space() {
   if (!rig_) return {};
   auto skeleton = character::skeleton_in_krok(*rig_, conversion_);
   if (!skeleton) return skeleton.error();
+  if (said.unit) character::check_size(*skeleton, roles_, found);
   if (said.complete()) character::check_figure(*skeleton, roles_, found);
   tell(found);
   return {};

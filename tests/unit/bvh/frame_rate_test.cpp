@@ -32,6 +32,17 @@ TEST(FrameRate, PrintedFrameTimesBecomeCommonRates) {
   EXPECT_EQ(rate_of("0.04").rate, 25.0);
 }
 
+TEST(FrameRate, TimesThatWereKeptInSinglePrecisionAreCommonRates) {
+  EXPECT_EQ(rate_of("0.03333334").rate, 30.0);
+  EXPECT_EQ(rate_of("0.0333333351").rate, 30.0);
+  EXPECT_EQ(rate_of("0.0416666679084301").rate, 24.0);
+  EXPECT_EQ(rate_of("0.008333334").rate, 120.0);
+  EXPECT_DOUBLE_EQ(rate_of("0.033366668").rate, 30.0 / 1.001);
+  EXPECT_NE(rate_of("0.0333335").rate, 30.0);
+  // Only common ones: what Krok itself writes, with all digits, comes back as it was.
+  EXPECT_DOUBLE_EQ(rate_of("0.0041870610093").rate, 1 / 0.0041870610093);
+}
+
 TEST(FrameRate, NtscRatesAreToldFromWholeOnes) {
   EXPECT_DOUBLE_EQ(rate_of("0.0333667").rate, 30.0 / 1.001);
   EXPECT_DOUBLE_EQ(rate_of("0.04170833").rate, 24.0 / 1.001);

@@ -132,6 +132,50 @@ TEST(Motion, TheReadingOfPositionsIsWorkedOut) {
   EXPECT_EQ(choice("", 0).choice, "absolute");
 }
 
+TEST(Motion, TheGroundTellsWhetherTheRootsPositionsReplaceItsOffset) {
+  // A pole of 1 m whose root hangs 90 above its foot; the OFFSET lies far to the side as well, as
+  // where an exporter puts the root's place in some frame of another take there.
+  const auto choice = [](const std::string& offset, const std::string& row) {
+    ReadOptions options = plain_options();
+    options.positions = Positions::automatic;
+    return read_ok("HIERARCHY\nROOT a\n{\nOFFSET " + offset +
+                       "\nCHANNELS 3 Xposition Yposition Zposition\n"
+                       "JOINT b\n{\nOFFSET 0 10 0\n}\nJOINT c\n{\nOFFSET 0 -90 0\n}\n}\n" +
+                       motion(1, row),
+                   options)
+        .positions;
+  };
+  for (const std::string row : {"-1143 91 300\n", "193 93 495\n"}) {
+    EXPECT_EQ(choice("193 91 495", row).choice, "absolute") << row;
+    EXPECT_EQ(choice("193 91 495", row).confidence, Confidence::likely) << row;
+  }
+  EXPECT_EQ(choice("193 91 495", "-1143 1 300\n").choice, "additive");
+  EXPECT_EQ(choice("0 -22 0", "0 91 0\n").choice, "absolute");
+  EXPECT_EQ(choice("0 22 0", "0 69 0\n").choice, "additive");
+  // Far above the ground in both readings: as most files have it, with a warning.
+  EXPECT_EQ(choice("0 -20 0", "0 200 0\n").choice, "absolute");
+  EXPECT_EQ(choice("0 -20 0", "0 200 0\n").confidence, Confidence::guess);
+}
+
+TEST(Motion, HipsUnderARootThatOnlyPlacesThemTravelAsARootDoes) {
+  // The OFFSET is where the hips stood in another take, the root turns their height from x to y.
+  const auto choice = [](const std::string& row) {
+    ReadOptions options = plain_options();
+    options.positions = Positions::automatic;
+    return read_ok(
+               "HIERARCHY\nROOT place\n{\nOFFSET 0 0 0\nCHANNELS 1 Zrotation\n"
+               "JOINT hips\n{\nOFFSET 94 1 -452\n"
+               "CHANNELS 3 Xposition Yposition Zposition\n"
+               "JOINT b\n{\nOFFSET 10 0 0\n}\nJOINT c\n{\nOFFSET -90 0 0\n}\n}\n}\n" +
+                   motion(1, row),
+               options)
+        .positions;
+  };
+  EXPECT_EQ(choice("90 93 0 -9\n").choice, "absolute");
+  EXPECT_EQ(choice("90 93 0 -9\n").confidence, Confidence::likely);
+  EXPECT_EQ(choice("90 1 0 -9\n").choice, "additive");
+}
+
 TEST(Motion, RowsMayGoOverLinesAndExponentsAndSignsAreNumbers) {
   const Clip expected = read_ok(kArm + motion(2, "1 2 3 4 5 6 7 8 9\n9 8 7 6 5 4 3 2 1\n")).clip;
   for (const std::string rows :

@@ -113,6 +113,50 @@ TEST(ReferenceAxes, GivenAxesHoldForBoth) {
   EXPECT_LT(largest_distance_from_bones(capture.clip), 1e-5);
 }
 
+// A person whose bones lie along x without turns, legs folded up; two turns make it stand: the
+// root's about z, from x to y, and the thighs'.
+std::string stored_folded(double heading) {
+  const std::string turns = " CHANNELS 3 Zrotation Xrotation Yrotation\n";
+  const auto joint = [&](const std::string& name, const char* offset, const std::string& below) {
+    return " JOINT " + name + "\n {\n OFFSET " + offset + "\n" + turns + below + " }\n";
+  };
+  const std::string end = " End Site\n {\n OFFSET 10 0 0\n }\n";
+  std::string text =
+      "HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition Yrotation "
+      "Zrotation Xrotation\n";
+  std::string arms;
+  std::string row = "0 95 0 " + std::to_string(heading) + " 90 0";
+  for (const bool left : {true, false}) {
+    const std::string side = left ? "Left" : "Right";
+    text += joint(side + "UpLeg", left ? "-5 0 10" : "-5 0 -10",
+                  joint(side + "Leg", "42 0 0", joint(side + "Foot", "42 0 0", end)));
+    row += " 180 0 0 0 0 0 0 0 0";
+    arms += joint(side + "Arm", left ? "25 0 15" : "25 0 -15",
+                  joint(side + "ForeArm", "28 0 0", joint(side + "Hand", "25 0 0", end)));
+  }
+  text += joint("Spine", "10 0 0", arms + joint("Neck", "35 0 0", joint("Head", "10 0 0", end)));
+  for (int value = 0; value < 27; ++value) row += " 0";
+  return text + "}\n" + motion(2, row + "\n" + row + "\n");
+}
+
+TEST(ReferenceAxes, TheHipsFaceWhereTheFigureDoesThoughTheReferencePoseFolds) {
+  for (const double heading : {0.0, 30.0, 90.0, 200.0}) {
+    const Capture capture = read_ok(stored_folded(heading), ReadOptions());
+    const Clip& clip = capture.clip;
+    EXPECT_EQ(capture.conventions.reference_up, Direction::plus_x) << heading;
+    EXPECT_EQ(capture.conventions.reference_forward, Direction::plus_y) << heading;
+    EXPECT_LT(largest_distance_from_bones(clip), 1e-5);
+    const auto joint = [&](const char* name) {
+      return static_cast<std::size_t>(clip.skeleton.find(name));
+    };
+    const Vec3 left =
+        (clip.positions[joint("LeftUpLeg")] - clip.positions[joint("RightUpLeg")]).cast<double>();
+    const Vec3 ahead = clip.orientations[joint("Hips")].cast<double>() * Vec3::UnitZ();
+    EXPECT_LT((ahead - left.normalized().cross(Vec3::UnitY())).norm(), 1e-5) << heading;
+    EXPECT_GT(clip.positions[joint("Head")].y(), clip.positions[joint("LeftFoot")].y() + 1);
+  }
+}
+
 TEST(ReferenceAxes, CapturesStandUprightAndFollowTheirBones) {
   int found = 0;
   for (const char* name : {"bvh_test3", "bvh_test4"}) {

@@ -109,6 +109,51 @@ TEST(DetectConventions, AReferencePoseThatStandsOtherwiseThanTheMotionYieldsToIt
   EXPECT_NE(found.up_reason.find("the motion decides"), std::string::npos) << found.up_reason;
 }
 
+// The person's joints as rigs have them whose bones all lie along their first axis: the pelvis has
+// up along x, forward along y, left along z, and the legs fold up beside the trunk.
+Skeleton folded_person() {
+  Skeleton skeleton = person(1, Direction::plus_y, Direction::plus_z);
+  const double hips_to_leg = -0.02;
+  for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
+    Vec3& p = skeleton.reference[j].position;
+    const bool below = p.y() < hips_to_leg;
+    p = Vec3(below ? 2 * hips_to_leg - p.y() : p.y(), p.z(), p.x());
+  }
+  return skeleton;
+}
+
+TEST(DetectConventions, AReferencePoseThatDoesNotStandFacesWhereItsPelvisDoes) {
+  const Skeleton folded = folded_person();
+  const Skeleton upright = person(1, Direction::plus_y, Direction::plus_z);
+  for (const double heading : {0.0, 60.0, 90.0, 180.0, 300.0}) {
+    std::vector<Vec3> samples;
+    for (int i = 0; i < 3; ++i) {
+      const auto sample =
+          sample_of(upright, axis_rotation(Axis::y, (heading + 10 * i) * kRadiansPerDegree));
+      samples.insert(samples.end(), sample.begin(), sample.end());
+    }
+    const Conventions found = detect(folded, samples);
+    EXPECT_EQ(found.up, Direction::plus_y);
+    EXPECT_EQ(found.reference_up, Direction::plus_x) << heading;
+    EXPECT_EQ(found.reference_forward, Direction::plus_y) << heading;
+  }
+}
+
+TEST(DetectConventions, AFoldedReferencePoseWhosePelvisTellsNothingIsAsTheMotion) {
+  const Skeleton upright = person(1, Direction::plus_y, Direction::plus_z);
+  Skeleton folded = folded_person();
+  for (const char* name : {"LeftUpLeg", "RightUpLeg", "Spine"}) {
+    folded.reference[static_cast<std::size_t>(folded.find(name))].position.setZero();
+  }
+  const Conventions flat = detect(folded, sample_of(upright));
+  EXPECT_EQ(flat.reference_up, flat.up);
+  EXPECT_EQ(flat.reference_forward, flat.forward);
+  // Without frames there is nothing to hold it against.
+  const Conventions still = detect(folded_person());
+  EXPECT_EQ(still.reference_up, still.up);
+  EXPECT_EQ(still.reference_forward, still.forward);
+}
+
 TEST(DetectConventions, AHandstandDoesNotTurnTheWorldOver) {
   const Skeleton skeleton = person(1, Direction::plus_y, Direction::plus_z);
   const Quat upside_down(0, 1, 0, 0);
@@ -136,6 +181,44 @@ TEST(DetectConventions, AFigureThatLiesOnTheGroundIsToldWithAWarning) {
     EXPECT_EQ(found.up_confidence, Confidence::guess);
     EXPECT_EQ(found.forward, Direction::plus_z) << found.forward_reason;
   }
+}
+
+TEST(DetectConventions, AFigureThatFallsAndLiesDoesNotTurnTheWorld) {
+  const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
+  // It stands in a third of the motion and lies on its back or its belly from then on.
+  for (const double angle : {-90.0, 90.0}) {
+    const Quat turn = axis_rotation(Axis::x, angle * kRadiansPerDegree);
+    std::vector<Vec3> samples;
+    for (int i = 0; i < 9; ++i) {
+      const auto sample = i < 3 ? lifted(skeleton, Quat::Identity(), Vec3::UnitY(), 1)
+                                : lifted(skeleton, turn, Vec3::UnitY(), 1);
+      samples.insert(samples.end(), sample.begin(), sample.end());
+    }
+    const Conventions found = detect(skeleton, samples);
+    EXPECT_EQ(found.up, Direction::plus_y) << found.up_reason;
+    EXPECT_EQ(found.up_confidence, Confidence::likely);
+    EXPECT_EQ(found.forward, Direction::plus_z) << found.forward_reason;
+  }
+}
+
+TEST(DetectConventions, AMotionThatIsUpsideDownThroughoutIsAGuess) {
+  const Skeleton skeleton = person(1, Direction::plus_y, Direction::plus_z);
+  const Conventions found = detect(skeleton, sample_of(skeleton, Quat(0, 1, 0, 0)));
+  EXPECT_EQ(found.up_confidence, Confidence::guess);
+  EXPECT_NE(found.up_reason.find("upside down"), std::string::npos) << found.up_reason;
+}
+
+TEST(DetectConventions, AFigureThatLiesOnTheGroundAlongAnUnusualAxisIsNotUpright) {
+  const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
+  // Up along -z, with the feet at z = 0 by chance.
+  const Quat turn = axis_rotation(Axis::x, -80 * kRadiansPerDegree);
+  std::vector<Vec3> sample = lifted(skeleton, turn, Vec3::UnitY(), 1);
+  double lowest = INFINITY;
+  for (const Vec3& p : sample) lowest = std::min(lowest, -p.z());
+  for (Vec3& p : sample) p.z() += lowest;
+  const Conventions found = detect(skeleton, sample);
+  EXPECT_EQ(found.up, Direction::plus_y) << found.up_reason;
+  EXPECT_EQ(found.up_confidence, Confidence::guess);
 }
 
 TEST(DetectConventions, AFigureUprightAlongAnUnusualAxisAwayFromTheGroundIsAGuess) {

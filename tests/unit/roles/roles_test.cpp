@@ -298,6 +298,16 @@ const Scheme kSchemes[] = {
      "left_upper_arm=Skeleton_arm_joint_L__4_ left_lower_arm=Skeleton_arm_joint_L__3_ "
      "left_hand=Skeleton_arm_joint_L__2_ left_upper_leg=leg_joint_L_1 "
      "left_lower_leg=leg_joint_L_2 left_foot=leg_joint_L_3 left_toes=leg_joint_L_5"},
+    {"smartbody_h_anim",
+     "base .spine1 ..spine2 ...spine3 ....spine4 .....spine5 ......skullbase "
+     "....l_sternoclavicular .....l_acromioclavicular ......l_shoulder .......l_elbow "
+     "........l_wrist ....r_sternoclavicular .....r_acromioclavicular ......r_shoulder "
+     ".......r_elbow ........r_wrist .l_hip ..l_knee ...l_ankle ....l_midtarsal .r_hip ..r_knee "
+     "...r_ankle ....r_midtarsal",
+     "hips=base spine=spine1 chest=spine3 neck=spine4 head=skullbase "
+     "left_collar=l_sternoclavicular left_upper_arm=l_shoulder left_lower_arm=l_elbow "
+     "left_hand=l_wrist left_upper_leg=l_hip left_lower_leg=l_knee left_foot=l_ankle "
+     "left_toes=l_midtarsal"},
     {"no_collars_no_neck",
      "hips .spine ..head ..left_arm ...left_forearm ....left_hand ..right_arm ...right_forearm "
      "....right_hand .left_leg ..left_knee ...left_ankle .right_leg ..right_knee ...right_ankle",
