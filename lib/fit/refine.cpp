@@ -11,10 +11,11 @@
 
 #include "core/parallel.h"
 #include "fit/error_field_internal.h"
+#include "fit/held_out_internal.h"
 #include "fit/low_weights_internal.h"
 #include "fit/new_rows_internal.h"
+#include "fit/polished_internal.h"
 #include "fit/worst_places_internal.h"
-#include "rbf/weight_figures.h"
 #include "rbf/weight_solver.h"
 
 namespace krok::fit {
@@ -25,19 +26,11 @@ using rbf::WeightEvaluator;
 using rbf::WeightFunction;
 using rbf::WeightSolver;
 
-constexpr int kPointsEach = 40;  // for each parameter
-constexpr int kOutsidePoints = 256;
-constexpr int kFigurePoints = 128;  // for the range and roughness of weights
-constexpr double kGrowth = 1.25;    // of the mean square error held out, over the least so far
+constexpr int kPointsEach = 40;   // for each parameter
+constexpr double kGrowth = 1.25;  // of the mean square error held out, over the least so far
 constexpr int kStalledRounds = 3;
 constexpr double kLowerOnTheWay = 0.02;
 constexpr int kRefusedRounds = 2;  // for so long a refused point is not tried again
-
-// Which points a random sequence is for.
-enum class Use : std::uint64_t { held_out, outside, sweep };
-std::uint64_t seed_for(std::uint64_t seed, Use use, std::size_t round = 0) {
-  return (seed * 1000003 + round) * 3 + static_cast<std::uint64_t>(use) + 1;
-}
 
 using detail::Found;
 
@@ -50,14 +43,8 @@ class Refiner {
         measure_(measure),
         options_(options),
         d_(static_cast<std::size_t>(solver_.function().dimensions)),
-        n_(static_cast<std::size_t>(solver_.function().examples)) {
-    const int held_out =
-        options.held_out > 0 ? options.held_out : std::min(256 * static_cast<int>(d_), 1024);
-    held_out_ = detail::places_within(solver_.function(), held_out,
-                                      seed_for(options.seed, Use::held_out), options.inside);
-    outside_ = detail::places_around(solver_.function(), kOutsidePoints,
-                                     seed_for(options.seed, Use::outside), options.inside);
-  }
+        n_(static_cast<std::size_t>(solver_.function().examples)),
+        held_out_(solver_.function(), measure, options) {}
 
   Status begin();
   Status run(Progress& progress);
@@ -71,9 +58,7 @@ class Refiner {
   detail::ErrorField field() const {
     return {solver_.function(), *evaluator_, measure_, options_.inside, options_.jobs};
   }
-  RefineFigures errors_held_out(Error* failure = nullptr) const;
   double limit() const { return detail::low_limit(options_); }
-  void add_figures(RefineFigures& figures) const;
   std::vector<Found> seek(double usual, double& worst) const;
   // False: there is no error left.
   Result<bool> make_round();
@@ -88,7 +73,7 @@ class Refiner {
   const rbf::Measure& measure_;
   const RefineOptions& options_;
   std::size_t d_, n_;
-  std::vector<double> held_out_, outside_;  // places
+  detail::HeldOut held_out_;
   RefineFigures now_;
   double lowest_ = 0;  // weight at the points held out
 };
@@ -98,38 +83,8 @@ Status Refiner::update() {
   auto evaluator = WeightEvaluator::create(solver_.function());
   if (!evaluator) return evaluator.error();
   evaluator_ = std::move(*evaluator);
-  lowest_ = detail::lowest_weight(solver_.function(), *evaluator_, held_out_);
+  lowest_ = held_out_.lowest(solver_.function(), *evaluator_);
   return {};
-}
-
-// Of the errors held out, which is what decides.
-RefineFigures Refiner::errors_held_out(Error* failure) const {
-  RefineFigures result;
-  const detail::ErrorField errors = field();
-  const std::vector<double> within = errors.at(held_out_, failure);
-  result.within = errors.by_parameter(within);
-  const std::size_t count = held_out_.size() / d_;
-  for (std::size_t p = 0; p < count; ++p) result.failed += std::isnan(within[p * d_]) ? 1 : 0;
-  for (const double length : errors.lengths(within)) {
-    result.largest = std::max(result.largest, length);
-    result.mean_square += length * length;
-  }
-  const auto measured = static_cast<int>(count) - result.failed;
-  if (measured > 0) result.mean_square /= measured;
-  return result;
-}
-
-// All that is only told.
-void Refiner::add_figures(RefineFigures& figures) const {
-  const detail::ErrorField errors = field();
-  figures.outside = errors.by_parameter(errors.at(outside_));
-  if (const auto weights = rbf::weight_figures(solver_.function(), kFigurePoints, options_.inside);
-      weights.ok()) {
-    figures.least_weight = weights->least;
-    figures.largest_weight = weights->largest;
-    figures.roughness = weights->roughness;
-  }
-  figures.condition = solver_.condition();
 }
 
 Status Refiner::begin() {
@@ -152,17 +107,17 @@ Status Refiner::begin() {
   if (state_.rounds.empty()) {
     state_.example_error = std::ranges::max(field().lengths(at_examples));
   }
-  if (held_out_.empty()) {
+  if (held_out_.count() == 0) {
     return Error("fit-inside", "no point of the parameters' range is where weights are wanted");
   }
-  now_ = errors_held_out(&failure);
-  if (now_.failed > static_cast<int>(held_out_.size() / d_ / 2)) {
+  now_ = held_out_.errors(solver_.function(), *evaluator_, &failure);
+  if (now_.failed > static_cast<int>(held_out_.count() / 2)) {
     failure.message = fmt::format("{} of {} points within the range cannot be measured: {}",
-                                  now_.failed, held_out_.size() / d_, failure.message);
+                                  now_.failed, held_out_.count(), failure.message);
     failure.code = "fit-measure";
     return failure;
   }
-  add_figures(now_);
+  held_out_.add_rest(solver_, *evaluator_, now_);
   if (state_.rounds.empty()) state_.before = now_;
   return {};
 }
@@ -228,8 +183,8 @@ Status Refiner::run(Progress& progress) {
 std::vector<Found> Refiner::seek(double usual, double& worst) const {
   const int sweep = options_.sweep > 0 ? options_.sweep : 128 * static_cast<int>(d_);
   const std::vector<double> sweep_places = detail::places_within(
-      solver_.function(), sweep, seed_for(options_.seed, Use::sweep, state_.rounds.size()),
-      options_.inside);
+      solver_.function(), sweep,
+      detail::seed_for(options_.seed, detail::Use::sweep, state_.rounds.size()), options_.inside);
   std::vector<detail::ErrorPlace> avoided;
   for (const RefusedPoint& refused : state_.refused) {
     if (refused.round + kRefusedRounds < static_cast<int>(state_.rounds.size())) continue;
@@ -294,7 +249,7 @@ Status Refiner::insert(std::vector<Found>& found, RefineRound& round) {
     }
     const double lowest_before = lowest_;
     if (Status status = update(); !status) return status;
-    RefineFigures figures = errors_held_out();
+    RefineFigures figures = held_out_.errors(solver_.function(), *evaluator_);
     const bool lower = lowest_ < lowest_allowed(lowest_before);
     if (lower || has_grown(figures)) {
       for (Found& each : some) {
@@ -342,7 +297,7 @@ Result<bool> Refiner::make_round() {
   }
   std::erase_if(found, [](const Found& each) { return each.refusal.has_value(); });
   if (Status status = insert(found, round); !status) return status.error();
-  if (round.inserted > 0) add_figures(now_);
+  if (round.inserted > 0) held_out_.add_rest(solver_, *evaluator_, now_);
   round.after = now_;
   state_.rounds.push_back(std::move(round));
   return true;
@@ -384,12 +339,14 @@ std::string_view stop_name(Stop stop) {
 
 Result<Refined> refine(const Refined& start, const rbf::Measure& measure,
                        const RefineOptions& options, Progress& progress) {
-  auto solver = WeightSolver::resume(start.function);
+  // It goes on with the rows that it found.
+  const Refined found = detail::without_polish(start);
+  auto solver = WeightSolver::resume(found.function);
   if (!solver) return solver.error();
   if (Status status = check_options(options, start.function.dimensions); !status) {
     return status.error();
   }
-  Refiner refiner(start, std::move(*solver), measure, options);
+  Refiner refiner(found, std::move(*solver), measure, options);
   if (Status status = refiner.begin(); !status) return status.error();
   if (Status status = refiner.run(progress); !status) return status.error();
   return std::move(refiner).take();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -116,6 +117,14 @@ enum class Stop : unsigned char {
 // "rounds", "points", ...
 std::string_view stop_name(Stop stop);
 
+// What polishing made of the weights, see polish.h.
+struct Polished {
+  std::vector<double> found_rows;  // [inserted x N], as they were before
+  RefineFigures after;
+
+  bool operator==(const Polished&) const = default;
+};
+
 // Weight functions and how they came to be: all that is needed to go on.
 struct Refined {
   rbf::WeightFunction function;
@@ -124,16 +133,17 @@ struct Refined {
   std::vector<RefineRound> rounds;
   std::vector<RefusedPoint> refused;
   Stop stop = Stop::none;
+  std::optional<Polished> polished;
 
   bool operator==(const Refined&) const = default;
 };
 
 // Goes on from `start`, which at first has a function alone (its examples, or with points
 // inserted), later a result of this function. Going on after a stop at `rounds` gives the same bits
-// as a call that was not stopped. Progress counts the points inserted. Codes: those of
-// rbf::WeightSolver::resume(); fit-options for options out of range; fit-inside where `inside`
-// holds nowhere; fit-measure where f fails at an example or at more than half of the points held
-// out, with the measure's own words.
+// as a call that was not stopped, also when it has been polished meanwhile. Progress counts the
+// points inserted. Codes: those of rbf::WeightSolver::resume(); fit-options for options out of
+// range; fit-inside where `inside` holds nowhere; fit-measure where f fails at an example or at
+// more than half of the points held out, with the measure's own words.
 Result<Refined> refine(const Refined& start, const rbf::Measure& measure,
                        const RefineOptions& options, Progress& progress);
 

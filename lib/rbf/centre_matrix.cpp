@@ -68,21 +68,26 @@ void CentreMatrix::append(std::span<const double> place, double radius) {
   }
   places_.insert(places_.end(), place.begin(), place.end());
   inverse_squares_.push_back(inverse_square);
+  append_base_parts(place, planes_, to_base_);
   const std::size_t size = base_.size();
   for (std::size_t a = 0; a < size; ++a) {
+    const auto within = std::span<const double>(base_phi_).subspan(a * size, size);
+    beyond_base_.push_back(to_base_[k * size + a] - dot(within, planes(k)));
+  }
+}
+
+void CentreMatrix::append_base_parts(std::span<const double> place, std::vector<double>& planes,
+                                     std::vector<double>& to_base) const {
+  for (std::size_t a = 0; a < base_.size(); ++a) {
     const auto column = static_cast<Eigen::Index>(a);
     double plane = base_inverse_(0, column);
     for (std::size_t i = 0; i < dimensions_; ++i) {
       plane += base_inverse_(static_cast<Eigen::Index>(i) + 1, column) * place[i];
     }
-    planes_.push_back(plane);
+    planes.push_back(plane);
     const auto base_place =
         std::span<const double>(base_places_).subspan(a * dimensions_, dimensions_);
-    to_base_.push_back(basis_scalar(kernel_, square_distance(place, base_place), 1).value);
-  }
-  for (std::size_t a = 0; a < size; ++a) {
-    const auto within = std::span<const double>(base_phi_).subspan(a * size, size);
-    beyond_base_.push_back(to_base_[k * size + a] - dot(within, planes(k)));
+    to_base.push_back(basis_scalar(kernel_, square_distance(place, base_place), 1).value);
   }
 }
 
@@ -123,6 +128,19 @@ double CentreMatrix::kappa(std::size_t i, std::size_t k) const {
   };
   return phi(i, k) - dot(row(planes_, i), row(beyond_base_, k)) -
          dot(row(planes_, k), row(to_base_, i));
+}
+
+void CentreMatrix::kappa_at(std::span<const double> place, std::span<const std::size_t> centres,
+                            std::span<double> values) const {
+  const std::size_t size = base_.size();
+  std::vector<double> planes, to_base;
+  append_base_parts(place, planes, to_base);
+  for (std::size_t c = 0; c < centres.size(); ++c) {
+    const std::size_t k = centres[c];
+    values[c] = phi_between(place, k) -
+                dot(planes, std::span(beyond_base_).subspan(k * size, size)) -
+                dot(std::span(planes_).subspan(k * size, size), to_base);
+  }
 }
 
 bool CentreMatrix::in_base(std::size_t k) const {

@@ -50,6 +50,9 @@ class CentreMatrix {
   }
   // kappa of centre k at the place of centre i; neither is of the base.
   double kappa(std::size_t i, std::size_t k) const;
+  // kappa of each of `centres`, none of the base, at any place; no centre's smoothing counts there.
+  void kappa_at(std::span<const double> place, std::span<const std::size_t> centres,
+                std::span<double> values) const;
 
   const std::vector<std::size_t>& base() const { return base_; }
   bool in_base(std::size_t k) const;
@@ -58,6 +61,9 @@ class CentreMatrix {
 
  private:
   double phi_between(std::span<const double> place, std::size_t k) const;
+  // Appends the planes of the base at a place, and phi between it and each of the base.
+  void append_base_parts(std::span<const double> place, std::vector<double>& planes,
+                         std::vector<double>& to_base) const;
 
   Kernel kernel_;
   std::size_t dimensions_, examples_;

@@ -196,6 +196,10 @@ const WeightFunction& WeightSolver::function() const {
   return system_->f;
 }
 
+void WeightSolver::influences(std::span<const double> point, std::span<double> of_rows) const {
+  system_->influences(point, of_rows);
+}
+
 double WeightSolver::residual() const {
   return system_->residual;
 }

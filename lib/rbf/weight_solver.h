@@ -61,6 +61,11 @@ class WeightSolver {
   // From a point to the nearest centre, in scaled parameters.
   double distance_to_centres(std::span<const double> point) const;
 
+  // How much the row of each inserted point counts at a point: the weights are linear in the rows,
+  // w(p) changes by influence_k(p) times what is added to row k. `of_rows`: [inserted]. May be
+  // called from several threads.
+  void influences(std::span<const double> point, std::span<double> of_rows) const;
+
   // What residual() may be.
   static constexpr double kResidual = 1e-9;
 

@@ -266,4 +266,18 @@ double WeightSystem::condition() const {
   return norm * inverse_norm;
 }
 
+// The function's part by what is wanted at the other centres is kappa(p, .) K^-1 u, with K their
+// kappa and u the wanted weights less the planes through the base: rows that are inserted stand in
+// u as they are.
+void WeightSystem::influences(std::span<const double> point, std::span<double> of_rows) const {
+  double place_values[kMostDimensions];
+  const auto place = std::span(place_values).first(d());
+  f.scale(point, place);
+  std::vector<double> values(others.size());
+  matrix.kappa_at(place, others, values);
+  factors.solve_transposed(values);
+  const std::size_t examples = others.size() - of_rows.size();
+  std::ranges::copy(std::span(values).subspan(examples), of_rows.begin());
+}
+
 }  // namespace krok::rbf::detail

@@ -40,6 +40,7 @@ struct WeightSystem {
 
   // See WeightSolver.
   double condition() const;
+  void influences(std::span<const double> point, std::span<double> of_rows) const;
 
  private:
   // What is left of values at centre k, [N], when the planes are taken off.

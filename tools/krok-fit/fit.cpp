@@ -45,7 +45,7 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
   steps::StepsFile file;
   file.library = input.library;
   file.weights = fitted.refined.function;
-  file.report = report_json(input, fitted).dump();
+  file.report = saved_json(input, fitted).dump();
   file.provenance = context.provenance();
   OutputSet outputs(context);
   Status added = outputs.add(context.output,

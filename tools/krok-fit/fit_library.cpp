@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/quantity.h"
+#include "fit/polish.h"
 #include "math/types.h"
 #include "parametric/bounds.h"
 #include "rbf/weight_solver.h"
@@ -157,8 +158,20 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   how.jobs = context.jobs;
   const auto begin = std::chrono::steady_clock::now();
   auto refined = fit::refine(fitted.start, measure_of(measure), how, *context.progress);
-  if (!refined) return std::move(refined).error().in_file(options.library);
+  if (!refined) {
+    // Weights that were saved and cannot be made again are no fault of the description.
+    const bool saved = start != nullptr && refined.error().code.starts_with("rbf-");
+    return std::move(refined).error().in_file(saved ? options.resume : options.library);
+  }
   fitted.refined = *std::move(refined);
+  if (options.polish) {
+    context.progress->begin("polishing", 1);
+    auto polished = fit::polish(fitted.refined, measure_of(measure), how);
+    context.progress->advance(1);
+    context.progress->end();
+    if (!polished) return std::move(polished).error().in_file(options.library);
+    fitted.refined = *std::move(polished);
+  }
   fitted.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (fitted.refined.function.smoothing > 0) {
     const auto distances = parametric::distances_to_examples(library, fitted.refined.function);

@@ -28,8 +28,8 @@ struct FittedLibrary {
 // Measures blends of the library; both arguments must outlive it. May be called by several threads.
 rbf::Measure measure_of(const parametric::Measure& measure);
 
-// Weights by the examples alone, or what `start` has, refined as the options say. Codes: those of
-// rbf::WeightSolver, with the names of the examples, and of fit::refine.
+// Weights by the examples alone, or what `start` has, refined and polished as the options say.
+// Codes: those of rbf::WeightSolver, with the names of the examples, and of fit::refine.
 Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& options,
                                   SmoothingChoice smoothing, const fit::Refined* start,
                                   ToolContext& context);

@@ -56,12 +56,21 @@ class Charts {
   Figure errors() const {
     Figure figure;
     figure.title = "Error at points held out";
-    std::vector<double> inserted = {static_cast<double>(fitted_.start.function.inserted())};
-    int sum = fitted_.start.function.inserted();
+    const auto& rounds = fitted_.refined.rounds;
     const auto rounds_before = fitted_.start.rounds.size();
-    for (std::size_t r = rounds_before; r < fitted_.refined.rounds.size(); ++r) {
-      sum += fitted_.refined.rounds[r].inserted;
+    int sum = fitted_.start.function.inserted();
+    std::vector<double> inserted = {static_cast<double>(sum)};
+    std::vector<const fit::RefineFigures*> figures = {
+        rounds_before == 0 ? &fitted_.refined.before : &rounds[rounds_before - 1].after};
+    for (std::size_t r = rounds_before; r < rounds.size(); ++r) {
+      sum += rounds[r].inserted;
       inserted.push_back(sum);
+      figures.push_back(&rounds[r].after);
+    }
+    // A drop at the end.
+    if (fitted_.refined.polished) {
+      inserted.push_back(sum);
+      figures.push_back(&fitted_.refined.polished->after);
     }
     // A logarithmic axis has no 0: the examples themselves count as points.
     const auto examples = static_cast<double>(input_.library.examples.size());
@@ -76,13 +85,10 @@ class Charts {
       Series most = series_of("95 % of points", SeriesStyle::line_and_points);
       Series mean = series_of("mean", SeriesStyle::line_and_points);
       for (Series* series : {&largest, &most, &mean}) series->x = inserted;
-      for (std::size_t i = 0; i < inserted.size(); ++i) {
-        const fit::RefineFigures& figures =
-            i + rounds_before == 0 ? fitted_.refined.before
-                                   : fitted_.refined.rounds[i + rounds_before - 1].after;
-        largest.y.push_back(figures.within[d].largest * unit.factor);
-        most.y.push_back(figures.within[d].most * unit.factor);
-        mean.y.push_back(figures.within[d].mean * unit.factor);
+      for (const fit::RefineFigures* at : figures) {
+        largest.y.push_back(at->within[d].largest * unit.factor);
+        most.y.push_back(at->within[d].most * unit.factor);
+        mean.y.push_back(at->within[d].mean * unit.factor);
       }
       panel.series = {std::move(largest), std::move(most), std::move(mean)};
       figure.panels.push_back(std::move(panel));

@@ -112,8 +112,12 @@ Json left_out_json(const std::vector<parametric::HeldOut>& left_out) {
   return result;
 }
 
-const RefineFigures& last_figures(const FittedLibrary& fitted) {
+const RefineFigures& last_found_figures(const FittedLibrary& fitted) {
   return fitted.refined.rounds.empty() ? fitted.refined.before : fitted.refined.rounds.back().after;
+}
+
+const RefineFigures& last_figures(const FittedLibrary& fitted) {
+  return fitted.refined.polished ? fitted.refined.polished->after : last_found_figures(fitted);
 }
 
 std::string with_unit(double value, const ShownUnit& unit) {
@@ -137,6 +141,19 @@ std::string what_stopped(const fit::Refined& refined) {
     default:
       return std::string(fit::stop_name(refined.stop));
   }
+}
+
+void say_polish(const LibraryInput& input, const FittedLibrary& fitted, ToolContext& context) {
+  if (!fitted.refined.polished) return;
+  std::string text;
+  for (std::size_t d = 0; d < input.library.parameters.size(); ++d) {
+    const ShownUnit unit = unit_for_errors(input.library.parameters[d]);
+    text += fmt::format("{}{} (mean {})", d == 0 ? "" : ", ",
+                        with_unit(last_found_figures(fitted).within[d].largest, unit),
+                        with_unit(last_found_figures(fitted).within[d].mean, unit));
+  }
+  context.say(
+      fmt::format("  inserted weights polished together; before that, errors were {}", text));
 }
 
 void say_smoothing(const FittedLibrary& fitted, ToolContext& context) {
@@ -188,8 +205,19 @@ Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
   result["before"] = figures_json(fitted.refined.before, input);
   result["rounds"] = rounds_json(input, fitted);
   result["refused_points"] = refused_json(fitted);
+  if (fitted.refined.polished) {
+    result["polished"] = {{"after", figures_json(fitted.refined.polished->after, input)}};
+  }
   result["leave_one_out"] = left_out_json(fitted.left_out);
   result["stop"] = std::string(fit::stop_name(fitted.refined.stop));
+  return result;
+}
+
+Json saved_json(const LibraryInput& input, const FittedLibrary& fitted) {
+  Json result = report_json(input, fitted);
+  if (fitted.refined.polished) {
+    result["polished"]["found_rows"] = fitted.refined.polished->found_rows;
+  }
   return result;
 }
 
@@ -222,6 +250,7 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
         readable(1e3 * means.linear, 3), readable(1e3 * means.nearest, 3)));
   }
   say_smoothing(fitted, context);
+  say_polish(input, fitted, context);
   context.say(fmt::format("  {} inserted in {} ({:.2g} s): {}; weights {} to {}",
                           counted(fitted.refined.function.inserted(), "point"),
                           counted(static_cast<long long>(fitted.refined.rounds.size()), "round"),

@@ -8,16 +8,11 @@
 #include "parametric/cut_steps.h"
 #include "parametric/library.h"
 #include "tools/common/tool.h"
+#include "tools/krok-fit/example_motions.h"
 
 // From the description of a library and the motions that it names to the library.
 
 namespace krok::fit_tool {
-
-// A motion that was left out, and why.
-struct RefusedClip {
-  std::string path;
-  Error error;
-};
 
 struct LibraryInput {
   library::LibraryDescription description;

@@ -46,7 +46,8 @@ void declare(CLI::App& app, Options& options) {
           ""))
       ->group("Fit");
   add_whole(app, "--refine", options.refine,
-            "Points to insert at most, 0 for none; otherwise 40 for each parameter", 0, 4000)
+            "Points to insert at most, 0 for none; otherwise 40 for each parameter", 0,
+            kMostRefined)
       ->group("Fit");
   app.add_option("--until", options.until,
                  "The largest error of lengths that is small enough; otherwise each parameter's "
@@ -61,6 +62,12 @@ void declare(CLI::App& app, Options& options) {
       ->group("Fit");
   add_whole(app, "--seed", options.seed, "Of the points that are looked at", 0, 1'000'000'000)
       ->default_str("1")
+      ->group("Fit");
+  app.add_flag_callback(
+         "--no-polish", [&options] { options.polish = false; },
+         "Leave the weights of inserted points as each was found, right at its own point; "
+         "otherwise "
+         "all are moved together to where the error between them is least, if that helps")
       ->group("Fit");
   app.add_option("--resume", options.resume,
                  "A library made from the same examples, whose refinement goes on")

@@ -19,6 +19,7 @@ struct Options {
   std::string until;             // a length: the error at which lengths are good enough
   int held_out = 0;              // 0: as refine() chooses
   std::uint64_t seed = 1;
+  bool polish = true;  // inserted weights together, after refinement
   std::string resume;  // a library to go on with
   std::string plots;   // a folder
 };
@@ -26,6 +27,9 @@ struct Options {
 // Each example is made by the others alone for at most so many of them: it takes time with the
 // fourth power of their number.
 inline constexpr std::size_t kMostLeftOut = 128;
+
+// Points that --refine may ask for.
+inline constexpr int kMostRefined = 4000;
 
 void declare(CLI::App& app, Options& options);
 Status check(const Options& options);

@@ -1,8 +1,11 @@
 #include "tools/krok-fit/saved_fit.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 
 #include "tools/common/report.h"
+#include "tools/krok-fit/options.h"
 
 namespace krok::fit_tool {
 
@@ -45,27 +48,59 @@ fit::Refusal refusal_named(const std::string& name) {
   return Refusal::growth;
 }
 
-fit::Refined refinement_of(const Json& json, const LibraryInput& input) {
+int count_of(const Json& json) {
+  const int count = json.get<int>();
+  if (count < 0) throw std::out_of_range("a number under 0");
+  return count;
+}
+
+// Whether the rounds come to the points that there are, as refinement counts them: what tells of
+// others may hold any number of points, each of which takes time.
+bool adds_up(const fit::Refined& refined) {
+  std::int64_t inserted = 0, refused = 0;
+  for (const fit::RefineRound& round : refined.rounds) {
+    if (round.inserted > fit::RefineOptions().points_a_round) return false;
+    inserted += round.inserted;
+    refused += round.refused;
+  }
+  const auto rounds = static_cast<int>(refined.rounds.size());
+  return inserted == refined.function.inserted() && inserted <= kMostRefined &&
+         refused == static_cast<std::int64_t>(refined.refused.size()) &&
+         std::ranges::all_of(refined.refused,
+                             [&](const auto& point) { return point.round < rounds; });
+}
+
+fit::Refined refinement_of(const Json& json, const LibraryInput& input,
+                           const rbf::WeightFunction& function) {
   fit::Refined refined;
+  refined.function = function;
   refined.example_error = json.at("example_error_of_range").get<double>();
   refined.before = figures_of(json.at("before"), input);
   for (const Json& entry : json.at("rounds")) {
     fit::RefineRound round;
-    round.inserted = entry.at("inserted").get<int>();
-    round.refused = entry.at("refused").get<int>();
-    round.by_point = entry.at("by_other_parameters").get<int>();
+    round.inserted = count_of(entry.at("inserted"));
+    round.refused = count_of(entry.at("refused"));
+    round.by_point = count_of(entry.at("by_other_parameters"));
     round.sought = entry.at("sought_of_range").get<double>();
     round.after = figures_of(entry.at("after"), input);
     refined.rounds.push_back(std::move(round));
   }
   for (const Json& entry : json.at("refused_points")) {
     refined.refused.push_back(
-        {entry.at("round").get<int>(), entry.at("point").get<std::vector<double>>(),
+        {count_of(entry.at("round")), entry.at("point").get<std::vector<double>>(),
          refusal_named(entry.at("reason").get<std::string>()), entry.at("value").get<double>()});
     if (refined.refused.back().point.size() != input.lower.size()) {
       throw std::out_of_range("a point of other dimensions");
     }
   }
+  if (const auto polished = json.find("polished"); polished != json.end()) {
+    refined.polished = {polished->at("found_rows").get<std::vector<double>>(),
+                        figures_of(polished->at("after"), input)};
+    if (refined.polished->found_rows.size() != function.inserted_rows.size()) {
+      throw std::out_of_range("rows of other points");
+    }
+  }
+  if (!adds_up(refined)) throw std::out_of_range("other points");
   return refined;
 }
 
@@ -74,13 +109,12 @@ fit::Refined refinement_of(const Json& json, const LibraryInput& input) {
 Result<fit::Refined> read_refinement(const std::string& text, const LibraryInput& input,
                                      const rbf::WeightFunction& function) {
   try {
-    fit::Refined refined = refinement_of(Json::parse(text), input);
-    refined.function = function;
-    return refined;
+    return refinement_of(Json::parse(text), input, function);
   } catch (const std::exception&) {
-    return Error("fit-resume",
-                 "its report does not tell how it was refined, or not of these parameters",
-                 "fit it anew, without --resume");
+    return Error(
+        "fit-resume",
+        "its report does not tell how it was refined, or not of these parameters and points",
+        "fit it anew, without --resume");
   }
 }
 

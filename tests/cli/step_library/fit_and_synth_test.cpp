@@ -9,6 +9,7 @@
 
 #include "cli/fixture.h"
 #include "core/file.h"
+#include "formats/steps/steps.h"
 
 namespace krok::test {
 namespace {
@@ -176,6 +177,74 @@ TEST_F(StepLibrary, GoingOnIsAsIfItHadNotStopped) {
   ASSERT_EQ(moved.exit_code, 0);
   fit_well({"--refine", "12", "--until", "0.001mm", "--resume", path("half.steps")});
   EXPECT_EQ(synthesised(set)[0]["weights"], whole[0]["weights"]);
+}
+
+// The errors before and after polishing are told, and going on, with and without, starts from what
+// was found.
+TEST_F(StepLibrary, InsertedWeightsArePolishedUnlessToldNotTo) {
+  const std::vector<std::string> set = {"--set", "length=57cm", "--set", "height=5cm"};
+  const auto fitted = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--refine", "12", "--until", "0.001mm", "--json"});
+    describe();
+    const ToolRun run = fit(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.exit_code == 0 ? json::parse(run.out)["result"] : json();
+  };
+  const json plain = fitted({"--no-polish"});
+  const json plain_step = synthesised(set);
+  EXPECT_FALSE(plain.contains("polished"));
+  const json polished = fitted({});
+  ASSERT_TRUE(polished.contains("polished"));
+  EXPECT_EQ(polished["rounds"], plain["rounds"]);
+  const json found = polished["rounds"].back()["after"], after = polished["polished"]["after"];
+  EXPECT_LT(after["mean_square_of_range"], found["mean_square_of_range"]);
+  EXPECT_LE(after["largest_of_range"], found["largest_of_range"]);
+  EXPECT_NE(synthesised(set)[0]["weights"], plain_step[0]["weights"]);
+  ASSERT_EQ(run({"/bin/mv", path("out.steps"), path("polished.steps")}).exit_code, 0);
+  const json again = fitted({"--no-polish", "--resume", path("polished.steps")});
+  EXPECT_FALSE(again.contains("polished"));
+  EXPECT_EQ(again["rounds"], plain["rounds"]);
+  EXPECT_EQ(synthesised(set)[0]["weights"], plain_step[0]["weights"]);
+}
+
+TEST_F(StepLibrary, TheErrorsBeforePolishingAreSaid) {
+  describe();
+  const ToolRun run = fit({"--refine", "12", "--until", "0.001mm"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out + run.err, HasSubstr("polished together; before that, errors were "));
+}
+
+// A report that does not fit the points is not believed: each point would take time.
+TEST_F(StepLibrary, ALibraryWithOtherPointsThanItSaysIsNotGoneOnWith) {
+  fit_well({"--refine", "8", "--until", "0.001mm"});
+  const auto bytes = InputFile::open(path("out.steps"));
+  const auto whole = steps::read(bytes->bytes());
+  ASSERT_TRUE(whole.ok());
+  const auto fit_forged = [&](const auto& forge) {
+    steps::StepsFile file = *whole;
+    json report = json::parse(file.report);
+    forge(report);
+    file.report = report.dump();
+    auto out = OutputFile::create(path("forged.steps"));
+    EXPECT_TRUE(steps::write(file, {}, *out).ok() && out->commit().ok());
+    return fit({"--resume", path("forged.steps")});
+  };
+  EXPECT_EQ(fit_forged([](json&) {}).exit_code, 0);
+  for (const auto& forge : std::initializer_list<void (*)(json&)>{
+           [](json& report) { report["rounds"][0]["inserted"] = 1; },
+           [](json& report) { report["rounds"][0]["inserted"] = -1; },
+           [](json& report) {  // as many, but more than a round inserts
+             report["rounds"] = {report["rounds"][0]};
+             report["rounds"][0]["inserted"] = report["inserted"];
+           },
+           [](json& report) { report["rounds"][0]["refused"] = 1; },
+           [](json& report) { report["polished"]["found_rows"].push_back(0.5); },
+           [](json& report) { report["polished"].erase("found_rows"); }}) {
+    const ToolRun run = fit_forged(forge);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_TRUE(has_code(run.err, "fit-resume")) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("forged.steps: error"));
+  }
 }
 
 TEST_F(StepLibrary, ALibraryOfOtherExamplesIsNotGoneOnWith) {
