@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <optional>
-#include <vector>
 
 #include "core/file.h"
 #include "core/hash.h"
@@ -25,7 +25,8 @@ struct InputFile::Content {
   void* mapped = nullptr;
   std::size_t mapped_size = 0;
   std::size_t released = 0;  // what before is given back already
-  std::vector<std::byte> owned;
+  std::unique_ptr<std::byte[]> read;
+  std::size_t read_size = 0;
   // The checksum of what stands before `summed`. A mapped file that is released from front to back
   // is summed on the way, while its bytes are at hand.
   std::optional<Xxh3Stream> sum;
@@ -53,7 +54,7 @@ std::span<const std::byte> InputFile::bytes() const {
   if (content_->mapped != nullptr) {
     return {static_cast<const std::byte*>(content_->mapped), content_->mapped_size};
   }
-  return content_->owned;
+  return {content_->read.get(), content_->read_size};
 }
 
 std::string_view InputFile::text() const {
@@ -63,7 +64,7 @@ std::string_view InputFile::text() const {
 
 std::uint64_t InputFile::checksum() const {
   Content& content = *content_;
-  if (content.mapped == nullptr) return xxh3(content.owned);
+  if (content.mapped == nullptr) return xxh3(bytes());
   while (content.summed < content.mapped_size) {
     const std::size_t end = std::min(content.summed + kStretch, content.mapped_size);
     content.sum_up_to(end);
@@ -132,11 +133,11 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
   // What cannot be mapped takes memory as it comes, and a device may never end. Not by way of the
   // stack: where memory is at an end, a stack that cannot grow ends the program.
   limit = std::min(limit, InputFile::kStreamLimit);
-  std::vector<std::byte>& owned = content->owned;
-  std::size_t used = 0;
-  owned.resize(size > 0 && size < kMappedFrom ? size + 1 : kMappedFrom);
+  std::size_t room = size > 0 && size < kMappedFrom ? size + 1 : kMappedFrom;
+  std::size_t& used = content->read_size;
+  content->read = std::make_unique_for_overwrite<std::byte[]>(room);
   for (;;) {
-    const ssize_t count = ::read(descriptor, owned.data() + used, owned.size() - used);
+    const ssize_t count = ::read(descriptor, content->read.get() + used, room - used);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {
       return file_error("file-unreadable", path,
@@ -145,9 +146,13 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
     if (count == 0) break;
     used += static_cast<std::size_t>(count);
     if (used > limit) return too_large();
-    if (used == owned.size()) owned.resize(2 * used);
+    if (used == size) break;  // a regular file, to its end
+    if (used < room) continue;
+    room *= 2;
+    auto larger = std::make_unique_for_overwrite<std::byte[]>(room);
+    std::memcpy(larger.get(), content->read.get(), used);
+    content->read = std::move(larger);
   }
-  owned.resize(used);
   return InputFile(path, std::move(content));
 }
 

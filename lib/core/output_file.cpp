@@ -140,11 +140,13 @@ struct OutputFile::State {
     return {const_cast<std::byte*>(bytes.data()), bytes.size()};
   }
 
-  // Brings what was written to the disk, or on its way, where someone waits for many files later.
+  // Brings what was written to the disk; not where someone waits for many files later.
   Status store() {
     const bool later = stored_later && access(target.c_str(), F_OK) != 0 && errno == ENOENT;
     if (later) {
-      start_storing();
+      // A start for each of many small files costs more than it saves at the end.
+      constexpr std::uint64_t kWorthAStart = std::uint64_t{1} << 16;
+      if (given - storing >= kWorthAStart) start_storing();
       return {};
     }
     return fsync(descriptor) == 0 ? Status() : fail(errno, "cannot be written");
@@ -256,7 +258,11 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
   }
   if (path.empty()) return Error("file-unwritable", "the output has no name");
   struct stat status {};
-  const bool exists = stat(path.c_str(), &status) == 0;
+  bool exists = lstat(path.c_str(), &status) == 0;
+  // Through a link, the file that it points to is replaced, not the link.
+  const bool is_link = exists && S_ISLNK(status.st_mode);
+  state->target = is_link ? link_target(path).string() : path;
+  if (is_link) exists = stat(path.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) {
     return file_error("file-directory", path, "is a folder, not a file",
                       "give the output a file name");
@@ -276,8 +282,6 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
     return file_error("file-unwritable", path,
                       fmt::format("cannot be replaced: {}", system_text(errno)));
   }
-  // Through a link, the file that it points to is replaced, not the link.
-  state->target = link_target(path).string();
   const std::string folder = folder_of(state->target);
   if (!exists) {
     state->descriptor = create_unnamed(folder);

@@ -12,7 +12,6 @@
 #include <optional>
 #include <set>
 
-#include "core/hash.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "tools/common/batch_list.h"
@@ -20,8 +19,11 @@
 #include "tools/common/batch_report.h"
 #include "tools/common/in_order.h"
 #include "tools/common/journal.h"
+#include "tools/common/json_object.h"
+#include "tools/common/made_with.h"
 #include "tools/common/option_sets.h"
 #include "tools/common/paths.h"
+#include "tools/common/ready_lines.h"
 
 namespace krok {
 
@@ -151,6 +153,7 @@ class Batch {
     const int workers =
         static_cast<int>(std::clamp<std::size_t>(count, 1, static_cast<std::size_t>(threads)));
     jobs_of_a_file_ = std::max(1, threads / workers);
+    ready_lines_.emplace(make_spec_, workers);
     console_->begin(context_.report.tool, count);
     in_order<Outcome>(
         count, workers, kWindow, [&](std::size_t i) { return do_file(list_.files[i]); },
@@ -167,17 +170,18 @@ class Batch {
     } catch (const std::exception& error) {
       fail(file, Error("internal", error.what()), outcome);
     }
+    // What no report tells goes here: memory costs less where the thread that took it lets it go.
+    if (!report_.is_wanted()) outcome.context.report.issues = {};
     return outcome;
   }
 
   void run_file(const BatchFile& file, ToolContext& context, Outcome& outcome) {
-    const ToolSpec spec = make_spec_();
-    CommandLine line(spec, CommandLine::Form::one_file);
-    const auto parsed = line.parse(arguments_for_file(options_of(file, list_, line_.out_dir),
-                                                      line_.fixed_positionals, file.input,
-                                                      file.output, line_.no_clobber));
+    auto ready = ready_lines_->take(file.options);
+    const auto parsed = ready->line.parse(arguments_for_file(options_of(file, list_, line_.out_dir),
+                                                             line_.fixed_positionals, file.input,
+                                                             file.output, line_.no_clobber));
     if (!parsed) return fail(file, parsed.error(), outcome);
-    context = line.context();
+    context = ready->line.context();
     context.jobs = jobs_of_a_file_;
     context.quiet = line_.quiet;
     context.verbose = line_.verbose;
@@ -188,9 +192,9 @@ class Batch {
     context.report_path = line_.json_path;
     context.check_unforeseen = [this](const std::string& path) { return names_.check(path); };
 
-    const std::string made_with = digest(file, context);
+    const std::string digest = made_with(file, list_, line_.fixed_positionals, context);
     if (!line_.force) {
-      if (auto record = journal_->unchanged(file.key, made_with, file.input)) {
+      if (auto record = journal_->unchanged(file.key, digest, file.input)) {
         return note_unchanged(file, std::move(*record), outcome);
       }
     }
@@ -198,16 +202,17 @@ class Batch {
     for (const std::string& path : context.destinations) {
       fs::create_directories(fs::path(path).parent_path(), known_later);
     }
-    const Result<int> done = run_guarded(spec, context);
+    const Result<int> done = run_guarded(ready->spec, context);
+    ready_lines_->put_back(file.options, std::move(ready));
     if (!done) return fail(file, done.error(), outcome);
     if (*done != kExitDone) {
       return fail(file, Error("failed", fmt::format("ended with exit code {}", *done)), outcome);
     }
     outcome.kind = Outcome::Kind::done;
-    outcome.report = report_of(file, context, outcome);
+    note_report(file, outcome);
     outcome.unforeseen = std::move(context.held_paths);
     outcome.held_files = std::move(context.held_files);
-    auto record = journal_record(line_.out_dir, file.key, made_with, file.input, context.report,
+    auto record = journal_record(line_.out_dir, file.key, digest, file.input, context.report,
                                  places_of(outcome));
     // What is gone again or no regular file cannot be known later.
     if (!record) return;
@@ -235,32 +240,12 @@ class Batch {
     return {};
   }
 
-  // A checksum of all that makes a result besides the bytes of its inputs.
-  std::string digest(const BatchFile& file, const ToolContext& context) const {
-    Json all;
-    all["tool"] = context.report.tool;
-    all["version"] = context.report.version;
-    all["input"] = base_name(file.input);  // it stands in the result's provenance
-    all["options"] = context.result_options;
-    // Other inputs by their whole paths, for the journal knows the content of those that it names.
-    all["inputs"] = line_.fixed_positionals;
-    for (const GivenOption& option : list_.option_sets[file.options].options) {
-      if (!option.names_input) continue;
-      for (const std::string& value : option.values) all["inputs"].push_back(value);
-    }
-    all["outputs"] = Json::array();
-    for (const GivenOption& option : list_.option_sets[file.options].options) {
-      if (!option.names_output) continue;
-      for (const std::string& value : option.values) {
-        all["outputs"].push_back(expanded(value, file, ""));
-      }
-    }
-    const std::string text = all.dump(-1, ' ', false, Json::error_handler_t::replace);
-    return hex(xxh3(std::as_bytes(std::span(text))));
-  }
-
-  Json report_of(const BatchFile& file, const ToolContext& context, const Outcome& outcome) const {
-    Json report;
+  // Its part of the report of the batch.
+  void note_report(const BatchFile& file, Outcome& outcome) const {
+    if (!report_.is_wanted()) return;
+    const ToolContext& context = outcome.context;
+    Json& report = outcome.report;
+    report = object_for(8);
     report["input"] = file.input;
     report["output"] = file.output;
     report["status"] = name_of(outcome.kind);
@@ -269,19 +254,19 @@ class Batch {
     report["outputs"] = context.report.outputs;
     report["issues"] = to_json(context.report.issues);
     report["result"] = context.report.result;
-    return report;
   }
 
   void note_unchanged(const BatchFile& file, Json record, Outcome& outcome) const {
-    const ToolContext& context = outcome.context;
+    Report& report = outcome.context.report;
     outcome.kind = Outcome::Kind::unchanged;
-    outcome.report = report_of(file, context, outcome);
-    outcome.report["inputs"] = std::move(record["inputs"]);
     for (const Json& written : record["outputs"]) {
-      const std::string path = below(line_.out_dir, written.value("path", std::string()));
-      outcome.report["outputs"].push_back(path);
-      if (!context.is_destination(path)) outcome.unforeseen.push_back(path);
+      report.outputs.push_back(below(line_.out_dir, written.value("path", std::string())));
+      const std::string& path = report.outputs.back();
+      if (!outcome.context.is_destination(path)) outcome.unforeseen.push_back(path);
     }
+    note_report(file, outcome);
+    if (!report_.is_wanted()) return;
+    outcome.report["inputs"] = std::move(record["inputs"]);
     outcome.report["issues"] = std::move(record["issues"]);
     outcome.report["result"] = std::move(record["result"]);
   }
@@ -299,7 +284,7 @@ class Batch {
     outcome.held_files.clear();
     context.report.outputs.clear();
     context.report.result = Json::object();
-    outcome.report = report_of(file, context, outcome);
+    note_report(file, outcome);
   }
 
   // Tells what became of a file; whether to go on.
@@ -308,15 +293,15 @@ class Batch {
       if (const Status placed = place(file, outcome); !placed) fail(file, placed.error(), outcome);
     }
     if (!outcome.messages.empty()) write_message(console_.get(), outcome.messages);
-    report_.add(outcome.report);
+    if (report_.is_wanted()) report_.add(outcome.report);
     if (!outcome.journal && journal_trouble_) {
       journal_trouble_ = outcome.journal;
     }
     ++counts_[static_cast<int>(outcome.kind)];
     console_->advance(1);
     if (outcome.kind == Outcome::Kind::done) {
-      for (const Json& path : outcome.report["outputs"]) {
-        written_folders_.insert(fs::path(path.get<std::string>()).parent_path().string());
+      for (const std::string& path : outcome.context.report.outputs) {
+        written_folders_.insert(fs::path(path).parent_path().string());
       }
     }
     if (outcome.kind != Outcome::Kind::failed) return true;
@@ -340,7 +325,9 @@ class Batch {
   // What was written without waiting for the disk is on it, or it is said.
   Status store() const {
     std::set<dev_t> stored;
-    for (const std::string& folder : written_folders_) {
+    std::set<std::string> folders = written_folders_;
+    if (!folders.empty()) folders.insert(line_.out_dir);  // where the journal is
+    for (const std::string& folder : folders) {
       const std::string path = folder.empty() ? "." : folder;
       struct stat status {};
       if (stat(path.c_str(), &status) != 0 || !stored.insert(status.st_dev).second) continue;
@@ -350,16 +337,10 @@ class Batch {
   }
 
   int finish() {
-    // Both wait for the disk; the journal is right whichever is there first, for it is not
-    // believed.
-    Status stored, kept;
-    parallel_for(2, 1, line_.jobs, [&](std::size_t i, std::size_t) {
-      if (i == 0) {
-        stored = store();
-      } else {
-        kept = journal_->tidy();
-      }
-    });
+    // The journal first, so that the disk is waited for once. What it tells may get there before
+    // what it tells of, for it is not believed.
+    Status kept = journal_->tidy();
+    const Status stored = store();
     if (!stored) context_.tell(stored.error());
     if (!journal_trouble_) kept = journal_trouble_;
     if (!kept) {
@@ -416,6 +397,7 @@ class Batch {
   BatchReport report_;
   std::optional<Journal> journal_;
   int jobs_of_a_file_ = 1;
+  std::optional<ReadyLines> ready_lines_;
   std::array<std::size_t, 3> counts_{};
   std::vector<std::string> failed_;
   std::set<std::string> written_folders_;

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <optional>
 #include <unordered_map>
+#include <vector>
 
+#include "core/parallel.h"
 #include "tools/common/paths.h"
 
 namespace krok {
@@ -17,7 +20,16 @@ class Check {
       : line_(line), list_(list), errors_(errors) {}
 
   std::map<FileNumber, std::string> run() {
-    for (const BatchFile& file : list_.files) note_read(file.input);
+    const std::size_t count = list_.files.size();
+    // To ask the system takes longest.
+    std::vector<std::optional<FileNumber>> inputs(count), outputs(count);
+    parallel_for(count, 64, line_.jobs, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        inputs[i] = file_number(list_.files[i].input);
+        outputs[i] = file_number(list_.files[i].output);
+      }
+    });
+    for (std::size_t i = 0; i < count; ++i) note_read(list_.files[i].input, inputs[i]);
     for (const std::string& path : line_.fixed_positionals) note_read(path);
     if (line_.manifest != "-") note_read(line_.manifest);
     for (const OptionSet& set : list_.option_sets) {
@@ -26,10 +38,12 @@ class Check {
         for (const std::string& path : option.values) note_read(path);
       }
     }
-    if (!line_.json_path.empty() && line_.json_path != "-") check(line_.json_path, kReport);
-    for (std::size_t i = 0; i < list_.files.size(); ++i) {
+    if (!line_.json_path.empty() && line_.json_path != "-") {
+      check(line_.json_path, file_number(line_.json_path), kReport);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
       const BatchFile& file = list_.files[i];
-      check(file.output, i);
+      check(file.output, outputs[i], i);
       for (const GivenOption& option : list_.option_sets[file.options].options) {
         if (!option.names_output) continue;
         for (const std::string& value : option.values) {
@@ -38,7 +52,8 @@ class Check {
                                 option.name));
             continue;
           }
-          check(expanded(value, file, line_.out_dir), i, value.find("{name}") == std::string::npos);
+          const std::string path = expanded(value, file, line_.out_dir);
+          check(path, file_number(path), i, value.find("{name}") == std::string::npos);
         }
       }
     }
@@ -58,7 +73,9 @@ class Check {
     errors_.push_back(std::move(error));
   }
 
-  void note_read(const std::string& path) {
+  void note_read(const std::string& path) { note_read(path, file_number(path)); }
+
+  void note_read(const std::string& path, const std::optional<FileNumber>& number) {
     if (path.empty()) return;
     if (path == "-") {
       errors_.push_back(Error("usage",
@@ -66,11 +83,11 @@ class Check {
                               "name a file for what all of them take"));
       return;
     }
-    if (const auto number = file_number(path)) read_.emplace(*number, path);
+    if (number) read_.emplace(*number, path);
   }
 
-  void check(const std::string& path, std::size_t who, bool lacks_placeholder = false) {
-    const auto number = file_number(path);
+  void check(const std::string& path, const std::optional<FileNumber>& number, std::size_t who,
+             bool lacks_placeholder = false) {
     if (number) {
       if (const auto found = read_.find(*number); found != read_.end()) {
         return fail(who,

@@ -125,7 +125,9 @@ class Lister {
     std::unordered_set<std::string> known;
     for (const std::string& argument : line_.inputs) {
       for (Found& found : find(argument)) {
-        if (!known.insert(absolute_path(found.input)).second) continue;
+        std::string absolute = absolute_path(found.input);
+        if (!known.insert(absolute).second) continue;
+        absolute_.push_back(std::move(absolute));
         list_.files.push_back({std::move(found.input), {}, {}, {}, *set, {}});
         bases_.push_back(std::move(found.base));
       }
@@ -206,6 +208,7 @@ class Lister {
                  .at_line(place.line, line.input.where.column));
         continue;
       }
+      absolute_.push_back(absolute_path(line.input.text));
       list_.files.push_back({line.input.text, {}, line.output.text, {}, *set, place});
       bases_.push_back(std::nullopt);
     }
@@ -220,16 +223,16 @@ class Lister {
   void name_outputs() {
     std::vector<std::string> named;  // one by one
     for (std::size_t i = 0; i < list_.files.size(); ++i) {
-      if (list_.files[i].key.empty() && !bases_[i]) {
-        named.push_back(absolute_path(list_.files[i].input));
-      }
+      if (list_.files[i].key.empty() && !bases_[i]) named.push_back(absolute_[i]);
     }
     const std::string common = common_folder(named);
     for (std::size_t i = 0; i < list_.files.size(); ++i) {
       BatchFile& file = list_.files[i];
       if (file.key.empty()) {
-        const std::string base = !line_.base.empty() ? line_.base : bases_[i].value_or(common);
-        name_output(file, base);
+        const std::string& base = !line_.base.empty() ? line_.base
+                                  : bases_[i]         ? *bases_[i]
+                                                      : common;
+        name_output(file, absolute_[i], base);
       } else {
         file.key = fs::path(file.key).lexically_normal().string();
         file.name = fs::path(file.key).replace_extension().string();
@@ -238,12 +241,19 @@ class Lister {
     }
   }
 
-  void name_output(BatchFile& file, const std::string& base) {
-    // A folder is compared without a slash at its end.
-    fs::path folder = absolute_path(base.empty() ? "." : base);
-    if (!folder.has_filename()) folder = folder.parent_path();
-    const fs::path relative = fs::path(absolute_path(file.input)).lexically_relative(folder);
-    if (relative.empty() || *relative.begin() == "..") {
+  // The absolute path of a base with a slash at its end. Many files in a row have the same.
+  const std::string& folder_of(const std::string& base) {
+    if (folder_.empty() || base != base_of_folder_) {
+      base_of_folder_ = base;
+      folder_ = absolute_path(base.empty() ? "." : base);
+      if (!folder_.ends_with('/')) folder_ += '/';
+    }
+    return folder_;
+  }
+
+  void name_output(BatchFile& file, const std::string& absolute, const std::string& base) {
+    const std::string& folder = folder_of(base);
+    if (!absolute.starts_with(folder) || absolute.size() == folder.size()) {
       return fail(Error("usage", fmt::format("is not below {}", base),
                         "--base is a folder that all inputs are in")
                       .in_file(file.input));
@@ -254,7 +264,7 @@ class Lister {
       error.where = file.line;
       return fail(std::move(error));
     }
-    file.name = fs::path(relative).replace_extension().string();
+    file.name = fs::path(absolute.substr(folder.size())).replace_extension().string();
     file.key = file.name + *ending;
   }
 
@@ -263,7 +273,9 @@ class Lister {
   OptionSets sets_;
   Diagnostics& errors_;
   BatchList list_;
+  std::vector<std::string> absolute_;              // the input of each file
   std::vector<std::optional<std::string>> bases_;  // of each file
+  std::string base_of_folder_, folder_;            // the last that folder_of() was asked for
 };
 
 }  // namespace

@@ -2,15 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "tools/common/json_line.h"
+
 namespace krok {
-
-namespace {
-
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-}  // namespace
 
 Status BatchReport::begin(const std::string& path, OutputFile::Options how, const std::string& tool,
                           const std::string& version, const Json& options) {
@@ -21,21 +15,21 @@ Status BatchReport::begin(const std::string& path, OutputFile::Options how, cons
   return file_->write(
       fmt::format("{{\n  \"schema\": \"krok.batch/1\",\n  \"tool\": {},\n  \"version\": {},\n"
                   "  \"options\": {},\n  \"files\": [",
-                  text_of(tool), text_of(version), text_of(options)));
+                  json_line(tool), json_line(version), json_line(options)));
 }
 
 // A failure to write is kept by the file and told at the end.
 void BatchReport::add(const Json& file) {
   if (!file_) return;
-  (void)file_->write((first_ ? "\n    " : ",\n    ") + text_of(file)).ok();
+  (void)file_->write((first_ ? "\n    " : ",\n    ") + json_line(file)).ok();
   first_ = false;
 }
 
 Status BatchReport::end(const Diagnostics& issues, const Json& result) {
   if (!file_) return {};
-  const Status written =
-      file_->write(fmt::format("{}],\n  \"issues\": {},\n  \"result\": {}\n}}\n",
-                               first_ ? "" : "\n  ", text_of(to_json(issues)), text_of(result)));
+  const Status written = file_->write(fmt::format("{}],\n  \"issues\": {},\n  \"result\": {}\n}}\n",
+                                                  first_ ? "" : "\n  ", json_line(to_json(issues)),
+                                                  json_line(result)));
   const Status done = file_->commit();
   file_.reset();
   return written ? done : written;

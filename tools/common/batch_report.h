@@ -22,6 +22,7 @@ class BatchReport {
   // An empty path is for no report.
   Status begin(const std::string& path, OutputFile::Options how, const std::string& tool,
                const std::string& version, const Json& options);
+  bool is_wanted() const { return file_.has_value(); }
   void add(const Json& file);
   Status end(const Diagnostics& issues, const Json& result);
 

@@ -195,6 +195,9 @@ Status CommandLine::check_use_of_batch_options() const {
 }
 
 Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arguments) {
+  written_.clear();
+  given_.clear();
+  fixed_positionals.clear();
   try {
     app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {

@@ -39,7 +39,8 @@ class CommandLine {
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  // To be called once. An Error has the code usage.
+  // Can be called again with the same options and other values: what is not given then keeps its
+  // value. An Error has the code usage.
   Result<Wish> parse(const std::vector<std::string>& arguments);
 
   std::string help() const;

@@ -7,6 +7,7 @@
 #include "core/hash.h"
 #include "core/text.h"
 #include "tools/common/console_progress.h"
+#include "tools/common/json_line.h"
 #include "tools/common/paths.h"
 #include "tools/common/tool.h"
 
@@ -63,7 +64,7 @@ Result<InputFile> ToolContext::open_long_input(const std::string& path) {
     return same_file(path, destination);
   };
   if (std::any_of(destinations.begin(), destinations.end(), replaces) ||
-      written_.count(place_of(path)) > 0) {
+      (!written_.empty() && written_.count(place_of(path)) > 0)) {
     refused_inputs.push_back(path);
     return replaced_error(path);
   }
@@ -125,8 +126,7 @@ Provenance ToolContext::provenance() const {
     provenance.sources.push_back({to_utf8(base_name(input.path)), input.xxh3});
   }
   const auto text_of = [](const Json& value) {
-    return value.is_string() ? to_utf8(value.get<std::string>())
-                             : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return value.is_string() ? to_utf8(value.get<std::string>()) : json_line(value);
   };
   for (const auto& [name, value] : result_options.items()) {
     // An option that was repeated stands as often.

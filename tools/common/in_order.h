@@ -23,8 +23,24 @@ void in_order(std::size_t count, int threads, std::size_t window,
   std::mutex mutex;
   std::condition_variable taken_one;
   std::size_t next = 0, taken = 0;
-  bool stopped = false;
+  bool stopped = false, someone_takes = false;
   std::map<std::size_t, Outcome> waiting;
+
+  // Meanwhile others go on with their work, and leave what they have done to whoever takes.
+  const auto take_what_is_due = [&](std::unique_lock<std::mutex>& lock) {
+    someone_takes = true;
+    while (!stopped && !waiting.empty() && waiting.begin()->first == taken) {
+      auto due = waiting.extract(waiting.begin());
+      lock.unlock();
+      const bool go_on = take(due.key(), std::move(due.mapped()));
+      due = {};
+      lock.lock();
+      ++taken;
+      stopped = stopped || !go_on;
+      taken_one.notify_all();
+    }
+    someone_takes = false;
+  };
 
   const auto run = [&] {
     std::unique_lock lock(mutex);
@@ -36,12 +52,7 @@ void in_order(std::size_t count, int threads, std::size_t window,
       Outcome outcome = work(item);
       lock.lock();
       waiting.emplace(item, std::move(outcome));
-      while (!stopped && !waiting.empty() && waiting.begin()->first == taken) {
-        Outcome first = std::move(waiting.begin()->second);
-        waiting.erase(waiting.begin());
-        stopped = !take(taken++, std::move(first));
-      }
-      taken_one.notify_all();
+      if (!someone_takes) take_what_is_due(lock);
     }
   };
   // The others would wait for the item of one that throws.

@@ -10,6 +10,8 @@
 #include <filesystem>
 
 #include "core/hash.h"
+#include "tools/common/json_line.h"
+#include "tools/common/json_object.h"
 #include "tools/common/paths.h"
 
 namespace krok {
@@ -81,6 +83,12 @@ std::string names_checksum(const std::string& folder, const std::string& ending)
   std::string text;
   for (const std::string& name : names) text += name;
   return hex(xxh3(std::as_bytes(std::span(text))));
+}
+
+Error unwritable_error(const std::string& why, const std::string& path) {
+  return Error("journal-unwritable", fmt::format("cannot be written: {}", why),
+               "the next run will do these files again")
+      .in_file(path);
 }
 
 }  // namespace
@@ -196,14 +204,10 @@ std::optional<Json> Journal::unchanged(const std::string& output, const std::str
 }
 
 Status Journal::add(const Json& record) {
-  std::string text = record.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text = json_line(record) + "\n";
   const std::uint64_t sum = checksum_of_line(std::string_view(text).substr(0, text.size() - 1));
   const std::lock_guard lock(adding_);
-  const auto fail = [&] {
-    return Error("journal-unwritable", fmt::format("cannot be written: {}", std::strerror(errno)),
-                 "the next run will do these files again")
-        .in_file(path_);
-  };
+  const auto fail = [&] { return unwritable_error(std::strerror(errno), path_); };
   if (descriptor_ < 0) {
     descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor_ < 0) return fail();
@@ -232,20 +236,31 @@ Status Journal::tidy() {
   std::vector<std::string> outputs;
   for (const auto& [output, places] : index_) outputs.push_back(output);
   std::sort(outputs.begin(), outputs.end());
-  auto file = OutputFile::create(path_);
+  // As a new file, which need not wait for the disk, under a name that no journal has.
+  const std::string anew = path_ + ".new";
+  std::error_code trouble;
+  fs::remove(anew, trouble);  // of a killed run
+  auto file = OutputFile::create(anew, {.stored_later = true});
   if (!file) return file.error();
   for (const std::string& output : outputs) {
     if (Status written = file->write(line(index_[output].back())); !written) return written;
     if (Status written = file->write("\n"); !written) return written;
   }
-  return file->commit();
+  if (Status placed = file->commit(); !placed) return placed;
+  fs::rename(anew, path_, trouble);
+  // What it was before goes, before the system has brought that to the disk too.
+  files_.clear();
+  index_.clear();
+  if (!trouble) return {};
+  std::error_code gone;
+  fs::remove(anew, gone);
+  return unwritable_error(trouble.message(), path_);
 }
 
 Result<Json> journal_record(const std::string& folder, const std::string& output,
-                            const std::string& made_with, const std::string& input,
-                            const Report& report,
+                            const std::string& made_with, const std::string& input, Report& report,
                             const std::map<std::string, std::string>& places) {
-  Json record;
+  Json record = object_for(9);
   record["output"] = output;
   record["made_with"] = made_with;
   record["version"] = report.version;
@@ -262,12 +277,13 @@ Result<Json> journal_record(const std::string& folder, const std::string& output
     const auto held = places.find(path);
     const auto file = InputFile::open(held == places.end() ? path : held->second);
     if (!file) return file.error();
-    record["outputs"].push_back({{"path", from_folder(folder, path)},
-                                 {"size", file->bytes().size()},
-                                 {"xxh3", checksum(*file)}});
+    Json& place = record["outputs"].emplace_back(object_for(3));
+    place["path"] = from_folder(folder, path);
+    place["size"] = file->bytes().size();
+    place["xxh3"] = checksum(*file);
   }
   record["issues"] = to_json(report.issues);
-  record["result"] = report.result;
+  record["result"] = std::move(report.result);
   return record;
 }
 

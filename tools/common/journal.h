@@ -49,7 +49,8 @@ class Journal {
 
   // Once all is done: the newest line for each output, sorted, so that the journal does not grow
   // from run to run or depend on the order in which threads were done. Leaves a journal alone to
-  // which nothing was added.
+  // which nothing was added. Does not wait for the disk; store_files() does. Nothing can be looked
+  // up any more.
   Status tidy();
 
   const std::string& path() const { return path_; }
@@ -80,9 +81,9 @@ class Journal {
 };
 
 // A record of a result: the checksums of its files are taken from the disk; of those in `places`,
-// which are not in place yet, from where it says.
+// which are not in place yet, from where it says. Takes the report's `result`.
 Result<Json> journal_record(const std::string& folder, const std::string& output,
-                            const std::string& made_with, const std::string& input,
-                            const Report& report, const std::map<std::string, std::string>& places);
+                            const std::string& made_with, const std::string& input, Report& report,
+                            const std::map<std::string, std::string>& places);
 
 }  // namespace krok

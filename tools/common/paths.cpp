@@ -2,7 +2,9 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string_view>
 
 namespace krok {
 
@@ -12,15 +14,36 @@ namespace {
 
 // The folder without links; what of it does not exist stays as it is. Many files of a run stand in
 // one folder, and finding this takes a question to the system for each part of its name.
-fs::path real_folder(const fs::path& folder) {
-  thread_local fs::path last, last_real;
+const std::string& real_folder(const std::string& folder) {
+  thread_local std::string last, last_real;
   if (last != folder || last.empty()) {
     std::error_code error;
     const fs::path real = fs::weakly_canonical(folder, error);
-    last_real = error ? folder : real;
+    last_real = error ? folder : real.string();
     last = folder;
   }
   return last_real;
+}
+
+// Whether a path has no . or .. and no doubled slash, but maybe a slash at its beginning.
+bool is_normal(std::string_view path) {
+  for (std::size_t at = path.starts_with('/') ? 1 : 0;;) {
+    const std::size_t end = std::min(path.find('/', at), path.size());
+    const std::string_view part = path.substr(at, end - at);
+    if (part.empty() || part == "." || part == "..") return false;
+    if (end == path.size()) return true;
+    at = end + 1;
+  }
+}
+
+// "/" and "b" are "/b", "/a" and "b" are "/a/b".
+std::string joined(const std::string& folder, std::string_view name) {
+  std::string path;
+  path.reserve(folder.size() + 1 + name.size());
+  path += folder;
+  if (!folder.ends_with('/')) path += '/';
+  path += name;
+  return path;
 }
 
 }  // namespace
@@ -49,15 +72,18 @@ std::string place_of(const std::string& path) {
   if (path == "-") return {};
   struct stat status {};
   const bool exists = lstat(path.c_str(), &status) == 0;
-  const fs::path absolute = absolute_path(path);
+  const std::string absolute = absolute_path(path);
   if (exists && S_ISLNK(status.st_mode)) {
     if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) return {};
     std::error_code error;
     const fs::path place = fs::weakly_canonical(absolute, error);
-    return error ? absolute.string() : place.string();
+    return error ? absolute : place.string();
   }
   if (exists && !S_ISREG(status.st_mode)) return {};
-  return (real_folder(absolute.parent_path()) / absolute.filename()).string();
+  const std::size_t slash = absolute.rfind('/');
+  if (slash == std::string::npos) return absolute;  // the current folder is gone
+  const std::string_view name = std::string_view(absolute).substr(slash + 1);
+  return joined(real_folder(absolute.substr(0, std::max<std::size_t>(slash, 1))), name);
 }
 
 Error replaced_error(const std::string& path) {
@@ -75,6 +101,12 @@ std::string below(const std::string& folder, const std::string& path) {
 
 std::string absolute_path(const std::string& path) {
   std::error_code unknown;
+  if (is_normal(path)) {  // most are, and a path that is taken apart takes longer
+    if (path.starts_with('/')) return path;
+    const std::string folder = fs::current_path(unknown).string();
+    if (!unknown) return joined(folder, path);
+    return path;
+  }
   const fs::path absolute = fs::absolute(path, unknown);
   return (unknown ? fs::path(path) : absolute).lexically_normal().string();
 }

@@ -47,8 +47,7 @@ Json facts_of(const FrameSource& motion, double height);
 Json facts_of(const Conventions& conventions);
 
 // All that is reported of a capture whose frames are `motion`; `details` are those of its format.
-Json result_of(const Capture& capture, const FrameSource& motion, double height,
-               const Json& details);
+Json result_of(const Capture& capture, const FrameSource& motion, double height, Json details);
 
 // With -v: what the joints are, a line for each part of the body.
 void say_roles(const Skeleton& skeleton, const RoleMap& roles, ToolContext& context);

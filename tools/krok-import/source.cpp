@@ -4,6 +4,7 @@
 
 #include "formats/acclaim/acclaim_reader.h"
 #include "formats/acclaim/find_skeleton.h"
+#include "tools/common/json_object.h"
 #include "tools/krok-import/facts.h"
 
 namespace krok::import {
@@ -85,7 +86,7 @@ Status check_options(const Options& options, bool is_bvh, bool is_motion) {
 }  // namespace
 
 Json details_of(const bvh::Capture& capture) {
-  Json details = Json::object();
+  Json details = object_for(4);
   details["positions"] = to_json(capture.positions);
   if (!capture.exporter.choice.empty()) details["exporter"] = to_json(capture.exporter);
   details["frames_announced"] = capture.frames_announced;

@@ -50,6 +50,37 @@ TEST_F(BatchRun, AResultIsThatOfARunOfItsOwn) {
   EXPECT_TRUE(get(path("single.anim")) == get(path("out/0001.anim")));
 }
 
+// Files of a batch are parsed for one after the other; an option must not stay for the next.
+TEST_F(BatchRun, OptionsOfALineAreThoseOfItsFileAlone) {
+  put_captures(1);
+  const std::vector<Names> options = {{"--fps", "48"},
+                                      {},
+                                      {"--orientation", "xyzw", "--strict"},
+                                      {"--unit", "cm", "--model", "NAME.model"}};
+  std::string list;
+  for (int i = 0; i < 12; ++i) {
+    list += "takes/0000.bvh\t" + number(i) + ".anim\t";
+    for (const std::string& word : options[static_cast<std::size_t>(i) % options.size()]) {
+      list += (word == "NAME.model" ? "{name}.model" : word) + " ";
+    }
+    list += "\n";
+  }
+  put("list.tsv", list);
+  for (const char* jobs : {"1", "3"}) {
+    std::filesystem::remove_all(path("out"));
+    ASSERT_EQ(import({"--manifest", "list.tsv", "--out-dir", "out", "-j", jobs}).exit_code, 0);
+    EXPECT_EQ(files_below("out").size(), 15u);
+    for (int i = 0; i < 12; ++i) {
+      Names alone = {"takes/0000.bvh", "-o", "alone.anim"};
+      for (std::string word : options[static_cast<std::size_t>(i) % options.size()]) {
+        alone.push_back(word == "NAME.model" ? "alone.model" : word);
+      }
+      ASSERT_EQ(import(alone).exit_code, 0);
+      EXPECT_TRUE(get(path("alone.anim")) == get(path("out/" + number(i) + ".anim"))) << i;
+    }
+  }
+}
+
 TEST_F(BatchRun, TheSameForAnyJobs) {
   put_captures(30);
   put_broken("takes/0011.bvh");
