@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "core/result.h"
 #include "scene/camera_track.h"
 #include "scene/clip.h"
+#include "scene/material.h"
 #include "scene/model.h"
 
 // Private to this folder: motions as the page's program unpacks them (page/src/motion.js).
@@ -46,6 +48,9 @@ Quat unpack_rotation(const std::array<std::uint16_t, 3>& words);
 // Adds what the page needs of the clip to `item` and its arrays to `blob`.
 void pack_motion(const Clip& clip, Json& item, Blob& blob);
 Json pack_body(const Model& body, Blob& blob);
+// Which material each part of a body has, the materials and their pictures. Parts whose material is
+// none of `materials` look like one that says nothing. Codes: those of picture_facts().
+Result<Json> pack_look(const Model& body, std::span<const Material> materials, Blob& blob);
 void pack_camera(const CameraTrack& camera, Json& item, Blob& blob);
 
 }  // namespace krok::draw

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/markup.h"
 #include "draw/plot_axis_internal.h"
 #include "draw/plot_field_internal.h"
 #include "draw/plot_legend_internal.h"
@@ -110,7 +111,7 @@ Result<std::string> to_svg(const Figure& figure) {
     body += fmt::format(
         "<text class=\"title\" style=\"font-size:16px\" x=\"16\" "
         "y=\"22\">{}</text>\n",
-        escaped(shortened(figure.title, room)));
+        to_markup(shortened(figure.title, room)));
     y += kTitleSize + 14;
   }
   y += write_legend(figure.legend, kMargin, y + 2, full_width - 2 * kMargin, &body);
@@ -122,7 +123,7 @@ Result<std::string> to_svg(const Figure& figure) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
       "{1}\" role=\"img\">\n",
       width, height);
-  if (!figure.title.empty()) svg += fmt::format("<title>{}</title>\n", escaped(figure.title));
+  if (!figure.title.empty()) svg += fmt::format("<title>{}</title>\n", to_markup(figure.title));
   svg += kStyle;
   svg += fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", width, height);
   svg += body;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/markup.h"
 #include "draw/plot_style_internal.h"
 #include "draw/svg_text_internal.h"
 
@@ -58,7 +59,7 @@ double write_legend(const std::vector<LegendEntry>& entries, double left, double
     if (out != nullptr) {
       *out += sample_of(entry, left + x, top + y + kTextSize * 0.6);
       *out += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", number(left + x + kBeforeText),
-                          number(top + y + kTextSize), escaped(name));
+                          number(top + y + kTextSize), to_markup(name));
     }
     x += room;
   }

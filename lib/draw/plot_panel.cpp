@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/markup.h"
 #include "draw/plot_field_internal.h"
 #include "draw/plot_style_internal.h"
 #include "draw/svg_text_internal.h"
@@ -57,7 +58,7 @@ void PanelWriter::write() {
   }
   if (!panel_.title.empty()) {
     put("<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n", number(left_), number(top_ - 8),
-        escaped(shortened(panel_.title, title_room * kTextSize / kTitleSize)));
+        to_markup(shortened(panel_.title, title_room * kTextSize / kTitleSize)));
   }
   write_x_axis();
   write_y_axis();
@@ -147,11 +148,11 @@ void PanelWriter::write_y_axis() {
   put("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", number(left_),
       number(top_), number(width_), number(height_));
   put("<text text-anchor=\"middle\" x=\"{}\" y=\"{}\">{}</text>\n", number(left_ + width_ / 2),
-      number(bottom() + 2 * kTextSize + 10), escaped(shortened(axis_title(panel_.x), width_)));
+      number(bottom() + 2 * kTextSize + 10), to_markup(shortened(axis_title(panel_.x), width_)));
   const std::string middle = number(top_ + height_ / 2);
   const std::string beside = number(std::max(left_ - kTick - 10 - widest, left_ - 54));
   put("<text text-anchor=\"middle\" transform=\"rotate(-90 {} {})\" x=\"{}\" y=\"{}\">{}</text>\n",
-      beside, middle, beside, middle, escaped(shortened(axis_title(panel_.y), height_ + 40)));
+      beside, middle, beside, middle, to_markup(shortened(axis_title(panel_.y), height_ + 40)));
 }
 
 double PanelWriter::lane_top(int lane) const {
@@ -165,7 +166,7 @@ void PanelWriter::write_lanes() {
   for (std::size_t lane = 0; lane < panel_.lanes.size(); ++lane) {
     put("<text class=\"small\" text-anchor=\"end\" x=\"{}\" y=\"{}\">{}</text>\n",
         number(left_ - kTick - 2), number(lane_top(static_cast<int>(lane)) + kLane - 1),
-        escaped(panel_.lanes[lane]));
+        to_markup(panel_.lanes[lane]));
   }
 }
 
@@ -196,7 +197,8 @@ void PanelWriter::moment_names() {
     const bool at_end = x + kBetweenNames > left_ + width_;
     put("<text class=\"small name\" transform=\"rotate(-90 {0} {1})\" x=\"{0}\" y=\"{1}\" "
         "text-anchor=\"end\">{2}</text>\n",
-        number(at_end ? x - 2 : x + 9), number(top_ + 3), escaped(shortened(moment.name, height_)));
+        number(at_end ? x - 2 : x + 9), number(top_ + 3),
+        to_markup(shortened(moment.name, height_)));
   }
 }
 

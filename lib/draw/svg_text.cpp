@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "core/text.h"
 #include "draw/plot_style_internal.h"
 
 namespace krok::draw {
@@ -36,41 +35,6 @@ std::vector<std::string_view> characters_of(std::string_view text) {
 }
 
 }  // namespace
-
-std::string escaped(std::string_view text) {
-  // U+FFFE and U+FFFF are the only ones above the control characters that XML leaves out.
-  const auto is_no_character = [](std::string_view rest) {
-    return rest.substr(0, 3) == "\xEF\xBF\xBE" || rest.substr(0, 3) == "\xEF\xBF\xBF";
-  };
-  const std::string safe = to_utf8(text);
-  std::string result;
-  for (std::size_t i = 0; i < safe.size(); ++i) {
-    const char c = safe[i];
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        if (is_no_character(std::string_view(safe).substr(i))) {
-          result += ' ';
-          i += 2;
-        } else {
-          // Other control characters are no XML.
-          result += static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' ? ' ' : c;
-        }
-    }
-  }
-  return result;
-}
 
 std::string number(double value) {
   std::string text = fmt::format("{:.2f}", value);

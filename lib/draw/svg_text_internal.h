@@ -7,9 +7,6 @@
 
 namespace krok::draw {
 
-// `text` for XML: UTF-8, with &, <, > and " escaped and without characters that XML has none of.
-std::string escaped(std::string_view text);
-
 // A coordinate to a hundredth of a pixel, without trailing zeros.
 std::string number(double value);
 

@@ -47,7 +47,14 @@ Status add_motion(const ViewedMotion& viewed, Parts& parts) {
       return Error("viewer-body",
                    fmt::format("the body is not of the motion's skeleton: {}", difference));
     }
-    item["body"] = pack_body(*viewed.body, blob);
+    Json body = pack_body(*viewed.body, blob);
+    if (!viewed.materials.empty()) {
+      if (Status good = check(viewed.materials); !good) return good;
+      auto look = pack_look(*viewed.body, viewed.materials, blob);
+      if (!look) return look.error();
+      body["look"] = std::move(*look);
+    }
+    item["body"] = std::move(body);
   }
   if (Status good = check(viewed.keys, clip.skeleton, clip.duration()); !good) return good;
   Json contacts = Json::array();

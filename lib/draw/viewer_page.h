@@ -8,6 +8,7 @@
 #include "core/result.h"
 #include "scene/camera_track.h"
 #include "scene/clip.h"
+#include "scene/material.h"
 #include "scene/model.h"
 #include "scene/motion_keys.h"
 
@@ -23,7 +24,11 @@ struct ViewedMotion {
   bool visible = true;
   const Clip* clip = nullptr;
   const Model* body = nullptr;  // of the same joints as the clip; null for none
-  MotionKeys keys;              // coloured and marked on the time line
+  // Of the body's parts, by name, with the pictures' bytes. Parts of other materials are light
+  // grey; without any material the body has a colour of the page's. Pictures need texture
+  // coordinates.
+  std::span<const Material> materials;
+  MotionKeys keys;  // coloured and marked on the time line
 };
 
 struct ViewedCamera {
@@ -53,8 +58,8 @@ struct ViewerPage {
 
 // The page as HTML text, in UTF-8. Rotations are stored to 1.5e-4 radians relative to the parent,
 // positions as floats; a minute of 60 joints at 60 frames a second takes less than 3 MB. The same
-// input gives the same bytes. Codes: those of check() for clips, models, cameras and keys;
-// viewer-body for a body whose joints are not the clip's.
+// input gives the same bytes. Codes: those of check() for clips, models, materials, cameras
+// and keys, and of picture_facts(); viewer-body for a body whose joints are not the clip's.
 Result<std::string> write_viewer_page(const ViewerPage& page);
 
 }  // namespace krok::draw

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "math/types.h"
+
 namespace krok::render {
 
 // A colour as screens take it (sRGB, eight bits a channel).
@@ -21,9 +23,15 @@ constexpr Colour colour(std::uint32_t rgb) {
 constexpr Colour mixed(Colour a, Colour b, double share) {
   const double part = share > 0 ? (share < 1 ? share : 1.0) : 0.0;
   const auto channel = [part](int from, int to) {
+    // Never negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
     return static_cast<std::uint8_t>(from + (to - from) * part + 0.5);
   };
   return {channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue)};
 }
+
+// The light that a screen gives off for it, and the colour for a light: linear, 0 to 1 for each of
+// red, green and blue; beyond that, the nearer end. Source: IEC 61966-2-1 (sRGB).
+Vec3f to_light(Colour colour);
+Colour to_colour(const Vec3f& light);
 
 }  // namespace krok::render

@@ -14,9 +14,6 @@ namespace krok::render {
 // Linear light, 0 .. 1.
 using Light = Vec3f;
 
-Light to_light(Colour colour);
-Colour to_colour(const Light& light);
-
 struct Hit {
   double depth = 0;  // metres towards the viewer from the figure's own middle
   Vec3f point;       // where, for occlusion()

@@ -3,7 +3,7 @@
 // With KROK_PAGE_SHOTS=FOLDER the screenshots are kept there.
 
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
@@ -93,7 +93,6 @@ async function drawn(page, act) {
 async function look(page, name) {
   const picture = await page.locator('#view').screenshot();
   if (process.env.KROK_PAGE_SHOTS) {
-    const { writeFileSync } = await import('node:fs');
     writeFileSync(join(process.env.KROK_PAGE_SHOTS, `${name}.png`), picture);
   }
   return page.evaluate(async (base64) => {
@@ -201,6 +200,84 @@ async function controlsHaveNames(page) {
   expect(nameless.length === 0, `controls without a name: ${nameless.join(' ')}`);
 }
 
+// A square of one metre that faces +Z, with a picture of 2 x 2 pixels on it: red, green; blue, white.
+// Drawn as it is whatever the light.
+function squareWithPicture() {
+  const floats = (...values) => Buffer.from(new Float32Array(values).buffer);
+  const parts = [
+    floats(0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0),
+    floats(0, 1, 1, 1, 1, 0, 0, 0),
+    Buffer.from(new Uint32Array([0, 1, 2, 0, 2, 3]).buffer),
+  ];
+  const data = Buffer.concat(parts).toString('base64');
+  const png = 'iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAFklEQVR42mP4z8DA8J+BkYHh////DAAe9gT9CzF8CQAAAABJRU5ErkJggg==';
+  let offset = 0;
+  const views = parts.map((part) => {
+    offset += part.length;
+    return { buffer: 0, byteOffset: offset - part.length, byteLength: part.length };
+  });
+  return JSON.stringify({
+    asset: { version: '2.0' },
+    extensionsUsed: ['KHR_materials_unlit'],
+    scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0 }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0, TEXCOORD_0: 1 }, indices: 2, material: 0 }] }],
+    materials: [{
+      name: 'Flag',
+      doubleSided: true,
+      pbrMetallicRoughness: { baseColorTexture: { index: 0 } },
+      extensions: { KHR_materials_unlit: {} },
+    }],
+    textures: [{ source: 0, sampler: 0 }],
+    samplers: [{ magFilter: 9728 }],
+    images: [{ uri: `data:image/png;base64,${png}` }],
+    accessors: [
+      { bufferView: 0, componentType: 5126, count: 4, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 0] },
+      { bufferView: 1, componentType: 5126, count: 4, type: 'VEC2' },
+      { bufferView: 2, componentType: 5125, count: 6, type: 'SCALAR' },
+    ],
+    bufferViews: views,
+    buffers: [{ byteLength: offset, uri: `data:application/octet-stream;base64,${data}` }],
+  });
+}
+
+// Where on a picture of the canvas red, green and blue are: how many pixels, their mean place.
+async function colourPlaces(page) {
+  const picture = await page.locator('#view').screenshot();
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const pen = new OffscreenCanvas(image.width, image.height).getContext('2d');
+    pen.drawImage(image, 0, 0);
+    const { data } = pen.getImageData(0, 0, image.width, image.height);
+    const places = [0, 1, 2].map(() => ({ count: 0, x: 0, y: 0 }));
+    for (let i = 0; i < data.length; i += 4) {
+      const strongest = [0, 1, 2].find((k) => [0, 1, 2].every((o) => o === k || data[i + k] > data[i + o] + 120));
+      if (strongest === undefined) continue;
+      const place = places[strongest];
+      place.count += 1;
+      place.x += (i / 4) % image.width;
+      place.y += Math.floor(i / 4 / image.width);
+    }
+    return places.map(({ count, x, y }) => ({ count, x: x / count, y: y / count }));
+  }, picture.toString('base64'));
+}
+
+// The picture lies on the character as it should: not upside down, not mirrored.
+async function pictureLiesRight(page) {
+  const [red, green, blue] = await colourPlaces(page);
+  for (const { count } of [red, green, blue]) expect(count > 500, `${count} pixels of a picture's colour`);
+  expect(red.x < green.x - 20 && Math.abs(red.y - green.y) < blue.y - red.y,
+    `red at ${red.x}, ${red.y}, green at ${green.x}, ${green.y}`);
+  expect(red.y < blue.y - 20 && Math.abs(red.x - blue.x) < 20,
+    `red at ${red.x}, ${red.y}, blue at ${blue.x}, ${blue.y}`);
+  await drawn(page, () => page.keyboard.press('s'));
+  const [through] = await colourPlaces(page);
+  expect(through.count === 0, 'the skeleton does not show through a body with a material');
+  await drawn(page, () => page.keyboard.press('s'));
+  expect((await colourPlaces(page))[0].count === red.count, 'a material is not as it was before');
+}
+
 try {
   const samples = join(source, 'samples/captures');
   for (const name of ['walk', 'turn']) run('krok-import', join(samples, `${name}.bvh`), '-o', made(`${name}.anim`));
@@ -286,6 +363,13 @@ try {
   await jointsAgree(glb, made('walk.anim'), 60);
   expect((await look(glb, 'glb')).colours > 500, 'the page of a GLB is blank');
 
+  writeFileSync(made('flag.gltf'), squareWithPicture());
+  run('krok-import', made('flag.gltf'), '--character', made('flag.character'));
+  run('krok-view', made('flag.character'), '-o', made('flag.html'));
+  const flag = await open('flag.html');
+  await look(flag, 'flag');
+  await pictureLiesRight(flag);
+
   const phone = await open('one.html', { viewport: { width: 390, height: 700 }, hasTouch: true, isMobile: true, colorScheme: 'dark' });
   expect((await look(phone, 'phone')).colours > 500, 'the page on a phone is blank');
   const wide = await phone.evaluate(() => document.documentElement.scrollWidth);
@@ -297,4 +381,4 @@ try {
   rmSync(folder, { recursive: true, force: true });
 }
 console.log(`${checks} checks, ${faults.length} faults`);
-process.exitCode = faults.length > 0 || checks < 55 ? 1 : 0;
+process.exitCode = faults.length > 0 || checks < 64 ? 1 : 0;

@@ -22,7 +22,10 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
 Result<Description> describe_cam(const InputFile& file, ToolContext& context);
 Result<Description> describe_steps(const InputFile& file, ToolContext& context);
 Result<Description> describe_material(const InputFile& file, ToolContext& context);
-Result<Description> describe_character(const InputFile& file, ToolContext& context);
+// A character with the files that it names; what its joints are is as it says, unless `how` has a
+// role map.
+Result<Description> describe_character(const InputFile& file, const SkeletonOptions& how,
+                                       ToolContext& context);
 Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& how,
                                  ToolContext& context);
 // A skeleton, or a motion with the skeleton that stands beside it.
@@ -34,5 +37,7 @@ Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
 
 // The parts of a mesh and their materials.
 void add_parts(const Model& model, Description& out);
+// How large the mesh is, or the skeleton where there is none, and its volume.
+void add_mesh_size(const Model& model, Description& out);
 
 }  // namespace krok::info

@@ -121,6 +121,29 @@ void add_material(const Material& material, SizeOf size_of, Description& out, Js
                   {"textures", std::move(textures)}});
 }
 
+// Of a character, with the sizes of pictures that were read.
+void add_materials(std::span<const Material> materials, Description& out) {
+  Json list = Json::array();
+  const auto size_of = [](const Picture& picture) {
+    const auto facts = picture_facts(picture.bytes);
+    return facts ? fmt::format("{} x {}", facts->width, facts->height) : std::string();
+  };
+  for (const Material& material : materials) add_material(material, size_of, out, list);
+  out.json["materials"] = std::move(list);
+}
+
+void add_eyes(const Character& character, Description& out) {
+  std::vector<std::string> lines;
+  Json list = Json::array();
+  for (const Character::Eye& eye : character.eyes) {
+    lines.push_back(fmt::format("{} at {} m, on {}", shown(eye.name), numbers_of(eye.position),
+                                shown(eye.joint)));
+    list.push_back({{"name", eye.name}, {"joint", eye.joint}, {"position", json_of(eye.position)}});
+  }
+  out.add("eyes", std::move(lines));
+  out.json["eyes"] = std::move(list);
+}
+
 void add_expressions(const LoadedCharacter& loaded, Description& out) {
   Json list = Json::array();
   std::vector<std::string> texts;
@@ -158,8 +181,9 @@ Result<Description> describe_material(const InputFile& file, ToolContext& contex
   return out;
 }
 
-Result<Description> describe_character(const InputFile& file, ToolContext& context) {
-  const auto loaded = load_character(file, context);
+Result<Description> describe_character(const InputFile& file, const SkeletonOptions& how,
+                                       ToolContext& context) {
+  auto loaded = load_character(file, context);
   if (!loaded) return loaded.error();
   const Character& character = loaded->character;
   const Model& model = loaded->model;
@@ -168,33 +192,23 @@ Result<Description> describe_character(const InputFile& file, ToolContext& conte
   out.json["kind"] = "character";
   out.json["name"] = character.name;
   if (!character.name.empty()) out.add("name", shown(character.name));
-  out.add("model", fmt::format("{}: {}, {}, {}", shown(character.model),
-                               count_of(static_cast<std::size_t>(model.vertex_count()), "vertex",
-                                        "vertices"),
-                               count_of(model.triangles.size(), "triangle"),
-                               count_of(model.skeleton.names.size(), "joint")));
+  out.add("model", fmt::format("{}: {}, {}", shown(character.model),
+                               count_of(model.positions.size(), "vertex", "vertices"),
+                               count_of(model.triangles.size(), "triangle")));
   out.json["model"] = character.model;
+  out.json["vertices"] = model.positions.size();
+  out.json["triangles"] = model.triangles.size();
   add_parts(model, out);
-  std::vector<std::string> eyes;
-  Json eye_list = Json::array();
-  for (const Character::Eye& eye : character.eyes) {
-    eyes.push_back(fmt::format("{} at {} m, on {}", shown(eye.name), numbers_of(eye.position),
-                               shown(eye.joint)));
-    eye_list.push_back(
-        {{"name", eye.name}, {"joint", eye.joint}, {"position", json_of(eye.position)}});
+  if (how.mapped) {
+    if (Status added = add_skeleton(model.skeleton, how, out); !added) return added.error();
+  } else {
+    add_skeleton(model.skeleton, loaded->roles, how.verbose, out);
   }
-  out.add("eyes", std::move(eyes));
-  out.json["eyes"] = std::move(eye_list);
+  add_eyes(character, out);
   add_expressions(*loaded, out);
-  Json materials = Json::array();
-  for (const Material& material : loaded->materials) {
-    const auto size_of = [](const Picture& picture) {
-      const auto facts = picture_facts(picture.bytes);
-      return facts ? fmt::format("{} x {}", facts->width, facts->height) : std::string();
-    };
-    add_material(material, size_of, out, materials);
-  }
-  out.json["materials"] = std::move(materials);
+  add_materials(loaded->materials, out);
+  take_rest_shape(*loaded);
+  add_mesh_size(model, out);
   return out;
 }
 

@@ -45,6 +45,17 @@ void add_parts(const Model& model, Description& out) {
   out.add("parts", std::move(lines));
 }
 
+void add_mesh_size(const Model& model, Description& out) {
+  if (model.positions.empty()) {
+    add_reference_size(model.skeleton, out);
+    return;
+  }
+  add_size<Vec3f>(model.positions, "mesh in the reference pose", out);
+  std::vector<Vec3> positions;
+  for (const Vec3f& position : model.positions) positions.push_back(position.cast<double>());
+  add_volumes({{"", mesh_volume(positions, model.triangles)}}, out);
+}
+
 Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how, ToolContext&) {
   const auto clip = anim::read(file.bytes());
   if (!clip) return clip.error();
@@ -85,14 +96,7 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
   out.json["influences_per_vertex"] = model->influences_per_vertex;
   add_parts(*model, out);
   if (Status added = add_skeleton(model->skeleton, how, out); !added) return added.error();
-  if (vertices > 0) {
-    add_size<Vec3f>(model->positions, "mesh in the reference pose", out);
-    std::vector<Vec3> positions;
-    for (const Vec3f& position : model->positions) positions.push_back(position.cast<double>());
-    add_volumes({{"", mesh_volume(positions, model->triangles)}}, out);
-  } else {
-    add_reference_size(model->skeleton, out);
-  }
+  add_mesh_size(*model, out);
   add_orientations(file, out);
   add_provenance(model->provenance, out);
   return out;

@@ -112,13 +112,23 @@ void add_cameras(const nodes::Scene& scene, Description& out) {
   out.add("cameras", std::move(lines));
 }
 
-// The skeleton that krok-import takes; nothing where a scene has neither skins nor animations, for
-// then any node might be a joint.
+// Whether an animation moves nodes, and not only the shapes of their meshes.
+bool moves_nodes(const nodes::Scene& scene) {
+  const auto moves = [](const nodes::Channel& channel) {
+    return channel.path != nodes::Path::weights;
+  };
+  return std::ranges::any_of(scene.animations, [&](const nodes::Animation& animation) {
+    return std::ranges::any_of(animation.channels, moves);
+  });
+}
+
+// The skeleton that krok-import takes; nothing where a scene has neither skins nor nodes that move,
+// for then any node might be a joint.
 Result<std::optional<character::Rig>> find_rig(const nodes::Scene& scene,
                                                const nodes::Evaluator& evaluator,
                                                Diagnostics& found) {
   std::optional<character::Rig> none;
-  if (scene.skins.empty() && scene.animations.empty()) return none;
+  if (scene.skins.empty() && !moves_nodes(scene)) return none;
   auto joints = character::choose_joints(scene, evaluator, "", found);
   if (!joints && joints.error().code == "scene-skeleton") return none;
   if (!joints) return joints.error();

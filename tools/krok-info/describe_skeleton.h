@@ -9,6 +9,7 @@ namespace krok::info {
 // How what the joints are is to be found out and shown.
 struct SkeletonOptions {
   FindRoles roles;
+  bool mapped = false;   // by a role map that the user gave
   bool verbose = false;  // list every joint
 };
 

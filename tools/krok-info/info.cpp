@@ -25,7 +25,7 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
     case Kind::material:
       return describe_material(file, context);
     case Kind::character:
-      return describe_character(file, context);
+      return describe_character(file, how, context);
     case Kind::bvh:
       return describe_bvh(file, how, context);
     case Kind::asf:
@@ -58,7 +58,7 @@ Result<Description> describe_path(const std::string& path, const SkeletonOptions
 Result<int> run(const Options& options, ToolContext& context) {
   auto roles = open_role_map(options.map, context);
   if (!roles) return roles.error();
-  const SkeletonOptions how{*std::move(roles), context.verbose};
+  const SkeletonOptions how{*std::move(roles), !options.map.empty(), context.verbose};
   Json files = Json::array();
   bool failed = false;
   bool first = true;

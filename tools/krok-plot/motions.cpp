@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/file.h"
 #include "core/numbers.h"
+#include "tools/common/file_name.h"
 #include "tools/common/keys_sidecar.h"
 #include "tools/common/motion_input.h"
 #include "tools/common/role_input.h"
@@ -56,10 +56,6 @@ Result<MotionKeys> read_keys(const std::string& option, const std::string& motio
 }
 
 }  // namespace
-
-std::string name_of_input(const std::string& path) {
-  return path == "-" ? "standard input" : base_name(path);
-}
 
 Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
                              ToolContext& context) {

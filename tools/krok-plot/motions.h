@@ -28,7 +28,4 @@ struct Motions {
 Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
                              ToolContext& context);
 
-// "walk.bvh"; "standard input" for "-".
-std::string name_of_input(const std::string& path);
-
 }  // namespace krok::plot

@@ -278,7 +278,8 @@ bool has_picture_options(const SheetOptions& options) {
 void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("inputs", arguments.inputs,
                  "Motions (.anim, or a capture such as BVH) or tables (.csv); several go into the "
-                 "same panels")
+                 "same panels. For pictures also models and characters (.model, .character, moved "
+                 "by the motions of their skeleton) and glTF")
       ->type_name("IN")
       ->required();
   declare_motions(app, arguments);

@@ -10,6 +10,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/registry/registry.h"
+#include "tools/common/file_name.h"
 #include "tools/common/output_set.h"
 #include "tools/krok-plot/charts.h"
 #include "tools/krok-plot/motions.h"
@@ -156,7 +157,9 @@ ToolSpec make_spec() {
        "one column of a table, a line for each of two joints"},
       {"krok-plot fit.csv --x examples --y error_mm --log-y --style both -o fit.svg",
        "any table of numbers; the unit is read from the column's name"},
-      {"krok-plot walk.bvh --sheet walk.png", "pictures of the figure at eight moments"}};
+      {"krok-plot walk.bvh --sheet walk.png", "pictures of the figure at eight moments"},
+      {"krok-plot hero.character walk.anim --strip hero.png",
+       "a character in the colours of its materials, moved; without a motion it stands"}};
   spec.needs_output = false;  // --sheet and --strip name files of their own
   spec.batch = {{".anim", ".bvh", ".amc"}, always(".svg")};
   spec.declare = [arguments](CLI::App& app) { declare(app, *arguments); };

@@ -9,7 +9,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/csv/table.h"
-#include "tools/krok-plot/motions.h"
+#include "tools/common/file_name.h"
 
 namespace krok::plot {
 

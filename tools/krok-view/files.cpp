@@ -12,8 +12,9 @@
 #include "formats/cam/cam.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/pack_glb.h"
-#include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
+#include "tools/common/character/character_input.h"
+#include "tools/common/file_name.h"
 #include "tools/common/glob.h"
 #include "tools/common/keys_sidecar.h"
 #include "tools/common/motion_input.h"
@@ -24,10 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using registry::Kind;
-
-std::string name_of(const std::string& path) {
-  return path == "-" ? "standard input" : base_name(path);
-}
 
 // Standard input has none.
 std::string folder_of(const std::string& path) {
@@ -40,15 +37,15 @@ std::string folder_of(const std::string& path) {
 Result<std::vector<std::string>> files_in(const std::string& folder) {
   auto found = find_files_below(folder);
   if (!found) return found.error();
-  static constexpr std::array<std::string_view, 5> kEndings = {".anim", ".bvh", ".amc", ".glb",
-                                                               ".gltf"};
+  static constexpr std::array<std::string_view, 6> kEndings = {".anim", ".bvh",  ".amc",
+                                                               ".glb",  ".gltf", ".character"};
   std::erase_if(*found, [](const std::string& path) {
     const std::string ending = ascii_lower(fs::path(path).extension().string());
     return std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end();
   });
   if (!found->empty()) return found;
   return Error("view-input", "no motion or character is in this folder",
-               "it may hold .anim, .bvh, .amc, .glb and .gltf files")
+               "it may hold .anim, .bvh, .amc, .glb, .gltf and .character files")
       .in_file(folder);
 }
 
@@ -67,17 +64,18 @@ Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice
 Status add_file(const std::string& path, KeysChoice choice, ToolContext& context, Files& files) {
   auto input = context.open_input(path);
   if (!input) return input.error();
-  switch (registry::identify(input->path(), input->bytes())) {
-    case Kind::model: {
-      auto model = model::read(input->bytes());
-      if (!model) return std::move(model).error().in_file(path);
-      files.models.push_back({path, name_of(path), std::move(*model), false});
-      return {};
-    }
+  const Kind kind = registry::identify(input->path(), input->bytes());
+  if (is_shown_model(kind)) {
+    auto shown = load_shown_model(*input, kind, context);
+    if (!shown) return shown.error();
+    files.models.push_back({path, name_of_input(path), *std::move(shown), false});
+    return {};
+  }
+  switch (kind) {
     case Kind::cam: {
       auto camera = cam::read(input->bytes());
       if (!camera) return std::move(camera).error().in_file(path);
-      files.cameras.push_back({name_of(path), std::move(*camera)});
+      files.cameras.push_back({name_of_input(path), std::move(*camera)});
       return {};
     }
     case Kind::glb: {
@@ -86,7 +84,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
         return std::move(scene).error().in_file(path);
       }
       const auto bytes = input->bytes();
-      files.glbs.push_back({name_of(path), {bytes.begin(), bytes.end()}});
+      files.glbs.push_back({name_of_input(path), {bytes.begin(), bytes.end()}});
       return {};
     }
     case Kind::gltf: {
@@ -97,7 +95,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       for (const std::string& beside : packed->files) {
         if (auto opened = context.open_input(beside); !opened) return opened.error();
       }
-      files.glbs.push_back({name_of(path), std::move(packed->bytes)});
+      files.glbs.push_back({name_of_input(path), std::move(packed->bytes)});
       return {};
     }
     default: {
@@ -105,7 +103,8 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       if (!clip) return std::move(clip).error().in_file(path);
       auto keys = keys_of(path, *clip, choice, context);
       if (!keys) return std::move(keys).error().in_file(path);
-      files.motions.push_back({path, name_of(path), std::move(*clip), nullptr, std::move(*keys)});
+      files.motions.push_back(
+          {path, name_of_input(path), std::move(*clip), nullptr, {}, std::move(*keys)});
       return {};
     }
   }
@@ -114,18 +113,22 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
 void share_models(Files& files) {
   for (Files::Character& character : files.models) {
     for (Files::Motion& motion : files.motions) {
-      if (motion.body != nullptr || character.model.triangles.empty()) continue;
-      if (!difference_in_structure(motion.clip.skeleton, character.model.skeleton).empty())
+      if (motion.body != nullptr || character.shown.model.triangles.empty()) continue;
+      if (!difference_in_structure(motion.clip.skeleton, character.shown.model.skeleton).empty())
         continue;
-      motion.body = &character.model;
+      motion.body = &character.shown.model;
+      motion.materials = character.shown.materials;
       character.used = true;
     }
   }
   for (Files::Character& character : files.models) {
     if (character.used) continue;
-    Files::Motion still{character.path, character.name, {}, nullptr, {}};
-    still.clip.skeleton = character.model.skeleton;
-    if (!character.model.triangles.empty()) still.body = &character.model;
+    Files::Motion still{character.path, character.name, {}, nullptr, {}, {}};
+    still.clip.skeleton = character.shown.model.skeleton;
+    if (!character.shown.model.triangles.empty()) {
+      still.body = &character.shown.model;
+      still.materials = character.shown.materials;
+    }
     files.motions.push_back(std::move(still));
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,9 @@
 #include "draw/viewer_page.h"
 #include "scene/camera_track.h"
 #include "scene/clip.h"
+#include "scene/material.h"
 #include "scene/model.h"
+#include "tools/common/character/character_input.h"
 #include "tools/common/tool.h"
 #include "tools/krok-view/view.h"
 
@@ -20,6 +23,7 @@ struct Files {
     std::string path, name;
     Clip clip;
     const Model* body = nullptr;  // of `models` or `bodies`
+    std::span<const Material> materials;
     MotionKeys keys;
   };
   struct Glb {
@@ -32,7 +36,7 @@ struct Files {
   };
   struct Character {
     std::string path, name;
-    Model model;
+    ShownModel shown;
     bool used = false;
   };
   std::deque<Motion> motions;
@@ -42,8 +46,9 @@ struct Files {
   std::deque<Camera> cameras;
 };
 
-// Reads all inputs, gives each model to the motions of its skeleton, and builds bodies for motions
-// that have none. A model that no motion moves stands in its reference pose.
+// Reads all inputs, gives each model and character to the motions of its skeleton, and builds
+// bodies for motions that have none. A model that no motion moves stands in its reference pose.
+// Faces are as their character has them at rest.
 Result<Files> read_files(const Options& options, ToolContext& context);
 
 }  // namespace krok::view

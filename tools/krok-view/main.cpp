@@ -10,7 +10,9 @@ int main(int argc, char** argv) {
                    {"krok-view before.anim after.anim --difference -o change.html",
                     "two motions in one place, joints coloured by how far apart they are"},
                    {"krok-view hero.model walk.anim shot.cam -o shot.html",
-                    "a character, moved, seen by the recorded camera"}};
+                    "a model, moved, seen by the recorded camera"},
+                   {"krok-view hero.character walk.anim -o hero.html",
+                    "a character with its materials, moved; without a motion it stands"}};
   spec.declare = [&options](CLI::App& app) { krok::view::declare(app, options); };
   spec.run = [&options](krok::ToolContext& context) { return krok::view::run(options, context); };
   return krok::run_tool(spec, argc, argv);

@@ -34,6 +34,7 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
     viewed.visible = visible(page.motions.size());
     viewed.clip = &motion.clip;
     viewed.body = motion.body;
+    viewed.materials = motion.materials;
     viewed.keys = motion.keys;
     page.motions.push_back(std::move(viewed));
   }
@@ -65,8 +66,9 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
 
 void declare(CLI::App& app, Options& options) {
   app.add_option("inputs", options.inputs,
-                 "Motions (.anim, or a capture such as BVH), models (.model, moved by the motions "
-                 "of their skeleton), cameras (.cam), glTF; of a folder all motions and glTF")
+                 "Motions (.anim, or a capture such as BVH), models and characters (.model, "
+                 ".character, moved by the motions of their skeleton), cameras (.cam), glTF; of a "
+                 "folder all motions, characters and glTF")
       ->type_name("IN")
       ->required();
   app.add_option("--layout", options.layout,
@@ -122,6 +124,7 @@ Result<int> run(const Options& options, ToolContext& context) {
                      {"frames", motion.clip.frame_count()},
                      {"rate", motion.clip.rate},
                      {"vertices", motion.body ? motion.body->vertex_count() : 0},
+                     {"materials", motion.materials.size()},
                      {"contacts", motion.keys.contacts.size()},
                      {"keytimes", motion.keys.keytimes.size()}});
   }

@@ -62,7 +62,8 @@ TEST_F(LookInfoTest, TellsWhatACharacterIs) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const char* text :
        {"Hero", "a.model: 4 vertices, 2 triangles", "body, 1 triangle, material skin",
-        "left at 1, 2, 3 m", "smile (0.25)", "base colour: skin.png (2 x 2)", "shaders a.frag"}) {
+        "left at 1, 2, 3 m", "smile (0.25)", "base colour: skin.png (2 x 2)", "shaders a.frag",
+        "joints       3, 1 of them end sites", "0.75 x 0.75 x 0.375 m (X, Y, Z; mesh in"}) {
     EXPECT_NE(run.out.find(text), std::string::npos) << text << "\n" << run.out;
   }
   // No part has it.
@@ -73,6 +74,8 @@ TEST_F(LookInfoTest, TellsWhatACharacterIs) {
   EXPECT_EQ(file["expressions"], nlohmann::json::parse(R"([{"name": "smile", "weight": 0.25}])"));
   EXPECT_EQ(file["eyes"][0]["position"], nlohmann::json({1, 2, 3}));
   EXPECT_EQ(file["materials"][0]["textures"][0]["file"], "skin.png");
+  EXPECT_EQ(file["vertices"], 4);
+  EXPECT_EQ(file["skeleton"][1]["joint"], joint_);
   EXPECT_EQ(json["inputs"].size(), 5u);  // all that it names, so that a batch notices changes
 }
 
@@ -83,6 +86,36 @@ TEST_F(LookInfoTest, PartsGetTheMaterialsThatTheCharacterGivesThem) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.out.find("body, 1 triangle, material glass"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("transparent, double-sided"), std::string::npos) << run.out;
+}
+
+// What joints are is found by their names, told by the character, or by whoever asks.
+TEST_F(LookInfoTest, JointsHaveTheRolesThatTheCharacterGivesThem) {
+  const auto roles = [&](const std::string& members, const std::vector<std::string>& options) {
+    std::vector<std::string> json = {"--json"};
+    json.insert(json.end(), options.begin(), options.end());
+    return nlohmann::json::parse(info(members, json).out)["result"]["files"][0]["roles"];
+  };
+  put("own.json", R"({"joints": {")" + joint_ + R"(": "head"}})");
+  put("other.json", R"({"joints": {")" + joint_ + R"(": "left_foot"}})");
+  EXPECT_FALSE(roles(R"("name": "a")", {}).contains("head"));
+  EXPECT_EQ(roles(R"("role_map": "own.json")", {})["head"], joint_);
+  const auto given = roles(R"("role_map": "own.json")", {"--map", path("other.json")});
+  EXPECT_FALSE(given.contains("head"));
+  EXPECT_EQ(given["left_foot"], joint_);
+}
+
+// The face at rest makes it taller: the one target moves all vertices to 1 m.
+TEST_F(LookInfoTest, TheSizeIsThatOfTheFaceAtRest) {
+  const auto height = [&](const char* weight) {
+    const std::string members = std::string(R"("morphs": "face.exr", "expressions": [
+        {"name": "Smile", "weight": )") +
+                                weight + "}]";
+    const auto json = nlohmann::json::parse(info(members, {"--json"}).out);
+    return json["result"]["files"][0]["height"].get<double>();
+  };
+  EXPECT_EQ(height("0"), 1.0);
+  EXPECT_EQ(height("0.5"), 0.5);  // from 0.5 to 1
+  EXPECT_EQ(height("1"), 0.0);
 }
 
 TEST_F(LookInfoTest, WhatDoesNotFitTogetherIsAnError) {

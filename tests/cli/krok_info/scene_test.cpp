@@ -77,6 +77,35 @@ TEST_F(InfoOfScenes, SizesAreInMetresAndKroksAxes) {
   EXPECT_EQ(file["cameras"][0]["name"], "eye");
 }
 
+// A baked clip: the node of a mesh whose shape changes is no joint. One that moves too may be.
+TEST_F(InfoOfScenes, ANodeWhoseShapeAloneChangesIsNoJoint) {
+  put("in.bvh", capture(5));
+  run_tool("krok-import", {path("in.bvh"), "-o", path("in.anim")});
+  run_tool("krok-body", {path("in.anim"), "--detail", "low", "-o", path("in.model")});
+  const ToolRun baked = run_tool(
+      "krok-skin", {path("in.model"), path("in.anim"), "--as", "clip", "-o", path("baked.gltf")});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  const Json file = info_of({path("baked.gltf")});
+  EXPECT_EQ(file["meshes"][0]["morph_targets"], 4);
+  EXPECT_FALSE(file.contains("joints"));
+  EXPECT_FALSE(file.contains("skeleton"));
+  const std::string told = run_tool("krok-info", {path("baked.gltf")}).out;
+  EXPECT_THAT(told, Not(HasSubstr("joint")));
+
+  Json scene = Json::parse(get(path("baked.gltf")));
+  Json& animation = scene["animations"][0];
+  // Times of the weights, and any three floats for each, as places.
+  Json moves = animation["channels"][0];
+  moves["target"]["path"] = "translation";
+  moves["sampler"] = animation["samplers"].size();
+  scene["accessors"].push_back({{"componentType", 5126}, {"count", 5}, {"type", "VEC3"}});
+  animation["samplers"].push_back(
+      {{"input", animation["samplers"][0]["input"]}, {"output", scene["accessors"].size() - 1}});
+  animation["channels"].push_back(moves);
+  put("moved.gltf", scene.dump());
+  EXPECT_EQ(info_of({path("moved.gltf")})["joints"], 1);
+}
+
 TEST_F(InfoOfScenes, AThingWithoutASkeletonHasNoRoles) {
   put_glb("square.glb", square());
   const Json file = info_of({path("square.glb")});

@@ -4,35 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bent_body.h"
-#include "support/small_pictures.h"
+#include "cli/hero_character.h"
 
 namespace krok::test {
 namespace {
 
 using nlohmann::json;
 
-class SkinCharacter : public BentBody {
+class SkinCharacter : public HeroCharacter {
  protected:
-  void SetUp() override {
-    BentBody::SetUp();
-    const auto picture = png();
-    put("skin.png", std::string(reinterpret_cast<const char*>(picture.data()), picture.size()));
-    put("in.material",
-        R"({"schema": "krok.material/1", "materials": [
-             {"name": "Skin", "base_color_texture": "skin.png", "roughness": 0.25}]})");
-    put_character(R"([{"name": "bow", "target": "bent", "weight": 1}])");
-  }
-
-  void put_character(const std::string& expressions, const std::string& model = "in.model") {
-    put("hero.character", R"({"schema": "krok.character/1", "model": ")" + model +
-                              R"(", "materials": ["in.material"],
-             "parts": [{"name": "body", "material": "Skin"}],
-             "eyes": [{"name": "left", "joint": "Head", "position": [0.1, 1.8, 0.1]}],
-             "morphs": "bent.exr", "expressions": )" +
-                              expressions + "}\n");
-  }
-
   json gltf(const std::string& name) { return json::parse(get(path(name))); }
 };
 

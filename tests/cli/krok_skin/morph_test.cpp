@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bent_body.h"
+#include "cli/bent_body.h"
 
 namespace krok::test {
 namespace {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "shown_page.h"
 
 namespace krok::test {
 namespace {
@@ -28,13 +29,7 @@ class KrokView : public CliTest {
     arguments.push_back(path("page.html"));
     return run_tool("krok-view", arguments);
   }
-  // The description that the page carries of what it shows.
-  json data() const {
-    const std::string page = get(path("page.html"));
-    const std::string start = "id=\"krok-data\">";
-    const auto at = page.find(start) + start.size();
-    return json::parse(page.substr(at, page.find("</script>", at) - at));
-  }
+  json data() const { return data_of(get(path("page.html"))); }
 };
 
 TEST_F(KrokView, ShowsAMotionWithABodyMadeForIt) {

@@ -1,6 +1,7 @@
 // If these fail, the viewer page shows joints elsewhere than where the motion has them, or its data
 // is larger than it may be.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -8,6 +9,7 @@
 #include "draw/pack_motion_internal.h"
 #include "draw/viewer_page.h"
 #include "math/quaternion.h"
+#include "support/small_pictures.h"
 #include "support/test_scenes.h"
 
 namespace krok::draw {
@@ -64,6 +66,60 @@ TEST(PackedMotion, LeavesOutWhatDoesNotMove) {
   EXPECT_TRUE(still["moving"].empty());
   EXPECT_TRUE(still["turning"].empty());
   EXPECT_LT(still_blob.base64().size(), 3000U);
+}
+
+Material textured(const std::string& name, const std::shared_ptr<const Picture>& picture) {
+  Material material;
+  material.name = name;
+  material.base_color_texture.picture = picture;
+  material.base_color_texture.wrap_v = Texture::Wrap::mirror;
+  return material;
+}
+
+TEST(PackedLook, PartsNameTheirMaterialsAndPicturesStandOnce) {
+  Model body = test::tube_model(test::human_skeleton());
+  body.texture_coordinates.assign(body.positions.size(), Vec2f(0.25f, 0.75f));
+  const auto half = static_cast<std::uint32_t>(body.triangles.size() / 2);
+  const auto rest = static_cast<std::uint32_t>(body.triangles.size()) - half;
+  body.parts = {{"a", "Two", 0, half}, {"b", "None", half, 1}, {"c", "One", half + 1, rest - 1}};
+  const auto picture = test::picture(test::png());
+  const std::vector<Material> materials = {textured("One", picture), textured("Two", picture)};
+  Blob blob;
+  const auto look = pack_look(body, materials, blob);
+  ASSERT_TRUE(look.ok());
+  EXPECT_EQ((*look)["parts"], Json::parse(fmt::format(
+                                  R"([{{"first": 0, "count": {}, "material": 0}},
+          {{"first": {}, "count": 3, "material": 1}}, {{"first": {}, "count": {}, "material": 2}}])",
+                                  half * 3, half * 3, half * 3 + 3, (rest - 1) * 3)));
+  ASSERT_EQ((*look)["materials"].size(), 3u);
+  EXPECT_EQ((*look)["materials"][0]["textures"]["baseColor"]["wrapV"], "mirror");
+  EXPECT_EQ((*look)["materials"][1]["color"][0], Material().base_color.x());  // nobody's
+  EXPECT_TRUE((*look)["materials"][1]["textures"].empty());
+  ASSERT_EQ((*look)["pictures"].size(), 1u);
+  EXPECT_EQ((*look)["pictures"][0]["count"], test::png().size());
+  EXPECT_EQ((*look)["coordinates"]["count"], body.positions.size() * 2);
+}
+
+TEST(PackedLook, AMeshWithoutCoordinatesHasNoPictures) {
+  Model body = test::tube_model(test::human_skeleton());
+  body.texture_coordinates.clear();
+  body.parts[0].material = "One";
+  Blob blob;
+  const auto look = pack_look(body, std::vector{textured("One", test::picture(test::png()))}, blob);
+  ASSERT_TRUE(look.ok());
+  EXPECT_TRUE((*look)["materials"][0]["textures"].empty());
+  EXPECT_TRUE((*look)["pictures"].empty());
+}
+
+TEST(PackedLook, APictureThatIsNoneIsAnError) {
+  Model body = test::tube_model(test::human_skeleton());
+  body.texture_coordinates.assign(body.positions.size(), Vec2f::Zero());
+  body.parts[0].material = "One";
+  Blob blob;
+  const auto look =
+      pack_look(body, std::vector{textured("One", test::picture({std::byte{7}}))}, blob);
+  ASSERT_FALSE(look.ok());
+  EXPECT_EQ(look.error().code, "picture-kind");
 }
 
 // A chain of sixty joints that all turn, a minute at 60 frames a second.

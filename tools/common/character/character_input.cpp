@@ -12,6 +12,7 @@
 #include "formats/material/material_format.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
+#include "skin/morph.h"
 #include "tools/common/role_input.h"
 
 namespace krok {
@@ -222,6 +223,34 @@ Result<LoadedCharacter> load_character(const std::string& path, ToolContext& con
   const auto input = context.open_input(path);
   if (!input) return input.error();
   return load_character(*input, context);
+}
+
+void take_rest_shape(LoadedCharacter& loaded) {
+  Model& model = loaded.model;
+  std::vector<Vec3f> positions(model.positions.size()), normals(model.normals.size());
+  apply_morphs(loaded.morphs, loaded.weights, {model.positions, model.normals},
+               {positions, normals});
+  model.positions = std::move(positions);
+  model.normals = std::move(normals);
+  loaded.morphs = {};
+  loaded.weights.clear();
+}
+
+bool is_shown_model(registry::Kind kind) {
+  return kind == registry::Kind::model || kind == registry::Kind::character;
+}
+
+Result<ShownModel> load_shown_model(const InputFile& input, registry::Kind kind,
+                                    ToolContext& context) {
+  if (kind == registry::Kind::character) {
+    auto loaded = load_character(input, context);
+    if (!loaded) return loaded.error();
+    take_rest_shape(*loaded);
+    return ShownModel{std::move(loaded->model), std::move(loaded->materials)};
+  }
+  auto model = model::read(input.bytes());
+  if (!model) return std::move(model.error()).in_file(input.path());
+  return ShownModel{*std::move(model), {}};
 }
 
 }  // namespace krok

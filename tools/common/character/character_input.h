@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "formats/registry/registry.h"
 #include "roles/roles.h"
 #include "scene/character.h"
 #include "scene/material.h"
@@ -33,5 +34,21 @@ Result<LoadedCharacter> load_character(const std::string& path, ToolContext& con
 
 // The same of a file that is open already.
 Result<LoadedCharacter> load_character(const InputFile& input, ToolContext& context);
+
+// Brings the model's mesh into the shape that it has where no motion of the face is given, and lets
+// go of the morph targets.
+void take_rest_shape(LoadedCharacter& loaded);
+
+// A mesh on its skeleton, for whoever shows it without its face moving: a .model file, or a
+// character as it is at rest, with its materials.
+struct ShownModel {
+  Model model;
+  std::vector<Material> materials;
+};
+
+// Whether a file of this kind is one; load_shown_model() reads it.
+bool is_shown_model(registry::Kind kind);
+Result<ShownModel> load_shown_model(const InputFile& input, registry::Kind kind,
+                                    ToolContext& context);
 
 }  // namespace krok

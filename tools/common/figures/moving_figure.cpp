@@ -10,11 +10,13 @@
 
 #include "body/body.h"
 #include "core/numbers.h"
-#include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
 #include "motion/ground_place.h"
 #include "nodes/evaluate.h"
+#include "tools/common/character/character_input.h"
 #include "tools/common/figures/bone_figure.h"
+#include "tools/common/figures/drawn_body.h"
+#include "tools/common/file_name.h"
 #include "tools/common/gltf/gltf_input.h"
 #include "tools/common/motion_input.h"
 
@@ -24,30 +26,30 @@ namespace {
 
 using registry::Kind;
 
-std::string name_of(const std::string& path) {
-  return path == "-" ? "standard input" : base_name(path);
-}
+// What a motion moves: a mesh, or none, and how it looks where a character tells.
+struct Body {
+  std::shared_ptr<const Model> model;
+  std::vector<Material> materials;
+};
 
 // A clip and, if it has one, its body, with what drawing them at any moment needs.
 class ClipFigure {
  public:
-  ClipFigure(Clip clip, std::shared_ptr<const Model> body, SkinMethod method)
+  ClipFigure(Clip clip, const Body& body, SkinMethod method)
       : clip_(std::move(clip)),
-        body_(std::move(body)),
         style_(bone_style(clip_.skeleton)),
         carrier_(carrying_joint(find_roles(clip_.skeleton))) {
-    if (body_ == nullptr) return;
-    binding_.emplace(*body_, method);
-    triangles_ = std::make_shared<render::Triangles>(body_->triangles);
+    if (body.model != nullptr) body_.emplace(body.model, body.materials, method);
   }
 
   render::Figure at(double time) const {
     const auto pose = pose_at(time);
     render::Figure figure;
-    if (body_ != nullptr) {
-      figure.surfaces.push_back(skinned(pose));
+    if (body_) {
+      figure.surfaces = body_->at(pose);
     } else {
       std::vector<Vec3f> positions;
+      positions.reserve(pose.size());
       for (const Transform& joint : pose) positions.push_back(joint.position.cast<float>());
       figure = bone_figure(style_, positions);
     }
@@ -76,33 +78,17 @@ class ClipFigure {
     return pose;
   }
 
-  render::Surface skinned(const std::vector<Transform>& pose) const {
-    SkinPose posed(*binding_);
-    posed.set(pose);
-    render::Surface surface;
-    surface.positions.resize(body_->positions.size());
-    surface.normals.resize(body_->normals.size());
-    skin(*binding_, posed, {body_->positions, body_->normals, {}},
-         {surface.positions, surface.normals, {}});
-    surface.triangles = triangles_;
-    surface.colours = {kBodyColour};
-    return surface;
-  }
-
   Clip clip_;
-  std::shared_ptr<const Model> body_;
-  std::optional<SkinBinding> binding_;  // of the body
-  std::shared_ptr<const render::Triangles> triangles_;
+  std::optional<DrawnBody> body_;
   BoneStyle style_;
   int carrier_ = 0;
 };
 
-MovingFigure figure_of(const std::string& path, Clip clip, std::shared_ptr<const Model> body,
-                       SkinMethod method) {
+MovingFigure figure_of(const std::string& path, Clip clip, const Body& body, SkinMethod method) {
   MovingFigure figure;
   figure.path = path;
-  figure.name = name_of(path);
-  figure.has_body = body != nullptr;
+  figure.name = name_of_input(path);
+  figure.has_body = body.model != nullptr;
   figure.frame_count = clip.frame_count();
   figure.rate = clip.rate;
   figure.duration = clip.duration();
@@ -111,7 +97,7 @@ MovingFigure figure_of(const std::string& path, Clip clip, std::shared_ptr<const
     figure.facts += fmt::format(", {}, {} a second", counted(figure.frame_count, "frame"),
                                 readable(clip.rate, 4));
   }
-  const auto source = std::make_shared<const ClipFigure>(std::move(clip), std::move(body), method);
+  const auto source = std::make_shared<const ClipFigure>(std::move(clip), body, method);
   figure.at = [source](double time) { return source->at(time); };
   figure.carrier = [source](double time) { return source->carrier(time); };
   figure.heading = [source](double time) { return source->heading(time); };
@@ -241,12 +227,12 @@ struct Read {
     std::size_t place;  // among the inputs
     std::string path;
     Clip clip;
-    std::shared_ptr<const Model> body;
+    Body body;
   };
   struct Character {
     std::size_t place;
     std::string path;
-    std::shared_ptr<const Model> model;
+    Body body;
     bool used = false;
   };
   std::vector<Motion> motions;
@@ -258,13 +244,15 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
                 Read& read) {
   auto input = context.open_input(path);
   if (!input) return input.error();
-  switch (registry::identify(input->path(), input->bytes())) {
-    case Kind::model: {
-      auto model = model::read(input->bytes());
-      if (!model) return std::move(model).error().in_file(path);
-      read.models.push_back({place, path, std::make_shared<Model>(std::move(*model)), false});
-      return {};
-    }
+  const Kind kind = registry::identify(input->path(), input->bytes());
+  if (is_shown_model(kind)) {
+    auto shown = load_shown_model(*input, kind, context);
+    if (!shown) return shown.error();
+    Body body{std::make_shared<Model>(std::move(shown->model)), std::move(shown->materials)};
+    read.models.push_back({place, path, std::move(body), false});
+    return {};
+  }
+  switch (kind) {
     case Kind::glb:
     case Kind::gltf: {
       auto scene = read_gltf(*input, context);
@@ -274,7 +262,7 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
       if (!source) return Error(source.error()).in_file(path);
       MovingFigure figure;
       figure.path = path;
-      figure.name = name_of(path);
+      figure.name = name_of_input(path);
       figure.facts = (*source)->facts();
       figure.duration = (*source)->duration();
       figure.has_body = (*source)->has_body();
@@ -285,12 +273,13 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
       return {};
     }
     case Kind::cam:
-      return Error("figure-input", "a camera shows no figure", "give a motion, model or glTF file")
+      return Error("figure-input", "a camera shows no figure",
+                   "give a motion, model, character or glTF file")
           .in_file(path);
     default: {
       auto clip = read_motion(*input, context);
       if (!clip) return std::move(clip).error().in_file(path);
-      read.motions.push_back({place, path, std::move(*clip), nullptr});
+      read.motions.push_back({place, path, std::move(*clip), {}});
       return {};
     }
   }
@@ -300,35 +289,36 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
 void share_models(bool bones, SkinMethod method, Read& read) {
   for (Read::Character& character : read.models) {
     for (Read::Motion& motion : read.motions) {
-      if (motion.body != nullptr ||
-          !difference_in_structure(motion.clip.skeleton, character.model->skeleton).empty()) {
+      const Model& model = *character.body.model;
+      if (motion.body.model != nullptr ||
+          !difference_in_structure(motion.clip.skeleton, model.skeleton).empty()) {
         continue;
       }
       character.used = true;
-      if (!bones && !character.model->triangles.empty()) motion.body = character.model;
+      if (!bones && !model.triangles.empty()) motion.body = character.body;
     }
   }
   for (const Read::Character& character : read.models) {
     if (character.used) continue;
     Clip still;
-    still.skeleton = character.model->skeleton;
-    const bool drawn = !bones && !character.model->triangles.empty();
+    still.skeleton = character.body.model->skeleton;
+    const bool drawn = !bones && !character.body.model->triangles.empty();
     read.figures.emplace(character.place, figure_of(character.path, std::move(still),
-                                                    drawn ? character.model : nullptr, method));
+                                                    drawn ? character.body : Body(), method));
   }
 }
 
 Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
   if (choice == BodyChoice::none) return {};
   const auto bare = std::count_if(read.motions.begin(), read.motions.end(),
-                                  [](const Read::Motion& motion) { return !motion.body; });
+                                  [](const Read::Motion& motion) { return !motion.body.model; });
   if (choice == BodyChoice::automatic) choice = bare > 2 ? BodyChoice::low : BodyChoice::medium;
   const BodyOptions how = body_options(choice, context);
   for (Read::Motion& motion : read.motions) {
-    if (motion.body != nullptr) continue;
+    if (motion.body.model != nullptr) continue;
     auto body = make_body(motion.clip, how);
     if (!body) return std::move(body).error().in_file(motion.path);
-    motion.body = std::make_shared<Model>(std::move(body->model));
+    motion.body.model = std::make_shared<Model>(std::move(body->model));
   }
   return {};
 }
@@ -348,8 +338,8 @@ Result<std::vector<MovingFigure>> read_figures(const std::vector<std::string>& p
   share_models(bones, method, read);
   if (Status made = make_bodies(body, context, read); !made) return made.error();
   for (Read::Motion& motion : read.motions) {
-    read.figures.emplace(motion.place, figure_of(motion.path, std::move(motion.clip),
-                                                 std::move(motion.body), method));
+    read.figures.emplace(motion.place,
+                         figure_of(motion.path, std::move(motion.clip), motion.body, method));
   }
   std::vector<MovingFigure> figures;
   for (auto& [place, figure] : read.figures) figures.push_back(std::move(figure));

@@ -31,8 +31,9 @@ struct MovingFigure {
   std::function<double(double time)> heading;
 };
 
-// Motions (captures, .anim), models (.model, moved by the motions of their skeleton or standing
-// alone) and glTF files, in the order of `paths`. With BodyChoice::none motions are drawn as bones,
+// Motions (captures, .anim), models and characters (.model, .character, moved by the motions of
+// their skeleton or standing alone, faces as they are at rest) and glTF files, in the order of
+// `paths`. With BodyChoice::none motions are drawn as bones,
 // and so are models and glTF files that have joints; automatic is low for more than two motions
 // that come without a body, otherwise medium. `method` is how motions move their bodies; glTF files
 // are skinned as viewers do it. Code figure-input for a file that shows no figure.

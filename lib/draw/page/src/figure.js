@@ -20,7 +20,9 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
+import { makeMaterials } from './look.js';
 import { view } from './motion.js';
+import { reachBeyond, widen } from './reach.js';
 
 export const COLOURS = ['#3d7fd9', '#e08a1e', '#2f9e63', '#b0509e', '#7a6a58', '#c2453d'];
 export const CONTACT_COLOUR = '#e8412c';
@@ -148,15 +150,18 @@ export class Figure {
     });
     const reference = view(bytes, Float32Array, body.reference);
     const inverses = [];
+    const joints = new Box3();
     this.bodyBones = this.motion.names.map((_, joint) => {
       const bone = new Bone();
       bone.matrixAutoUpdate = false;
       bone.matrixWorldAutoUpdate = false;
       const at = joint * 7;
+      const position = new Vector3().fromArray(reference, at);
+      joints.expandByPoint(position);
       inverses.push(
         new Matrix4()
           .compose(
-            new Vector3().fromArray(reference, at),
+            position,
             new Quaternion().fromArray(reference, at + 3),
             new Vector3(1, 1, 1),
           )
@@ -164,6 +169,8 @@ export class Figure {
       );
       return bone;
     });
+    geometry.computeBoundingBox();
+    this.reach = reachBeyond(joints, geometry.boundingBox);
     this.body = new SkinnedMesh(geometry, material);
     // The bones are placed in the figure's own space, which the group then moves.
     this.body.bind(new Skeleton(this.bodyBones, inverses), new Matrix4());
@@ -171,6 +178,18 @@ export class Figure {
     this.body.frustumCulled = false;
     this.body.castShadow = true;
     this.group.add(this.body);
+  }
+
+  // Gives the body its own materials in place of the figure's colour, where it has any.
+  async dress(bytes) {
+    const look = this.item.body?.look;
+    if (!look) return;
+    const { geometry } = this.body;
+    if (look.coordinates) {
+      geometry.setAttribute('uv', new BufferAttribute(view(bytes, Float32Array, look.coordinates), 2));
+    }
+    for (const { first, count, material } of look.parts) geometry.addGroup(first, count, material);
+    this.body.material = await makeMaterials(look, bytes);
   }
 
   get duration() {
@@ -189,9 +208,10 @@ export class Figure {
     return this.motion.positions[joint];
   }
 
-  // What the joints take up as they are now, in the group's space.
+  // What the joints take up as they are now, and the body around them, in the group's space.
   boxNow() {
-    return this.motion.positions.reduce((box, position) => box.expandByPoint(position), new Box3());
+    const box = new Box3().setFromPoints(this.motion.positions);
+    return this.reach ? widen(box, this.reach) : box;
   }
 
   // Whether bones, joints, body are drawn. A figure without a body always has its skeleton.
@@ -200,12 +220,23 @@ export class Figure {
     this.skeleton.visible = skeleton || !hasBody;
     if (hasBody) {
       this.body.visible = body;
-      // Whether a material lets through is part of its shader.
-      this.body.material.needsUpdate = this.body.material.transparent !== this.skeleton.visible;
-      this.body.material.transparent = this.skeleton.visible;
-      this.body.material.opacity = this.skeleton.visible ? 0.45 : 1;
-      this.body.material.depthWrite = !this.skeleton.visible;
+      [this.body.material].flat().forEach((material) => this.letThrough(material));
     }
+  }
+
+  // The skeleton shows through the body, which is otherwise as its material says.
+  letThrough(material) {
+    const { transparent, opacity, depthWrite } = material.userData.own ??= {
+      transparent: material.transparent,
+      opacity: material.opacity,
+      depthWrite: material.depthWrite,
+    };
+    const through = this.skeleton.visible;
+    // Whether a material lets through is part of its shader.
+    material.needsUpdate = material.transparent !== (through || transparent);
+    material.transparent = through || transparent;
+    material.opacity = through ? 0.45 * opacity : opacity;
+    material.depthWrite = !through && depthWrite;
   }
 
   update(time) {

@@ -2,6 +2,7 @@
 
 import { AnimationMixer, Box3, Group, SkeletonHelper, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { reachBeyond, widen } from './reach.js';
 
 export class GltfFigure {
   static async load(item, bytes) {
@@ -50,9 +51,8 @@ export class GltfFigure {
     this.group.updateMatrixWorld(true);
     const box = this.bonesOf.length > 1 ? this.jointBox() : new Box3().setFromObject(this.group);
     if (this.bonesOf.length > 1) {
-      this.beyondJoints ??= this.findBeyondJoints(box);
-      box.min.sub(this.beyondJoints.min);
-      box.max.add(this.beyondJoints.max);
+      this.reach ??= reachBeyond(box, new Box3().setFromObject(this.meshes));
+      widen(box, this.reach);
     }
     this.group.position.copy(shift);
     this.group.updateMatrixWorld(true);
@@ -63,18 +63,6 @@ export class GltfFigure {
     const box = new Box3();
     this.bonesOf.forEach((_, joint) => box.expandByPoint(this.jointPosition(joint)));
     return box;
-  }
-
-  // How far the meshes reach beyond the joints, which may be few. To skin them takes long, so that
-  // one moment stands for all.
-  findBeyondJoints(joints) {
-    const meshes = new Box3().setFromObject(this.meshes);
-    const none = new Vector3();
-    if (meshes.isEmpty()) return { min: none, max: none };
-    return {
-      min: joints.min.clone().sub(meshes.min).max(none),
-      max: meshes.max.clone().sub(joints.max).max(none),
-    };
   }
 
   show({ skeleton }) {

@@ -148,7 +148,10 @@ const lengthText = (metres) =>
 async function makeItem(item, index, stage) {
   const bytes = item.blob ? blobBytes(item.blob) : null;
   const made = { name: item.name, visible: item.visible ?? true, item, duration: 0, rate: item.rate ?? 1 };
-  if (item.kind === 'motion') made.figure = new Figure(item, new Motion(item, bytes), bytes, index);
+  if (item.kind === 'motion') {
+    made.figure = new Figure(item, new Motion(item, bytes), bytes, index);
+    await made.figure.dress(bytes);
+  }
   if (item.kind === 'gltf') made.figure = await GltfFigure.load(item, bytes);
   if (made.figure) {
     const { figure } = made;

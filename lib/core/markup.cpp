@@ -1,0 +1,42 @@
+#include "core/markup.h"
+
+#include "core/text.h"
+
+namespace krok {
+
+std::string to_markup(std::string_view text) {
+  // U+FFFE and U+FFFF are the only ones above the control characters that XML leaves out.
+  const auto is_no_character = [](std::string_view rest) {
+    return rest.substr(0, 3) == "\xEF\xBF\xBE" || rest.substr(0, 3) == "\xEF\xBF\xBF";
+  };
+  const std::string safe = to_utf8(text);
+  std::string result;
+  for (std::size_t i = 0; i < safe.size(); ++i) {
+    const char c = safe[i];
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        if (is_no_character(std::string_view(safe).substr(i))) {
+          result += ' ';
+          i += 2;
+        } else {
+          // Other control characters are no XML.
+          result += static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' ? ' ' : c;
+        }
+    }
+  }
+  return result;
+}
+
+}  // namespace krok

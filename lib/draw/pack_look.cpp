@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "draw/pack_motion_internal.h"
+
+namespace krok::draw {
+
+namespace {
+
+// Materials as the page makes three.js's of them (page/src/look.js), their pictures once each.
+class LookPacker {
+ public:
+  LookPacker(const Model& body, Blob& blob) : body_(body), blob_(blob) {}
+
+  Result<Json> pack(std::span<const Material> materials) {
+    Json parts = Json::array();
+    for (const Model::Part& part : body_.parts) {
+      const auto place = place_of(part.material, materials);
+      if (!place) return place.error();
+      parts.push_back({{"first", part.first_triangle * 3},
+                       {"count", part.triangle_count * 3},
+                       {"material", *place}});
+    }
+    Json look;
+    look["parts"] = std::move(parts);
+    look["materials"] = std::move(materials_);
+    look["pictures"] = std::move(pictures_);
+    if (!body_.texture_coordinates.empty()) {
+      look["coordinates"] = blob_.add(std::span(body_.texture_coordinates.front().data(),
+                                                body_.texture_coordinates.size() * 2));
+    }
+    return look;
+  }
+
+ private:
+  // Of the material in the page's list. What no material says is as it is without one.
+  Result<std::size_t> place_of(const std::string& name, std::span<const Material> materials) {
+    const auto [at, added] = places_.try_emplace(name, materials_.size());
+    if (!added) return at->second;
+    static const Material kUsual;
+    const Material* const found = find_material(materials, name);
+    auto json = to_json(found != nullptr ? *found : kUsual);
+    if (!json) return json.error();
+    materials_.push_back(std::move(*json));
+    return at->second;
+  }
+
+  Result<Json> to_json(const Material& material) {
+    static constexpr std::array<const char*, 3> kAlphas = {"opaque", "mask", "blend"};
+    static constexpr std::array<const char*, 5> kTextures = {"baseColor", "metallicRoughness",
+                                                             "normal", "occlusion", "emissive"};
+    Json json;
+    json["color"] = list(material.base_color);
+    json["metallic"] = material.metallic;
+    json["roughness"] = material.roughness;
+    json["normalScale"] = material.normal_scale;
+    json["occlusion"] = material.occlusion_strength;
+    json["emissive"] = list(material.emissive);
+    json["alpha"] = kAlphas[static_cast<std::size_t>(material.alpha)];
+    json["cutoff"] = material.alpha_cutoff;
+    json["doubleSided"] = material.double_sided;
+    json["unlit"] = material.unlit;
+    Json textures = Json::object();
+    const auto all = textures_of(material);
+    for (std::size_t t = 0; t < all.size() && !body_.texture_coordinates.empty(); ++t) {
+      if (!*all[t]) continue;
+      auto texture = to_json(*all[t]);
+      if (!texture) return texture.error();
+      textures[kTextures[t]] = std::move(*texture);
+    }
+    json["textures"] = std::move(textures);
+    return json;
+  }
+
+  Result<Json> to_json(const Texture& texture) {
+    static constexpr std::array<const char*, 3> kWraps = {"repeat", "clamp", "mirror"};
+    const auto [at, added] = picture_places_.try_emplace(texture.picture.get(), pictures_.size());
+    if (added) {
+      const auto facts = picture_facts(texture.picture->bytes);
+      if (!facts) return facts.error();
+      Json picture = blob_.add(std::span(texture.picture->bytes));
+      picture["type"] = media_type(facts->kind);
+      pictures_.push_back(std::move(picture));
+    }
+    return Json{{"picture", at->second},
+                {"wrapU", kWraps[static_cast<std::size_t>(texture.wrap_u)]},
+                {"wrapV", kWraps[static_cast<std::size_t>(texture.wrap_v)]},
+                {"smooth", texture.smooth}};
+  }
+
+  template <typename Vector>
+  static Json list(const Vector& values) {
+    Json numbers = Json::array();
+    for (const float value : values) numbers.push_back(value);
+    return numbers;
+  }
+
+  const Model& body_;
+  Blob& blob_;
+  Json materials_ = Json::array(), pictures_ = Json::array();
+  std::map<std::string, std::size_t> places_;
+  std::map<const Picture*, std::size_t> picture_places_;
+};
+
+}  // namespace
+
+Result<Json> pack_look(const Model& body, std::span<const Material> materials, Blob& blob) {
+  return LookPacker(body, blob).pack(materials);
+}
+
+}  // namespace krok::draw

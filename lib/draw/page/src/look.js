@@ -1,0 +1,77 @@
+// How a body looks: materials with their pictures, as glTF means them.
+
+import {
+  ClampToEdgeWrapping,
+  Color,
+  DoubleSide,
+  LinearSRGBColorSpace,
+  MeshBasicMaterial,
+  MeshStandardMaterial,
+  MirroredRepeatWrapping,
+  NearestFilter,
+  RepeatWrapping,
+  SRGBColorSpace,
+  Texture,
+} from 'three';
+
+const WRAPS = { repeat: RepeatWrapping, clamp: ClampToEdgeWrapping, mirror: MirroredRepeatWrapping };
+
+// A picture's file, decoded; null for one whose pixels are damaged, which is then left out.
+async function decode(bytes, { offset, count, type }) {
+  const file = new Blob([bytes.subarray(offset, offset + count)], { type });
+  try {
+    return await createImageBitmap(file, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+  } catch {
+    return null;
+  }
+}
+
+function makeTexture(image, described, colour) {
+  const texture = new Texture(image);
+  texture.flipY = false; // v points down, as rows do
+  texture.wrapS = WRAPS[described.wrapU];
+  texture.wrapT = WRAPS[described.wrapV];
+  if (!described.smooth) texture.magFilter = NearestFilter;
+  if (colour) texture.colorSpace = SRGBColorSpace;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+function makeMaterial(described, textureOf) {
+  const [red, green, blue, alpha] = described.color;
+  const material = described.unlit ? new MeshBasicMaterial() : new MeshStandardMaterial();
+  material.color.setRGB(red, green, blue, LinearSRGBColorSpace);
+  material.map = textureOf('baseColor', true);
+  if (described.doubleSided) material.side = DoubleSide;
+  if (described.alpha === 'blend') {
+    material.transparent = true;
+    material.depthWrite = false;
+    material.opacity = alpha;
+  } else if (described.alpha === 'mask') {
+    material.opacity = alpha;
+    material.alphaTest = described.cutoff;
+  }
+  if (described.unlit) return material;
+  material.metalness = described.metallic;
+  material.roughness = described.roughness;
+  material.metalnessMap = textureOf('metallicRoughness');
+  material.roughnessMap = material.metalnessMap;
+  material.normalMap = textureOf('normal');
+  // The frame is worked out of the picture's slope on the screen, where v points the other way.
+  material.normalScale.set(described.normalScale, -described.normalScale);
+  material.aoMap = textureOf('occlusion');
+  material.aoMapIntensity = described.occlusion;
+  material.emissive = new Color().setRGB(...described.emissive, LinearSRGBColorSpace);
+  material.emissiveMap = textureOf('emissive', true);
+  return material;
+}
+
+// The materials of a body, in the order in which its parts name them.
+export async function makeMaterials(look, bytes) {
+  const images = await Promise.all(look.pictures.map((picture) => decode(bytes, picture)));
+  return look.materials.map((described) => makeMaterial(described, (name, colour = false) => {
+    const texture = described.textures[name];
+    const image = texture ? images[texture.picture] : null;
+    return image ? makeTexture(image, texture, colour) : null;
+  }));
+}
