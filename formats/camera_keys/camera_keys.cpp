@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 
 #include "core/numbers.h"
 #include "core/quantity.h"
@@ -63,24 +63,18 @@ class Reader {
       }
       metres_ = *unit;
     }
-    const auto angle = in_.find(root, kWhole, "angle_unit", Kind::string);
+    const auto angle = in_.choice(root, kWhole, "angle_unit", {"deg", "rad"});
     if (!angle) return angle.error();
-    if (*angle == nullptr) return {};
-    const std::string& name = (*angle)->text;
-    if (name != "deg" && name != "rad") {
-      return in_.wrong(**angle, fmt::format("'{}' is no unit of angle", shown(name)),
-                       "known are deg and rad");
-    }
-    if (name == "rad") radians_ = 1;
+    if (*angle && **angle == 1) radians_ = 1;
     return {};
   }
 
   Status read_defaults(const Value& root) {
     if (root.find("rate") != nullptr) {
-      const auto rate = number(root, kWhole, "rate", 1e-3, 1e6);
+      const auto rate = in_.number(root, kWhole, "rate", 1e-3, 1e6);
       if (!rate) return rate.error();
+      rate_ = *rate;
       file_.rate = *rate;
-      has_rate_ = true;
     }
     const auto closed = in_.find(root, kWhole, "closed", Kind::boolean);
     if (!closed) return closed.error();
@@ -90,38 +84,16 @@ class Reader {
 
   // "between" and "tension", where they stand.
   Status read_join(const Value& object, std::string_view what, CameraKey& key) const {
-    const auto between = in_.find(object, what, "between", Kind::string);
+    static constexpr std::array kJoins = {Between::smooth, Between::linear, Between::ease,
+                                          Between::step};
+    const auto between = in_.choice(object, what, "between", {"smooth", "linear", "ease", "step"});
     if (!between) return between.error();
-    if (*between != nullptr) {
-      const std::string& word = (*between)->text;
-      if (word == "smooth") {
-        key.between = Between::smooth;
-      } else if (word == "linear") {
-        key.between = Between::linear;
-      } else if (word == "ease") {
-        key.between = Between::ease;
-      } else if (word == "step") {
-        key.between = Between::step;
-      } else {
-        return in_.wrong(**between, fmt::format("\"between\" of {} is '{}'", what, shown(word)),
-                         "known are smooth, linear, ease and step");
-      }
-    }
+    if (*between) key.between = kJoins[**between];
     if (object.find("tension") == nullptr) return {};
-    const auto tension = number(object, what, "tension", 0, 1);
+    const auto tension = in_.number(object, what, "tension", 0, 1);
     if (!tension) return tension.error();
     key.tension = *tension;
     return {};
-  }
-
-  Result<double> number(const Value& object, std::string_view what, std::string_view key,
-                        double least, double most) const {
-    const auto value = in_.get(object, what, key, Kind::number);
-    if (!value) return value.error();
-    const double found = (*value)->number;
-    if (found >= least && found <= most) return found;
-    return in_.wrong(**value, fmt::format("\"{}\" of {} is {}, expected {} to {}", key, what,
-                                          readable(found), readable(least), readable(most)));
   }
 
   // `count` finite numbers.
@@ -143,34 +115,14 @@ class Reader {
     return in_.wrong(list, fmt::format("\"{}\" of {} is farther away than 1000 km", key, what));
   }
 
-  // Seconds, or as text "250ms" or "120f".
-  Result<double> time(const Value& object, std::string_view what) const {
-    const Value* value = object.find("time");
-    if (value == nullptr || value->kind != Kind::string) {
-      return number(object, what, "time", 0, kLatest);
-    }
-    const auto parsed = parse_clip_time(value->text);
-    if (!parsed) {
-      return in_.wrong(*value, fmt::format("\"time\" of {}: {}", what, parsed.error().message),
-                       "write 1.5, \"1.5s\", \"250ms\" or \"120f\"");
-    }
-    if (parsed->in_frames && !has_rate_) {
-      return in_.wrong(
-          *value, fmt::format("\"time\" of {} is in frames, but the file has no \"rate\"", what));
-    }
-    const double seconds = parsed->seconds(file_.rate);
-    if (seconds >= 0 && seconds <= kLatest) return seconds;
-    return in_.wrong(*value, fmt::format("\"time\" of {} is {} s, expected 0 to {}", what,
-                                         readable(seconds), readable(kLatest)));
-  }
-
   Status read_direction(const Value& item, std::string_view what, CameraKey& key) const {
     const auto target = in_.find(item, what, "target", Kind::array);
     if (!target) return target.error();
     const auto orientation = in_.find(item, what, "orientation", Kind::array);
     if (!orientation) return orientation.error();
     if ((*target == nullptr) == (*orientation == nullptr)) {
-      return structure(item, fmt::format("{} needs one of \"target\" and \"orientation\"", what));
+      return in_.structure(item,
+                           fmt::format("{} needs one of \"target\" and \"orientation\"", what));
     }
     if (*target != nullptr) {
       const auto at = place(**target, what, "target");
@@ -200,16 +152,16 @@ class Reader {
     const bool by_angle = item.find("field_of_view") != nullptr;
     const bool by_length = item.find("focal_length") != nullptr;
     if (by_angle && by_length) {
-      return structure(item,
-                       fmt::format("{} has both \"field_of_view\" and \"focal_length\"", what));
+      return in_.structure(item,
+                           fmt::format("{} has both \"field_of_view\" and \"focal_length\"", what));
     }
     if (by_angle) {
       const double straight = kPi / radians_;
-      const auto view = number(item, what, "field_of_view", straight * 1e-4, straight * 0.9999);
+      const auto view = in_.number(item, what, "field_of_view", straight * 1e-4, straight * 0.9999);
       if (!view) return view.error();
       key.field_of_view = *view * radians_;
     } else if (by_length) {
-      const auto length = number(item, what, "focal_length", 0.1, 1e5);
+      const auto length = in_.number(item, what, "focal_length", 0.1, 1e5);
       if (!length) return length.error();
       key.field_of_view = 2 * std::atan(kSensorHeight / 2 / *length);
     }
@@ -225,7 +177,7 @@ class Reader {
       return known.error();
     }
     CameraKey key = usual_;
-    const auto when = time(item, what);
+    const auto when = in_.moment(item, what, "time", rate_, kLatest);
     if (!when) return when.error();
     key.time = *when;
     const auto position = in_.get(item, what, "position", Kind::array);
@@ -235,7 +187,7 @@ class Reader {
     key.position = *at;
     if (Status done = read_direction(item, what, key); !done) return done.error();
     if (item.find("roll") != nullptr) {
-      const auto roll = number(item, what, "roll", -1e4, 1e4);
+      const auto roll = in_.number(item, what, "roll", -1e4, 1e4);
       if (!roll) return roll.error();
       key.roll = *roll * radians_;
     }
@@ -280,15 +232,11 @@ class Reader {
                      "the last key is the first again, one round later");
   }
 
-  Error structure(const Value& value, std::string message) const {
-    return json::error_at(text_, value.offset, "camera-keys-structure", std::move(message));
-  }
-
   std::string_view text_;
   json::Members in_;
   CameraKeyFile file_;
   CameraKey usual_;
-  bool has_rate_ = false;
+  std::optional<double> rate_;  // where the file has one
   double metres_ = 1, radians_ = kRadiansPerDegree;
 };
 

@@ -61,6 +61,7 @@ void put_list(std::vector<std::string>& lines, std::string_view key,
               const std::vector<Item>& items) {
   if (items.empty()) return;
   std::vector<std::string> texts;
+  texts.reserve(items.size());
   for (const Item& item : items) texts.push_back(text_of(item));
   lines.push_back(fmt::format("\"{}\": {}", key, list_of(texts)));
 }

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "formats/gltf/material_reader_internal.h"
 #include "formats/gltf/picture_reader_internal.h"
+#include "formats/gltf/reader_words_internal.h"
 #include "nodes/materials.h"
 
 namespace krok::gltf {
@@ -165,12 +166,7 @@ class MaterialReader {
   }
 
   void warn(std::string message, std::string hint = {}) {
-    Diagnostic warning;
-    warning.severity = Severity::warning;
-    warning.code = "gltf-material";
-    warning.message = std::move(message);
-    warning.hint = std::move(hint);
-    scene_.diagnostics.push_back(std::move(warning));
+    gltf::warn(scene_.diagnostics, "gltf-material", std::move(message), std::move(hint));
   }
 
   // What was left out, once for the whole file.

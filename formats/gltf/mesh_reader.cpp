@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "formats/gltf/reader_words_internal.h"
+
 namespace krok::gltf {
 
 using namespace nodes;
@@ -16,14 +18,6 @@ constexpr const char* kHint = "the file is damaged or its exporter has a fault";
 
 Error bad_mesh(const std::string& name, const std::string& what) {
   return Error("gltf-mesh", fmt::format("{}: {}", name, what), kHint);
-}
-
-void warn(Diagnostics& diagnostics, std::string code, std::string message) {
-  Diagnostic diagnostic;
-  diagnostic.severity = Severity::warning;
-  diagnostic.code = std::move(code);
-  diagnostic.message = std::move(message);
-  diagnostics.push_back(std::move(diagnostic));
 }
 
 int attribute(const std::map<std::string, int>& attributes, const char* name) {

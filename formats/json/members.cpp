@@ -1,6 +1,7 @@
 #include "formats/json/members.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <vector>
@@ -17,11 +18,15 @@ Error Members::wrong(const Value& value, std::string message, std::string hint) 
   return error_at(text_, value.offset, format_ + "-value", std::move(message), std::move(hint));
 }
 
+Error Members::structure(const Value& value, std::string message) const {
+  return error_at(text_, value.offset, format_ + "-structure", std::move(message));
+}
+
 Status Members::only(const Value& object, std::string_view what,
                      std::initializer_list<std::string_view> keys) const {
   if (object.kind != Value::Kind::object) {
-    return error_at(text_, object.offset, format_ + "-structure",
-                    fmt::format("{} is {}, expected an object", what, kind_name(object.kind)));
+    return structure(object,
+                     fmt::format("{} is {}, expected an object", what, kind_name(object.kind)));
   }
   for (const Value::Member& entry : object.members) {
     if (std::ranges::find(keys, entry.key) != keys.end()) continue;
@@ -37,8 +42,7 @@ Result<const Value*> Members::get(const Value& object, std::string_view what, st
                                   Value::Kind kind) const {
   auto value = find(object, what, key, kind);
   if (value && *value == nullptr) {
-    return error_at(text_, object.offset, format_ + "-structure",
-                    fmt::format("{} lacks \"{}\"", what, key));
+    return structure(object, fmt::format("{} lacks \"{}\"", what, key));
   }
   return value;
 }
@@ -51,6 +55,21 @@ Result<const Value*> Members::find(const Value& object, std::string_view what, s
                                      kind_name(value->kind), kind_name(kind)));
   }
   return value;
+}
+
+Result<std::optional<std::size_t>> Members::choice(
+    const Value& object, std::string_view what, std::string_view key,
+    std::initializer_list<std::string_view> words) const {
+  const auto value = find(object, what, key, Value::Kind::string);
+  if (!value) return value.error();
+  if (*value == nullptr) return std::optional<std::size_t>();
+  const auto* const found = std::ranges::find(words, (*value)->text);
+  if (found != words.end()) {
+    return std::optional(static_cast<std::size_t>(found - words.begin()));
+  }
+  const auto* const last = words.end() - 1;
+  return wrong(**value, fmt::format("\"{}\" of {} is '{}'", key, what, shown((*value)->text)),
+               fmt::format("known are {} and {}", fmt::join(words.begin(), last, ", "), *last));
 }
 
 Result<std::optional<double>> Members::quantity(const Value& object, std::string_view what,
@@ -117,13 +136,20 @@ Result<double> Members::moment(const Value& value, std::string_view name,
   return within(seconds, name, 0, latest);
 }
 
+Result<double> Members::moment(const Value& object, std::string_view what, std::string_view key,
+                               std::optional<double> rate, double latest) const {
+  const Value* const value = object.find(key);
+  if (value == nullptr) return structure(object, fmt::format("{} lacks \"{}\"", what, key));
+  return moment(*value, fmt::format("\"{}\" of {}", key, what), rate, latest);
+}
+
 Status Members::has_schema(const Value& object, std::string_view what,
                            std::string_view schema) const {
   const auto found = get(object, what, "schema", Value::Kind::string);
   if (!found) return found.error();
   if ((*found)->text == schema) return {};
-  return error_at(text_, (*found)->offset, format_ + "-structure",
-                  fmt::format("the schema is '{}', expected {}", shown((*found)->text), schema));
+  return structure(**found,
+                   fmt::format("the schema is '{}', expected {}", shown((*found)->text), schema));
 }
 
 }  // namespace krok::json

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ class Members {
   // An error about a value: FORMAT-value, at its place.
   Error wrong(const Value& value, std::string message, std::string hint = {}) const;
 
+  // An error about what is in an object: FORMAT-structure, at its place.
+  Error structure(const Value& value, std::string message) const;
+
   // Whether `object` is an object with none but these keys.
   Status only(const Value& object, std::string_view what,
               std::initializer_list<std::string_view> keys) const;
@@ -32,6 +36,11 @@ class Members {
   // The same of a member that may be left out: nullptr then.
   Result<const Value*> find(const Value& object, std::string_view what, std::string_view key,
                             Value::Kind kind) const;
+
+  // Which of `words` a text is that may be left out: its place among them.
+  Result<std::optional<std::size_t>> choice(const Value& object, std::string_view what,
+                                            std::string_view key,
+                                            std::initializer_list<std::string_view> words) const;
 
   // A quantity that may be left out: a number in the unit that `parse` takes bare ones in, or a
   // text with a unit, such as "1.5cm" with parse_length().
@@ -54,6 +63,9 @@ class Members {
   // there is a rate to count frames at.
   Result<double> moment(const Value& value, std::string_view name, std::optional<double> rate,
                         double latest) const;
+  // The same of a member that must be there.
+  Result<double> moment(const Value& object, std::string_view what, std::string_view key,
+                        std::optional<double> rate, double latest) const;
 
   // Whether the member "schema" is there and says `schema`.
   Status has_schema(const Value& object, std::string_view what, std::string_view schema) const;

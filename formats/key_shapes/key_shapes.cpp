@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "core/numbers.h"
-#include "core/text.h"
 #include "formats/json/members.h"
 
 namespace krok::key_shapes {
@@ -19,16 +18,9 @@ constexpr std::size_t kMostKeys = 100'000;
 constexpr double kLatest = 1e6;  // seconds
 
 Status read_join(const Value& root, const json::Members& in, KeyShapeFile& file) {
-  const auto between = in.find(root, kWhole, "between", Kind::string);
+  const auto between = in.choice(root, kWhole, "between", {"linear", "hermite"});
   if (!between) return between.error();
-  if (*between != nullptr) {
-    const std::string& word = (*between)->text;
-    if (word != "linear" && word != "hermite") {
-      return in.wrong(**between, fmt::format("\"between\" is '{}'", shown(word)),
-                      "known are linear and hermite");
-    }
-    file.join = word == "linear" ? ShapeJoin::linear : ShapeJoin::hermite;
-  }
+  if (*between) file.join = **between == 0 ? ShapeJoin::linear : ShapeJoin::hermite;
   if (root.find("tension") == nullptr) return {};
   const auto tension = in.number(root, kWhole, "tension", 0, 1);
   if (!tension) return tension.error();
@@ -40,14 +32,10 @@ Status read_key(std::string_view text, const Value& item, const json::Members& i
                 KeyShapeFile& file) {
   const std::string what = fmt::format("key {}", file.times.size());
   if (Status known = in.only(item, what, {"time", "shape", "comment"}); !known) return known;
-  const Value* when = item.find("time");
-  if (when == nullptr) {
-    return json::error_at(text, item.offset, "key-shapes-structure", what + " lacks \"time\"");
-  }
-  const auto time = in.moment(*when, "\"time\" of " + what, file.rate, kLatest);
+  const auto time = in.moment(item, what, "time", file.rate, kLatest);
   if (!time) return time.error();
   if (!file.times.empty() && !(*time > file.times.back())) {
-    return json::error_at(text, when->offset, "key-shapes-time",
+    return json::error_at(text, item.find("time")->offset, "key-shapes-time",
                           fmt::format("{} is at {} s, not after the key before at {} s", what,
                                       readable(*time, 9), readable(file.times.back(), 9)));
   }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/numbers.h"
@@ -51,21 +52,11 @@ class Reader {
 
   // "between" and "tension", where they stand.
   Status read_join(const Value& object, std::string_view what, Join& join) const {
-    const auto between = in_.find(object, what, "between", Kind::string);
+    static constexpr std::array kJoins = {WeightJoin::linear, WeightJoin::smooth,
+                                          WeightJoin::monotone};
+    const auto between = in_.choice(object, what, "between", {"linear", "smooth", "monotone"});
     if (!between) return between.error();
-    if (*between != nullptr) {
-      const std::string& word = (*between)->text;
-      if (word == "linear") {
-        join.join = WeightJoin::linear;
-      } else if (word == "smooth") {
-        join.join = WeightJoin::smooth;
-      } else if (word == "monotone") {
-        join.join = WeightJoin::monotone;
-      } else {
-        return in_.wrong(**between, fmt::format("\"between\" of {} is '{}'", what, shown(word)),
-                         "known are linear, smooth and monotone");
-      }
-    }
+    if (*between) join.join = kJoins[**between];
     if (object.find("tension") == nullptr) return {};
     const auto tension = in_.number(object, what, "tension", 0, 1);
     if (!tension) return tension.error();

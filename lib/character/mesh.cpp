@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "capture/unique_names.h"
+#include "character/mesh_placement_internal.h"
 #include "character/mesh_vertices_internal.h"
 #include "character/morph_targets_internal.h"
 #include "core/numbers.h"
@@ -21,8 +21,6 @@ using nodes::Scene;
 
 namespace {
 
-using Affine = Eigen::Matrix<double, 3, 4>;
-
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
@@ -33,15 +31,6 @@ void tell(Diagnostics& diagnostics, Severity severity, const char* code, std::st
   told.code = code;
   told.message = std::move(message);
   diagnostics.push_back(std::move(told));
-}
-
-// The inverse transpose of a linear part up to a positive factor, without a division.
-Mat3 normal_matrix(const Mat3& linear) {
-  Mat3 result;
-  for (int c = 0; c < 3; ++c) {
-    result.col(c) = linear.col((c + 1) % 3).cross(linear.col((c + 2) % 3));
-  }
-  return linear.determinant() < 0 ? Mat3(-result) : result;
 }
 
 // Names, each once, for a message; the first few.
@@ -72,13 +61,10 @@ class Builder {
         rig_(rig),
         options_(options),
         diagnostics_(diagnostics),
-        targets_(scene, evaluator) {
-    to_krok_ = Affine::Zero();
-    to_krok_.leftCols<3>() = conversion.reference_axes() * conversion.metres();
-  }
+        placements_(scene, evaluator, rig, conversion),
+        targets_(scene, evaluator) {}
 
   Result<Figure> build() {
-    evaluator_.place_nodes(-1, 0, rest_);
     for (const nodes::Instance& instance : evaluator_.instances()) {
       if (is_wanted(instance)) wanted_.push_back(instance);
     }
@@ -98,12 +84,11 @@ class Builder {
     return scene_.nodes[at(instance.node)];
   }
   bool is_skinned(const nodes::Instance& instance) const {
-    return node_of(instance).skin >= 0 && evaluator_.primitive(instance).influences_per_vertex > 0;
+    return placements_.is_skinned(instance);
   }
   bool is_wanted(const nodes::Instance& instance);
   void tell_of_what_is_left();
   void look_at_attributes();
-  void find_placements(const nodes::Instance& instance);
   void add(const nodes::Instance& instance);
   void add_vertices(const nodes::Instance& instance);
   void add_influences(const nodes::Instance& instance, std::size_t vertices);
@@ -111,17 +96,13 @@ class Builder {
   void add_triangles(const nodes::Instance& instance, std::uint32_t first);
   Status finish();
   Status add_targets();
-  const Affine& placement(std::size_t vertex) const {
-    return placements_.size() == 1 ? placements_[0] : placements_[vertex];
-  }
 
   const Scene& scene_;
   const nodes::Evaluator& evaluator_;
   const Rig& rig_;
   const FigureOptions& options_;
   Diagnostics& diagnostics_;
-  Affine to_krok_;
-  nodes::Evaluation rest_;
+  Placements placements_;  // of the primitive being added
   std::vector<nodes::Instance> wanted_;
   std::vector<std::size_t> first_vertices_;  // in the model, of those of wanted_ that are added
   TargetNames targets_;
@@ -129,10 +110,6 @@ class Builder {
   NameList elsewhere_, other_skeleton_, without_triangles_;
   bool with_normals_ = false, with_texture_ = false, with_tangents_ = false;
   int influences_ = 4;
-
-  // Of the primitive being added: mesh_to_reference in Krok's frame, for each vertex or one for
-  // all.
-  std::vector<Affine> placements_;
 };
 
 bool Builder::is_wanted(const nodes::Instance& instance) {
@@ -179,57 +156,6 @@ void Builder::look_at_attributes() {
   with_tangents_ = with_tangents_ && with_normals_;
 }
 
-// mesh_to_reference of the primitive's vertices: sum_j w_j F_j B_j.
-void Builder::find_placements(const nodes::Instance& instance) {
-  const nodes::Primitive& shape = evaluator_.primitive(instance);
-  const auto in_krok = [&](const Mat4& to_rig) -> Affine {
-    return to_krok_.leftCols<3>() * to_rig.topRows<3>();
-  };
-  placements_.clear();
-  if (!is_skinned(instance)) {
-    const int joint = rig_.joints.node_to_joint[at(instance.node)];
-    const int joint_node = rig_.joints.nodes[at(joint)];
-    const Mat4 node_to_world = rig_.to_axes * rest_.node_to_world[at(instance.node)];
-    bool usable = joint_node >= 0;
-    const Mat4 back =
-        usable ? inverse_or_identity(rig_.to_axes * rest_.node_to_world[at(joint_node)], &usable)
-               : Mat4::Identity();
-    placements_.push_back(
-        in_krok(usable ? Mat4(rig_.reference[at(joint)] * (back * node_to_world)) : node_to_world));
-    return;
-  }
-  const nodes::Skin& skin = scene_.skins[at(node_of(instance).skin)];
-  std::vector<Affine> palette;
-  const Mat4* first = nullptr;
-  std::vector<Mat4> whole;
-  for (std::size_t k = 0; k < skin.joints.size(); ++k) {
-    const int joint = rig_.joints.node_to_joint[at(skin.joints[k])];
-    whole.push_back(rig_.reference[at(joint)] * skin.inverse_binds[k]);
-  }
-  // The joints that agree most often do: then one placement does for all, without its rounding.
-  bool agree = true;
-  const auto per_vertex = static_cast<std::size_t>(shape.influences_per_vertex);
-  for (std::size_t k = 0; k < shape.influence_joints.size() && agree; ++k) {
-    if (!(shape.influence_weights[k] > 0)) continue;
-    const Mat4& one = whole[shape.influence_joints[k]];
-    if (first == nullptr) first = &one;
-    agree = (one - *first).cwiseAbs().maxCoeff() <= 1e-9 * (1 + first->cwiseAbs().maxCoeff());
-  }
-  if (agree && first != nullptr) {
-    placements_.push_back(in_krok(*first));
-    return;
-  }
-  for (const Mat4& one : whole) palette.push_back(in_krok(one));
-  placements_.resize(shape.vertex_count());
-  for (std::size_t v = 0; v < placements_.size(); ++v) {
-    placements_[v].setZero();
-    for (std::size_t k = v * per_vertex; k < (v + 1) * per_vertex; ++k) {
-      placements_[v] +=
-          static_cast<double>(shape.influence_weights[k]) * palette[shape.influence_joints[k]];
-    }
-  }
-}
-
 void Builder::add_influences(const nodes::Instance& instance, std::size_t vertices) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
   Model& model = figure_.model;
@@ -259,7 +185,7 @@ void Builder::add_influences(const nodes::Instance& instance, std::size_t vertic
 
 void Builder::add_normals(const nodes::Primitive& shape) {
   for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
-    const Mat3 linear = placement(v).leftCols<3>();
+    const Mat3 linear = placements_.of(v).leftCols<3>();
     if (with_normals_) {
       const Vec3 normal = shape.normals
                               ? Vec3(normal_matrix(linear) * (*shape.normals)[v].cast<double>())
@@ -291,7 +217,8 @@ void Builder::add_triangles(const nodes::Instance& instance, std::uint32_t first
                          static_cast<std::uint32_t>(shape.triangles.size())});
   figure_.part_materials.push_back(shape.material_index);
   for (auto triangle : shape.triangles) {
-    if (placement(triangle[0]).leftCols<3>().determinant() < 0) std::swap(triangle[1], triangle[2]);
+    const bool mirrored = placements_.of(triangle[0]).leftCols<3>().determinant() < 0;
+    if (mirrored) std::swap(triangle[1], triangle[2]);
     for (std::uint32_t& corner : triangle) corner += first;
     model.triangles.push_back(triangle);
   }
@@ -299,7 +226,7 @@ void Builder::add_triangles(const nodes::Instance& instance, std::uint32_t first
 
 void Builder::add(const nodes::Instance& instance) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
-  find_placements(instance);
+  placements_.find(instance);
   const std::size_t place = first_vertices_.size();
   if (place > 0 && wanted_[place - 1].node == instance.node &&
       same_vertices(evaluator_.primitive(wanted_[place - 1]), shape)) {
@@ -316,7 +243,7 @@ void Builder::add_vertices(const nodes::Instance& instance) {
   Model& model = figure_.model;
   for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
     const Vec3 position = (*shape.positions)[v].cast<double>();
-    model.positions.push_back((placement(v) * position.homogeneous()).cast<float>());
+    model.positions.push_back((placements_.of(v) * position.homogeneous()).cast<float>());
   }
   add_normals(shape);
   if (with_texture_) {
@@ -372,17 +299,17 @@ Status Builder::add_targets() {
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
     const nodes::Instance& instance = wanted_[i];
     const nodes::Primitive& shape = evaluator_.primitive(instance);
-    if (!shape.targets.empty()) find_placements(instance);
+    if (!shape.targets.empty()) placements_.find(instance);
     for (std::size_t k = 0; k < shape.targets.size(); ++k) {
       const int target = targets_.index_of(instance, static_cast<int>(k));
       const std::size_t offset = at(target) * vertices + first_vertices_[i];
       const nodes::MorphTarget& moved = shape.targets[k];
       for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
-        const Mat3 linear = placement(v).leftCols<3>();
+        const Mat3 linear = placements_.of(v).leftCols<3>();
         if (moved.positions) {
           const Vec3 place =
               (*shape.positions)[v].cast<double>() + (*moved.positions)[v].cast<double>();
-          morphs.positions[offset + v] = (placement(v) * place.homogeneous()).cast<float>();
+          morphs.positions[offset + v] = (placements_.of(v) * place.homogeneous()).cast<float>();
         }
         if (moved.normals && shape.normals && !morphs.normals.empty()) {
           const Mat3 turn = normal_matrix(linear);
@@ -408,31 +335,6 @@ Result<Figure> make_figure(const Scene& scene, const nodes::Evaluator& evaluator
   for (Transform& joint : figure->model.skeleton.reference) joint = conversion.reference(joint);
   if (Status sound = check(figure->model); !sound) return sound.error();
   return figure;
-}
-
-Result<MorphWeights> make_weights(const Figure& figure, const nodes::Evaluator& evaluator,
-                                  int animation, const Sampling& sampling) {
-  constexpr std::size_t kMost = 100'000'000;
-  const std::size_t targets = figure.weight_sources.size();
-  if (targets > 0 && at(sampling.frames) > kMost / targets) {
-    return Error("scene-too-long",
-                 fmt::format("{} frames of {} morph targets' weights are out of proportion",
-                             sampling.frames, targets),
-                 "--resample N takes fewer frames a second");
-  }
-  MorphWeights weights;
-  weights.rate = sampling.rate;
-  weights.names = figure.morphs.names;
-  weights.values.reserve(at(sampling.frames) * targets);
-  nodes::Evaluation state;
-  for (int frame = 0; frame < sampling.frames; ++frame) {
-    evaluator.place_nodes(animation, sampling.time(frame), state);
-    for (const Figure::WeightSource& source : figure.weight_sources) {
-      weights.values.push_back(
-          static_cast<float>(state.node_weights[at(source.node)][at(source.target)]));
-    }
-  }
-  return weights;
 }
 
 }  // namespace krok::character

@@ -47,6 +47,7 @@ std::string label(const char* kind, const std::string& name, int index);
 template <typename Item>
 std::vector<std::string> names_of(const std::vector<Item>& items) {
   std::vector<std::string> names;
+  names.reserve(items.size());
   for (const Item& item : items) names.push_back(item.name);
   return names;
 }

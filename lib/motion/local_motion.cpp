@@ -2,31 +2,22 @@
 
 #include <cassert>
 
+#include "core/rows.h"
 #include "math/quaternion.h"
 
 namespace krok {
 
-namespace {
-
-template <typename Vector>
-auto row(Vector& values, int frames, int joint) {
-  const auto count = static_cast<std::size_t>(frames);
-  return std::span(values).subspan(static_cast<std::size_t>(joint) * count, count);
-}
-
-}  // namespace
-
 std::span<Quat> LocalMotion::joint_orientations(int joint) {
-  return row(orientations, frames, joint);
+  return row_of(orientations, frames, joint);
 }
 std::span<const Quat> LocalMotion::joint_orientations(int joint) const {
-  return row(orientations, frames, joint);
+  return row_of(orientations, frames, joint);
 }
 std::span<Vec3> LocalMotion::joint_positions(int joint) {
-  return row(positions, frames, joint);
+  return row_of(positions, frames, joint);
 }
 std::span<const Vec3> LocalMotion::joint_positions(int joint) const {
-  return row(positions, frames, joint);
+  return row_of(positions, frames, joint);
 }
 
 Transform LocalMotion::at(int joint, int frame) const {

@@ -12,6 +12,8 @@
 #include <hwy/highway.h>
 
 #include "core/simd.h"
+// Needs highway.h.
+#include "math/lanes.inc"
 
 HWY_BEFORE_NAMESPACE();
 namespace krok::pose_detail {
@@ -32,19 +34,8 @@ struct Joint {
   V px, py, pz, x, y, z, w;
 };
 
-// In each part of four lanes turns rows into columns: lane i of row k goes to lane k of row i.
 HWY_INLINE void transpose_fours(V& a, V& b, V& c, V& d) {
-  const Lanes f;
-  const hn::Repartition<double, Lanes> pairs;
-  const auto pair = [&](V v) { return hn::BitCast(pairs, v); };
-  const auto ab_low = pair(hn::InterleaveLower(f, a, b));
-  const auto cd_low = pair(hn::InterleaveLower(f, c, d));
-  const auto ab_high = pair(hn::InterleaveUpper(f, a, b));
-  const auto cd_high = pair(hn::InterleaveUpper(f, c, d));
-  a = hn::BitCast(f, hn::InterleaveLower(pairs, ab_low, cd_low));
-  b = hn::BitCast(f, hn::InterleaveUpper(pairs, ab_low, cd_low));
-  c = hn::BitCast(f, hn::InterleaveLower(pairs, ab_high, cd_high));
-  d = hn::BitCast(f, hn::InterleaveUpper(pairs, ab_high, cd_high));
+  math_detail::HWY_NAMESPACE::transpose_fours(Lanes(), a, b, c, d);
 }
 
 // Hands the parts of four lanes to take(part, four), from the lowest on.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/rows.h"
 #include "math/quaternion.h"
 #include "pose/between_internal.h"
 #include "scene/frame_moment.h"
@@ -56,8 +57,7 @@ std::vector<PoseBlock> packed_reference(const Skeleton& skeleton) {
 }
 
 std::span<const PoseBlock> PackedClip::frame(int index) const {
-  const auto count = static_cast<std::size_t>(blocks_per_pose());
-  return std::span(blocks).subspan(static_cast<std::size_t>(index) * count, count);
+  return row_of(blocks, blocks_per_pose(), index);
 }
 
 PackedClip pack_clip(const Clip& clip) {
@@ -77,7 +77,7 @@ PackedClip pack_clip(const Clip& clip) {
     for (std::size_t j = 0; j < local.size(); ++j) {
       local[j].orientation = before[j] = in_hemisphere_of(before[j], local[j].orientation);
     }
-    pack_pose(local, std::span(packed.blocks).subspan(static_cast<std::size_t>(f) * count, count));
+    pack_pose(local, row_of(packed.blocks, packed.blocks_per_pose(), f));
   }
   return packed;
 }

@@ -4,19 +4,10 @@
 
 #include <cmath>
 
+#include "core/rows.h"
 #include "math/quaternion.h"
 
 namespace krok {
-
-namespace {
-
-template <typename Vector>
-auto frame_of(Vector& values, int joints, int frame) {
-  const auto count = static_cast<std::size_t>(joints);
-  return std::span(values).subspan(static_cast<std::size_t>(frame) * count, count);
-}
-
-}  // namespace
 
 void Clip::resize(int frames) {
   const std::size_t count = static_cast<std::size_t>(frames) * skeleton.names.size();
@@ -25,16 +16,16 @@ void Clip::resize(int frames) {
 }
 
 std::span<const Vec3f> Clip::frame_positions(int frame) const {
-  return frame_of(positions, joint_count(), frame);
+  return row_of(positions, joint_count(), frame);
 }
 std::span<Vec3f> Clip::frame_positions(int frame) {
-  return frame_of(positions, joint_count(), frame);
+  return row_of(positions, joint_count(), frame);
 }
 std::span<const Quatf> Clip::frame_orientations(int frame) const {
-  return frame_of(orientations, joint_count(), frame);
+  return row_of(orientations, joint_count(), frame);
 }
 std::span<Quatf> Clip::frame_orientations(int frame) {
-  return frame_of(orientations, joint_count(), frame);
+  return row_of(orientations, joint_count(), frame);
 }
 
 void Clip::get_pose(int frame, std::span<Transform> joint_to_world) const {

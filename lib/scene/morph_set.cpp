@@ -6,6 +6,7 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "core/rows.h"
 #include "core/text.h"
 
 namespace krok {
@@ -14,8 +15,7 @@ namespace {
 
 std::span<const Vec3f> part(const std::vector<Vec3f>& values, int target, int vertices) {
   if (values.empty()) return {};
-  const auto count = static_cast<std::size_t>(vertices);
-  return std::span(values).subspan(static_cast<std::size_t>(target) * count, count);
+  return row_of(values, vertices, target);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <cassert>
 #include <cmath>
 
 #include "skin/skin_job_internal.h"
@@ -212,6 +213,7 @@ void dual_quaternion_scalar(const Job& job, std::size_t begin, std::size_t end) 
   static_assert(sizeof(DualQuaternion) == 8 * sizeof(float));
   for (std::size_t v = begin; v < end; ++v) {
     const Vertex vertex = vertex_of(job, v);
+    assert(vertex.pairs != nullptr);  // as bindings for this method have them
     const auto motion_of = [&](std::size_t k) { return job.motions[vertex.pairs[k]].components; };
     const auto matrix_of = [&](std::size_t k) { return job.palette[vertex.joints[k]].elements; };
     float motion_sum[8], matrix_sum[16] = {};

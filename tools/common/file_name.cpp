@@ -2,6 +2,8 @@
 
 #include <string_view>
 
+#include "core/file.h"
+
 namespace krok {
 
 std::string file_name_of(const std::string& name) {
@@ -18,6 +20,10 @@ std::string file_name_of(const std::string& name) {
     result.resize(end);
   }
   return result;
+}
+
+std::string name_of_input(const std::string& path) {
+  return path == "-" ? "standard input" : base_name(path);
 }
 
 }  // namespace krok

@@ -56,4 +56,10 @@ Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext
   return MotionKeys{std::move(contacts->contacts), std::move(gait.keytimes)};
 }
 
+Json to_json(std::span<const Keytime> keytimes) {
+  Json list = Json::array();
+  for (const Keytime& key : keytimes) list.push_back({{"name", key.name}, {"time", key.time}});
+  return list;
+}
+
 }  // namespace krok

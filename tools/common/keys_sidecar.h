@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "formats/keys/keys.h"
@@ -26,5 +27,8 @@ Result<std::optional<keys::Sidecar>> read_keys_beside(const std::string& motion_
 
 // Those of a motion as krok-keys finds them. What is doubtful is told. Code: contacts-feet.
 Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext& context);
+
+// Names and times, for the report.
+Json to_json(std::span<const Keytime> keytimes);
 
 }  // namespace krok

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/file.h"
+#include "tools/common/json_object.h"
 
 namespace krok {
 
@@ -26,7 +27,7 @@ const char* severity_name(Severity severity) {
 
 Json to_json(const Diagnostic& diagnostic) {
   const Location& where = diagnostic.where;
-  Json json;
+  Json json = object_for(10);
   json["code"] = diagnostic.code;
   json["severity"] = severity_name(diagnostic.severity);
   json["file"] = where.file.empty() ? Json() : Json(where.file);
@@ -48,12 +49,16 @@ Json to_json(const Diagnostics& diagnostics) {
 
 Json to_json(const std::vector<Report::Input>& inputs) {
   Json json = Json::array();
-  for (const auto& input : inputs) json.push_back({{"path", input.path}, {"xxh3", input.xxh3}});
+  for (const auto& input : inputs) {
+    Json& entry = json.emplace_back(object_for(2));
+    entry["path"] = input.path;
+    entry["xxh3"] = input.xxh3;
+  }
   return json;
 }
 
 Json Report::to_json() const {
-  Json json;
+  Json json = object_for(8);
   json["schema"] = "krok.report/1";
   json["tool"] = tool;
   json["version"] = version;

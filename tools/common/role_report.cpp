@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "core/numbers.h"
+#include "tools/common/json_object.h"
 
 namespace krok {
 
@@ -94,7 +95,7 @@ void add_parts(const Skeleton& skeleton, const RoleMap& map, std::vector<RoleRow
 
 // Each role with its joint, or for roles of many with their joints.
 Json joints_by_role(const Skeleton& skeleton, const RoleMap& map) {
-  Json json = Json::object();
+  Json json = object_for(map.roles.size());
   for (std::size_t j = 0; j < map.roles.size(); ++j) {
     const Role role = map.roles[j];
     if (role == Role::none || role == Role::end) continue;
@@ -167,7 +168,7 @@ std::vector<RoleRow> role_rows(const Skeleton& skeleton, const RoleMap& map) {
 }
 
 Json roles_json(const Skeleton& skeleton, const RoleMap& map) {
-  Json json = Json::object();
+  Json json = object_for(5);
   json["humanoid"] = map.humanoid;
   json["roles"] = joints_by_role(skeleton, map);
   json["missing_roles"] = Json::array();

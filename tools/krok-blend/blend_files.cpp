@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
+#include "tools/common/file_name.h"
 #include "tools/common/keys_sidecar.h"
 #include "tools/common/motion_input.h"
 #include "tools/common/option_kinds.h"
@@ -44,7 +45,7 @@ Result<std::vector<Motion>> read_motions(const Options& options, const FindRoles
     auto clip = read_motion(input->path, context);
     if (!clip) return clip.error();
     Motion motion;
-    motion.name = input->path == "-" ? "standard input" : base_name(input->path);
+    motion.name = name_of_input(input->path);
     motion.clip = std::move(*clip);
     if (input->weight) {
       motion.weight = blend::WeightCurve::constant(*input->weight);
@@ -174,11 +175,7 @@ void report(const std::vector<Motion>& motions, const Correspondence& moments,
   result["duration"] = blended.clip.duration();
   result["moments"] = moments.names;
   result["motions"] = std::move(list);
-  Json keytimes = Json::array();
-  for (const Keytime& key : blended.keys.keytimes) {
-    keytimes.push_back({{"name", key.name}, {"time", key.time}});
-  }
-  result["keytimes"] = std::move(keytimes);
+  result["keytimes"] = to_json(blended.keys.keytimes);
   result["widest_spread_degrees"] = blended.widest_spread / kRadiansPerDegree;
 }
 

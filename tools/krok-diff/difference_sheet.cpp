@@ -113,9 +113,11 @@ Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
   const LengthUnit unit = unit_for(sheet.largest);
   const render::ColourKey key = distance_colours(sheet.tolerance, sheet.largest).key;
   std::vector<Compared> compared;
+  compared.reserve(moments->size());
   for (const PictureMoment& moment : *moments) compared.push_back(sheet.at(moment, key));
 
   std::vector<render::Figure> pale;
+  pale.reserve(compared.size());
   for (const Compared& one : compared) pale.push_back(in_grey(one.first));
   render::Sheet picture;
   if (sheet.measured) picture.key = key;

@@ -38,6 +38,7 @@ class Walk {
     std::vector<std::string> folders = {""};
     while (!folders.empty()) {
       const std::string below = std::move(folders.back());
+      const std::string before = below.empty() ? "" : below + "/";
       folders.pop_back();
       std::error_code trouble;
       const fs::path path = fs::path(folder_) / below;
@@ -45,7 +46,7 @@ class Walk {
       for (; !trouble && entry != fs::directory_iterator(); entry.increment(trouble)) {
         const std::string name = entry->path().filename().string();
         if (name.front() == '.' || matches("krok-*.journal.jsonl", name)) continue;
-        take(*entry, below.empty() ? name : below + "/" + name, folders);
+        take(*entry, before + name, folders);
       }
       if (trouble) {
         return Error("file-unreadable", fmt::format("cannot be searched: {}", trouble.message()))

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "compare_files.h"
+#include "core/markup.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "folders.h"
@@ -59,25 +60,11 @@ std::vector<std::pair<std::string, std::size_t>> counts_of(const FolderOutcome& 
   return counts;
 }
 
+// For HTML, and for cells of Markdown, which a bar would end.
 std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : safe(text)) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '|':  // ends a cell in Markdown
-        result += "&#124;";
-        break;
-      default:
-        result += c;
-    }
+  std::string result = to_markup(safe(text));
+  for (std::size_t at = 0; (at = result.find('|', at)) != std::string::npos;) {
+    result.replace(at, 1, "&#124;");
   }
   return result;
 }

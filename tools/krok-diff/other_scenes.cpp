@@ -29,6 +29,7 @@ KeyPlace place_of(double time, const std::vector<double>& times) {
 
 std::vector<double> frame_times(int frames, double rate) {
   std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(frames));
   for (int i = 0; i < frames; ++i) times.push_back(i / rate);
   return times;
 }

@@ -10,6 +10,7 @@
 #include "formats/anim/anim.h"
 #include "formats/sequences/sequences.h"
 #include "motion/ground_place.h"
+#include "tools/common/file_name.h"
 #include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
 #include "tools/common/output_set.h"
@@ -141,9 +142,8 @@ Result<Edited> edit_one(const Options& options, Edit edit, const std::string& ou
       outputs.add(output, [&](OutputFile& file) { return anim::write(edit.clip, writing, file); });
   if (!added) return added.error();
   Edited edited;
-  edited.lines.push_back(fmt::format(
-      "{}: {} -> {}: {}", options.input == "-" ? "standard input" : base_name(options.input),
-      before, output, summary_text(edit.clip)));
+  edited.lines.push_back(fmt::format("{}: {} -> {}: {}", name_of_input(options.input), before,
+                                     output, summary_text(edit.clip)));
   for (const std::string& line : edit.lines) edited.lines.push_back("  " + line);
   edited.result = summary_of(edit.clip);
   edited.result["steps"] = std::move(edit.steps);

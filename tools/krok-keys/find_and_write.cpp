@@ -9,6 +9,7 @@
 #include "contacts/slide_speed.h"
 #include "core/numbers.h"
 #include "formats/keys/keys.h"
+#include "tools/common/file_name.h"
 #include "tools/common/keys_sidecar.h"
 #include "tools/common/motion_input.h"
 #include "tools/common/output_set.h"
@@ -19,10 +20,6 @@
 namespace krok::keys_tool {
 
 namespace {
-
-std::string shown_input(const Options& options) {
-  return options.input == "-" ? "standard input" : base_name(options.input);
-}
 
 bool stands(const std::string& path) {
   std::error_code ignored;
@@ -157,7 +154,7 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
       if (!contacts) return std::move(contacts).error();
       found = std::move(*contacts);
     }
-    const auto svg = feet_plot(shown_input(options), clip, *found, sidecar.keys);
+    const auto svg = feet_plot(name_of_input(options.input), clip, *found, sidecar.keys);
     if (!svg) return svg.error();
     const Status added =
         outputs.add(options.plot, [&](OutputFile& file) { return file.write(*svg); });
@@ -215,7 +212,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (context.output.empty() && options.plot.empty()) {
     context.print(as_table(sidecar, clip->skeleton));
   }
-  context.say(fmt::format("{}: {}, {}{}", shown_input(options),
+  context.say(fmt::format("{}: {}, {}{}", name_of_input(options.input),
                           counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
                           counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
                           gait_text(gait, slide)));

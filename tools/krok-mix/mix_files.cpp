@@ -141,11 +141,7 @@ void report(const timeline::Timeline& timeline, const Mixed& mixed, ToolContext&
   result["items"] = items_report(timeline, mixed);
   result["changes"] = changes_report(timeline, mixed);
   result["events"] = events_report(timeline, mixed);
-  Json keytimes = Json::array();
-  for (const Keytime& key : mixed.keys.keytimes) {
-    keytimes.push_back({{"name", key.name}, {"time", key.time}});
-  }
-  result["keytimes"] = std::move(keytimes);
+  result["keytimes"] = to_json(mixed.keys.keytimes);
   result["contacts"] = mixed.keys.contacts.size();
 }
 

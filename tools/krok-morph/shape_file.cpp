@@ -91,17 +91,18 @@ Result<ShapeFile> read_any(const InputFile& file, const Options& options, ToolCo
                    : "");
 }
 
-// Each triangle from its smallest corner on, in rising order.
-std::vector<Triangle> canonical(const std::vector<Triangle>& triangles) {
-  std::vector<Triangle> result = triangles;
-  for (Triangle& one : result) std::ranges::rotate(one, std::ranges::min_element(one));
-  std::ranges::sort(result);
-  return result;
+// From its smallest corner on.
+Triangle canonical(Triangle one) {
+  std::rotate(one.begin(), std::min_element(one.begin(), one.end()), one.end());
+  return one;
 }
 
-Triangle canonical(Triangle one) {
-  std::ranges::rotate(one, std::ranges::min_element(one));
-  return one;
+// Each so, in rising order.
+std::vector<Triangle> canonical(const std::vector<Triangle>& triangles) {
+  std::vector<Triangle> result = triangles;
+  for (Triangle& one : result) one = canonical(one);
+  std::ranges::sort(result);
+  return result;
 }
 
 std::string corners(const Triangle& triangle) {

@@ -7,12 +7,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <vector>
 
-#include "support/folder_test.h"
-#include "support/run_tool.h"
+#include "cli/story_test.h"
 
 namespace krok {
 namespace {
@@ -21,24 +19,10 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-class BlendWalks : public test::FolderTest {
+class BlendWalks : public test::StoryTest {
  protected:
-  test::ToolRun story(const std::string& arguments, const std::string& bin = KROK_BIN_DIR) {
-    test::ToolOptions options;
-    options.folder = folder_.string();
-    options.timeout = 600;
-    return test::run({"/bin/sh", "-c",
-                      "KROK_BIN='" + bin +
-                          "' SAMPLES_BIN='" KROK_SAMPLES_BIN "' '" KROK_SOURCE_DIR
-                          "/samples/blend_walks/run.sh' " +
-                          arguments},
-                     options);
-  }
-  static std::string text_of(const fs::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    return text.str();
-  }
+  BlendWalks() : StoryTest("blend_walks") {}
+
   // The rows of a Markdown table without its head.
   static std::vector<std::vector<std::string>> rows_of(const std::string& table) {
     std::vector<std::vector<std::string>> rows;
@@ -58,9 +42,9 @@ TEST_F(BlendWalks, HoldsWhatItsReadmeTells) {
   const test::ToolRun run = story("'a folder'");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const fs::path out = folder_ / "a folder";
-  const std::string readme = text_of(KROK_SOURCE_DIR "/samples/blend_walks/README.md");
+  const std::string readme = told("README.md");
 
-  const std::string slide = text_of(out / "slide.md"), strikes = text_of(out / "strikes.md");
+  const std::string slide = get(out / "slide.md"), strikes = get(out / "strikes.md");
   EXPECT_THAT(readme, HasSubstr(slide));
   EXPECT_THAT(readme, HasSubstr(strikes));
 
@@ -80,18 +64,14 @@ TEST_F(BlendWalks, HoldsWhatItsReadmeTells) {
     EXPECT_NEAR(std::stod(row.at(5)), 0.5 * (slow + quick), 1.0 / 60) << row.at(1);
   }
 
-  EXPECT_THAT(text_of(out / "slide.svg"), HasSubstr("by the clock"));
-  EXPECT_EQ(text_of(out / "slide.svg"),
-            text_of(KROK_SOURCE_DIR "/samples/blend_walks/pictures/slide.svg"));
-  EXPECT_THAT(text_of(out / "sweep.png"), StartsWith("\x89PNG"));
+  EXPECT_THAT(get(out / "slide.svg"), HasSubstr("by the clock"));
+  EXPECT_EQ(get(out / "slide.svg"), told("pictures/slide.svg"));
+  EXPECT_THAT(get(out / "sweep.png"), StartsWith("\x89PNG"));
   EXPECT_GT(fs::file_size(out / "sweep.png"), 10000U);
 }
 
 TEST_F(BlendWalks, ToolsThatAreNotThereAreNamed) {
-  const test::ToolRun run = story("", "/nowhere");
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("no krok-import in /nowhere"));
-  EXPECT_THAT(run.err, HasSubstr("hint:"));
+  expect_missing_tools_told("krok-import");
 }
 
 }  // namespace

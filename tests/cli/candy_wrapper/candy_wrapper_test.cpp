@@ -7,14 +7,12 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <numbers>
 #include <sstream>
 #include <string>
 
-#include "support/folder_test.h"
-#include "support/run_tool.h"
+#include "cli/story_test.h"
 
 namespace krok {
 namespace {
@@ -23,35 +21,20 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::string kStory = KROK_SOURCE_DIR "/samples/candy_wrapper/";
-
-class CandyWrapper : public test::FolderTest {
+class CandyWrapper : public test::StoryTest {
  protected:
-  test::ToolRun story(const std::string& arguments, const std::string& bin = KROK_BIN_DIR) {
-    test::ToolOptions options;
-    options.folder = folder_.string();
-    options.timeout = 600;
-    return test::run({"/bin/sh", "-c",
-                      "KROK_BIN='" + bin + "' SAMPLES_BIN='" KROK_SAMPLES_BIN "' '" + kStory +
-                          "run.sh' " + arguments},
-                     options);
-  }
-  static std::string text_of(const fs::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    return text.str();
-  }
+  CandyWrapper() : StoryTest("candy_wrapper") {}
 };
 
 TEST_F(CandyWrapper, HoldsWhatItsReadmeTells) {
   const test::ToolRun run = story("'a folder'");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const fs::path out = folder_ / "a folder";
-  EXPECT_THAT(text_of(kStory + "README.md"), HasSubstr(text_of(out / "volume.md")));
+  EXPECT_THAT(told("README.md"), HasSubstr(get(out / "volume.md")));
 
   // Percent of the volume between elbow and wrist, by method and degrees.
   std::map<std::string, std::map<int, double>> lost;
-  std::istringstream table(text_of(out / "volume.csv"));
+  std::istringstream table(get(out / "volume.csv"));
   std::string line;
   std::getline(table, line);
   while (std::getline(table, line)) {
@@ -76,16 +59,13 @@ TEST_F(CandyWrapper, HoldsWhatItsReadmeTells) {
     EXPECT_NEAR(percent, lost["linear"][degrees] / 120, 0.06) << degrees;
   }
 
-  EXPECT_EQ(text_of(out / "volume.svg"), text_of(kStory + "pictures/volume.svg"));
-  EXPECT_THAT(text_of(out / "twist.png"), StartsWith("\x89PNG"));
+  EXPECT_EQ(get(out / "volume.svg"), told("pictures/volume.svg"));
+  EXPECT_THAT(get(out / "twist.png"), StartsWith("\x89PNG"));
   EXPECT_GT(fs::file_size(out / "twist.png"), 10000U);
 }
 
 TEST_F(CandyWrapper, ToolsThatAreNotThereAreNamed) {
-  const test::ToolRun run = story("", "/nowhere");
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("no krok-skin in /nowhere"));
-  EXPECT_THAT(run.err, HasSubstr("hint:"));
+  expect_missing_tools_told("krok-skin");
 }
 
 }  // namespace

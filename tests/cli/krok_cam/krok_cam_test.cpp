@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
+#include "cli/judged_test.h"
 #include "formats/cam/cam.h"
 #include "support/glb_builder.h"
 
@@ -31,7 +31,7 @@ constexpr const char* kKeys = R"({
   ]
 })";
 
-class KrokCam : public CliTest {
+class KrokCam : public JudgedTest {
  protected:
   KrokCam() : keys_(put("shot.json", kKeys)), walk_(put("walk.bvh", get(kWalk))) {}
 
@@ -47,23 +47,6 @@ class KrokCam : public CliTest {
     const auto track = cam::read(std::as_bytes(std::span(bytes)));
     EXPECT_TRUE(track.ok()) << name;
     return track ? *track : CameraTrack();
-  }
-
-  // Runs a script of tests/golden over files of this folder; skips without its packages.
-  void judge(const std::vector<std::string>& arguments) const {
-    const std::filesystem::path tests = std::filesystem::path(KROK_SOURCE_DIR) / "tests";
-    for (const char* needed : {"gltf-validator", "three"}) {
-      if (!std::filesystem::exists(tests / "node_modules" / needed)) {
-        GTEST_SKIP() << "skipped: no " << needed << " in tests/node_modules; run npm ci in tests/";
-      }
-    }
-    std::vector<std::string> command = {"/usr/bin/env", "node",
-                                        (tests / "golden" / arguments[0]).string()};
-    command.insert(command.end(), arguments.begin() + 1, arguments.end());
-    ToolOptions options;
-    options.folder = folder_.string();
-    const ToolRun run = test::run(command, options);
-    EXPECT_EQ(run.exit_code, 0) << arguments[0] << "\n" << run.out << run.err;
   }
 
   // What a viewer must show of a track.

@@ -12,7 +12,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
+#include "cli/judged_test.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "formats/pc2/pc2.h"
@@ -59,7 +59,7 @@ constexpr const char* kWeights =
   {"target": "bump", "keys": [[0, 0], [0.5, 1], [1, 0]]},
   {"target": "wave", "between": "smooth", "keys": [[0.5, 0], ["20f", 1]]}]})";
 
-class KrokMorph : public CliTest {
+class KrokMorph : public JudgedTest {
  protected:
   KrokMorph()
       : base_(put("base.obj", sheet(flat))),
@@ -94,23 +94,6 @@ class KrokMorph : public CliTest {
     EXPECT_THAT(run.err, HasSubstr(words));
     EXPECT_FALSE(std::filesystem::exists(path("out.exr")));
     EXPECT_FALSE(std::filesystem::exists(path("out.glb")));
-  }
-
-  // Runs a script of tests/golden over files of this folder; skips without its packages.
-  void judge(const std::vector<std::string>& arguments) const {
-    const std::filesystem::path tests = std::filesystem::path(KROK_SOURCE_DIR) / "tests";
-    for (const char* needed : {"gltf-validator", "three"}) {
-      if (!std::filesystem::exists(tests / "node_modules" / needed)) {
-        GTEST_SKIP() << "skipped: no " << needed << " in tests/node_modules; run npm ci in tests/";
-      }
-    }
-    std::vector<std::string> command = {"/usr/bin/env", "node",
-                                        (tests / "golden" / arguments[0]).string()};
-    command.insert(command.end(), arguments.begin() + 1, arguments.end());
-    ToolOptions options;
-    options.folder = folder_.string();
-    const ToolRun run = test::run(command, options);
-    EXPECT_EQ(run.exit_code, 0) << arguments[0] << "\n" << run.out << run.err;
   }
 
   std::string base_, bump_, wave_;

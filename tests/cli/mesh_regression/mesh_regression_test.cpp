@@ -3,8 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "support/folder_test.h"
-#include "support/run_tool.h"
+#include "cli/story_test.h"
 
 namespace krok {
 namespace {
@@ -13,19 +12,9 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::string kStory = KROK_SOURCE_DIR "/samples/mesh_regression/";
-
-class MeshRegression : public test::FolderTest {
+class MeshRegression : public test::StoryTest {
  protected:
-  test::ToolRun story(const std::string& arguments, const std::string& bin = KROK_BIN_DIR) const {
-    test::ToolOptions options;
-    options.folder = folder_.string();
-    options.timeout = 600;
-    return test::run({"/bin/sh", "-c",
-                      "KROK_BIN='" + bin + "' SAMPLES_BIN='" KROK_SAMPLES_BIN "' '" + kStory +
-                          "run.sh' " + arguments},
-                     options);
-  }
+  MeshRegression() : StoryTest("mesh_regression") {}
 };
 
 TEST_F(MeshRegression, HoldsWhatItsReadmeTells) {
@@ -40,20 +29,18 @@ TEST_F(MeshRegression, HoldsWhatItsReadmeTells) {
     indented.insert(at + 1, "    ");
     at += 5;
   }
-  EXPECT_THAT(get(kStory + "README.md"), HasSubstr(indented));
+  EXPECT_THAT(told("README.md"), HasSubstr(indented));
   EXPECT_THAT(get((out / "changed.html").string()), HasSubstr("<code>turn.glb</code>"));
   EXPECT_THAT(run.out, HasSubstr("  replaced golden/turn.glb\n"));
   EXPECT_EQ(get((out / "golden/turn.glb").string()), get((out / "out/turn.glb").string()));
 
   EXPECT_THAT(get((out / "turn_heat.glb").string()), HasSubstr("COLOR_0"));
-  EXPECT_EQ(get((out / "turn.svg").string()), get(kStory + "pictures/turn.svg"));
+  EXPECT_EQ(get((out / "turn.svg").string()), told("pictures/turn.svg"));
   EXPECT_THAT(get((out / "turn.png").string()), StartsWith("\x89PNG"));
 }
 
 TEST_F(MeshRegression, ToolsThatAreNotThereAreNamed) {
-  const test::ToolRun run = story("", "/nowhere");
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("no krok-import in /nowhere"));
+  expect_missing_tools_told("krok-import");
 }
 
 }  // namespace

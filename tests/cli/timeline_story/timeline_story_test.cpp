@@ -5,11 +5,9 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
+#include "cli/story_test.h"
 
 namespace krok::test {
 namespace {
@@ -20,31 +18,22 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-class TimelineStory : public CliTest {
+class TimelineStory : public StoryTest {
  protected:
-  static std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  TimelineStory() : StoryTest("timeline") {}
 };
 
 TEST_F(TimelineStory, HoldsWhatItsReadmeTells) {
-  ToolOptions options;
-  options.folder = folder_.string();
-  options.timeout = 600;
-  const ToolRun story = run({"/bin/sh", "-c",
-                             "KROK_BIN='" KROK_BIN_DIR "' SAMPLES_BIN='" KROK_SAMPLES_BIN
-                             "' '" KROK_SOURCE_DIR "/samples/timeline/run.sh' 'a folder'"},
-                            options);
-  ASSERT_EQ(story.exit_code, 0) << story.err;
-  EXPECT_THAT(story.err, Not(HasSubstr("mix-pop")));
+  const ToolRun made = story("'a folder'");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.err, Not(HasSubstr("mix-pop")));
   const fs::path out = folder_ / "a folder";
-  for (const char* made : {"story.anim", "story.keys.json", "story.cam", "story.glb", "story.html",
+  for (const char* file : {"story.anim", "story.keys.json", "story.cam", "story.glb", "story.html",
                            "story.png", "moments.png"}) {
-    EXPECT_TRUE(fs::exists(out / made)) << made;
+    EXPECT_TRUE(fs::exists(out / file)) << file;
   }
 
-  const json result = json::parse(text_of(out / "story.report.json"))["result"];
+  const json result = json::parse(get(out / "story.report.json"))["result"];
   std::vector<std::string> kinds;
   for (const json& change : result["changes"]) {
     kinds.push_back(change["kind"]);
@@ -62,7 +51,7 @@ TEST_F(TimelineStory, HoldsWhatItsReadmeTells) {
     if (item["name"] == "limp") begins = item["start"];
   }
   double nearest = 1;
-  const json sidecar = json::parse(text_of(out / "story.keys.json"));
+  const json sidecar = json::parse(get(out / "story.keys.json"));
   for (const json& key : sidecar["keytimes"]) {
     if (key["name"] != "left_strike") continue;
     nearest = std::min(nearest, std::abs(key["time"].get<double>() - begins));

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+#include "support/told_mistakes.h"
+
 namespace krok::camera_keys {
 namespace {
 
@@ -25,10 +27,7 @@ constexpr const char* kGood = R"({
 })";
 
 std::string changed(const std::string& from, const std::string& to) {
-  std::string text = kGood;
-  const auto place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  return text.replace(place, from.size(), to);
+  return test::replaced(kGood, from, to);
 }
 
 TEST(CameraKeys, ReadsWhatTheSpecSays) {
@@ -70,15 +69,8 @@ TEST(CameraKeys, UnitsAreThoseNamed) {
   EXPECT_EQ(radians->camera.keys[1].roll, 90);
 }
 
-struct Mistake {
-  const char* from;
-  const char* to;
-  const char* place;  // code line:column
-  const char* says;
-};
-
 TEST(CameraKeys, EveryMistakeIsToldWithItsPlace) {
-  const Mistake mistakes[] = {
+  const test::Mistake mistakes[] = {
       {"keys/1", "keys/9", "camera-keys-structure 2:13", "krok.camera-keys/9"},
       {"\"rate\": 50", "\"rate\": 0", "camera-keys-value 3:11", "rate"},
       {"\"rate\": 50,", "", "camera-keys-value 9:14", "no \"rate\""},
@@ -112,18 +104,7 @@ TEST(CameraKeys, EveryMistakeIsToldWithItsPlace) {
        "smooth"},
       {"\"schema\"", "schema", "json-syntax 2:3", ""},
   };
-  for (const Mistake& mistake : mistakes) {
-    const auto file = read(changed(mistake.from, mistake.to));
-    ASSERT_FALSE(file.ok()) << mistake.to;
-    const Error& error = file.error();
-    EXPECT_EQ(error.code + " " + std::to_string(error.where.line) + ":" +
-                  std::to_string(error.where.column),
-              mistake.place)
-        << mistake.to << "\n"
-        << error.message;
-    EXPECT_NE(error.message.find(mistake.says), std::string::npos) << mistake.says << "\n"
-                                                                   << error.message;
-  }
+  test::expect_told(kGood, mistakes, [](const std::string& text) { return read(text); });
   EXPECT_EQ(read(R"({"schema": "krok.camera-keys/1", "keys": []})").error().code,
             "camera-keys-value");
   EXPECT_EQ(read("[]").error().code, "camera-keys-structure");

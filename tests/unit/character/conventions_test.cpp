@@ -34,6 +34,26 @@ TEST(SceneConventions, GoByTheRolesThatAreKnown) {
   EXPECT_EQ(find_conventions({}, &rig, {}, {}, {}).forward_confidence, Confidence::guess);
 }
 
+TEST(SceneConventions, AnOddSizeOfAPersonIsTold) {
+  const Skeleton skeleton = test::human_skeleton();
+  const RoleMap roles = find_roles(skeleton);
+  // As exporters make them that scale by 100 once too often or once too seldom; and a giant's, a
+  // doll's and a child's, which may be meant.
+  for (const double scale : {0.01, 100.0, 0.05, 2.0, 0.5, 0.6}) {
+    Skeleton scaled = skeleton;
+    for (Transform& joint : scaled.reference) joint.position *= scale;
+    Diagnostics found;
+    check_size(scaled, roles, found);
+    const bool odd = scale < 0.1 || scale > 10;
+    ASSERT_EQ(found.size(), odd ? 1u : 0u) << scale;
+    if (!odd) continue;
+    EXPECT_EQ(found[0].code, "scene-unit");
+    found.clear();
+    check_size(scaled, {}, found);
+    EXPECT_TRUE(found.empty()) << "of what is no humanoid nothing is expected";
+  }
+}
+
 TEST(SceneConventions, FiguresAreCheckedByTheRolesThatAreKnown) {
   const Skeleton skeleton = test::human_skeleton();
   const RoleMap roles = find_roles(skeleton);

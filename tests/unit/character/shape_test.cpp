@@ -8,8 +8,8 @@
 #include "character/motion.h"
 #include "character/space.h"
 #include "scenes.h"
-#include "skin/linear_blend.h"
 #include "skin/palette.h"
+#include "support/linear_blend.h"
 
 namespace krok::test {
 namespace {

@@ -7,6 +7,8 @@
 
 #include <random>
 
+#include "support/told_mistakes.h"
+
 namespace krok::json {
 namespace {
 
@@ -46,8 +48,7 @@ TEST(LocatedJson, SaysWhereTheTextIsBroken) {
     EXPECT_FALSE(result.ok()) << text;
     if (result.ok()) return std::string("none");
     EXPECT_FALSE(result.error().message.empty());
-    return result.error().code + " " + std::to_string(result.error().where.line) + ":" +
-           std::to_string(result.error().where.column);
+    return test::place_of(result.error());
   };
   EXPECT_EQ(place("{\n  \"a\": 1,\n  \"b\" 2\n}"), "json-syntax 3:7");
   EXPECT_EQ(place("{\"a\": 1} x"), "json-syntax 1:10");

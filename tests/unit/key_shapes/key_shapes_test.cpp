@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/told_mistakes.h"
+
 namespace krok::key_shapes {
 namespace {
 
@@ -36,32 +38,20 @@ TEST(KeyShapes, ReadsWhatTheSpecSays) {
 }
 
 TEST(KeyShapes, MistakesAreFoundWhereTheyAre) {
-  struct Case {
-    const char *from, *to, *code;
-    int line, column;
+  const test::Mistake mistakes[] = {
+      {"shapes/1", "shapes/9", "key-shapes-structure 2:13"},
+      {"\"between\"", "\"betwen\"", "key-shapes-structure 4:3"},
+      {"\"hermite\"", "\"cubic\"", "key-shapes-value 4:14"},
+      {"0.25", "1.5", "key-shapes-value 5:14"},
+      {"\"time\": 0, ", "", "key-shapes-structure 7:5"},
+      {"\"500ms\"", "0", "key-shapes-time 8:14"},
+      {"\"500ms\"", "-1", "key-shapes-value 8:14"},
+      {"\"below/b.glb\"", "\"../b.glb\"", "key-shapes-path 8:32"},
+      {"\"below/b.glb\"", "\"/b.glb\"", "key-shapes-path 8:32"},
+      {"\"below/b.glb\"", "7", "key-shapes-value 8:32"},
+      {"  \"rate\": 20,\n", "", "key-shapes-value 8:14"},
   };
-  for (const Case& one : {
-           Case{"shapes/1", "shapes/9", "key-shapes-structure", 2, 13},
-           Case{"\"between\"", "\"betwen\"", "key-shapes-structure", 4, 3},
-           Case{"\"hermite\"", "\"cubic\"", "key-shapes-value", 4, 14},
-           Case{"0.25", "1.5", "key-shapes-value", 5, 14},
-           Case{"\"time\": 0, ", "", "key-shapes-structure", 7, 5},
-           Case{"\"500ms\"", "0", "key-shapes-time", 8, 14},
-           Case{"\"500ms\"", "-1", "key-shapes-value", 8, 14},
-           Case{"\"below/b.glb\"", "\"../b.glb\"", "key-shapes-path", 8, 32},
-           Case{"\"below/b.glb\"", "\"/b.glb\"", "key-shapes-path", 8, 32},
-           Case{"\"below/b.glb\"", "7", "key-shapes-value", 8, 32},
-           Case{"  \"rate\": 20,\n", "", "key-shapes-value", 8, 14},
-       }) {
-    std::string text = kGood;
-    const auto place = text.find(one.from);
-    ASSERT_NE(place, std::string::npos) << one.from;
-    const auto file = read(text.replace(place, std::string(one.from).size(), one.to));
-    ASSERT_FALSE(file.ok()) << one.to;
-    EXPECT_EQ(file.error().code, one.code) << one.to << ": " << file.error().message;
-    EXPECT_EQ(file.error().where.line, one.line) << one.to << ": " << file.error().message;
-    EXPECT_EQ(file.error().where.column, one.column) << one.to << ": " << file.error().message;
-  }
+  test::expect_told(kGood, mistakes, [](const std::string& text) { return read(text); });
   EXPECT_EQ(read(R"({"schema":"krok.key-shapes/1","keys":[]})").error().code, "key-shapes-value");
 }
 

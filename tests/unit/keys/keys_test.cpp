@@ -9,6 +9,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "support/told_mistakes.h"
+
 namespace krok::keys {
 namespace {
 
@@ -97,12 +99,6 @@ TEST(Keys, TheEndOfTheMotionIsWithinIt) {
   EXPECT_FALSE(back->edited);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
 TEST(Keys, EditsByHandAreNoticed) {
   const Skeleton skeleton = feet();
   const std::string text = write(walk(), skeleton, 2);
@@ -113,11 +109,11 @@ TEST(Keys, EditsByHandAreNoticed) {
   };
   EXPECT_FALSE(edited(text));
   EXPECT_FALSE(edited(nlohmann::json::parse(text).dump())) << "layout is no edit";
-  EXPECT_TRUE(edited(replaced(text, "0.483333", "0.49")));
-  EXPECT_TRUE(edited(replaced(text, "left_off", "left_lift")));
-  EXPECT_TRUE(edited(replaced(text, ",\n    {\"name\": \"right_off\", \"time\": 1.25}", "")));
-  EXPECT_TRUE(edited(replaced(text, "-1.23456", "-1.2")));
-  EXPECT_TRUE(edited(replaced(text, "\"edited\": false", "\"edited\": true")));
+  EXPECT_TRUE(edited(test::replaced(text, "0.483333", "0.49")));
+  EXPECT_TRUE(edited(test::replaced(text, "left_off", "left_lift")));
+  EXPECT_TRUE(edited(test::replaced(text, ",\n    {\"name\": \"right_off\", \"time\": 1.25}", "")));
+  EXPECT_TRUE(edited(test::replaced(text, "-1.23456", "-1.2")));
+  EXPECT_TRUE(edited(test::replaced(text, "\"edited\": false", "\"edited\": true")));
   EXPECT_TRUE(edited(R"({"schema": "krok.keys/1"})")) << "no tool wrote this";
 }
 
@@ -145,13 +141,6 @@ TEST(Keys, MarksAloneAreEditsThatAToolCanKeep) {
   EXPECT_TRUE(back->has_edits());
 }
 
-struct Mistake {
-  const char* from;
-  const char* to;
-  const char* place;  // code line:column
-  const char* says;
-};
-
 TEST(Keys, EveryMistakeIsToldWithItsPlace) {
   const std::string good = R"({
   "schema": "krok.keys/1",
@@ -166,7 +155,7 @@ TEST(Keys, EveryMistakeIsToldWithItsPlace) {
   ]
 })";
   ASSERT_TRUE(read(good, "p", feet(), 2).ok());
-  const Mistake mistakes[] = {
+  const test::Mistake mistakes[] = {
       {"keys/1", "keys/2", "keys-structure 2:13", "krok.keys/2"},
       {"\"duration\": 2", "\"duration\": -2", "keys-value 3:15", "negative"},
       {"\"edited\": false", "\"edited\": 0", "keys-value 4:13", "a number"},
@@ -190,17 +179,9 @@ TEST(Keys, EveryMistakeIsToldWithItsPlace) {
       {"[\n    {\"name\"", "{\n    {\"name\"", "json-syntax 9:5", ""},
       {"\"keytimes\": [", "\"contacts\": [", "json-syntax 8:3", "twice"},
   };
-  for (const Mistake& mistake : mistakes) {
-    const auto result = read(replaced(good, mistake.from, mistake.to), "p.keys.json", feet(), 2);
-    ASSERT_FALSE(result.ok()) << mistake.to;
-    const Error& error = result.error();
-    EXPECT_EQ(error.code + " " + std::to_string(error.where.line) + ":" +
-                  std::to_string(error.where.column),
-              mistake.place)
-        << mistake.to << ": " << error.message;
-    EXPECT_NE(error.message.find(mistake.says), std::string::npos) << error.message;
-    EXPECT_EQ(error.where.file, "p.keys.json");
-  }
+  test::expect_told(
+      good, mistakes, [](const std::string& text) { return read(text, "p.keys.json", feet(), 2); },
+      "p.keys.json");
 }
 
 // Hostile: every cut of a sound file is an error, never a crash, and no value is believed.

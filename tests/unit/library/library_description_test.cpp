@@ -9,6 +9,8 @@
 #include <iterator>
 #include <numbers>
 
+#include "support/told_mistakes.h"
+
 namespace krok::library {
 namespace {
 
@@ -111,15 +113,8 @@ TEST(LibraryDescription, ReadsTheExamplesOfItsPage) {
   EXPECT_EQ(examples, 2);
 }
 
-struct Mistake {
-  const char* from;
-  const char* to;
-  const char* place;  // code line:column
-  const char* says;
-};
-
 TEST(LibraryDescription, EveryMistakeIsToldWithItsPlace) {
-  const Mistake mistakes[] = {
+  const test::Mistake mistakes[] = {
       {"library/1", "library/2", "library-structure 2:13", "krok.library/2"},
       {"\"swing\"", "\"swings\"", "library-structure 4:3", "swings"},
       {"\"right\"", "\"middle\"", "library-value 4:12", "left or right"},
@@ -148,20 +143,9 @@ TEST(LibraryDescription, EveryMistakeIsToldWithItsPlace) {
       {"\"one\", \"keys\"", "\"auto\", \"keys\"", "library-value 15:18", "takes no keytimes"},
       {"\"name\": \"slow\",", "\"name\": \"slow\"", "json-syntax 14:41", "JSON"},
   };
-  for (const Mistake& mistake : mistakes) {
-    std::string text = kGood;
-    ASSERT_NE(text.find(mistake.from), std::string::npos) << mistake.from;
-    text.replace(text.find(mistake.from), std::string(mistake.from).size(), mistake.to);
-    const auto result = read(text, "walk.json");
-    ASSERT_FALSE(result.ok()) << mistake.from << " -> " << mistake.to;
-    const Error& error = result.error();
-    EXPECT_EQ(error.code + " " + std::to_string(error.where.line) + ":" +
-                  std::to_string(error.where.column),
-              mistake.place)
-        << mistake.from << " -> " << mistake.to << ": " << error.message;
-    EXPECT_EQ(error.where.file, "walk.json");
-    EXPECT_NE((error.message + error.hint).find(mistake.says), std::string::npos) << error.message;
-  }
+  test::expect_told(
+      kGood, mistakes, [](const std::string& text) { return read(text, "walk.json"); },
+      "walk.json");
 }
 
 TEST(LibraryDescription, OtherFormsAreRefused) {

@@ -7,6 +7,7 @@
 
 #include "support/folder_test.h"
 #include "support/small_pictures.h"
+#include "support/told_mistakes.h"
 
 namespace krok::material {
 namespace {
@@ -21,13 +22,6 @@ constexpr const char* kGood = R"({
      "comment": ["any"], "shaders": ["glass.frag"]}
   ]
 })";
-
-std::string changed(const std::string& from, const std::string& to) {
-  std::string text = kGood;
-  const auto place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  return text.replace(place, from.size(), to);
-}
 
 TEST(MaterialFile, ReadsWhatTheSpecSays) {
   const auto materials = read(kGood);
@@ -76,48 +70,29 @@ TEST(MaterialFile, ATextureAloneIsNotDarkened) {
   EXPECT_EQ((*materials)[2].emissive, Vec3f::Zero());
 }
 
-struct Fault {
-  const char* from;
-  const char* to;
-  const char* code;
-  int line, column;
-  const char* says;  // in the message or the hint
-};
-
 TEST(MaterialFile, FaultsAreToldWithTheirPlace) {
-  const Fault faults[] = {
-      {"\"roughness\"", "\"roughnes\"", "material-structure", 4, 47, "did you mean 'roughness'?"},
-      {"krok.material/1", "krok.material/2", "material-structure", 2, 13, "krok.material/1"},
-      {"0.5", "1.5", "material-value", 4, 60, "expected 0 to 1"},
-      {"0.5", "\"x\"", "material-value", 4, 60, "expected a number"},
-      {"#FF8000", "#FF80", "material-value", 4, 36, "no colour"},
-      {"#FF8000", "#GG8000", "material-value", 4, 36, "no colour"},
-      {"0.4]", "1.4]", "material-value", 6, 37, "no colour"},
-      {"[0.1, 0.2, 0.3, 0.4]", "[0.1, 0.2]", "material-value", 6, 37, "no colour"},
-      {"\"mask\"", "\"maks\"", "material-value", 5, 46, "did you mean 'mask'?"},
-      {"\"clamp\"", "\"clip\"", "material-value", 7, 59, "did you mean 'clamp'?"},
-      {"\"Glass\"", "\"Skin\"", "material-name", 6, 14, "as material 0 is"},
-      {"\"Glass\"", "\"\"", "material-value", 6, 14, "empty"},
-      {"tex/n.png\", \"a", "../n.png\", \"a", "material-path", 5, 24, "leaves the folder"},
-      {"tex/n.png\", \"a", "/etc/n.png\", \"a", "material-path", 5, 24, "not a relative path"},
-      {"tex/n.png\", \"a", "c:\\\\n.png\", \"a", "material-path", 5, 24, "backslash"},
-      {"\"tex/n.png\", \"a", "7, \"a", "material-structure", 5, 24, "expected an object"},
-      {"\"smooth\"", "\"smoth\"", "material-structure", 7, 68, "did you mean 'smooth'?"},
-      {"[\"glass.frag\"]", "[1]", "material-value", 8, 38, "list of names"},
-      {"\"name\": \"Skin\", ", "", "material-structure", 4, 5, "lacks \"name\""},
-      {"]\n}", "]", "json-syntax", 0, 0, ""}};
-  for (const Fault& fault : faults) {
-    const auto found = read(changed(fault.from, fault.to));
-    ASSERT_FALSE(found.ok()) << fault.to;
-    const Error& error = found.error();
-    EXPECT_EQ(error.code, fault.code) << fault.to;
-    if (fault.line > 0) {
-      EXPECT_EQ(error.where.line, fault.line) << fault.to;
-      EXPECT_EQ(error.where.column, fault.column) << fault.to << ": " << error.message;
-    }
-    EXPECT_NE((error.message + error.hint).find(fault.says), std::string::npos)
-        << error.message << " / " << error.hint;
-  }
+  const test::Mistake faults[] = {
+      {"\"roughness\"", "\"roughnes\"", "material-structure 4:47", "did you mean 'roughness'?"},
+      {"krok.material/1", "krok.material/2", "material-structure 2:13", "krok.material/1"},
+      {"0.5", "1.5", "material-value 4:60", "expected 0 to 1"},
+      {"0.5", "\"x\"", "material-value 4:60", "expected a number"},
+      {"#FF8000", "#FF80", "material-value 4:36", "no colour"},
+      {"#FF8000", "#GG8000", "material-value 4:36", "no colour"},
+      {"0.4]", "1.4]", "material-value 6:37", "no colour"},
+      {"[0.1, 0.2, 0.3, 0.4]", "[0.1, 0.2]", "material-value 6:37", "no colour"},
+      {"\"mask\"", "\"maks\"", "material-value 5:46", "did you mean 'mask'?"},
+      {"\"clamp\"", "\"clip\"", "material-value 7:59", "did you mean 'clamp'?"},
+      {"\"Glass\"", "\"Skin\"", "material-name 6:14", "as material 0 is"},
+      {"\"Glass\"", "\"\"", "material-value 6:14", "empty"},
+      {"tex/n.png\", \"a", "../n.png\", \"a", "material-path 5:24", "leaves the folder"},
+      {"tex/n.png\", \"a", "/etc/n.png\", \"a", "material-path 5:24", "not a relative path"},
+      {"tex/n.png\", \"a", "c:\\\\n.png\", \"a", "material-path 5:24", "backslash"},
+      {"\"tex/n.png\", \"a", "7, \"a", "material-structure 5:24", "expected an object"},
+      {"\"smooth\"", "\"smoth\"", "material-structure 7:68", "did you mean 'smooth'?"},
+      {"[\"glass.frag\"]", "[1]", "material-value 8:38", "list of names"},
+      {"\"name\": \"Skin\", ", "", "material-structure 4:5", "lacks \"name\""},
+      {"]\n}", "]", "json-syntax 9:4", ""}};
+  test::expect_told(kGood, faults, [](const std::string& text) { return read(text); });
 }
 
 TEST(MaterialFile, WritingRefusesWhatReadingWould) {

@@ -40,35 +40,21 @@ TEST(MotionKeys, SoundOnesPass) {
 
 TEST(MotionKeys, FaultsAreFound) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  MotionKeys keys = sound();
-  keys.contacts[0].joint = 2;
-  EXPECT_EQ(code_of(keys), "keys-joint");
-  keys.contacts[0].joint = -1;
-  EXPECT_EQ(code_of(keys), "keys-joint");
-
-  keys = sound();
-  keys.contacts[0].end = -0.5;
-  EXPECT_EQ(code_of(keys), "keys-time");
-  keys = sound();
-  keys.contacts[1].end = 2.1;
-  EXPECT_EQ(code_of(keys), "keys-time");
-  keys = sound();
-  keys.contacts[1].start = nan;
-  EXPECT_EQ(code_of(keys), "keys-time");
-
-  keys = sound();
-  keys.contacts[1].place.y() = nan;
-  EXPECT_EQ(code_of(keys), "keys-place");
-
-  keys = sound();
-  keys.keytimes[1].time = 0.0;
-  EXPECT_EQ(code_of(keys), "keys-time");
-  keys = sound();
-  keys.keytimes[0].time = nan;
-  EXPECT_EQ(code_of(keys), "keys-time");
-  keys = sound();
-  keys.keytimes[2].name.clear();
-  EXPECT_EQ(code_of(keys), "keys-name");
+  const auto code_after = [](const auto& change) {
+    MotionKeys keys = sound();
+    change(keys);
+    return code_of(keys);
+  };
+  using Keys = MotionKeys;
+  EXPECT_EQ(code_after([](Keys& keys) { keys.contacts[0].joint = 2; }), "keys-joint");
+  EXPECT_EQ(code_after([](Keys& keys) { keys.contacts[0].joint = -1; }), "keys-joint");
+  EXPECT_EQ(code_after([](Keys& keys) { keys.contacts[0].end = -0.5; }), "keys-time");
+  EXPECT_EQ(code_after([](Keys& keys) { keys.contacts[1].end = 2.1; }), "keys-time");
+  EXPECT_EQ(code_after([&](Keys& keys) { keys.contacts[1].start = nan; }), "keys-time");
+  EXPECT_EQ(code_after([&](Keys& keys) { keys.contacts[1].place.y() = nan; }), "keys-place");
+  EXPECT_EQ(code_after([](Keys& keys) { keys.keytimes[1].time = 0.0; }), "keys-time");
+  EXPECT_EQ(code_after([&](Keys& keys) { keys.keytimes[0].time = nan; }), "keys-time");
+  EXPECT_EQ(code_after([](Keys& keys) { keys.keytimes[2].name.clear(); }), "keys-name");
 }
 
 TEST(MotionKeys, APartCountsFromItsBeginningAndCutsContacts) {

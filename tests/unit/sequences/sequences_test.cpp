@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/told_mistakes.h"
+
 namespace krok::sequences {
 namespace {
 
@@ -34,15 +36,8 @@ TEST(Sequences, ReadsWhatTheSpecSays) {
   EXPECT_TRUE(read(R"({"schema":"krok.sequences/1","sequences":[]})")->sequences.empty());
 }
 
-struct Mistake {
-  const char* from;
-  const char* to;
-  const char* place;  // code line:column
-  const char* says;
-};
-
 TEST(Sequences, EveryMistakeIsToldWithItsPlace) {
-  const Mistake mistakes[] = {
+  const test::Mistake mistakes[] = {
       {"sequences/1", "sequences/2", "sequences-structure 2:13", "krok.sequences/2"},
       {"\"rate\": 60", "\"rate\": 0", "sequences-value 3:11", "rate"},
       {"\"rate\": 60", "\"rate\": \"60\"", "sequences-value 3:11", "a text"},
@@ -60,18 +55,7 @@ TEST(Sequences, EveryMistakeIsToldWithItsPlace) {
       {"\"wave\"", "\"\"", "sequences-value 6:14", "name"},
       {"\"wave\"", "7", "sequences-value 6:14", "a number"},
       {"\"wave\",", "\"wave\"", "json-syntax 6:21", "JSON"}};
-  for (const Mistake& mistake : mistakes) {
-    std::string text = kGood;
-    text.replace(text.find(mistake.from), std::string(mistake.from).size(), mistake.to);
-    const auto result = read(text);
-    ASSERT_FALSE(result.ok()) << mistake.from << " -> " << mistake.to;
-    const Error& error = result.error();
-    EXPECT_EQ(error.code + " " + std::to_string(error.where.line) + ":" +
-                  std::to_string(error.where.column),
-              mistake.place)
-        << mistake.from << " -> " << mistake.to;
-    EXPECT_NE((error.message + error.hint).find(mistake.says), std::string::npos) << error.message;
-  }
+  test::expect_told(kGood, mistakes, [](const std::string& text) { return read(text); });
   for (const char* text : {"", "[]", "7", "{}", R"({"schema":"krok.sequences/1"})",
                            R"({"schema":"krok.sequences/1","sequences":[7]})"}) {
     EXPECT_FALSE(read(text).ok()) << text;

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "motion/cut.h"
-#include "skin/linear_blend.h"
+#include "support/linear_blend.h"
 #include "support/test_scenes.h"
 
 namespace krok {
@@ -42,7 +42,7 @@ std::vector<Vec3f> skin(const Model& model, const Clip& clip, int frame) {
   std::vector<SkinMatrix> palette(pose.size());
   make_palette(inverse_reference(model.skeleton), pose, palette);
   std::vector<Vec3f> positions(model.positions.size()), normals(model.normals.size());
-  linear_blend(palette, skin_vertices(model), {positions, normals});
+  test::linear_blend(palette, test::skin_vertices(model), {positions, normals});
   return positions;
 }
 

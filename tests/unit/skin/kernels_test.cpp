@@ -2,8 +2,8 @@
 // are prepared changed a single bit of what the scalar reference makes.
 
 #include "core/simd.h"
-#include "skin/linear_blend.h"
 #include "skinned.h"
+#include "support/linear_blend.h"
 
 namespace krok::test {
 namespace {

@@ -1,7 +1,7 @@
 // Would fail if a vertex landed elsewhere than linear blend skinning puts it, or if the SIMD
 // kernel, an instruction set or a number of threads changed a single bit of the result.
 
-#include "skin/linear_blend.h"
+#include "support/linear_blend.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "skin/palette.h"
 #include "support/test_scenes.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 // Vertices that own their data, random.
@@ -268,4 +268,4 @@ TEST(LinearBlend, OneInfluenceMovesVerticesWithTheirJoint) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

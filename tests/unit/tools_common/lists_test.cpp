@@ -98,6 +98,26 @@ TEST(InOrder, OutcomesComeInOrderWhateverTakesLong) {
   }
 }
 
+TEST(InOrder, OthersGoOnWhileAnOutcomeIsTaken) {
+  constexpr int kOthers = 5;
+  std::atomic<int> done{0};
+  bool went_on = false;
+  in_order<int>(
+      100, 2, 16,
+      [&](std::size_t) {
+        ++done;
+        return 0;
+      },
+      [&](std::size_t i, int) {
+        if (i > 0) return true;
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (!went_on && std::chrono::steady_clock::now() < end) went_on = done > kOthers;
+        return true;
+      });
+  EXPECT_TRUE(went_on);
+  EXPECT_EQ(done, 100);
+}
+
 TEST(InOrder, StopsWhereItIsTold) {
   for (const int threads : {1, 4}) {
     std::atomic<std::size_t> begun{0};

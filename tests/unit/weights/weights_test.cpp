@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/csv/csv_writer.h"
+#include "support/told_mistakes.h"
 #include "support/written_bytes.h"
 
 namespace krok::weights {
@@ -23,13 +24,6 @@ constexpr const char* kKeys = R"({
     {"target": "smile", "keys": [[1, 0], [2, 1]], "comment": "late"}
   ]
 })";
-
-std::string changed(const std::string& from, const std::string& to) {
-  std::string text = kKeys;
-  const auto place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  return text.replace(place, from.size(), to);
-}
 
 Error error_of(const std::string& text) {
   const auto file = read(text, "w.json", kTargets);
@@ -54,37 +48,30 @@ TEST(Weights, KeysAreWhatTheSpecSays) {
 }
 
 TEST(Weights, MistakesInKeysAreFoundWhereTheyAre) {
-  struct Case {
-    const char *from, *to, *code;
-    int line, column;
+  const test::Mistake mistakes[] = {
+      {"weights/1", "weights/2", "weights-structure 2:13"},
+      {"\"rate\"", "\"fps\"", "weights-structure 3:3"},
+      {"50", "0", "weights-value 3:11"},
+      {"\"smooth\"", "\"step\"", "weights-value 4:14"},
+      {"\"tension\": 1", "\"tension\": 2", "weights-value 5:14"},
+      {"\"time\"", "\"tine\"", "weights-target 7:16"},
+      {"\"smile\"", "\"time\"", "weights-structure 8:16"},
+      {"\"500ms\"", "\"500 parsecs\"", "weights-value 7:63"},
+      {"\"500ms\"", "0", "weights-time 7:63"},
+      {"\"500ms\"", "-1", "weights-value 7:63"},
+      {"\"500ms\"", "null", "weights-value 7:63"},
+      {"\"500ms\", 1", "0.5", "weights-structure 7:62"},
+      {"-0.5", "1e7", "weights-value 7:85"},
+      {"-0.5", "\"x\"", "weights-value 7:85"},
+      {"[[1, 0], [2, 1]]", "[]", "weights-value 8:33"},
+      {", \"keys\": [[1, 0], [2, 1]]", "", "weights-structure 8:5"},
+      {"  \"rate\": 50,\n", "", "weights-value 6:77"},
+      {"]\n}", "", "json-syntax 9:3"},
   };
-  for (const Case& one : {
-           Case{"weights/1", "weights/2", "weights-structure", 2, 13},
-           Case{"\"rate\"", "\"fps\"", "weights-structure", 3, 3},
-           Case{"50", "0", "weights-value", 3, 11},
-           Case{"\"smooth\"", "\"step\"", "weights-value", 4, 14},
-           Case{"\"tension\": 1", "\"tension\": 2", "weights-value", 5, 14},
-           Case{"\"time\"", "\"tine\"", "weights-target", 7, 16},
-           Case{"\"smile\"", "\"time\"", "weights-structure", 8, 16},
-           Case{"\"500ms\"", "\"500 parsecs\"", "weights-value", 7, 63},
-           Case{"\"500ms\"", "0", "weights-time", 7, 63},
-           Case{"\"500ms\"", "-1", "weights-value", 7, 63},
-           Case{"\"500ms\"", "null", "weights-value", 7, 63},
-           Case{"\"500ms\", 1", "0.5", "weights-structure", 7, 62},
-           Case{"-0.5", "1e7", "weights-value", 7, 85},
-           Case{"-0.5", "\"x\"", "weights-value", 7, 85},
-           Case{"[[1, 0], [2, 1]]", "[]", "weights-value", 8, 33},
-           Case{", \"keys\": [[1, 0], [2, 1]]", "", "weights-structure", 8, 5},
-           Case{"  \"rate\": 50,\n", "", "weights-value", 6, 77},
-           Case{"]\n}", "", "json-syntax", 9, 3},
-       }) {
-    const Error error = error_of(changed(one.from, one.to));
-    EXPECT_EQ(error.code, one.code) << one.to << ": " << error.message;
-    EXPECT_EQ(error.where.file, "w.json");
-    EXPECT_EQ(error.where.line, one.line) << one.to << ": " << error.message;
-    EXPECT_EQ(error.where.column, one.column) << one.to << ": " << error.message;
-  }
-  EXPECT_EQ(error_of(changed("\"time\"", "\"tine\"")).hint, "did you mean 'time'?");
+  test::expect_told(
+      kKeys, mistakes, [](const std::string& text) { return read(text, "w.json", kTargets); },
+      "w.json");
+  EXPECT_EQ(error_of(test::replaced(kKeys, "\"time\"", "\"tine\"")).hint, "did you mean 'time'?");
 }
 
 MorphWeights two_frames() {

@@ -1,0 +1,126 @@
+#include "formats/gltf/animation_reader_internal.h"
+
+#include <fmt/format.h>
+
+#include "formats/gltf/reader_words_internal.h"
+
+namespace krok::gltf {
+
+using namespace nodes;
+
+namespace {
+
+class Reader {
+ public:
+  Reader(Accessors& accessors, Scene& scene) : accessors_(accessors), scene_(scene) {}
+
+  Status read_channel(const tinygltf::Animation& source, std::size_t index, std::size_t channel,
+                      Animation& animation);
+
+ private:
+  Status read_keys(const tinygltf::AnimationSampler& sampler, const std::string& name,
+                   Channel& channel);
+
+  Accessors& accessors_;
+  Scene& scene_;
+};
+
+Status Reader::read_channel(const tinygltf::Animation& source, std::size_t index,
+                            std::size_t channel_index, Animation& animation) {
+  const tinygltf::AnimationChannel& from = source.channels[channel_index];
+  const std::string name =
+      fmt::format("{}, channel {}", label("animation", index, source.name), channel_index);
+  if (from.target_node < 0) return {};  // to be ignored, says the specification
+  if (!exists(from.target_node, scene_.nodes.size())) {
+    return Error("gltf-animation",
+                 fmt::format("{} moves node {}, which does not exist", name, from.target_node));
+  }
+  if (!exists(from.sampler, source.samplers.size())) {
+    return Error("gltf-animation",
+                 fmt::format("{} has sampler {}, which does not exist", name, from.sampler));
+  }
+  Channel channel;
+  channel.node = from.target_node;
+  const Node& node = scene_.nodes[static_cast<std::size_t>(channel.node)];
+  if (from.target_path == "translation") {
+    channel.path = Path::translation;
+  } else if (from.target_path == "rotation") {
+    channel.path = Path::rotation;
+    channel.width = 4;
+  } else if (from.target_path == "scale") {
+    channel.path = Path::scale;
+  } else if (from.target_path == "weights") {
+    channel.path = Path::weights;
+    const std::size_t targets =
+        node.mesh < 0 ? 0 : scene_.meshes[static_cast<std::size_t>(node.mesh)].target_count();
+    if (targets == 0) {
+      return Error("gltf-animation",
+                   fmt::format("{} moves weights of a node without morph targets", name));
+    }
+    channel.width = static_cast<int>(targets);
+  } else {
+    warn(scene_.diagnostics, "gltf-animation-path",
+         fmt::format("{} moves '{}', which is left aside", name, from.target_path.substr(0, 40)));
+    return {};
+  }
+  if (auto read = read_keys(source.samplers[static_cast<std::size_t>(from.sampler)], name, channel);
+      !read) {
+    return read;
+  }
+  if (node.has_matrix && channel.path != Path::weights) {
+    warn(scene_.diagnostics, "gltf-animation-matrix",
+         fmt::format("{} moves a node that is given by a matrix; the matrix is taken apart", name));
+  }
+  animation.channels.push_back(std::move(channel));
+  return {};
+}
+
+Status Reader::read_keys(const tinygltf::AnimationSampler& sampler, const std::string& name,
+                         Channel& channel) {
+  if (sampler.interpolation == "STEP") {
+    channel.interpolation = Interpolation::step;
+  } else if (sampler.interpolation == "CUBICSPLINE") {
+    channel.interpolation = Interpolation::cubic_spline;
+  } else if (!sampler.interpolation.empty() && sampler.interpolation != "LINEAR") {
+    return Error("gltf-animation", fmt::format("{} has interpolation '{}'", name,
+                                               sampler.interpolation.substr(0, 40)));
+  }
+  auto times = accessors_.scalars(sampler.input);
+  if (!times) return times.error();
+  channel.times = std::move(*times);
+  const std::vector<float>& keys = *channel.times;
+  if (keys.empty()) return Error("gltf-animation", fmt::format("{} has no keys", name));
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (keys[k] >= 0 && (k == 0 || keys[k] > keys[k - 1])) continue;
+    return Error("gltf-animation",
+                 fmt::format("{}: key time {} is not later than the one before", name, k),
+                 "key times must be positive and rise");
+  }
+  const int components = channel.path == Path::weights ? 1 : channel.width;
+  auto values = accessors_.flat(sampler.output, components);
+  if (!values) return values.error();
+  channel.values = std::move(*values);
+  const std::size_t expected = keys.size() * static_cast<std::size_t>(channel.width) *
+                               (channel.interpolation == Interpolation::cubic_spline ? 3 : 1);
+  if (channel.values->size() != expected) {
+    return Error("gltf-animation", fmt::format("{} has {} numbers for {} keys, expected {}", name,
+                                               channel.values->size(), keys.size(), expected));
+  }
+  return {};
+}
+
+}  // namespace
+
+Status read_animations(const tinygltf::Model& model, Accessors& accessors, Scene& scene) {
+  Reader reader(accessors, scene);
+  for (std::size_t i = 0; i < model.animations.size(); ++i) {
+    Animation& animation = scene.animations.emplace_back();
+    animation.name = model.animations[i].name;
+    for (std::size_t c = 0; c < model.animations[i].channels.size(); ++c) {
+      if (auto read = reader.read_channel(model.animations[i], i, c, animation); !read) return read;
+    }
+  }
+  return {};
+}
+
+}  // namespace krok::gltf

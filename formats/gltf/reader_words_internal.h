@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "core/result.h"
+
+// Private to this folder: what the readers of a file's parts say alike.
+
+namespace krok::gltf {
+
+// "node 3 (LeftHand)", or "node 3" without a name.
+std::string label(const char* kind, std::size_t index, const std::string& name);
+
+// Whether a reference names one of `count` things.
+inline bool exists(int index, std::size_t count) {
+  return index >= 0 && static_cast<std::size_t>(index) < count;
+}
+
+void warn(Diagnostics& diagnostics, std::string code, std::string message, std::string hint = {});
+
+}  // namespace krok::gltf

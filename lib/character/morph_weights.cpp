@@ -1,0 +1,40 @@
+#include <fmt/format.h>
+
+#include "character/mesh.h"
+
+namespace krok::character {
+
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+}  // namespace
+
+Result<MorphWeights> make_weights(const Figure& figure, const nodes::Evaluator& evaluator,
+                                  int animation, const Sampling& sampling) {
+  constexpr std::size_t kMost = 100'000'000;
+  const std::size_t targets = figure.weight_sources.size();
+  if (targets > 0 && at(sampling.frames) > kMost / targets) {
+    return Error("scene-too-long",
+                 fmt::format("{} frames of {} morph targets' weights are out of proportion",
+                             sampling.frames, targets),
+                 "--resample N takes fewer frames a second");
+  }
+  MorphWeights weights;
+  weights.rate = sampling.rate;
+  weights.names = figure.morphs.names;
+  weights.values.reserve(at(sampling.frames) * targets);
+  nodes::Evaluation state;
+  for (int frame = 0; frame < sampling.frames; ++frame) {
+    evaluator.place_nodes(animation, sampling.time(frame), state);
+    for (const Figure::WeightSource& source : figure.weight_sources) {
+      weights.values.push_back(
+          static_cast<float>(state.node_weights[at(source.node)][at(source.target)]));
+    }
+  }
+  return weights;
+}
+
+}  // namespace krok::character

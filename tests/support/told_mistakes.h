@@ -1,0 +1,51 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <span>
+#include <string>
+
+#include "core/result.h"
+
+// Text files that people write: each mistake is to be told with its place.
+
+namespace krok::test {
+
+// `text` with the first `from` in it replaced.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  return place == std::string::npos ? text : text.replace(place, from.size(), to);
+}
+
+// "json-syntax 3:7": the code, line and column.
+inline std::string place_of(const Error& error) {
+  return error.code + " " + std::to_string(error.where.line) + ":" +
+         std::to_string(error.where.column);
+}
+
+struct Mistake {
+  const char* from;  // in a sound text
+  const char* to;
+  const char* place;      // as place_of() has it
+  const char* says = "";  // in the message or the hint
+};
+
+// Makes each mistake in `good` and holds against it what `read` of the text tells; `file` is the
+// name that the Error should have.
+template <class Read>
+void expect_told(const std::string& good, std::span<const Mistake> mistakes, const Read& read,
+                 const std::string& file = {}) {
+  for (const Mistake& mistake : mistakes) {
+    const auto result = read(replaced(good, mistake.from, mistake.to));
+    ASSERT_FALSE(result.ok()) << mistake.from << " -> " << mistake.to;
+    const Error& error = result.error();
+    EXPECT_EQ(place_of(error), mistake.place)
+        << mistake.from << " -> " << mistake.to << ": " << error.message;
+    EXPECT_NE((error.message + error.hint).find(mistake.says), std::string::npos)
+        << error.message << " / " << error.hint;
+    EXPECT_EQ(error.where.file, file);
+  }
+}
+
+}  // namespace krok::test
