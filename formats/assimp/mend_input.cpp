@@ -140,6 +140,27 @@ std::string mend_ms3d(std::string_view text) {
   return mended;
 }
 
+// ---- COLLADA ----
+
+// Assimp refuses a colour before whose first number there is a blank.
+std::string mend_collada(std::string_view text) {
+  constexpr std::string_view kColour = "<color";
+  std::string mended;
+  std::size_t taken = 0;
+  for (std::size_t at = text.find(kColour); at != std::string_view::npos;
+       at = text.find(kColour, at + 1)) {
+    const std::size_t content = text.find('>', at);
+    if (content == std::string_view::npos) break;
+    std::size_t number = content + 1;
+    while (number < text.size() && is_space(text[number])) ++number;
+    if (number == content + 1) continue;
+    mended += text.substr(taken, content + 1 - taken);
+    taken = number;
+  }
+  if (taken > 0) mended += text.substr(taken);
+  return mended;
+}
+
 }  // namespace
 
 Result<std::string> mend_input(Kind kind, std::string_view text) {
@@ -150,6 +171,8 @@ Result<std::string> mend_input(Kind kind, std::string_view text) {
       return mend_md5anim(text);
     case Kind::ms3d:
       return mend_ms3d(text);
+    case Kind::collada:
+      return mend_collada(text);
     default:
       return std::string();
   }

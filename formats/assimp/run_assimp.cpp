@@ -115,7 +115,7 @@ struct Input {
   std::vector<MemoryFile> files;
   std::vector<std::string> mended;  // what some of the files are replaced by
   std::string name;                 // of the file to open
-  std::string_view text;            // the given file, as it is
+  std::string_view text;            // the file to open, mended
   bool bare_motion = false;         // an MD5 motion without its mesh
   std::vector<ColladaClip> clips;
 };
@@ -127,8 +127,16 @@ std::string_view text_of(const MemoryFile& file) {
 Result<Input> prepare(std::vector<MemoryFile> files, Kind kind) {
   Input input;
   input.text = text_of(files[0]);
-  if (kind == Kind::collada) input.clips = collada_clips(input.text);
-  input.mended.resize(files.size());
+  input.mended.resize(files.size() + 1);
+  if (kind == Kind::collada) {
+    auto mend = mend_input(kind, input.text);
+    if (!mend) return mend.error();
+    std::string& mended = input.mended.back();
+    mended = std::move(*mend);
+    if (!mended.empty()) files[0].bytes = std::as_bytes(std::span(mended));
+    input.text = text_of(files[0]);
+    input.clips = collada_clips(input.text);
+  }
   for (std::size_t f = 0; f < files.size(); ++f) {
     std::string& mended = input.mended[f];
     if (kind == Kind::collada) {

@@ -76,6 +76,21 @@ TEST(AssimpMaterials, ColladaHasColoursAndPicturesBeside) {
   EXPECT_TRUE(scene.files[0].ends_with("tex/skin 1.png"));
 }
 
+TEST(AssimpMaterials, ColladaMayHaveBlanksAroundColours) {
+  const Folder folder;
+  std::string text = textured_collada("skin.png");
+  const std::string colour = "<color>0.5 0.25 0 1</color>";
+  const auto at = text.find(colour);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, colour.size(), "<color sid=\"emission\">\r\n\t 0.5 0.25 0 1 </color>");
+  const auto scene = read_with_materials(folder.add("in.dae", text));
+  EXPECT_EQ(only_material(scene).emissive, Vec3f(0.5f, 0.25f, 0));
+  // Cut short anywhere around it, it is refused or read, and nothing else.
+  for (std::size_t end = at; end < at + 40; ++end) {
+    (void)assimp::read_file(folder.add("cut.dae", text.substr(0, end))).ok();
+  }
+}
+
 TEST(AssimpMaterials, WithoutBeingAskedNothingIsRead) {
   const Folder folder;
   const auto scene = read_or_fail(folder.add("in.dae", textured_collada("skin.png")));
