@@ -11,6 +11,10 @@ constexpr double kSeries[] = {1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1, 3, 10};
 
 }  // namespace
 
+bool contradict_each_other(const parametric::LeftOutMeans& exact) {
+  return exact.examples >= kLeastInside && exact.weighted > exact.linear;
+}
+
 Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& options,
                                          ToolContext& context) {
   SmoothingChoice choice;
@@ -24,9 +28,7 @@ Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& opt
   const auto exact = parametric::leave_one_out(input.library, options.kernel, 0, context.jobs);
   if (!exact) return choice;
   choice.exact = parametric::means_of(*exact);
-  if (choice.exact->examples < kLeastInside || choice.exact->weighted <= choice.exact->linear) {
-    return choice;
-  }
+  if (!contradict_each_other(*choice.exact)) return choice;
   LibraryInput all = input;
   take_all_steps(all);
   auto tried = parametric::try_smoothings(all.library, options.kernel, kSeries, context.jobs);

@@ -19,12 +19,14 @@ struct SmoothingChoice {
   std::vector<parametric::SmoothingTrial> tried;
 };
 
-// As the options say. Left to itself, smoothing is tried for steps that were found, at least
-// kLeastInside of them between the others, where planes alone make examples better than weights
-// that meet the others: the steps contradict each other. The best of a series is taken if it brings
-// the distance to kGain of what it was. With smoothing the library gets all steps that were found.
+// As the options say. Left to itself (--smooth auto), smoothing is tried for steps that were found,
+// at least kLeastInside of them between the others, where planes alone make examples better than
+// weights that meet the others: the steps contradict each other. The best of a series is taken if
+// it brings the distance to kGain of what it was. With smoothing the library gets all steps that
+// were found.
 inline constexpr int kLeastInside = 5;
 inline constexpr double kGain = 0.8;
+bool contradict_each_other(const parametric::LeftOutMeans& exact);
 Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& options,
                                          ToolContext& context);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/numbers.h"
+#include "tools/krok-fit/choose_smoothing.h"
 #include "tools/krok-fit/parameter_text.h"
 
 namespace krok::fit_tool {
@@ -156,9 +157,19 @@ void say_polish(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
       fmt::format("  inserted weights polished together; before that, errors were {}", text));
 }
 
-void say_smoothing(const FittedLibrary& fitted, ToolContext& context) {
+void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolContext& context) {
   const double smoothing = fitted.refined.function.smoothing;
-  if (!(smoothing > 0)) return;
+  if (!(smoothing > 0)) {
+    if (input.all_steps.empty()) return;
+    const parametric::LeftOutMeans means = parametric::means_of(fitted.left_out);
+    if (!contradict_each_other(means)) return;
+    return context.warn(
+        "fit-contradictions",
+        fmt::format("steps that measure alike look different: one that is left out is made {} mm "
+                    "off by the others, {} mm by planes alone",
+                    readable(1e3 * means.weighted, 3), readable(1e3 * means.linear, 3)),
+        "--smooth auto averages them, and no step then comes back exactly");
+  }
   std::string text = fmt::format("  smoothed by {}", readable(smoothing));
   if (fitted.smoothing.exact) {
     text += fmt::format(", for examples contradict each other ({} mm off without)",
@@ -249,7 +260,7 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
         counted(means.examples, "inner example"), readable(1e3 * means.weighted, 3),
         readable(1e3 * means.linear, 3), readable(1e3 * means.nearest, 3)));
   }
-  say_smoothing(fitted, context);
+  say_smoothing(input, fitted, context);
   say_polish(input, fitted, context);
   context.say(fmt::format("  {} inserted in {} ({:.2g} s): {}; weights {} to {}",
                           counted(fitted.refined.function.inserted(), "point"),

@@ -27,15 +27,13 @@ void declare(CLI::App& app, Options& options) {
   app.add_option_function<std::string>(
          "--smooth",
          [&options](const std::string& text) {
-           if (text == "auto") return;
-           options.smooth = parse_finite(text);
+           options.smooth = text == "auto" ? std::nullopt : parse_finite(text);
          },
          "0: at an example's parameters the example comes back. More: examples that contradict "
-         "each "
-         "other are averaged, 0.001 hardly, 10 nearly to planes. auto: 0, but for steps that were "
-         "found and that the others make much better so")
+         "each other are averaged, 0.001 hardly, 10 nearly to planes. auto: 0, but for steps that "
+         "were found and that the others make much better so")
       ->type_name("auto|N")
-      ->default_str("auto")
+      ->default_str("0")
       ->check(CLI::Validator(
           [](std::string& text) {
             const auto number = parse_finite(text);

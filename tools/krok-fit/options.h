@@ -14,10 +14,10 @@ struct Options {
   std::string library;  // the description's path
   bool keep_going = false;
   rbf::Kernel kernel = rbf::Kernel::cubic;
-  std::optional<int> refine;     // points to insert at most; nothing: 40 for each parameter
-  std::optional<double> smooth;  // 0: weights meet the examples; nothing: chosen
-  std::string until;             // a length: the error at which lengths are good enough
-  int held_out = 0;              // 0: as refine() chooses
+  std::optional<int> refine;           // points to insert at most; nothing: 40 for each parameter
+  std::optional<double> smooth = 0.0;  // 0: weights meet the examples; nothing: chosen
+  std::string until;                   // a length: the error at which lengths are good enough
+  int held_out = 0;                    // 0: as refine() chooses
   std::uint64_t seed = 1;
   bool polish = true;  // inserted weights together, after refinement
   std::string resume;  // a library to go on with

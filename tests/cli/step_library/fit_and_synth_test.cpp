@@ -311,8 +311,16 @@ TEST_F(StepLibrary, WeightsAreSmoothedWhereItIsAskedFor) {
   const auto report = [&] {
     return json::parse(InputFile::open(path("r.json"))->text())["result"];
   };
-  fit_well({"--report", path("r.json")});
-  EXPECT_EQ(report()["smoothing"], 0);
+  describe();
+  for (const std::vector<std::string>& unsmoothed :
+       {std::vector<std::string>(), {"--smooth", "auto"}, {"--smooth", "0"}}) {
+    std::vector<std::string> arguments = {"--report", path("r.json")};
+    arguments.insert(arguments.end(), unsmoothed.begin(), unsmoothed.end());
+    const ToolRun run = fit(arguments);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_FALSE(has_code(run.err, "fit-contradictions")) << run.err;
+    EXPECT_EQ(report()["smoothing"], 0);
+  }
   fit_well({"--smooth", "0.1", "--report", path("r.json")});
   EXPECT_EQ(report()["smoothing"], 0.1);
   EXPECT_GT(report()["example_distance"], 0);
