@@ -7,6 +7,7 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "character/tell_internal.h"
 #include "core/numbers.h"
 
 namespace krok::character {
@@ -51,15 +52,6 @@ std::optional<double> even_misfit(const std::vector<double>& times, double rate)
     if (std::lround((times[i] - times.front()) * rate) != static_cast<long>(i)) return std::nullopt;
   }
   return misfit(times, rate, true);
-}
-
-void note(Diagnostics& diagnostics, const char* code, std::string message, std::string hint = {}) {
-  Diagnostic told;
-  told.severity = Severity::note;
-  told.code = code;
-  told.message = std::move(message);
-  told.hint = std::move(hint);
-  diagnostics.push_back(std::move(told));
 }
 
 struct FoundRate {
@@ -161,7 +153,7 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
     sampling.rate = *options.source_rate;
     chosen.rate = {readable(sampling.rate), "as given", Confidence::certain};
   } else if (!options.rate) {
-    note(diagnostics, "scene-rate",
+    tell(diagnostics, Severity::note, "scene-rate",
          fmt::format("{} frames a second: {}", readable(found.rate), found.reason),
          "--resample N takes another rate");
   }
@@ -179,12 +171,12 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   sampling.frames = static_cast<int>(std::ceil(steps - rest)) + 1;
   sampling.frames = std::max(sampling.frames, 1);
   if (chosen.keys_from != 0) {
-    note(diagnostics, "scene-start",
+    tell(diagnostics, Severity::note, "scene-start",
          fmt::format("frame 0 is the file's first key, at {} s", readable(chosen.keys_from)));
   }
   const double late = (sampling.frames - 1) - steps;
   if (late > 0.05) {
-    note(diagnostics, "scene-end",
+    tell(diagnostics, Severity::note, "scene-end",
          fmt::format("the last key, at {} s, falls between two frames; the last frame holds it, {} "
                      "frames late",
                      readable(chosen.keys_to), readable(late, 2)));

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "character/tell_internal.h"
 #include "core/numbers.h"
 
 namespace krok::character {
@@ -35,15 +36,6 @@ void take_axes(const nodes::Space& space, Conventions& found) {
   found.forward = found.reference_forward = nearest(back * Vec3::UnitZ());
   found.up_confidence = found.forward_confidence = Confidence::certain;
   found.up_reason = found.forward_reason = "the file's format or header says so";
-}
-
-void warn(const char* code, std::string message, std::string hint, Diagnostics& diagnostics) {
-  Diagnostic told;
-  told.severity = Severity::warning;
-  told.code = code;
-  told.message = std::move(message);
-  told.hint = std::move(hint);
-  diagnostics.push_back(std::move(told));
 }
 
 }  // namespace
@@ -87,24 +79,25 @@ void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& dia
   for (const Transform& joint : skeleton.reference) box.extend(joint.position);
   const double size = box.sizes().maxCoeff();
   if (size >= kSmallest && size <= kTallest) return;
-  warn("scene-unit",
+  tell(diagnostics, Severity::warning, "scene-unit",
        fmt::format("the figure is {} m large in the unit that is taken from the file, which is no "
                    "person's size",
                    readable(size, 3)),
-       "say what the file's unit is with --unit", diagnostics);
+       "say what the file's unit is with --unit");
 }
 
 void check_figure(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
   if (!roles.humanoid) return;
   const Conventions found = detect_conventions(skeleton, roles, {});
   if (found.up_confidence != Confidence::guess && found.up != Direction::plus_y) {
-    warn("scene-up", fmt::format("the figure does not stand along +y: {}", found.up_reason),
-         "if it should, say which of the file's axes points up with --up", diagnostics);
+    tell(diagnostics, Severity::warning, "scene-up",
+         fmt::format("the figure does not stand along +y: {}", found.up_reason),
+         "if it should, say which of the file's axes points up with --up");
   } else if (found.forward_confidence != Confidence::guess && found.forward != Direction::plus_z) {
-    warn("scene-forward",
+    tell(diagnostics, Severity::warning, "scene-forward",
          fmt::format("the figure does not face +z: {}; it is left as it stands",
                      found.forward_reason),
-         fmt::format("--forward {} turns it to +z", direction_name(found.forward)), diagnostics);
+         fmt::format("--forward {} turns it to +z", direction_name(found.forward)));
   }
 }
 

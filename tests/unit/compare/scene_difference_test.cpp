@@ -306,16 +306,18 @@ TEST(SceneDifference, ValuesThatAreNotNumbersAreTrouble) {
   EXPECT_EQ(found.error().code, "compare-value");
 }
 
+// With a material for its first mesh, or with none.
+Scene scene_with(const Material* material) {
+  Scene scene = make_scene();
+  scene.knows_materials = true;
+  scene.meshes[0].material = material;
+  return scene;
+}
+
 // Materials are no fault of a mesh's motion, but who compares is to know.
 TEST(SceneDifference, OtherMaterialsAreTold) {
   Material grey, red;
   red.base_color = {1, 0, 0, 1};
-  const auto scene_with = [](const Material* material) {
-    Scene scene = make_scene();
-    scene.knows_materials = true;
-    scene.meshes[0].material = material;
-    return scene;
-  };
   const std::string told = "mesh Body, material: base colour 0.8, 0.8, 0.8, 1 and 1, 0, 0, 1";
   SceneDifference found = compare(scene_with(&grey), scene_with(&red));
   EXPECT_TRUE(found.same());
@@ -339,9 +341,7 @@ TEST(SceneDifference, AMaterialOfManyMeshesIsToldOnce) {
   Material grey, red;
   red.base_color = {1, 0, 0, 1};
   const auto two = [](const Material* material) {
-    Scene scene = make_scene();
-    scene.knows_materials = true;
-    scene.meshes[0].material = material;
+    Scene scene = scene_with(material);
     scene.meshes.push_back(scene.meshes[0]);
     scene.meshes[1].name = "Hat";
     scene.evaluate = [plain = scene.evaluate](int which, double time, SceneState& state) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "core/result.h"
+
+// Private to this folder.
+
+namespace krok {
+
+// Adds what is told of a file as a whole.
+inline void tell(Diagnostics& diagnostics, Severity severity, const char* code, std::string message,
+                 std::string hint = {}) {
+  Diagnostic told;
+  told.severity = severity;
+  told.code = code;
+  told.message = std::move(message);
+  told.hint = std::move(hint);
+  diagnostics.push_back(std::move(told));
+}
+
+}  // namespace krok
