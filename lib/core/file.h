@@ -77,8 +77,10 @@ class OutputFile {
   ~OutputFile();
 
   // Appends. The first failure is kept and returned by commit() too.
-  Status write(std::span<const std::byte> bytes);
+  Status write(std::span<const std::byte> bytes) { return write(std::span(&bytes, 1)); }
   Status write(std::string_view text) { return write(std::as_bytes(std::span(text))); }
+  // Appends these one behind the other. Many bytes in one call are copied least.
+  Status write(std::span<const std::span<const std::byte>> parts);
 
   // Whether overwrite() works here: not for standard output, devices or pipes.
   bool can_overwrite() const;

@@ -1,7 +1,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/appended_bytes_internal.h"
 #include "core/file.h"
 #include "core/temporary_files_internal.h"
 
@@ -78,16 +78,18 @@ struct OutputFile::State {
   enum class Placed { no, anew, exchanged, for_good } placed = Placed::no;
   bool no_clobber = false;
   bool stored_later = false;
-  std::uint64_t written = 0;  // by the caller
-  std::uint64_t given = 0;    // of these, to the system
-  std::uint64_t storing = 0;  // of these, told to be stored
-  std::vector<std::byte> pending;
+  AppendedBytes bytes;
   Status failure;
 
   ~State() { discard(); }
 
   // Whether bytes go to `path` as they come.
   bool direct() const { return temporary.empty() && !unnamed; }
+
+  void open(int to, bool is_stream) {
+    descriptor = to;
+    bytes = AppendedBytes(to, is_stream);
+  }
 
   void close() {
     if (descriptor > STDERR_FILENO) ::close(descriptor);
@@ -116,28 +118,8 @@ struct OutputFile::State {
     return failure;
   }
 
-  // Gives what is pending and `more` to the system.
-  Status write_now(std::span<const std::byte> more = {}) {
-    std::span<const std::byte> first = pending;
-    while (!first.empty() || !more.empty()) {
-      const iovec parts[] = {part(first), part(more)};
-      const ssize_t count = ::writev(descriptor, parts, 2);
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) return fail(errno, "cannot be written");
-      const auto done = static_cast<std::size_t>(count);
-      const std::size_t of_first = std::min(done, first.size());
-      first = first.subspan(of_first);
-      more = more.subspan(done - of_first);
-      given += done;
-    }
-    pending.clear();
-    constexpr std::uint64_t kWorthACall = std::uint64_t{8} << 20;
-    if (!direct() && given - storing >= kWorthACall) start_storing();
-    return {};
-  }
-
-  static iovec part(std::span<const std::byte> bytes) {
-    return {const_cast<std::byte*>(bytes.data()), bytes.size()};
+  Status written(int trouble) {
+    return trouble == 0 ? Status() : fail(trouble, "cannot be written");
   }
 
   // Brings what was written to the disk; not where someone waits for many files later.
@@ -146,25 +128,17 @@ struct OutputFile::State {
     if (later) {
       // A start for each of many small files costs more than it saves at the end.
       constexpr std::uint64_t kWorthAStart = std::uint64_t{1} << 16;
-      if (given - storing >= kWorthAStart) start_storing();
+      if (bytes.not_stored() >= kWorthAStart) bytes.start_storing();
       return {};
     }
-    return fsync(descriptor) == 0 ? Status() : fail(errno, "cannot be written");
-  }
-
-  // Has the disk begin with what was written, so that whoever waits at the end does not wait long.
-  // Only a beginning: what fails here, fsync() or syncfs() tells.
-  void start_storing() {
-    (void)sync_file_range(descriptor, static_cast<off_t>(storing),
-                          static_cast<off_t>(given - storing), SYNC_FILE_RANGE_WRITE);
-    storing = given;
+    return written(fsync(descriptor) == 0 ? 0 : errno);
   }
 
   Status seal() {
     if (!failure) return failure;
     if (sealed) return {};
-    if (Status flushed = write_now(); !flushed) return flushed;
-    std::vector<std::byte>().swap(pending);
+    if (Status flushed = written(bytes.flush()); !flushed) return flushed;
+    bytes.end();
     if (!direct()) {
       if (Status stored = store(); !stored) return stored;
     }
@@ -176,7 +150,7 @@ struct OutputFile::State {
       if (Status named = give_temporary_name(); !named) return named;
     }
     const int closing = std::exchange(descriptor, -1);
-    if (closing > STDERR_FILENO && ::close(closing) != 0) return fail(errno, "cannot be written");
+    if (closing > STDERR_FILENO && ::close(closing) != 0) return written(errno);
     return {};
   }
 
@@ -253,7 +227,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
   state->no_clobber = options.no_clobber;
   state->stored_later = options.stored_later;
   if (path == "-") {
-    state->descriptor = STDOUT_FILENO;
+    state->open(STDOUT_FILENO, true);
     return OutputFile(std::move(state));
   }
   if (path.empty()) return Error("file-unwritable", "the output has no name");
@@ -268,7 +242,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
                       "give the output a file name");
   }
   if (exists && !S_ISREG(status.st_mode)) {
-    state->descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    state->open(::open(path.c_str(), O_WRONLY | O_CLOEXEC), true);
     if (state->descriptor < 0) {
       return file_error("file-unwritable", path,
                         fmt::format("cannot be opened: {}", system_text(errno)));
@@ -284,7 +258,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
   }
   const std::string folder = folder_of(state->target);
   if (!exists) {
-    state->descriptor = create_unnamed(folder);
+    state->open(create_unnamed(folder), false);
     state->unnamed = state->descriptor >= 0;
     if (state->unnamed) {
       state->unnamed_path = path_of_unnamed(state->descriptor);
@@ -302,7 +276,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
     return file_error("file-unwritable", path,
                       fmt::format("cannot be created: {}", system_text(why)));
   }
-  state->descriptor = temporary.descriptor;
+  state->open(temporary.descriptor, false);
   state->temporary = std::move(temporary.path);
   state->slot = temporary.slot;
   // The result gets the mode it would have had, or had before; not the bits that lend out rights.
@@ -310,21 +284,10 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
   return OutputFile(std::move(state));
 }
 
-Status OutputFile::write(std::span<const std::byte> bytes) {
+Status OutputFile::write(std::span<const std::span<const std::byte>> parts) {
   assert(!state_->sealed);
   if (!state_->failure) return state_->failure;
-  state_->written += bytes.size();
-  // Whole stretches of the file, which the system keeps in large pieces at half the cost of others.
-  constexpr std::uint64_t kStretch = std::uint64_t{1} << 18;
-  const std::uint64_t waiting = state_->given + state_->pending.size();
-  const std::uint64_t whole = (waiting + bytes.size()) / kStretch * kStretch;
-  if (whole > waiting) {
-    const auto now = static_cast<std::size_t>(whole - waiting);
-    if (Status written = state_->write_now(bytes.first(now)); !written) return written;
-    bytes = bytes.subspan(now);
-  }
-  state_->pending.insert(state_->pending.end(), bytes.begin(), bytes.end());
-  return {};
+  return state_->written(state_->bytes.append(parts));
 }
 
 bool OutputFile::can_overwrite() const {
@@ -336,7 +299,7 @@ Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> by
   if (state_->direct()) {
     return file_error("file-unwritable", state_->path, "is a stream and cannot be rewritten");
   }
-  if (Status flushed = state_->write_now(); !flushed) return flushed;
+  if (Status done = state_->written(state_->bytes.flush()); !done) return done;
   while (!bytes.empty()) {
     const ssize_t count =
         pwrite(state_->descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
@@ -349,7 +312,7 @@ Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> by
 }
 
 std::uint64_t OutputFile::size() const {
-  return state_->written;
+  return state_->bytes.size();
 }
 
 Status OutputFile::seal() {

@@ -135,20 +135,6 @@ TEST_F(FileTest, ASealedFileCanBeRead) {
   }
 }
 
-TEST_F(FileTest, WritesLargeAndSmallPiecesInOrder) {
-  std::string expected;
-  auto file = OutputFile::create(path("out"));
-  ASSERT_TRUE(file.ok());
-  for (const std::size_t size : {1, 1000, 262143, 262144, 5, 700000, 0, 3}) {
-    const std::string piece(size, static_cast<char>('a' + size % 26));
-    expected += piece;
-    ASSERT_TRUE(file->write(piece).ok());
-    EXPECT_EQ(file->size(), expected.size());
-  }
-  ASSERT_TRUE(file->commit().ok());
-  EXPECT_EQ(get(path("out")), expected);
-}
-
 TEST_F(FileTest, OverwritesWhatIsWritten) {
   auto file = OutputFile::create(path("out"));
   ASSERT_TRUE(file.ok());
@@ -390,44 +376,6 @@ TEST_F(FileTest, MemoryGivenBackIsReadAgain) {
 TEST_F(FileTest, ChecksumOfAnEmptyFileIsThatOfNoBytes) {
   put("empty", "");
   EXPECT_EQ(InputFile::open(path("empty"))->checksum(), xxh3({}));
-}
-
-// Those of this size are given to the system in two parts.
-TEST_F(FileTest, APipeGetsAllInOrder) {
-  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-  std::string expected, got;
-  std::thread reader([&] { got = get(path("pipe")); });
-  auto file = OutputFile::create(path("pipe"));
-  ASSERT_TRUE(file.ok());
-  for (int i = 0; i < 30; ++i) {
-    const std::string piece(static_cast<std::size_t>(200000 + i), static_cast<char>('a' + i % 26));
-    expected += piece;
-    EXPECT_TRUE(file->write(piece));
-  }
-  EXPECT_TRUE(file->commit());
-  file = OutputFile::create(path("other"));  // lets go of the pipe
-  reader.join();
-  EXPECT_EQ(got, expected);
-}
-
-TEST_F(FileTest, LargeAndSmallWritesComeInOrder) {
-  std::string expected;
-  auto file = OutputFile::create(path("out"));
-  ASSERT_TRUE(file.ok());
-  for (int i = 0; i < 200; ++i) {
-    const std::string part(static_cast<std::size_t>(i % 5 == 0 ? 300000 : i * 777 % 100000),
-                           static_cast<char>('a' + i % 26));
-    ASSERT_TRUE(file->write(part));
-    expected += part;
-    if (i % 40 == 7) {
-      expected.replace(5 * static_cast<std::size_t>(i), 3, "new");
-      ASSERT_TRUE(
-          file->overwrite(5 * static_cast<std::uint64_t>(i), std::as_bytes(std::span("new", 3))));
-    }
-  }
-  EXPECT_EQ(file->size(), expected.size());
-  ASSERT_TRUE(file->commit());
-  EXPECT_EQ(InputFile::open(path("out"))->text(), expected);
 }
 
 }  // namespace
