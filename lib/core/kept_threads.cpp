@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <new>
@@ -11,40 +10,14 @@
 #include <vector>
 
 #include "core/kept_threads_internal.h"
+#include "core/stay_awake_internal.h"
 
 namespace krok {
 
 namespace {
 
-// For how long whoever waits looks again and again before it sleeps: loops often follow each other
-// closely, and to wake a core takes tens of microseconds.
-constexpr std::chrono::microseconds kAwake{200};
-
 // Whether this thread is in a call's work.
 thread_local bool within_work = false;
-
-void rest_a_moment() {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#else
-  std::this_thread::yield();
-#endif
-}
-
-// Other programs that want the core get it meanwhile.
-template <typename Condition>
-void stay_awake_until(const Condition& condition) {
-  using Clock = std::chrono::steady_clock;
-  constexpr int kLooks = 32;  // between two looks at the clock
-  const auto end = Clock::now() + kAwake;
-  do {
-    for (int i = 0; i < kLooks; ++i) {
-      if (condition()) return;
-      rest_a_moment();
-    }
-    std::this_thread::yield();
-  } while (Clock::now() < end);
-}
 
 // A call in progress. It lives where it was made; a helper's last use of it is to count itself out.
 struct Call {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/kept_threads_internal.h"
+#include "core/stay_awake_internal.h"
 
 namespace krok {
 
@@ -85,7 +86,7 @@ class InOrder {
   void work() noexcept {
     std::unique_lock lock(mutex_);
     for (;;) {
-      slot_is_free_.wait(lock, [&] { return next_ >= end_ || next_ < taken_ + slots_; });
+      wait_for_a_slot(lock);
       if (next_ >= end_) return;
       const std::size_t item = next_++;
       lock.unlock();
@@ -120,6 +121,17 @@ class InOrder {
     return outcome;
   }
 
+  void wait_for_a_slot(std::unique_lock<std::mutex>& lock) {
+    const auto free = [&] { return next_ >= end_ || next_ < taken_ + slots_; };
+    if (!free()) {
+      const std::size_t seen = freed_.load(std::memory_order_relaxed);
+      lock.unlock();
+      stay_awake_until([&] { return freed_.load(std::memory_order_relaxed) != seen; });
+      lock.lock();
+    }
+    slot_is_free_.wait(lock, free);
+  }
+
   // Whoever makes the next item that is due takes it, and all after it that wait.
   void take_what_is_made(std::unique_lock<std::mutex>& lock) {
     someone_takes_ = true;
@@ -135,6 +147,7 @@ class InOrder {
         end_ = 0;
       }
       ++taken_;
+      freed_.fetch_add(1, std::memory_order_relaxed);
       slot_is_free_.notify_all();
     }
     someone_takes_ = false;
@@ -148,7 +161,8 @@ class InOrder {
   std::size_t next_ = 0;      // the first item not begun
   std::size_t taken_ = 0;     // the first item not taken
   bool someone_takes_ = false;
-  std::vector<Outcome> made_;  // [slots]
+  std::atomic<std::size_t> freed_{0};  // how often a slot became free, for a look without the mutex
+  std::vector<Outcome> made_;          // [slots]
   Status failure_;
   std::exception_ptr thrown_;
 };
