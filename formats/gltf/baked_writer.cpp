@@ -54,17 +54,21 @@ class BakedClip {
       progress_->begin("baking frames", static_cast<std::uint64_t>(targets()) * (twice ? 2 : 1));
     }
     if (twice) {
-      const Status seen = go_through([](const ShapeRoom&) { return Status(); });
+      const Status seen = go_through([](auto) { return Status(); });
       if (!seen) return seen;
     }
     std::span<const Document::Bounds> known;
     if (twice) known = bounds_;
     if (Status begun = document_.begin(file, known); !begun) return begun;
-    const Status written = go_through([&](const ShapeRoom& shape) {
-      Status done = document_.append(std::as_bytes(std::span(shape.positions)));
-      if (done) done = document_.append(std::as_bytes(std::span(shape.normals)));
-      if (done) done = document_.append(packed_bytes(shape.tangents));
-      return done;
+    std::vector<std::span<const std::byte>> bytes;
+    const Status written = go_through([&](std::span<const ShapeRoom> shapes) {
+      bytes.clear();
+      for (const ShapeRoom& shape : shapes) {
+        bytes.push_back(std::as_bytes(std::span(shape.positions)));
+        bytes.push_back(std::as_bytes(std::span(shape.normals)));
+        bytes.push_back(packed_bytes(shape.tangents));
+      }
+      return document_.append(bytes);
     });
     if (!written) return written;
     if (Status done = append_weights(); !done) return done;
@@ -118,14 +122,14 @@ class BakedClip {
   }
 
   // Makes all targets and their bounds.
-  Status go_through(const std::function<Status(const ShapeRoom&)>& take) {
+  Status go_through(const std::function<Status(std::span<const ShapeRoom>)>& take) {
     const ShapeRange range{1, motion_.frames, base_.positions.size(), !base_.normals.empty(),
                            !base_.tangents.empty()};
     return make_shapes(
         motion_, range, jobs_, [&](int frame, ShapeRoom& shape) { return prepare(frame, shape); },
-        [&](int, const ShapeRoom& shape) {
-          if (progress_ != nullptr) progress_->advance(1);
-          return take(shape);
+        [&](int, std::span<const ShapeRoom> shapes) {
+          if (progress_ != nullptr) progress_->advance(shapes.size());
+          return take(shapes);
         });
   }
 

@@ -86,7 +86,8 @@ class Document {
   // end() fills in the bounds. A GLB that cannot be overwritten (see OutputFile) needs them in
   // begin() already; the bytes are the same.
   Status begin(OutputFile& file, std::span<const Bounds> bounds = {});
-  Status append(std::span<const std::byte> bytes);
+  Status append(std::span<const std::span<const std::byte>> parts);
+  Status append(std::span<const std::byte> bytes) { return append(std::span(&bytes, 1)); }
   Status end(std::span<const Bounds> bounds);
 
   tinygltf::Model gltf;
@@ -110,6 +111,7 @@ class Document {
   std::vector<std::byte>& own_part();
   Status begin_binary();
   Status begin_text();
+  Status append_encoded(std::span<const std::byte> bytes);
   std::string json_text() const;
   void fill_in(std::span<const Bounds> bounds);
   void add_channel(tinygltf::Animation& animation, int node, const char* path, int times,

@@ -139,8 +139,15 @@ Status Document::begin_text() {
                   size_));
 }
 
-Status Document::append(std::span<const std::byte> bytes) {
-  if (options_.binary) return file_->write(bytes);
+Status Document::append(std::span<const std::span<const std::byte>> parts) {
+  if (options_.binary) return file_->write(parts);
+  for (const auto part : parts) {
+    if (Status done = append_encoded(part); !done) return done;
+  }
+  return {};
+}
+
+Status Document::append_encoded(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const auto here = bytes.first(std::min(bytes.size(), kEncodedAtOnce - unencoded_.size()));
     unencoded_.insert(unencoded_.end(), here.begin(), here.end());

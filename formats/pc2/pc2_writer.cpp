@@ -58,12 +58,17 @@ Status write(const Model& model, const MeshMotion& motion, const WriteOptions& o
   if (progress != nullptr) {
     progress->begin("writing frames", static_cast<std::uint64_t>(header.samples));
   }
+  std::vector<std::span<const std::byte>> bytes;
   return make_shapes(
       motion, {0, header.samples, points, false}, jobs,
       [&](int frame, ShapeRoom& shape) { return convert(options, frame, shape.positions); },
-      [&](int, const ShapeRoom& shape) {
-        if (progress != nullptr) progress->advance(1);
-        return file.write(std::as_bytes(std::span(shape.positions)));
+      [&](int, std::span<const ShapeRoom> shapes) {
+        if (progress != nullptr) progress->advance(shapes.size());
+        bytes.clear();
+        for (const ShapeRoom& shape : shapes) {
+          bytes.push_back(std::as_bytes(std::span(shape.positions)));
+        }
+        return file.write(bytes);
       });
 }
 

@@ -19,7 +19,7 @@ std::size_t frame_bytes(const ShapeRange& range) {
 }
 
 // How many frames are handed over in one go: threads that wait for each other after little work
-// wait longer than they work.
+// wait longer than they work, and files are written best in large pieces.
 int frames_together(const ShapeRange& range) {
   constexpr std::size_t kBytes = std::size_t{1} << 20;
   constexpr std::size_t kMostFrames = 16;
@@ -49,10 +49,10 @@ std::function<ShapeSource()> copies_of(ShapeSource source) {
 
 Status make_shapes(const MeshMotion& motion, const ShapeRange& range, int jobs,
                    const std::function<Status(int, ShapeRoom&)>& prepare,
-                   const std::function<Status(int, const ShapeRoom&)>& take) {
+                   const std::function<Status(int, std::span<const ShapeRoom>)>& take) {
   if (range.end <= range.begin) return {};
   const int threads = threads_for(range, jobs);
-  const int together = threads == 1 ? 1 : frames_together(range);
+  const int together = frames_together(range);
   const int items = (range.end - range.begin + together - 1) / together;
   std::vector<Slot> slots(std::min(slots_for(threads), static_cast<std::size_t>(items)));
   for (Slot& slot : slots) {
@@ -64,24 +64,26 @@ Status make_shapes(const MeshMotion& motion, const ShapeRange& range, int jobs,
       room.tangents.resize(range.tangents ? range.vertices : 0);
     }
   }
-  const auto for_each = [&](std::size_t item, std::size_t slot, const auto& work) -> Status {
-    const int first = range.begin + static_cast<int>(item) * together;
-    const int end = std::min(first + together, range.end);
-    for (int frame = first; frame < end; ++frame) {
-      ShapeRoom& room = slots[slot].rooms[static_cast<std::size_t>(frame - first)];
-      if (Status done = work(frame, room); !done) return done;
-    }
-    return {};
+  const auto first_of = [&](std::size_t item) {
+    return range.begin + static_cast<int>(item) * together;
+  };
+  const auto rooms_of = [&](std::size_t item, std::size_t slot) {
+    const int count = std::min(together, range.end - first_of(item));
+    return std::span(slots[slot].rooms).first(static_cast<std::size_t>(count));
   };
   return make_in_order(
       static_cast<std::size_t>(items), threads,
-      [&](std::size_t item, std::size_t slot) {
-        return for_each(item, slot, [&](int frame, ShapeRoom& room) {
+      [&](std::size_t item, std::size_t slot) -> Status {
+        int frame = first_of(item);
+        for (ShapeRoom& room : rooms_of(item, slot)) {
           slots[slot].source(frame, room.place());
-          return prepare(frame, room);
-        });
+          if (Status done = prepare(frame++, room); !done) return done;
+        }
+        return {};
       },
-      [&](std::size_t item, std::size_t slot) { return for_each(item, slot, take); });
+      [&](std::size_t item, std::size_t slot) {
+        return take(first_of(item), rooms_of(item, slot));
+      });
 }
 
 }  // namespace krok

@@ -67,12 +67,13 @@ struct ShapeRange {
 };
 
 // Goes through frames of a motion in the memory of a few, or of some megabytes: makes each shape,
-// lets `prepare` change it, hands it to `take`. `take` is called for one frame after the other, in
-// order. With `jobs` other than 1 (as in parallel_for) further frames are made and prepared
-// meanwhile, several at once, each thread's by a source of its own. The first of `prepare` and
-// `take` that is not ok() ends it; its Error is returned, the same for any `jobs`.
+// lets `prepare` change it, hands it to `take`. `take` is given some consecutive frames, the first
+// of them by its number, and in order; how many does not depend on `jobs`. With `jobs` other than 1
+// (as in parallel_for) further frames are made and prepared meanwhile, several at once, each
+// thread's by a source of its own. The first of `prepare` and `take` that is not ok() ends it; its
+// Error is returned, the same for any `jobs`.
 Status make_shapes(const MeshMotion& motion, const ShapeRange& range, int jobs,
                    const std::function<Status(int frame, ShapeRoom& shape)>& prepare,
-                   const std::function<Status(int frame, const ShapeRoom& shape)>& take);
+                   const std::function<Status(int frame, std::span<const ShapeRoom>)>& take);
 
 }  // namespace krok

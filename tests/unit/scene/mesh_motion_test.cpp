@@ -35,6 +35,10 @@ Status nothing(int, ShapeRoom&) {
   return {};
 }
 
+Status take_all(int, std::span<const ShapeRoom>) {
+  return {};
+}
+
 TEST(MakeShapes, HandsOverEachFrameOnceAndInOrder) {
   for (const int jobs : {1, 2, 3, 16}) {
     std::vector<int> taken;
@@ -46,19 +50,35 @@ TEST(MakeShapes, HandsOverEachFrameOnceAndInOrder) {
           shape.positions[0].z() = static_cast<float>(2 * frame);
           return {};
         },
-        [&](int frame, const ShapeRoom& shape) -> Status {
-          taken.push_back(frame);
-          const auto f = static_cast<float>(frame);
-          EXPECT_EQ(shape.positions.size(), 7u);
-          EXPECT_EQ(shape.positions[0], Vec3f(f, 0, 2 * f));
-          EXPECT_EQ(shape.positions[6], Vec3f(f, 6, 0));
-          EXPECT_EQ(shape.normals.at(6), Vec3f(0, f, 6));
+        [&](int first, std::span<const ShapeRoom> shapes) -> Status {
+          for (const ShapeRoom& shape : shapes) {
+            taken.push_back(first);
+            const auto f = static_cast<float>(first++);
+            EXPECT_EQ(shape.positions.size(), 7u);
+            EXPECT_EQ(shape.positions[0], Vec3f(f, 0, 2 * f));
+            EXPECT_EQ(shape.positions[6], Vec3f(f, 6, 0));
+            EXPECT_EQ(shape.normals.at(6), Vec3f(0, f, 6));
+          }
           return {};
         });
     EXPECT_TRUE(done.ok());
     EXPECT_EQ(prepared, 42);
     ASSERT_EQ(taken.size(), 42u);
     for (int i = 0; i < 42; ++i) EXPECT_EQ(taken[static_cast<std::size_t>(i)], 3 + i);
+  }
+}
+
+// If it were not so, files would be written in pieces as small as the frames.
+TEST(MakeShapes, HandsOverAsManyFramesAtOnceWhateverTheThreads) {
+  for (const int jobs : {1, 2, 8}) {
+    std::vector<std::size_t> counts;
+    const Status done =
+        make_shapes(numbered(40), {0, 40, 2, false}, jobs, nothing, [&](int, auto shapes) {
+          counts.push_back(shapes.size());
+          return Status();
+        });
+    EXPECT_TRUE(done.ok());
+    EXPECT_EQ(counts, (std::vector<std::size_t>{16, 16, 8}));
   }
 }
 
@@ -82,8 +102,7 @@ TEST(MakeShapes, AsksASourceOnOneThreadAtATimeForFramesThatRise) {
         --use->inside;
       };
     };
-    const Status done = make_shapes(motion, {0, 200, 3, false}, jobs, nothing,
-                                    [](int, const ShapeRoom&) { return Status(); });
+    const Status done = make_shapes(motion, {0, 200, 3, false}, jobs, nothing, take_all);
     EXPECT_TRUE(done.ok());
     for (const auto& times : asked) EXPECT_EQ(times, 1);
   }
@@ -96,9 +115,7 @@ TEST(MakeShapes, MakesShapesOnSeveralThreadsAtOnce) {
   std::latch both(2);
   MeshMotion motion = numbered(2);
   motion.source = copies_of([&both](int, const ShapePlace&) { both.arrive_and_wait(); });
-  EXPECT_TRUE(make_shapes(motion, {0, 2, kVertices, false}, 2, nothing, [](int, const ShapeRoom&) {
-                return Status();
-              }).ok());
+  EXPECT_TRUE(make_shapes(motion, {0, 2, kVertices, false}, 2, nothing, take_all).ok());
 }
 
 TEST(MakeShapes, HoldsFewFramesOfManyVertices) {
@@ -109,26 +126,24 @@ TEST(MakeShapes, HoldsFewFramesOfManyVertices) {
     return [](int, const ShapePlace&) {};
   };
   constexpr std::size_t kVertices = 4'000'000;  // 48 MB a frame
-  const Status done = make_shapes(motion, {0, 8, kVertices, false}, 64, nothing,
-                                  [](int, const ShapeRoom&) { return Status(); });
+  const Status done = make_shapes(motion, {0, 8, kVertices, false}, 64, nothing, take_all);
   EXPECT_TRUE(done.ok());
   EXPECT_EQ(sources, 4);
 }
 
 TEST(MakeShapes, GivesTheFirstErrorWhateverTheThreads) {
   for (const int jobs : {1, 2, 8}) {
-    const auto fail_from = [](int first) {
-      return [first](int frame, const ShapeRoom&) {
-        return frame < first ? Status() : Status(Error("no", std::to_string(frame)));
-      };
-    };
-    const Status prepared = make_shapes(numbered(30), {0, 30, 2, false}, jobs, fail_from(9),
-                                        [](int, const ShapeRoom&) { return Status(); });
+    const auto refuse = [](int frame) { return Status(Error("no", std::to_string(frame))); };
+    const Status prepared = make_shapes(
+        numbered(30), {0, 30, 2, false}, jobs,
+        [&](int frame, ShapeRoom&) { return frame < 9 ? Status() : refuse(frame); }, take_all);
     ASSERT_FALSE(prepared.ok());
     EXPECT_EQ(prepared.error().message, "9");
-    const Status taken = make_shapes(numbered(30), {0, 30, 2, false}, jobs, nothing, fail_from(4));
+    const Status taken =
+        make_shapes(numbered(30), {0, 30, 2, false}, jobs, nothing,
+                    [&](int first, auto) { return first < 16 ? Status() : refuse(first); });
     ASSERT_FALSE(taken.ok());
-    EXPECT_EQ(taken.error().message, "4");
+    EXPECT_EQ(taken.error().message, "16");
   }
 }
 
@@ -139,16 +154,14 @@ TEST(MakeShapes, PassesOnWhatIsThrown) {
     motion.source = copies_of([](int frame, const ShapePlace&) {
       if (frame == 5) throw std::runtime_error("five");
     });
-    EXPECT_THROW((void)make_shapes(motion, {0, 30, 2, false}, jobs, nothing,
-                                   [](int, const ShapeRoom&) { return Status(); })
-                     .ok(),
+    EXPECT_THROW((void)make_shapes(motion, {0, 30, 2, false}, jobs, nothing, take_all).ok(),
                  std::runtime_error);
   }
 }
 
 TEST(MakeShapes, OfNoFramesAsksForNothing) {
   MeshMotion motion;  // source is empty: calling it would throw
-  const auto refuse = [](int, const ShapeRoom&) { return Status(Error("no", "")); };
+  const auto refuse = [](int, auto) { return Status(Error("no", "")); };
   EXPECT_TRUE(make_shapes(motion, {0, 0, 3, true}, 2, nothing, refuse).ok());
   EXPECT_TRUE(make_shapes(motion, {4, 2, 3, true}, 2, nothing, refuse).ok());
 }
