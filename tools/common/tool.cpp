@@ -14,7 +14,7 @@
 #include <optional>
 
 #include "core/temporary_files.h"
-#include "tools/common/batch.h"
+#include "tools/common/batch/batch.h"
 #include "tools/common/command_line.h"
 #include "tools/common/console_progress.h"
 #include "tools/common/paths.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "support/folder_test.h"
-#include "tools/common/journal.h"
+#include "tools/common/batch/journal.h"
 
 namespace krok {
 namespace {

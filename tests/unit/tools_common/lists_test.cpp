@@ -7,9 +7,9 @@
 #include <new>
 #include <thread>
 
+#include "tools/common/batch/manifest.h"
 #include "tools/common/glob.h"
 #include "tools/common/in_order.h"
-#include "tools/common/manifest.h"
 
 namespace krok {
 namespace {

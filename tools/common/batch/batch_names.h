@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "tools/common/batch_list.h"
+#include "tools/common/batch/batch_list.h"
 
 namespace krok {
 

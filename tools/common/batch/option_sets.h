@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/result.h"
+#include "tools/common/batch/manifest.h"
 #include "tools/common/command_line.h"
-#include "tools/common/manifest.h"
 #include "tools/common/tool.h"
 
 namespace krok {

@@ -1,4 +1,4 @@
-#include "tools/common/made_with.h"
+#include "tools/common/batch/made_with.h"
 
 #include "core/hash.h"
 #include "tools/common/json_line.h"

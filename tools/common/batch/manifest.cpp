@@ -1,4 +1,4 @@
-#include "tools/common/manifest.h"
+#include "tools/common/batch/manifest.h"
 
 #include <fmt/format.h>
 

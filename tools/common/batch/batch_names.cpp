@@ -1,4 +1,4 @@
-#include "tools/common/batch_names.h"
+#include "tools/common/batch/batch_names.h"
 
 #include <fmt/format.h>
 

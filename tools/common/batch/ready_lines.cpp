@@ -1,4 +1,4 @@
-#include "tools/common/ready_lines.h"
+#include "tools/common/batch/ready_lines.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "tools/common/option_sets.h"
+#include "tools/common/batch/option_sets.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "tools/common/batch_check.h"
+#include "tools/common/batch/batch_check.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/common/batch_list.h"
+#include "tools/common/batch/batch_list.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/numbers.h"
-#include "tools/common/batch_check.h"
+#include "tools/common/batch/batch_check.h"
 #include "tools/common/glob.h"
 #include "tools/common/paths.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/result.h"
-#include "tools/common/batch_list.h"
+#include "tools/common/batch/batch_list.h"
 #include "tools/common/command_line.h"
 
 namespace krok {

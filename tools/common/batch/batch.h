@@ -7,7 +7,7 @@
 // of its own, on one of -j threads; what it says is told in the order of the list. Results go into
 // --out-dir, in the sub-folders that their inputs are in, or where a --manifest says. A result that
 // stands already, made of the same input with the same options by the same version, is left as it
-// is (tools/common/journal.h). The first file in the list that fails ends the run with
+// is (tools/common/batch/journal.h). The first file in the list that fails ends the run with
 // kExitTrouble; with --keep-going it is kExitPartly, when all others are done.
 
 namespace krok {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/result.h"
+#include "tools/common/batch/option_sets.h"
 #include "tools/common/command_line.h"
-#include "tools/common/option_sets.h"
 #include "tools/common/paths.h"
 #include "tools/common/tool.h"
 

@@ -1,10 +1,9 @@
-#include "tools/common/batch.h"
+#include "tools/common/batch/batch.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -14,16 +13,17 @@
 
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "tools/common/batch_list.h"
-#include "tools/common/batch_names.h"
-#include "tools/common/batch_report.h"
+#include "tools/common/batch/batch_list.h"
+#include "tools/common/batch/batch_names.h"
+#include "tools/common/batch/batch_report.h"
+#include "tools/common/batch/batch_tally.h"
+#include "tools/common/batch/journal.h"
+#include "tools/common/batch/made_with.h"
+#include "tools/common/batch/option_sets.h"
+#include "tools/common/batch/ready_lines.h"
 #include "tools/common/in_order.h"
-#include "tools/common/journal.h"
 #include "tools/common/json_object.h"
-#include "tools/common/made_with.h"
-#include "tools/common/option_sets.h"
 #include "tools/common/paths.h"
-#include "tools/common/ready_lines.h"
 
 namespace krok {
 
@@ -33,17 +33,10 @@ namespace fs = std::filesystem;
 
 // How far ahead of the first file that is not told of yet others may be done.
 constexpr std::size_t kWindow = 256;
-// How many failed files are named again at the end.
-constexpr std::size_t kNamedAgain = 10;
-
-std::string counted_files(std::size_t count) {
-  return counted(static_cast<long long>(count), "file");
-}
 
 // What became of one file.
 struct Outcome {
-  enum class Kind { done, unchanged, failed };
-  Kind kind = Kind::failed;
+  FileState state = FileState::failed;
   std::string messages;
   Json report;
   Status journal;
@@ -54,18 +47,6 @@ struct Outcome {
   std::optional<Json> record;          // for the journal, once they are
   ToolContext context;
 };
-
-const char* name_of(Outcome::Kind kind) {
-  switch (kind) {
-    case Outcome::Kind::done:
-      return "done";
-    case Outcome::Kind::unchanged:
-      return "unchanged";
-    case Outcome::Kind::failed:
-      break;
-  }
-  return "failed";
-}
 
 Json options_of_batch(const CommandLine& line) {
   Json options = line.context().report.options;
@@ -103,6 +84,7 @@ class Batch {
     }
     Diagnostics errors;
     list_ = list_files(line_, make_spec_, errors);
+    tally_ = BatchTally(list_.files.size());
     if (!errors.empty()) return stop(errors);
     if (Status made = prepare(); !made) return stop({made.error()});
     if (Status begun = begin_report(); !begun) return stop({begun.error()});
@@ -120,7 +102,7 @@ class Batch {
   int stop(const Diagnostics& errors) {
     context_.tell(errors);
     if (only_a_report_stands_at(line_.json_path) && begin_report()) {
-      (void)report_.end(context_.report.issues, result()).ok();
+      (void)report_.end(context_.report.issues, tally_.result()).ok();
     }
     return kExitTrouble;
   }
@@ -208,7 +190,7 @@ class Batch {
     if (*done != kExitDone) {
       return fail(file, Error("failed", fmt::format("ended with exit code {}", *done)), outcome);
     }
-    outcome.kind = Outcome::Kind::done;
+    outcome.state = FileState::done;
     note_report(file, outcome);
     outcome.unforeseen = std::move(context.held_paths);
     outcome.held_files = std::move(context.held_files);
@@ -248,7 +230,7 @@ class Batch {
     report = object_for(8);
     report["input"] = file.input;
     report["output"] = file.output;
-    report["status"] = name_of(outcome.kind);
+    report["status"] = name_of(outcome.state);
     report["options"] = context.report.options;
     report["inputs"] = to_json(context.report.inputs);
     report["outputs"] = context.report.outputs;
@@ -258,7 +240,7 @@ class Batch {
 
   void note_unchanged(const BatchFile& file, Json record, Outcome& outcome) const {
     Report& report = outcome.context.report;
-    outcome.kind = Outcome::Kind::unchanged;
+    outcome.state = FileState::unchanged;
     for (const Json& written : record["outputs"]) {
       report.outputs.push_back(below(line_.out_dir, written.value("path", std::string())));
       const std::string& path = report.outputs.back();
@@ -280,7 +262,7 @@ class Batch {
     context.kept_messages = &outcome.messages;
     context.subject.file = file.input;
     context.tell(error);
-    outcome.kind = Outcome::Kind::failed;
+    outcome.state = FileState::failed;
     outcome.held_files.clear();
     context.report.outputs.clear();
     context.report.result = Json::object();
@@ -289,7 +271,7 @@ class Batch {
 
   // Tells what became of a file; whether to go on.
   bool take(const BatchFile& file, Outcome outcome) {
-    if (outcome.kind != Outcome::Kind::failed) {
+    if (outcome.state != FileState::failed) {
       if (const Status placed = place(file, outcome); !placed) fail(file, placed.error(), outcome);
     }
     if (!outcome.messages.empty()) write_message(console_.get(), outcome.messages);
@@ -297,29 +279,14 @@ class Batch {
     if (!outcome.journal && journal_trouble_) {
       journal_trouble_ = outcome.journal;
     }
-    ++counts_[static_cast<int>(outcome.kind)];
+    tally_.add(outcome.state, file.input);
     console_->advance(1);
-    if (outcome.kind == Outcome::Kind::done) {
+    if (outcome.state == FileState::done) {
       for (const std::string& path : outcome.context.report.outputs) {
         written_folders_.insert(fs::path(path).parent_path().string());
       }
     }
-    if (outcome.kind != Outcome::Kind::failed) return true;
-    if (failed_.size() < kNamedAgain) failed_.push_back(file.input);
-    return line_.keep_going;
-  }
-
-  std::size_t count(Outcome::Kind kind) const { return counts_[static_cast<int>(kind)]; }
-  std::size_t left() const { return list_.files.size() - counts_[0] - counts_[1] - counts_[2]; }
-
-  Json result() const {
-    Json json;
-    json["files"] = list_.files.size();
-    json["done"] = count(Outcome::Kind::done);
-    json["unchanged"] = count(Outcome::Kind::unchanged);
-    json["failed"] = count(Outcome::Kind::failed);
-    json["left"] = left();
-    return json;
+    return outcome.state != FileState::failed || line_.keep_going;
   }
 
   // What was written without waiting for the disk is on it, or it is said.
@@ -348,43 +315,18 @@ class Batch {
       warning.severity = Severity::warning;
       context_.tell(std::move(warning));
     }
-    const std::size_t failed = count(Outcome::Kind::failed);
-    if (failed > 0) context_.tell(failure());
-    std::string line =
-        fmt::format("{}: {}", context_.report.tool, counted_files(list_.files.size()));
-    if (!line_.shard.empty()) {
-      line += fmt::format(" of {} (part {})", list_.total, line_.shard);
-    }
-    const auto add = [&](std::size_t number, const char* what) {
-      if (number > 0) line += fmt::format(", {} {}", number, what);
-    };
-    add(count(Outcome::Kind::done), "done");
-    add(count(Outcome::Kind::unchanged), "unchanged");
-    add(failed, "failed");
-    add(left(), "left");
-    context_.say(line);
-    const Status written = report_.end(context_.report.issues, result());
+    if (tally_.failed() > 0) context_.tell(tally_.failure(line_.keep_going));
+    const std::string part =
+        line_.shard.empty() ? "" : fmt::format(" of {} (part {})", list_.total, line_.shard);
+    context_.say(fmt::format("{}: {}", context_.report.tool, tally_.summary(part)));
+    const Status written = report_.end(context_.report.issues, tally_.result());
     if (!written) {
       context_.tell(written.error());
       return kExitTrouble;
     }
     if (!stored) return kExitTrouble;
-    if (failed == 0) return kExitDone;
+    if (tally_.failed() == 0) return kExitDone;
     return line_.keep_going ? kExitPartly : kExitTrouble;
-  }
-
-  Error failure() const {
-    std::string names;
-    for (const std::string& name : failed_) names += (names.empty() ? "" : ", ") + name;
-    if (!line_.keep_going) {
-      return Error("batch-stopped",
-                   fmt::format("stopped at {}, the first file that failed; {} left", names, left()),
-                   "--keep-going does the others; what is done is not done again");
-    }
-    const std::size_t more = count(Outcome::Kind::failed) - failed_.size();
-    if (more > 0) names += fmt::format(" and {} more", more);
-    return Error("batch-failed",
-                 fmt::format("{} failed: {}", counted_files(count(Outcome::Kind::failed)), names));
   }
 
   const MakeToolSpec& make_spec_;
@@ -398,8 +340,7 @@ class Batch {
   std::optional<Journal> journal_;
   int jobs_of_a_file_ = 1;
   std::optional<ReadyLines> ready_lines_;
-  std::array<std::size_t, 3> counts_{};
-  std::vector<std::string> failed_;
+  BatchTally tally_;
   std::set<std::string> written_folders_;
   Status journal_trouble_;
 };

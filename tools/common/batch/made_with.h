@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tools/common/batch_list.h"
+#include "tools/common/batch/batch_list.h"
 #include "tools/common/tool.h"
 
 namespace krok {

@@ -1,4 +1,4 @@
-#include "tools/common/batch_report.h"
+#include "tools/common/batch/batch_report.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/common/journal.h"
+#include "tools/common/batch/journal.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
