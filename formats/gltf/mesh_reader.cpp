@@ -54,8 +54,7 @@ Status read_texture_coordinates(const tinygltf::Primitive& source, Accessors& ac
   return {};
 }
 
-// Tangents of length 1 as the specification asks, w the sign; a vertex whose tangent is none keeps
-// zeros and the mesh loses them.
+// Tangents of length 1 as the specification asks, w the sign; one that is zero stays so.
 Status read_tangents(const tinygltf::Primitive& source, Accessors& accessors,
                      const std::string& name, Primitive& primitive, Diagnostics& diagnostics) {
   const int accessor = attribute(source.attributes, "TANGENT");
@@ -68,16 +67,23 @@ Status read_tangents(const tinygltf::Primitive& source, Accessors& accessors,
   }
   if (auto taken = accessors.reserve(vertices * sizeof(Vec4f)); !taken) return taken;
   auto tangents = std::make_shared<std::vector<Vec4f>>(vertices);
+  std::size_t zeros = 0, first_zero = 0;
   for (std::size_t v = 0; v < vertices; ++v) {
     const Eigen::Map<const Vec4f> tangent(read->data() + 4 * v);
     const float length = tangent.head<3>().stableNorm();
-    if (!(length > 0)) {
-      warn(diagnostics, "gltf-mesh-tangents",
-           fmt::format("{}: the tangent of vertex {} is zero; its tangents are left out", name, v));
-      return {};
+    if (length > 0) {
+      (*tangents)[v].head<3>() = tangent.head<3>() / length;
+    } else {
+      (*tangents)[v].head<3>().setZero();
+      if (zeros++ == 0) first_zero = v;
     }
-    (*tangents)[v].head<3>() = tangent.head<3>() / length;
     (*tangents)[v].w() = tangent.w() < 0 ? -1.0f : 1.0f;
+  }
+  if (zeros > 0) {
+    warn(diagnostics, "gltf-mesh-tangents",
+         fmt::format("{}: {} of {} tangents are zero, the first that of vertex {}; a .model of it "
+                     "has none",
+                     name, zeros, vertices, first_zero));
   }
   primitive.tangents = std::move(tangents);
   return {};
@@ -216,16 +222,12 @@ Status read_targets(const tinygltf::Primitive& source, const std::vector<std::st
     MorphTarget& target = primitive.targets.emplace_back();
     if (t < names.size()) target.name = names[t];
     const std::string target_name = fmt::format("{}, target {}", name, t);
-    const std::size_t vertices = primitive.vertex_count();
-    if (auto read = read_vectors(source.targets[t], "POSITION", vertices, accessors, target_name,
-                                 target.positions);
-        !read) {
-      return read;
-    }
-    if (auto read = read_vectors(source.targets[t], "NORMAL", vertices, accessors, target_name,
-                                 target.normals);
-        !read) {
-      return read;
+    for (const auto& [what, values] : {std::pair{"POSITION", &target.positions},
+                                       {"NORMAL", &target.normals},
+                                       {"TANGENT", &target.tangents}}) {
+      const Status read = read_vectors(source.targets[t], what, primitive.vertex_count(), accessors,
+                                       target_name, *values);
+      if (!read) return read;
     }
   }
   return {};

@@ -266,7 +266,7 @@ Status Builder::finish() {
     return Error("scene-value", "the numbers are so large that the mesh's vertices overflow",
                  "perhaps the unit is another: say it with --unit");
   }
-  // A tangent that a flat placement swallowed takes the others with it.
+  // A tangent that is zero, or that a flat placement swallowed, takes the others with it.
   const auto is_unit = [](const Vec4f& tangent) {
     return std::abs(tangent.head<3>().norm() - 1) < 1e-3f;
   };

@@ -129,4 +129,11 @@ void add_coordinate_differences(std::span<const Vec2f> first, std::span<const Ve
   }
 }
 
+bool on_other_sides(const Vec4& first, const Vec4& second) {
+  const auto has_side = [](const Vec4& tangent) {
+    return std::abs(tangent.w()) >= 0.5 && !tangent.head<3>().isZero(0);
+  };
+  return (first.w() < 0) != (second.w() < 0) && has_side(first) && has_side(second);
+}
+
 }  // namespace krok::compare

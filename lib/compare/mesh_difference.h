@@ -46,4 +46,8 @@ void add_angles(std::span<const Vec3f> first, std::span<const Vec3f> second, Pla
 void add_coordinate_differences(std::span<const Vec2f> first, std::span<const Vec2f> second,
                                 Place place, Measure& measure);
 
+// Whether two tangents stand on other sides: the signs of their w differ. One that vanishes, or
+// that lies between corners which disagree (|w| < 0.5), has no side.
+bool on_other_sides(const Vec4& first, const Vec4& second);
+
 }  // namespace krok::compare

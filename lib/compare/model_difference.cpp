@@ -62,14 +62,13 @@ std::string difference_in_surface(const Model& first, const Model& second) {
   return {};
 }
 
-void compare_tangents(const Model& first, const Model& second, Measure& measure) {
+void compare_tangents(const Model& first, const Model& second, ModelDifference& result) {
   for (std::size_t i = 0; i < first.tangents.size(); ++i) {
-    const Vec4f& a = first.tangents[i];
-    const Vec4f& b = second.tangents[i];
-    const double angle = a.w() != b.w() ? kPi
-                                        : angle_between_directions(a.head<3>().cast<double>(),
-                                                                   b.head<3>().cast<double>());
-    measure.add(angle, Place{.vertex = static_cast<int>(i)});
+    const Vec4 a = first.tangents[i].cast<double>();
+    const Vec4 b = second.tangents[i].cast<double>();
+    const Place place{.vertex = static_cast<int>(i)};
+    result.tangents.add(angle_between_directions(a.head<3>(), b.head<3>()), place);
+    result.tangent_sides.add(on_other_sides(a, b) ? 1 : 0, place);
   }
 }
 
@@ -109,7 +108,7 @@ void compare_weights(const Model& first, const Model& second, const SkeletonMatc
 bool ModelDifference::same() const {
   return structure.empty() && reference_positions.within() && reference_orientations.within() &&
          positions.within() && normals.within() && texture_coordinates.within() &&
-         tangents.within() && weights.within();
+         tangents.within() && tangent_sides.within() && weights.within();
 }
 
 Result<ModelDifference> difference(const Model& first, const Model& second,
@@ -153,7 +152,7 @@ Result<ModelDifference> difference(const Model& first, const Model& second,
                                result.texture_coordinates);
   }
   if (both_have("tangents", first.tangents, second.tangents, result.structure)) {
-    compare_tangents(first, second, result.tangents);
+    compare_tangents(first, second, result);
   }
   if (!skeletons.second_of_first.empty()) compare_weights(first, second, skeletons, result.weights);
   return result;

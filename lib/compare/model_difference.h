@@ -22,8 +22,9 @@ struct ModelDifference {
   Measure positions;                                    // metres
   Measure normals;                                      // radians
   Measure texture_coordinates;                          // the larger of u and v
-  Measure tangents;                                     // radians; pi where the handedness differs
-  Measure weights;  // the largest of a vertex; place has the joint too
+  Measure tangents;                                     // radians, of their directions
+  Measure tangent_sides;  // 1 where the handedness is the other one, else 0; tolerance 0
+  Measure weights;        // the largest of a vertex; place has the joint too
   std::vector<JointDifference> joints;
 
   bool same() const;

@@ -21,6 +21,7 @@ struct SceneMesh {
   std::string name;  // for people and for matching; may be empty
   std::size_t vertex_count = 0;
   bool has_normals = false;
+  bool has_tangents = false;
   bool only_points = false;  // the file tells positions alone: that the rest lacks is no difference
   std::span<const Triangle> triangles;
   std::span<const Vec2f> texture_coordinates;  // [vertices] or none
@@ -30,6 +31,7 @@ struct SceneMesh {
     std::string name;
     std::span<const Vec3f> positions;
     std::span<const Vec3f> normals;
+    std::span<const Vec3f> tangents{};  // of their xyz
   };
   std::vector<Target> targets;
 
@@ -42,7 +44,10 @@ struct SceneMesh {
 struct SceneState {
   std::vector<std::vector<Vec3>> positions;  // [meshes][vertices]
   std::vector<std::vector<Vec3>> normals;    // [meshes][vertices], or none for a mesh without
-  std::vector<Transform> joints;             // [joints]
+  // The same of meshes that have them, others are not looked at: xyz unit or zero, the sign of w is
+  // glTF's handedness.
+  std::vector<std::vector<Vec4>> tangents;
+  std::vector<Transform> joints;  // [joints]
 };
 
 struct Scene {

@@ -8,18 +8,20 @@ namespace {
 
 void set_tolerances(const Tolerance& tolerance, SceneDifference& result) {
   result.positions = result.target_positions = Measure(tolerance.length);
-  result.normals = Measure(tolerance.of_normals());
+  result.normals = result.tangents = Measure(tolerance.of_normals());
   result.joint_positions = Measure(tolerance.of_joint_positions());
   result.joint_orientations = Measure(tolerance.of_joint_orientations());
-  result.target_normals = result.texture_coordinates = result.weights = Measure(tolerance.ratio);
+  result.target_normals = result.target_tangents = Measure(tolerance.ratio);
+  result.texture_coordinates = result.weights = Measure(tolerance.ratio);
   result.times = Measure(tolerance.time);
 }
 
 }  // namespace
 
 bool SceneDifference::same() const {
-  return structure.empty() && positions.within() && normals.within() && joint_positions.within() &&
-         joint_orientations.within() && target_positions.within() && target_normals.within() &&
+  return structure.empty() && positions.within() && normals.within() && tangents.within() &&
+         tangent_sides.within() && joint_positions.within() && joint_orientations.within() &&
+         target_positions.within() && target_normals.within() && target_tangents.within() &&
          texture_coordinates.within() && weights.within();
 }
 

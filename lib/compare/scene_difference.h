@@ -35,14 +35,14 @@ struct MomentDifference {
   int animation = -1;  // of the first; -1 for the pose without any
   int frame = -1;      // counted from 0 in each animation; -1 for the pose without any
   double time = 0;     // seconds
-  MomentValue positions, normals, joint_positions, joint_orientations;
+  MomentValue positions, normals, tangents, joint_positions, joint_orientations;
 };
 
 // A mesh over all moments.
 struct PartDifference {
   int mesh = -1;
   bool in_second = false;  // one of the second's, against the first (Matching::nearest)
-  Measure positions, normals;
+  Measure positions, normals, tangents, tangent_sides;
 };
 
 struct SceneDifference {
@@ -57,9 +57,12 @@ struct SceneDifference {
   int compared_times = 0;  // moments at which both were evaluated, of all animations together
   Measure positions;       // metres, world space
   Measure normals;         // radians, world space
+  Measure tangents;        // the same of their directions, where both have them
+  Measure tangent_sides;   // 1 where the handedness is the other one, else 0; tolerance 0
   Measure joint_positions, joint_orientations;
   Measure target_positions;     // metres: displacements by morph targets, where both have them
   Measure target_normals;       // length of the difference of normals' displacements, no unit
+  Measure target_tangents;      // the same of tangents
   Measure texture_coordinates;  // the larger of u and v
   Measure weights;              // of skins, where both have one
   Measure times;                // seconds: key times that are one moment
@@ -78,9 +81,11 @@ struct SceneDifference {
 // Each pair of animations (by name where all names of both are unique and the same, otherwise by
 // place) is compared at the key times of both, times within the tolerance being one, as far as both
 // last; without animations the pose without any is compared. A scene whose meshes are skinned may
-// be held against one without joints: joints are then not compared. An Error (code compare-value)
-// if a scene gives values that are not finite, (code compare-too-long) for more than a million
-// moments. Deterministic for any number of jobs.
+// be held against one without joints: joints are then not compared. Normals or texture coordinates
+// that only one mesh has are a difference of structure; so are tangents where the materials of both
+// have a normal texture, which shows them, and otherwise a note. An Error (code compare-value) if a
+// scene gives values that are not finite, (code compare-too-long) for more than a million moments.
+// Deterministic for any number of jobs.
 //
 // With Matching::nearest, all meshes of each are one surface where they cannot be matched by name.
 // The nearest points are found at the first moment that is compared and kept: each moves with its

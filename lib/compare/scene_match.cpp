@@ -61,6 +61,20 @@ std::size_t vertices_of(const std::vector<SceneMesh>& meshes) {
   return count;
 }
 
+void tell_of_tangents_in_groups(SceneComparison& comparison) {
+  bool has[2] = {false, false}, textured[2] = {false, false};
+  const std::vector<SceneMesh>* both[2] = {&comparison.first.meshes, &comparison.second.meshes};
+  for (int i = 0; i < 2; ++i) {
+    for (const SceneMesh& mesh : *both[i]) {
+      if (mesh.only_points) return;
+      has[i] = has[i] || mesh.has_tangents;
+      textured[i] = textured[i] || has_normal_texture(mesh);
+    }
+    if (both[i]->empty()) return;
+  }
+  if (has[0] != has[1]) tell_of_tangents(comparison, "", has[0], textured[0] && textured[1]);
+}
+
 void group_meshes(SceneComparison& comparison, const ListMatch& match) {
   const auto& first = comparison.first.meshes;
   const auto& second = comparison.second.meshes;
@@ -73,6 +87,7 @@ void group_meshes(SceneComparison& comparison, const ListMatch& match) {
     comparison.say(
         fmt::format("only the {} has normals", have_normals(first) ? "first" : "second"));
   }
+  tell_of_tangents_in_groups(comparison);
   if (first.empty() != second.empty()) {
     comparison.say(fmt::format("only the {} has meshes", first.empty() ? "second" : "first"));
   } else if (first.size() != second.size() || vertices_of(first) != vertices_of(second)) {

@@ -41,9 +41,14 @@ void compare_targets(SceneComparison& comparison, const SceneMesh& a, const Scen
     place.target = i;
     add_distances(or_none(target.positions), or_none(other.positions), place,
                   comparison.result.target_positions);
-    if (target.normals.empty() && other.normals.empty()) continue;
-    add_distances(or_none(target.normals), or_none(other.normals), place,
-                  comparison.result.target_normals);
+    if (!target.normals.empty() || !other.normals.empty()) {
+      add_distances(or_none(target.normals), or_none(other.normals), place,
+                    comparison.result.target_normals);
+    }
+    if (a.has_tangents && b.has_tangents && (!target.tangents.empty() || !other.tangents.empty())) {
+      add_distances(or_none(target.tangents), or_none(other.tangents), place,
+                    comparison.result.target_tangents);
+    }
   }
 }
 
@@ -91,6 +96,22 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
 
 }  // namespace
 
+bool has_normal_texture(const SceneMesh& mesh) {
+  return mesh.material != nullptr && mesh.material->normal_texture.picture != nullptr;
+}
+
+void tell_of_tangents(SceneComparison& comparison, const std::string& before, bool first_has,
+                      bool shown) {
+  std::string text =
+      fmt::format("{}only the {} has tangents", before, first_has ? "first" : "second");
+  // A format that knows no materials may lack tangents, or have some that none of them uses.
+  if (shown && comparison.first.knows_materials && comparison.second.knows_materials) {
+    comparison.say(text + ", which normal textures need");
+  } else {
+    comparison.note(text + ", so they are not compared");
+  }
+}
+
 void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh) {
   const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(first_mesh)];
   const SceneMesh& b = comparison.second.meshes[static_cast<std::size_t>(second_mesh)];
@@ -101,6 +122,10 @@ void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh
     comparison.say(fmt::format("{}: {}", name, text));
   }
   say_only_one_has(comparison, name, "normals", a.has_normals, b.has_normals);
+  if (a.has_tangents != b.has_tangents) {
+    tell_of_tangents(comparison, name + ": ", a.has_tangents,
+                     has_normal_texture(a) && has_normal_texture(b));
+  }
   say_only_one_has(comparison, name, "texture coordinates", !a.texture_coordinates.empty(),
                    !b.texture_coordinates.empty());
   if (!a.texture_coordinates.empty() && !b.texture_coordinates.empty()) {

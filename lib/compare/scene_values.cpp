@@ -17,13 +17,22 @@ struct Part {
   bool in_second = false;
   int other = -1;
   const std::vector<SurfacePoint>* points = nullptr;
-  bool normals = true;  // whether all of those points have normals
+  // Whether both have them; of a surface, whether all of those points have.
+  bool normals = true;
+  bool tangents = false;
 };
 
-// What was found of one part at one moment.
-struct PartTotals {
-  Totals positions, normals;
-};
+// What is measured of vertices, and where it is gathered.
+enum Quantity : std::size_t { kPositions, kNormals, kTangents, kTangentSides, kQuantities };
+constexpr std::array<Measure SceneDifference::*, kQuantities> kOfScene = {
+    &SceneDifference::positions, &SceneDifference::normals, &SceneDifference::tangents,
+    &SceneDifference::tangent_sides};
+constexpr std::array<Measure PartDifference::*, kQuantities> kOfPart = {
+    &PartDifference::positions, &PartDifference::normals, &PartDifference::tangents,
+    &PartDifference::tangent_sides};
+
+using PartTotals = std::array<Totals, kQuantities>;   // what was found of one part at one moment
+using PartSpreads = std::array<Spread, kQuantities>;  // of one part at all moments
 
 // What belongs to a thread: memory that is used again, and what may be gathered in any order.
 struct Slot {
@@ -31,20 +40,30 @@ struct Slot {
   std::vector<PartTotals> parts;            // of the moment
   std::vector<double> distances, angles;    // of the moment, [compared joints]
   bool finite = true;                       // of the moment
-  std::vector<Spread> positions, normals;   // of all moments, [parts]
+  std::vector<PartSpreads> spreads;         // of all moments, [parts]
   std::vector<std::vector<float>> largest;  // of all moments, as vertex_largest
 };
 
 std::vector<Part> parts_of(const SceneComparison& comparison) {
   std::vector<Part> parts;
-  for (const auto& [i, j] : comparison.meshes) parts.push_back({i, false, j, nullptr, true});
+  const auto mesh = [](const Scene& scene, int index) -> const SceneMesh& {
+    return scene.meshes[static_cast<std::size_t>(index)];
+  };
+  for (const auto& [i, j] : comparison.meshes) {
+    const bool tangents =
+        mesh(comparison.first, i).has_tangents && mesh(comparison.second, j).has_tangents;
+    parts.push_back({i, false, j, nullptr, true, tangents});
+  }
   for (const SurfaceMatch& one : comparison.surfaces) {
-    const auto& meshes = one.in_second ? comparison.first.meshes : comparison.second.meshes;
-    const bool normals =
-        std::all_of(one.points.begin(), one.points.end(), [&](const SurfacePoint& point) {
-          return meshes[static_cast<std::size_t>(point.mesh)].has_normals;
-        });
-    parts.push_back({one.mesh, one.in_second, -1, &one.points, normals});
+    const Scene& own = one.in_second ? comparison.second : comparison.first;
+    const Scene& other = one.in_second ? comparison.first : comparison.second;
+    const auto all_have = [&](bool SceneMesh::*what) {
+      return std::all_of(one.points.begin(), one.points.end(),
+                         [&](const SurfacePoint& point) { return mesh(other, point.mesh).*what; });
+    };
+    const bool tangents = mesh(own, one.mesh).has_tangents && all_have(&SceneMesh::has_tangents);
+    parts.push_back(
+        {one.mesh, one.in_second, -1, &one.points, all_have(&SceneMesh::has_normals), tangents});
   }
   return parts;
 }
@@ -83,6 +102,29 @@ void in_blocks(std::size_t count, const Find& find, const With& with) {
   }
 }
 
+// Directions and sides; gatherer(quantity) takes blocks of values.
+template <typename Gatherer>
+void measure_tangents(const Part& part, const SceneState& own, const SceneState& other,
+                      const Gatherer& gatherer) {
+  const std::vector<Vec4>& tangents = own.tangents[static_cast<std::size_t>(part.mesh)];
+  const auto partner_of = [&](std::size_t i) -> Vec4 {
+    return part.points != nullptr ? value_at((*part.points)[i], other.tangents)
+                                  : other.tangents[static_cast<std::size_t>(part.other)][i];
+  };
+  in_blocks(
+      tangents.size(),
+      [&](std::size_t i) {
+        const Vec4 partner = partner_of(i);
+        const Vec3 a = tangents[i].head<3>(), b = partner.head<3>();
+        return part.points != nullptr ? angle_between_directions(a, b) : angle_between_units(a, b);
+      },
+      gatherer(kTangents));
+  in_blocks(
+      tangents.size(),
+      [&](std::size_t i) { return on_other_sides(tangents[i], partner_of(i)) ? 1.0 : 0.0; },
+      gatherer(kTangentSides));
+}
+
 bool all_finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(),
                      [](double value) { return std::isfinite(value); });
@@ -95,13 +137,11 @@ class Measuring {
         progress_(progress),
         parts_(parts_of(comparison)),
         slots_(slots_for(jobs)) {
-    for (Slot& slot : slots_) {
-      slot.positions.resize(parts_.size());
-      slot.normals.resize(parts_.size());
-    }
+    for (Slot& slot : slots_) slot.spreads.resize(parts_.size());
     SceneDifference& result = comparison.result;
     for (const Part& part : parts_) {
-      result.parts.push_back({part.mesh, part.in_second, result.positions, result.normals});
+      result.parts.push_back({part.mesh, part.in_second, result.positions, result.normals,
+                              result.tangents, result.tangent_sides});
     }
     for (const auto& pair : comparison.joints) {
       result.joints.push_back({pair.first, result.joint_positions, result.joint_orientations});
@@ -125,6 +165,7 @@ class Measuring {
  private:
   std::vector<std::vector<float>> no_vertices() const;
   Status measure(const Moment& moment, Slot& slot) const;
+  PartTotals no_totals() const;
   void measure_part(std::size_t index, Place place, Slot& slot) const;
   Status take(const Moment& moment, Slot& slot);
   MomentDifference take_parts(const Slot& slot);
@@ -159,9 +200,7 @@ Status Measuring::measure(const Moment& moment, Slot& slot) const {
   comparison_.second.evaluate(moment.second_animation, moment.second_time, slot.second);
   slot.finite = true;
   if (slot.largest.empty()) slot.largest = no_vertices();
-  const SceneDifference& result = comparison_.result;
-  slot.parts.assign(parts_.size(),
-                    {Totals(result.positions.tolerance), Totals(result.normals.tolerance)});
+  slot.parts.assign(parts_.size(), no_totals());
   for (std::size_t i = 0; i < parts_.size(); ++i) measure_part(i, place_of(moment), slot);
   slot.distances.clear();
   slot.angles.clear();
@@ -175,23 +214,31 @@ Status Measuring::measure(const Moment& moment, Slot& slot) const {
   return {};
 }
 
+PartTotals Measuring::no_totals() const {
+  PartTotals totals;
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    totals[q] = Totals((comparison_.result.*kOfScene[q]).tolerance);
+  }
+  return totals;
+}
+
 void Measuring::measure_part(std::size_t index, Place place, Slot& slot) const {
   const Part& part = parts_[index];
   place.mesh = part.mesh;
   place.in_second = part.in_second;
   const auto mesh = static_cast<std::size_t>(part.mesh);
+  const auto partner = static_cast<std::size_t>(part.other);
   const SceneState& own = part.in_second ? slot.second : slot.first;
   const SceneState& other = part.in_second ? slot.first : slot.second;
   float* largest = slot.largest.empty() || part.in_second ? nullptr : slot.largest[mesh].data();
-  Totals& positions = slot.parts[index].positions;
-  const auto add_positions = [&](std::size_t begin, std::span<const double> values) {
-    gather(values, begin, place, positions, slot.positions[index]);
-    for (std::size_t i = 0; largest != nullptr && i < values.size(); ++i) {
-      largest[begin + i] = std::max(largest[begin + i], static_cast<float>(values[i]));
-    }
-  };
-  const auto add_normals = [&](std::size_t begin, std::span<const double> values) {
-    gather(values, begin, place, slot.parts[index].normals, slot.normals[index]);
+  const auto gatherer = [&](Quantity quantity) {
+    return [&, quantity](std::size_t begin, std::span<const double> values) {
+      gather(values, begin, place, slot.parts[index][quantity], slot.spreads[index][quantity]);
+      for (std::size_t i = 0; quantity == kPositions && largest != nullptr && i < values.size();
+           ++i) {
+        largest[begin + i] = std::max(largest[begin + i], static_cast<float>(values[i]));
+      }
+    };
   };
   const Points& a = own.positions[mesh];
   const Points& normals = own.normals[mesh];
@@ -200,28 +247,29 @@ void Measuring::measure_part(std::size_t index, Place place, Slot& slot) const {
     in_blocks(
         a.size(),
         [&](std::size_t i) { return (a[i] - value_at(points[i], other.positions)).norm(); },
-        add_positions);
+        gatherer(kPositions));
     if (!normals.empty() && part.normals) {
       in_blocks(
           normals.size(),
           [&](std::size_t i) {
             return angle_between_directions(normals[i], value_at(points[i], other.normals));
           },
-          add_normals);
+          gatherer(kNormals));
     }
   } else {
-    const Points& b = other.positions[static_cast<std::size_t>(part.other)];
-    const Points& other_normals = other.normals[static_cast<std::size_t>(part.other)];
+    const Points& b = other.positions[partner];
+    const Points& other_normals = other.normals[partner];
     in_blocks(
-        a.size(), [&](std::size_t i) { return (a[i] - b[i]).norm(); }, add_positions);
+        a.size(), [&](std::size_t i) { return (a[i] - b[i]).norm(); }, gatherer(kPositions));
     if (!normals.empty() && !other_normals.empty()) {
       in_blocks(
           normals.size(),
           [&](std::size_t i) { return angle_between_units(normals[i], other_normals[i]); },
-          add_normals);
+          gatherer(kNormals));
     }
   }
-  slot.finite = slot.finite && std::isfinite(positions.largest);
+  if (part.tangents) measure_tangents(part, own, other, gatherer);
+  slot.finite = slot.finite && std::isfinite(slot.parts[index][kPositions].largest);
 }
 
 MomentValue value_of(const Totals& totals) {
@@ -246,19 +294,18 @@ Status Measuring::take(const Moment& moment, Slot& slot) {
 
 MomentDifference Measuring::take_parts(const Slot& slot) {
   SceneDifference& result = comparison_.result;
-  Totals positions(result.positions.tolerance);
-  Totals normals(result.normals.tolerance);
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    positions.merge(slot.parts[i].positions);
-    normals.merge(slot.parts[i].normals);
-    result.parts[i].positions.Totals::merge(slot.parts[i].positions);
-    result.parts[i].normals.Totals::merge(slot.parts[i].normals);
+  PartTotals all = no_totals();
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      all[q].merge(slot.parts[i][q]);
+      (result.parts[i].*kOfPart[q]).Totals::merge(slot.parts[i][q]);
+    }
+    (result.*kOfScene[q]).Totals::merge(all[q]);
   }
-  result.positions.Totals::merge(positions);
-  result.normals.Totals::merge(normals);
   MomentDifference found;
-  found.positions = value_of(positions);
-  found.normals = value_of(normals);
+  found.positions = value_of(all[kPositions]);
+  found.normals = value_of(all[kNormals]);
+  found.tangents = value_of(all[kTangents]);
   return found;
 }
 
@@ -284,13 +331,15 @@ void Measuring::finish() {
   SceneDifference& result = comparison_.result;
   for (const Slot& slot : slots_) {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      result.parts[i].positions.spread.merge(slot.positions[i]);
-      result.parts[i].normals.spread.merge(slot.normals[i]);
+      for (std::size_t q = 0; q < kQuantities; ++q) {
+        (result.parts[i].*kOfPart[q]).spread.merge(slot.spreads[i][q]);
+      }
     }
   }
   for (const PartDifference& part : result.parts) {
-    result.positions.spread.merge(part.positions.spread);
-    result.normals.spread.merge(part.normals.spread);
+    for (std::size_t q = 0; q < kQuantities; ++q) {
+      (result.*kOfScene[q]).spread.merge((part.*kOfPart[q]).spread);
+    }
   }
   for (const JointDifference& joint : result.joints) {
     result.joint_positions.spread.merge(joint.positions.spread);

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "compare/measure.h"
+#include "compare/mesh_difference.h"
 #include "compare/nearest_triangle_internal.h"
 #include "compare/scene_comparison_internal.h"
 #include "core/parallel.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr std::size_t kMostProbes = 5;    // moments at which touching surfaces are told apart
 constexpr std::size_t kMostTried = 1024;  // points that touch, so that time stays in bounds
 constexpr double kNoShare = 1e-9;         // less of a corner is rounding
+constexpr double kSameAngle = 1e-4;       // radians; normals that float noise alone tells apart
 
 std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> meshes) {
   std::vector<Facet> facets;
@@ -68,7 +70,20 @@ bool same_corners(const SurfacePoint& a, const SurfacePoint& b) {
 struct Fit {
   double distance = 0;  // the largest
   double angle = 0;     // of normals, the largest; 0 where one has none
+  double tangents = 0;  // how far those are apart, the largest; 0 where both have none
 };
+
+// Of one moment: the angle, more by half a turn for the other side, and that where only one of the
+// two has tangents, so that meshes with and without them which meet are told apart.
+double tangents_apart(const SurfacePoint& point, const SurfaceMoments& own, std::size_t mesh,
+                      std::size_t vertex, const SurfaceMoments& other, std::size_t moment) {
+  const bool has = own.meshes[mesh].has_tangents;
+  if (has != other.meshes[static_cast<std::size_t>(point.mesh)].has_tangents) return kPi;
+  if (!has) return 0;
+  const Vec4& a = own.states[moment].tangents[mesh][vertex];
+  const Vec4 b = value_at(point, other.states[moment].tangents);
+  return angle_between_directions(a.head<3>(), b.head<3>()) + (on_other_sides(a, b) ? kPi : 0);
+}
 
 Fit fit_of(const SurfacePoint& point, const SurfaceMoments& own, int mesh, std::size_t vertex,
            const SurfaceMoments& other) {
@@ -79,6 +94,7 @@ Fit fit_of(const SurfacePoint& point, const SurfaceMoments& own, int mesh, std::
     const SceneState& b = other.states[k];
     fit.distance =
         std::max(fit.distance, (a.positions[m][vertex] - value_at(point, b.positions)).norm());
+    fit.tangents = std::max(fit.tangents, tangents_apart(point, own, m, vertex, other, k));
     if (a.normals[m].empty() || b.normals[static_cast<std::size_t>(point.mesh)].empty()) continue;
     fit.angle = std::max(
         fit.angle, angle_between_directions(a.normals[m][vertex], value_at(point, b.normals)));
@@ -95,10 +111,20 @@ SurfacePoint choose(const std::vector<SurfacePoint>& points, const SurfaceMoment
     fits.push_back(fit_of(point, own, mesh, vertex, other));
     least = std::min(least, fits.back().distance);
   }
+  // Of those that stay closest the ones whose normals fit; tangents decide where a texture's seam
+  // parts what else is one vertex.
+  double least_angle = std::numeric_limits<double>::infinity();
+  for (const Fit& fit : fits) {
+    if (fit.distance <= least + touching) least_angle = std::min(least_angle, fit.angle);
+  }
   std::size_t best = points.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (fits[i].distance > least + touching) continue;
-    if (best == points.size() || fits[i].angle < fits[best].angle) best = i;
+    const Fit& fit = fits[i];
+    if (fit.distance > least + touching || fit.angle > least_angle + kSameAngle) continue;
+    if (best == points.size() ||
+        std::tie(fit.tangents, fit.angle) < std::tie(fits[best].tangents, fits[best].angle)) {
+      best = i;
+    }
   }
   return points[best];
 }
@@ -183,6 +209,25 @@ SurfaceMatch match_surface(const SurfaceMoments& own, int mesh, const SurfaceMom
   return match;
 }
 
+// A mesh is compared in what all of its nearest points have.
+void tell_of_tangents_left_out(SceneComparison& comparison) {
+  for (const SurfaceMatch& match : comparison.surfaces) {
+    const auto& own = match.in_second ? comparison.second.meshes : comparison.first.meshes;
+    const auto& other = match.in_second ? comparison.first.meshes : comparison.second.meshes;
+    const SceneMesh& mesh = own[static_cast<std::size_t>(match.mesh)];
+    const auto with =
+        std::count_if(match.points.begin(), match.points.end(), [&](const SurfacePoint& point) {
+          return other[static_cast<std::size_t>(point.mesh)].has_tangents;
+        });
+    const auto all = static_cast<std::ptrdiff_t>(match.points.size());
+    if (!mesh.has_tangents || with == 0 || with == all) continue;
+    comparison.note(fmt::format(
+        "{}{}: {} of its {} nearest points have no tangents, so its tangents are not compared",
+        match.in_second ? "the second's " : "", label("mesh", mesh.name, match.mesh), all - with,
+        all));
+  }
+}
+
 }  // namespace
 
 Status match_surfaces(SceneComparison& comparison, int jobs) {
@@ -223,6 +268,7 @@ Status match_surfaces(SceneComparison& comparison, int jobs) {
       comparison.surfaces.back().in_second = true;
     }
   }
+  tell_of_tangents_left_out(comparison);
   return {};
 }
 

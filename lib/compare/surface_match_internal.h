@@ -40,10 +40,12 @@ struct SurfaceMoments {
   std::span<const SceneState> states;
 };
 
-// The value of a point where each corner has one, as positions and normals ([meshes][vertices]).
-inline Vec3 value_at(const SurfacePoint& point, const std::vector<Points>& values) {
-  const Points& mesh = values[static_cast<std::size_t>(point.mesh)];
-  Vec3 sum = Vec3::Zero();
+// The value of a point where each corner has one, as positions, normals and tangents
+// ([meshes][vertices]).
+template <typename Vector>
+Vector value_at(const SurfacePoint& point, const std::vector<std::vector<Vector>>& values) {
+  const std::vector<Vector>& mesh = values[static_cast<std::size_t>(point.mesh)];
+  Vector sum = Vector::Zero();
   for (std::size_t k = 0; k < 3; ++k) sum += point.shares[k] * mesh[point.corners[k]];
   return sum;
 }

@@ -42,27 +42,43 @@ Mat3 nearest_rotation(const Mat3& linear) {
   return u * svd.matrixV().transpose();
 }
 
-// Adds weighted displacements to positions or normals.
-void add_targets(const Primitive& primitive, std::span<const double> weights, bool normals,
-                 std::vector<Vec3>& values) {
+// Adds weighted displacements to positions, normals or the xyz of tangents.
+template <typename Vector>
+void add_targets(const Primitive& primitive, std::span<const double> weights,
+                 Shared<Vec3f> MorphTarget::*which, std::vector<Vector>& values) {
+  if (values.empty()) return;
   for (std::size_t t = 0; t < primitive.targets.size(); ++t) {
-    const MorphTarget& target = primitive.targets[t];
-    const Shared<Vec3f>& displacements = normals ? target.normals : target.positions;
+    const Shared<Vec3f>& displacements = primitive.targets[t].*which;
     const double weight = weights[t];
     if (weight == 0 || !displacements) continue;
     for (std::size_t v = 0; v < values.size(); ++v) {
-      values[v] += weight * (*displacements)[v].cast<double>();
+      values[v].template head<3>() += weight * (*displacements)[v].cast<double>();
     }
   }
 }
 
-void load_vectors(const Shared<Vec3f>& source, std::vector<Vec3>& values) {
+template <typename From, typename To>
+void load_vectors(const Shared<From>& source, std::vector<To>& values) {
   values.resize(source ? source->size() : 0);
-  for (std::size_t v = 0; v < values.size(); ++v) values[v] = (*source)[v].cast<double>();
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    values[v] = (*source)[v].template cast<double>();
+  }
 }
 
-void skin(const Primitive& primitive, const std::vector<Affine>& palette,
-          std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
+// What an instance has of each kind; normals and tangents may be none.
+struct Vertices {
+  std::vector<Vec3>& positions;
+  std::vector<Vec3>& normals;
+  std::vector<Vec4>& tangents;
+};
+
+void turn(const Mat3& linear, bool mirrors, Vec4& tangent) {
+  tangent.head<3>() = linear * tangent.head<3>();
+  if (mirrors) tangent.w() = -tangent.w();
+}
+
+void skin(const Primitive& primitive, const std::vector<Affine>& palette, const Vertices& out) {
+  auto& [positions, normals, tangents] = out;
   const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
   for (std::size_t v = 0; v < positions.size(); ++v) {
     Affine blended = Affine::Zero();
@@ -72,6 +88,9 @@ void skin(const Primitive& primitive, const std::vector<Affine>& palette,
     }
     positions[v] = blended.leftCols<3>() * positions[v] + blended.col(3);
     if (!normals.empty()) normals[v] = blended.leftCols<3>() * normals[v];
+    if (tangents.empty()) continue;
+    const Mat3 linear = blended.leftCols<3>();
+    turn(linear, linear.determinant() < 0, tangents[v]);
   }
 }
 
@@ -84,18 +103,23 @@ Mat3 cofactors_of(const Mat3& linear) {
   return linear.determinant() < 0 ? Mat3(-cofactors) : cofactors;
 }
 
-void place(const Mat4& node_to_world, std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
+void place(const Mat4& node_to_world, const Vertices& out) {
   if (node_to_world == Mat4::Identity()) return;
   const Mat3 linear = node_to_world.topLeftCorner<3, 3>();
   const Vec3 offset = node_to_world.topRightCorner<3, 1>();
   const Mat3 cofactors = cofactors_of(linear);
-  for (Vec3& position : positions) position = linear * position + offset;
-  for (Vec3& normal : normals) normal = cofactors * normal;
+  const bool mirrors = linear.determinant() < 0;
+  for (Vec3& position : out.positions) position = linear * position + offset;
+  for (Vec3& normal : out.normals) normal = cofactors * normal;
+  for (Vec4& tangent : out.tangents) turn(linear, mirrors, tangent);
 }
 
-void normalize(std::vector<Vec3>& normals) {
+// Brings normals or the xyz of tangents to length 1, where they do not vanish.
+template <typename Vector>
+void normalize(std::vector<Vector>& vectors) {
   constexpr double kNearUnit = 1e-5;
-  for (Vec3& normal : normals) {
+  for (Vector& vector : vectors) {
+    auto normal = vector.template head<3>();
     const double square = normal.squaredNorm();
     const double excess = square - 1;
     if (std::abs(excess) < kNearUnit) {
@@ -271,13 +295,14 @@ void Evaluator::evaluate_instance(std::size_t index, Evaluation& out) const {
   const Instance& instance = instances_[index];
   const Primitive& shape = primitive(instance);
   const Node& node = scene_->nodes[static_cast<std::size_t>(instance.node)];
-  std::vector<Vec3>& positions = out.positions[index];
-  std::vector<Vec3>& normals = out.normals[index];
-  load_vectors(shape.positions, positions);
-  load_vectors(shape.normals, normals);
+  const Vertices vertices{out.positions[index], out.normals[index], out.tangents[index]};
+  load_vectors(shape.positions, vertices.positions);
+  load_vectors(shape.normals, vertices.normals);
+  load_vectors(out.with_tangents ? shape.tangents : nullptr, vertices.tangents);
   const auto& weights = out.node_weights[static_cast<std::size_t>(instance.node)];
-  add_targets(shape, weights, false, positions);
-  if (!normals.empty()) add_targets(shape, weights, true, normals);
+  add_targets(shape, weights, &MorphTarget::positions, vertices.positions);
+  add_targets(shape, weights, &MorphTarget::normals, vertices.normals);
+  add_targets(shape, weights, &MorphTarget::tangents, vertices.tangents);
 
   if (node.skin >= 0 && shape.influences_per_vertex > 0) {
     // A skinned mesh stands where its joints are; its own node does not matter.
@@ -288,17 +313,19 @@ void Evaluator::evaluate_instance(std::size_t index, Evaluation& out) const {
           (out.node_to_world[static_cast<std::size_t>(one.joints[j])] * one.inverse_binds[j])
               .topRows<3>();
     }
-    skin(shape, out.palette, positions, normals);
+    skin(shape, out.palette, vertices);
   } else {
-    place(out.node_to_world[static_cast<std::size_t>(instance.node)], positions, normals);
+    place(out.node_to_world[static_cast<std::size_t>(instance.node)], vertices);
   }
-  normalize(normals);
+  normalize(vertices.normals);
+  normalize(vertices.tangents);
 }
 
 void Evaluator::evaluate(int animation, double time, Evaluation& out) const {
   place_nodes(animation, time, out);
   out.positions.resize(instances_.size());
   out.normals.resize(instances_.size());
+  out.tangents.resize(instances_.size());
   for (std::size_t i = 0; i < instances_.size(); ++i) evaluate_instance(i, out);
 }
 

@@ -26,6 +26,9 @@ struct Evaluation {
   std::vector<Mat4> node_to_world;           // [nodes]
   std::vector<std::vector<Vec3>> positions;  // [instances][vertices], world space
   std::vector<std::vector<Vec3>> normals;    // the same, unit or zero; none where the file has none
+  bool with_tangents = false;                // set by who wants them; otherwise `tangents` has none
+  // The same, xyz unit or zero; w is the file's sign, turned round where vertices are mirrored.
+  std::vector<std::vector<Vec4>> tangents;
   std::vector<Vec3> node_translations, node_scales;  // to the parent, [nodes]
   std::vector<Quat> node_rotations;
   std::vector<std::vector<double>> node_weights;  // of the mesh's targets, [nodes]

@@ -44,6 +44,7 @@ struct MorphTarget {
   std::string name;  // from the mesh's extras.targetNames, where exporters put it; may be empty
   Shared<Vec3f> positions;  // displacements, [vertices] or null
   Shared<Vec3f> normals;
+  Shared<Vec3f> tangents{};  // of their xyz; w never changes
 };
 
 struct Primitive {
@@ -53,7 +54,8 @@ struct Primitive {
   int material_index = -1;  // in Scene::materials; -1: none, or materials were not asked for
   Shared<Vec3f> positions;  // never null
   Shared<Vec3f> normals;
-  Shared<Vec4f> tangents;  // as glTF has them: unit xyz; w, 1 or -1, is the third axis' side
+  // As glTF has them: xyz unit, or zero where the file's is; w, 1 or -1, is the third axis' side.
+  Shared<Vec4f> tangents;
   Shared<Vec2f> texture_coordinates;  // the first set
   // [vertices x influences_per_vertex]; joints are places in the skin's list. 0, 4 or 8 a vertex.
   int influences_per_vertex = 0;

@@ -115,10 +115,12 @@ Outcome outcome_of(const Opened& first, const Opened& second,
   outcome.names = names_of(first.scene, second.scene);
   outcome.add_row("positions", Unit::length, found.positions);
   outcome.add_row("normals", Unit::angle, found.normals);
+  outcome.add_tangents(found.tangents, found.tangent_sides);
   outcome.add_row("joint positions", Unit::length, found.joint_positions);
   outcome.add_row("joint orientations", Unit::angle, found.joint_orientations);
   outcome.add_row("morph targets", Unit::length, found.target_positions);
   outcome.add_row("morph targets' normals", Unit::ratio, found.target_normals);
+  outcome.add_row("morph targets' tangents", Unit::ratio, found.target_tangents);
   outcome.add_row("texture coordinates", Unit::ratio, found.texture_coordinates);
   outcome.add_row("weights", Unit::ratio, found.weights);
   // Floats round key times; that is not worth a line.

@@ -50,6 +50,8 @@ constexpr Quantity kQuantities[] = {
      &compare::SceneDifference::positions},
     {"Angle between normals", "vertices", true, &compare::MomentDifference::normals,
      &compare::SceneDifference::normals},
+    {"Angle between tangents", "vertices", true, &compare::MomentDifference::tangents,
+     &compare::SceneDifference::tangents},
     {"Distance between joints", "joints", false, &compare::MomentDifference::joint_positions,
      &compare::SceneDifference::joint_positions},
     {"Angle between joints", "joints", true, &compare::MomentDifference::joint_orientations,

@@ -27,9 +27,9 @@ Status write_plot(const PlottedClip& first, const PlottedClip& second,
                   const compare::ClipDifference& found, const std::string& path,
                   ToolContext& context);
 
-// Writes an SVG of what two scenes have of positions and normals of vertices and of positions and
-// orientations of joints, at the moments that were compared; of several animations those that
-// differ, eight at most. Scenes that do not move have none: a warning, and no file.
+// Writes an SVG of what two scenes have of positions, normals and tangents of vertices and of
+// positions and orientations of joints, at the moments that were compared; of several animations
+// those that differ, eight at most. Scenes that do not move have none: a warning, and no file.
 struct PlottedScenes {
   std::string first_name, second_name;
   const compare::Scene* first = nullptr;

@@ -35,10 +35,12 @@ compare::SceneMesh mesh_of(const nodes::Scene& asset, const nodes::Instance& ins
   mesh.name = name_of(asset, instance);
   mesh.vertex_count = primitive.vertex_count();
   mesh.has_normals = primitive.normals != nullptr;
+  mesh.has_tangents = primitive.tangents != nullptr;
   mesh.triangles = primitive.triangles;
   mesh.texture_coordinates = view(primitive.texture_coordinates);
   for (const nodes::MorphTarget& target : primitive.targets) {
-    mesh.targets.push_back({target.name, view(target.positions), view(target.normals)});
+    mesh.targets.push_back(
+        {target.name, view(target.positions), view(target.normals), view(target.tangents)});
   }
   if (primitive.material_index >= 0) {
     mesh.material = &asset.materials[static_cast<std::size_t>(primitive.material_index)];
@@ -66,9 +68,12 @@ struct Player {
     nodes::Evaluation evaluation;
     evaluation.positions = std::move(state.positions);
     evaluation.normals = std::move(state.normals);
+    evaluation.tangents = std::move(state.tangents);
+    evaluation.with_tangents = true;
     evaluator.evaluate(animation, time, evaluation);
     state.positions = std::move(evaluation.positions);
     state.normals = std::move(evaluation.normals);
+    state.tangents = std::move(evaluation.tangents);
     state.joints.clear();
     for (const int joint : evaluator.joints()) {
       state.joints.push_back(

@@ -39,10 +39,11 @@ void add_skeleton(const Skeleton& skeleton, compare::Scene& scene) {
   scene.joint_parents.assign(skeleton.parents.begin(), skeleton.parents.end());
 }
 
-std::vector<Vec3> in_doubles(std::span<const Vec3f> values) {
-  std::vector<Vec3> result;
+template <typename From, typename To = Eigen::Matrix<double, From::RowsAtCompileTime, 1>>
+std::vector<To> in_doubles(std::span<const From> values) {
+  std::vector<To> result;
   result.reserve(values.size());
-  for (const Vec3f& value : values) result.push_back(value.cast<double>());
+  for (const From& value : values) result.push_back(value.template cast<double>());
   return result;
 }
 
@@ -101,13 +102,15 @@ compare::Scene scene_of(const Model& model) {
   compare::SceneMesh mesh;
   mesh.vertex_count = model.positions.size();
   mesh.has_normals = !model.normals.empty();
+  mesh.has_tangents = !model.tangents.empty();
   mesh.triangles = model.triangles;
   mesh.texture_coordinates = model.texture_coordinates;
   mesh.influences = {model.influences_per_vertex, model.influence_joints, model.influence_weights};
   scene.meshes.push_back(mesh);
   scene.evaluate = [&model](int, double, compare::SceneState& state) {
-    state.positions = {in_doubles(model.positions)};
-    state.normals = {in_doubles(model.normals)};
+    state.positions = {in_doubles(std::span(model.positions))};
+    state.normals = {in_doubles(std::span(model.normals))};
+    state.tangents = {in_doubles(std::span(model.tangents))};
     state.joints = model.skeleton.reference;
   };
   return scene;

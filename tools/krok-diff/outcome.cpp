@@ -12,6 +12,7 @@ namespace krok::diff {
 namespace {
 
 constexpr int kDigits = 3;
+constexpr const char* kHandedness = "handedness of tangents";
 
 std::string in_unit(double value, Unit unit) {
   if (!std::isfinite(value)) return "not a number";
@@ -24,6 +25,8 @@ std::string in_unit(double value, Unit unit) {
     case Unit::time:
       return value < 1.0 ? readable(value * 1000, kDigits) + " ms"
                          : readable(value, kDigits) + " s";
+    case Unit::side:
+      return value > 0 ? "turned round" : "equal";
     case Unit::ratio:
       break;
   }
@@ -38,6 +41,7 @@ const char* unit_name(Unit unit) {
       return "rad";
     case Unit::time:
       return "s";
+    case Unit::side:
     case Unit::ratio:
       break;
   }
@@ -111,6 +115,11 @@ std::string to_text(const Row& row, const PlaceNames& names) {
   if (measure.largest == 0) {
     return fmt::format("{}: equal in all {}", row.what, grouped(measure.count));
   }
+  if (row.unit == Unit::side) {
+    return fmt::format("{}: {} at {}; in {} of {}", row.what, in_unit(measure.largest, row.unit),
+                       to_text(measure.where, names), grouped(measure.over),
+                       grouped(measure.count));
+  }
   std::string text =
       fmt::format("{}: largest {} at {}; RMS {}, 95 % {}", row.what,
                   in_unit(measure.largest, row.unit), to_text(measure.where, names),
@@ -165,10 +174,15 @@ std::string to_text(const Item& item, const PlaceNames& names) {
   if (item.place.in_second) text = "the second's " + text;
   const char* before = ": ";
   for (const Row& row : item.rows) {
-    if (row.measure.within()) continue;
-    text += fmt::format(
-        "{}{} up to {}, RMS {}, 95 % {}", before, row.what, in_unit(row.measure.largest, row.unit),
-        in_unit(row.measure.rms(), row.unit), in_unit(row.measure.percentile(0.95), row.unit));
+    const compare::Measure& measure = row.measure;
+    if (measure.within()) continue;
+    const std::string largest = in_unit(measure.largest, row.unit);
+    text += before + row.what;
+    text +=
+        row.unit == Unit::side
+            ? fmt::format(" {} in {} of {}", largest, grouped(measure.over), grouped(measure.count))
+            : fmt::format(" up to {}, RMS {}, 95 % {}", largest, in_unit(measure.rms(), row.unit),
+                          in_unit(measure.percentile(0.95), row.unit));
     before = "; ";
   }
   return text;
@@ -215,12 +229,21 @@ void Outcome::add_row(std::string what, Unit unit, const compare::Measure& measu
   if (measure.count > 0) rows.push_back({std::move(what), unit, measure});
 }
 
+void Outcome::add_tangents(const compare::Measure& directions, const compare::Measure& sides) {
+  add_row("tangents", Unit::angle, directions);
+  if (!sides.within()) add_row(kHandedness, Unit::side, sides);
+}
+
 void Outcome::add_parts(const std::vector<compare::PartDifference>& parts) {
   for (const compare::PartDifference& part : parts) {
     Item item;
     item.place = {.mesh = part.mesh, .in_second = part.in_second};
     if (part.positions.count > 0) item.rows.push_back({"positions", Unit::length, part.positions});
     if (part.normals.count > 0) item.rows.push_back({"normals", Unit::angle, part.normals});
+    if (part.tangents.count > 0) item.rows.push_back({"tangents", Unit::angle, part.tangents});
+    if (!part.tangent_sides.within()) {
+      item.rows.push_back({kHandedness, Unit::side, part.tangent_sides});
+    }
     meshes.push_back(std::move(item));
   }
 }

@@ -11,7 +11,13 @@
 
 namespace krok::diff {
 
-enum class Unit { length, angle, ratio, time };
+enum class Unit {
+  length,
+  angle,
+  ratio,
+  time,
+  side,  // 1 where something is turned round, else 0
+};
 
 // One line of the result.
 struct Row {
@@ -44,6 +50,8 @@ struct Outcome {
   bool same = false;
 
   void add_row(std::string what, Unit unit, const compare::Measure& measure);
+  // Their directions and, where it differs, the handedness.
+  void add_tangents(const compare::Measure& directions, const compare::Measure& sides);
   void add_parts(const std::vector<compare::PartDifference>& parts);
   void add_joints(const std::vector<compare::JointDifference>& found);
 };

@@ -95,7 +95,10 @@ void declare_tolerances(CLI::App& app, ToleranceArguments& arguments) {
       ->type_name("NUMBER")
       ->default_str(arguments.ratio);
   app.add_option("--normals", arguments.normals,
-                 "The same for normals and tangents alone (default: that of --angle)")
+                 "The same for normals and tangents alone (default: that of --angle). A tangent "
+                 "of the other handedness is a difference whatever the angle. Tangents that only "
+                 "one of two glTF files has are a difference where both have a normal texture, "
+                 "else they are told")
       ->type_name("ANGLE");
   app.add_option("--joints", arguments.joints,
                  "The same for joints alone, 1mm or 1mm,0.5deg (default: those of --tolerance and "

@@ -314,5 +314,17 @@ TEST(ImportedShape, TargetsStandInTheReferencePose) {
   EXPECT_EQ(too_long.error().code, "scene-too-long");
 }
 
+// Model's are of length 1, so one that has no direction cannot stand among them.
+TEST(ImportedShape, ATangentThatIsZeroTakesTheOthersWithIt) {
+  std::vector<Vec4f> tangents(12, Vec4f(1, 0, 0, 1));
+  for (const bool zero : {false, true}) {
+    if (zero) tangents[3] = Vec4f(0, 0, 0, 1);
+    nodes::Scene scene = armature_scene();
+    scene.meshes[0].primitives[0].tangents = shared(std::vector<Vec4f>(tangents));
+    const auto evaluator = *nodes::Evaluator::create(scene);
+    EXPECT_EQ(import(scene, evaluator).figure.model.tangents.size(), zero ? 0u : 12u);
+  }
+}
+
 }  // namespace
 }  // namespace krok::test

@@ -55,8 +55,21 @@ TEST(ModelDifference, MeasuresEachAttributeAtItsVertex) {
   EXPECT_EQ(found.normals.where.vertex, 1);
   EXPECT_EQ(found.texture_coordinates.largest, 0.125);
   EXPECT_EQ(found.texture_coordinates.where.vertex, 3);
-  EXPECT_EQ(found.tangents.largest, kPi);
+  EXPECT_TRUE(found.tangents.within());
+  EXPECT_EQ(found.tangent_sides.over, 1);
+  EXPECT_EQ(found.tangent_sides.where.vertex, 0);
   EXPECT_TRUE(found.weights.within());
+
+  other = make_model();
+  other.tangents[3] = Vec4f(std::cos(0.01f), std::sin(0.01f), 0, 1);
+  const ModelDifference turned = compare(make_model(), other);
+  EXPECT_FALSE(turned.same());
+  EXPECT_NEAR(turned.tangents.largest, 0.01, 1e-6);
+  EXPECT_EQ(turned.tangents.where.vertex, 3);
+  EXPECT_TRUE(turned.tangent_sides.within());
+  other.tangents.clear();
+  EXPECT_EQ(compare(make_model(), other).structure,
+            std::vector<std::string>{"only the first has tangents"});
 }
 
 TEST(ModelDifference, WeightsAreComparedJointByJoint) {

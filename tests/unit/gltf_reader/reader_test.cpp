@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "formats/gltf/gltf_reader.h"
 #include "support/glb_builder.h"
@@ -106,8 +107,42 @@ TEST(GltfReader, ReadsTangentsOfLengthOne) {
   attributes["TANGENT"] = builder.add(tangents, "VEC4");
   asset = gltf::read(builder.glb());
   ASSERT_TRUE(asset.ok());
-  EXPECT_FALSE(asset->meshes[0].primitives[0].tangents);
-  EXPECT_EQ(asset->diagnostics.at(0).code, "gltf-mesh-tangents");
+  // It stays zero, so that who compares the others still can.
+  const auto& kept = asset->meshes[0].primitives[0].tangents;
+  ASSERT_TRUE(kept);
+  EXPECT_EQ((*kept)[1], Vec4f(0, 0, 0, 1));
+  EXPECT_EQ((*kept)[2], Vec4f(0, 1, 0, -1));
+  ASSERT_EQ(asset->diagnostics.size(), 1u);
+  EXPECT_EQ(asset->diagnostics[0].code, "gltf-mesh-tangents");
+  EXPECT_NE(
+      asset->diagnostics[0].message.find("1 of 4 tangents are zero, the first that of vertex 1"),
+      std::string::npos)
+      << asset->diagnostics[0].message;
+  tangents[5] = std::numeric_limits<float>::quiet_NaN();
+  attributes["TANGENT"] = builder.add(tangents, "VEC4");
+  asset = gltf::read(builder.glb());
+  ASSERT_FALSE(asset.ok());
+  EXPECT_EQ(asset.error().code, "gltf-value");
+}
+
+TEST(GltfReader, ReadsHowMorphTargetsMoveTangents) {
+  GlbBuilder builder = test::baked_rig();
+  auto& primitive = builder.json["meshes"][0]["primitives"][0];
+  std::vector<float> moved(12, 0.0f);
+  moved[7] = 0.5f;
+  primitive["targets"][1]["TANGENT"] = builder.add(moved, "VEC3");
+  auto asset = gltf::read(builder.glb());
+  ASSERT_TRUE(asset.ok()) << asset.error().message;
+  const auto& targets = asset->meshes[0].primitives[0].targets;
+  EXPECT_FALSE(targets[0].tangents);
+  ASSERT_TRUE(targets[1].tangents);
+  EXPECT_EQ((*targets[1].tangents)[2], Vec3f(0, 0.5f, 0));
+  // One vertex short.
+  moved.resize(9);
+  primitive["targets"][1]["TANGENT"] = builder.add(moved, "VEC3");
+  asset = gltf::read(builder.glb());
+  ASSERT_FALSE(asset.ok());
+  EXPECT_EQ(asset.error().code, "gltf-mesh");
 }
 
 TEST(GltfReader, ReadsIndicesOfEachSize) {

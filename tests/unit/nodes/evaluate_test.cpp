@@ -24,6 +24,7 @@ struct Played {
 
 Played play(const GlbBuilder& builder, int animation, double time) {
   Played played;
+  played.state.with_tangents = true;
   auto asset = gltf::read(builder.glb());
   EXPECT_TRUE(asset.ok()) << asset.error().message;
   played.asset = std::move(*asset);
@@ -167,6 +168,62 @@ TEST(GltfEvaluate, NormalsComeOutUnitWhateverTheirLengthInTheFile) {
     expect_near(normal, Vec3(0, 0.6, 0.8), 1e-6);
   }
   EXPECT_EQ(played.state.normals.at(0)[3], Vec3::Zero());
+}
+
+// Tangents along +X, on either side.
+void add_tangents(GlbBuilder& builder) {
+  builder.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
+      builder.add(std::vector<float>{1, 0, 0, 1, 1, 0, 0, -1, 1, 0, 0, 1, 1, 0, 0, -1}, "VEC4");
+}
+
+void expect_tangent(const Vec4& tangent, const Vec3& direction, double side) {
+  expect_near(tangent.head<3>(), direction);
+  EXPECT_EQ(tangent.w(), side);
+}
+
+TEST(GltfEvaluate, TangentsFollowJoints) {
+  GlbBuilder builder = test::rig();
+  add_tangents(builder);
+  const Played played = play(builder, 0, 1);
+  expect_tangent(played.state.tangents.at(0)[1], Vec3(1, 0, 0), -1);
+  expect_tangent(played.state.tangents.at(0)[2], Vec3(0, 1, 0), 1);
+  expect_tangent(played.state.tangents.at(0)[3], Vec3(0, 1, 0), -1);
+}
+
+TEST(GltfEvaluate, TangentsAreMadeOnlyWhereTheyAreWanted) {
+  GlbBuilder builder = test::rig();
+  add_tangents(builder);
+  Played played = play(builder, 0, 1);
+  EXPECT_EQ(played.state.tangents.at(0).size(), 4u);
+  played.state.with_tangents = false;
+  nodes::Evaluator::create(played.asset)->evaluate(0, 1, played.state);
+  EXPECT_TRUE(played.state.tangents.at(0).empty());
+  EXPECT_TRUE(play(test::rig(), 0, 1).state.tangents.at(0).empty());
+}
+
+TEST(GltfEvaluate, TangentsFollowSurfacesAndTurnRoundInAMirror) {
+  GlbBuilder builder = test::square();
+  builder.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = builder.add(
+      std::vector<float>{0.6F, 0.8F, 0, 1, 0.6F, 0.8F, 0, -1, 1, 0, 0, 1, 0, 0, 0, 1}, "VEC4");
+  builder.json["nodes"][0]["scale"] = {-2, 1, 1};
+  const Played played = play(builder, -1, 0);
+  // Unlike normals they are stretched with the surface.
+  expect_tangent(played.state.tangents.at(0)[0], Vec3(-1.2, 0.8, 0).normalized(), -1);
+  expect_tangent(played.state.tangents.at(0)[1], Vec3(-1.2, 0.8, 0).normalized(), 1);
+  expect_tangent(played.state.tangents.at(0)[2], Vec3(-1, 0, 0), -1);
+  EXPECT_EQ(played.state.tangents.at(0)[3].head<3>(), Vec3::Zero());  // not NaN
+}
+
+TEST(GltfEvaluate, MorphTargetsMoveTangents) {
+  GlbBuilder builder = test::baked_rig();
+  add_tangents(builder);
+  builder.json["meshes"][0]["primitives"][0]["targets"][1]["TANGENT"] =
+      builder.add(std::vector<float>{0, 0, 0, 0, 0, 0, -1, 1, 0, -1, 0, 0}, "VEC3");
+  const Played played = play(builder, 0, 1);
+  expect_tangent(played.state.tangents.at(0)[0], Vec3(1, 0, 0), 1);
+  expect_tangent(played.state.tangents.at(0)[2], Vec3(0, 1, 0), 1);
+  EXPECT_EQ(played.state.tangents.at(0)[3].head<3>(), Vec3::Zero());
+  expect_tangent(play(builder, 0, 0.75).state.tangents.at(0)[2], Vec3(1, 1, 0).normalized(), 1);
 }
 
 TEST(GltfEvaluate, AnimatedNodesGivenByAMatrixKeepWhatIsNotAnimated) {
