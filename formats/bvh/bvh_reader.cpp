@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cassert>
 #include <memory>
+#include <mutex>
 
 #include "capture/exporter.h"
 #include "capture/fill_frames.h"
@@ -14,6 +15,7 @@
 #include "core/parallel.h"
 #include "formats/bvh/angle_unit_internal.h"
 #include "formats/bvh/decimal_commas_internal.h"
+#include "formats/bvh/far_rows_internal.h"
 #include "formats/bvh/frame_rate.h"
 #include "formats/bvh/hierarchy.h"
 #include "formats/bvh/kinematics.h"
@@ -153,7 +155,18 @@ class Reader {
     choose_rate();
     if (Status chosen = choose_conventions(); !chosen) return chosen;
     if (Status filled = fill_clip(); !filled) return filled;
-    if (!row_is_faulty_) report_rest_pose();
+    if (row_is_faulty_) return {};
+    if (Status told = report_far_values(); !told) return told;
+    report_rest_pose();
+    return {};
+  }
+
+  Status report_far_values() {
+    for (Error& fault : far_row_faults(text_, *frames_, far_, hierarchy_, file_name_)) {
+      if (options_.strictness == Strictness::strict) return std::move(fault);
+      fault.severity = Severity::warning;
+      capture_.diagnostics.push_back(std::move(fault));
+    }
     return {};
   }
 
@@ -296,7 +309,8 @@ class Reader {
                                                      std::span<Quatf> orientations) -> Status {
       const auto outcome = frames->read(static_cast<std::size_t>(first + skip),
                                         static_cast<std::size_t>(count), positions, orientations);
-      if (outcome.row_is_faulty || outcome.overflow) {
+      // Of far values read() tells.
+      if (outcome.row_is_faulty || outcome.overflow || outcome.far.any()) {
         return Error("bvh-channel-count", "a row is not whole, or its numbers are too large");
       }
       if (progress != nullptr) progress->advance(static_cast<std::uint64_t>(count));
@@ -320,6 +334,8 @@ class Reader {
     clip.resize(static_cast<int>(count));
     if (options_.progress != nullptr) options_.progress->begin("reading frames", count);
     std::atomic<std::size_t> first_overflow = count;
+    std::mutex of_far;
+    far_ = {};
     parallel_for(count, kRowsAtOnce, options_.jobs, [&](std::size_t begin, std::size_t end) {
       const auto outcome = frames_->read(
           begin, end - begin,
@@ -334,6 +350,10 @@ class Reader {
         while (*outcome.overflow < first &&
                !first_overflow.compare_exchange_weak(first, *outcome.overflow)) {
         }
+      }
+      if (outcome.far.any()) {
+        const std::lock_guard lock(of_far);
+        far_.add(outcome.far);
       }
       if (options_.progress != nullptr) options_.progress->advance(end - begin);
     });
@@ -384,6 +404,7 @@ class Reader {
   Positions positions_ = Positions::absolute;
   Conversion conversion_;
   std::shared_ptr<const RowFrames> frames_;
+  FarValues far_;
   Capture capture_;
 };
 

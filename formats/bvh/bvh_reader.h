@@ -55,7 +55,9 @@ struct Capture : krok::Capture {
 // bvh-channel-count, bvh-frame-count, bvh-frame-time, bvh-no-motion, bvh-limit, direction-parallel.
 // Of warnings and notes besides these: bvh-name, bvh-name-duplicate, bvh-roots, bvh-offset,
 // bvh-text-after, bvh-positions, bvh-rate, bvh-unit, bvh-up, bvh-forward, bvh-rest-frame,
-// bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones, bvh-exporter, bvh-angles, bvh-text-before.
+// bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones, bvh-exporter, bvh-angles, bvh-text-before,
+// bvh-far-rotation and bvh-far-position (capture/far_values.h: numbers beyond sense; the first of
+// each is told, or an error where reading is strict).
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options = {});
 
@@ -68,8 +70,8 @@ struct OpenedCapture : Capture {
 // The beginning of a file, and a few rows to work out what read() works out, without reading the
 // rest: for files of any length. Gives nothing where the file is not a row a line throughout, as
 // many as announced, or has any other fault: read() tells it then. The same holds where a frame
-// gives an Error: a row there proved not to be whole, so that what was read of the file is worth
-// nothing.
+// gives an Error: a row there proved not to be whole or to have numbers beyond sense, so that what
+// was read of the file is worth nothing.
 //
 // `release`, which may be empty, is called by the source's release() with the offset of the text
 // before which nothing is read any more.

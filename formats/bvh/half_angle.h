@@ -20,7 +20,7 @@ double near_angle(double degrees);
 // Constants that the vectorised form shares.
 namespace half_angle_detail {
 
-inline constexpr double kFarthestAngle = 0x1p40;
+inline constexpr double kFarthestAngle = 1e6;
 inline constexpr double kHalfTurns = 1.0 / 180.0;
 inline constexpr double kHalfRadians = 0x1.1df46a2529d39p-7;  // pi / 360
 // Added and taken off again, it rounds a number to the nearest integer, whose lowest bits are then

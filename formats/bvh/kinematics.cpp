@@ -1,7 +1,11 @@
 #include "formats/bvh/kinematics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+
+#include "capture/far_values.h"
+#include "formats/bvh/half_angle.h"
 
 namespace krok::bvh {
 
@@ -52,15 +56,34 @@ Kinematics::Kinematics(const Hierarchy& hierarchy, Positions positions,
     base_.push_back(to_krok * (kept * conversion.metres()));
     step_begins_.push_back(steps_.size());
   }
+  farthest_ = farthest_position(reference());
 }
 
 kinematics_detail::Job Kinematics::job(double* scratch) const {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
   const Vec3& p = reference_to_motion_.position;
   const Quat& q = reference_to_motion_.orientation;
-  return {parents_.data(), parents_.size(),     base_.data()->data(),
-          steps_.data(),   step_begins_.data(), {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()},
-          scratch};
+  return {parents_.data(),
+          parents_.size(),
+          base_.data()->data(),
+          steps_.data(),
+          step_begins_.data(),
+          {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()},
+          scratch,
+          farthest_};
+}
+
+std::optional<Kinematics::Rotation> Kinematics::far_rotation(const double* values,
+                                                             std::size_t stride) const {
+  // What poses() tells of must be all that is looked for here.
+  static_assert(half_angle_detail::kFarthestAngle <= kFarthestRotation);
+  std::optional<Rotation> found;
+  for (const kinematics_detail::Step& step : steps_) {
+    if (step.is_position || (found && found->channel < step.channel)) continue;
+    const double degrees = std::abs(values[step.channel * stride] * degrees_per_angle_);
+    if (degrees > kFarthestRotation) found = Rotation{step.channel, degrees};
+  }
+  return found;
 }
 
 void Kinematics::put_in_degrees(std::span<double> values, std::size_t stride) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,9 +31,21 @@ class Kinematics {
   // bits are those of pose(), rounded. `values` has [channels x kFramesAtOnce] doubles on a 64-byte
   // boundary (what stands in the places of frames that are not asked for must be finite), the
   // results shape [frames x joints]; `scratch` is resized as needed, and may serve again. False if
-  // the float of some number may be infinite.
+  // some position may be farther than farthest(), infinite perhaps, or some rotation than
+  // kFarthestRotation.
   bool poses(std::span<const double> values, std::size_t frames, std::vector<double>& scratch,
              std::span<Vec3f> positions, std::span<Quatf> orientations) const;
+
+  // Beyond which positions are told of, in metres.
+  double farthest() const { return farthest_; }
+
+  // The first channel with a rotation beyond kFarthestRotation in a row whose values stand `stride`
+  // apart, and its size in degrees.
+  struct Rotation {
+    std::size_t channel = 0;
+    double degrees = 0;
+  };
+  std::optional<Rotation> far_rotation(const double* values, std::size_t stride) const;
 
   // joint_to_world with the OFFSETs and zero rotations.
   std::vector<Transform> reference() const;
@@ -48,6 +61,7 @@ class Kinematics {
   std::vector<Vec3> base_;     // the offset's part that position channels leave
   Transform reference_to_motion_;
   double degrees_per_angle_ = 1.0;
+  double farthest_ = 0;
   std::vector<kinematics_detail::Step> steps_;  // joint by joint
   std::vector<std::size_t> step_begins_;        // [joints + 1]
 };

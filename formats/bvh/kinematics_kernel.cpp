@@ -12,7 +12,6 @@
 #include <hwy/highway.h>
 
 #include <cstring>
-#include <limits>
 
 #include "core/simd.h"
 #include "formats/bvh/half_angle.h"
@@ -35,20 +34,22 @@ constexpr std::size_t kLanes = hn::MaxLanes(Doubles());
 // Everything here does what the scalar reference does, operation by operation and without fused
 // arithmetic, so that both give the same bits.
 
-HWY_INLINE V near_enough(V degrees) {
+// `near` becomes false where an angle is far.
+HWY_INLINE V near_enough(V degrees, bool& near) {
   const Doubles d;
   const auto far = hn::Gt(hn::Abs(degrees), hn::Set(d, kFarthestAngle));
   if (HWY_LIKELY(hn::AllFalse(d, far))) return degrees;
+  near = false;
   HWY_ALIGN double values[kLanes];
   hn::Store(degrees, d, values);
   for (double& value : values) value = near_angle(value);
   return hn::IfThenElse(far, hn::Load(d, values), degrees);
 }
 
-HWY_INLINE void half_angles(V degrees, V& sine, V& cosine) {
+HWY_INLINE void half_angles(V degrees, V& sine, V& cosine, bool& near) {
   const Doubles d;
   const Integers u;
-  degrees = near_enough(degrees);
+  degrees = near_enough(degrees, near);
   const V rounder = hn::Set(d, kRounder);
   const V rounding = hn::Add(hn::Mul(degrees, hn::Set(d, kHalfTurns)), rounder);
   const V half_turns = hn::Sub(rounding, rounder);
@@ -161,7 +162,7 @@ HWY_INLINE void place(const Frame& parent, V x, V y, V z, Frame& frame) {
 }
 
 HWY_INLINE Frame joint_frame(const Job& job, std::size_t j, const Frame& parent,
-                             const double* values) {
+                             const double* values, bool& near) {
   const Doubles d;
   Frame frame = parent;
   V offset[3] = {hn::Set(d, job.base[3 * j]), hn::Set(d, job.base[3 * j + 1]),
@@ -179,7 +180,7 @@ HWY_INLINE Frame joint_frame(const Job& job, std::size_t j, const Frame& parent,
     const auto zero = hn::Eq(value, hn::Zero(d));
     if (hn::AllTrue(d, zero)) continue;
     V sine, cosine;
-    half_angles(hn::Mul(value, factor), sine, cosine);
+    half_angles(hn::Mul(value, factor), sine, cosine, near);
     Frame turned = frame;
     turn(turned, step.axis, sine, cosine);
     frame.x = hn::IfThenElse(zero, frame.x, turned.x);
@@ -201,7 +202,7 @@ HWY_INLINE Frame joint_frame(const Job& job, std::size_t j, const Frame& parent,
 }
 
 // Stores a joint in each of `frames` frames, `joints` apart. Returns the sum of the sizes of all
-// components: not over what a float holds means that none is.
+// components: where it is not over a limit, no position is.
 HWY_INLINE V emit(const Frame& frame, std::size_t frames, std::size_t joints, float* positions,
                   float* orientations) {
   const Floats f;
@@ -222,7 +223,8 @@ HWY_INLINE V emit(const Frame& frame, std::size_t frames, std::size_t joints, fl
 bool poses(const Job& job, const double* values, std::size_t frames, float* positions,
            float* orientations) {
   const Doubles d;
-  const V most = hn::Set(d, static_cast<double>(std::numeric_limits<float>::max()));
+  const V most = hn::Set(d, job.farthest);
+  bool near = true;
   auto sound = hn::Le(hn::Zero(d), most);
   for (std::size_t first = 0; first < frames; first += kLanes) {
     const std::size_t used = frames - first < kLanes ? frames - first : kLanes;
@@ -233,14 +235,14 @@ bool poses(const Job& job, const double* values, std::size_t frames, float* posi
               : Frame{hn::Set(d, job.root[0]), hn::Set(d, job.root[1]), hn::Set(d, job.root[2]),
                       hn::Set(d, job.root[3]), hn::Set(d, job.root[4]), hn::Set(d, job.root[5]),
                       hn::Set(d, job.root[6])};
-      const Frame frame = joint_frame(job, j, parent, values + first);
+      const Frame frame = joint_frame(job, j, parent, values + first, near);
       store_frame(frame, job.scratch + j * 7 * kLanes);
       const std::size_t place = first * job.joints + j;
       const V size = emit(frame, used, job.joints, positions + 3 * place, orientations + 4 * place);
       sound = hn::And(sound, hn::Le(size, most));
     }
   }
-  return hn::AllTrue(d, sound);
+  return near && hn::AllTrue(d, sound);
 }
 
 #else

@@ -27,12 +27,14 @@ struct Job {
   const std::size_t* step_begins;  // [joints + 1]
   double root[7];                  // the frame that the root stands in: position, x, y, z, w
   double* scratch;                 // [joints x 7 x kFramesAtOnce], aligned to 64 bytes
+  double farthest;                 // no more than the largest float
 };
 
 // Poses of up to kFramesAtOnce frames, frames as lanes: `values` has [channels x kFramesAtOnce]
 // doubles on a 64-byte boundary, all finite. Stores joint_to_world of the first `frames` as floats,
 // [frames x joints x 3] positions and [frames x joints x 4] orientations (x, y, z, w). False if
-// something may be too large for a float.
+// some position may be farther from the origin than `farthest`, or some angle be beyond
+// kFarthestAngle.
 bool poses(const Job& job, const double* values, std::size_t frames, float* positions,
            float* orientations);
 

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 
 #include "formats/bvh/half_angle.h"
 #include "formats/bvh/kinematics_kernel.h"
@@ -78,6 +77,17 @@ Frame joint_frame(const Job& job, std::size_t j, const Frame& parent, const doub
   return frame;
 }
 
+bool turns_far(const Job& job, const double* values) {
+  for (std::size_t s = 0; s < job.step_begins[job.joints]; ++s) {
+    const Step& step = job.steps[s];
+    if (step.is_position) continue;
+    if (std::abs(values[step.channel * kFramesAtOnce]) > half_angle_detail::kFarthestAngle) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 void pose_scalar(const Job& job, const double* values, std::size_t stride, double* joints) {
@@ -103,6 +113,7 @@ bool poses_scalar(const Job& job, const double* values, std::size_t frames, floa
   bool sound = true;
   for (std::size_t i = 0; i < frames; ++i) {
     pose_scalar(job, values + i, kFramesAtOnce, job.scratch);
+    sound = sound && !turns_far(job, values + i);
     for (std::size_t j = 0; j < job.joints; ++j) {
       const double* at = job.scratch + 7 * j;
       const std::size_t place = i * job.joints + j;
@@ -110,9 +121,10 @@ bool poses_scalar(const Job& job, const double* values, std::size_t frames, floa
       for (std::size_t k = 0; k < 4; ++k) {
         orientations[4 * place + k] = static_cast<float>(at[3 + k]);
       }
-      for (std::size_t k = 0; k < 7; ++k) {
-        sound = sound && std::abs(at[k]) <= static_cast<double>(std::numeric_limits<float>::max());
-      }
+      const double size =
+          ((std::abs(at[0]) + std::abs(at[1])) + (std::abs(at[2]) + std::abs(at[3] - at[4]))) +
+          std::abs(at[5] - at[6]);
+      sound = sound && size <= job.farthest;
     }
   }
   return sound;

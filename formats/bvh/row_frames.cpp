@@ -59,9 +59,28 @@ RowFrames::Outcome RowFrames::read(std::size_t first, std::size_t count, std::sp
                                          block_positions, block_orientations);
     if (sound || outcome.overflow) continue;
     const auto bad = first_overflow(frames, joints, block_positions, block_orientations);
-    if (bad) outcome.overflow = first + done + *bad;
+    if (bad) {
+      outcome.overflow = first + done + *bad;
+    } else {
+      look_at_frames(first + done, frames, values.data(), block_positions, outcome);
+    }
   }
   return outcome;
+}
+
+void RowFrames::look_at_frames(std::size_t first, std::size_t frames, const double* values,
+                               std::span<const Vec3f> positions, Outcome& outcome) const {
+  const std::size_t joints = kinematics_.joint_count();
+  for (std::size_t i = 0; i < frames; ++i) {
+    const std::size_t row = first + i;
+    if (rows_[row] == RowIndex::kFaulty) continue;
+    if (kinematics_.far_rotation(values + i, kAtOnce)) outcome.far.add_rotation(row);
+    const auto frame = positions.subspan(i * joints, joints);
+    const bool far = std::any_of(frame.begin(), frame.end(), [&](const Vec3f& p) {
+      return p.cast<double>().norm() > kinematics_.farthest();
+    });
+    if (far) outcome.far.add_position(row);
+  }
 }
 
 // False if the row may still be whole.

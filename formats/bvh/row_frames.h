@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "capture/far_values.h"
 #include "formats/bvh/kinematics.h"
 #include "formats/bvh/motion_rows.h"
 
@@ -31,6 +32,7 @@ class RowFrames {
   struct Outcome {
     bool row_is_faulty = false;           // a row is not whole; nothing is sure then
     std::optional<std::size_t> overflow;  // the first row with positions too large for floats
+    FarValues far;                        // rows with values beyond sense
   };
 
   // Fills in the frames of rows [first, first + count), shape [count x joints]; those of faulty
@@ -39,6 +41,9 @@ class RowFrames {
                std::span<Quatf> orientations) const;
 
  private:
+  // Looks through frames of which poses() told; `values` as it takes them.
+  void look_at_frames(std::size_t first, std::size_t frames, const double* values,
+                      std::span<const Vec3f> positions, Outcome& outcome) const;
   bool parse_plain_row(std::size_t row, double* values, std::vector<std::uint32_t>& edges) const;
   bool parse_whole_row(std::size_t row, double* values) const;
 

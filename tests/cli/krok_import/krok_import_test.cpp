@@ -126,6 +126,29 @@ TEST_F(ImportTest, RepairsAreListed) {
   EXPECT_EQ(both.exit_code, 2);
 }
 
+// The motion is streamed until such a number is met, and read anew then.
+TEST_F(ImportTest, NumbersBeyondSenseAreToldOnceAndStrictRefusesThem) {
+  put("in.bvh", capture(500, "8e9"));
+  const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  int told = 0;
+  const Json report = Json::parse(run.out);
+  for (const Json& issue : report["issues"]) {
+    if (issue["code"] != "bvh-far-position") continue;
+    ++told;
+    EXPECT_EQ(issue["severity"], "warning");
+    EXPECT_FALSE(issue["joint"].get<std::string>().empty());
+    EXPECT_GE(issue["frame"].get<int>(), 0);
+    EXPECT_GT(issue["line"].get<int>(), 0);
+    EXPECT_GT(issue["column"].get<int>(), 0);
+  }
+  EXPECT_EQ(told, 1) << run.out;
+  const ToolRun strict =
+      run_tool("krok-import", {path("in.bvh"), "-o", path("no.anim"), "--strict"});
+  EXPECT_EQ(strict.exit_code, 2);
+  EXPECT_TRUE(has_code(strict.err, "bvh-far-position")) << strict.err;
+}
+
 TEST_F(ImportTest, OutputsNamedAfterAnotherFormatAreRefused) {
   put("in.bvh", capture(5));
   for (const std::string name : {"x.glb", "x.gltf", "x.bvh", "x.GLB"}) {

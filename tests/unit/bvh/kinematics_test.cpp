@@ -87,7 +87,7 @@ Hierarchy odd_hierarchy() {
 }
 
 void expect_same(const Kinematics& kinematics, std::size_t channels, std::size_t frames,
-                 const std::function<double()>& value) {
+                 const std::function<double()>& value, bool near) {
   struct alignas(64) Line {
     double values[kAtOnce];
   };
@@ -100,8 +100,9 @@ void expect_same(const Kinematics& kinematics, std::size_t channels, std::size_t
   std::vector<Quatf> orientations(frames * joints);
   std::vector<double> scratch;
   const auto fill = [&] {
-    EXPECT_TRUE(kinematics.poses({values[0].values, channels * kAtOnce}, frames, scratch, positions,
-                                 orientations));
+    EXPECT_EQ(kinematics.poses({values[0].values, channels * kAtOnce}, frames, scratch, positions,
+                               orientations),
+              near);
   };
   for (const Simd simd : {Simd::other, Simd::avx2}) {
     limit_simd(simd);
@@ -140,13 +141,15 @@ TEST(Kinematics, ManyFramesGiveTheBitsOfOneByOne) {
     const Kinematics kinematics(hierarchy, positions, *Conversion::make(conventions));
     for (std::size_t frames = 1; frames <= kAtOnce; ++frames) {
       for (const double reach : {1.0, 180.0, 1e5, 1e15}) {
-        expect_same(kinematics, channels, frames, [&] {
+        const auto value = [&] {
           // Some channels are zero in some frames.
           const double part = static_cast<double>(engine()) / 2147483648.0 - 1.0;
           return engine() % 4 == 0 ? 0.0 : reach * part;
-        });
+        };
+        expect_same(kinematics, channels, frames, value, reach <= 1e5);
       }
-      expect_same(kinematics, channels, frames, [] { return 0.0; });
+      expect_same(
+          kinematics, channels, frames, [] { return 0.0; }, true);
     }
   }
 }
@@ -168,6 +171,36 @@ TEST(Kinematics, TellsWhatAFloatCannotHold) {
   EXPECT_TRUE(sound(kAtOnce));
   values[1].values[kAtOnce - 1] = 1e39;
   EXPECT_FALSE(sound(kAtOnce));
+}
+
+// Whatever the instruction set, and in whichever of the frames that are done together.
+TEST(Kinematics, TellsWhatIsBeyondSense) {
+  const Hierarchy hierarchy = odd_hierarchy();
+  const Kinematics kinematics(hierarchy, Positions::absolute, {});
+  EXPECT_EQ(kinematics.farthest(), 1e4 * 3);  // the extent along z
+  struct alignas(64) Line {
+    double values[kAtOnce] = {};
+  };
+  std::vector<Vec3f> positions(kAtOnce * kinematics.joint_count());
+  std::vector<Quatf> orientations(positions.size());
+  std::vector<double> scratch;
+  const auto near = [&](std::size_t channel, std::size_t frame, double value) {
+    std::vector<Line> values(hierarchy.channels.size());
+    values[channel].values[frame] = value;
+    return kinematics.poses({values[0].values, values.size() * kAtOnce}, kAtOnce, scratch,
+                            positions, orientations);
+  };
+  for (const Simd simd : {Simd::other, Simd::avx2, Simd::avx512}) {
+    limit_simd(simd);
+    for (std::size_t frame = 0; frame < kAtOnce; ++frame) {
+      EXPECT_TRUE(near(3, frame, 999999.0)) << frame;
+      EXPECT_FALSE(near(3, frame, 1000001.0)) << frame;
+      EXPECT_FALSE(near(3, frame, -1e9)) << frame;
+      EXPECT_TRUE(near(0, frame, 2.9e4)) << frame;
+      EXPECT_FALSE(near(0, frame, -4e4)) << frame;
+      EXPECT_TRUE(near(11, frame, 1e9)) << frame;  // a channel that moves nothing
+    }
+  }
 }
 
 }  // namespace

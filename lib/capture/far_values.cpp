@@ -1,0 +1,69 @@
+#include "capture/far_values.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+
+namespace krok {
+
+namespace {
+
+std::string frames_of(std::size_t frames) {
+  return frames == 1 ? "no other frame has such values"
+                     : fmt::format("{} frames have such values", frames);
+}
+
+}  // namespace
+
+double farthest_position(std::span<const Transform> reference) {
+  constexpr double kTimesTheSize = 1e4;
+  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
+  Eigen::AlignedBox3d box;
+  for (const Transform& joint : reference) box.extend(joint.position);
+  const double size = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+  if (!std::isfinite(size)) return kMost;
+  return std::min(kMost, kTimesTheSize * std::max(size, 1.0));
+}
+
+void FarValues::add_rotation(std::size_t frame) {
+  first_rotation = std::min(first_rotation, frame);
+  ++rotations;
+}
+
+void FarValues::add_position(std::size_t frame) {
+  first_position = std::min(first_position, frame);
+  ++positions;
+}
+
+void FarValues::add(const FarValues& other) {
+  first_rotation = std::min(first_rotation, other.first_rotation);
+  first_position = std::min(first_position, other.first_position);
+  rotations += other.rotations;
+  positions += other.positions;
+}
+
+Error far_rotation(std::string code, std::string_view channel, double degrees, std::size_t frames) {
+  return {std::move(code),
+          fmt::format("{} turns by {} degrees, {} whole turns, which no joint does; {}", channel,
+                      readable(degrees), readable(std::floor(degrees / 360.0)), frames_of(frames)),
+          "look at the value; it is read as it stands, less its whole turns"};
+}
+
+Error far_position(std::string code, std::string_view joint, const Vec3& position,
+                   std::string_view channel, double value, std::size_t frames) {
+  const auto size = static_cast<float>(position.cwiseAbs().maxCoeff());
+  const double step = static_cast<double>(std::nextafter(size, INFINITY)) - size;
+  const std::string steps = step < 1 ? readable(1000 * step, 3) + " mm" : readable(step, 3) + " m";
+  return {std::move(code),
+          fmt::format("{} is {} m from the origin ({} is {}), where floats are {} apart, so that "
+                      "smaller movements are lost; {}",
+                      joint, readable(position.norm(), 4), channel, readable(value), steps,
+                      frames_of(frames)),
+          "look at the value, and at the unit; move the capture to the origin if it is far away"};
+}
+
+}  // namespace krok
