@@ -105,6 +105,47 @@ void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
   }
 }
 
+// Whether the trunk is hardly ever along the legs: on all fours, crawling or sitting.
+bool stays_folded(const Evidence& evidence) {
+  constexpr double kStretched = 0.6;
+  constexpr double kNow = 0.2;
+  std::size_t known = 0, stretched = 0;
+  for (std::size_t i = 0; i < evidence.sample_count; ++i) {
+    const auto cosine = stretch(evidence.sample(i), evidence.marks);
+    if (!cosine) continue;
+    ++known;
+    if (*cosine >= kStretched) ++stretched;
+  }
+  return known > 0 && static_cast<double>(stretched) < kNow * static_cast<double>(known);
+}
+
+// The head of an animal on all fours, or of one who crawls, is before the feet more than above
+// them. Where such a figure travels along what seems up, while its lowest joint keeps its height
+// along another axis that may be up, it walks on a floor.
+void look_for_a_floor(const Evidence& evidence, Conventions& found) {
+  constexpr std::size_t kFewestSamples = 10;
+  constexpr double kTravels = 0.25;  // all of the figure's height
+  constexpr double kKeepsHeight = 0.1;
+  if (evidence.sample_count < kFewestSamples || !stays_folded(evidence)) return;
+  const auto seeming = heights_along(evidence, found.up);
+  if (!seeming || seeming->spread < kTravels) return;
+  std::optional<Direction> floor;
+  double least = kKeepsHeight;
+  for (const Direction up : {Direction::plus_y, Direction::plus_z}) {
+    const auto heights = on_one_axis(up, found.up) ? std::nullopt : heights_along(evidence, up);
+    if (!heights || heights->spread >= least) continue;
+    floor = up;
+    least = heights->spread;
+  }
+  if (!floor) return;
+  found.up_reason += fmt::format(
+      "; but trunk and legs fold and its lowest joint keeps its height along {} while "
+      "it travels, so it seems to go on all fours",
+      signed_name(*floor));
+  found.up = *floor;
+  found.up_confidence = Confidence::guess;
+}
+
 // Whether the figure stands as its reference pose does in part of the motion, and is along `other`
 // in the rest of it: it lies there, or falls.
 bool stands_at_times(const Evidence& evidence, const UpVotes& votes, Direction other) {
@@ -137,6 +178,7 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
       }
     }
     if (!agrees) hold_against_the_ground(evidence, found);
+    if (!reference) look_for_a_floor(evidence, found);
     return;
   }
   if (reference) {
@@ -156,6 +198,7 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
   found.up_reason = fmt::format(
       "on average the head is furthest from the {} along {}, though the figure seldom stands",
       evidence.marks.lower_end(), signed_name(found.up));
+  look_for_a_floor(evidence, found);
 }
 
 }  // namespace

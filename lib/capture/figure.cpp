@@ -58,6 +58,14 @@ double path_length(const Evidence& evidence, Positions pose, int top, int joint)
 
 }  // namespace
 
+std::optional<double> stretch(Positions pose, const Landmarks& marks) {
+  if (!marks.upright_known()) return std::nullopt;
+  const auto trunk = direction_between(at(pose, marks.hips), at(pose, marks.head));
+  const auto legs = direction_between(middle_of_feet(pose, marks), at(pose, marks.hips));
+  if (!trunk || !legs) return std::nullopt;
+  return trunk->dot(*legs);
+}
+
 NearestAxis nearest_axis(const Vec3& v) {
   int axis = 0;
   const double largest = v.cwiseAbs().maxCoeff(&axis);
@@ -181,12 +189,14 @@ std::optional<Heights> heights_along(const Evidence& evidence, Direction up) {
     hips.push_back(above / height);
   }
   if (lows.empty()) return std::nullopt;
-  const auto median = [](std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+  const auto ranked = [](std::vector<double>& values, double share) {
+    const double place = share * static_cast<double>(values.size());
+    const auto found = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(values.begin(), found, values.end());
+    return *found;
   };
-  return Heights{median(lows), median(hips)};
+  const double spread = ranked(lows, 0.9) - ranked(lows, 0.1);
+  return Heights{ranked(lows, 0.5), ranked(hips, 0.5), spread};
 }
 
 }  // namespace krok::figure

@@ -54,6 +54,10 @@ inline const Vec3& at(Positions pose, int joint) {
 // From the feet, or from the hips where there are no two feet, to the head.
 std::optional<Vec3> body_axis(Positions pose, const Landmarks& marks);
 
+// The cosine of the angle between legs and trunk, from the feet to the hips and from there to the
+// head: 1 for a figure that stands, near 0 for one on all fours.
+std::optional<double> stretch(Positions pose, const Landmarks& marks);
+
 // Where the figure faces by its left and right side, at right angles to `up`.
 std::optional<Vec3> facing(Positions pose, const Landmarks& marks, Direction up);
 
@@ -87,10 +91,13 @@ double height_in(const Evidence& evidence, Positions pose);
 // The height in the reference pose, or in the first sample where that one has none.
 double height_of(const Evidence& evidence);
 
-// Where the figure is along `up`, as shares of its height, each in its median sample.
+// Where the figure is along `up`, as shares of its height; places are those of the median sample.
 struct Heights {
   double lowest = 0;  // the lowest joint: 0 for a figure on the ground of its world
   double hips = 0;    // from the lowest joint
+  // Between which the lowest joint is in four of five samples: little along the true vertical, for
+  // figures on a floor, however far they travel.
+  double spread = 0;
 };
 
 // Nothing without samples, hips or a height.

@@ -201,6 +201,50 @@ TEST(DetectConventions, AFigureThatFallsAndLiesDoesNotTurnTheWorld) {
   }
 }
 
+// An animal of `person`'s joints, trunk level at the height of its legs, head before it: along +y,
+// facing +z.
+std::vector<Vec3> on_all_fours(const Skeleton& skeleton, const Vec3& place) {
+  std::vector<Vec3> positions;
+  for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
+    const Vec3& p = skeleton.reference[j].position;
+    const bool leg = p.y() < 0;
+    const bool arm = std::abs(p.x()) > 0.1 && !leg;
+    const double down = arm ? std::abs(p.x()) - 0.2 : 0;
+    positions.push_back(place + Vec3(0, 0.92, 0) +
+                        (leg   ? p
+                         : arm ? Vec3(p.x() > 0 ? 0.15 : -0.15, -1.6 * down, 0.84)
+                               : Vec3(p.x(), 0, 2 * p.y())));
+  }
+  return positions;
+}
+
+// An animal with a person's names on a floor that is not at 0; its reference pose is a bundle, as
+// zero rotations often are.
+TEST(DetectConventions, AnAnimalWalksOnAFloor) {
+  Skeleton skeleton = person(1, Direction::plus_y, Direction::plus_z);
+  std::vector<Vec3> walk, sit;
+  for (int i = 0; i < 40; ++i) {
+    for (const Vec3& p : on_all_fours(skeleton, {0.3 * i, 3 + 0.01 * (i % 3), 0.4 * i})) {
+      walk.push_back(p);
+    }
+    for (const Vec3& p : on_all_fours(skeleton, {0, 3, 0})) sit.push_back(p);
+  }
+  for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
+    if (skeleton.names[j].find("Leg") != std::string::npos ||
+        skeleton.names[j].find("Foot") != std::string::npos ||
+        skeleton.names[j].find("Toe") != std::string::npos) {
+      skeleton.reference[j].position.y() *= -1;
+    }
+  }
+  const Conventions found = detect(skeleton, walk);
+  EXPECT_EQ(found.up, Direction::plus_y) << found.up_reason;
+  EXPECT_EQ(found.up_confidence, Confidence::guess);
+  EXPECT_NE(found.up_reason.find("all fours"), std::string::npos) << found.up_reason;
+  EXPECT_EQ(found.forward, Direction::plus_z) << found.forward_reason;
+  // Without going anywhere it shows no floor.
+  EXPECT_EQ(detect(skeleton, sit).up_reason.find("all fours"), std::string::npos);
+}
+
 TEST(DetectConventions, AMotionThatIsUpsideDownThroughoutIsAGuess) {
   const Skeleton skeleton = person(1, Direction::plus_y, Direction::plus_z);
   const Conventions found = detect(skeleton, sample_of(skeleton, Quat(0, 1, 0, 0)));
