@@ -224,22 +224,28 @@ bool is_body_word(const std::string& token) {
          middle_part(token) != Part::unknown || split_side(token).first != Side::middle;
 }
 
-// Takes off the words that more than half of the names begin with and that are no part of a body.
-void strip_common_prefix(std::vector<Tokens>& names) {
-  constexpr int kLongestPrefix = 6;
+// Takes off the words that more than half of the names begin or end with and that are no part of a
+// body.
+void strip_common_words(std::vector<Tokens>& names, bool at_end) {
+  constexpr int kMostWords = 6;
   if (names.size() < 4) return;
-  for (int round = 0; round < kLongestPrefix; ++round) {
+  const auto place = [at_end](const Tokens& tokens) {
+    return at_end ? tokens.end() - 1 : tokens.begin();
+  };
+  for (int round = 0; round < kMostWords; ++round) {
     std::map<std::string, std::size_t> counts;
     for (const Tokens& tokens : names) {
-      if (!tokens.empty()) ++counts[tokens.front()];
+      if (!tokens.empty()) ++counts[*place(tokens)];
     }
     const auto most =
         std::max_element(counts.begin(), counts.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most == counts.end() || most->second * 2 <= names.size() || is_body_word(most->first))
+    if (most == counts.end() || most->second * 2 <= names.size() || is_body_word(most->first) ||
+        (at_end && is_number(most->first))) {
       return;
+    }
     for (Tokens& tokens : names) {
-      if (!tokens.empty() && tokens.front() == most->first) tokens.erase(tokens.begin());
+      if (!tokens.empty() && *place(tokens) == most->first) tokens.erase(place(tokens));
     }
   }
 }
@@ -321,7 +327,8 @@ std::vector<JointName> read_joint_names(const Skeleton& skeleton) {
     joints.push_back(j);
     tokens.push_back(name_tokens(skeleton.names[j]));
   }
-  strip_common_prefix(tokens);
+  strip_common_words(tokens, false);
+  strip_common_words(tokens, true);
   std::vector<JointName> names(skeleton.names.size());
   std::vector<const Tokens*> tokens_of(skeleton.names.size(), nullptr);
   for (std::size_t i = 0; i < joints.size(); ++i) {

@@ -152,6 +152,29 @@ class RoleFinder {
       head_ = main_child(last);
       if (head_ < 0 && last != neck_) head_ = last;  // the last of several necks holds the head
     }
+    if (head_ < 0 && neck_ < 0) head_ = unnamed_head();
+  }
+
+  // Where both arms and legs are known by name, but nothing is named as neck or head (a row of
+  // vertebrae, say): the last joint of the one branch that leads on between the arms.
+  int unnamed_head() const {
+    if (hands_[0] < 0 || hands_[1] < 0 || feet_[0] < 0 || feet_[1] < 0) return -1;
+    const auto may_lead_on = [&](int j) {
+      const bool named = part(j) != Part::unknown && part(j) != Part::spine;
+      return !is_end(j) && !named && names_[at(j)].side == Side::middle;
+    };
+    const int chest = common_ancestor(hands_[0], hands_[1]);
+    if (descends(feet_[0], chest)) return -1;  // limbs that hang on one joint tell no up
+    int head = -1;
+    for (const int child : children_[at(chest)]) {
+      if (is_end(child) || descends(hands_[0], child) || descends(hands_[1], child)) continue;
+      if (head >= 0 || !may_lead_on(child)) return -1;
+      head = child;
+    }
+    while (head >= 0 && children_[at(head)].size() == 1 && may_lead_on(children_[at(head)][0])) {
+      head = children_[at(head)][0];
+    }
+    return head;
   }
 
   // A joint that two limbs, or a limb and the head, descend from belongs to the trunk.

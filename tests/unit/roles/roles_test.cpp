@@ -362,6 +362,34 @@ TEST(Roles, EveryJointBeyondTheWristIsAFinger) {
   EXPECT_EQ(map.roles[static_cast<std::size_t>(skeleton.find("Head_end"))], Role::end);
 }
 
+// Copies and constraint rigs add words behind the names, the same behind all.
+TEST(Roles, WordsBehindAllNamesSayNothing) {
+  const Skeleton skeleton = skeleton_from_text(
+      "hips_dup .spine_dup ..neck_dup ...head_dup ..l_shoulder_dup ...l_elbow_dup ....l_hand_dup "
+      "..r_shoulder_dup ...r_elbow_dup ....r_hand_dup .l_thigh_dup ..l_knee_dup ...l_foot_dup "
+      ".r_thigh_dup ..r_knee_dup ...r_foot_dup");
+  const RoleMap map = find_roles(skeleton);
+  EXPECT_TRUE(map.humanoid) << table(skeleton, map);
+  EXPECT_EQ(joint_name(skeleton, map, Role::left_lower_arm), "l_elbow_dup");
+  EXPECT_EQ(joint_name(skeleton, map, Role::hips), "hips_dup");
+}
+
+TEST(Roles, AHeadWithoutANameIsWhatLeadsOnBetweenTheArms) {
+  const std::string limbs =
+      "Pelvis .L_Thigh ..L_Knee ...L_Foot .R_Thigh ..R_Knee ...R_Foot .T9 ..L_Shoulder ...L_Elbow "
+      "....L_Hand ..R_Shoulder ...R_Elbow ....R_Hand";
+  const Skeleton vertebrae = skeleton_from_text(limbs + " ..C7 ...C3 ....Atlas .....top!");
+  const RoleMap map = find_roles(vertebrae);
+  EXPECT_TRUE(map.humanoid) << table(vertebrae, map);
+  EXPECT_EQ(joint_name(vertebrae, map, Role::head), "Atlas");
+  EXPECT_EQ(joint_name(vertebrae, map, Role::chest), "T9");
+  // Two ways lead on, or what does is no part of a body, or of one side.
+  for (const char* more : {" ..C7 ..Mast", " ..Tail", " ..LeftWing", ""}) {
+    const Skeleton headless = skeleton_from_text(limbs + more);
+    EXPECT_EQ(joint_name(headless, find_roles(headless), Role::head), "-") << more;
+  }
+}
+
 TEST(Roles, AHandThatHangsUnderNoArmIsNotTheHand) {
   const Skeleton skeleton = skeleton_from_text(
       "Hips .LeftHand .Spine ..LeftShoulder ...LeftArm ....LeftForeArm .....LeftHand2 "
