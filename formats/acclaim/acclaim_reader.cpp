@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 
+#include "capture/far_values.h"
 #include "capture/fill_frames.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "formats/acclaim/far_frames_internal.h"
 #include "formats/acclaim/kinematics_internal.h"
 #include "formats/acclaim/motion_file_internal.h"
 #include "formats/acclaim/skeleton_file_internal.h"
@@ -241,23 +244,47 @@ class Reader {
     const std::size_t count = places_.size();
     if (options_.progress != nullptr) options_.progress->begin("reading frames", count);
     std::atomic<bool> finite = true;
+    const double farthest = farthest_position(clip.skeleton.reference);
+    FarValues far;
+    std::mutex of_far;
     parallel_for(count, kFramesAtOnce, options_.jobs, [&](std::size_t begin, std::size_t end) {
       std::vector<Transform> pose(kinematics.joint_count());
+      FarValues far_here;
       for (std::size_t i = begin; i < end; ++i) {
         kinematics.pose(motion_.frame(i), pose);
+        bool is_far = false;
         for (Transform& joint : pose) {
           joint = conversion_.pose(joint);
           if (!joint.position.cast<float>().allFinite()) finite = false;
+          is_far = is_far || joint.position.norm() > farthest;
         }
+        if (is_far) far_here.add_position(i);
+        if (kinematics.far_rotation(motion_.frame(i))) far_here.add_rotation(i);
         clip.set_pose(static_cast<int>(places_[i]), pose);
+      }
+      if (far_here.any()) {
+        const std::lock_guard lock(of_far);
+        far.add(far_here);
       }
       if (options_.progress != nullptr) options_.progress->advance(end - begin);
     });
     if (options_.progress != nullptr) options_.progress->end();
     if (!finite) return overflow(amc_);
+    if (Status told = tell_of_far_values(kinematics, far); !told) return told;
     for (std::size_t i = 1; i < count; ++i) {
       if (places_[i] - places_[i - 1] < 2) continue;
       fill_frames_between(clip, static_cast<int>(places_[i - 1]), static_cast<int>(places_[i]));
+    }
+    return {};
+  }
+
+  Status tell_of_far_values(const Kinematics& kinematics, const FarValues& far) {
+    for (Error& fault :
+         far_frame_faults(amc_.text(), motion_, kinematics, far, capture_.clip, places_)) {
+      fault.where.file = amc_.file_name();
+      if (options_.strictness == Strictness::strict) return std::move(fault);
+      fault.severity = Severity::warning;
+      capture_.diagnostics.push_back(std::move(fault));
     }
     return {};
   }

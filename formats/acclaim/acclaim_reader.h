@@ -72,7 +72,8 @@ struct Capture : krok::Capture {
 // acclaim-hierarchy, acclaim-unknown-bone, acclaim-values, acclaim-frame, acclaim-cut,
 // acclaim-missing, acclaim-rate, acclaim-limit, direction-parallel. Of warnings and notes besides
 // these: acclaim-keyword, acclaim-name, acclaim-limits, acclaim-root, acclaim-unit, acclaim-up,
-// acclaim-forward, acclaim-repair, acclaim-rest-frame, acclaim-more.
+// acclaim-forward, acclaim-repair, acclaim-rest-frame, acclaim-more, acclaim-far-rotation and
+// acclaim-far-position (capture/far_values.h; errors where reading is strict).
 Result<Capture> read(std::string_view asf_text, const std::string& asf_name,
                      std::string_view amc_text, const std::string& amc_name,
                      const ReadOptions& options = {});

@@ -1,7 +1,9 @@
 #include "formats/acclaim/kinematics_internal.h"
 
+#include <cmath>
 #include <string>
 
+#include "capture/far_values.h"
 #include "capture/unique_names.h"
 #include "math/euler.h"
 
@@ -116,6 +118,20 @@ void Kinematics::pose(std::span<const double> values, std::span<Transform> joint
     // Products of many unit quaternions drift by rounding; deep chains would notice.
     joint_to_world[j].orientation.normalize();
   }
+}
+
+std::optional<Kinematics::Rotation> Kinematics::far_rotation(std::span<const double> values) const {
+  const double farthest = kFarthestRotation * kRadiansPerDegree / radians_;
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (joints_[j].is_end) continue;
+    const auto& channels = file_.joints[static_cast<std::size_t>(joints_[j].source)].channels;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const double size = std::abs(values[joints_[j].first_channel + c]);
+      if (!is_rotation(channels[c]) || size <= farthest) continue;
+      return Rotation{j, channels[c], size * radians_ / kRadiansPerDegree};
+    }
+  }
+  return {};
 }
 
 }  // namespace krok::acclaim

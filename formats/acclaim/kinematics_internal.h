@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,14 @@ class Kinematics {
 
   // joint_to_world, shape [joints], from a frame's values, shape [channels], in doubles.
   void pose(std::span<const double> values, std::span<Transform> joint_to_world) const;
+
+  // The first rotation beyond kFarthestRotation in a frame's values (capture/far_values.h).
+  struct Rotation {
+    std::size_t joint = 0;  // of the clip
+    Channel channel = Channel::rx;
+    double degrees = 0;  // positive
+  };
+  std::optional<Rotation> far_rotation(std::span<const double> values) const;
 
  private:
   struct Joint {

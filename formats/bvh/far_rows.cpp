@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "core/numbers.h"
 #include "core/text.h"
 #include "formats/bvh/far_rows_internal.h"
 #include "formats/bvh/row_lines_internal.h"
@@ -40,9 +43,11 @@ class FarRows {
       if (pose[j].position.norm() > pose[joint].position.norm()) joint = j;
     }
     const std::size_t channel = moving_channel(static_cast<int>(joint));
-    Error told =
-        far_position("bvh-far-position", hierarchy_.joints[joint].name, pose[joint].position,
-                     hierarchy_.channel_name(channel), values_[channel], count);
+    const std::string number =
+        fmt::format("{} is {}", hierarchy_.channel_name(channel), readable(values_[channel]));
+    const bool moves = hierarchy_.channels[channel].kind == ChannelKind::position;
+    Error told = far_position("bvh-far-position", hierarchy_.joints[joint].name,
+                              pose[joint].position, count, moves ? number : "");
     return placed(std::move(told), row, channel, static_cast<int>(joint));
   }
 

@@ -54,15 +54,15 @@ Error far_rotation(std::string code, std::string_view channel, double degrees, s
 }
 
 Error far_position(std::string code, std::string_view joint, const Vec3& position,
-                   std::string_view channel, double value, std::size_t frames) {
+                   std::size_t frames, const std::string& of_file) {
   const auto size = static_cast<float>(position.cwiseAbs().maxCoeff());
   const double step = static_cast<double>(std::nextafter(size, INFINITY)) - size;
   const std::string steps = step < 1 ? readable(1000 * step, 3) + " mm" : readable(step, 3) + " m";
   return {std::move(code),
-          fmt::format("{} is {} m from the origin ({} is {}), where floats are {} apart, so that "
+          fmt::format("{} is {} m from the origin{}, where floats are {} apart, so that "
                       "smaller movements are lost; {}",
-                      joint, readable(position.norm(), 4), channel, readable(value), steps,
-                      frames_of(frames)),
+                      joint, readable(position.norm(), 4),
+                      of_file.empty() ? "" : " (" + of_file + ")", steps, frames_of(frames)),
           "look at the value, and at the unit; move the capture to the origin if it is far away"};
 }
 

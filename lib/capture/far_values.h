@@ -39,11 +39,11 @@ struct FarValues {
   void add(const FarValues& other);
 };
 
-// What is told of the first of them, without its place. `code` is the warning's, `channel` the
-// name and `value` the number that stands in the file for the joint; `degrees` is positive,
-// `position` in metres.
+// What is told of the first of them, without its place. `code` is the warning's, `channel` what the
+// file calls the rotation, `degrees` positive, `position` in metres; `of_file`, which may be empty,
+// what stands in the file, "Hips.Xposition is 1e9".
 Error far_rotation(std::string code, std::string_view channel, double degrees, std::size_t frames);
 Error far_position(std::string code, std::string_view joint, const Vec3& position,
-                   std::string_view channel, double value, std::size_t frames);
+                   std::size_t frames, const std::string& of_file = {});
 
 }  // namespace krok
