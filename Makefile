@@ -9,7 +9,7 @@ CMAKE_FLAGS ?=
 # Debian packages: to build, and on top of that to test.
 BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev libfast-float-dev \
   nlohmann-json3-dev libxxhash-dev libhwy-dev libtinygltf-dev libassimp-dev libopenexr-dev \
-  libcli11-dev help2man libembree-dev libpng-dev libfreetype-dev libceres-dev \
+  libcli11-dev help2man libembree-dev libpng-dev libjpeg-dev libfreetype-dev libceres-dev \
   fonts-dejavu-core
 TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3 \
   chromium openexr python3-jsonschema

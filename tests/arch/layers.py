@@ -59,6 +59,7 @@ ALLOWED = {
     "formats/obj": BASE,
     "formats/pc2": BASE,
     "formats/weights": BASE | {"lib/skin", "formats/csv", "formats/json"},
+    "formats/picture": BASE,
     "formats/material": BASE | {"formats/json"},
     "formats/character": BASE | {"formats/json"},
     "formats/key_shapes": BASE | {"lib/skin", "formats/json"},
@@ -72,7 +73,7 @@ TOP = {
 PUBLIC_THIRD_PARTY = ("Eigen/",)
 THIRD_PARTY = re.compile(
     r"^(ceres|bullet|btBullet|tiny_gltf|OpenEXR|Imf|Imath|assimp|hwy|fmt|CLI|nlohmann|fast_float|"
-    r"xxhash|embree|png\.h|ft2build)")
+    r"xxhash|embree|png\.h|jpeglib|ft2build)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
