@@ -21,6 +21,23 @@ Error fault(const char* what) {
   return Error("render-figure", fmt::format("the figure cannot be drawn: {}", what));
 }
 
+Status check(const Paint& paint, std::size_t vertices) {
+  if (paint.picture == nullptr || paint.picture->levels().empty()) {
+    return fault("a surface is painted with no picture");
+  }
+  if (paint.coordinates == nullptr || paint.coordinates->size() != vertices) {
+    return fault("not as many texture coordinates as vertices");
+  }
+  for (const Vec2f& place : *paint.coordinates) {
+    if (!place.allFinite()) return fault("a texture coordinate is not finite");
+  }
+  if (!(paint.factor.minCoeff() >= 0 && paint.factor.maxCoeff() <= 1) ||
+      !paint.factor.allFinite() || !(paint.cutoff >= 0 && paint.cutoff <= 1)) {
+    return fault("what multiplies a picture is not from 0 to 1");
+  }
+  return {};
+}
+
 Status check(const Surface& surface) {
   const std::size_t vertices = surface.positions.size();
   if (surface.triangles == nullptr) return fault("a surface has no list of triangles");
@@ -41,6 +58,7 @@ Status check(const Surface& surface) {
   for (const Vec3f& normal : surface.normals) {
     if (!normal.allFinite()) return fault("a normal is not finite");
   }
+  if (surface.paint != nullptr) return check(*surface.paint, vertices);
   return {};
 }
 

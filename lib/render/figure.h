@@ -8,6 +8,7 @@
 #include "core/result.h"
 #include "math/types.h"
 #include "render/colour.h"
+#include "render/texture.h"
 
 // What pictures are made of: a figure at one moment, in the world, metres.
 
@@ -17,10 +18,11 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 // Both sides of a triangle are seen.
 struct Surface {
-  std::vector<Vec3f> positions;                // [vertices]
-  std::vector<Vec3f> normals;                  // [vertices], or none: flat triangles
-  std::shared_ptr<const Triangles> triangles;  // shared by the moments of a figure
-  std::vector<Colour> colours;                 // [vertices], or one for all of them
+  std::vector<Vec3f> positions;                  // [vertices]
+  std::vector<Vec3f> normals;                    // [vertices], or none: flat triangles
+  std::shared_ptr<const Triangles> triangles;    // shared by the moments of a figure
+  std::vector<Colour> colours;                   // [vertices], or one for all of them
+  std::shared_ptr<const Paint> paint = nullptr;  // stands in for the colours where there is one
 };
 
 // A bar with round ends, or a ball where both ends are in one place.
@@ -40,7 +42,7 @@ struct Figure {
 };
 
 // Whether shapes agree, triangles name vertices that exist, values are finite and no larger than
-// 1e15, and radii not negative. Code render-figure.
+// 1e15, radii not negative, and a paint has what it promises. Code render-figure.
 Status check(const Figure& figure);
 
 // The box around all vertices and bones. Nothing in an empty figure; then the box is around its

@@ -68,7 +68,8 @@ class ViewPainter {
         lights_(view.camera),
         right_(view.camera.right()),
         up_(view.camera.up()),
-        towards_(view.camera.towards()) {
+        towards_(view.camera.towards()),
+        step_(1 / (kAcross * view.camera.pixels_per_metre)) {
     for (const View::Layer& layer : view.layers) reaches_.push_back(reach_of(*layer.figure));
   }
 
@@ -140,7 +141,8 @@ class ViewPainter {
     seen.clear();
     for (const std::size_t i : near) {
       const View::Layer& layer = view_.layers[i];
-      const auto hit = layer.figure->look(point, towards_);
+      const auto hit =
+          layer.figure->look({point, towards_, Vec3(step_ * right_), Vec3(-step_ * up_)});
       if (!hit) continue;
       const float occlusion =
           layer.figure->occlusion(hit->point, hit->normal, rays_of(sample, 18), kReach);
@@ -174,6 +176,7 @@ class ViewPainter {
   const View& view_;
   Lights lights_;
   Vec3 right_, up_, towards_;
+  double step_;  // metres from one sample to the next
   std::vector<Box> reaches_;
 };
 

@@ -91,6 +91,13 @@ T* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_
   return static_cast<T*>(rtcSetNewGeometryBuffer(geometry, type, 0, format, stride, count));
 }
 
+Vec2f coordinates_at(const Surface& surface, std::size_t triangle, const Vec3f& shares) {
+  const auto& corners = (*surface.triangles)[triangle];
+  const auto& coordinates = *surface.paint->coordinates;
+  return shares[0] * coordinates[corners[0]] + shares[1] * coordinates[corners[1]] +
+         shares[2] * coordinates[corners[2]];
+}
+
 RTCGeometry mesh(RTCDevice device, const Surface& surface, const TracedFigure& figure) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (surface.triangles->empty()) return geometry;
@@ -107,6 +114,15 @@ RTCGeometry mesh(RTCDevice device, const Surface& surface, const TracedFigure& f
     corners = std::copy(triangle.begin(), triangle.end(), corners);
   }
   return geometry;
+}
+
+// What a paint cuts out lets rays through. Asked by Embree for each meeting, one ray at a time.
+void cut_out(const RTCFilterFunctionNArguments* arguments) {
+  if (arguments->N != 1 || arguments->valid[0] != -1) return;
+  const auto& surface = *static_cast<const Surface*>(arguments->geometryUserPtr);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+  const Vec2f place = coordinates_at(surface, hit.primID, {1 - hit.u - hit.v, hit.u, hit.v});
+  if (surface.paint->alpha_at(place) < surface.paint->cutoff) arguments->valid[0] = 0;
 }
 
 RTCGeometry bars(RTCDevice device, std::span<const Curve> curves) {
@@ -171,7 +187,15 @@ Result<TracedFigure> Tracer::add(const Figure& figure) const {
   TracedFigure::Scene& scene = *traced.scene_;
   scene.scene = rtcNewScene(device);
   rtcSetSceneFlags(scene.scene, RTC_SCENE_FLAG_ROBUST);
-  for (const Surface& surface : figure.surfaces) scene.attach(mesh(device, surface, traced));
+  for (const Surface& surface : figure.surfaces) {
+    const RTCGeometry geometry = mesh(device, surface, traced);
+    if (surface.paint != nullptr && surface.paint->cutoff > 0) {
+      rtcSetGeometryUserData(geometry, const_cast<Surface*>(&surface));
+      rtcSetGeometryIntersectFilterFunction(geometry, &cut_out);
+      rtcSetGeometryOccludedFilterFunction(geometry, &cut_out);
+    }
+    scene.attach(geometry);
+  }
 
   std::vector<Curve> bar_curves;
   std::vector<Curve> ball_curves;
@@ -192,7 +216,32 @@ Result<TracedFigure> Tracer::add(const Figure& figure) const {
   return traced;
 }
 
-Vec3f TracedFigure::normal_of(const void* ray_hit, Light& colour) const {
+// How far the shares of a triangle's corners go from one line of sight to the next decides how much
+// of the picture lies between them.
+Light TracedFigure::painted(const Surface& surface, std::size_t triangle, const Vec3f& shares,
+                            const Sight& sight) const {
+  const auto& corners = (*surface.triangles)[triangle];
+  const Vec3f origin = local(surface.positions[corners[0]].cast<double>());
+  const Vec3f first = local(surface.positions[corners[1]].cast<double>()) - origin;
+  const Vec3f second = local(surface.positions[corners[2]].cast<double>()) - origin;
+  const Vec3f towards = sight.towards.cast<float>();
+  const auto& coordinates = *surface.paint->coordinates;
+  const Vec2f along_first = coordinates[corners[1]] - coordinates[corners[0]];
+  const Vec2f along_second = coordinates[corners[2]] - coordinates[corners[0]];
+  // step = a first + b second + c towards, by Cramer's rule. Edge on, the volume is zero and
+  // neither a nor b is finite.
+  const float volume = first.cross(second).dot(towards);
+  const auto way = [&](const Vec3& step) -> Vec2f {
+    const Vec3f units = (step / unit_).cast<float>();
+    const float a = units.cross(second).dot(towards) / volume;
+    const float b = first.cross(units).dot(towards) / volume;
+    return a * along_first + b * along_second;
+  };
+  const Vec2f place = coordinates_at(surface, triangle, shares);
+  return surface.paint->at(place, way(sight.right), way(sight.down)).head<3>();
+}
+
+Vec3f TracedFigure::normal_of(const void* ray_hit, const Sight& sight, Light& colour) const {
   const RTCHit& hit = static_cast<const RTCRayHit*>(ray_hit)->hit;
   const Vec3f flat(hit.Ng_x, hit.Ng_y, hit.Ng_z);
   if (hit.geomID == scene_->bars_geometry || hit.geomID == scene_->balls_geometry) {
@@ -205,7 +254,9 @@ Vec3f TracedFigure::normal_of(const void* ray_hit, Light& colour) const {
   const Surface& surface = figure_->surfaces[hit.geomID];
   const auto& corners = (*surface.triangles)[hit.primID];
   const std::array<float, 3> share = {1 - hit.u - hit.v, hit.u, hit.v};
-  if (surface.colours.size() == 1) {
+  if (surface.paint != nullptr) {
+    colour = painted(surface, hit.primID, Vec3f(share[0], share[1], share[2]), sight);
+  } else if (surface.colours.size() == 1) {
     colour = to_light(surface.colours[0]);
   } else {
     colour = Light::Zero();
@@ -218,8 +269,9 @@ Vec3f TracedFigure::normal_of(const void* ray_hit, Light& colour) const {
   return smooth.squaredNorm() > 1e-12F ? smooth : flat;
 }
 
-std::optional<Hit> TracedFigure::look(const Vec3& point, const Vec3& towards) const {
-  const Vec3 offset = (point - middle_) / unit_;
+std::optional<Hit> TracedFigure::look(const Sight& sight) const {
+  const Vec3& towards = sight.towards;
+  const Vec3 offset = (sight.point - middle_) / unit_;
   const Vec3 aside = offset - towards.dot(offset) * towards;
   // Embree wants no rays from far away.
   if (!(aside.squaredNorm() <= kFarthest * kFarthest)) return std::nullopt;
@@ -243,7 +295,7 @@ std::optional<Hit> TracedFigure::look(const Vec3& point, const Vec3& towards) co
   Hit hit;
   hit.depth = (kStart - static_cast<double>(ray.ray.tfar)) * unit_;
   hit.point = start + ray.ray.tfar * direction;
-  hit.normal = normal_of(&ray, hit.colour);
+  hit.normal = normal_of(&ray, sight, hit.colour);
   const float length = hit.normal.norm();
   const bool has_direction = length > 0 && std::isfinite(length);
   hit.normal = has_direction ? Vec3f(hit.normal / length) : Vec3f(-direction);

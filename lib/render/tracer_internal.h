@@ -21,6 +21,12 @@ struct Hit {
   Light colour;
 };
 
+// A line along which something is seen, world: through `point`, from the far end of `towards` (a
+// unit vector). The lines beside it are `right` and `down` away, across `towards`.
+struct Sight {
+  Vec3 point, towards, right, down;
+};
+
 class Tracer;
 
 // A figure in a box of its own, the middle in the origin and about one unit wide, so that neither
@@ -35,8 +41,8 @@ class TracedFigure {
   const Vec3& middle() const { return middle_; }
   double unit() const { return unit_; }  // metres
 
-  // What is seen of it along the line through `point` (world), from the far end of `towards`.
-  std::optional<Hit> look(const Vec3& point, const Vec3& towards) const;
+  // What is seen of it.
+  std::optional<Hit> look(const Sight& sight) const;
 
   // Of a set of `directions` about a normal, as many as its cosine gives them, those that are to be
   // followed at a time.
@@ -55,7 +61,9 @@ class TracedFigure {
   friend class Tracer;
   struct Scene;
   TracedFigure() = default;
-  Vec3f normal_of(const void* ray_hit, Light& colour) const;
+  Vec3f normal_of(const void* ray_hit, const Sight& sight, Light& colour) const;
+  Light painted(const Surface& surface, std::size_t triangle, const Vec3f& shares,
+                const Sight& sight) const;
 
   const Figure* figure_ = nullptr;
   Bounds box_;

@@ -159,7 +159,8 @@ ToolSpec make_spec() {
        "any table of numbers; the unit is read from the column's name"},
       {"krok-plot walk.bvh --sheet walk.png", "pictures of the figure at eight moments"},
       {"krok-plot hero.character walk.anim --strip hero.png",
-       "a character in the colours of its materials, moved; without a motion it stands"}};
+       "a character with the colours and textures of its materials, moved; without a motion it "
+       "stands"}};
   spec.needs_output = false;  // --sheet and --strip name files of their own
   spec.batch = {{".anim", ".bvh", ".amc"}, always(".svg")};
   spec.declare = [arguments](CLI::App& app) { declare(app, *arguments); };

@@ -237,8 +237,11 @@ Status make_strip(const std::vector<MovingFigure>& figures, const std::vector<Pi
 }  // namespace
 
 void declare_sheet(CLI::App& app, SheetOptions& options) {
-  app.add_option("--sheet", options.sheet,
-                 "A contact sheet as PNG: the figures at several moments, in rows by file and side")
+  app.add_option(
+         "--sheet", options.sheet,
+         "A contact sheet as PNG: the figures at several moments, in rows by file and side; "
+         "materials with their base colours and textures (PNG, JPEG), which cut out where "
+         "alpha is below their cutoff, blended ones below a half")
       ->type_name("OUT.png");
   app.add_option(
          "--strip", options.strip,

@@ -8,11 +8,10 @@ namespace krok {
 
 namespace {
 
-constexpr float kSeenThrough = 0.5F;  // alpha below which a part is left out
-
-std::vector<Vec3f> chosen(const std::vector<Vec3f>& values,
+template <typename Value>
+std::vector<Value> chosen(const std::vector<Value>& values,
                           const std::vector<std::uint32_t>& places) {
-  std::vector<Vec3f> result;
+  std::vector<Value> result;
   if (values.empty()) return result;
   result.reserve(places.size());
   for (const std::uint32_t place : places) result.push_back(values[place]);
@@ -22,26 +21,33 @@ std::vector<Vec3f> chosen(const std::vector<Vec3f>& values,
 }  // namespace
 
 DrawnBody::DrawnBody(std::shared_ptr<const Model> model, std::span<const Material> materials,
-                     SkinMethod method)
+                     SkinMethod method, const DecodedPictures& pictures)
     : model_(std::move(model)), binding_(*model_, method) {
   for (const Model::Part& part : model_->parts) {
     if (materials.empty()) break;
     static const Material kUsual;
     const Material* const found = find_material(materials, part.material);
     const Material& material = found != nullptr ? *found : kUsual;
-    const bool lets_through =
-        material.alpha != Material::Alpha::opaque && material.base_color.w() < kSeenThrough;
-    if (lets_through || part.triangle_count == 0) continue;
-    parts_.push_back(part_of(part, render::to_colour(material.base_color.head<3>())));
+    if (part.triangle_count == 0) continue;
+    Part drawn = part_of(part);
+    const auto look = look_of(material, coordinates_of(drawn), pictures);
+    if (!look) continue;
+    drawn.look = *look;
+    parts_.push_back(std::move(drawn));
   }
   if (parts_.empty()) triangles_ = std::make_shared<render::Triangles>(model_->triangles);
 }
 
-DrawnBody::Part DrawnBody::part_of(const Model::Part& part, render::Colour colour) const {
+SharedCoordinates DrawnBody::coordinates_of(const Part& part) const {
+  if (model_->texture_coordinates.empty()) return nullptr;
+  return std::make_shared<const std::vector<Vec2f>>(
+      chosen(model_->texture_coordinates, part.vertices));
+}
+
+DrawnBody::Part DrawnBody::part_of(const Model::Part& part) const {
   constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> place_of(model_->positions.size(), kNone);
   Part drawn;
-  drawn.colour = colour;
   render::Triangles triangles;
   triangles.reserve(part.triangle_count);
   for (const auto& triangle :
@@ -75,7 +81,8 @@ std::vector<render::Surface> DrawnBody::at(std::span<const Transform> pose) cons
     surfaces.push_back({chosen(positions, part.vertices),
                         chosen(normals, part.vertices),
                         part.triangles,
-                        {part.colour}});
+                        {part.look.colour},
+                        part.look.paint});
   }
   return surfaces;
 }

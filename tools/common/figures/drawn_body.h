@@ -9,17 +9,17 @@
 #include "scene/material.h"
 #include "scene/model.h"
 #include "skin/skin.h"
+#include "tools/common/figures/surface_look.h"
 
 namespace krok {
 
 // A model as pictures show it. Without materials it has the colour of bodies. With materials its
-// parts have their base colours, light grey where none of the materials is theirs; pictures on them
-// are not drawn, and parts that let through more than half of the light are left out, so that eyes
-// are seen behind their cornea. A model of such parts alone is drawn as if without materials.
+// parts look as look_of() says, light grey where none of the materials is theirs. A model of parts
+// that are all left out is drawn as if without materials.
 class DrawnBody {
  public:
   DrawnBody(std::shared_ptr<const Model> model, std::span<const Material> materials,
-            SkinMethod method);
+            SkinMethod method, const DecodedPictures& pictures = {});
 
   // Its surfaces in a pose of the model's joints. May be called by several threads.
   std::vector<render::Surface> at(std::span<const Transform> pose) const;
@@ -28,9 +28,10 @@ class DrawnBody {
   struct Part {
     std::vector<std::uint32_t> vertices;                 // of the model, that it has; empty for all
     std::shared_ptr<const render::Triangles> triangles;  // of these
-    render::Colour colour;
+    SurfaceLook look;
   };
-  Part part_of(const Model::Part& part, render::Colour colour) const;
+  Part part_of(const Model::Part& part) const;
+  SharedCoordinates coordinates_of(const Part& part) const;
 
   std::shared_ptr<const Model> model_;
   SkinBinding binding_;

@@ -35,11 +35,11 @@ struct Body {
 // A clip and, if it has one, its body, with what drawing them at any moment needs.
 class ClipFigure {
  public:
-  ClipFigure(Clip clip, const Body& body, SkinMethod method)
+  ClipFigure(Clip clip, const Body& body, SkinMethod method, const DecodedPictures& pictures)
       : clip_(std::move(clip)),
         style_(bone_style(clip_.skeleton)),
         carrier_(carrying_joint(find_roles(clip_.skeleton))) {
-    if (body.model != nullptr) body_.emplace(body.model, body.materials, method);
+    if (body.model != nullptr) body_.emplace(body.model, body.materials, method, pictures);
   }
 
   render::Figure at(double time) const {
@@ -84,7 +84,8 @@ class ClipFigure {
   int carrier_ = 0;
 };
 
-MovingFigure figure_of(const std::string& path, Clip clip, const Body& body, SkinMethod method) {
+MovingFigure figure_of(const std::string& path, Clip clip, const Body& body, SkinMethod method,
+                       const DecodedPictures& pictures) {
   MovingFigure figure;
   figure.path = path;
   figure.name = name_of_input(path);
@@ -97,7 +98,7 @@ MovingFigure figure_of(const std::string& path, Clip clip, const Body& body, Ski
     figure.facts += fmt::format(", {}, {} a second", counted(figure.frame_count, "frame"),
                                 readable(clip.rate, 4));
   }
-  const auto source = std::make_shared<const ClipFigure>(std::move(clip), body, method);
+  const auto source = std::make_shared<const ClipFigure>(std::move(clip), body, method, pictures);
   figure.at = [source](double time) { return source->at(time); };
   figure.carrier = [source](double time) { return source->carrier(time); };
   figure.heading = [source](double time) { return source->heading(time); };
@@ -107,7 +108,9 @@ MovingFigure figure_of(const std::string& path, Clip clip, const Body& body, Ski
 // A scene of nodes, as its meshes show it or as its joints.
 class SceneFigure {
  public:
-  static Result<std::shared_ptr<const SceneFigure>> create(nodes::Scene scene, bool bones) {
+  // With the pictures of its materials; where there are none, it has the colour of bodies.
+  static Result<std::shared_ptr<const SceneFigure>> create(nodes::Scene scene, bool bones,
+                                                           const DecodedPictures& pictures) {
     auto figure = std::make_shared<SceneFigure>(std::move(scene));
     auto evaluator = nodes::Evaluator::create(figure->scene_);
     if (!evaluator) return evaluator.error();
@@ -124,6 +127,7 @@ class SceneFigure {
       return Error("figure-input", "the file has neither meshes nor joints to be seen");
     }
     figure->set_style();
+    figure->set_looks(pictures);
     if (!figure->scene_.animations.empty()) {
       const auto times = from.key_times(0);
       if (!times.empty()) figure->duration_ = std::max(0.0, times.back());
@@ -148,7 +152,7 @@ class SceneFigure {
       figure = bone_figure(style_, joints);
     } else {
       for (std::size_t i = 0; i < triangles_.size(); ++i) {
-        figure.surfaces.push_back(surface(moment, i));
+        if (looks_[i]) figure.surfaces.push_back(surface(moment, i));
       }
     }
     figure.centre = joints.empty() ? middle(figure) : Vec3(joints[0].cast<double>());
@@ -189,8 +193,23 @@ class SceneFigure {
       result.normals.push_back(normal.cast<float>());
     }
     result.triangles = triangles_[instance];
-    result.colours = {kBodyColour};
+    result.colours = {looks_[instance]->colour};
+    result.paint = looks_[instance]->paint;
     return result;
+  }
+
+  void set_looks(const DecodedPictures& pictures) {
+    bool painted = false, drawn = false;
+    for (const nodes::Instance& instance : evaluator_->instances()) {
+      const nodes::Primitive& primitive = evaluator_->primitive(instance);
+      static const Material kUsual;
+      const auto place = static_cast<std::size_t>(std::max(primitive.material_index, 0));
+      const Material& material = primitive.material_index >= 0 ? scene_.materials[place] : kUsual;
+      looks_.push_back(look_of(material, primitive.texture_coordinates, pictures));
+      drawn = drawn || (looks_.back() && !primitive.triangles.empty());
+      painted = painted || (looks_.back() && looks_.back()->paint != nullptr);
+    }
+    if (!painted || !drawn) looks_.assign(triangles_.size(), SurfaceLook{kBodyColour, nullptr});
   }
 
   // The joints' colours by their names, which need not be unique here.
@@ -216,6 +235,7 @@ class SceneFigure {
   nodes::Scene scene_;
   std::unique_ptr<nodes::Evaluator> evaluator_;
   std::vector<std::shared_ptr<const render::Triangles>> triangles_;  // [instances]
+  std::vector<std::optional<SurfaceLook>> looks_;  // [instances]; nothing for what is left out
   BoneStyle style_;
   bool bones_ = false;
   double duration_ = 0;
@@ -238,7 +258,18 @@ struct Read {
   std::vector<Motion> motions;
   std::vector<Character> models;
   std::map<std::size_t, MovingFigure> figures;  // by their place among the inputs
+  DecodedPictures pictures;                     // of all of them
 };
+
+// What is odd about materials matters where one has a picture: without any, they are not shown.
+void tell_of_scene(const nodes::Scene& scene, ToolContext& context) {
+  const bool pictured = std::ranges::any_of(scene.materials, [](const Material& material) {
+    return static_cast<bool>(material.base_color_texture);
+  });
+  for (const Diagnostic& diagnostic : scene.diagnostics) {
+    if (pictured || diagnostic.code != "gltf-material") context.tell(diagnostic);
+  }
+}
 
 Status add_file(const std::string& path, std::size_t place, bool bones, ToolContext& context,
                 Read& read) {
@@ -248,6 +279,9 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
   if (is_shown_model(kind)) {
     auto shown = load_shown_model(*input, kind, context);
     if (!shown) return shown.error();
+    if (!bones && !shown->model.texture_coordinates.empty()) {
+      decode_base_colours(shown->materials, path, context, read.pictures);
+    }
     Body body{std::make_shared<Model>(std::move(shown->model)), std::move(shown->materials)};
     read.models.push_back({place, path, std::move(body), false});
     return {};
@@ -255,10 +289,11 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
   switch (kind) {
     case Kind::glb:
     case Kind::gltf: {
-      auto scene = read_gltf(*input, context);
+      auto scene = read_gltf(*input, context, !bones);
       if (!scene) return scene.error();
-      context.tell(scene->diagnostics);
-      const auto source = SceneFigure::create(std::move(*scene), bones);
+      decode_base_colours(scene->materials, path, context, read.pictures);
+      tell_of_scene(*scene, context);
+      const auto source = SceneFigure::create(std::move(*scene), bones, read.pictures);
       if (!source) return Error(source.error()).in_file(path);
       MovingFigure figure;
       figure.path = path;
@@ -303,8 +338,9 @@ void share_models(bool bones, SkinMethod method, Read& read) {
     Clip still;
     still.skeleton = character.body.model->skeleton;
     const bool drawn = !bones && !character.body.model->triangles.empty();
-    read.figures.emplace(character.place, figure_of(character.path, std::move(still),
-                                                    drawn ? character.body : Body(), method));
+    read.figures.emplace(character.place,
+                         figure_of(character.path, std::move(still),
+                                   drawn ? character.body : Body(), method, read.pictures));
   }
 }
 
@@ -338,8 +374,8 @@ Result<std::vector<MovingFigure>> read_figures(const std::vector<std::string>& p
   share_models(bones, method, read);
   if (Status made = make_bodies(body, context, read); !made) return made.error();
   for (Read::Motion& motion : read.motions) {
-    read.figures.emplace(motion.place,
-                         figure_of(motion.path, std::move(motion.clip), motion.body, method));
+    read.figures.emplace(motion.place, figure_of(motion.path, std::move(motion.clip), motion.body,
+                                                 method, read.pictures));
   }
   std::vector<MovingFigure> figures;
   for (auto& [place, figure] : read.figures) figures.push_back(std::move(figure));
