@@ -7,6 +7,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "cli/krok_diff/target_a_frame.h"
 #include "core/file.h"
 #include "formats/anim/anim.h"
 #include "formats/morph_exr/morph_exr.h"
@@ -80,16 +81,7 @@ test::GlbBuilder baked(int lifted_vertex = -1, int lifted_frame = -1) {
     targets.push_back({{"POSITION", builder.add(moved, "VEC3")}});
   }
   builder.json["meshes"][0]["primitives"][0]["targets"] = targets;
-  std::vector<float> times, weights;
-  for (int f = 0; f < kFrames; ++f) {
-    times.push_back(static_cast<float>(f) / 60);
-    for (int t = 1; t < kFrames; ++t) weights.push_back(t == f ? 1.0F : 0.0F);
-  }
-  builder.json["animations"] = {
-      {{"name", "Lean"},
-       {"samplers",
-        {{{"input", builder.add(times, "SCALAR")}, {"output", builder.add(weights, "SCALAR")}}}},
-       {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+  show_a_target_a_frame(kFrames, builder);
   return builder;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/hero_character.h"
+#include "cli/krok_diff/target_a_frame.h"
 #include "math/types.h"
 #include "support/glb_builder.h"
 
@@ -54,16 +55,7 @@ GlbBuilder baked(const Change& change = {}) {
   auto& primitive = builder.json["meshes"][0]["primitives"][0];
   primitive["attributes"]["TANGENT"] = builder.add(tangents, "VEC4");
   primitive["targets"] = targets;
-  std::vector<float> times, weights;
-  for (int f = 0; f < kFrames; ++f) {
-    times.push_back(static_cast<float>(f) / 60);
-    for (int t = 1; t < kFrames; ++t) weights.push_back(t == f ? 1.0F : 0.0F);
-  }
-  builder.json["animations"] = {
-      {{"name", "Lean"},
-       {"samplers",
-        {{{"input", builder.add(times, "SCALAR")}, {"output", builder.add(weights, "SCALAR")}}}},
-       {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+  show_a_target_a_frame(kFrames, builder);
   return builder;
 }
 
