@@ -119,5 +119,18 @@ TEST(FarValues, FaultyRowsHaveNone) {
   EXPECT_NE(told->message.find("no other frame"), std::string::npos) << told->message;
 }
 
+// Only an OFFSET puts it there: no number of the row is to blame.
+TEST(FarValues, ARootThatStandsFarAwayIsToldWithoutAChannel) {
+  const Capture capture = read_ok(
+      "HIERARCHY\nROOT Far\n{\nOFFSET 1e9 0 0\nCHANNELS 1 Xrotation\nEnd Site\n{\nOFFSET 0 1 "
+      "0\n}\n}\n" +
+      motion(2, "30\n60\n"));
+  const Diagnostic* told = find(capture.diagnostics, "bvh-far-position");
+  ASSERT_NE(told, nullptr);
+  EXPECT_EQ(told->joint, "Far");
+  EXPECT_EQ(told->frame, 0);
+  EXPECT_EQ(told->message.find("Xrotation"), std::string::npos) << told->message;
+}
+
 }  // namespace
 }  // namespace krok::bvh

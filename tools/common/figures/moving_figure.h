@@ -33,12 +33,11 @@ struct MovingFigure {
 
 // Motions (captures, .anim), models and characters (.model, .character, moved by the motions of
 // their skeleton or standing alone, faces as they are at rest) and glTF files, in the order of
-// `paths`. With BodyChoice::none motions are drawn as bones,
-// and so are models and glTF files that have joints; glTF files show their materials where one of
-// them has a picture, see look_of(), otherwise they have the colour of bodies; automatic is low for
-// more than two motions that come without a body, otherwise medium. `method` is how motions move
-// their bodies; glTF files are skinned as viewers do it. Code figure-input for a file that shows no
-// figure.
+// `paths`. With BodyChoice::none motions are drawn as bones, and so are models and glTF files that
+// have joints; glTF files show their materials where one of them has a picture, see look_of(),
+// otherwise they have the colour of bodies; automatic is low for more than two motions that come
+// without a body, otherwise medium. `method` is how motions move their bodies; glTF files are
+// skinned as viewers do it. Code figure-input for a file that shows no figure.
 Result<std::vector<MovingFigure>> read_figures(const std::vector<std::string>& paths,
                                                BodyChoice body, SkinMethod method,
                                                ToolContext& context);
