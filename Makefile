@@ -12,31 +12,32 @@ BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev
   libcli11-dev help2man libembree-dev libpng-dev libjpeg-dev libfreetype-dev libceres-dev \
   fonts-dejavu-core
 TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3 \
-  chromium openexr python3-jsonschema
+  chromium openexr python3-jsonschema python3-numpy
 LINT_PACKAGES := clang-tidy
 
 SOURCES = git ls-files --cached --others --exclude-standard '*.cpp' '*.h'
 
 .DEFAULT_GOAL := all
-.PHONY: help deps test-deps lint-deps all demo test unit-test bench asan tsan golden format \
-  format-check lint install clean
+.PHONY: help deps test-deps lint-deps configure all demo quick test test-build sanitize tsan bench \
+  golden format format-check lint headers install clean
 
 help:
 	@echo "make demo                   build, then capture -> animated glTF on the samples, see out/demo"
 	@echo "make demo CAPTURE=FILE.bvh  the same with your own capture"
-	@echo "make test                   everything that must pass: tests, sanitizers, format, validator"
+	@echo "make quick                  the same with four tools and a page alone, see out/quick"
+	@echo "make test                   everything that must pass: format, tests, validator"
 	@echo
-	@echo "make all      build the tools into $(BUILD)/bin (the default)"
-	@echo "make deps     install the Debian packages that the build needs and lacks"
-	@echo "make bench    benchmarks, as ratios against a reference in the same run"
-	@echo "make asan     the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
-	@echo "make tsan     the tests under ThreadSanitizer"
-	@echo "make golden   write golden files that are missing and renew the generated pages; with FORCE=1"
-	@echo "              replace golden files that differ, too: review them as a diff"
-	@echo "make format   clang-format all sources"
-	@echo "make lint     clang-tidy over the sources"
-	@echo "make install  install tools, library and headers (PREFIX=/usr/local, DESTDIR=)"
-	@echo "make clean    remove the build folders"
+	@echo "make all       build the tools into $(BUILD)/bin (the default)"
+	@echo "make deps      install the Debian packages that the build needs and lacks"
+	@echo "make sanitize  the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
+	@echo "make tsan      the tests under ThreadSanitizer"
+	@echo "make bench     benchmarks, as ratios against a reference in the same run"
+	@echo "make golden    write golden files that are missing and renew the generated pages; with FORCE=1"
+	@echo "               replace golden files that differ, too: review them as a diff"
+	@echo "make format    clang-format all sources"
+	@echo "make lint      clang-tidy over each source alone, and each public header by itself; FILES=..."
+	@echo "make install   install tools, library and headers (PREFIX=/usr/local, DESTDIR=)"
+	@echo "make clean     remove the build folders"
 
 # install-missing PACKAGES: apt-get only for what is not there, so that no network and no root are
 # needed once everything is.
@@ -64,43 +65,57 @@ test-deps: deps
 lint-deps: test-deps
 	$(call install-missing,$(LINT_PACKAGES))
 
-all: deps
-	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_FLAGS)
-	cmake --build $(BUILD) -j $(JOBS)
+# Percent and seconds of a build.
+export NINJA_STATUS = [%p, %es] 
+
+configure: deps
+	@echo "== configure $(BUILD)"
+	@cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_FLAGS) > $(BUILD)-configure.log \
+	  2>&1 || { cat $(BUILD)-configure.log; exit 1; }; mv $(BUILD)-configure.log $(BUILD)/configure.log
+
+all: configure
+	@echo "== build with $(JOBS) jobs"
+	@cmake --build $(BUILD) -j $(JOBS) $(if $(TARGETS),--target $(TARGETS))
 
 demo: CMAKE_FLAGS += -DKROK_BUILD_TESTS=OFF
 demo: all
+	@echo "== from a capture to a character: samples/walk_to_gltf"
 	@KROK_BIN=$(BUILD)/bin samples/walk_to_gltf/run.sh $(if $(CAPTURE),"$(CAPTURE)")
 
-unit-test: CMAKE_FLAGS += -DKROK_BUILD_TESTS=ON
-unit-test: test-deps all
-	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
+quick: CMAKE_FLAGS += -DKROK_BUILD_TESTS=OFF
+quick: TARGETS = krok-import krok-body krok-skin krok-view
+quick: all
+	@KROK_BIN=$(BUILD)/bin samples/walk_to_gltf/run.sh --quick $(if $(CAPTURE),"$(CAPTURE)")
 
-asan: test-deps
+test-build: CMAKE_FLAGS += -DKROK_BUILD_TESTS=ON
+test-build: test-deps all
+
+# The build is a make of its own, for in `make demo test` the demo's is one without tests.
+test: test-deps format-check
+	@$(MAKE) test-build
+	@rm -rf $(BUILD)/test_results
+	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
+	@python3 tests/count_tests.py $(BUILD)/test_results
+
+# The sanitizers take what reads, computes and writes, and leave out what only draws or measures.
+sanitize: test-deps
 	cmake --preset asan $(CMAKE_FLAGS)
 	cmake --build --preset asan -j $(JOBS)
+	@rm -rf build-asan/test_results
 	ctest --preset asan -j $(JOBS)
+	@python3 tests/count_tests.py build-asan/test_results
 
 tsan: test-deps
 	cmake --preset tsan $(CMAKE_FLAGS)
 	cmake --build --preset tsan -j $(JOBS)
 	ctest --preset tsan -j $(JOBS)
 
-# The sanitizers go first: the last line of the output then counts the tests of the release build.
-test: test-deps format-check
-	$(MAKE) asan
-	$(MAKE) unit-test
-
 bench: CMAKE_FLAGS += -DKROK_BUILD_TESTS=ON -DKROK_BUILD_BENCHMARKS=ON
 bench: test-deps all
 	@for program in $(BUILD)/bench/*; do echo "== $$(basename $$program)"; $$program || exit 1; done
 
-golden: unit-test-build
+golden: test-build
 	tests/golden/update.sh $(if $(FORCE),--force) $(BUILD)
-
-.PHONY: unit-test-build
-unit-test-build: CMAKE_FLAGS += -DKROK_BUILD_TESTS=ON
-unit-test-build: test-deps all
 
 format: test-deps
 	$(SOURCES) | xargs clang-format -i
@@ -109,11 +124,18 @@ format-check:
 	$(call install-missing,clang-format)
 	$(SOURCES) | xargs clang-format --dry-run --Werror
 
+# Each source alone, as a build without unity compiles it, so that a forgotten #include shows.
 # tests/consumer is a project of its own, built on what is installed.
-lint: lint-deps
-	cmake --preset release
-	$(SOURCES) | grep '\.cpp$$' | grep -v '^tests/consumer/' | \
-	  xargs -P $(JOBS) -n 4 clang-tidy -p build --quiet
+FILES ?= $$(git ls-files --cached --others --exclude-standard '*.cpp' | grep -v '^tests/consumer/')
+lint: lint-deps headers
+	cmake --preset lint
+	@for file in $(FILES); do echo $$file; done | xargs -P $(JOBS) -n 4 clang-tidy -p build-lint --quiet
+
+# Would not compile if a public header needed another one to be included before it.
+headers: deps
+	@git ls-files --cached --others --exclude-standard 'lib/*.h' 'formats/*.h' | grep -v '_internal\.h$$' | \
+	  xargs -P $(JOBS) -I{} sh -c 'echo "#include \"{}\"" | $(CXX) -std=c++20 -fsyntax-only -Wall \
+	    -I. -Ilib -isystem /usr/include/eigen3 -x c++ - || { echo "{}: does not stand by itself"; exit 255; }'
 
 PREFIX ?= /usr/local
 install: CMAKE_FLAGS += -DKROK_BUILD_TESTS=OFF -DCMAKE_INSTALL_PREFIX=$(PREFIX)
@@ -121,4 +143,4 @@ install: all
 	cmake --install $(BUILD)
 
 clean:
-	rm -rf $(BUILD) build build-asan build-tsan build-debug out
+	rm -rf $(BUILD) build build-asan build-tsan build-debug build-lint out

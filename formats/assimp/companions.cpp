@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-class Finder {
+class CompanionFinder {
  public:
-  Finder(const std::string& path, std::uint64_t most_bytes)
+  CompanionFinder(const std::string& path, std::uint64_t most_bytes)
       : path_(path), folder_(fs::path(path).parent_path()), most_bytes_(most_bytes) {
     if (folder_.empty()) folder_ = ".";
   }
@@ -91,7 +91,7 @@ class Finder {
   std::uint64_t most_bytes_;
 };
 
-void find_md5_motion(Finder& finder, std::string_view mesh) {
+void find_md5_motion(CompanionFinder& finder, std::string_view mesh) {
   const fs::path path = finder.same_stem(".md5anim");
   if (!path.empty()) {
     auto file = finder.open(path);
@@ -117,7 +117,7 @@ void find_md5_motion(Finder& finder, std::string_view mesh) {
   }
 }
 
-void find_md5_mesh(Finder& finder, std::string_view motion) {
+void find_md5_mesh(CompanionFinder& finder, std::string_view motion) {
   const std::string joints = md5_joints(motion);
   std::vector<fs::path> candidates;
   if (const fs::path same = finder.same_stem(".md5mesh"); !same.empty()) {
@@ -179,7 +179,7 @@ std::vector<ListedMotion> listed_motions(std::string_view text) {
 
 // Assimp goes by base names here, which two of the files may share, and refuses all motions for
 // the want of one. So it is given another list, with a name of its own for each that is there.
-void find_smd_motions(Finder& finder, const std::string& path) {
+void find_smd_motions(CompanionFinder& finder, const std::string& path) {
   const fs::path list_path = finder.folder() / (fs::path(path).stem().string() + "_animation.txt");
   std::error_code trouble;
   if (!fs::is_regular_file(list_path, trouble)) return;
@@ -216,7 +216,7 @@ void find_smd_motions(Finder& finder, const std::string& path) {
 Companions find_companions(const std::string& path, Kind kind, std::string_view text,
                            std::uint64_t most_bytes) {
   if (path == "-") return {};
-  Finder finder(path, most_bytes);
+  CompanionFinder finder(path, most_bytes);
   if (kind == Kind::md5mesh) find_md5_motion(finder, text);
   if (kind == Kind::md5anim) find_md5_mesh(finder, text);
   if (kind == Kind::smd) find_smd_motions(finder, path);

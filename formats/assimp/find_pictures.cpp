@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Finder {
+class PictureFinder {
  public:
-  Finder(const std::string& path, std::uint64_t most_bytes, nodes::Scene& scene)
+  PictureFinder(const std::string& path, std::uint64_t most_bytes, nodes::Scene& scene)
       : folder_(folder_of(path)), bytes_left_(most_bytes), scene_(scene) {}
 
   void fill_in(Texture& texture) {
@@ -108,7 +108,7 @@ class Finder {
 }  // namespace
 
 void find_pictures(const std::string& path, std::uint64_t most_bytes, nodes::Scene& scene) {
-  Finder finder(path, most_bytes, scene);
+  PictureFinder finder(path, most_bytes, scene);
   for (Material& material : scene.materials) {
     for (Texture* texture : textures_of(material)) finder.fill_in(*texture);
     // In these formats a picture stands in the place of the colour.

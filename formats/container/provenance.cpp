@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "formats/container/sections.h"
+
+#include "core/json_internal.h"
 
 namespace krok {
 

@@ -6,14 +6,14 @@
 #include <cstring>
 #include <type_traits>
 
+#include "formats/gltf/reader_words_internal.h"
+
 namespace krok::gltf {
 
 namespace {
 
-constexpr const char* kHint = "the file is damaged or its exporter has a fault";
-
 Error bad_accessor(int index, const std::string& what) {
-  return Error("gltf-accessor", fmt::format("accessor {}: {}", index, what), kHint);
+  return Error("gltf-accessor", fmt::format("accessor {}: {}", index, what), kDamagedHint);
 }
 
 // Bytes of a component, 0 for a type that glTF does not have.
@@ -134,7 +134,7 @@ Result<Accessors::Layout> Accessors::view_layout(int view, std::uint64_t offset,
                                                  std::uint64_t count, std::uint64_t element_size,
                                                  bool strided, const std::string& name) const {
   const auto fail = [&](const std::string& what) {
-    return Error("gltf-accessor", fmt::format("{}: {}", name, what), kHint);
+    return Error("gltf-accessor", fmt::format("{}: {}", name, what), kDamagedHint);
   };
   if (view < 0 || static_cast<std::size_t>(view) >= model_.bufferViews.size()) {
     return fail(fmt::format("buffer view {} does not exist", view));
@@ -178,7 +178,7 @@ Result<Accessors::Layout> Accessors::layout(int index) const {
 
 Result<std::size_t> Accessors::check_type(int index, int type) const {
   if (index < 0 || static_cast<std::size_t>(index) >= model_.accessors.size()) {
-    return Error("gltf-accessor", fmt::format("accessor {} does not exist", index), kHint);
+    return Error("gltf-accessor", fmt::format("accessor {} does not exist", index), kDamagedHint);
   }
   const tinygltf::Accessor& accessor = model_.accessors[static_cast<std::size_t>(index)];
   if (component_size(accessor.componentType) == 0) {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/json_internal.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/gltf/assemble_glb_internal.h"
@@ -20,32 +20,32 @@ namespace krok::gltf {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr int kFloat = 5126;  // glTF's number for the type of components
 
-Json& list_in(Json& object, const char* name) {
-  Json& list = object[name];
-  if (!list.is_array()) list = Json::array();
+OrderedJson& list_in(OrderedJson& object, const char* name) {
+  OrderedJson& list = object[name];
+  if (!list.is_array()) list = OrderedJson::array();
   return list;
 }
 
-std::string text_in(const Json& object, const char* name) {
+std::string text_in(const OrderedJson& object, const char* name) {
   if (!object.is_object() || !object.contains(name) || !object[name].is_string()) return {};
   return object[name].get<std::string>();
 }
 
-std::string free_name(const Json& nodes, const std::string& wanted) {
+std::string free_name(const OrderedJson& nodes, const std::string& wanted) {
   std::set<std::string> taken;
-  for (const Json& node : nodes) taken.insert(text_in(node, "name"));
+  for (const OrderedJson& node : nodes) taken.insert(text_in(node, "name"));
   std::string name = wanted;
   for (int i = 2; taken.contains(name); ++i) name = fmt::format("{}_{}", wanted, i);
   return name;
 }
 
 template <typename Vector>
-Json numbers(const Vector& vector) {
-  Json list = Json::array();
+OrderedJson numbers(const Vector& vector) {
+  OrderedJson list = OrderedJson::array();
   for (const float value : vector) list.push_back(static_cast<double>(value));
   return list;
 }
@@ -59,8 +59,8 @@ Diagnostic warning(std::string code, std::string message, std::string hint) {
   return told;
 }
 
-Json provenance_json(const Provenance& provenance) {
-  Json json = {{"tool", provenance.tool}, {"version", provenance.version}};
+OrderedJson provenance_json(const Provenance& provenance) {
+  OrderedJson json = {{"tool", provenance.tool}, {"version", provenance.version}};
   for (const auto& source : provenance.sources) {
     json["sources"].push_back({{"name", source.name}, {"xxh3", source.xxh3}});
   }
@@ -84,7 +84,7 @@ Status check_all(const CameraTrack& track, const CameraOptions& options) {
 // Puts a camera into the JSON and the buffer of a file.
 class CameraPutter {
  public:
-  CameraPutter(const CameraTrack& track, const CameraOptions& options, Json& json,
+  CameraPutter(const CameraTrack& track, const CameraOptions& options, OrderedJson& json,
                std::vector<std::byte>& data)
       : track_(track), options_(options), json_(json), data_(data) {}
 
@@ -102,10 +102,10 @@ class CameraPutter {
 
  private:
   int put_lens(Diagnostics& diagnostics) {
-    Json lens = {{"yfov", static_cast<double>(track_.fields_of_view[0])},
-                 {"znear", options_.near_plane}};
+    OrderedJson lens = {{"yfov", static_cast<double>(track_.fields_of_view[0])},
+                        {"znear", options_.near_plane}};
     if (options_.aspect) lens["aspectRatio"] = *options_.aspect;
-    Json camera = {{"type", "perspective"}, {"name", options_.name}, {"perspective", lens}};
+    OrderedJson camera = {{"type", "perspective"}, {"name", options_.name}, {"perspective", lens}};
     if (!track_.provenance.tool.empty()) {
       camera["extras"]["provenance"] = provenance_json(track_.provenance);
     }
@@ -121,18 +121,18 @@ class CameraPutter {
                       readable(static_cast<double>(most) / kRadiansPerDegree, 4)),
           "Krok's tools find all of it in the camera's extras"));
     }
-    Json& cameras = list_in(json_, "cameras");
+    OrderedJson& cameras = list_in(json_, "cameras");
     cameras.push_back(std::move(camera));
     return static_cast<int>(cameras.size()) - 1;
   }
 
   int put_node(int camera) {
-    Json& nodes = list_in(json_, "nodes");
+    OrderedJson& nodes = list_in(json_, "nodes");
     const std::size_t index = nodes.size();
-    Json node = {{"name", free_name(nodes, options_.name)}, {"camera", camera}};
+    OrderedJson node = {{"name", free_name(nodes, options_.name)}, {"camera", camera}};
     node["translation"] = numbers(track_.positions[0]);
     node["rotation"] = numbers(track_.orientations[0].coeffs());
-    Json& scenes = list_in(json_, "scenes");
+    OrderedJson& scenes = list_in(json_, "scenes");
     if (scenes.empty()) scenes.push_back({{"nodes", roots_of(nodes)}});
     const std::size_t shown =
         json_["scene"].is_number_unsigned() ? json_["scene"].get<std::size_t>() : 0;
@@ -141,15 +141,15 @@ class CameraPutter {
     return static_cast<int>(index);
   }
 
-  static Json roots_of(const Json& nodes) {
+  static OrderedJson roots_of(const OrderedJson& nodes) {
     std::set<std::size_t> children;
-    for (const Json& node : nodes) {
+    for (const OrderedJson& node : nodes) {
       if (!node.contains("children")) continue;
-      for (const Json& child : node["children"]) {
+      for (const OrderedJson& child : node["children"]) {
         if (child.is_number_unsigned()) children.insert(child.get<std::size_t>());
       }
     }
-    Json roots = Json::array();
+    OrderedJson roots = OrderedJson::array();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (!children.contains(i)) roots.push_back(i);
     }
@@ -159,9 +159,9 @@ class CameraPutter {
   // Returns the accessor.
   std::size_t put_floats(std::span<const float> values, const char* type, std::size_t count) {
     const std::size_t begin = append_aligned(std::as_bytes(values), data_);
-    Json& views = list_in(json_, "bufferViews");
+    OrderedJson& views = list_in(json_, "bufferViews");
     views.push_back({{"buffer", 0}, {"byteOffset", begin}, {"byteLength", values.size_bytes()}});
-    Json& accessors = list_in(json_, "accessors");
+    OrderedJson& accessors = list_in(json_, "accessors");
     accessors.push_back({{"bufferView", views.size() - 1},
                          {"componentType", kFloat},
                          {"count", count},
@@ -172,10 +172,11 @@ class CameraPutter {
   Status put_motion(int node, Diagnostics& diagnostics) {
     const auto times = key_times(track_.frame_count(), track_.rate);
     if (!times) return times.error();
-    Json& animations = list_in(json_, "animations");
+    OrderedJson& animations = list_in(json_, "animations");
     if (animations.empty()) {
-      animations.push_back(
-          {{"name", options_.name}, {"channels", Json::array()}, {"samplers", Json::array()}});
+      animations.push_back({{"name", options_.name},
+                            {"channels", OrderedJson::array()},
+                            {"samplers", OrderedJson::array()}});
     }
     const int chosen = options_.animation.value_or(0);
     const auto wanted = static_cast<std::size_t>(chosen);
@@ -203,13 +204,13 @@ class CameraPutter {
         put_floats({track_.positions.data()->data(), 3 * count}, "VEC3", count);
     const std::size_t turns =
         put_floats({rotations.data()->coeffs().data(), 4 * count}, "VEC4", count);
-    Json& animation = animations[wanted];
+    OrderedJson& animation = animations[wanted];
     put_channel(animation, node, "translation", input, places);
     put_channel(animation, node, "rotation", input, turns);
     return {};
   }
 
-  static void put_channel(Json& animation, int node, const char* path, std::size_t input,
+  static void put_channel(OrderedJson& animation, int node, const char* path, std::size_t input,
                           std::size_t output) {
     const std::size_t sampler = list_in(animation, "samplers").size();
     animation["samplers"].push_back(
@@ -220,12 +221,12 @@ class CameraPutter {
 
   const CameraTrack& track_;
   const CameraOptions& options_;
-  Json& json_;
+  OrderedJson& json_;
   std::vector<std::byte>& data_;
 };
 
-Result<WithCamera> with_camera(const CameraTrack& track, const CameraOptions& options, Json json,
-                               std::vector<std::byte> data) {
+Result<WithCamera> with_camera(const CameraTrack& track, const CameraOptions& options,
+                               OrderedJson json, std::vector<std::byte> data) {
   WithCamera result;
   CameraPutter putter(track, options, json, data);
   if (Status done = putter.put(result.diagnostics); !done) return done.error();
@@ -244,7 +245,7 @@ Result<WithCamera> add_camera(std::span<const std::byte> gltf, const CameraTrack
   if (!packed) return packed.error();
   const auto container = open_container(packed->bytes);
   if (!container) return container.error();
-  auto result = with_camera(track, options, Json::parse(container->json, nullptr, false),
+  auto result = with_camera(track, options, OrderedJson::parse(container->json, nullptr, false),
                             {container->bin.begin(), container->bin.end()});
   if (!result) return result;
   result->files = std::move(packed->files);
@@ -256,7 +257,7 @@ Result<WithCamera> add_camera(std::span<const std::byte> gltf, const CameraTrack
 Result<WithCamera> camera_alone(const CameraTrack& track, const CameraOptions& options) {
   if (Status sound = check_all(track, options); !sound) return sound.error();
   const std::string& version = track.provenance.version;
-  Json json;
+  OrderedJson json;
   json["asset"] = {{"version", "2.0"},
                    {"generator", version.empty() ? "krok" : fmt::format("krok {}", version)}};
   return with_camera(track, options, std::move(json), {});

@@ -7,7 +7,7 @@
 
 namespace krok::gltf {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 std::size_t append_aligned(std::span<const std::byte> bytes, std::vector<std::byte>& buffer) {
   const std::size_t begin = buffer.size();
@@ -16,13 +16,13 @@ std::size_t append_aligned(std::span<const std::byte> bytes, std::vector<std::by
   return begin;
 }
 
-Result<std::vector<std::byte>> assemble_glb(Json& json, std::span<const std::byte> data) {
+Result<std::vector<std::byte>> assemble_glb(OrderedJson& json, std::span<const std::byte> data) {
   if (data.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
     return Error("gltf-too-large",
                  fmt::format("{} bytes are too many for a GLB in a page", data.size()));
   }
-  if (!data.empty()) json["buffers"] = Json::array({{{"byteLength", data.size()}}});
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (!data.empty()) json["buffers"] = OrderedJson::array({{{"byteLength", data.size()}}});
+  std::string text = json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
   while (text.size() % kAlignment != 0) text += ' ';
   constexpr std::uint32_t kHeader = 12, kChunk = 8;
   const std::size_t size =

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
+#include "core/json_internal.h"
 #include "core/result.h"
 
 // Private to this folder: a GLB from its JSON and its data.

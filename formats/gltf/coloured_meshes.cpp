@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/gltf/document_internal.h"
+#include "formats/gltf/mesh_shape_internal.h"
 
 namespace krok::gltf {
 
@@ -31,17 +32,6 @@ Status check_coloured(const ColouredMesh& mesh) {
   assert(std::all_of(mesh.triangles.begin(), mesh.triangles.end(), in_range));
   (void)in_range;
   return {};
-}
-
-std::vector<Vec3f> unit_vectors(std::span<const Vec3f> vectors) {
-  std::vector<Vec3f> result;
-  result.reserve(vectors.size());
-  for (const Vec3f& vector : vectors) {
-    const Vec3 wide = vector.cast<double>();
-    const double length = wide.norm();
-    result.push_back(length > 1e-15 ? Vec3f((wide / length).cast<float>()) : Vec3f::UnitY());
-  }
-  return result;
 }
 
 tinygltf::Primitive primitive_of(const ColouredMesh& mesh, Document& document) {

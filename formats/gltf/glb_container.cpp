@@ -11,10 +11,11 @@ namespace {
 constexpr std::uint32_t kMagic = 0x46546C67;  // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinChunk = 0x004E4942;
-constexpr const char* kHint = "the file is damaged or was cut short; fetch or export it again";
+constexpr const char* kContainerHint =
+    "the file is damaged or was cut short; fetch or export it again";
 
 Error broken(std::size_t offset, std::string message) {
-  return Error("gltf-container", std::move(message), kHint)
+  return Error("gltf-container", std::move(message), kContainerHint)
       .at_byte(static_cast<std::int64_t>(offset));
 }
 

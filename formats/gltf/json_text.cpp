@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
+
+#include "core/json_internal.h"
 
 namespace krok::gltf {
 
@@ -71,12 +72,6 @@ Result<Json> parse_text(const Container& container) {
   } catch (const Json::exception& error) {
     return Error("gltf-json", fmt::format("the JSON cannot be used: {}", error.what()));
   }
-}
-
-std::string text_member(const Json& object, const char* name) {
-  const auto found = object.is_object() ? object.find(name) : object.end();
-  if (!object.is_object() || found == object.end() || !found->is_string()) return {};
-  return found->get<std::string>();
 }
 
 Status check_asset(const Json& json) {
@@ -270,6 +265,12 @@ std::string first_line(const std::string& text) {
 }
 
 }  // namespace
+
+std::string text_member(const Json& object, const char* name) {
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  if (!object.is_object() || found == object.end() || !found->is_string()) return {};
+  return found->get<std::string>();
+}
 
 Result<ParsedJson> parse_json(const Container& container) {
   auto parsed = parse_text(container);

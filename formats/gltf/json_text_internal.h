@@ -3,10 +3,10 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "core/json_internal.h"
 #include "core/result.h"
 #include "formats/gltf/glb_container.h"
 
@@ -37,6 +37,9 @@ struct ParsedJson {
   std::vector<CameraEntry> cameras;
   std::vector<std::vector<std::string>> target_names;  // [meshes], each possibly empty
 };
+
+// A text of an object; empty where it has none of that name.
+std::string text_member(const nlohmann::json& object, const char* name);
 
 // Refuses JSON that nests deeper than glTF ever needs, and versions and required extensions that
 // are not known. tinygltf gets only those parts of the file that are used, so that what it does

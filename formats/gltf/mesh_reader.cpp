@@ -14,10 +14,8 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-constexpr const char* kHint = "the file is damaged or its exporter has a fault";
-
 Error bad_mesh(const std::string& name, const std::string& what) {
-  return Error("gltf-mesh", fmt::format("{}: {}", name, what), kHint);
+  return Error("gltf-mesh", fmt::format("{}: {}", name, what), kDamagedHint);
 }
 
 int attribute(const std::map<std::string, int>& attributes, const char* name) {

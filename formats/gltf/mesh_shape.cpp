@@ -17,12 +17,6 @@ Vec3f unit_or_up(const Vec3f& vector) {
   return (direction / length).cast<float>();
 }
 
-std::vector<Vec3f> unit_vectors(std::span<const Vec3f> vectors) {
-  std::vector<Vec3f> result(vectors.size());
-  std::transform(vectors.begin(), vectors.end(), result.begin(), unit_or_up);
-  return result;
-}
-
 std::vector<Vec4f> unit_tangents(std::span<const Vec4f> tangents) {
   std::vector<Vec4f> result;
   for (const Vec4f& tangent : tangents) {
@@ -33,6 +27,12 @@ std::vector<Vec4f> unit_tangents(std::span<const Vec4f> tangents) {
 }
 
 }  // namespace
+
+std::vector<Vec3f> unit_vectors(std::span<const Vec3f> vectors) {
+  std::vector<Vec3f> result(vectors.size());
+  std::transform(vectors.begin(), vectors.end(), result.begin(), unit_or_up);
+  return result;
+}
 
 Status check_mesh(const Model& model) {
   if (Status sound = check(model); !sound) return sound;

@@ -1,7 +1,6 @@
 #include "formats/gltf/pack_glb.h"
 
-#include <nlohmann/json.hpp>
-
+#include "core/json_internal.h"
 #include "formats/gltf/assemble_glb_internal.h"
 #include "formats/gltf/buffers_internal.h"
 
@@ -9,7 +8,7 @@ namespace krok::gltf {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kGreyPixel =
     "data:image/png;base64,"
@@ -17,14 +16,14 @@ constexpr const char* kGreyPixel =
 
 class Packer {
  public:
-  Packer(Json& json, const ReadOptions& options) : json_(json), options_(options) {}
+  Packer(OrderedJson& json, const ReadOptions& options) : json_(json), options_(options) {}
 
   void put_buffers(const Buffers& buffers) {
     std::vector<std::size_t> begins;
     for (const auto& view : buffers.views) begins.push_back(put(view));
     for (const InputFile& file : buffers.files) packed_.files.push_back(file.path());
     if (!json_.contains("bufferViews")) return;
-    for (Json& view : json_["bufferViews"]) {
+    for (OrderedJson& view : json_["bufferViews"]) {
       if (!view.is_object()) continue;
       const std::size_t buffer = number(view, "buffer"), offset = number(view, "byteOffset");
       if (buffer >= begins.size()) continue;
@@ -35,7 +34,7 @@ class Packer {
 
   void put_images() {
     if (!json_.contains("images") || !json_["images"].is_array()) return;
-    for (Json& image : json_["images"]) {
+    for (OrderedJson& image : json_["images"]) {
       if (!image.is_object() || !image.contains("uri") || !image["uri"].is_string()) continue;
       const auto uri = image["uri"].get<std::string>();
       if (!is_data_uri(uri)) put_image(uri, image);
@@ -50,14 +49,14 @@ class Packer {
   }
 
  private:
-  static std::size_t number(const Json& object, const char* name) {
+  static std::size_t number(const OrderedJson& object, const char* name) {
     const auto found = object.find(name);
     return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : 0;
   }
 
   std::size_t put(std::span<const std::byte> bytes) { return append_aligned(bytes, bin_); }
 
-  void put_image(const std::string& uri, Json& image) {
+  void put_image(const std::string& uri, OrderedJson& image) {
     const auto file = open_beside(uri, "image", options_.folder, options_.most_bytes);
     if (!file) {
       Diagnostic told = file.error();
@@ -74,15 +73,15 @@ class Packer {
     const bool is_webp =
         bytes.size() > 3 && bytes[0] == std::byte{'R'} && bytes[1] == std::byte{'I'};
     const std::size_t begin = put(bytes);
-    Json& views = json_["bufferViews"];
-    if (!views.is_array()) views = Json::array();
+    OrderedJson& views = json_["bufferViews"];
+    if (!views.is_array()) views = OrderedJson::array();
     views.push_back({{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size()}});
     image.erase("uri");
     image["bufferView"] = views.size() - 1;
     image["mimeType"] = is_jpeg ? "image/jpeg" : is_webp ? "image/webp" : "image/png";
   }
 
-  Json& json_;
+  OrderedJson& json_;
   const ReadOptions& options_;
   std::vector<std::byte> bin_;
   PackedGlb packed_;
@@ -98,7 +97,7 @@ Result<PackedGlb> pack_glb(std::span<const std::byte> gltf, const ReadOptions& o
   if (!parsed) return parsed.error();
   const auto buffers = open_buffers(parsed->buffers, *container, options);
   if (!buffers) return buffers.error();
-  Json json = Json::parse(container->json, nullptr, false);
+  OrderedJson json = OrderedJson::parse(container->json, nullptr, false);
   Packer packer(json, options);
   packer.put_buffers(*buffers);
   packer.put_images();

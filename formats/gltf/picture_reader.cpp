@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "formats/gltf/buffers_internal.h"
+#include "formats/gltf/json_text_internal.h"
 #include "formats/gltf/picture_reader_internal.h"
 
 namespace krok::gltf {
@@ -14,11 +15,6 @@ using Json = nlohmann::json;
 
 Error bad_picture(std::string message, std::string hint = {}) {
   return Error("gltf-picture", std::move(message), std::move(hint));
-}
-
-std::string text_member(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
 std::shared_ptr<const Picture> made(std::string name, std::string path,

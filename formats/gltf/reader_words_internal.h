@@ -9,6 +9,8 @@
 
 namespace krok::gltf {
 
+inline constexpr const char* kDamagedHint = "the file is damaged or its exporter has a fault";
+
 // "node 3 (LeftHand)", or "node 3" without a name.
 std::string label(const char* kind, std::size_t index, const std::string& name);
 

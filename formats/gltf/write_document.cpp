@@ -5,10 +5,10 @@
 #include <bit>
 #include <cassert>
 #include <charconv>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/base64.h"
+#include "core/json_internal.h"
 #include "formats/gltf/baked_writer.h"
 #include "formats/gltf/document_internal.h"
 

@@ -1,6 +1,6 @@
 #include "formats/json/json_text.h"
 
-#include <nlohmann/json.hpp>
+#include "core/json_internal.h"
 
 namespace krok::json {
 

@@ -19,9 +19,9 @@ namespace {
 using json::Value;
 using Kind = Value::Kind;
 
-constexpr double kBeyond = 1e-3;   // seconds: times are rounded when they are written
-constexpr double kApart = 1.5e-6;  // seconds, between keytimes
-constexpr double kFurthest = 1e6;  // metres
+constexpr double kBeyond = 1e-3;        // seconds: times are rounded when they are written
+constexpr double kMinReadGap = 1.5e-6;  // seconds, between keytimes
+constexpr double kFurthest = 1e6;       // metres
 constexpr std::size_t kLongestName = 200;
 
 class Reader {
@@ -212,7 +212,7 @@ class Reader {
     sort(
         keytimes, sidecar_.keytimes_by_hand, [](const Keytime& key) { return key.time; }, &offsets);
     for (std::size_t i = 1; i < keytimes.size(); ++i) {
-      if (keytimes[i].time - keytimes[i - 1].time >= kApart) continue;
+      if (keytimes[i].time - keytimes[i - 1].time >= kMinReadGap) continue;
       return json::error_at(
           text_, std::max(offsets[i - 1], offsets[i]), "keys-time",
           fmt::format("'{}' and '{}' are both at {} s", shown(keytimes[i - 1].name),

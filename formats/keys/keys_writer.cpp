@@ -26,11 +26,12 @@ std::string joined(const std::vector<std::string>& lines) {
 }
 
 constexpr const char* kMark = ", \"by\": \"hand\"";
-constexpr double kApart = 2e-6;  // seconds, so that keytimes still differ when they are rounded
+constexpr double kMinWrittenGap =
+    2e-6;  // seconds, so that keytimes still differ when they are rounded
 
 void keep_apart(std::vector<Keytime>& keytimes) {
   for (std::size_t i = 1; i < keytimes.size(); ++i) {
-    keytimes[i].time = std::max(keytimes[i].time, keytimes[i - 1].time + kApart);
+    keytimes[i].time = std::max(keytimes[i].time, keytimes[i - 1].time + kMinWrittenGap);
   }
 }
 

@@ -16,7 +16,7 @@ namespace krok::morph_exr {
 namespace {
 
 constexpr std::uint32_t kMagic = 20000630;
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kExrVersion = 2;
 constexpr std::uint32_t kLongNames = 0x400;
 constexpr std::size_t kLongestName = 255;
 constexpr std::uint32_t kMostAttributes = 1000;
@@ -38,7 +38,7 @@ class Scan {
   Result<HeaderFacts> run() {
     if (in_.read<std::uint32_t>() != kMagic) return fail("this is no OpenEXR file");
     const auto version = in_.read<std::uint32_t>();
-    if ((version & 0xFF) != kVersion || (version & ~(0xFFu | kLongNames)) != 0) {
+    if ((version & 0xFF) != kExrVersion || (version & ~(0xFFu | kLongNames)) != 0) {
       return fail("it is tiled, deep, of several parts or of another version of OpenEXR",
                   "save it as a single-part scan-line picture");
     }

@@ -23,7 +23,7 @@ namespace krok::morph_exr {
 
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kMorphVersion = 1;
 constexpr std::uint64_t kMostWidth = 16384;
 constexpr std::uint64_t kMostRows = 16384;  // of a half
 constexpr const char* kChannels[] = {"R", "G", "B"};
@@ -132,9 +132,9 @@ Result<MorphSet> read_checked(std::span<const std::byte> file, const HeaderFacts
   const auto* names = header.findTypedAttribute<Imf::StringVectorAttribute>(kNamesName);
   const int version = int_attribute(header, kVersionName);
   if (version < 1 || names == nullptr) return not_morphs("it is a picture without morph targets");
-  if (version > kVersion) {
+  if (version > kMorphVersion) {
     return not_morphs(
-        fmt::format("its version is {}, this program reads up to {}", version, kVersion));
+        fmt::format("its version is {}, this program reads up to {}", version, kMorphVersion));
   }
   if (Status fits = check_channels(header); !fits) return fits.error();
   MorphSet morphs;
@@ -219,7 +219,7 @@ Status write(const MorphSet& morphs, OutputFile& file) {
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const char* channel : kChannels)
       header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
-    header.insert(kVersionName, Imf::IntAttribute(kVersion));
+    header.insert(kVersionName, Imf::IntAttribute(kMorphVersion));
     header.insert(kNamesName, Imf::StringVectorAttribute(morphs.names));
     header.insert(kVerticesName, Imf::IntAttribute(morphs.vertex_count));
     header.insert(kNormalsName, Imf::IntAttribute(morphs.normals.empty() ? 0 : 1));

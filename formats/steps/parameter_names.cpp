@@ -1,6 +1,6 @@
 #include "formats/steps/parameter_names.h"
 
-#include <nlohmann/json.hpp>
+#include "core/json_internal.h"
 
 namespace krok::steps {
 

@@ -4,11 +4,15 @@
 #include <cstdint>
 
 #include "core/result.h"
+#include "formats/container/sections.h"
 #include "scene/skeleton.h"
 
 // The records of a .steps file as they stand in its sections; formats/steps/SPEC.md.
 
 namespace krok::steps::detail {
+
+inline constexpr ContainerFormat kStepsFormat = {registry::Kind::steps, registry::kStepsMagic, 1,
+                                                 kFlagFourComponents};
 
 struct Info {
   double rate;

@@ -16,9 +16,6 @@ using parametric::Example;
 using parametric::Library;
 using parametric::Parameter;
 
-constexpr ContainerFormat kFormat = {registry::Kind::steps, registry::kStepsMagic, 1,
-                                     kFlagFourComponents};
-
 Vec3 vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
@@ -196,7 +193,7 @@ std::string_view section_of(const std::string& code) {
 }  // namespace
 
 Result<StepsFile> read(std::span<const std::byte> file) {
-  const auto container = ContainerReader::open(file, kFormat);
+  const auto container = ContainerReader::open(file, kStepsFormat);
   if (!container) return container.error();
   const auto info = read_info(*container);
   if (!info) return info.error();

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "core/json_internal.h"
 #include "formats/container/sections.h"
 #include "formats/steps/records_internal.h"
 #include "formats/steps/steps.h"
@@ -14,9 +14,6 @@ namespace {
 using namespace detail;
 using parametric::Example;
 using parametric::Library;
-
-constexpr ContainerFormat kFormat = {registry::Kind::steps, registry::kStepsMagic, 1,
-                                     kFlagFourComponents};
 
 Error shape(std::string message) {
   return {"steps-shape", std::move(message)};
@@ -165,7 +162,7 @@ Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& fi
                      0};
   std::size_t sections = 12 + kSkeletonSections;
   if (steps.weights) sections += weight_sections(*steps.weights);
-  ContainerWriter container(file, kFormat, orientation_flags(options.orientation), sections);
+  ContainerWriter container(file, kStepsFormat, orientation_flags(options.orientation), sections);
   Status done = container.section("INFO", std::as_bytes(std::span(&info, 1)));
   if (done) done = write_skeleton(library.skeleton, options.orientation, container);
   if (done) done = container.section("FEET", bytes_of(feet_of(library)));

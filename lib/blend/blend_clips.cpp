@@ -7,6 +7,7 @@
 #include <set>
 
 #include "blend/grounded_clip.h"
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "math/euler.h"
@@ -21,10 +22,6 @@ namespace {
 constexpr double kMostTransforms = 1e8;
 constexpr double kRounding = 1e-6;  // of a frame, for the number of frames
 constexpr std::size_t kFramesAtOnce = 32;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 Status check_inputs(std::span<const BlendInput> inputs) {
   if (inputs.empty()) return Error("blend-empty", "there is no motion to blend");

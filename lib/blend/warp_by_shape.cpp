@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "motion/ground_place.h"
 #include "motion/sample.h"
@@ -17,10 +18,6 @@ namespace {
 constexpr int kMostMoments = 1000;
 constexpr double kUsualRate = 30;
 constexpr double kVelocityTime = 0.1;  // seconds
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // A motion at evenly spread moments from its beginning to its end: joints' positions as seen from
 // the figure's place, and their velocities.

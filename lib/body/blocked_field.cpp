@@ -7,16 +7,7 @@
 
 namespace krok::body {
 
-namespace {
-
-constexpr int kBits = 20;  // of a block's coordinate in a key
-
-std::uint64_t pack(std::int64_t x, std::int64_t y, std::int64_t z) {
-  const auto u = [](std::int64_t v) { return static_cast<std::uint64_t>(v); };
-  return (u(x) << (2 * kBits)) | (u(y) << kBits) | u(z);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 BlockedField::BlockedField(const Field& field, double cell, int jobs) : field_(field), cell_(cell) {
   const Eigen::AlignedBox3d bounds = field.bounds();
@@ -57,7 +48,7 @@ BlockedField::BlockedField(const Field& field, double cell, int jobs) : field_(f
   });
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!active[i]) continue;
-    index_.emplace(pack(corners[i][0], corners[i][1], corners[i][2]), blocks_.size());
+    index_.emplace(lattice_key(corners[i][0], corners[i][1], corners[i][2]), blocks_.size());
     blocks_.push_back(std::move(all[i]));
   }
   everything_ = field.near(bounds.center(), bounds.diagonal().norm());
@@ -65,16 +56,16 @@ BlockedField::BlockedField(const Field& field, double cell, int jobs) : field_(f
 
 int BlockedField::block_at(std::int64_t x, std::int64_t y, std::int64_t z) const {
   if (x < 0 || y < 0 || z < 0) return -1;
-  const auto found = index_.find(pack(x, y, z));
+  const auto found = index_.find(lattice_key(x, y, z));
   return found == index_.end() ? -1 : static_cast<int>(found->second);
 }
 
 const Field::Near& BlockedField::near(const Vec3& point) const {
   const Vec3 at = (point - origin_) / (cell_ * kCells);
   if ((at.array() >= 0).all()) {
-    const auto found =
-        index_.find(pack(static_cast<std::int64_t>(at.x()), static_cast<std::int64_t>(at.y()),
-                         static_cast<std::int64_t>(at.z())));
+    const auto found = index_.find(lattice_key(static_cast<std::int64_t>(at.x()),
+                                               static_cast<std::int64_t>(at.y()),
+                                               static_cast<std::int64_t>(at.z())));
     if (found != index_.end()) return blocks_[found->second].near;
   }
   return everything_;

@@ -9,6 +9,15 @@
 
 namespace krok::body {
 
+// Bits of one coordinate in a key.
+inline constexpr int kLatticeKeyBits = 20;
+
+// A key for the coordinates of a lattice point or block, each in [0, 2^20).
+constexpr std::uint64_t lattice_key(std::int64_t x, std::int64_t y, std::int64_t z) {
+  const auto u = [](std::int64_t v) { return static_cast<std::uint64_t>(v); };
+  return (u(x) << (2 * kLatticeKeyBits)) | (u(y) << kLatticeKeyBits) | u(z);
+}
+
 // A field with the tubes that matter looked up block by block of space.
 class BlockedField {
  public:

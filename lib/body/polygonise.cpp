@@ -11,13 +11,7 @@ namespace krok::body {
 
 namespace {
 
-constexpr int kBits = 20;  // of a lattice coordinate in a key
 using EdgeKey = std::uint64_t;
-
-std::uint64_t pack(std::int64_t x, std::int64_t y, std::int64_t z) {
-  const auto u = [](std::int64_t v) { return static_cast<std::uint64_t>(v); };
-  return (u(x) << (2 * kBits)) | (u(y) << kBits) | u(z);
-}
 
 // Corners of a cube are bit masks of the axes. A tetrahedron of Kuhn's subdivision walks from
 // corner 0 to corner 7 along the axes in one order; listed so that all are oriented alike.
@@ -95,10 +89,10 @@ class BlockMarcher {
   EdgeKey edge(int a, int b) {
     if (a > b) std::swap(a, b);  // a is then a subset of b's bits
     const int dx = a & 1, dy = (a >> 1) & 1, dz = (a >> 2) & 1;
-    const EdgeKey key =
-        (pack(block_.corner[0] + x_ + dx, block_.corner[1] + y_ + dy, block_.corner[2] + z_ + dz)
-         << 3) |
-        static_cast<EdgeKey>(b ^ a);
+    const EdgeKey key = (lattice_key(block_.corner[0] + x_ + dx, block_.corner[1] + y_ + dy,
+                                     block_.corner[2] + z_ + dz)
+                         << 3) |
+                        static_cast<EdgeKey>(b ^ a);
     const double va = corner_[a], vb = corner_[b];
     const double t = std::clamp(va / (va - vb), 0.05, 0.95);
     const Vec3 from = point(x_ + dx, y_ + dy, z_ + dz);

@@ -10,6 +10,11 @@
 
 namespace krok::body {
 
+// Twice the area of a triangle, along its normal.
+inline Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b - a).cross(c - a);
+}
+
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise from outside

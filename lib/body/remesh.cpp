@@ -12,10 +12,6 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return (b - a).cross(c - a);
-}
-
 std::size_t corner_of(const Triangle& triangle, std::uint32_t v) {
   return triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
 }

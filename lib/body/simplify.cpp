@@ -11,10 +11,6 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return (b - a).cross(c - a);
-}
-
 // A list in place: of the triangles at a vertex, or of its neighbours.
 struct Ring {
   static constexpr std::size_t kMost = 16;

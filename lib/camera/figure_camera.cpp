@@ -10,6 +10,7 @@
 #include "camera/framing.h"
 #include "camera/look_at.h"
 #include "camera/spring.h"
+#include "core/index.h"
 #include "core/numbers.h"
 #include "motion/ground_place.h"
 
@@ -21,10 +22,6 @@ constexpr double kFarthest = 1e4;  // metres
 constexpr int kMostTries = 500;
 constexpr double kCloseEnough = 0.999;  // of the distance that would do
 constexpr double kLargestMargin = 0.45;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 Status check(const Clip& clip, const FigureCamera& camera) {
   const auto wrong = [](const char* what) { return Error("camera-value", what); };

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/index.h"
 #include "motion/ground_place.h"
 #include "motion/place.h"
 
@@ -19,10 +20,6 @@ constexpr double kFlesh = 0.06;
 constexpr double kHeadBeyond = 0.14;
 constexpr double kHandBeyond = 0.12;
 constexpr double kLeastHeight = 0.01;  // metres
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 bool is_bare_leaf(const Skeleton& skeleton, const std::vector<std::vector<int>>& children,
                   int joint) {

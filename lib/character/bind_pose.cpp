@@ -1,13 +1,14 @@
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "character/bind_pose_internal.h"
 #include "character/rig.h"
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "math/dense_solve.h"
 #include "math/quaternion.h"
 
 namespace krok::character {
@@ -16,12 +17,8 @@ using nodes::Scene;
 
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
-void tell(Diagnostics& diagnostics, Severity severity, std::string code, std::string message,
-          std::string joint = {}) {
+void tell_of_joint(Diagnostics& diagnostics, Severity severity, std::string code,
+                   std::string message, std::string joint = {}) {
   Diagnostic told;
   told.severity = severity;
   told.code = std::move(code);
@@ -49,15 +46,6 @@ Mat3 nearest_by_quarters(const Mat3& rotation) {
     }
   }
   return best;
-}
-
-// The rotation that brings points nearest to others, both relative to their means (Kabsch, 1976);
-// `covariance` is the sum of q p^T.
-Mat3 best_rotation(const Mat3& covariance) {
-  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
-  return u * svd.matrixV().transpose();
 }
 
 double angle_of(const Mat3& rotation) {
@@ -204,7 +192,7 @@ Mat4 Finder::upright(int skin, const std::vector<std::size_t>& places, const Mat
     covariance += (shown - shown_mean) * (bound - bound_mean).transpose();
   }
   if (!covariance.allFinite()) return by_top;
-  Mat3 turn = best_rotation(covariance);
+  Mat3 turn = nearest_rotation(covariance);
   const Mat3 quarters = nearest_by_quarters(turn);
   if (angle_of(quarters.transpose() * turn) < kNear) turn = quarters;
   Vec3 offset = shown_mean - turn * bound_mean;
@@ -305,12 +293,13 @@ void Finder::use_skin(int skin) {
   }
   if (worst < 0) return;
   const std::string joint = scene_.nodes[at(worst)].name;
-  tell(diagnostics_, Severity::warning, "scene-bind",
-       fmt::format("{} binds {} {} units and {} degrees from where another skin does; the pose of "
-                   "the skin with most joints is kept",
-                   label("skin", skin, one.name), shown(joint), readable(farthest, 3),
-                   readable(widest / kRadiansPerDegree, 3)),
-       joint);
+  tell_of_joint(
+      diagnostics_, Severity::warning, "scene-bind",
+      fmt::format("{} binds {} {} units and {} degrees from where another skin does; the pose of "
+                  "the skin with most joints is kept",
+                  label("skin", skin, one.name), shown(joint), readable(farthest, 3),
+                  readable(widest / kRadiansPerDegree, 3)),
+      joint);
 }
 
 // Joints without inverse bind matrices: ancestors from what hangs under them, then the rest from
@@ -339,13 +328,14 @@ void Finder::follow_nodes() {
 
 void Finder::tell_of_binds() {
   if (unusable_ > 0) {
-    tell(diagnostics_, Severity::warning, "scene-bind",
-         fmt::format("{} cannot be inverted, the first that of {}; such a joint is placed by its "
-                     "node",
-                     counted(static_cast<long long>(unusable_), "inverse bind matrix",
-                             "inverse bind matrices"),
-                     shown(first_unusable_)),
-         first_unusable_);
+    tell_of_joint(
+        diagnostics_, Severity::warning, "scene-bind",
+        fmt::format("{} cannot be inverted, the first that of {}; such a joint is placed by its "
+                    "node",
+                    counted(static_cast<long long>(unusable_), "inverse bind matrix",
+                            "inverse bind matrices"),
+                    shown(first_unusable_)),
+        first_unusable_);
   }
   if (joints_.skins.empty()) return;
   double widest = 0;
@@ -366,11 +356,12 @@ void Finder::tell_of_binds() {
   if (worst < 0) return;
   const int node = joints_.nodes[at(worst)];
   const std::string joint = node < 0 ? std::string() : scene_.nodes[at(node)].name;
-  tell(diagnostics_, Severity::note, "scene-pose",
-       fmt::format("without animation the joints stand in another pose than the one the mesh is "
-                   "bound in ({} is turned by {} degrees); the bind pose is the reference pose",
-                   shown(joint), readable(widest / kRadiansPerDegree, 3)),
-       joint);
+  tell_of_joint(
+      diagnostics_, Severity::note, "scene-pose",
+      fmt::format("without animation the joints stand in another pose than the one the mesh is "
+                  "bound in ({} is turned by {} degrees); the bind pose is the reference pose",
+                  shown(joint), readable(widest / kRadiansPerDegree, 3)),
+      joint);
 }
 
 }  // namespace

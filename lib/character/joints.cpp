@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
 
@@ -17,10 +18,6 @@ namespace {
 
 constexpr std::size_t kMostJoints = 65535;
 constexpr std::size_t kMostNamed = 6;  // in a message
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // Sets that grow together.
 class Groups {

@@ -11,6 +11,8 @@
 #include "character/mesh_placement_internal.h"
 #include "character/mesh_vertices_internal.h"
 #include "character/morph_targets_internal.h"
+#include "character/tell_internal.h"
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "scene/influences.h"
@@ -20,18 +22,6 @@ namespace krok::character {
 using nodes::Scene;
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
-void tell(Diagnostics& diagnostics, Severity severity, const char* code, std::string message) {
-  Diagnostic told;
-  told.severity = severity;
-  told.code = code;
-  told.message = std::move(message);
-  diagnostics.push_back(std::move(told));
-}
 
 // Names, each once, for a message; the first few.
 class NameList {
@@ -52,10 +42,10 @@ class NameList {
   std::vector<std::string> names_;
 };
 
-class Builder {
+class MeshBuilder {
  public:
-  Builder(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
-          const Conversion& conversion, const FigureOptions& options, Diagnostics& diagnostics)
+  MeshBuilder(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
+              const Conversion& conversion, const FigureOptions& options, Diagnostics& diagnostics)
       : scene_(scene),
         evaluator_(evaluator),
         rig_(rig),
@@ -112,7 +102,7 @@ class Builder {
   int influences_ = 4;
 };
 
-bool Builder::is_wanted(const nodes::Instance& instance) {
+bool MeshBuilder::is_wanted(const nodes::Instance& instance) {
   const nodes::Node& node = node_of(instance);
   const std::string name = label("mesh", instance.mesh, scene_.meshes[at(instance.mesh)].name);
   if (node.skin >= 0) {
@@ -133,7 +123,7 @@ bool Builder::is_wanted(const nodes::Instance& instance) {
   return true;
 }
 
-void Builder::tell_of_what_is_left() {
+void MeshBuilder::tell_of_what_is_left() {
   const auto left_out = [&](const NameList& names, const char* why) {
     if (names.empty()) return;
     tell(diagnostics_, Severity::warning, "scene-mesh",
@@ -144,7 +134,7 @@ void Builder::tell_of_what_is_left() {
   left_out(without_triangles_, "it has points or lines and no triangles");
 }
 
-void Builder::look_at_attributes() {
+void MeshBuilder::look_at_attributes() {
   with_tangents_ = !wanted_.empty();
   for (const nodes::Instance& instance : wanted_) {
     const nodes::Primitive& shape = evaluator_.primitive(instance);
@@ -156,7 +146,7 @@ void Builder::look_at_attributes() {
   with_tangents_ = with_tangents_ && with_normals_;
 }
 
-void Builder::add_influences(const nodes::Instance& instance, std::size_t vertices) {
+void MeshBuilder::add_influences(const nodes::Instance& instance, std::size_t vertices) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
   Model& model = figure_.model;
   const std::size_t first = model.influence_joints.size();
@@ -183,7 +173,7 @@ void Builder::add_influences(const nodes::Instance& instance, std::size_t vertic
   }
 }
 
-void Builder::add_normals(const nodes::Primitive& shape) {
+void MeshBuilder::add_normals(const nodes::Primitive& shape) {
   for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
     const Mat3 linear = placements_.of(v).leftCols<3>();
     if (with_normals_) {
@@ -205,7 +195,7 @@ void Builder::add_normals(const nodes::Primitive& shape) {
 }
 
 // Where the placement mirrors, what was counter-clockwise is turned back.
-void Builder::add_triangles(const nodes::Instance& instance, std::uint32_t first) {
+void MeshBuilder::add_triangles(const nodes::Instance& instance, std::uint32_t first) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
   Model& model = figure_.model;
   const nodes::Mesh& mesh = scene_.meshes[at(instance.mesh)];
@@ -224,7 +214,7 @@ void Builder::add_triangles(const nodes::Instance& instance, std::uint32_t first
   }
 }
 
-void Builder::add(const nodes::Instance& instance) {
+void MeshBuilder::add(const nodes::Instance& instance) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
   placements_.find(instance);
   const std::size_t place = first_vertices_.size();
@@ -238,7 +228,7 @@ void Builder::add(const nodes::Instance& instance) {
   add_triangles(instance, static_cast<std::uint32_t>(first_vertices_.back()));
 }
 
-void Builder::add_vertices(const nodes::Instance& instance) {
+void MeshBuilder::add_vertices(const nodes::Instance& instance) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
   Model& model = figure_.model;
   for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
@@ -258,7 +248,7 @@ void Builder::add_vertices(const nodes::Instance& instance) {
   add_influences(instance, shape.vertex_count());
 }
 
-Status Builder::finish() {
+Status MeshBuilder::finish() {
   Model& model = figure_.model;
   const auto finite = [](const auto& value) { return value.allFinite(); };
   if (!std::all_of(model.positions.begin(), model.positions.end(), finite) ||
@@ -276,7 +266,7 @@ Status Builder::finish() {
   return {};
 }
 
-Status Builder::add_targets() {
+Status MeshBuilder::add_targets() {
   for (const nodes::Instance& instance : wanted_) targets_.add(instance);
   MorphSet& morphs = figure_.morphs;
   const std::size_t vertices = figure_.model.positions.size();
@@ -329,7 +319,7 @@ Status Builder::add_targets() {
 Result<Figure> make_figure(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
                            const Conversion& conversion, const FigureOptions& options,
                            Diagnostics& diagnostics) {
-  auto figure = Builder(scene, evaluator, rig, conversion, options, diagnostics).build();
+  auto figure = MeshBuilder(scene, evaluator, rig, conversion, options, diagnostics).build();
   if (!figure) return figure;
   figure->model.skeleton = rig.skeleton;
   for (Transform& joint : figure->model.skeleton.reference) joint = conversion.reference(joint);

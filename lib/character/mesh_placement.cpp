@@ -3,15 +3,9 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace krok::character {
-
-namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
-}  // namespace
 
 // The inverse transpose of a linear part up to a positive factor, without a division.
 Mat3 normal_matrix(const Mat3& linear) {

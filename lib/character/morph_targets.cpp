@@ -5,15 +5,12 @@
 
 #include "character/morph_targets_internal.h"
 #include "core/hash.h"
+#include "core/index.h"
 #include "core/text.h"
 
 namespace krok::character {
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // The weight of a node's target without animation.
 double resting(const nodes::Scene& scene, const Figure::WeightSource& source) {

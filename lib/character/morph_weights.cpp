@@ -2,15 +2,9 @@
 
 #include "character/mesh.h"
 
+#include "core/index.h"
+
 namespace krok::character {
-
-namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
-}  // namespace
 
 Result<MorphWeights> make_weights(const Figure& figure, const nodes::Evaluator& evaluator,
                                   int animation, const Sampling& sampling) {

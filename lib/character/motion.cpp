@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
@@ -20,10 +21,6 @@ constexpr double kMostTransforms = 1e8;
 constexpr std::size_t kFramesAtOnce = 16;
 constexpr double kStretchTold = 1e-3;  // a tenth of a percent
 constexpr double kUsualFieldOfView = kPi / 4;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 Error overflow() {
   return Error("scene-value", "the numbers are so large that positions overflow",

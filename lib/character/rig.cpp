@@ -9,6 +9,8 @@
 #include "capture/unique_names.h"
 #include "character/bind_pose_internal.h"
 #include "character/space.h"
+#include "character/tell_internal.h"
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
 
@@ -17,18 +19,6 @@ namespace krok::character {
 using nodes::Scene;
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
-void tell(Diagnostics& diagnostics, Severity severity, std::string code, std::string message) {
-  Diagnostic told;
-  told.severity = severity;
-  told.code = std::move(code);
-  told.message = std::move(message);
-  diagnostics.push_back(std::move(told));
-}
 
 // Names that only mark where a bone ends: "Head_end", "HeadTop_End", "L Finger0Nub".
 bool names_an_end(const std::string& name) {
@@ -39,9 +29,9 @@ bool names_an_end(const std::string& name) {
   return name.ends_with("Nub") || name.ends_with("End");
 }
 
-class Builder {
+class RigBuilder {
  public:
-  Builder(const Scene& scene, Diagnostics& diagnostics, Rig rig)
+  RigBuilder(const Scene& scene, Diagnostics& diagnostics, Rig rig)
       : scene_(scene), diagnostics_(diagnostics), rig_(std::move(rig)) {}
 
   Result<Rig> build(const std::vector<char>& weighted) {
@@ -61,7 +51,7 @@ class Builder {
   Rig rig_;
 };
 
-Status Builder::fold_scales() {
+Status RigBuilder::fold_scales() {
   for (int j = 0; j < rig_.joints.count(); ++j) {
     const Mat4& reference = rig_.reference[at(j)];
     if (!reference.allFinite() || reference.cwiseAbs().maxCoeff() > 1e30) {
@@ -78,7 +68,7 @@ Status Builder::fold_scales() {
   return {};
 }
 
-void Builder::name_joints() {
+void RigBuilder::name_joints() {
   UniqueNames names;
   std::vector<std::string> given(at(rig_.joints.count()));
   std::vector<char> unique(given.size(), 0);
@@ -121,7 +111,7 @@ void Builder::name_joints() {
 }
 
 // Leaves that are named as ends, carry no vertex and never move.
-void Builder::mark_ends(const std::vector<char>& weighted) {
+void RigBuilder::mark_ends(const std::vector<char>& weighted) {
   std::vector<char> other(rig_.skeleton.names.size(), 0);
   for (const int parent : rig_.joints.parents) {
     if (parent >= 0) other[at(parent)] = 1;
@@ -165,7 +155,7 @@ Result<Rig> make_rig(const Scene& scene, const nodes::Evaluator& evaluator, Join
   rig.to_axes = rotation_to_apply(scene.space);
   BindPose bind = find_bind_pose(scene, evaluator, rig.joints, rig.to_axes, diagnostics);
   rig.reference = std::move(bind.joint_to_world);
-  return Builder(scene, diagnostics, std::move(rig)).build(bind.weighted);
+  return RigBuilder(scene, diagnostics, std::move(rig)).build(bind.weighted);
 }
 
 }  // namespace krok::character

@@ -23,14 +23,14 @@ NameIndex index_of_names(Names names) {
 }
 
 std::string only_in(Names names, const NameIndex& other) {
-  constexpr std::size_t kShown = 3;
+  constexpr std::size_t kNamesShown = 3;
   std::string list;
   std::size_t missing = 0;
   for (const std::string& name : names) {
     if (other.contains(name)) continue;
-    if (++missing <= kShown) list += (missing > 1 ? ", " : "") + name;
+    if (++missing <= kNamesShown) list += (missing > 1 ? ", " : "") + name;
   }
-  if (missing > kShown) list += fmt::format(" and {} more", missing - kShown);
+  if (missing > kNamesShown) list += fmt::format(" and {} more", missing - kNamesShown);
   return list;
 }
 

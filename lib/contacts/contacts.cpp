@@ -96,9 +96,9 @@ void cut_to_level(const std::vector<Vec3>& track, double on, double off, Run& ru
   if (!longest->open_end) run.last = from + longest->last, run.open_end = false;
 }
 
-class Finder {
+class ContactFinder {
  public:
-  Finder(const Clip& clip, const ContactOptions& options, FoundContacts& found)
+  ContactFinder(const Clip& clip, const ContactOptions& options, FoundContacts& found)
       : clip_(clip), options_(options), found_(found), scale_(found.leg_length / kUsualLeg) {}
 
   void find() {
@@ -298,7 +298,7 @@ Result<FoundContacts> find_contacts(const Clip& clip, const RoleMap& roles,
                 fmt::format("{} frames are too few to tell what moves", clip.frame_count()), ""));
     return found;
   }
-  Finder(clip, options, found).find();
+  ContactFinder(clip, options, found).find();
   take_contacts(clip, found);
   if (found.contacts.empty()) {
     found.warnings.push_back(

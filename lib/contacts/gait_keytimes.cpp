@@ -22,10 +22,10 @@ constexpr double kFrame = 1.0 / 60;  // seconds
 constexpr double kWhole = 0.75;      // of a stance
 constexpr double kJerk = 0.1;        // seconds
 
-class Finder {
+class KeytimeFinder {
  public:
-  Finder(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
-         const GaitOptions& options)
+  KeytimeFinder(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
+                const GaitOptions& options)
       : clip_(clip), found_(found), feet_(clip, roles, found, options) {}
 
   Gait find() const {
@@ -199,7 +199,7 @@ Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& foun
                const GaitOptions& options) {
   Gait gait;
   if (clip.frame_count() >= 3 && !found.tracks.empty() && found.leg_length > 0) {
-    gait = Finder(clip, roles, found, options).find();
+    gait = KeytimeFinder(clip, roles, found, options).find();
   }
   const auto warn = [&](std::string code, std::string message, std::string hint) {
     Diagnostic diagnostic;

@@ -1,9 +1,9 @@
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "contacts/series_internal.h"
 #include "filter/butterworth.h"
+#include "math/dense_solve.h"
 
 namespace krok::contacts {
 
@@ -78,7 +78,7 @@ double misfit(const std::vector<Vec3>& track, int first, int last, double moment
     basis.row(i) << 1, moving * moving, third, u;
     values.row(i) = track[static_cast<std::size_t>(first + i)].transpose();
   }
-  const Eigen::MatrixXd solution = basis.householderQr().solve(values);
+  const Eigen::MatrixXd solution = solve_least_squares(basis, values);
   return (values - basis * solution).squaredNorm();
 }
 

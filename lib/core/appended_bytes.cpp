@@ -10,7 +10,7 @@ namespace krok {
 namespace {
 
 // Whole stretches of a file, which the system keeps in large pieces at half the cost of others.
-constexpr std::uint64_t kStretch = std::uint64_t{1} << 18;
+constexpr std::uint64_t kFlushedBytes = std::uint64_t{1} << 18;
 constexpr std::uint64_t kWorthStoring = std::uint64_t{8} << 20;
 constexpr std::size_t kMostParts = 1024;  // that the system takes at once (IOV_MAX)
 
@@ -19,7 +19,7 @@ constexpr std::size_t kMostParts = 1024;  // that the system takes at once (IOV_
 int AppendedBytes::append(std::span<const std::span<const std::byte>> parts) {
   std::uint64_t end = size();
   for (const auto part : parts) end += part.size();
-  const std::uint64_t whole = end / kStretch * kStretch;
+  const std::uint64_t whole = end / kFlushedBytes * kFlushedBytes;
   std::size_t now = whole > size() ? static_cast<std::size_t>(whole - size()) : 0;
   if (now > 0) {
     plan(waiting_);

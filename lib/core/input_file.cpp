@@ -17,7 +17,7 @@ namespace krok {
 
 namespace {
 
-constexpr std::size_t kStretch = std::size_t{4} << 20;  // worth a call; whole pages
+constexpr std::size_t kHashedBytes = std::size_t{4} << 20;  // worth a call; whole pages
 
 }  // namespace
 
@@ -66,9 +66,9 @@ std::uint64_t InputFile::checksum() const {
   Content& content = *content_;
   if (content.mapped == nullptr) return xxh3(bytes());
   while (content.summed < content.mapped_size) {
-    const std::size_t end = std::min(content.summed + kStretch, content.mapped_size);
+    const std::size_t end = std::min(content.summed + kHashedBytes, content.mapped_size);
     content.sum_up_to(end);
-    if (content.mapped_size > kStretch) release_before(end);
+    if (content.mapped_size > kHashedBytes) release_before(end);
   }
   return content.sum->digest();
 }
@@ -76,7 +76,7 @@ std::uint64_t InputFile::checksum() const {
 void InputFile::release_before(std::size_t offset) const {
   Content& content = *content_;
   if (content.mapped == nullptr) return;
-  const std::size_t end = std::min(offset, content.mapped_size) / kStretch * kStretch;
+  const std::size_t end = std::min(offset, content.mapped_size) / kHashedBytes * kHashedBytes;
   // Going back means that the file is read once more from its front.
   if (end < content.released) content.released = 0;
   if (end == content.released) return;

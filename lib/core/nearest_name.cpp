@@ -13,7 +13,7 @@ namespace krok {
 
 namespace {
 
-constexpr std::size_t kLongest = 64;
+constexpr std::size_t kMaxLetters = 64;
 
 // Levenshtein's distance, row by row.
 std::size_t distance(std::string_view a, std::string_view b) {
@@ -34,11 +34,11 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_name(std::string_view word, std::span<const std::string> names) {
-  const std::string wanted = ascii_lower(word.substr(0, kLongest));
+  const std::string wanted = ascii_lower(word.substr(0, kMaxLetters));
   std::string best;
   std::size_t least = 0;
   for (const std::string& name : names) {
-    const std::string other = ascii_lower(std::string_view(name).substr(0, kLongest));
+    const std::string other = ascii_lower(std::string_view(name).substr(0, kMaxLetters));
     const std::size_t found = distance(wanted, other);
     const std::size_t near = std::max<std::size_t>(2, std::max(wanted.size(), other.size()) / 3);
     if (found > near || (!best.empty() && found >= least)) continue;

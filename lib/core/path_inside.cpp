@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kLongest = 4096;  // Linux's own limit
+constexpr std::size_t kMaxPath = 4096;  // Linux's own limit
 
 Error outside(const std::string& path, std::string_view why) {
   return Error("path-outside", fmt::format("the path '{}' {}", shown(path), why),
@@ -25,7 +25,7 @@ Error outside(const std::string& path, std::string_view why) {
 
 std::string path_fault(std::string_view path) {
   if (path.empty()) return "is empty";
-  if (path.size() > kLongest) return "is too long";
+  if (path.size() > kMaxPath) return "is too long";
   if (!is_utf8(path)) return "is not UTF-8";
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; };
   if (std::ranges::any_of(path, control)) return "has a control character";

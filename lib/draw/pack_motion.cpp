@@ -17,7 +17,7 @@ constexpr double kStillLength = 2e-5;  // metres
 constexpr double kStillAngle = 2e-5;   // radians, half of what packing rounds to
 
 constexpr double kComponentLimit = 0.70710678118654752;
-constexpr double kSteps = 32767.0;
+constexpr double kPackedSteps = 32767.0;
 
 // joint_to_parent of all frames: what moves and what stays.
 struct Locals {
@@ -93,7 +93,8 @@ std::array<std::uint16_t, 3> pack_rotation(const Quat& rotation) {
   for (int i = 0; i < 4; ++i) {
     if (i == largest) continue;
     const double share = (sign * value[i] / kComponentLimit + 1.0) / 2.0;
-    words[at++] = static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.0, 1.0) * kSteps));
+    words[at++] =
+        static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.0, 1.0) * kPackedSteps));
   }
   const auto left_out = static_cast<unsigned>(largest);
   words[0] = static_cast<std::uint16_t>(words[0] | (left_out & 1U) << 15);
@@ -108,7 +109,7 @@ Quat unpack_rotation(const std::array<std::uint16_t, 3>& words) {
   std::size_t at = 0;
   for (int i = 0; i < 4; ++i) {
     if (i == left_out) continue;
-    const double value = ((words[at++] & 0x7fff) / kSteps * 2.0 - 1.0) * kComponentLimit;
+    const double value = ((words[at++] & 0x7fff) / kPackedSteps * 2.0 - 1.0) * kComponentLimit;
     rotation.coeffs()[i] = value;
     rest -= value * value;
   }

@@ -3,11 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/json_internal.h"
 #include "core/result.h"
 #include "scene/camera_track.h"
 #include "scene/clip.h"

@@ -16,7 +16,7 @@ namespace krok::draw {
 namespace {
 
 constexpr int kMostCells = 1000;  // in a row or a column
-constexpr int kSteps = 24;        // of colour, about
+constexpr int kColourSteps = 24;  // of colour, about
 constexpr double kBarStep = 4.0;  // pixels of a bar for one colour
 constexpr double kBarHeight = 8.0;
 
@@ -79,7 +79,7 @@ FieldScale scale_of(const Field& field) {
   range.add(0, Scale::linear);
   for (const double value : field.values) range.add(value, Scale::linear);
   const auto [low, high] = range.settled(Scale::linear);
-  const double step = tick_step(low, high, kSteps);
+  const double step = tick_step(low, high, kColourSteps);
   const double below = std::floor(low / step + 0.5), above = std::floor(high / step + 0.5);
   return {(below - 0.5) * step, (above + 0.5) * step, static_cast<int>(above - below) + 1};
 }

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
+
+#include "math/dense_solve.h"
 
 namespace krok::filter {
 
@@ -43,8 +44,7 @@ PolynomialSmoother::PolynomialSmoother(const SavitzkyGolay& filter) : window_(fi
       basis(row, k) = ((2 * k - 1) * x * basis(row, k - 1) - (k - 1) * basis(row, k - 2)) / k;
     }
   }
-  const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(basis).householderQ() *
-                            Eigen::MatrixXd::Identity(n, columns);
+  const Eigen::MatrixXd q = orthonormal_columns(basis);
   weights_.resize(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
       weights_.data(), n, n) = q * q.transpose();

@@ -12,7 +12,7 @@ namespace krok::fit::detail {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kGrain = 8;  // points that a thread takes at once
+constexpr std::size_t kPointGrain = 8;  // points that a thread takes at once
 constexpr int kClimbSteps = 12;
 constexpr double kLastStride = 1.0 / 16;  // of the first
 constexpr double kAround = 0.25;
@@ -88,7 +88,7 @@ std::vector<double> ErrorField::at(std::span<const double> places, Error* failur
   const std::size_t d = dimensions(), count = places.size() / d;
   std::vector<double> errors(places.size());
   std::vector<Status> statuses(count);
-  parallel_for(count, kGrain, jobs_, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, kPointGrain, jobs_, [&](std::size_t begin, std::size_t end) {
     Probe probe(function_, evaluator_, measure_);
     for (std::size_t p = begin; p < end; ++p) {
       const auto error = std::span(errors).subspan(p * d, d);

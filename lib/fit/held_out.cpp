@@ -10,7 +10,7 @@ namespace krok::fit::detail {
 
 namespace {
 
-constexpr int kPointsEach = 256;  // for each parameter
+constexpr int kHeldOutPerParameter = 256;  // for each parameter
 constexpr int kMostPoints = 1024;
 constexpr int kOutsidePoints = 256;
 constexpr int kFigurePoints = 128;  // for the range and roughness of weights
@@ -29,7 +29,7 @@ HeldOut::HeldOut(const rbf::WeightFunction& function, const rbf::Measure& measur
       within_(places_within(function,
                             options.held_out > 0
                                 ? options.held_out
-                                : std::min(kPointsEach * function.dimensions, kMostPoints),
+                                : std::min(kHeldOutPerParameter * function.dimensions, kMostPoints),
                             seed_for(options.seed, Use::held_out), options.inside)),
       outside_(places_around(function, kOutsidePoints, seed_for(options.seed, Use::outside),
                              options.inside)) {}

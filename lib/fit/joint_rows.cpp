@@ -13,7 +13,7 @@ namespace krok::fit::detail {
 
 namespace {
 
-constexpr std::size_t kGrain = 16;         // points, or rows, that a thread takes at once
+constexpr std::size_t kRowGrain = 16;      // points, or rows, that a thread takes at once
 constexpr std::size_t kPointsAtOnce = 64;  // whose weights fit into the fastest memory
 constexpr double kLeastGain = 1e-4;        // of the cost in one iteration, or it ends
 constexpr int kMemory = 20;                // gradients that the direction is made of
@@ -45,14 +45,14 @@ class JointCost final : public ceres::FirstOrderFunction {
 
   bool Evaluate(const double* added, double* cost, double* gradient) const override {
     const std::span<const double> changes(added, problem_.rows * n_);
-    parallel_for(problem_.points, kGrain, jobs_,
+    parallel_for(problem_.points, kRowGrain, jobs_,
                  [&](std::size_t begin, std::size_t end) { take_points(changes, begin, end); });
     const double stay = terms_.stay * terms_.stay / static_cast<double>(problem_.rows) / unit_;
     *cost = std::accumulate(costs_.begin(), costs_.end(), 0.0);
     *cost += 0.5 * stay * std::inner_product(changes.begin(), changes.end(), changes.begin(), 0.0);
     if (gradient == nullptr) return true;
     const std::span<double> slopes(gradient, changes.size());
-    parallel_for(problem_.rows, kGrain, jobs_, [&](std::size_t begin, std::size_t end) {
+    parallel_for(problem_.rows, kRowGrain, jobs_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin * n_; i < end * n_; ++i) slopes[i] = stay * changes[i];
       for (std::size_t p = 0; p < problem_.points; p += kPointsAtOnce) {
         const std::size_t count = std::min(kPointsAtOnce, problem_.points - p);

@@ -22,7 +22,7 @@ using rbf::WeightSolver;
 
 // Points for each row and at least, that the rows are fitted to: with fewer, errors between them
 // grow.
-constexpr int kPointsEach = 16;
+constexpr int kPointsPerRow = 16;
 constexpr int kLeastPoints = 1024;
 constexpr int kMostPoints = 4096;
 // For each parameter but the first, points are drawn from a range that is larger by so much on each
@@ -32,7 +32,7 @@ constexpr std::uint32_t kMostTries = 1000;  // for each point that is inside
 constexpr detail::JointTerms kTerms = {.stay = 0.003, .positive = 0.1, .low = 0, .iterations = 100};
 constexpr double kParts[] = {1, 0.5, 0.25};  // of the way
 constexpr double kMostRoughness = 1.1;       // of the unrefined
-constexpr std::size_t kGrain = 8;
+constexpr std::size_t kPolishGrain = 8;
 
 // Weight functions, and how good they are.
 struct Candidate {
@@ -84,7 +84,7 @@ Result<Candidate> Polisher::candidate(const std::vector<double>& rows) const {
 
 std::vector<double> Polisher::training_points() const {
   const int wanted =
-      std::clamp(kPointsEach * start_.function.inserted(), kLeastPoints, kMostPoints);
+      std::clamp(kPointsPerRow * start_.function.inserted(), kLeastPoints, kMostPoints);
   const rbf::Sobol sobol(start_.function.dimensions,
                          detail::seed_for(options_.seed, detail::Use::polish));
   const auto most = static_cast<std::size_t>(wanted) * d_;
@@ -112,7 +112,7 @@ detail::JointRows Polisher::about(const Candidate& found) const {
   rows.weights.resize(rows.points * n_);
   rows.errors.resize(rows.points * d_);
   rows.slopes.resize(rows.points * d_ * n_);
-  parallel_for(rows.points, kGrain, options_.jobs, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows.points, kPolishGrain, options_.jobs, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const auto point = std::span(points).subspan(p * d_, d_);
       const auto weights = std::span(rows.weights).subspan(p * n_, n_);

@@ -26,8 +26,8 @@ using rbf::WeightEvaluator;
 using rbf::WeightFunction;
 using rbf::WeightSolver;
 
-constexpr int kPointsEach = 40;   // for each parameter
-constexpr double kGrowth = 1.25;  // of the mean square error held out, over the least so far
+constexpr int kPointsPerParameter = 40;  // for each parameter
+constexpr double kGrowth = 1.25;         // of the mean square error held out, over the least so far
 constexpr int kStalledRounds = 3;
 constexpr double kLowerOnTheWay = 0.02;
 constexpr int kRefusedRounds = 2;  // for so long a refused point is not tried again
@@ -123,7 +123,8 @@ Status Refiner::begin() {
 }
 
 int Refiner::points_left() const {
-  const int most = options_.points > 0 ? options_.points : kPointsEach * static_cast<int>(d_);
+  const int most =
+      options_.points > 0 ? options_.points : kPointsPerParameter * static_cast<int>(d_);
   return most - solver_.function().inserted();
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/index.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
 #include "motion/ground_place.h"
@@ -32,10 +33,6 @@ Transform share_of(const Transform& displacement, double turn, double share) {
   part.position = centre - part.orientation * centre;
   part.position.y() = share * displacement.position.y();
   return part;
-}
-
-std::size_t at(int joint) {
-  return static_cast<std::size_t>(joint);
 }
 
 class Looper {

@@ -4,15 +4,12 @@
 #include <cstdint>
 #include <span>
 
+#include "core/index.h"
 #include "math/quaternion.h"
 
 namespace krok {
 
 namespace {
-
-std::size_t at(int joint) {
-  return static_cast<std::size_t>(joint);
-}
 
 // The mirror at x = 0, for points and for rotations: a rotation's axis is turned round as well.
 Vec3 image(const Vec3& point) {

@@ -7,14 +7,14 @@ namespace krok {
 namespace {
 
 bool travels(const Clip& clip, int joint) {
-  constexpr float kStill = 1e-3f;
+  constexpr float kStillMetres = 1e-3f;
   const auto j = static_cast<std::size_t>(joint);
   Eigen::AlignedBox2f box;
   for (int f = 0; f < clip.frame_count(); ++f) {
     const Vec3f& position = clip.frame_positions(f)[j];
     box.extend(Eigen::Vector2f(position.x(), position.z()));
   }
-  return box.sizes().maxCoeff() > kStill;
+  return box.sizes().maxCoeff() > kStillMetres;
 }
 
 // The topmost joint that moves along with the carrier; the carrier itself where none above does.

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "math/dense_solve.h"
 #include "math/quaternion.h"
 
 namespace krok::nodes {
@@ -23,7 +23,7 @@ Mat4 matrix_of(const Vec3& translation, const Quat& rotation, const Vec3& scale)
   return matrix;
 }
 
-Mat3 nearest_rotation(const Mat3& linear) {
+Mat3 rotation_part(const Mat3& linear) {
   const double sign = linear.determinant() < 0 ? -1.0 : 1.0;
   Mat3 unit = sign * linear;
   bool vanishes = false;
@@ -35,11 +35,7 @@ Mat3 nearest_rotation(const Mat3& linear) {
   const double skew = vanishes ? 1.0 : (unit.transpose() * unit - Mat3::Identity()).norm();
   if (skew < 1e-9) return unit;
   if (!linear.allFinite()) return Mat3::Identity();
-  const Eigen::JacobiSVD<Mat3> svd(sign * linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  // The least direction is turned where U V^T would mirror.
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
-  return u * svd.matrixV().transpose();
+  return nearest_rotation(sign * linear);
 }
 
 // Adds weighted displacements to positions, normals or the xyz of tangents.
@@ -136,7 +132,7 @@ void normalize(std::vector<Vector>& vectors) {
 }  // namespace
 
 Transform rigid_part(const Mat4& matrix) {
-  const Mat3 rotation = nearest_rotation(matrix.topLeftCorner<3, 3>());
+  const Mat3 rotation = rotation_part(matrix.topLeftCorner<3, 3>());
   return {matrix.topRightCorner<3, 1>(), normalized_or_identity(Quat(rotation))};
 }
 

@@ -1,9 +1,10 @@
 #include "parametric/bounds.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "math/dense_solve.h"
 
 namespace krok::parametric {
 
@@ -25,7 +26,7 @@ VectorXd affine_minimum(const MatrixXd& points) {
   system(n, n) = 0;
   VectorXd right = VectorXd::Zero(n + 1);
   right[n] = 1;
-  return VectorXd(system.fullPivLu().solve(right)).head(n);
+  return solve_full_pivoting(system, right).head(n);
 }
 
 // The point nearest to 0 in the convex hull of columns. The corral is the set of columns whose hull

@@ -1,12 +1,12 @@
 #include "parametric/leave_one_out.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "core/parallel.h"
+#include "math/dense_solve.h"
 #include "parametric/blended_motion.h"
 #include "parametric/bounds.h"
 #include "rbf/weight_evaluator.h"
@@ -46,7 +46,7 @@ std::vector<double> plane_weights(const Bounds& bounds, std::span<const double> 
   Eigen::VectorXd at(d + 1);
   at[0] = 1;
   bounds.scale(point, {at.data() + 1, static_cast<std::size_t>(d)});
-  const Eigen::VectorXd weights = planes.transpose().completeOrthogonalDecomposition().solve(at);
+  const Eigen::VectorXd weights = solve_minimum_norm(planes.transpose(), at);
   return {weights.begin(), weights.end()};
 }
 

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "core/numbers.h"
+#include "math/dense_solve.h"
 
 namespace krok::parametric {
 
@@ -118,7 +118,7 @@ Status Synthesiser::correct(std::span<const double> parameters, int steps,
       jacobian.row(k).array() -= jacobian.row(k).mean();
       jacobian.row(k) *= scale;
     }
-    const Eigen::VectorXd change = jacobian.completeOrthogonalDecomposition().solve(missing);
+    const Eigen::VectorXd change = solve_minimum_norm(jacobian, missing);
     bool nearer = false;
     double part = 1;
     for (int halving = 0; halving <= kHalvings && !nearer; ++halving, part *= 0.5) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "math/dense_solve.h"
 #include "rbf/evaluate_internal.h"
 
 namespace krok::rbf::detail {
@@ -46,7 +47,7 @@ CentreMatrix::CentreMatrix(Kernel kernel, std::size_t dimensions, double smoothi
       values(row, static_cast<Eigen::Index>(i) + 1) = place[i];
     }
   }
-  if (size > 0) base_inverse_ = values.fullPivLu().inverse();
+  if (size > 0) base_inverse_ = inverse_full_pivoting(values);
   for (std::size_t a = 0; a < size; ++a) {
     for (std::size_t b = 0; b < size; ++b) {
       const auto at = [&](std::size_t k) {

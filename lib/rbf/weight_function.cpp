@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "core/numbers.h"
+#include "rbf/weight_system_internal.h"
 
 namespace krok::rbf {
 
@@ -16,10 +17,6 @@ constexpr std::string_view kNames[] = {"cubic", "linear", "gaussian", "bspline",
 
 // How far from their sums the numbers of a file may be, relative to the largest of them.
 constexpr double kSumTolerance = 1e-9;
-
-bool all_finite(std::span<const double> values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
 
 // Whether each of the rows of `columns` numbers sums to what it should, the first one to `first`.
 bool sums_are(std::span<const double> rows, std::size_t columns, double first, double others) {
@@ -79,7 +76,7 @@ Status check_shapes(const WeightFunction& f) {
       return Error("rbf-shape", fmt::format("a weight function has {} numbers for its {}, not {}",
                                             array.values.size(), array.name, array.size));
     }
-    if (!all_finite(array.values)) {
+    if (!detail::all_finite(array.values)) {
       return Error("rbf-number",
                    fmt::format("a weight function's {} are not all finite numbers", array.name));
     }

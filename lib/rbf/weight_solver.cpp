@@ -21,10 +21,6 @@ double radius_factor(Kernel kernel) {
   return kernel == Kernel::wendland ? 4 : 2;
 }
 
-bool all_finite(std::span<const double> values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
-
 // From each example to the nearest other one, scaled. Code: rbf-duplicate.
 Result<std::vector<double>> example_distances(const WeightFunction& f) {
   const auto n = static_cast<std::size_t>(f.examples);
@@ -168,7 +164,7 @@ double WeightSolver::distance_to_centres(std::span<const double> point) const {
 
 Status WeightSolver::check_insertion(std::span<const double> point,
                                      std::span<const double> row) const {
-  if (!all_finite(point) || !all_finite(row)) {
+  if (!detail::all_finite(point) || !detail::all_finite(row)) {
     return Error("rbf-number", "a point to insert or its weights are not all finite numbers");
   }
   const double sum = std::accumulate(row.begin(), row.end(), 0.0);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/numbers.h"
+#include "math/dense_solve.h"
 #include "rbf/weight_solver.h"
 
 namespace krok::rbf::detail {
@@ -48,19 +49,18 @@ Result<std::unique_ptr<WeightSystem>> WeightSystem::start(WeightFunction functio
     for (std::size_t i = 0; i < d; ++i) a(row, static_cast<Eigen::Index>(i) + 1) = place[i];
   }
   // Takes columns, examples here, in the order in which each adds most.
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> examples_qr(a.transpose());
-  examples_qr.setThreshold(kRankTolerance);
-  if (examples_qr.rank() < a.cols()) {
+  const PivotedColumns columns = pivoted_columns(a.transpose(), kRankTolerance);
+  if (columns.rank < a.cols()) {
     return Error("rbf-rank",
                  fmt::format("the parameters of the {} examples vary in {} directions only, not "
                              "in all {}",
-                             n, std::max<Eigen::Index>(examples_qr.rank() - 1, 0), d),
+                             n, std::max<Eigen::Index>(columns.rank - 1, 0), d),
                  "leave out a parameter that follows from the others, or add examples");
   }
   std::vector<std::size_t> base;
   if (!has_radii(function.kernel)) {
     for (Eigen::Index i = 0; i < a.cols(); ++i) {
-      base.push_back(static_cast<std::size_t>(examples_qr.colsPermutation().indices()[i]));
+      base.push_back(static_cast<std::size_t>(columns.order[static_cast<std::size_t>(i)]));
     }
     std::ranges::sort(base);
   }
@@ -71,7 +71,7 @@ Result<std::unique_ptr<WeightSystem>> WeightSystem::start(WeightFunction functio
   for (std::size_t k = 0; k < n; ++k) system->wanted[k * n + k] = 1;
   if (base.empty()) {
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> planes =
-        a.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(a.rows(), a.rows()));
+        solve_least_squares_pivoting(a, Eigen::MatrixXd::Identity(a.rows(), a.rows()));
     system->plane.assign(planes.data(), planes.data() + planes.size());
     bring_sums(system->plane, n, 1, 0);
   }
@@ -278,6 +278,10 @@ void WeightSystem::influences(std::span<const double> point, std::span<double> o
   factors.solve_transposed(values);
   const std::size_t examples = others.size() - of_rows.size();
   std::ranges::copy(std::span(values).subspan(examples), of_rows.begin());
+}
+
+bool all_finite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
 }  // namespace krok::rbf::detail

@@ -49,6 +49,8 @@ struct WeightSystem {
   double find_residual(std::span<double> left) const;
 };
 
+bool all_finite(std::span<const double> values);
+
 // Adds to each row the same number, so that it sums to what it should: `first` for the first row.
 void bring_sums(std::span<double> rows, std::size_t columns, double first, double others);
 

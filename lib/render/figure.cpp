@@ -6,15 +6,15 @@ namespace krok::render {
 
 namespace {
 
-constexpr float kFarthest = 1e15F;
+constexpr float kMaxCoordinate = 1e15F;
 
 bool usable(const Vec3f& point) {
   // Not a number fails the comparison.
-  return point.cwiseAbs().maxCoeff() <= kFarthest && point.allFinite();
+  return point.cwiseAbs().maxCoeff() <= kMaxCoordinate && point.allFinite();
 }
 
 bool usable(float radius) {
-  return radius >= 0 && radius <= kFarthest;
+  return radius >= 0 && radius <= kMaxCoordinate;
 }
 
 Error fault(const char* what) {

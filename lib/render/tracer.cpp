@@ -14,10 +14,10 @@ namespace {
 // same surfaces everywhere.
 constexpr const char* kDevice = "isa=sse4.2,threads=1,set_affinity=0";
 
-constexpr double kFarthest = 1.0;   // units; no figure reaches farther than 0.87 from its middle
-constexpr double kStart = 2.0;      // units before the middle, where looks begin
-constexpr float kStep = 1e-4F;      // off the surface that a ray leaves
-constexpr float kSmallest = 1e-6F;  // units; a bone shorter than this is a ball
+constexpr double kMaxDistance = 1.0;  // units; no figure reaches farther than 0.87 from its middle
+constexpr double kStart = 2.0;        // units before the middle, where looks begin
+constexpr float kStep = 1e-4F;        // off the surface that a ray leaves
+constexpr float kSmallest = 1e-6F;    // units; a bone shorter than this is a ball
 
 // Directions about +Z in which light comes to a surface, as many as its cosine gives them.
 template <int count>
@@ -274,7 +274,7 @@ std::optional<Hit> TracedFigure::look(const Sight& sight) const {
   const Vec3 offset = (sight.point - middle_) / unit_;
   const Vec3 aside = offset - towards.dot(offset) * towards;
   // Embree wants no rays from far away.
-  if (!(aside.squaredNorm() <= kFarthest * kFarthest)) return std::nullopt;
+  if (!(aside.squaredNorm() <= kMaxDistance * kMaxDistance)) return std::nullopt;
   const Vec3f start = (aside + kStart * towards).cast<float>();
   const Vec3f direction = -towards.cast<float>();
   RTCRayHit ray{};
@@ -305,7 +305,7 @@ std::optional<Hit> TracedFigure::look(const Sight& sight) const {
 
 float TracedFigure::occlusion(const Vec3f& point, const Vec3f& normal, const Rays& rays,
                               float reach) const {
-  if (!(point.norm() <= static_cast<float>(kFarthest) + reach)) return 0;
+  if (!(point.norm() <= static_cast<float>(kMaxDistance) + reach)) return 0;
   // Two directions across the normal. Source: Duff et al., Building an Orthonormal Basis, Revisited
   // (JCGT 6(1), 2017).
   const float sign = std::copysign(1.0F, normal.z());

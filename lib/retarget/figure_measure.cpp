@@ -2,17 +2,10 @@
 
 #include <vector>
 
+#include "core/index.h"
 #include "math/quaternion.h"
 
 namespace krok::retarget {
-
-namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
-}  // namespace
 
 double length_of(const Skeleton& skeleton, int from, int to) {
   if (from < 0 || to < 0) return 0;

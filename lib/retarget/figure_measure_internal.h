@@ -14,6 +14,11 @@ namespace krok::retarget {
 
 inline const Vec3 kUp = Vec3::UnitY();
 
+// The horizontal part.
+inline Vec3 flat(const Vec3& v) {
+  return {v.x(), 0, v.z()};
+}
+
 // 0 up to `from`, 1 beyond `to`, 3t^2 - 2t^3 between them.
 inline double smooth_step(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/index.h"
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
 #include "retarget/figure_measure_internal.h"
@@ -12,10 +13,6 @@
 namespace krok::retarget {
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 std::vector<int> subtree(const Skeleton& skeleton, int root) {
   std::vector<int> joints = {root};
@@ -32,10 +29,6 @@ std::vector<int> subtree(const Skeleton& skeleton, int root) {
 double elevation(const Vec3& v) {
   const double length = v.norm();
   return length > 0 ? std::asin(std::clamp(v.y() / length, -1.0, 1.0)) : 0.0;
-}
-
-Vec3 flat(const Vec3& v) {
-  return {v.x(), 0, v.z()};
 }
 
 }  // namespace

@@ -6,13 +6,11 @@
 #include <cstdlib>
 #include <unordered_map>
 
+#include "core/index.h"
+
 namespace krok::retarget {
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // How far along a chain each of its joints lies, 0 to 1, by the lengths of its bones; by their
 // number where they have none.

@@ -5,16 +5,13 @@
 #include <cmath>
 #include <optional>
 
+#include "core/index.h"
 #include "math/quaternion.h"
 #include "retarget/figure_measure_internal.h"
 
 namespace krok::retarget {
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 double degrees(double angle) {
   return angle * kRadiansPerDegree;

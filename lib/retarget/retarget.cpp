@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "math/quaternion.h"
 #include "retarget/figure_measure_internal.h"
@@ -21,10 +22,6 @@ namespace krok::retarget {
 namespace {
 
 constexpr std::size_t kFramesATime = 64;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // Orientations as they are, positions scaled: no rounding but that of the scale.
 Retargeted copy_of(const Clip& source, const Skeleton& target, const SameSkeleton& same,

@@ -4,16 +4,14 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "core/index.h"
+
 namespace krok::retarget {
 
 namespace {
 
 constexpr double kScaleTolerance = 1e-6;
 constexpr double kOffsetTolerance = 1e-5;  // of the sum of all bones' root mean square
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "math/quaternion.h"
+#include "retarget/figure_measure_internal.h"
 
 namespace krok::retarget {
 
@@ -68,10 +69,6 @@ class Posture {
   }
   const Figure& figure_;
 };
-
-Vec3 flat(const Vec3& v) {
-  return {v.x(), 0, v.z()};
-}
 
 // Turns a joint and all that hangs on it about its own place.
 void turn_branch(const Skeleton& skeleton, int joint, const Quat& turn, std::span<Transform> pose) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/index.h"
 #include "roles/body_shape.h"
 #include "roles/joint_names.h"
 #include "roles/role_finder.h"
@@ -13,10 +14,6 @@
 namespace krok {
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // What a joint of this role would be called.
 JointName name_of(Role role) {

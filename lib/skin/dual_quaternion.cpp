@@ -1,6 +1,6 @@
 #include "skin/dual_quaternion.h"
 
-#include <Eigen/SVD>
+#include "math/dense_solve.h"
 
 namespace krok {
 
@@ -13,11 +13,7 @@ Mat4 matrix_of(const SkinMatrix& matrix) {
 // The rotation nearest to `a`.
 Mat3 rotation_of(const Mat3& a) {
   if (!a.allFinite()) return Mat3::Identity();
-  const Eigen::JacobiSVD<Mat3> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  // Singular values fall, so that the last direction is the one that costs least to turn round.
-  if (u.determinant() * svd.matrixV().determinant() < 0) u.col(2) = -u.col(2);
-  return u * svd.matrixV().transpose();
+  return nearest_rotation(a);
 }
 
 }  // namespace

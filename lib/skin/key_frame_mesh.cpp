@@ -13,7 +13,7 @@ namespace krok {
 
 namespace {
 
-constexpr std::size_t kTile = 1024;
+constexpr std::size_t kVertexTile = 1024;
 
 KeyShares one_key(std::size_t key) {
   KeyShares shares;
@@ -125,7 +125,7 @@ void shape_at(const KeyFrameMesh& mesh, ShapeJoin join, double tension, double t
   if (jobs == 1) {
     tile(0, vertices);
   } else {
-    parallel_for(vertices, kTile, jobs, tile);
+    parallel_for(vertices, kVertexTile, jobs, tile);
   }
 }
 

@@ -11,7 +11,8 @@ namespace krok {
 
 namespace {
 
-constexpr std::size_t kTile = 256;  // vertices whose sums stay in the cache from target to target
+constexpr std::size_t kSumTile =
+    256;  // vertices whose sums stay in the cache from target to target
 
 struct Morphing {
   const MorphSet& morphs;
@@ -23,7 +24,7 @@ struct Morphing {
 template <class Target, class Finish>
 void morph_tile(const Morphing& morphing, std::span<const Vec3f> mesh, std::size_t begin,
                 std::size_t end, const Target& target, const Finish& finish) {
-  std::array<Vec3, kTile> sums;
+  std::array<Vec3, kSumTile> sums;
   for (std::size_t v = begin; v < end; ++v) sums[v - begin] = mesh[v].cast<double>();
   for (std::size_t i = 0; i < morphing.weights.size(); ++i) {
     const double weight = morphing.weights[i];
@@ -76,9 +77,9 @@ void apply_morphs(const MorphSet& morphs, std::span<const float> weights, const 
     run_tile(morphing, mesh, out, begin, end);
   };
   if (jobs == 1) {
-    for (std::size_t v = 0; v < count; v += kTile) tile(v, std::min(v + kTile, count));
+    for (std::size_t v = 0; v < count; v += kSumTile) tile(v, std::min(v + kSumTile, count));
   } else {
-    parallel_for(count, kTile, jobs, tile);
+    parallel_for(count, kSumTile, jobs, tile);
   }
 }
 

@@ -15,8 +15,6 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr double kRounding = 1e-6;  // seconds
-
 Status check_weight(const LayerItem& item, LayerMode mode) {
   const blend::WeightCurve& curve = item.weight;
   if (curve.weights.empty() || curve.weights.size() != curve.generic.size()) {
@@ -43,7 +41,7 @@ Result<LayerTimes> times_of(const LayerItem& item, std::span<const Source> sourc
   LayerTimes times;
   times.range = *range;
   times.start = item.at.seconds(rate);
-  if (!(times.start >= 0) || times.start > end + kRounding) {
+  if (!(times.start >= 0) || times.start > end + kTimeRounding) {
     return Error("timeline-time",
                  fmt::format("it begins at {} s, outside the 0 to {} s of the base",
                              readable(times.start), readable(end)));
@@ -53,8 +51,8 @@ Result<LayerTimes> times_of(const LayerItem& item, std::span<const Source> sourc
   times.end = std::min(times.start + times.range.duration(), end);
   if (item.play.until) {
     const double until = item.play.until->seconds(rate);
-    if (!(until >= times.start - kRounding) ||
-        until > times.start + times.range.duration() + kRounding) {
+    if (!(until >= times.start - kTimeRounding) ||
+        until > times.start + times.range.duration() + kTimeRounding) {
       return Error(
           "timeline-time",
           fmt::format("it ends at {} s, but can be played from {} to {} s", readable(until),
@@ -68,7 +66,7 @@ Result<LayerTimes> times_of(const LayerItem& item, std::span<const Source> sourc
                  fmt::format("it is played more than {} times", grouped(kMostRounds)));
   }
   for (const Fade* fade : {&item.fade_in, &item.fade_out}) {
-    if (fade->duration >= 0 && fade->duration <= times.end - times.start + kRounding) continue;
+    if (fade->duration >= 0 && fade->duration <= times.end - times.start + kTimeRounding) continue;
     return Error("timeline-time",
                  fmt::format("a fade of {} s is longer than the {} s that it lasts",
                              readable(fade->duration), readable(times.end - times.start)));
@@ -82,7 +80,7 @@ Result<FigurePose> reference_of(const Layer& layer, const ItemPlayer& player, in
   if (layer.reference_pose) return figure_pose(clip.skeleton, carrier, clip.skeleton.reference);
   if (!layer.reference) return player.figure(0);
   const double time = layer.reference->seconds(clip.rate);
-  if (!(time >= 0) || time > clip.duration() + kRounding) {
+  if (!(time >= 0) || time > clip.duration() + kTimeRounding) {
     Error error("timeline-time",
                 fmt::format("the reference at {} s is outside the 0 to {} s of {}", readable(time),
                             readable(clip.duration()), shown(player.source().name)));
@@ -132,7 +130,7 @@ Result<LayerPlayer> LayerPlayer::create(const Layer& layer, std::span<const Sour
 double LayerPlayer::weight(std::size_t item, double time) const {
   const LayerTimes& times = items_[item];
   const LayerItem& told = layer_->items[item];
-  if (!(time >= times.start) || time > times.end + kRounding) return 0;
+  if (!(time >= times.start) || time > times.end + kTimeRounding) return 0;
   const auto faded = [](const Fade& fade, double since) {
     return fade.duration > 0 ? fade.easing.at(since / fade.duration) : 1.0;
   };

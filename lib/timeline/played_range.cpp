@@ -12,14 +12,14 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr double kRounding = 1e-3;  // of a frame, by which a moment may lie outside a motion
+constexpr double kFrameRounding = 1e-3;  // of a frame, by which a moment may lie outside a motion
 constexpr double kLeastSpeed = 1e-3, kMostSpeed = 1e3;
 constexpr double kSameKey = 0.05;  // seconds between the two ends of a seam
 
 Result<double> moment_of(const ClipTime& time, const Source& source, std::string_view which) {
   const Clip& clip = *source.clip;
   const double seconds = time.seconds(clip.rate), last = clip.duration();
-  const double beyond = kRounding / clip.rate;
+  const double beyond = kFrameRounding / clip.rate;
   if (std::isfinite(seconds) && seconds >= -beyond && seconds <= last + beyond) {
     return std::clamp(seconds, 0.0, last);
   }

@@ -12,8 +12,6 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr double kRounding = 1e-6;  // seconds
-
 // An item of the base or of a layer, as far as events go.
 struct Happening {
   const std::string& name;
@@ -38,7 +36,7 @@ class Events {
     if (item.range.round > 0) {
       for (int round = 1; round < item.range.rounds; ++round) {
         const double play = round * item.range.round;
-        if (play > item.last_play - kRounding) break;
+        if (play > item.last_play - kTimeRounding) break;
         if (play < item.first_play) continue;
         push(item, Event::Kind::loop, item.time_of(play), {}, round);
       }
@@ -61,7 +59,7 @@ class Events {
   Status add_mark(const Happening& item, const Mark& mark) {
     if (!mark.of_source) {
       const double time = item.start + mark.at.seconds(rate_);
-      if (time >= item.start - kRounding && time <= item.end + kRounding) {
+      if (time >= item.start - kTimeRounding && time <= item.end + kTimeRounding) {
         push(item, Event::Kind::mark, time, mark.name);
         return {};
       }
@@ -78,8 +76,8 @@ class Events {
     const bool within = moment >= item.range.from && moment <= item.range.to;
     for (int round = 0; within && round < item.range.rounds; ++round) {
       const double play = item.range.play_time(round, moment);
-      if (play > item.last_play + kRounding) break;
-      if (play < item.first_play - kRounding) continue;
+      if (play > item.last_play + kTimeRounding) break;
+      if (play < item.first_play - kTimeRounding) continue;
       push(item, Event::Kind::mark, item.time_of(play), mark.name, round);
       passed = true;
       if (!(item.range.round > 0)) break;
@@ -105,7 +103,7 @@ class Events {
 
 // Begun before a play time; one that would begin at it is not.
 int rounds_until(const PlayedRange& range, double play_time) {
-  return range.at(play_time - kRounding).round + 1;
+  return range.at(play_time - kTimeRounding).round + 1;
 }
 
 }  // namespace

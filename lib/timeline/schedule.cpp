@@ -13,8 +13,7 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr double kRounding = 1e-6;  // seconds
-constexpr double kLongest = 1e7;    // seconds; the number of frames is held to its limit by mix()
+constexpr double kLongest = 1e7;  // seconds; the number of frames is held to its limit by mix()
 
 class Scheduler {
  public:
@@ -57,11 +56,11 @@ class Scheduler {
     const double end = std::isfinite(lasts) ? item.time_of(lasts) : HUGE_VAL;
     if (!told.play.until) return end;
     const double until = told.play.until->seconds(rate_);
-    if (!std::isfinite(until) || until > kLongest || until < item.start - kRounding) {
+    if (!std::isfinite(until) || until > kLongest || until < item.start - kTimeRounding) {
       return Error("timeline-time", fmt::format("it ends at {} s, before it begins at {} s",
                                                 readable(until), readable(item.start)));
     }
-    if (until > end + kRounding) {
+    if (until > end + kTimeRounding) {
       return Error(
           "timeline-time",
           fmt::format("it is over at {} s, before its end at {} s", readable(end), readable(until)),
@@ -78,7 +77,7 @@ class Scheduler {
 
   Status check_length(std::size_t i) const {
     const ScheduledItem& item = items_[i];
-    if (item.end < item.settled - kRounding) {
+    if (item.end < item.settled - kTimeRounding) {
       return Error("timeline-time",
                    fmt::format("it ends at {} s, before the change into it is over at {} s",
                                readable(item.end), readable(item.settled)),
@@ -127,7 +126,7 @@ class Scheduler {
     if (!std::isfinite(item.begin) || item.begin > kLongest) {
       return Error("timeline-time", "it begins at a time that is none");
     }
-    if (item.begin < before.settled - kRounding) {
+    if (item.begin < before.settled - kTimeRounding) {
       return Error(
           "timeline-time",
           fmt::format("it begins at {} s, before {} is reached at {} s", readable(item.begin),
@@ -136,7 +135,7 @@ class Scheduler {
     }
     item.begin = std::max(item.begin, before.settled);
     const double needed = item.begin + (fades ? change.duration : 0);
-    if (needed > *end + kRounding) {
+    if (needed > *end + kTimeRounding) {
       return Error("timeline-time",
                    fmt::format("{} is over at {} s, but is needed until {} s",
                                shown(timeline_.base[i - 1].name), readable(*end), readable(needed)),

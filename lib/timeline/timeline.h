@@ -20,6 +20,9 @@
 
 namespace krok::timeline {
 
+// Seconds by which moments that should be equal may differ.
+inline constexpr double kTimeRounding = 1e-6;
+
 // A named stretch of a motion; both ends belong to it.
 struct Part {
   std::string name;

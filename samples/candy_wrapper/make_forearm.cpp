@@ -38,11 +38,11 @@ int main(int argc, char** argv) {
   spec.inputs = "";
   spec.examples = {{"make-forearm --model forearm.model -o twist.anim",
                     "the mesh on two joints, and half a turn of the wrist in three seconds"}};
-  spec.declare = [&](CLI::App& app) {
-    app.add_option("--model", model_path, "Where the mesh goes")
-        ->type_name("OUT.model")
-        ->required()
-        ->group("Forearm");
+  spec.declare = [&](CommandOptions& command) {
+    command.add_option("--model", model_path, "Where the mesh goes")
+        .type_name("OUT.model")
+        .required()
+        .group("Forearm");
   };
   spec.run = [&](ToolContext& context) { return run(context, model_path); };
   return run_tool(spec, argc, argv);

@@ -12,13 +12,12 @@ namespace krok::samples {
 
 namespace {
 
-constexpr double kDegree = kRadiansPerDegree;
 // A walking knee is never locked, and in steps that are longer than ordinary bent more, or it would
 // snap straight before each strike.
 double least_knee_flexion(double activity) {
-  return (4 + 18 * std::max(0.0, activity - 1)) * kDegree;
+  return (4 + 18 * std::max(0.0, activity - 1)) * kRadiansPerDegree;
 }
-constexpr double kStandingKneeFlexion = 6 * kDegree;
+constexpr double kStandingKneeFlexion = 6 * kRadiansPerDegree;
 constexpr double kHeightSpacing = 1.0 / 120.0;  // seconds between the keys of the height
 constexpr double kHeightSmoothing = 0.045;      // seconds, standard deviation
 
@@ -89,7 +88,7 @@ Transform BodyMotion::pelvis_without_height(double time) const {
   Transform pelvis;
   pelvis.position = path_(time) + left_of(heading) * sway + forward_of(heading) * ahead;
   pelvis.position.y() = 0;
-  const double tilt = (2 + 1.2 * activity * std::cos(4 * kPi * (phase - 0.05))) * kDegree;
+  const double tilt = (2 + 1.2 * activity * std::cos(4 * kPi * (phase - 0.05))) * kRadiansPerDegree;
   pelvis.orientation = axis_rotation(Axis::y, heading + activity * pelvis_rotation(phase)) *
                        axis_rotation(Axis::z, moving * pelvis_list(phase)) *
                        axis_rotation(Axis::x, tilt);
@@ -207,12 +206,12 @@ void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
     world[index].orientation = orientation;
   };
   // The shoulders turn against the pelvis, a little later than it, and stay nearly level.
-  const double turn = activity * 5.5 * kDegree * std::cos(2 * kPi * (phase - 0.03));
+  const double turn = activity * 5.5 * kRadiansPerDegree * std::cos(2 * kPi * (phase - 0.03));
   const double list = -0.35 * std::min(1.0, 2.5 * activity) * pelvis_list(phase);
   const double climb = plan_.ground == Ground::stairs ? plan_.rise / (0.1 * figure_.stature) : 0;
   const double lean = (2.0 + 1.5 * activity + 1.0 * activity * std::sin(4 * kPi * (phase - 0.05)) +
                        6.0 * std::max(0.0, climb) * std::min(1.0, 2.5 * activity)) *
-                      kDegree;
+                      kRadiansPerDegree;
   const Quat chest = axis_rotation(Axis::y, heading + turn) * axis_rotation(Axis::z, list) *
                      axis_rotation(Axis::x, lean);
   const Quat hips = world[static_cast<std::size_t>(figure_.hips)].orientation;
@@ -223,8 +222,9 @@ void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
   const double ahead = heading_(time + 0.35);
   const Quat head =
       axis_rotation(Axis::y, ahead + 0.15 * turn) *
-      axis_rotation(Axis::x, (1.5 - 0.6 * activity * std::sin(4 * kPi * (phase - 0.05))) * kDegree);
-  place(figure_.neck, slerp(chest, head, 0.5) * axis_rotation(Axis::x, 6 * kDegree));
+      axis_rotation(
+          Axis::x, (1.5 - 0.6 * activity * std::sin(4 * kPi * (phase - 0.05))) * kRadiansPerDegree);
+  place(figure_.neck, slerp(chest, head, 0.5) * axis_rotation(Axis::x, 6 * kRadiansPerDegree));
   place(figure_.head, head);
 }
 
@@ -233,9 +233,10 @@ void BodyMotion::pose_arm(Side side, double time, std::span<Transform> world) co
   const double own_phase = left_phase(time) + (side == Side::left ? 0 : 0.5);
   const double activity = activity_(time);
   const double swing = std::min(1.15, activity);
-  const double flexion = swing * shoulder_flexion(own_phase) + (1 - swing) * 1 * kDegree;
-  const double elbow = swing * elbow_flexion(own_phase - 0.02) + (1 - swing) * 16 * kDegree;
-  const double abduction = 9 * kDegree;
+  const double flexion = swing * shoulder_flexion(own_phase) + (1 - swing) * 1 * kRadiansPerDegree;
+  const double elbow =
+      swing * elbow_flexion(own_phase - 0.02) + (1 - swing) * 16 * kRadiansPerDegree;
+  const double abduction = 9 * kRadiansPerDegree;
 
   const auto set = [&](int joint, const Quat& left_local) {
     const auto index = static_cast<std::size_t>(joint);
@@ -245,14 +246,15 @@ void BodyMotion::pose_arm(Side side, double time, std::span<Transform> world) co
   };
   // In the left arm's own frame the bone runs along +X; hanging down, its +Y points away from the
   // body and +Z forward.
-  set(arm.collar, axis_rotation(Axis::y, -0.12 * flexion) * axis_rotation(Axis::z, -3 * kDegree));
+  set(arm.collar,
+      axis_rotation(Axis::y, -0.12 * flexion) * axis_rotation(Axis::z, -3 * kRadiansPerDegree));
   set(arm.upper, axis_rotation(Axis::x, -flexion) *
-                     axis_rotation(Axis::z, -(kPi / 2 - abduction) + 3 * kDegree) *
-                     axis_rotation(Axis::x, 22 * kDegree));
-  set(arm.lower, axis_rotation(Axis::y, -elbow) * axis_rotation(Axis::x, -12 * kDegree));
-  set(arm.hand,
-      axis_rotation(Axis::z, (-6 - 4 * std::sin(2 * kPi * (own_phase - 0.1)) * swing) * kDegree));
-  set(arm.fingers, axis_rotation(Axis::z, -24 * kDegree));
+                     axis_rotation(Axis::z, -(kPi / 2 - abduction) + 3 * kRadiansPerDegree) *
+                     axis_rotation(Axis::x, 22 * kRadiansPerDegree));
+  set(arm.lower, axis_rotation(Axis::y, -elbow) * axis_rotation(Axis::x, -12 * kRadiansPerDegree));
+  set(arm.hand, axis_rotation(Axis::z, (-6 - 4 * std::sin(2 * kPi * (own_phase - 0.1)) * swing) *
+                                           kRadiansPerDegree));
+  set(arm.fingers, axis_rotation(Axis::z, -24 * kRadiansPerDegree));
 }
 
 void BodyMotion::pose_leg(Side side, double time, std::span<Transform> world) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/index.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
 #include "samples/generator/curves.h"
@@ -15,15 +16,10 @@ namespace krok::samples {
 
 namespace {
 
-constexpr double kDegree = kRadiansPerDegree;
 constexpr double kLifting = 0.7;  // seconds for an arm to go up, and as long to come down
 constexpr double kTurning = 0.5;  // seconds for a head to turn
 constexpr double kWavesASecond = 1.4;
 constexpr double kStance = 0.62;  // of a stride that a leg stands
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 Status check_range(const char* what, double value, double least, double most) {
   if (value >= least && value <= most) return {};
@@ -85,18 +81,20 @@ void wave(const Figure& figure, const GestureOptions& options, double time, Posi
   const double sign = side_sign(options.side);
   const ArmJoints& arm = figure.arms[at(static_cast<int>(options.side))];
   const double up = up_and_down(time, options.duration, kLifting);
-  const double swing = 24 * kDegree * std::sin(2 * kPi * kWavesASecond * (time - kLifting)) *
+  const double swing = 24 * kRadiansPerDegree *
+                       std::sin(2 * kPi * kWavesASecond * (time - kLifting)) *
                        up_and_down(time, options.duration, 1.4 * kLifting);
   const Vec3 upper = Vec3(sign * 0.85, -0.22, 0.42).normalized();
   const Vec3 lower = axis_rotation(Axis::z, -sign * swing) * Vec3(sign * 0.12, 1, 0.2).normalized();
   const Vec3 hinge = -sign * upper.cross(lower).normalized();
   const Quat upper_to_chest = frame_of(sign * upper, hinge);
   const Quat lower_to_chest = frame_of(sign * lower, hinge);
-  pose.turn(arm.collar, slerp(Quat::Identity(), axis_rotation(Axis::z, sign * 9 * kDegree), up));
+  pose.turn(arm.collar,
+            slerp(Quat::Identity(), axis_rotation(Axis::z, sign * 9 * kRadiansPerDegree), up));
   pose.bring(arm.upper, upper_to_chest, up);
   pose.bring(arm.lower, upper_to_chest.conjugate() * lower_to_chest, up);
   pose.bring(arm.hand, axis_rotation(Axis::z, -sign * 0.5 * swing), up);
-  pose.turn(figure.head, axis_rotation(Axis::y, sign * 12 * kDegree * up));
+  pose.turn(figure.head, axis_rotation(Axis::y, sign * 12 * kRadiansPerDegree * up));
 }
 
 // As people spare an aching hip: the trunk over the leg that stands, the head kept level.
@@ -104,19 +102,19 @@ void limp(const Figure& figure, const GestureOptions& options, double time, Posi
   const double sign = side_sign(options.side);
   const double phase = std::clamp(time / options.duration / kStance, 0.0, 1.0);
   const double lean = 0.5 - 0.5 * std::cos(2 * kPi * phase);
-  const Quat third = axis_rotation(Axis::z, -sign * 5 * kDegree * lean) *
-                     axis_rotation(Axis::x, 2.5 * kDegree * lean);
+  const Quat third = axis_rotation(Axis::z, -sign * 5 * kRadiansPerDegree * lean) *
+                     axis_rotation(Axis::x, 2.5 * kRadiansPerDegree * lean);
   for (const int joint : {figure.spine, figure.spine1, figure.spine2}) pose.turn(joint, third);
   for (const int joint : {figure.neck, figure.head}) pose.turn(joint, third.conjugate());
   const ArmJoints& arm = figure.arms[at(static_cast<int>(options.side))];
-  pose.turn(arm.upper, axis_rotation(Axis::z, sign * 10 * kDegree * lean));
+  pose.turn(arm.upper, axis_rotation(Axis::z, sign * 10 * kRadiansPerDegree * lean));
 }
 
 void look(const Figure& figure, const GestureOptions& options, double time, Posing& pose) {
   const double turned = side_sign(options.side) * up_and_down(time, options.duration, kTurning);
-  pose.turn(figure.spine2, axis_rotation(Axis::y, 8 * kDegree * turned));
-  pose.turn(figure.neck, axis_rotation(Axis::y, 22 * kDegree * turned));
-  pose.turn(figure.head, axis_rotation(Axis::y, 30 * kDegree * turned));
+  pose.turn(figure.spine2, axis_rotation(Axis::y, 8 * kRadiansPerDegree * turned));
+  pose.turn(figure.neck, axis_rotation(Axis::y, 22 * kRadiansPerDegree * turned));
+  pose.turn(figure.head, axis_rotation(Axis::y, 30 * kRadiansPerDegree * turned));
 }
 
 Status check(const GestureOptions& options) {

@@ -1,7 +1,8 @@
 #include "samples/generator/ground_truth.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "core/json_internal.h"
 
 namespace krok::samples {
 

@@ -4,6 +4,7 @@
 #include "core/quantity.h"
 #include "formats/bvh/bvh_writer.h"
 #include "samples/generator/gesture.h"
+#include "tools/common/one_of.h"
 #include "tools/common/output_set.h"
 #include "tools/common/tool.h"
 
@@ -18,26 +19,27 @@ struct Arguments {
   std::string kind = "wave", side = "right", duration;
 };
 
-void declare(CLI::App& app, Arguments& arguments) {
-  app.add_option("--kind", arguments.kind, "wave, limp or look")
-      ->check(CLI::IsMember({"wave", "limp", "look"}))
-      ->type_name("KIND")
-      ->capture_default_str()
-      ->group("Gesture");
-  app.add_option("--side", arguments.side,
-                 "The arm that waves, the leg that limps, where the head turns: left or right")
-      ->check(CLI::IsMember({"left", "right"}))
-      ->type_name("SIDE")
-      ->capture_default_str()
-      ->group("Gesture");
-  app.add_option("--duration", arguments.duration, "How long it lasts; of a limp: a stride")
-      ->type_name("TIME")
-      ->default_str("3s")
-      ->group("Gesture");
-  app.add_option("--rate", arguments.gesture.rate, "Frames a second")
-      ->type_name("N")
-      ->capture_default_str()
-      ->group("Capture");
+void declare(CommandOptions& command, Arguments& arguments) {
+  command.add_option("--kind", arguments.kind, "wave, limp or look")
+      .transform(one_of_words({"wave", "limp", "look"}))
+      .type_name("KIND")
+      .capture_default_str()
+      .group("Gesture");
+  command
+      .add_option("--side", arguments.side,
+                  "The arm that waves, the leg that limps, where the head turns: left or right")
+      .transform(one_of_words({"left", "right"}))
+      .type_name("SIDE")
+      .capture_default_str()
+      .group("Gesture");
+  command.add_option("--duration", arguments.duration, "How long it lasts; of a limp: a stride")
+      .type_name("TIME")
+      .default_str("3s")
+      .group("Gesture");
+  command.add_option("--rate", arguments.gesture.rate, "Frames a second")
+      .type_name("N")
+      .capture_default_str()
+      .group("Capture");
 }
 
 Result<int> run(ToolContext& context, Arguments& arguments) {
@@ -73,7 +75,7 @@ int main(int argc, char** argv) {
       {"make-gesture --kind limp --side left --duration 1.2s -o limp.bvh",
        "how the trunk moves in a stride of a limping figure"},
   };
-  spec.declare = [&](CLI::App& app) { declare(app, arguments); };
+  spec.declare = [&](CommandOptions& command) { declare(command, arguments); };
   spec.run = [&](ToolContext& context) { return run(context, arguments); };
   return run_tool(spec, argc, argv);
 }

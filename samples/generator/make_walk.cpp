@@ -5,6 +5,7 @@
 #include "formats/bvh/bvh_writer.h"
 #include "samples/generator/ground_truth.h"
 #include "samples/generator/walk.h"
+#include "tools/common/one_of.h"
 #include "tools/common/tool.h"
 
 // make-walk: writes a generated walk as BVH, and what is known of it beside it.
@@ -24,59 +25,60 @@ struct Arguments {
   std::string contacts;
 };
 
-void declare(CLI::App& app, Arguments& arguments) {
+void declare(CommandOptions& command, Arguments& arguments) {
   samples::WalkOptions& walk = arguments.walk;
   const auto quantity = [&](const char* name, std::string& text, const char* unit,
                             const char* fallback, const char* help) {
-    app.add_option(name, text, help)->type_name(unit)->default_str(fallback)->group("Walk");
+    command.add_option(name, text, help).type_name(unit).default_str(fallback).group("Walk");
   };
-  app.add_option("--steps", walk.steps, "Number of steps")
-      ->type_name("N")
-      ->capture_default_str()
-      ->group("Walk");
+  command.add_option("--steps", walk.steps, "Number of steps")
+      .type_name("N")
+      .capture_default_str()
+      .group("Walk");
   quantity("--step-length", arguments.step_length, "LENGTH", "0.7m",
            "From heel to heel along the path");
   quantity("--step-width", arguments.step_width, "LENGTH", "0.1m", "Between the heels");
   quantity("--turn", arguments.turn, "ANGLE", "0deg", "Heading gained by each step, to the left");
   quantity("--rise", arguments.rise, "LENGTH", "0m",
            "Height gained by each step, negative downwards");
-  app.add_option("--ground", arguments.ground, "What a rise is made of: stairs or slope")
-      ->check(CLI::IsMember({"stairs", "slope"}))
-      ->type_name("KIND")
-      ->capture_default_str()
-      ->group("Walk");
-  app.add_option("--cadence", walk.cadence, "Steps a minute; 0 fits the step length")
-      ->type_name("N")
-      ->capture_default_str()
-      ->group("Walk");
-  app.add_flag("--from-standing", walk.from_standing, "Start and end standing, not in mid-walk")
-      ->group("Walk");
-  app.add_option("--first", arguments.first, "The foot of the first step: left or right")
-      ->check(CLI::IsMember({"left", "right"}))
-      ->type_name("SIDE")
-      ->capture_default_str()
-      ->group("Walk");
+  command.add_option("--ground", arguments.ground, "What a rise is made of: stairs or slope")
+      .transform(one_of_words({"stairs", "slope"}))
+      .type_name("KIND")
+      .capture_default_str()
+      .group("Walk");
+  command.add_option("--cadence", walk.cadence, "Steps a minute; 0 fits the step length")
+      .type_name("N")
+      .capture_default_str()
+      .group("Walk");
+  command.add_flag("--from-standing", walk.from_standing, "Start and end standing, not in mid-walk")
+      .group("Walk");
+  command.add_option("--first", arguments.first, "The foot of the first step: left or right")
+      .transform(one_of_words({"left", "right"}))
+      .type_name("SIDE")
+      .capture_default_str()
+      .group("Walk");
   quantity("--stature", arguments.stature, "LENGTH", "1.75m", "Height of the figure");
-  app.add_option("--rate", walk.rate, "Frames a second")
-      ->type_name("N")
-      ->capture_default_str()
-      ->group("Capture");
+  command.add_option("--rate", walk.rate, "Frames a second")
+      .type_name("N")
+      .capture_default_str()
+      .group("Capture");
   const auto noise = [&](const char* name, std::string& text, const char* unit,
                          const char* fallback, const char* help) {
-    app.add_option(name, text, help)->type_name(unit)->default_str(fallback)->group("Capture");
+    command.add_option(name, text, help).type_name(unit).default_str(fallback).group("Capture");
   };
   noise("--noise-angle", arguments.noise_angle, "ANGLE", "0deg",
         "Deviation of the joints' rotations");
   noise("--noise-position", arguments.noise_position, "LENGTH", "0mm",
         "Deviation of the root's position");
-  app.add_option("--seed", walk.seed, "Of the noise")
-      ->type_name("N")
-      ->capture_default_str()
-      ->group("Capture");
-  app.add_option("--contacts", arguments.contacts,
-                 "Where what is known of the walk goes; NAME.contacts.json beside the capture")
-      ->type_name("FILE")
-      ->group("Capture");
+  command.add_option("--seed", walk.seed, "Of the noise")
+      .type_name("N")
+      .capture_default_str()
+      .group("Capture");
+  command
+      .add_option("--contacts", arguments.contacts,
+                  "Where what is known of the walk goes; NAME.contacts.json beside the capture")
+      .type_name("FILE")
+      .group("Capture");
 }
 
 using Parser = Result<double> (*)(std::string_view);
@@ -161,7 +163,7 @@ int main(int argc, char** argv) {
       {"make-walk --rise 16cm --step-length 30cm --from-standing -o stairs.bvh",
        "up a flight of stairs"},
   };
-  spec.declare = [&](CLI::App& app) { declare(app, arguments); };
+  spec.declare = [&](CommandOptions& command) { declare(command, arguments); };
   spec.run = [&](ToolContext& context) { return run(context, arguments); };
   return run_tool(spec, argc, argv);
 }

@@ -2,19 +2,22 @@
 # From a motion capture to a skinned, animated glTF, and back again to be sure. README.md tells the
 # same story step by step.
 #
-#   run.sh [CAPTURE.bvh] [OUTPUT_FOLDER]
+#   run.sh [--quick] [CAPTURE.bvh] [OUTPUT_FOLDER]
 #
-# Without arguments: samples/captures/walk.bvh to out/demo. The tools are found through $KROK_BIN, or
-# in build/bin.
+# Without arguments: samples/captures/walk.bvh to out/demo. With --quick, to out/quick, the rig and the
+# page alone, by four tools. The tools are found through $KROK_BIN, or in build/bin.
 . "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
 
 # Longest parts to bake, in turn, where a whole capture is too long for that.
 parts=(4s 2s 1s 0.5s)
 
+quick=
+[ "${1:-}" != --quick ] || { quick=yes && shift; }
 check_arguments 2 "$@"
-need_tools import body skin diff export info keys view plot
+need_tools import body skin view
+[ -n "$quick" ] || need_tools diff export info keys plot
 capture=${1:-$story/../captures/walk.bvh}
-out=${2:-out/demo}
+out=${2:-out/$([ -n "$quick" ] && echo quick || echo demo)}
 mkdir -p -- "$out" || fail "cannot make the folder $out"
 out=$(cd -- "$out" && pwd)
 
@@ -31,7 +34,7 @@ say "1. The capture becomes a motion"
 # A T-pose in front of the motion, as many captures have it, would flash up in a viewer.
 "$bin/krok-import" --skip-rest-frame auto -o "$base.anim" -- "$capture"
 made "$base.anim" "the motion: skeleton and frames"
-"$bin/krok-info" -- "$base.anim"
+[ -n "$quick" ] || "$bin/krok-info" -- "$base.anim"
 
 say "2. A body is built around the skeleton"
 "$bin/krok-body" -q -o "$base.model" -- "$base.anim"
@@ -40,6 +43,13 @@ made "$base.model" "a mesh with smooth weights"
 say "3. The body moves: as a rig, and baked"
 "$bin/krok-skin" -q --as rig -o "${base}_rig.glb" -- "$base.model" "$base.anim"
 made "${base}_rig.glb" "mesh, joints, weights, animation"
+
+if [ -n "$quick" ]; then
+  "$bin/krok-view" -q -o "$base.html" -- "$base.anim" "$base.model"
+  made "$base.html" "a page that plays it, in any browser, from disk"
+  say "Done. Open $base.html in a browser; make demo shows the other tools."
+  exit 0
+fi
 
 # Baking writes the whole mesh for each frame; krok-skin refuses to where viewers could not show it.
 clip=${base}_clip.glb

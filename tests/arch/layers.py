@@ -28,7 +28,7 @@ ALLOWED = {
     "lib/camera": BASE | {"lib/roles", "lib/motion", "lib/filter"},
     "lib/contacts": BASE | {"lib/roles", "lib/motion", "lib/filter"},
     "lib/parametric": BASE | {"lib/roles", "lib/motion", "lib/pose", "lib/contacts", "lib/rbf"},
-    "lib/rbf": {"lib/core"},
+    "lib/rbf": {"lib/core", "lib/math"},
     "lib/fit": {"lib/core", "lib/rbf"},
     "lib/ik": BASE,
     "lib/retarget": BASE | {"lib/roles", "lib/ik", "lib/motion"},

@@ -2,18 +2,13 @@
 // behind, or a limit of the system ends a tool without a word.
 #include "cli/fixture.h"
 #include "support/glb_builder.h"
+#include "support/sanitized.h"
 
 namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // no limits of memory
-#else
-constexpr bool kSanitized = false;
-#endif
 
 class Results : public CliTest {
  protected:

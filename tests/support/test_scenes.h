@@ -24,6 +24,10 @@ inline Skeleton with_turned_joints(Skeleton skeleton) {
   return skeleton;
 }
 
+inline Skeleton turned_human() {
+  return with_turned_joints(human_skeleton());
+}
+
 // Every joint swings about an axis of its own, the root walks along +Z.
 inline Clip swinging_clip(const Skeleton& skeleton, int frames, double rate) {
   Clip clip;
@@ -45,6 +49,10 @@ inline Clip swinging_clip(const Skeleton& skeleton, int frames, double rate) {
     clip.set_pose(f, world);
   }
   return clip;
+}
+
+inline Clip swinging_human(int frames) {
+  return swinging_clip(human_skeleton(), frames, 30);
 }
 
 // A closed tube of `sides` corners and `rings` rings around every bone. Vertices follow the bone's

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "body/body.h"
@@ -13,16 +12,16 @@ namespace krok {
 // automatic is depends on the tool.
 enum class BodyChoice : unsigned char { automatic, none, low, medium, high };
 
-inline CLI::Option* add_body_option(CLI::App& app, BodyChoice& choice,
-                                    const std::string& description) {
-  return app.add_option("--body", choice, description)
-      ->type_name("DETAIL")
-      ->transform(one_of<BodyChoice>({{"auto", BodyChoice::automatic},
-                                      {"none", BodyChoice::none},
-                                      {"low", BodyChoice::low},
-                                      {"medium", BodyChoice::medium},
-                                      {"high", BodyChoice::high}}))
-      ->default_str("auto");
+inline CommandOption add_body_option(CommandOptions& command, BodyChoice& choice,
+                                     const std::string& description) {
+  return command.add_option("--body", choice, description)
+      .type_name("DETAIL")
+      .transform(one_of<BodyChoice>({{"auto", BodyChoice::automatic},
+                                     {"none", BodyChoice::none},
+                                     {"low", BodyChoice::low},
+                                     {"medium", BodyChoice::medium},
+                                     {"high", BodyChoice::high}}))
+      .default_str("auto");
 }
 
 // How the body is made; `choice` is low, medium or high.

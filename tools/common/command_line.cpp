@@ -46,7 +46,7 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
       tool_(spec.name),
       takes_many_(spec.batch.has_value()) {
   app_.set_help_flag();
-  declare_(app_);
+  declare_(options_);
   if (form == Form::many) take_many_inputs();
   for (CLI::Option* option : app_.get_options()) {
     if (!option->get_positional()) own_options_.push_back(option);
@@ -104,18 +104,18 @@ void CommandLine::declare_common(const ToolSpec& spec) {
                   "A report in JSON on standard output, or with --json=FILE in a file")
       ->type_name("[=FILE]")
       ->group(kCommon);
-  app_.add_option("--progress", style, "Progress: auto, bar, plain, json or none")
-      ->type_name("STYLE")
-      ->transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
-                                         {"bar", ProgressStyle::bar},
-                                         {"plain", ProgressStyle::plain},
-                                         {"json", ProgressStyle::json},
-                                         {"none", ProgressStyle::none}}))
-      ->default_str("auto")
-      ->group(kCommon);
-  add_whole(app_, "-j,--jobs", jobs, "Threads; 0 is one a core", 0, 1024)
-      ->default_str("0")
-      ->group(kCommon);
+  options_.add_option("--progress", style, "Progress: auto, bar, plain, json or none")
+      .type_name("STYLE")
+      .transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
+                                        {"bar", ProgressStyle::bar},
+                                        {"plain", ProgressStyle::plain},
+                                        {"json", ProgressStyle::json},
+                                        {"none", ProgressStyle::none}}))
+      .default_str("auto")
+      .group(kCommon);
+  add_whole(options_, "-j,--jobs", jobs, "Threads; 0 is one a core", 0, 1024)
+      .default_str("0")
+      .group(kCommon);
 }
 
 void CommandLine::declare_for_many() {

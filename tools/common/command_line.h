@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <map>
 #include <string>
@@ -82,8 +83,9 @@ class CommandLine {
 
   Form form_;
   // Keeps alive what the options of app_ write to.
-  std::function<void(CLI::App&)> declare_;
+  std::function<void(CommandOptions&)> declare_;
   CLI::App app_;
+  CommandOptions options_{app_};
   CLI::Option* inputs_option_ = nullptr;
   std::vector<CLI::Option*> own_options_;
   // What the user gave for each option, before CLI11 replaces it ("xyzw") by what it stands for

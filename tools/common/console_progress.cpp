@@ -8,7 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
-#include <nlohmann/json.hpp>
+
+#include "core/json_internal.h"
 
 namespace krok {
 

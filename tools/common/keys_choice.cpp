@@ -11,9 +11,9 @@
 
 namespace krok {
 
-CLI::Option* add_keys_option(CLI::App& app, KeysChoice& choice) {
+CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice) {
   return add_choice<KeysChoice>(
-      app, "--keys", choice,
+      command, "--keys", choice,
       {{"auto", KeysChoice::automatic},
        {"sidecar", KeysChoice::sidecar},
        {"none", KeysChoice::none}},

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
@@ -16,7 +15,7 @@ namespace krok {
 
 enum class KeysChoice : unsigned char { automatic, sidecar, none };
 
-CLI::Option* add_keys_option(CLI::App& app, KeysChoice& choice);
+CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice);
 
 // The keys of a motion that was read from `path`: those beside it; where none are, found if that is
 // wanted. Nothing where it is told so, or where none can be found, which is a warning (code

@@ -1,20 +1,20 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "formats/container/packed_orientation.h"
+#include "tools/common/command_options.h"
 #include "tools/common/option_kinds.h"
 
 namespace krok {
 
 // --orientation, for tools that write one of Krok's own binary formats.
-inline CLI::Option* add_orientation_option(CLI::App& app, OrientationEncoding& encoding) {
+inline CommandOption add_orientation_option(CommandOptions& command,
+                                            OrientationEncoding& encoding) {
   return add_choice<OrientationEncoding>(
-             app, "--orientation", encoding,
+             command, "--orientation", encoding,
              {{"xyz", OrientationEncoding::xyz}, {"xyzw", OrientationEncoding::xyzw}},
              "How orientations are stored: three numbers each (xyz) or four, exactly (xyzw)", "HOW",
              "xyz")
-      ->group("Output");
+      .group("Output");
 }
 
 }  // namespace krok

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
+#include "tools/common/json.h"
 
 namespace krok {
-
-using Json = nlohmann::ordered_json;
 
 // What a tool did, gathered while it runs; written as JSON (schema krok.report/1) for scripts.
 // Nothing in it differs between two runs on the same input.

@@ -6,9 +6,9 @@
 
 namespace krok {
 
-CLI::Option* add_map_option(CLI::App& app, std::string& path, const std::string& name,
-                            const std::string& description) {
-  return app.add_option(name, path, description)->type_name("IN.json");
+CommandOption add_map_option(CommandOptions& command, std::string& path, const std::string& name,
+                             const std::string& description) {
+  return command.add_option(name, path, description).type_name("IN.json");
 }
 
 Result<FindRoles> open_role_map(const std::string& path, ToolContext& context) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 
@@ -13,8 +12,8 @@
 
 namespace krok {
 
-CLI::Option* add_map_option(
-    CLI::App& app, std::string& path, const std::string& name = "--map",
+CommandOption add_map_option(
+    CommandOptions& command, std::string& path, const std::string& name = "--map",
     const std::string& description =
         "What joints are, where their names do not tell: a role map (JSON)");
 

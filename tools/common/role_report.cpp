@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "tools/common/json_object.h"
 
 namespace krok {
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // Whether a joint of this role is a part of the body.
 bool is_of_body(Role role) {

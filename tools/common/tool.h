@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <set>
@@ -11,6 +10,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 #include "scene/provenance.h"
+#include "tools/common/command_options.h"
 #include "tools/common/report.h"
 
 // The frame that all tools share: options, help, messages, exit codes, the report, and the same
@@ -143,7 +143,7 @@ struct ToolSpec {
   std::optional<Batch> batch;
 
   // Adds the tool's own options and positionals.
-  std::function<void(CLI::App&)> declare;
+  std::function<void(CommandOptions&)> declare;
   // Whether the options, which are parsed, have values that fit some file or other; may be empty.
   // Asked before any file is opened, of a batch once for each set of options.
   std::function<Status()> check;

@@ -181,23 +181,24 @@ void report(const std::vector<Motion>& motions, const Correspondence& moments,
 
 }  // namespace
 
-void declare(CLI::App& app, Options& options) {
-  app.add_option("inputs", options.inputs,
-                 "Motions of one skeleton (.anim, or captures such as BVH), each with its weight: "
-                 "a number, or @FILE.csv with the columns generic and weight")
-      ->type_name("IN:WEIGHT")
-      ->required();
-  add_keys_option(app, options.keys)->group("Time");
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("inputs", options.inputs,
+                  "Motions of one skeleton (.anim, or captures such as BVH), each with its weight: "
+                  "a number, or @FILE.csv with the columns generic and weight")
+      .type_name("IN:WEIGHT")
+      .required();
+  add_keys_option(command, options.keys).group("Time");
   add_choice<WarpChoice>(
-      app, "--warp", options.warp,
+      command, "--warp", options.warp,
       {{"pchip", WarpChoice::pchip}, {"linear", WarpChoice::linear}, {"dtw", WarpChoice::dtw}},
       "Time between keytimes: pchip (speeds without jumps), linear, or dtw (no "
       "keytimes, but moments whose poses are alike)",
       "HOW", "pchip")
-      ->group("Time");
-  add_rate(app, "--rate", options.rate, "Frames a second; otherwise the first motion's")
-      ->group("Time");
-  add_choice<blend::Align>(app, "--align", options.align,
+      .group("Time");
+  add_rate(command, "--rate", options.rate, "Frames a second; otherwise the first motion's")
+      .group("Time");
+  add_choice<blend::Align>(command, "--align", options.align,
                            {{"root", blend::Align::root},
                             {"stance", blend::Align::stance},
                             {"none", blend::Align::none}},
@@ -205,16 +206,18 @@ void declare(CLI::App& app, Options& options) {
                            "stance (the same, and feet that stand are kept in place), none (poses "
                            "are summed where they are)",
                            "HOW", "root")
-      ->group("Space");
-  app.add_flag("--modifier", options.modifier,
-               "Allow weights that do not sum to 1, for a motion put on top of another")
-      ->group("Space");
-  add_map_option(app, options.map)->group("Space");
-  app.add_option("--save-warp", options.save_warp,
-                 "Write which moment of each motion every frame comes from")
-      ->type_name("OUT.csv")
-      ->group("Output");
-  add_orientation_option(app, options.orientation);
+      .group("Space");
+  command
+      .add_flag("--modifier", options.modifier,
+                "Allow weights that do not sum to 1, for a motion put on top of another")
+      .group("Space");
+  add_map_option(command, options.map).group("Space");
+  command
+      .add_option("--save-warp", options.save_warp,
+                  "Write which moment of each motion every frame comes from")
+      .type_name("OUT.csv")
+      .group("Output");
+  add_orientation_option(command, options.orientation);
 }
 
 Status check(const Options& options) {

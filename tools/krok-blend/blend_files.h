@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -26,7 +25,7 @@ struct Options {
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 
-void declare(CLI::App& app, Options& options);
+void declare(CommandOptions& command, Options& options);
 Status check(const Options& options);
 Result<int> run(const Options& options, ToolContext& context);
 

@@ -12,7 +12,9 @@ int main(int argc, char** argv) {
        "from walking to running, by weights over generic time (columns generic, weight)"},
       {"krok-blend a.anim:0.5 b.anim:0.5 -o c.anim --warp dtw",
        "motions without keytimes, matched by how alike their poses are"}};
-  spec.declare = [&options](CLI::App& app) { krok::blend_tool::declare(app, options); };
+  spec.declare = [&options](krok::CommandOptions& command) {
+    krok::blend_tool::declare(command, options);
+  };
   spec.check = [&options] { return krok::blend_tool::check(options); };
   spec.run = [&options](krok::ToolContext& context) {
     return krok::blend_tool::run(options, context);

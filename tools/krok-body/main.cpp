@@ -17,7 +17,7 @@ krok::ToolSpec make_spec() {
                    {"krok-body dog.anim --detail high -o dog.model",
                     "any other skeleton is shaped by the lengths of its bones"}};
   spec.batch = {{".anim"}, krok::always(".model")};
-  spec.declare = [options](CLI::App& app) { declare(app, *options); };
+  spec.declare = [options](krok::CommandOptions& command) { declare(command, *options); };
   spec.check = [options] { return check(*options); };
   spec.run = [options](krok::ToolContext& context) { return run(*options, context); };
   return spec;

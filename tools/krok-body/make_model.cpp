@@ -75,24 +75,26 @@ Json result_of(const Body& body) {
 
 }  // namespace
 
-void declare(CLI::App& app, Options& options) {
-  app.add_option("input", options.input,
-                 "A motion or model; its skeleton is taken (- is standard input)")
-      ->type_name("IN")
-      ->required();
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("input", options.input,
+                  "A motion or model; its skeleton is taken (- is standard input)")
+      .type_name("IN")
+      .required();
   add_choice<BodyDetail>(
-      app, "--detail", options.detail,
+      command, "--detail", options.detail,
       {{"low", BodyDetail::low}, {"medium", BodyDetail::medium}, {"high", BodyDetail::high}},
       "Vertices: low (about 2,500), medium (10,000) or high (40,000)", "LEVEL", "medium")
-      ->group("Body");
-  app.add_option(
-         "--pose", options.pose,
-         "The pose that the body stands in: reference (the skeleton's), the number of a frame, "
-         "or auto: the reference pose with limbs turned aside that are in the way")
-      ->type_name("POSE")
-      ->default_str("auto")
-      ->group("Body");
-  add_orientation_option(app, options.orientation);
+      .group("Body");
+  command
+      .add_option(
+          "--pose", options.pose,
+          "The pose that the body stands in: reference (the skeleton's), the number of a frame, "
+          "or auto: the reference pose with limbs turned aside that are in the way")
+      .type_name("POSE")
+      .default_str("auto")
+      .group("Body");
+  add_orientation_option(command, options.orientation);
 }
 
 Status check(const Options& options) {

@@ -15,7 +15,7 @@ struct Options {
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 
-void declare(CLI::App& app, Options& options);
+void declare(CommandOptions& command, Options& options);
 
 // Whether the options have values that fit some file or other.
 Status check(const Options& options);

@@ -33,7 +33,7 @@ krok::ToolSpec make_spec() {
        "one camera for each, which sees all of its motion from the left"}};
   spec.batch = {{".anim", ".bvh", ".amc"},
                 [arguments]() -> krok::Result<std::string> { return ending(*arguments); }};
-  spec.declare = [arguments](CLI::App& app) { declare(app, *arguments); };
+  spec.declare = [arguments](krok::CommandOptions& command) { declare(command, *arguments); };
   spec.check = [arguments]() -> krok::Status {
     const auto options = understand(*arguments);
     return options ? krok::Status() : options.error();

@@ -18,24 +18,26 @@ namespace {
 constexpr double kSensorHeight = 24;  // millimetres
 constexpr double kUsualElevation = 10 * kRadiansPerDegree;
 
-void declare_subject(CLI::App& app, Arguments& a) {
+void declare_subject(CommandOptions& command, Arguments& a) {
   const char* group = "Of a motion, one of these";
-  app.add_option("--follow", a.follow,
-                 "Go along with a joint, by its name or its role: hips, chest, head, left_hand")
-      ->type_name("JOINT")
-      ->group(group);
-  app.add_option("--orbit", a.orbit,
-                 "Go round the figure: 20s is the time of one turn, 1.5turns are so many over the "
-                 "whole motion")
-      ->type_name("TIME")
-      ->group(group);
-  app.add_flag("--still", a.still, "Stand still and show the whole motion")->group(group);
-  add_map_option(app, a.map)->group(group);
+  command
+      .add_option("--follow", a.follow,
+                  "Go along with a joint, by its name or its role: hips, chest, head, left_hand")
+      .type_name("JOINT")
+      .group(group);
+  command
+      .add_option("--orbit", a.orbit,
+                  "Go round the figure: 20s is the time of one turn, 1.5turns are so many over the "
+                  "whole motion")
+      .type_name("TIME")
+      .group(group);
+  command.add_flag("--still", a.still, "Stand still and show the whole motion").group(group);
+  add_map_option(command, a.map).group(group);
 }
 
-void declare_place(CLI::App& app, Arguments& a) {
+void declare_place(CommandOptions& command, Arguments& a) {
   const char* group = "From where";
-  add_choice<View>(app, "--view", a.view,
+  add_choice<View>(command, "--view", a.view,
                    {{"front", View::front},
                     {"three-quarter", View::three_quarter},
                     {"left", View::left},
@@ -45,108 +47,118 @@ void declare_place(CLI::App& app, Arguments& a) {
                    "front, three-quarter (between the front and the figure's left), left, right, "
                    "back or top; an orbit begins there",
                    "VIEW", "three-quarter")
-      ->group(group);
-  app.add_option("--azimuth", a.azimuth,
-                 "The same as an angle: 0 sees the figure's front, 90deg its left side")
-      ->type_name("ANGLE")
-      ->group(group);
-  app.add_option("--elevation", a.elevation,
-                 "How far from above; 90deg looks straight down [10deg]")
-      ->type_name("ANGLE")
-      ->group(group);
-  add_choice<AzimuthFrom>(app, "--facing", a.facing,
+      .group(group);
+  command
+      .add_option("--azimuth", a.azimuth,
+                  "The same as an angle: 0 sees the figure's front, 90deg its left side")
+      .type_name("ANGLE")
+      .group(group);
+  command
+      .add_option("--elevation", a.elevation,
+                  "How far from above; 90deg looks straight down [10deg]")
+      .type_name("ANGLE")
+      .group(group);
+  add_choice<AzimuthFrom>(command, "--facing", a.facing,
                           {{"start", AzimuthFrom::start},
                            {"figure", AzimuthFrom::figure},
                            {"world", AzimuthFrom::world}},
                           "What counts as the front: where the figure faces at the start, where it "
                           "faces at each moment (figure), or +Z (world)",
                           "WHAT", "start")
-      ->group(group);
-  app.add_flag("--clockwise", a.clockwise, "Orbit the other way round, seen from above")
-      ->group(group);
-  app.add_flag("--fixed-centre", a.fixed_centre,
-               "Orbit about the middle of the whole motion; without it the centre goes with the "
-               "figure")
-      ->group(group);
+      .group(group);
+  command.add_flag("--clockwise", a.clockwise, "Orbit the other way round, seen from above")
+      .group(group);
+  command
+      .add_flag("--fixed-centre", a.fixed_centre,
+                "Orbit about the middle of the whole motion; without it the centre goes with the "
+                "figure")
+      .group(group);
 }
 
-void declare_picture(CLI::App& app, Arguments& a) {
+void declare_picture(CommandOptions& command, Arguments& a) {
   const char* group = "Picture";
   add_choice<Framing>(
-      app, "--frame", a.frame,
+      command, "--frame", a.frame,
       {{"full", Framing::full}, {"upper", Framing::upper}, {"head", Framing::head}},
       "What is in the picture in all frames: the full figure, the upper body with the arms, the "
       "head",
       "PART", "full")
-      ->group(group);
-  add_number(app, "--margin", a.margin,
+      .group(group);
+  add_number(command, "--margin", a.margin,
              "The part of height and width left free at each edge, to 0.45")
-      ->type_name("PART")
-      ->default_str("0.08")
-      ->group(group);
-  app.add_option("--distance", a.distance,
-                 "From what it looks at; without it the least that frames the figure")
-      ->type_name("LENGTH")
-      ->group(group);
-  app.add_option("--fov", a.fov, "The field of view, vertically")
-      ->type_name("ANGLE")
-      ->default_str(a.fov)
-      ->group(group);
-  add_number(app, "--lens", a.lens,
+      .type_name("PART")
+      .default_str("0.08")
+      .group(group);
+  command
+      .add_option("--distance", a.distance,
+                  "From what it looks at; without it the least that frames the figure")
+      .type_name("LENGTH")
+      .group(group);
+  command.add_option("--fov", a.fov, "The field of view, vertically")
+      .type_name("ANGLE")
+      .default_str(a.fov)
+      .group(group);
+  add_number(command, "--lens", a.lens,
              "The same by the focal length in millimetres, for a picture 24 mm high")
-      ->type_name("MM")
-      ->group(group);
-  app.add_option(
-         "--aspect", a.aspect,
-         "The picture's shape, width by height, which decides how much is in it; written into "
-         "glTF where a motion is filmed or it is given")
-      ->type_name("W:H")
-      ->default_str(a.aspect)
-      ->group(group);
+      .type_name("MM")
+      .group(group);
+  command
+      .add_option(
+          "--aspect", a.aspect,
+          "The picture's shape, width by height, which decides how much is in it; written into "
+          "glTF where a motion is filmed or it is given")
+      .type_name("W:H")
+      .default_str(a.aspect)
+      .group(group);
 }
 
-void declare_movement(CLI::App& app, Arguments& a) {
+void declare_movement(CommandOptions& command, Arguments& a) {
   const char* group = "Movement";
-  app.add_option("--smooth", a.smooth,
-                 "How far before and after a moment the path of what is followed is smoothed; 0 "
-                 "not at all [0.5s, an orbit 1s]")
-      ->type_name("TIME")
-      ->group(group);
-  app.add_option("--dead-zone", a.dead_zone,
-                 "So far what is followed may move without taking the camera along [0]")
-      ->type_name("LENGTH")
-      ->group(group);
+  command
+      .add_option("--smooth", a.smooth,
+                  "How far before and after a moment the path of what is followed is smoothed; 0 "
+                  "not at all [0.5s, an orbit 1s]")
+      .type_name("TIME")
+      .group(group);
+  command
+      .add_option("--dead-zone", a.dead_zone,
+                  "So far what is followed may move without taking the camera along [0]")
+      .type_name("LENGTH")
+      .group(group);
   const char* read = "Keys and scenes";
   add_rate(
-      app, "--rate", a.rate,
+      command, "--rate", a.rate,
       "Frames a second of the result; otherwise as the keys' file says, or as a scene's keys come")
-      ->group(read);
-  app.add_option("--camera", a.camera, "The camera of a scene that is taken, by its name or number")
-      ->type_name("NAME")
-      ->group(read);
+      .group(read);
+  command
+      .add_option("--camera", a.camera,
+                  "The camera of a scene that is taken, by its name or number")
+      .type_name("NAME")
+      .group(read);
 }
 
-void declare_output(CLI::App& app, Arguments& a) {
+void declare_output(CommandOptions& command, Arguments& a) {
   const char* group = "Output";
-  add_choice<Format>(app, "--format", a.format, {{"cam", Format::cam}, {"glb", Format::glb}},
+  add_choice<Format>(command, "--format", a.format, {{"cam", Format::cam}, {"glb", Format::glb}},
                      "cam or glb; without it the output's extension tells", "FORMAT", "")
-      ->default_str("")
-      ->group(group);
-  add_orientation_option(app, a.orientation)->group(group);
-  app.add_option("--into", a.into,
-                 "Write this glTF file with the camera added to its scene and its animation, as "
-                 "GLB")
-      ->type_name("IN.glb")
-      ->group(group);
-  app.add_option("--name", a.name, "glTF: the camera's name")
-      ->type_name("NAME")
-      ->default_str(a.name)
-      ->group(group);
-  add_whole(app, "--clip", a.clip,
+      .default_str("")
+      .group(group);
+  add_orientation_option(command, a.orientation).group(group);
+  command
+      .add_option("--into", a.into,
+                  "Write this glTF file with the camera added to its scene and its animation, as "
+                  "GLB")
+      .type_name("IN.glb")
+      .group(group);
+  command.add_option("--name", a.name, "glTF: the camera's name")
+      .type_name("NAME")
+      .default_str(a.name)
+      .group(group);
+  add_whole(command, "--clip", a.clip,
             "--into a file with several animations: the one that the camera moves in, from 0; "
             "otherwise the first",
             0, 1000000)
-      ->group(group);
+      .group(group);
 }
 
 Error usage(std::string message, std::string hint = {}) {
@@ -330,19 +342,20 @@ Status check_needs(const Arguments& a, bool films) {
 
 }  // namespace
 
-void declare(CLI::App& app, Arguments& arguments) {
-  app.add_option(
-         "input", arguments.input,
-         "Keys of a camera (.json, formats/camera_keys/SPEC.md), a .cam file, a glTF file with a "
-         "camera, or a motion: a .anim file or a capture as krok-import reads it by default")
-      ->type_name("IN")
-      ->required();
-  declare_subject(app, arguments);
-  declare_place(app, arguments);
-  declare_picture(app, arguments);
-  declare_movement(app, arguments);
-  declare_output(app, arguments);
-  arguments.given = [&app](const char* option) { return app.count(option) > 0; };
+void declare(CommandOptions& command, Arguments& arguments) {
+  command
+      .add_option(
+          "input", arguments.input,
+          "Keys of a camera (.json, formats/camera_keys/SPEC.md), a .cam file, a glTF file with a "
+          "camera, or a motion: a .anim file or a capture as krok-import reads it by default")
+      .type_name("IN")
+      .required();
+  declare_subject(command, arguments);
+  declare_place(command, arguments);
+  declare_picture(command, arguments);
+  declare_movement(command, arguments);
+  declare_output(command, arguments);
+  arguments.given = [&command](const char* option) { return command.count(option) > 0; };
 }
 
 Result<Options> understand(const Arguments& a) {

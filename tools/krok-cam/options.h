@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
@@ -8,6 +7,7 @@
 #include "camera/figure_camera.h"
 #include "core/result.h"
 #include "formats/cam/cam.h"
+#include "tools/common/command_options.h"
 
 namespace krok::cam_tool {
 
@@ -70,7 +70,7 @@ struct Options {
 };
 
 // `app` is kept by the arguments.
-void declare(CLI::App& app, Arguments& arguments);
+void declare(CommandOptions& command, Arguments& arguments);
 
 // Code usage, and those of quantities, with the option's name.
 Result<Options> understand(const Arguments& arguments);

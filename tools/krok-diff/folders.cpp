@@ -300,31 +300,35 @@ std::size_t FolderOutcome::count(FileStatus status) const {
                     [status](const FileResult& file) { return file.status == status; }));
 }
 
-void declare_folder_options(CLI::App& app, FolderOptions& options) {
+void declare_folder_options(CommandOptions& command, FolderOptions& options) {
   constexpr const char* kGroup = "Folders";
   const auto patterns = [&](const char* name, std::vector<std::string>& list, const char* help) {
-    app.add_option(name, list, help)->type_name("PATTERN")->expected(1)->take_all()->group(kGroup);
+    command.add_option(name, list, help).type_name("PATTERN").one_each_time().group(kGroup);
   };
   patterns("--include", options.filter.include,
            "Only files that fit, '*.glb' or 'walks/**/*.glb'; may be given again and again");
   patterns("--exclude", options.filter.exclude, "Not files that fit; may be given again and again");
-  app.add_flag("--keep-going", options.keep_going,
-               "Go on after a file that cannot be read and end with exit code 3; otherwise the "
-               "first one ends the run")
-      ->group(kGroup);
-  app.add_option("--summary", options.summary,
-                 "A page with a row for each file that is not the same, as HTML or, called .md, as "
-                 "Markdown")
-      ->type_name("OUT.html")
-      ->group(kGroup);
-  app.add_flag(
-         "--update", options.update,
-         "Copy what differs, or is new, from B over A; nothing where a file cannot be read. A "
-         "need not be there yet")
-      ->group(kGroup);
-  app.add_flag("--prune", options.prune, "With --update: remove what only A has")
-      ->needs("--update")
-      ->group(kGroup);
+  command
+      .add_flag("--keep-going", options.keep_going,
+                "Go on after a file that cannot be read and end with exit code 3; otherwise the "
+                "first one ends the run")
+      .group(kGroup);
+  command
+      .add_option(
+          "--summary", options.summary,
+          "A page with a row for each file that is not the same, as HTML or, called .md, as "
+          "Markdown")
+      .type_name("OUT.html")
+      .group(kGroup);
+  command
+      .add_flag(
+          "--update", options.update,
+          "Copy what differs, or is new, from B over A; nothing where a file cannot be read. A "
+          "need not be there yet")
+      .group(kGroup);
+  command.add_flag("--prune", options.prune, "With --update: remove what only A has")
+      .needs("--update")
+      .group(kGroup);
 }
 
 Result<bool> are_folders(const Options& options) {

@@ -58,7 +58,7 @@ struct FolderUpdate {
 };
 
 // The options that are about folders.
-void declare_folder_options(CLI::App& app, FolderOptions& options);
+void declare_folder_options(CommandOptions& command, FolderOptions& options);
 
 // Whether these options compare folders: an Error (code diff-kinds) for a folder and a file, (code
 // usage) for two files with options that are about folders.

@@ -40,35 +40,40 @@ Result<Options> parse(const Arguments& arguments) {
   return options;
 }
 
-void declare(CLI::App& app, Arguments& arguments) {
-  app.add_option(
-         "A", arguments.first,
-         "A motion (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, .pc2 or .exr file, or a folder")
-      ->type_name("")
-      ->required();
-  app.add_option(
-         "B", arguments.second,
-         "Another of the same kind (glTF goes with motions, models and point caches too), or "
-         "another folder")
-      ->type_name("")
-      ->required();
-  declare_tolerances(app, arguments.tolerance);
-  app.add_option("--sheet", arguments.sheet.path,
-                 "A picture of both figures and of where they differ, as PNG; of motions, models "
-                 "and glTF")
-      ->type_name("OUT.png");
-  declare_picture_options(app, arguments.sheet.picture, kDifferenceMoments);
+void declare(CommandOptions& command, Arguments& arguments) {
+  command
+      .add_option(
+          "A", arguments.first,
+          "A motion (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, .pc2 or .exr file, or a folder")
+      .type_name("")
+      .required();
+  command
+      .add_option(
+          "B", arguments.second,
+          "Another of the same kind (glTF goes with motions, models and point caches too), or "
+          "another folder")
+      .type_name("")
+      .required();
+  declare_tolerances(command, arguments.tolerance);
+  command
+      .add_option("--sheet", arguments.sheet.path,
+                  "A picture of both figures and of where they differ, as PNG; of motions, models "
+                  "and glTF")
+      .type_name("OUT.png");
+  declare_picture_options(command, arguments.sheet.picture, kDifferenceMoments);
   for (const char* name : {"--moments", "--sides", "--elevation", "--size"}) {
-    app.get_option(name)->needs("--sheet");
+    command.get_option(name).needs("--sheet");
   }
-  app.add_option("--plot", arguments.plot,
-                 "Charts of the distances and angles over time, as SVG; of motions and glTF")
-      ->type_name("OUT.svg");
-  app.add_option("--heatmap", arguments.heatmap,
-                 "A's mesh, where the difference is largest in time, each vertex coloured by its "
-                 "largest distance of all times; of glTF and models")
-      ->type_name("OUT.glb");
-  declare_folder_options(app, arguments.folders);
+  command
+      .add_option("--plot", arguments.plot,
+                  "Charts of the distances and angles over time, as SVG; of motions and glTF")
+      .type_name("OUT.svg");
+  command
+      .add_option("--heatmap", arguments.heatmap,
+                  "A's mesh, where the difference is largest in time, each vertex coloured by its "
+                  "largest distance of all times; of glTF and models")
+      .type_name("OUT.glb");
+  declare_folder_options(command, arguments.folders);
 }
 
 Result<int> run(const Arguments& arguments, ToolContext& context) {
@@ -116,7 +121,7 @@ int main(int argc, char** argv) {
   spec.exit_partly =
       "of folders, with --keep-going: some files cannot be read, the others were compared";
   spec.has_output = false;
-  spec.declare = [&](CLI::App& app) { krok::diff::declare(app, arguments); };
+  spec.declare = [&](krok::CommandOptions& command) { krok::diff::declare(command, arguments); };
   spec.run = [&](krok::ToolContext& context) { return krok::diff::run(arguments, context); };
   return krok::run_tool(spec, argc, argv);
 }

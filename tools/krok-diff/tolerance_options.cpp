@@ -69,49 +69,56 @@ const char* word_of(Matching matching) {
   return "auto";
 }
 
-void declare_tolerances(CLI::App& app, ToleranceArguments& arguments) {
+void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments) {
   std::vector<std::pair<std::string, Matching>> words;
   for (const Matching matching :
        {Matching::automatic, Matching::order, Matching::name, Matching::nearest}) {
     words.emplace_back(word_of(matching), matching);
   }
-  add_choice(app, "--match", arguments.matching, std::move(words),
+  add_choice(command, "--match", arguments.matching, std::move(words),
              "What belongs to what: order, meshes and joints by their place in the file; name, by "
              "name, and those that only one has are named; auto, by name where all names are "
              "unique and the same, else by place; nearest, each vertex with the nearest point of "
              "the other surface, for meshes with other vertices, triangles or parts",
              "HOW", "auto");
-  app.add_option("--tolerance", arguments.length,
-                 "Distances up to this are the same: 0.1mm, 0.2cm; a bare number is metres")
-      ->type_name("LENGTH")
-      ->default_str(arguments.length);
-  app.add_option("--angle", arguments.angle,
-                 "Angles up to this are the same: 0.1deg, 0.002rad; a bare number is degrees")
-      ->type_name("ANGLE")
-      ->default_str(arguments.angle);
-  app.add_option("--ratio", arguments.ratio,
-                 "Differences up to this are the same in what has no unit: weights, texture "
-                 "coordinates")
-      ->type_name("NUMBER")
-      ->default_str(arguments.ratio);
-  app.add_option("--normals", arguments.normals,
-                 "The same for normals and tangents alone (default: that of --angle). A tangent "
-                 "of the other handedness is a difference whatever the angle. Tangents that only "
-                 "one of two glTF files has are a difference where both have a normal texture, "
-                 "else they are told")
-      ->type_name("ANGLE");
-  app.add_option("--joints", arguments.joints,
-                 "The same for joints alone, 1mm or 1mm,0.5deg (default: those of --tolerance and "
-                 "--angle)")
-      ->type_name("LENGTH[,ANGLE]");
-  app.add_option("--times", arguments.times,
-                 "Times up to this apart are one: key times of glTF, and frames of motions whose "
-                 "rates differ: 1ms, 0.02s")
-      ->type_name("TIME")
-      ->default_str(arguments.times);
-  app.add_flag("--materials", arguments.materials,
-               "Other materials, colours or textures are a difference; without it they are told, "
-               "and meshes that look otherwise are the same; of glTF");
+  command
+      .add_option("--tolerance", arguments.length,
+                  "Distances up to this are the same: 0.1mm, 0.2cm; a bare number is metres")
+      .type_name("LENGTH")
+      .default_str(arguments.length);
+  command
+      .add_option("--angle", arguments.angle,
+                  "Angles up to this are the same: 0.1deg, 0.002rad; a bare number is degrees")
+      .type_name("ANGLE")
+      .default_str(arguments.angle);
+  command
+      .add_option("--ratio", arguments.ratio,
+                  "Differences up to this are the same in what has no unit: weights, texture "
+                  "coordinates")
+      .type_name("NUMBER")
+      .default_str(arguments.ratio);
+  command
+      .add_option("--normals", arguments.normals,
+                  "The same for normals and tangents alone (default: that of --angle). A tangent "
+                  "of the other handedness is a difference whatever the angle. Tangents that only "
+                  "one of two glTF files has are a difference where both have a normal texture, "
+                  "else they are told")
+      .type_name("ANGLE");
+  command
+      .add_option("--joints", arguments.joints,
+                  "The same for joints alone, 1mm or 1mm,0.5deg (default: those of --tolerance and "
+                  "--angle)")
+      .type_name("LENGTH[,ANGLE]");
+  command
+      .add_option("--times", arguments.times,
+                  "Times up to this apart are one: key times of glTF, and frames of motions whose "
+                  "rates differ: 1ms, 0.02s")
+      .type_name("TIME")
+      .default_str(arguments.times);
+  command.add_flag(
+      "--materials", arguments.materials,
+      "Other materials, colours or textures are a difference; without it they are told, "
+      "and meshes that look otherwise are the same; of glTF");
 }
 
 Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments) {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "compare/matching.h"
 #include "compare/measure.h"
 #include "core/result.h"
+#include "tools/common/command_options.h"
 
 // The options that say what belongs together and what still counts as the same.
 
@@ -22,7 +22,7 @@ struct ToleranceArguments {
   bool materials = false;
 };
 
-void declare_tolerances(CLI::App& app, ToleranceArguments& arguments);
+void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments);
 
 // Codes quantity-number, quantity-unit, quantity-range.
 Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments);

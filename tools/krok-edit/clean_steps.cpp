@@ -14,9 +14,6 @@ namespace {
 std::string in_millimetres(double metres) {
   return readable(metres * 1000, 3) + " mm";
 }
-std::string in_degrees(double radians) {
-  return readable(radians / kRadiansPerDegree, 3) + " deg";
-}
 
 // How far feet were moved from where they stood: what a filter costs in contact with the ground.
 Json foot_change(const Clip& before, const Edit& edit, std::string& line) {

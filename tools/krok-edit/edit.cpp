@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <string_view>
 
@@ -18,6 +19,11 @@
 #include "tools/krok-edit/steps.h"
 
 namespace krok::edit {
+
+std::string in_degrees(double radians) {
+  const double degrees = radians / kRadiansPerDegree;
+  return std::abs(degrees) < 1e-4 ? "0 deg" : readable(degrees, 3) + " deg";
+}
 
 namespace {
 
@@ -254,7 +260,7 @@ ToolSpec make_spec() {
                   const bool several = !arguments->sequences.empty() && arguments->sequence.empty();
                   return std::string(several ? "_{sequence}.anim" : ".anim");
                 }};
-  spec.declare = [arguments](CLI::App& app) { declare(app, *arguments); };
+  spec.declare = [arguments](CommandOptions& command) { declare(command, *arguments); };
   spec.check = [arguments]() -> Status {
     const auto options = understand(*arguments);
     return options ? Status() : options.error();

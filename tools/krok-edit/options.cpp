@@ -14,177 +14,195 @@ namespace krok::edit {
 
 namespace {
 
-void declare_cleaning(CLI::App& app, Arguments& a) {
+void declare_cleaning(CommandOptions& command, Arguments& a) {
   const char* group = "1. Clean the whole input";
-  app.add_flag("--spikes", a.spikes,
-               "Replace frames in which a joint jumps away and back; each is reported")
-      ->group(group);
-  add_number(app, "--spike-threshold", a.spike_threshold,
+  command
+      .add_flag("--spikes", a.spikes,
+                "Replace frames in which a joint jumps away and back; each is reported")
+      .group(group);
+  add_number(command, "--spike-threshold", a.spike_threshold,
              "How many times the usual deviation from the neighbouring frames a spike reaches")
-      ->type_name("TIMES")
-      ->default_str("6")
-      ->group(group);
-  app.add_option("--filter", a.filter,
-                 "Take out jitter without a shift in time: butterworth (low-pass run both ways) or "
-                 "savgol (Savitzky-Golay: polynomials, keeps peaks better)")
-      ->type_name("KIND")
-      ->transform(one_of<Arguments::Filter>(
+      .type_name("TIMES")
+      .default_str("6")
+      .group(group);
+  command
+      .add_option(
+          "--filter", a.filter,
+          "Take out jitter without a shift in time: butterworth (low-pass run both ways) or "
+          "savgol (Savitzky-Golay: polynomials, keeps peaks better)")
+      .type_name("KIND")
+      .transform(one_of<Arguments::Filter>(
           {{"butterworth", Arguments::Filter::butterworth}, {"savgol", Arguments::Filter::savgol}}))
-      ->group(group);
-  app.add_option("--cutoff", a.cutoff, "butterworth: the frequency that passes with half its power")
-      ->type_name("FREQUENCY")
-      ->default_str(a.cutoff)
-      ->group(group);
-  add_whole(app, "--window", a.window, "savgol: the frames of a polynomial, an odd number", 1,
+      .group(group);
+  command
+      .add_option("--cutoff", a.cutoff,
+                  "butterworth: the frequency that passes with half its power")
+      .type_name("FREQUENCY")
+      .default_str(a.cutoff)
+      .group(group);
+  add_whole(command, "--window", a.window, "savgol: the frames of a polynomial, an odd number", 1,
             1000000)
-      ->type_name("FRAMES")
-      ->default_str("9")
-      ->group(group);
-  add_whole(app, "--order", a.order,
+      .type_name("FRAMES")
+      .default_str("9")
+      .group(group);
+  add_whole(command, "--order", a.order,
             "butterworth: order of both passes together, 2, 4, 6 or 8 [4]; savgol: degree of "
             "the polynomials [3]",
             0, 1000000)
-      ->type_name("N")
-      ->group(group);
-  app.add_option("--joints", a.joints,
-                 "Clean only joints of this name; * stands for any characters; may be repeated")
-      ->type_name("PATTERN")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->group(group);
-  app.add_option("--below", a.below, "Clean only this joint and all below it; may be repeated")
-      ->type_name("NAME")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->group(group);
+      .type_name("N")
+      .group(group);
+  command
+      .add_option("--joints", a.joints,
+                  "Clean only joints of this name; * stands for any characters; may be repeated")
+      .type_name("PATTERN")
+      .one_each_time()
+      .group(group);
+  command.add_option("--below", a.below, "Clean only this joint and all below it; may be repeated")
+      .type_name("NAME")
+      .one_each_time()
+      .group(group);
 }
 
-void declare_cut(CLI::App& app, Arguments& a) {
+void declare_cut(CommandOptions& command, Arguments& a) {
   const char* group = "2. Cut";
-  app.add_option("--from", a.from,
-                 "The first moment kept: 1.5s, 250ms, or 120f for a frame; a bare number is "
-                 "seconds")
-      ->type_name("TIME")
-      ->group(group);
-  app.add_option("--to", a.to, "The last moment kept; a frame that stands there belongs to it")
-      ->type_name("TIME")
-      ->group(group);
-  app.add_option("--sequences", a.sequences,
-                 "A file that names parts of the input (formats/sequences/SPEC.md). Without "
-                 "--sequence each becomes a file, its name put for {sequence} in the output's name")
-      ->type_name("IN.json")
-      ->group(group);
-  app.add_option("--sequence", a.sequence,
-                 "Cut out this part, at its speed, and loop it where the file says so")
-      ->type_name("NAME")
-      ->group(group);
-  app.add_flag("--list-sequences", a.list_sequences,
-               "Print the parts that the file names; nothing is written")
-      ->group(group);
+  command
+      .add_option("--from", a.from,
+                  "The first moment kept: 1.5s, 250ms, or 120f for a frame; a bare number is "
+                  "seconds")
+      .type_name("TIME")
+      .group(group);
+  command.add_option("--to", a.to, "The last moment kept; a frame that stands there belongs to it")
+      .type_name("TIME")
+      .group(group);
+  command
+      .add_option(
+          "--sequences", a.sequences,
+          "A file that names parts of the input (formats/sequences/SPEC.md). Without "
+          "--sequence each becomes a file, its name put for {sequence} in the output's name")
+      .type_name("IN.json")
+      .group(group);
+  command
+      .add_option("--sequence", a.sequence,
+                  "Cut out this part, at its speed, and loop it where the file says so")
+      .type_name("NAME")
+      .group(group);
+  command
+      .add_flag("--list-sequences", a.list_sequences,
+                "Print the parts that the file names; nothing is written")
+      .group(group);
 }
 
-void declare_timing(CLI::App& app, Arguments& a) {
-  app.add_flag("--mirror", a.mirror, "Exchange left and right, in the plane x = 0")
-      ->group("3. Mirror");
+void declare_timing(CommandOptions& command, Arguments& a) {
+  command.add_flag("--mirror", a.mirror, "Exchange left and right, in the plane x = 0")
+      .group("3. Mirror");
   const char* group = "4. Timing";
-  add_number(app, "--speed", a.speed,
+  add_number(command, "--speed", a.speed,
              "Play it so many times as fast; a sequence's own comes on top")
-      ->type_name("TIMES")
-      ->default_str("1")
-      ->group(group);
-  add_rate(app, "--resample", a.resample, "Frames a second of the result")->group(group);
+      .type_name("TIMES")
+      .default_str("1")
+      .group(group);
+  add_rate(command, "--resample", a.resample, "Frames a second of the result").group(group);
 }
 
-void declare_joining(CLI::App& app, Arguments& a) {
+void declare_joining(CommandOptions& command, Arguments& a) {
   const char* group = "5. Append";
-  app.add_option("--append", a.append,
-                 "Go on with this motion of the same skeleton, moved to where the figure then "
-                 "stands and faces; may be repeated")
-      ->type_name("IN")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->group(group);
-  app.add_option("--blend", a.blend,
-                 "How long two motions overlap, one fading into the other; 0 is a hard cut")
-      ->type_name("TIME")
-      ->default_str(a.blend)
-      ->group(group);
-  app.add_flag("--match-height", a.match_height,
-               "Go on at the height where the figure then is, as on stairs")
-      ->group(group);
+  command
+      .add_option("--append", a.append,
+                  "Go on with this motion of the same skeleton, moved to where the figure then "
+                  "stands and faces; may be repeated")
+      .type_name("IN")
+      .one_each_time()
+      .group(group);
+  command
+      .add_option("--blend", a.blend,
+                  "How long two motions overlap, one fading into the other; 0 is a hard cut")
+      .type_name("TIME")
+      .default_str(a.blend)
+      .group(group);
+  command
+      .add_flag("--match-height", a.match_height,
+                "Go on at the height where the figure then is, as on stairs")
+      .group(group);
 }
 
-void declare_loop(CLI::App& app, Arguments& a) {
+void declare_loop(CommandOptions& command, Arguments& a) {
   const char* group = "6. Loop";
-  app.add_flag("--loop", a.loop,
-               "Let the end go over into the beginning. The last frame becomes the first one moved "
-               "by the way of one round, so n frames repeat every n - 1")
-      ->group(group);
-  app.add_option("--loop-blend", a.loop_blend, "How long before and after the seam may change")
-      ->type_name("TIME")
-      ->default_str(a.loop_blend)
-      ->group(group);
+  command
+      .add_flag(
+          "--loop", a.loop,
+          "Let the end go over into the beginning. The last frame becomes the first one moved "
+          "by the way of one round, so n frames repeat every n - 1")
+      .group(group);
+  command.add_option("--loop-blend", a.loop_blend, "How long before and after the seam may change")
+      .type_name("TIME")
+      .default_str(a.loop_blend)
+      .group(group);
   add_choice<LoopEnd>(
-      app, "--loop-end", a.loop_end,
+      command, "--loop-end", a.loop_end,
       {{"auto", LoopEnd::automatic}, {"closed", LoopEnd::closed}, {"open", LoopEnd::open}},
       "Whether the last frame is the first one again (closed) or the one before it (open: a frame "
       "is added); auto compares them",
       "END", "auto")
-      ->group(group);
-  add_choice<LoopTurn>(app, "--loop-turn", a.loop_turn,
+      .group(group);
+  add_choice<LoopTurn>(command, "--loop-turn", a.loop_turn,
                        {{"auto", LoopTurn::automatic},
                         {"keep", LoopTurn::keep},
                         {"straighten", LoopTurn::straighten}},
                        "Whether a round turns the figure: keep, straighten, or auto, which "
                        "straightens up to 10 degrees",
                        "TURN", "auto")
-      ->group(group);
+      .group(group);
   add_choice<LoopClimb>(
-      app, "--loop-climb", a.loop_climb,
+      command, "--loop-climb", a.loop_climb,
       {{"auto", LoopClimb::automatic}, {"keep", LoopClimb::keep}, {"level", LoopClimb::level}},
       "Whether a round gains height: keep, level, or auto, which levels up to 5 % of the figure's "
       "size",
       "CLIMB", "auto")
-      ->group(group);
-  add_whole(app, "--rounds", a.rounds, "Write so many rounds of the loop, one after the other", 1,
-            1000000)
-      ->type_name("N")
-      ->group(group);
+      .group(group);
+  add_whole(command, "--rounds", a.rounds, "Write so many rounds of the loop, one after the other",
+            1, 1000000)
+      .type_name("N")
+      .group(group);
 }
 
-void declare_place(CLI::App& app, Arguments& a) {
+void declare_place(CommandOptions& command, Arguments& a) {
   const char* travel = "7. Travel";
-  app.add_flag("--in-place", a.in_place, "Take out all horizontal travel of the hips")
-      ->group(travel);
-  app.add_flag("--treadmill", a.treadmill,
-               "Take out only its even part, from the first frame to the last; swaying stays, and "
-               "so does a loop")
-      ->group(travel);
+  command.add_flag("--in-place", a.in_place, "Take out all horizontal travel of the hips")
+      .group(travel);
+  command
+      .add_flag("--treadmill", a.treadmill,
+                "Take out only its even part, from the first frame to the last; swaying stays, and "
+                "so does a loop")
+      .group(travel);
   const char* size = "8. Size";
-  add_number(app, "--scale", a.scale, "The whole figure and its motion, so many times as large")
-      ->type_name("TIMES")
-      ->group(size);
-  app.add_option("--height", a.height,
-                 "The same, so that the reference pose measures this from its lowest joint to its "
-                 "highest: 1.8m")
-      ->type_name("LENGTH")
-      ->group(size);
+  add_number(command, "--scale", a.scale, "The whole figure and its motion, so many times as large")
+      .type_name("TIMES")
+      .group(size);
+  command
+      .add_option("--height", a.height,
+                  "The same, so that the reference pose measures this from its lowest joint to its "
+                  "highest: 1.8m")
+      .type_name("LENGTH")
+      .group(size);
   const char* place = "9. Place";
-  app.add_flag("--at-origin", a.at_origin, "Begin over the origin")->group(place);
-  app.add_flag("--re-orient", a.re_orient, "Begin facing +Z, the same as --heading 0")
-      ->group(place);
-  app.add_option("--heading", a.heading,
-                 "Begin facing this way: 0 is +Z, 90deg is +X, to the figure's left")
-      ->type_name("ANGLE")
-      ->group(place);
-  app.add_option("--turn", a.turn,
-                 "Turn about the vertical through the place where it begins, to the left")
-      ->type_name("ANGLE")
-      ->group(place);
-  app.add_option("--move", a.move, "Move by lengths along X, Y and Z: 1m,0,-20cm")
-      ->type_name("X,Y,Z")
-      ->group(place);
-  app.add_flag("--ground", a.ground, "Bring the lowest place of the feet to y = 0")->group(place);
+  command.add_flag("--at-origin", a.at_origin, "Begin over the origin").group(place);
+  command.add_flag("--re-orient", a.re_orient, "Begin facing +Z, the same as --heading 0")
+      .group(place);
+  command
+      .add_option("--heading", a.heading,
+                  "Begin facing this way: 0 is +Z, 90deg is +X, to the figure's left")
+      .type_name("ANGLE")
+      .group(place);
+  command
+      .add_option("--turn", a.turn,
+                  "Turn about the vertical through the place where it begins, to the left")
+      .type_name("ANGLE")
+      .group(place);
+  command.add_option("--move", a.move, "Move by lengths along X, Y and Z: 1m,0,-20cm")
+      .type_name("X,Y,Z")
+      .group(place);
+  command.add_flag("--ground", a.ground, "Bring the lowest place of the feet to y = 0")
+      .group(place);
 }
 
 Error named(Error error, const char* option) {
@@ -330,20 +348,21 @@ Status understand_place(const Arguments& a, Options& options) {
 
 }  // namespace
 
-void declare(CLI::App& app, Arguments& arguments) {
-  app.add_option("input", arguments.input,
-                 "The motion: a .anim file, or a capture as krok-import reads it by default")
-      ->type_name("IN")
-      ->required();
-  add_map_option(app, arguments.map)->group("Figure");
-  declare_cleaning(app, arguments);
-  declare_cut(app, arguments);
-  declare_timing(app, arguments);
-  declare_joining(app, arguments);
-  declare_loop(app, arguments);
-  declare_place(app, arguments);
-  add_orientation_option(app, arguments.orientation);
-  arguments.given = [&app](const char* option) { return app.count(option) > 0; };
+void declare(CommandOptions& command, Arguments& arguments) {
+  command
+      .add_option("input", arguments.input,
+                  "The motion: a .anim file, or a capture as krok-import reads it by default")
+      .type_name("IN")
+      .required();
+  add_map_option(command, arguments.map).group("Figure");
+  declare_cleaning(command, arguments);
+  declare_cut(command, arguments);
+  declare_timing(command, arguments);
+  declare_joining(command, arguments);
+  declare_loop(command, arguments);
+  declare_place(command, arguments);
+  add_orientation_option(command, arguments.orientation);
+  arguments.given = [&command](const char* option) { return command.count(option) > 0; };
 }
 
 Result<Options> understand(const Arguments& arguments) {

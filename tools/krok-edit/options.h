@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "motion/joint_selection.h"
 #include "motion/loop.h"
 #include "motion/travel.h"
+#include "tools/common/command_options.h"
 
 namespace krok::edit {
 
@@ -102,7 +102,7 @@ struct Options {
 };
 
 // `app` is kept by the arguments.
-void declare(CLI::App& app, Arguments& arguments);
+void declare(CommandOptions& command, Arguments& arguments);
 
 // Whether each option has an effect: an Error (code usage) for one that says how another works
 // which is not given.

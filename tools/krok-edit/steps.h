@@ -34,6 +34,9 @@ struct Edit {
   void note(const char* step, Json figures, std::string line);
 };
 
+// "12.5 deg"; "0 deg" below 1e-4 degrees.
+std::string in_degrees(double radians);
+
 // Whether all parts that the sequences' file names lie within the motion.
 Status check_sequences(const Options& options, const Edit& edit);
 

@@ -16,11 +16,6 @@ namespace krok::edit {
 
 namespace {
 
-std::string in_degrees(double radians) {
-  const double degrees = radians / kRadiansPerDegree;
-  return std::abs(degrees) < 1e-4 ? "0 deg" : readable(degrees, 3) + " deg";
-}
-
 std::string seconds(double value) {
   return readable(value, 4) + " s";
 }

@@ -20,45 +20,48 @@ krok::ToolSpec make_spec() {
                    {"krok-export walk.anim --format csv -o - | head", "the first rows"}};
   spec.batch = {{".anim", ".bvh", ".amc"},
                 [options] { return krok::extension_of(options->format); }};
-  spec.declare = [options](CLI::App& app) {
+  spec.declare = [options](krok::CommandOptions& command) {
     using krok::ExportFormat;
-    app.add_option(
-           "input", options->input,
-           "The motion: a .anim file, or a capture (BVH; AMC with its ASF beside it), which "
-           "is read as krok-import reads it without options")
-        ->type_name("IN")
-        ->required();
-    app.add_option("--format", options->format,
-                   "bvh, glb, gltf (text, data inside) or csv; without it the output's extension "
-                   "tells")
-        ->type_name("FORMAT")
-        ->transform(krok::one_of<ExportFormat>({{"bvh", ExportFormat::bvh},
-                                                {"glb", ExportFormat::glb},
-                                                {"gltf", ExportFormat::gltf},
-                                                {"csv", ExportFormat::csv}}));
-    app.add_option("--unit", options->unit, "BVH: the unit of lengths: m, cm, mm, in, ft")
-        ->type_name("UNIT")
-        ->default_str("cm");
+    command
+        .add_option(
+            "input", options->input,
+            "The motion: a .anim file, or a capture (BVH; AMC with its ASF beside it), which "
+            "is read as krok-import reads it without options")
+        .type_name("IN")
+        .required();
+    command
+        .add_option("--format", options->format,
+                    "bvh, glb, gltf (text, data inside) or csv; without it the output's extension "
+                    "tells")
+        .type_name("FORMAT")
+        .transform(krok::one_of<ExportFormat>({{"bvh", ExportFormat::bvh},
+                                               {"glb", ExportFormat::glb},
+                                               {"gltf", ExportFormat::gltf},
+                                               {"csv", ExportFormat::csv}}));
+    command.add_option("--unit", options->unit, "BVH: the unit of lengths: m, cm, mm, in, ft")
+        .type_name("UNIT")
+        .default_str("cm");
     krok::add_whole(
-        app, "--digits", options->digits,
+        command, "--digits", options->digits,
         "BVH: decimals of angles in degrees, and of lengths in a centimetre; other "
         "units get more or fewer of the same fineness. 6 keep the motion to a millionth "
         "of a metre and of a radian",
         1, 15)
-        ->type_name("1..15")
-        ->default_str("6");
-    app.add_option("--order", options->order,
-                   "BVH: the order of the rotation channels: XYZ, XZY, YXZ, YZX, ZXY or ZYX")
-        ->type_name("ORDER")
-        ->check(CLI::IsMember({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}, CLI::ignore_case)
-                    .description(""))
-        ->default_str("ZXY");
-    app.add_option("--reduce", options->reduce,
-                   "glTF: leave out keys as long as each joint, and points 3 cm around it, stay "
-                   "within this distance of where they were, such as 1mm; for a smaller file. "
-                   "Without it each frame is a key")
-        ->type_name("LENGTH");
-    app.add_flag_function(
+        .type_name("1..15")
+        .default_str("6");
+    command
+        .add_option("--order", options->order,
+                    "BVH: the order of the rotation channels: XYZ, XZY, YXZ, YZX, ZXY or ZYX")
+        .type_name("ORDER")
+        .transform(krok::one_of_words({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}))
+        .default_str("ZXY");
+    command
+        .add_option("--reduce", options->reduce,
+                    "glTF: leave out keys as long as each joint, and points 3 cm around it, stay "
+                    "within this distance of where they were, such as 1mm; for a smaller file. "
+                    "Without it each frame is a key")
+        .type_name("LENGTH");
+    command.add_flag_function(
         "--bones,!--no-bones", [options](std::int64_t sign) { options->bones = sign > 0; },
         "glTF: add a thin mesh for each bone, so that viewers show the skeleton (the "
         "default; --no-bones leaves joints alone)");

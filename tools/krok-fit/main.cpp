@@ -17,7 +17,9 @@ int main(int argc, char** argv) {
        "goes on where another run stopped"}};
   spec.exit_partly = "with --keep-going: some motions were left out, the library is made";
   spec.report_name = "--report";
-  spec.declare = [&options](CLI::App& app) { krok::fit_tool::declare(app, options); };
+  spec.declare = [&options](krok::CommandOptions& command) {
+    krok::fit_tool::declare(command, options);
+  };
   spec.check = [&options] { return krok::fit_tool::check(options); };
   spec.run = [&options](krok::ToolContext& context) {
     return krok::fit_tool::run(options, context);

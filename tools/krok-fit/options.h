@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 
 #include "core/result.h"
 #include "rbf/weight_function.h"
+#include "tools/common/command_options.h"
 
 namespace krok::fit_tool {
 
@@ -31,7 +31,7 @@ inline constexpr std::size_t kMostLeftOut = 128;
 // Points that --refine may ask for.
 inline constexpr int kMostRefined = 4000;
 
-void declare(CLI::App& app, Options& options);
+void declare(CommandOptions& command, Options& options);
 Status check(const Options& options);
 
 }  // namespace krok::fit_tool

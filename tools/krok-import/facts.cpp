@@ -26,7 +26,7 @@ double extent(const Vectors& positions) {
   return static_cast<double>(high - low);
 }
 
-double height_of(const Skeleton& skeleton) {
+double reference_height(const Skeleton& skeleton) {
   std::vector<Vec3> positions;
   for (const Transform& joint : skeleton.reference) positions.push_back(joint.position);
   return extent(positions);
@@ -37,7 +37,7 @@ double height_of(const Skeleton& skeleton) {
 HeightWatch::HeightWatch(const FrameSource& motion)
     : joints_(static_cast<std::size_t>(motion.joint_count())),
       step_(static_cast<std::size_t>(std::max(1, motion.frame_count / 100))),
-      at_rest_(height_of(motion.skeleton)),
+      at_rest_(reference_height(motion.skeleton)),
       heights_((static_cast<std::size_t>(motion.frame_count) + step_ - 1) / step_) {}
 
 FrameSource HeightWatch::watched(const FrameSource& motion) {

@@ -34,7 +34,9 @@ krok::ToolSpec make_spec() {
       [options]() -> krok::Result<std::string> {
         return std::string(options->clip == "all" ? "_{clip}.anim" : ".anim");
       }};
-  spec.declare = [options](CLI::App& app) { krok::import::declare_options(app, *options); };
+  spec.declare = [options](krok::CommandOptions& command) {
+    krok::import::declare_options(command, *options);
+  };
   spec.check = [options] { return krok::import::check(*options); };
   spec.run = [options](krok::ToolContext& context) { return krok::import::run(*options, context); };
   return spec;

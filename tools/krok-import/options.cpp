@@ -21,113 +21,129 @@ Result<std::optional<Direction>> direction_option(const std::string& text, const
 
 }  // namespace
 
-void declare_options(CLI::App& app, Options& options) {
-  app.add_option("input", options.input,
-                 "A capture: BVH, an Acclaim motion (AMC) or skeleton (ASF) alone; or a character: "
-                 "GLB, glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5; - is standard input")
-      ->type_name("IN")
-      ->required();
-  app.add_option("--skeleton", options.skeleton,
-                 "The skeleton of an Acclaim motion; otherwise the .asf file beside it that its "
-                 "name begins with, or the only one there")
-      ->type_name("IN.asf");
-  add_map_option(app, options.map);
-  app.add_option(
-         "--model", options.model,
-         "Also, or alone, write the character: skeleton with reference pose, mesh and skin; "
-         "of a capture the skeleton without vertices")
-      ->type_name("OUT.model");
+void declare_options(CommandOptions& command, Options& options) {
+  command
+      .add_option(
+          "input", options.input,
+          "A capture: BVH, an Acclaim motion (AMC) or skeleton (ASF) alone; or a character: "
+          "GLB, glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5; - is standard input")
+      .type_name("IN")
+      .required();
+  command
+      .add_option("--skeleton", options.skeleton,
+                  "The skeleton of an Acclaim motion; otherwise the .asf file beside it that its "
+                  "name begins with, or the only one there")
+      .type_name("IN.asf");
+  add_map_option(command, options.map);
+  command
+      .add_option(
+          "--model", options.model,
+          "Also, or alone, write the character: skeleton with reference pose, mesh and skin; "
+          "of a capture the skeleton without vertices")
+      .type_name("OUT.model");
 
   const std::string scene = "Characters";
-  app.add_option(
-         "--character", options.character,
-         "Also, or alone, write the whole character: OUT.character and beside it OUT.model, "
-         "OUT.material, the textures in OUT_textures/, the morph targets in "
-         "OUT_morphs.exr; in place of --model and --morphs")
-      ->type_name("OUT.character")
-      ->group(scene);
-  app.add_option("--clip", options.clip,
-                 "Which animation: its name, its number from 0, or all; for all the output's name "
-                 "has {clip} where the animation's goes [the first]")
-      ->type_name("NAME")
-      ->group(scene);
-  app.add_option("--skin", options.skin,
-                 "The skeleton of this skin (name or number), if the file has several [the one "
-                 "with most joints]")
-      ->type_name("NAME")
-      ->group(scene);
-  app.add_option("--cam", options.cam, "Also, or alone, write a camera of the file")
-      ->type_name("OUT.cam")
-      ->group(scene);
-  app.add_option("--camera", options.camera,
-                 "Which camera: its name or its number from 0 [the first]")
-      ->type_name("NAME")
-      ->group(scene);
+  command
+      .add_option(
+          "--character", options.character,
+          "Also, or alone, write the whole character: OUT.character and beside it OUT.model, "
+          "OUT.material, the textures in OUT_textures/, the morph targets in "
+          "OUT_morphs.exr; in place of --model and --morphs")
+      .type_name("OUT.character")
+      .group(scene);
+  command
+      .add_option("--clip", options.clip,
+                  "Which animation: its name, its number from 0, or all; for all the output's name "
+                  "has {clip} where the animation's goes [the first]")
+      .type_name("NAME")
+      .group(scene);
+  command
+      .add_option("--skin", options.skin,
+                  "The skeleton of this skin (name or number), if the file has several [the one "
+                  "with most joints]")
+      .type_name("NAME")
+      .group(scene);
+  command.add_option("--cam", options.cam, "Also, or alone, write a camera of the file")
+      .type_name("OUT.cam")
+      .group(scene);
+  command
+      .add_option("--camera", options.camera,
+                  "Which camera: its name or its number from 0 [the first]")
+      .type_name("NAME")
+      .group(scene);
 
-  app.add_option("--morphs", options.morphs,
-                 "Also, or alone, write the morph targets as a float texture (OpenEXR), for the "
-                 "vertices that --model writes")
-      ->type_name("OUT.exr")
-      ->group(scene);
-  app.add_option("--morph-weights", options.weights,
-                 "Also, or alone, write the targets' weights over time as a table")
-      ->type_name("OUT.csv")
-      ->group(scene);
+  command
+      .add_option("--morphs", options.morphs,
+                  "Also, or alone, write the morph targets as a float texture (OpenEXR), for the "
+                  "vertices that --model writes")
+      .type_name("OUT.exr")
+      .group(scene);
+  command
+      .add_option("--morph-weights", options.weights,
+                  "Also, or alone, write the targets' weights over time as a table")
+      .type_name("OUT.csv")
+      .group(scene);
 
   const std::string space = "What the file is written in";
-  app.add_option("--unit", options.unit,
-                 "Its unit of length: auto, m, dm, cm, mm, in, ft, cmu (the CMU collection's) or a "
-                 "length such as 5.64cm")
-      ->type_name("UNIT")
-      ->default_str("auto")
-      ->group(space);
-  app.add_option("--up", options.up, "Its axis that points up: auto, x, y, z, -x, -y, -z")
-      ->type_name("AXIS")
-      ->default_str("auto")
-      ->group(space);
-  app.add_option("--forward", options.forward,
-                 "Its axis that the figure faces in the reference pose: as --up")
-      ->type_name("AXIS")
-      ->default_str("auto")
-      ->group(space);
-  add_choice<bvh::Positions>(app, "--positions", options.positions,
+  command
+      .add_option(
+          "--unit", options.unit,
+          "Its unit of length: auto, m, dm, cm, mm, in, ft, cmu (the CMU collection's) or a "
+          "length such as 5.64cm")
+      .type_name("UNIT")
+      .default_str("auto")
+      .group(space);
+  command.add_option("--up", options.up, "Its axis that points up: auto, x, y, z, -x, -y, -z")
+      .type_name("AXIS")
+      .default_str("auto")
+      .group(space);
+  command
+      .add_option("--forward", options.forward,
+                  "Its axis that the figure faces in the reference pose: as --up")
+      .type_name("AXIS")
+      .default_str("auto")
+      .group(space);
+  add_choice<bvh::Positions>(command, "--positions", options.positions,
                              {{"auto", bvh::Positions::automatic},
                               {"absolute", bvh::Positions::absolute},
                               {"additive", bvh::Positions::additive}},
                              "Whether position channels replace OFFSETs (absolute) or are added to "
                              "them (additive), in BVH",
                              "HOW", "auto")
-      ->group(space);
+      .group(space);
   add_choice<bvh::Angles>(
-      app, "--angles", options.angles,
+      command, "--angles", options.angles,
       {{"degrees", bvh::Angles::degrees}, {"radians", bvh::Angles::radians}},
       "What rotations are in, in BVH: degrees, as the format has it, or radians", "UNIT", "degrees")
-      ->group(space);
+      .group(space);
 
   const std::string time = "Time";
-  add_rate(app, "--fps", options.fps, "The file's frames come N a second, whatever it says")
-      ->group(time);
-  add_rate(app, "--resample", options.resample, "Bring the motion to N frames a second")
-      ->group(time);
+  add_rate(command, "--fps", options.fps, "The file's frames come N a second, whatever it says")
+      .group(time);
+  add_rate(command, "--resample", options.resample, "Bring the motion to N frames a second")
+      .group(time);
   add_choice<RestFrame>(
-      app, "--skip-rest-frame", options.rest_frame,
+      command, "--skip-rest-frame", options.rest_frame,
       {{"no", RestFrame::keep}, {"auto", RestFrame::automatic}, {"yes", RestFrame::drop}},
       "Leave out the first frame of a capture: auto (where it is a rest pose and no part of the "
       "motion), yes or no",
       "WHEN", "no")
-      ->group(time);
+      .group(time);
 
   const std::string faults = "Faults in the file";
-  auto* strict = app.add_flag("--strict", options.strict,
-                              "Refuse a file with any fault; otherwise rows that are not whole are "
-                              "left out with a warning")
-                     ->group(faults);
-  app.add_flag("--repair", options.repair,
-               "Fill faulty frames from their neighbours; each repair is listed")
-      ->excludes(strict)
-      ->group(faults);
+  const CommandOption strict =
+      command
+          .add_flag("--strict", options.strict,
+                    "Refuse a file with any fault; otherwise rows that are not whole are "
+                    "left out with a warning")
+          .group(faults);
+  command
+      .add_flag("--repair", options.repair,
+                "Fill faulty frames from their neighbours; each repair is listed")
+      .excludes(strict)
+      .group(faults);
 
-  add_orientation_option(app, options.orientation);
+  add_orientation_option(command, options.orientation);
 }
 
 Result<CaptureOptions> read_options(const Options& options) {

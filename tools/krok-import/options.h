@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "capture/capture.h"
 #include "core/result.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/container/packed_orientation.h"
+#include "tools/common/command_options.h"
 #include "tools/common/role_input.h"
 
 namespace krok::import {
@@ -40,7 +40,7 @@ struct Options {
   FindRoles roles;
 };
 
-void declare_options(CLI::App& app, Options& options);
+void declare_options(CommandOptions& command, Options& options);
 
 // The options that all readers share; an Error for a unit or an axis that is none.
 Result<CaptureOptions> read_options(const Options& options);

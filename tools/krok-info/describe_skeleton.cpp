@@ -4,16 +4,13 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "tools/common/role_report.h"
 
 namespace krok::info {
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 std::vector<int> depths_of(const Skeleton& skeleton) {
   std::vector<int> depths;

@@ -16,11 +16,11 @@ int main(int argc, char** argv) {
                     "Also each joint with its role in the body, and the reader's notes."},
                    {"krok-info --json *.model > models.json", "The same for programs."}};
   spec.has_output = false;
-  spec.declare = [&](CLI::App& app) {
-    app.add_option("FILE", options.files, "Files of any of these kinds; - is standard input")
-        ->type_name("")
-        ->required();
-    krok::add_map_option(app, options.map);
+  spec.declare = [&](krok::CommandOptions& command) {
+    command.add_option("FILE", options.files, "Files of any of these kinds; - is standard input")
+        .type_name("")
+        .required();
+    krok::add_map_option(command, options.map);
   };
   spec.run = [&](krok::ToolContext& context) { return krok::info::run(options, context); };
   return krok::run_tool(spec, argc, argv);

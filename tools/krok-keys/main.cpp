@@ -23,7 +23,7 @@ krok::ToolSpec make_spec() {
   spec.exit_no = "--find steps was asked for and no step was found";
   spec.needs_output = false;
   spec.batch = {{".anim", ".bvh", ".amc"}, krok::always(".keys.json")};
-  spec.declare = [options](CLI::App& app) { declare(app, *options); };
+  spec.declare = [options](krok::CommandOptions& command) { declare(command, *options); };
   spec.check = [options] { return check(*options); };
   spec.run = [options](krok::ToolContext& context) { return run(*options, context); };
   return spec;

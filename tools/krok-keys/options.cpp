@@ -63,37 +63,40 @@ Result<ContactChange> parse_contact(const std::string& text) {
 
 }  // namespace
 
-void declare(CLI::App& app, Options& options) {
-  app.add_option("input", options.input,
-                 "The motion: a .anim file, or a capture as krok-import reads it by default")
-      ->type_name("IN")
-      ->required();
-  add_map_option(app, options.map);
-  app.add_option("--find", options.find,
-                 "steps (find contacts and keytimes; what was set by hand stays), none (take the "
-                 "file as it is), or auto: none where a person edited the file, otherwise steps")
-      ->type_name("WHAT")
-      ->transform(
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("input", options.input,
+                  "The motion: a .anim file, or a capture as krok-import reads it by default")
+      .type_name("IN")
+      .required();
+  add_map_option(command, options.map);
+  command
+      .add_option("--find", options.find,
+                  "steps (find contacts and keytimes; what was set by hand stays), none (take the "
+                  "file as it is), or auto: none where a person edited the file, otherwise steps")
+      .type_name("WHAT")
+      .transform(
           one_of<Find>({{"auto", Find::automatic}, {"steps", Find::steps}, {"none", Find::none}}))
-      ->default_str("auto");
-  app.add_option("--keys", options.keys,
-                 "The file to begin with; otherwise the one that -o names, or else the one beside "
-                 "the motion")
-      ->type_name("IN.json");
-  app.add_flag("--discard-edits", options.discard_edits,
-               "Find all anew, whatever a person changed before");
-  app.add_option("--plot", options.plot,
-                 "Heights and speeds of the feet over time with contacts and keytimes, as SVG")
-      ->type_name("OUT.svg");
+      .default_str("auto");
+  command
+      .add_option("--keys", options.keys,
+                  "The file to begin with; otherwise the one that -o names, or else the one beside "
+                  "the motion")
+      .type_name("IN.json");
+  command.add_flag("--discard-edits", options.discard_edits,
+                   "Find all anew, whatever a person changed before");
+  command
+      .add_option("--plot", options.plot,
+                  "Heights and speeds of the feet over time with contacts and keytimes, as SVG")
+      .type_name("OUT.svg");
   const char* group = "By hand";
   const auto list = [&](const char* name, std::vector<std::string>& values, const char* help,
                         const char* type) {
-    app.add_option(name, values, help)
-        ->type_name(type)
-        ->delimiter(',')
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->group(group);
+    command.add_option(name, values, help)
+        .type_name(type)
+        .delimiter(',')
+        .one_each_time()
+        .group(group);
   };
   list("--set", options.set,
        "Move the keytime of that name that is within 0.15 s there, or else add one; several with "

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/quantity.h"
 #include "core/result.h"
+#include "tools/common/command_options.h"
 
 namespace krok::keys_tool {
 
@@ -40,7 +40,7 @@ struct Changes {
   }
 };
 
-void declare(CLI::App& app, Options& options);
+void declare(CommandOptions& command, Options& options);
 
 // Code usage, or those of parse_clip_time, with the option's name.
 Result<Changes> changes_of(const Options& options);

@@ -21,7 +21,7 @@ krok::ToolSpec make_spec() {
        "2}], \"items\": [{\"source\": \"wave\", \"at\": \"1s\", \"fade_in\": \"0.3s\"}]}]"},
       {"krok-mix 'stories/scene_*.json' --out-dir out", "all timelines that a pattern names"}};
   spec.batch = {{".json"}, krok::always(".anim")};
-  spec.declare = [options](CLI::App& app) { declare(app, *options); };
+  spec.declare = [options](krok::CommandOptions& command) { declare(command, *options); };
   spec.run = [options](krok::ToolContext& context) { return run(*options, context); };
   return spec;
 }

@@ -147,15 +147,16 @@ void report(const timeline::Timeline& timeline, const Mixed& mixed, ToolContext&
 
 }  // namespace
 
-void declare(CLI::App& app, Options& options) {
-  app.add_option("input", options.input,
-                 "A timeline (JSON): motions one after the other, changes between them, layers; "
-                 "formats/timeline/SPEC.md describes it")
-      ->type_name("IN.json")
-      ->required();
-  add_keys_option(app, options.keys)->group("Time");
-  add_map_option(app, options.map)->group("Space");
-  add_orientation_option(app, options.orientation);
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("input", options.input,
+                  "A timeline (JSON): motions one after the other, changes between them, layers; "
+                  "formats/timeline/SPEC.md describes it")
+      .type_name("IN.json")
+      .required();
+  add_keys_option(command, options.keys).group("Time");
+  add_map_option(command, options.map).group("Space");
+  add_orientation_option(command, options.orientation);
 }
 
 Result<int> run(const Options& options, ToolContext& context) {

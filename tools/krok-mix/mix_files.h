@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "core/result.h"
@@ -17,7 +16,7 @@ struct Options {
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 
-void declare(CLI::App& app, Options& options);
+void declare(CommandOptions& command, Options& options);
 Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::mix_tool

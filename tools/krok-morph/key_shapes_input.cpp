@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kUsualRate = 30;
-constexpr std::size_t kMostVertices = 50'000'000;  // of all shapes together
+constexpr std::size_t kMaxShapeVertices = 50'000'000;  // of all shapes together
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -109,9 +109,9 @@ Result<key_shapes::KeyShapeFile> keys_of_file(const Options& options, ToolContex
 Status add_shape(ShapeFile shape, const Options& options, KeyShapes& keys) {
   MorphSet& shapes = keys.shapes;
   const std::vector<Vec3f>& positions = shape.model.positions;
-  if (shapes.positions.size() + positions.size() > kMostVertices) {
+  if (shapes.positions.size() + positions.size() > kMaxShapeVertices) {
     return Error("morph-too-large", fmt::format("the shapes have more than {} vertices together",
-                                                grouped(kMostVertices)))
+                                                grouped(kMaxShapeVertices)))
         .in_file(shape.path);
   }
   const bool first = shapes.positions.empty();

@@ -41,7 +41,9 @@ int main(int argc, char** argv) {
       {"krok-morph frames flag_shapes --spacing 0.5s --between hermite -o flag.pc2",
        "a folder of them, half a second apart, on curves, as a point cache"}};
   spec.needs_output = false;
-  spec.declare = [&options](CLI::App& app) { krok::morph::declare(app, options); };
+  spec.declare = [&options](krok::CommandOptions& command) {
+    krok::morph::declare(command, options);
+  };
   spec.check = [&options] { return krok::morph::check(options); };
   spec.run = [&options](krok::ToolContext& context) { return krok::morph::run(options, context); };
   return krok::run_tool(spec, argc, argv);

@@ -76,93 +76,99 @@ std::string words_for(unsigned actions) {
   return words;
 }
 
-void declare_shapes(CLI::App& app, Options& options) {
-  app.add_option_function<std::string>(
-         "--unit",
-         [&options](const std::string& text) {
-           const auto unit = parse_unit(text);
-           if (unit) options.metres_per_unit = unit->metres;
-         },
-         "What one unit of OBJ files is: m, cm, mm, in, ft or a length such as 5.64cm")
-      ->type_name("UNIT")
-      ->default_str("m")
-      ->check(CLI::Validator(
-          [](std::string& text) {
+void declare_shapes(CommandOptions& command, Options& options) {
+  command
+      .add_option_function(
+          "--unit",
+          [&options](const std::string& text) {
             const auto unit = parse_unit(text);
-            return unit ? std::string() : unit.error().message;
+            if (unit) options.metres_per_unit = unit->metres;
           },
-          ""))
-      ->group("Shapes");
-  add_choice<Up>(app, "--up", options.up, {{"y", Up::y}, {"z", Up::z}},
+          "What one unit of OBJ files is: m, cm, mm, in, ft or a length such as 5.64cm")
+      .type_name("UNIT")
+      .default_str("m")
+      .check([](std::string& text) {
+        const auto unit = parse_unit(text);
+        return unit ? std::string() : unit.error().message;
+      })
+      .group("Shapes");
+  add_choice<Up>(command, "--up", options.up, {{"y", Up::y}, {"z", Up::z}},
                  "Which axis points up in OBJ files: y, the figure facing +Z, or z, the figure "
                  "facing -Y",
                  "AXIS", "y")
-      ->group("Shapes");
-  app.add_flag("--by-order", options.by_order,
-               "Take vertices to correspond by their order alone; otherwise shapes must have the "
-               "triangles of the first too")
-      ->group("Shapes");
-  app.add_option("--name", options.names,
-                 "pack: what a target is called, once for each TARGET in their order; otherwise as "
-                 "its file without the ending")
-      ->type_name("NAME")
-      ->allow_extra_args(false)
-      ->group("Shapes");
+      .group("Shapes");
+  command
+      .add_flag("--by-order", options.by_order,
+                "Take vertices to correspond by their order alone; otherwise shapes must have the "
+                "triangles of the first too")
+      .group("Shapes");
+  command
+      .add_option(
+          "--name", options.names,
+          "pack: what a target is called, once for each TARGET in their order; otherwise as "
+          "its file without the ending")
+      .type_name("NAME")
+      .allow_extra_args(false)
+      .group("Shapes");
 }
 
-void declare_unpack(CLI::App& app, Options& options) {
-  app.add_option("--out-dir", options.out_dir, "unpack: where the shapes go, a file each")
-      ->type_name("DIR")
-      ->group("Unpack");
-  add_choice<ShapeFormat>(app, "--format", options.format,
+void declare_unpack(CommandOptions& command, Options& options) {
+  command.add_option("--out-dir", options.out_dir, "unpack: where the shapes go, a file each")
+      .type_name("DIR")
+      .group("Unpack");
+  add_choice<ShapeFormat>(command, "--format", options.format,
                           {{"base", ShapeFormat::as_base},
                            {"obj", ShapeFormat::obj},
                            {"glb", ShapeFormat::glb},
                            {"model", ShapeFormat::model}},
                           "unpack: what the files are: obj, glb, model, or base: as BASE is",
                           "FORMAT", "base")
-      ->group("Unpack");
-  app.add_option("--target", options.targets,
-                 "unpack: this target only, by its name; may be repeated")
-      ->type_name("NAME")
-      ->allow_extra_args(false)
-      ->group("Unpack");
+      .group("Unpack");
+  command
+      .add_option("--target", options.targets,
+                  "unpack: this target only, by its name; may be repeated")
+      .type_name("NAME")
+      .allow_extra_args(false)
+      .group("Unpack");
 }
 
-void declare_motion(CLI::App& app, Options& options) {
-  app.add_option("--weights", options.weights,
-                 "bake: how much of each target shows over time: a table as krok-import "
-                 "--morph-weights writes it, or keys (formats/weights/SPEC.md)")
-      ->type_name("IN.csv|IN.json")
-      ->group("Motion");
-  add_choice<As>(app, "--as", options.as, {{"clip", As::clip}, {"targets", As::targets}},
+void declare_motion(CommandOptions& command, Options& options) {
+  command
+      .add_option("--weights", options.weights,
+                  "bake: how much of each target shows over time: a table as krok-import "
+                  "--morph-weights writes it, or keys (formats/weights/SPEC.md)")
+      .type_name("IN.csv|IN.json")
+      .group("Motion");
+  add_choice<As>(command, "--as", options.as, {{"clip", As::clip}, {"targets", As::targets}},
                  "For glTF. clip: the motion baked, a shape a frame. targets: the shapes once, and "
                  "keys for their weights",
                  "WHAT", "clip")
-      ->group("Motion");
-  add_rate(app, "--rate", options.rate,
+      .group("Motion");
+  add_rate(command, "--rate", options.rate,
            "Frames a second; otherwise as the weights or keys say, or else 30")
-      ->group("Motion");
-  add_choice<Between>(app, "--between", options.between,
+      .group("Motion");
+  add_choice<Between>(command, "--between", options.between,
                       {{"linear", Between::linear}, {"hermite", Between::hermite}},
                       "frames: how a shape becomes the next: linear, or hermite, a curve through "
                       "all; otherwise as the keys say, or else linear",
                       "HOW", "")
-      ->group("Motion");
-  add_number(app, "--tension", options.tension,
+      .group("Motion");
+  add_number(command, "--tension", options.tension,
              "frames, hermite: 0 goes evenly through the keys, 1 rests at each; otherwise as the "
              "keys say, or else 0")
-      ->group("Motion");
-  app.add_option("--spacing", options.spacing,
-                 "frames of a folder: the time from shape to shape, as 0.5s, 250ms or 1f")
-      ->type_name("T")
-      ->default_str("1f")
-      ->group("Motion");
-  app.add_option("--save-weights", options.save_weights,
-                 "frames: how much of each key's shape shows in each frame, as a table that bake "
-                 "and krok-skin take beside an .exr of the keys")
-      ->type_name("OUT.csv")
-      ->group("Motion");
+      .group("Motion");
+  command
+      .add_option("--spacing", options.spacing,
+                  "frames of a folder: the time from shape to shape, as 0.5s, 250ms or 1f")
+      .type_name("T")
+      .default_str("1f")
+      .group("Motion");
+  command
+      .add_option("--save-weights", options.save_weights,
+                  "frames: how much of each key's shape shows in each frame, as a table that bake "
+                  "and krok-skin take beside an .exr of the keys")
+      .type_name("OUT.csv")
+      .group("Motion");
 }
 
 Status check_uses(const Options& options) {
@@ -211,8 +217,8 @@ Status check_needs(const Options& options) {
 
 }  // namespace
 
-void declare(CLI::App& app, Options& options) {
-  add_choice<Action>(app, "action", options.action,
+void declare(CommandOptions& command, Options& options) {
+  add_choice<Action>(command, "action", options.action,
                      {{"pack", Action::pack},
                       {"unpack", Action::unpack},
                       {"info", Action::info},
@@ -222,16 +228,18 @@ void declare(CLI::App& app, Options& options) {
                      "info: what is in an .exr, and with BASE how far each target moves it. bake: "
                      "the shape over time. frames: shapes at times, a key-frame mesh, over time",
                      "ACTION", "")
-      ->required();
-  app.add_option("files", options.files,
-                 "What it is done with. BASE and TARGETs: .obj, .glb, .gltf or .model, of the same "
-                 "vertices; pack takes the targets within a glTF BASE too")
-      ->type_name("IN")
-      ->required();
-  declare_shapes(app, options);
-  declare_unpack(app, options);
-  declare_motion(app, options);
-  options.given = [&app](const char* option) { return app.count(option) > 0; };
+      .required();
+  command
+      .add_option(
+          "files", options.files,
+          "What it is done with. BASE and TARGETs: .obj, .glb, .gltf or .model, of the same "
+          "vertices; pack takes the targets within a glTF BASE too")
+      .type_name("IN")
+      .required();
+  declare_shapes(command, options);
+  declare_unpack(command, options);
+  declare_motion(command, options);
+  options.given = [&command](const char* option) { return command.count(option) > 0; };
 }
 
 Status check(const Options& options) {

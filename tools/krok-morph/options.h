@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
+#include "tools/common/command_options.h"
 
 namespace krok::morph {
 
@@ -43,7 +43,7 @@ struct Options {
 };
 
 // `app` is kept by the options.
-void declare(CLI::App& app, Options& options);
+void declare(CommandOptions& command, Options& options);
 
 // Whether the options fit what is to be done, and each other. Code usage.
 Status check(const Options& options);

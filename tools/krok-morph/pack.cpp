@@ -14,7 +14,7 @@ namespace krok::morph {
 
 namespace {
 
-constexpr std::size_t kMostVertices = 50'000'000;  // of all targets together
+constexpr std::size_t kMaxTargetVertices = 50'000'000;  // of all targets together
 
 // "shapes/smile.obj" is called smile.
 std::string name_of(const std::string& path) {
@@ -40,9 +40,9 @@ Status add_target(const ShapeFile& base, const std::string& path, const std::str
   if (Status same = check_same_mesh(base, *shape, options); !same) return same;
   if (Status fits = check_name(name, morphs, path); !fits) return fits;
   const std::vector<Vec3f>& positions = shape->model.positions;
-  if (morphs.positions.size() + positions.size() > kMostVertices) {
+  if (morphs.positions.size() + positions.size() > kMaxTargetVertices) {
     return Error("morph-too-large", fmt::format("the targets have more than {} vertices together",
-                                                grouped(kMostVertices)))
+                                                grouped(kMaxTargetVertices)))
         .in_file(path);
   }
   morphs.names.push_back(name);

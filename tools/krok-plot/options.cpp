@@ -10,6 +10,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "tools/common/one_of.h"
+#include "tools/common/option_kinds.h"
 #include "tools/common/role_input.h"
 
 namespace krok::plot {
@@ -29,81 +30,87 @@ Error usage(std::string message, std::string hint = {}) {
   return Error("usage", std::move(message), std::move(hint));
 }
 
-CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::string>& values,
-                      const std::string& description) {
-  return app.add_option(name, values, description)
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+CommandOption add_list(CommandOptions& command, const std::string& name,
+                       std::vector<std::string>& values, const std::string& description) {
+  return command.add_option(name, values, description).one_each_time();
 }
 
-void declare_motions(CLI::App& app, Arguments& a) {
+void declare_motions(CommandOptions& command, Arguments& a) {
   const char* group = "Motions";
-  add_list(app, "--show", a.show,
+  add_list(command, "--show", a.show,
            "Which charts, in which order: path (from above), feet (height, speed), angles (of "
            "hips, knees, ankles, shoulders, elbows), positions, difference; several between "
            "commas. Without it path, feet and angles, or what the figure has of them")
-      ->type_name("CHARTS")
-      ->group(group);
-  add_list(app, "--joint", a.joints,
+      .type_name("CHARTS")
+      .group(group);
+  add_list(command, "--joint", a.joints,
            "Show this joint: where it is, and how far it is turned from the reference pose against "
            "its parent; with --show positions or angles one of the two. * stands for any "
            "characters; may be repeated")
-      ->type_name("NAME")
-      ->group(group);
-  app.add_option("--euler", a.euler,
-                 "Show turns of joints as Euler angles in this order: ZXY is R = Rz Rx Ry")
-      ->type_name("ORDER")
-      ->group(group);
-  app.add_option("--from", a.from,
-                 "The first moment shown: 1.5s, 250ms, or 120f for a frame; a bare number is "
-                 "seconds")
-      ->type_name("TIME")
-      ->group(group);
-  app.add_option("--to", a.to, "The last moment shown")->type_name("TIME")->group(group);
-  app.add_flag("--difference", a.difference,
-               "How far the joints of two motions are apart: the same as --show difference")
-      ->group(group);
-  app.add_option("--keys", a.keys,
-                 "Contacts and keytimes to draw: a file, none, or auto, which takes NAME.keys.json "
-                 "beside the motion if there is one")
-      ->type_name("IN.json|auto|none")
-      ->default_str(a.keys)
-      ->group(group);
-  add_map_option(app, a.map)->group(group);
+      .type_name("NAME")
+      .group(group);
+  command
+      .add_option("--euler", a.euler,
+                  "Show turns of joints as Euler angles in this order: ZXY is R = Rz Rx Ry")
+      .type_name("ORDER")
+      .group(group);
+  command
+      .add_option("--from", a.from,
+                  "The first moment shown: 1.5s, 250ms, or 120f for a frame; a bare number is "
+                  "seconds")
+      .type_name("TIME")
+      .group(group);
+  command.add_option("--to", a.to, "The last moment shown").type_name("TIME").group(group);
+  command
+      .add_flag("--difference", a.difference,
+                "How far the joints of two motions are apart: the same as --show difference")
+      .group(group);
+  command
+      .add_option(
+          "--keys", a.keys,
+          "Contacts and keytimes to draw: a file, none, or auto, which takes NAME.keys.json "
+          "beside the motion if there is one")
+      .type_name("IN.json|auto|none")
+      .default_str(a.keys)
+      .group(group);
+  add_map_option(command, a.map).group(group);
 }
 
-void declare_tables(CLI::App& app, Arguments& a) {
+void declare_tables(CommandOptions& command, Arguments& a) {
   const char* group = "Tables";
-  app.add_flag("--table", a.table,
-               "The inputs are tables (CSV), which files called .csv or .tsv are without it. Units "
-               "are read from column names: time [s], time (s), time_s")
-      ->group(group);
-  app.add_option("--x", a.x, "The column to go along; otherwise the one for time, or the first")
-      ->type_name("COLUMN")
-      ->group(group);
-  add_list(app, "--y", a.y,
+  command
+      .add_flag(
+          "--table", a.table,
+          "The inputs are tables (CSV), which files called .csv or .tsv are without it. Units "
+          "are read from column names: time [s], time (s), time_s")
+      .group(group);
+  command.add_option("--x", a.x, "The column to go along; otherwise the one for time, or the first")
+      .type_name("COLUMN")
+      .group(group);
+  add_list(command, "--y", a.y,
            "What to draw: a column, or several for one panel, between commas; may be repeated for "
            "more panels. Otherwise all columns of numbers, a panel for each unit")
-      ->type_name("COLUMNS")
-      ->group(group);
-  app.add_option("--by", a.by,
-                 "A line for each value of this column; otherwise of the only column of words, if "
-                 "there is one")
-      ->type_name("COLUMN")
-      ->group(group);
-  add_list(app, "--where", a.where,
+      .type_name("COLUMNS")
+      .group(group);
+  command
+      .add_option("--by", a.by,
+                  "A line for each value of this column; otherwise of the only column of words, if "
+                  "there is one")
+      .type_name("COLUMN")
+      .group(group);
+  add_list(command, "--where", a.where,
            "Only rows in which the column has this value; of several values of one column any; may "
            "be repeated")
-      ->type_name("COLUMN=VALUE")
-      ->group(group);
-  app.add_option("--style", a.style, "line, points or both")
-      ->type_name("STYLE")
-      ->transform(one_of<draw::SeriesStyle>({{"line", draw::SeriesStyle::line},
-                                             {"points", draw::SeriesStyle::points},
-                                             {"both", draw::SeriesStyle::line_and_points}}))
-      ->default_str("line")
-      ->group(group);
-  app.add_flag("--log-x", a.log_x, "A logarithmic x axis")->group(group);
+      .type_name("COLUMN=VALUE")
+      .group(group);
+  command.add_option("--style", a.style, "line, points or both")
+      .type_name("STYLE")
+      .transform(one_of<draw::SeriesStyle>({{"line", draw::SeriesStyle::line},
+                                            {"points", draw::SeriesStyle::points},
+                                            {"both", draw::SeriesStyle::line_and_points}}))
+      .default_str("line")
+      .group(group);
+  command.add_flag("--log-x", a.log_x, "A logarithmic x axis").group(group);
 }
 
 Result<std::vector<Chart>> parse_charts(const std::vector<std::string>& lists) {
@@ -256,11 +263,9 @@ Status check_fit(const Arguments& a, bool table) {
                table ? "see krok-plot --help" : "--table says that the input is a table");
 }
 
-void declare_pictures(CLI::App& app, Arguments& a) {
-  declare_sheet(app, a.sheet);
-  for (CLI::Option* option : app.get_options()) {
-    if (option->get_group() == "Options" && !option->get_positional()) option->group("Pictures");
-  }
+void declare_pictures(CommandOptions& command, Arguments& a) {
+  declare_sheet(command, a.sheet);
+  command.group_remaining("Pictures");
 }
 
 // Whether something was asked for that only pictures have.
@@ -275,31 +280,32 @@ bool has_picture_options(const SheetOptions& options) {
 
 }  // namespace
 
-void declare(CLI::App& app, Arguments& arguments) {
-  app.add_option("inputs", arguments.inputs,
-                 "Motions (.anim, or a capture such as BVH) or tables (.csv); several go into the "
-                 "same panels. For pictures also models and characters (.model, .character, moved "
-                 "by the motions of their skeleton) and glTF")
-      ->type_name("IN")
-      ->required();
-  declare_motions(app, arguments);
-  declare_tables(app, arguments);
+void declare(CommandOptions& command, Arguments& arguments) {
+  command
+      .add_option("inputs", arguments.inputs,
+                  "Motions (.anim, or a capture such as BVH) or tables (.csv); several go into the "
+                  "same panels. For pictures also models and characters (.model, .character, moved "
+                  "by the motions of their skeleton) and glTF")
+      .type_name("IN")
+      .required();
+  declare_motions(command, arguments);
+  declare_tables(command, arguments);
   const char* group = "Figure";
-  app.add_flag("--log-y", arguments.log_y,
-               "A logarithmic y axis; of motions for speeds and differences")
-      ->group(group);
-  app.add_option("--title", arguments.title, "Otherwise the name of the input")
-      ->type_name("WORDS")
-      ->group(group);
-  app.add_option("--columns", arguments.columns, "Panels side by side; otherwise 2")
-      ->type_name("N")
-      ->check(CLI::Range(1, 20).description(""))
-      ->group(group);
-  app.add_option("--panel", arguments.panel,
-                 "The size of each panel in pixels, 96 to the inch [340x170, one alone 640x260]")
-      ->type_name("WIDTHxHEIGHT")
-      ->group(group);
-  declare_pictures(app, arguments);
+  command
+      .add_flag("--log-y", arguments.log_y,
+                "A logarithmic y axis; of motions for speeds and differences")
+      .group(group);
+  command.add_option("--title", arguments.title, "Otherwise the name of the input")
+      .type_name("WORDS")
+      .group(group);
+  add_whole(command, "--columns", arguments.columns, "Panels side by side; otherwise 2", 1, 20)
+      .group(group);
+  command
+      .add_option("--panel", arguments.panel,
+                  "The size of each panel in pixels, 96 to the inch [340x170, one alone 640x260]")
+      .type_name("WIDTHxHEIGHT")
+      .group(group);
+  declare_pictures(command, arguments);
 }
 
 Status check(const Arguments& arguments) {

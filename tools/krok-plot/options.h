@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "core/result.h"
 #include "draw/plot.h"
 #include "math/euler.h"
+#include "tools/common/command_options.h"
 #include "tools/krok-plot/sheet.h"
 
 namespace krok::plot {
@@ -76,7 +76,7 @@ struct Options {
   SheetOptions sheet;
 };
 
-void declare(CLI::App& app, Arguments& arguments);
+void declare(CommandOptions& command, Arguments& arguments);
 
 // What can be said of the options alone, whatever the inputs are.
 Status check(const Arguments& arguments);

@@ -163,7 +163,7 @@ ToolSpec make_spec() {
        "stands"}};
   spec.needs_output = false;  // --sheet and --strip name files of their own
   spec.batch = {{".anim", ".bvh", ".amc"}, always(".svg")};
-  spec.declare = [arguments](CLI::App& app) { declare(app, *arguments); };
+  spec.declare = [arguments](CommandOptions& command) { declare(command, *arguments); };
   spec.check = [arguments] { return check(*arguments); };
   spec.run = [arguments](ToolContext& context) { return run_typed(*arguments, context); };
   return spec;

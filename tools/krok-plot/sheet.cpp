@@ -236,29 +236,32 @@ Status make_strip(const std::vector<MovingFigure>& figures, const std::vector<Pi
 
 }  // namespace
 
-void declare_sheet(CLI::App& app, SheetOptions& options) {
-  app.add_option(
-         "--sheet", options.sheet,
-         "A contact sheet as PNG: the figures at several moments, in rows by file and side; "
-         "materials with their base colours and textures (PNG, JPEG), which cut out where "
-         "alpha is below their cutoff, blended ones below a half")
-      ->type_name("OUT.png");
-  app.add_option(
-         "--strip", options.strip,
-         "A motion strip as PNG: each figure at several moments in one picture, the earlier "
-         "ones paler")
-      ->type_name("OUT.png");
-  declare_picture_options(app, options.picture, kSheetMoments);
-  app.add_option("--front", options.front,
-                 "What the front is: where the figure faces at the first moment (figure), or +Z, "
-                 "where figures face in their reference pose (world)")
-      ->type_name("WHAT")
-      ->transform(one_of<Front>({{"figure", Front::figure}, {"world", Front::world}}))
-      ->default_str("figure");
-  add_body_option(app, options.body,
+void declare_sheet(CommandOptions& command, SheetOptions& options) {
+  command
+      .add_option(
+          "--sheet", options.sheet,
+          "A contact sheet as PNG: the figures at several moments, in rows by file and side; "
+          "materials with their base colours and textures (PNG, JPEG), which cut out where "
+          "alpha is below their cutoff, blended ones below a half")
+      .type_name("OUT.png");
+  command
+      .add_option(
+          "--strip", options.strip,
+          "A motion strip as PNG: each figure at several moments in one picture, the earlier "
+          "ones paler")
+      .type_name("OUT.png");
+  declare_picture_options(command, options.picture, kSheetMoments);
+  command
+      .add_option("--front", options.front,
+                  "What the front is: where the figure faces at the first moment (figure), or +Z, "
+                  "where figures face in their reference pose (world)")
+      .type_name("WHAT")
+      .transform(one_of<Front>({{"figure", Front::figure}, {"world", Front::world}}))
+      .default_str("figure");
+  add_body_option(command, options.body,
                   "A body for motions without a model: low (2,500 vertices), medium (10,000), high "
                   "(40,000), auto: low for more than two files, else medium; none: all as bones");
-  add_skin_method(app, options.method,
+  add_skin_method(command, options.method,
                   "How motions move their bodies: linear, as viewers do it, dual-quaternion, which "
                   "keeps the volume where a joint twists, or rigid; not of glTF files");
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -31,7 +30,7 @@ struct SheetOptions {
 };
 
 // --sheet, --strip and what belongs to them, but --from and --to.
-void declare_sheet(CLI::App& app, SheetOptions& options);
+void declare_sheet(CommandOptions& command, SheetOptions& options);
 
 // Draws the figures of all inputs into the pictures that are wanted, writes these and notes them in
 // the report.

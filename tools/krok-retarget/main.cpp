@@ -18,7 +18,7 @@ krok::ToolSpec make_spec() {
                    {"krok-retarget --onto hero.model motions --out-dir hero_motions",
                     "all motions in a folder"}};
   spec.batch = {{".anim", ".bvh", ".amc"}, krok::always(".anim")};
-  spec.declare = [options](CLI::App& app) { declare(app, *options); };
+  spec.declare = [options](krok::CommandOptions& command) { declare(command, *options); };
   spec.check = [options] { return check(*options); };
   spec.run = [options](krok::ToolContext& context) { return run(*options, context); };
   return spec;

@@ -4,15 +4,12 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "core/numbers.h"
 
 namespace krok::retarget_tool {
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 std::string method_name(retarget::Method method) {
   switch (method) {

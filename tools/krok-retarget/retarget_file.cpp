@@ -124,43 +124,49 @@ void tell_choices(const Outcome& outcome, ToolContext& context) {
 
 }  // namespace
 
-void declare(CLI::App& app, Options& options) {
-  app.add_option("input", options.input,
-                 "The motion, or a capture as krok-import takes it (- is standard input)")
-      ->type_name("IN.anim")
-      ->required();
-  app.add_option("--onto", options.onto,
-                 "The skeleton to move: a model, or any motion or capture of it")
-      ->type_name("IN.model|IN.anim")
-      ->required();
-  add_map_option(app, options.map, "--map",
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("input", options.input,
+                  "The motion, or a capture as krok-import takes it (- is standard input)")
+      .type_name("IN.anim")
+      .required();
+  command
+      .add_option("--onto", options.onto,
+                  "The skeleton to move: a model, or any motion or capture of it")
+      .type_name("IN.model|IN.anim")
+      .required();
+  add_map_option(command, options.map, "--map",
                  "What the input's joints are, where their names do not tell: a role map (JSON)")
-      ->group("Joints");
-  add_map_option(app, options.onto_map, "--onto-map", "The same for the target's joints")
-      ->group("Joints");
-  app.add_option("--reference-pose", options.reference_pose,
-                 "The input's pose that is set beside the target's reference pose: a frame, or "
-                 "auto: its own reference pose, or if that does not stand, the frame nearest to a "
-                 "T-pose")
-      ->type_name("POSE")
-      ->default_str("auto")
-      ->group("Joints");
-  app.add_option("--onto-reference-pose", options.onto_reference_pose,
-                 "The same for a target that is a motion")
-      ->type_name("POSE")
-      ->default_str("auto")
-      ->group("Joints");
+      .group("Joints");
+  add_map_option(command, options.onto_map, "--onto-map", "The same for the target's joints")
+      .group("Joints");
+  command
+      .add_option("--reference-pose", options.reference_pose,
+                  "The input's pose that is set beside the target's reference pose: a frame, or "
+                  "auto: its own reference pose, or if that does not stand, the frame nearest to a "
+                  "T-pose")
+      .type_name("POSE")
+      .default_str("auto")
+      .group("Joints");
+  command
+      .add_option("--onto-reference-pose", options.onto_reference_pose,
+                  "The same for a target that is a motion")
+      .type_name("POSE")
+      .default_str("auto")
+      .group("Joints");
   add_choice<retarget::Feet>(
-      app, "--feet", options.feet, {{"keep", retarget::Feet::keep}, {"free", retarget::Feet::free}},
+      command, "--feet", options.feet,
+      {{"keep", retarget::Feet::keep}, {"free", retarget::Feet::free}},
       "keep: feet stand where the input's stand, scaled, and not in the floor; free: as the legs' "
       "rotations bring them",
       "HOW", "keep")
-      ->group("Motion");
-  app.add_option("--scale", options.scale,
-                 "How much larger the motion's ways become; by default the ratio of the legs")
-      ->type_name("NUMBER")
-      ->group("Motion");
-  add_orientation_option(app, options.orientation);
+      .group("Motion");
+  command
+      .add_option("--scale", options.scale,
+                  "How much larger the motion's ways become; by default the ratio of the legs")
+      .type_name("NUMBER")
+      .group("Motion");
+  add_orientation_option(command, options.orientation);
 }
 
 Status check(const Options& options) {

@@ -20,7 +20,9 @@ krok::ToolSpec make_spec() {
        "a character with its materials, eyes and expressions"},
       {"krok-skin body.model walk.anim -o walk.pc2", "a point cache for Blender or 3ds Max"}};
   spec.batch = {{".anim"}, krok::always(".glb")};
-  spec.declare = [options](CLI::App& app) { krok::skinning::declare_options(app, *options); };
+  spec.declare = [options](krok::CommandOptions& command) {
+    krok::skinning::declare_options(command, *options);
+  };
   spec.check = [options] { return krok::skinning::check(*options); };
   spec.run = [options](krok::ToolContext& context) {
     return krok::skinning::run(*options, context);

@@ -46,45 +46,50 @@ bool is_character(const std::string& path) {
   return extension(path) == ".character";
 }
 
-void declare_options(CLI::App& app, Options& options) {
-  app.add_option("subject", options.subject,
-                 "The skinned mesh: a .model, or a .character with its materials and expressions")
-      ->type_name("IN.model")
-      ->required();
-  app.add_option("motion", options.motion,
-                 "The motion: .anim, or a capture as krok-import reads it; without one the mesh "
-                 "stands in its reference pose")
-      ->type_name("IN.anim");
-  add_choice(app, "--as", options.as,
+void declare_options(CommandOptions& command, Options& options) {
+  command
+      .add_option("subject", options.subject,
+                  "The skinned mesh: a .model, or a .character with its materials and expressions")
+      .type_name("IN.model")
+      .required();
+  command
+      .add_option("motion", options.motion,
+                  "The motion: .anim, or a capture as krok-import reads it; without one the mesh "
+                  "stands in its reference pose")
+      .type_name("IN.anim");
+  add_choice(command, "--as", options.as,
              {{"clip", As::clip}, {"pose", As::pose}, {"rig", As::rig}, {"frames", As::frames}},
              "What to write. clip: the motion baked, into glTF as a morph target a frame, or as a "
              "point cache (.pc2). pose: one mesh. rig: joints, weights and the animation, for the "
              "viewer's own skinning. frames: one file a frame, OUT_0000.glb, OUT_0001.glb, ... for "
              "-o OUT.glb. A mesh goes into .glb, .gltf or .obj",
              "WHAT", "clip");
-  app.add_option("--time", options.time, "For --as pose: when, as 1.5s, 250ms or 120f")
-      ->type_name("T")
-      ->default_str("0");
-  app.add_option("--from", options.from,
-                 "Where the part to write begins, as for --time; not for pose")
-      ->type_name("T");
-  app.add_option("--to", options.to, "Where it ends, that frame included")->type_name("T");
-  add_whole(app, "--every", options.every, "Take every Nth frame only", 1, 1000000)
-      ->default_str("1");
-  add_skin_method(app, options.method,
+  command.add_option("--time", options.time, "For --as pose: when, as 1.5s, 250ms or 120f")
+      .type_name("T")
+      .default_str("0");
+  command
+      .add_option("--from", options.from,
+                  "Where the part to write begins, as for --time; not for pose")
+      .type_name("T");
+  command.add_option("--to", options.to, "Where it ends, that frame included").type_name("T");
+  add_whole(command, "--every", options.every, "Take every Nth frame only", 1, 1000000)
+      .default_str("1");
+  add_skin_method(command, options.method,
                   "How vertices follow the joints. linear: linear blend, as viewers do it; thins "
                   "out where a joint twists. dual-quaternion: keeps the volume there. rigid: each "
                   "its strongest joint alone");
-  app.add_option(
-         "--morph", options.morphs,
-         "Morph targets (OpenEXR, of krok-morph or krok-import) that change the mesh before "
-         "the skeleton moves it; a character brings its own")
-      ->type_name("IN.exr");
-  app.add_option("--weights", options.weights,
-                 "How much of each target shows over time: a table (CSV) or keys (JSON); from the "
-                 "motion's beginning on")
-      ->type_name("IN");
-  add_choice(app, "--up", options.up, {{"y", pc2::Up::y}, {"z", pc2::Up::z}},
+  command
+      .add_option(
+          "--morph", options.morphs,
+          "Morph targets (OpenEXR, of krok-morph or krok-import) that change the mesh before "
+          "the skeleton moves it; a character brings its own")
+      .type_name("IN.exr");
+  command
+      .add_option("--weights", options.weights,
+                  "How much of each target shows over time: a table (CSV) or keys (JSON); from the "
+                  "motion's beginning on")
+      .type_name("IN");
+  add_choice(command, "--up", options.up, {{"y", pc2::Up::y}, {"z", pc2::Up::z}},
              "The axis that points up in a point cache: y as in the OBJ and glTF files here, or z, "
              "as Blender and 3ds Max keep a mesh",
              "AXIS", "y");

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
@@ -8,6 +7,7 @@
 #include "formats/pc2/pc2.h"
 #include "scene/clip.h"
 #include "skin/skin.h"
+#include "tools/common/command_options.h"
 
 namespace krok::skinning {
 
@@ -30,7 +30,7 @@ struct Options {
 // Whether a path names a character and no model.
 bool is_character(const std::string& path);
 
-void declare_options(CLI::App& app, Options& options);
+void declare_options(CommandOptions& command, Options& options);
 
 // Whether the options have values that fit some file or other.
 Status check(const Options& options);

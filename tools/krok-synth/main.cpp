@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
        "the mirror image, corrected until it is right to a hundredth of the tolerance"},
       {"krok-synth walking.steps --table points.csv -o steps/step.anim",
        "a motion for each row of a table with a column for each parameter: step_1.anim, ..."}};
-  spec.declare = [&options](CLI::App& app) { krok::synth_tool::declare(app, options); };
+  spec.declare = [&options](krok::CommandOptions& command) {
+    krok::synth_tool::declare(command, options);
+  };
   spec.check = [&options] { return krok::synth_tool::check(options); };
   spec.run = [&options](krok::ToolContext& context) {
     return krok::synth_tool::run(options, context);

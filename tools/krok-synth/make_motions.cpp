@@ -154,35 +154,39 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
 
 }  // namespace
 
-void declare(CLI::App& app, Options& options) {
-  app.add_option("library", options.library, "The library that krok-fit made")
-      ->type_name("IN.steps")
-      ->required();
-  app.add_option("--set", options.set,
-                 "What is asked for, a parameter each: length=70cm, turn=15deg, duration=0.6s")
-      ->type_name("NAME=VALUE")
-      ->group("Parameters");
-  app.add_option("--table", options.table,
-                 "A table (CSV) with a column for each parameter: a motion for each row, named as "
-                 "-o with the row's number")
-      ->type_name("IN.csv")
-      ->group("Parameters");
-  app.add_flag("--extrapolate", options.extrapolate,
-               "Allow parameters outside what the examples span; their error is not known")
-      ->group("Parameters");
+void declare(CommandOptions& command, Options& options) {
+  command.add_option("library", options.library, "The library that krok-fit made")
+      .type_name("IN.steps")
+      .required();
+  command
+      .add_option("--set", options.set,
+                  "What is asked for, a parameter each: length=70cm, turn=15deg, duration=0.6s")
+      .type_name("NAME=VALUE")
+      .group("Parameters");
+  command
+      .add_option("--table", options.table,
+                  "A table (CSV) with a column for each parameter: a motion for each row, named as "
+                  "-o with the row's number")
+      .type_name("IN.csv")
+      .group("Parameters");
+  command
+      .add_flag("--extrapolate", options.extrapolate,
+                "Allow parameters outside what the examples span; their error is not known")
+      .group("Parameters");
   add_choice<SideChoice>(
-      app, "--side", options.side,
+      command, "--side", options.side,
       {{"library", SideChoice::library}, {"left", SideChoice::left}, {"right", SideChoice::right}},
       "The foot that steps: library (the one that the library has), left or "
       "right",
       "SIDE", "library")
-      ->group("Motion");
-  app.add_flag("--correct", options.correct,
-               "Correct the weights until the motion has what is asked for")
-      ->group("Motion");
-  add_rate(app, "--rate", options.rate, "Frames a second; otherwise the library's")
-      ->group("Motion");
-  add_orientation_option(app, options.orientation);
+      .group("Motion");
+  command
+      .add_flag("--correct", options.correct,
+                "Correct the weights until the motion has what is asked for")
+      .group("Motion");
+  add_rate(command, "--rate", options.rate, "Frames a second; otherwise the library's")
+      .group("Motion");
+  add_orientation_option(command, options.orientation);
 }
 
 Status check(const Options& options) {

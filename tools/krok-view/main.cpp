@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
                     "a model, moved, seen by the recorded camera"},
                    {"krok-view hero.character walk.anim -o hero.html",
                     "a character with its materials, moved; without a motion it stands"}};
-  spec.declare = [&options](CLI::App& app) { krok::view::declare(app, options); };
+  spec.declare = [&options](krok::CommandOptions& command) {
+    krok::view::declare(command, options);
+  };
   spec.run = [&options](krok::ToolContext& context) { return krok::view::run(options, context); };
   return krok::run_tool(spec, argc, argv);
 }

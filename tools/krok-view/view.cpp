@@ -64,39 +64,44 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
 
 }  // namespace
 
-void declare(CLI::App& app, Options& options) {
-  app.add_option("inputs", options.inputs,
-                 "Motions (.anim, or a capture such as BVH), models and characters (.model, "
-                 ".character, moved by the motions of their skeleton), cameras (.cam), glTF; of a "
-                 "folder all motions, characters and glTF")
-      ->type_name("IN")
-      ->required();
-  app.add_option("--layout", options.layout,
-                 "Several figures: apart (side by side), together (each where its file puts it), "
-                 "list (one at a time), or auto: apart up to four, a list of more")
-      ->type_name("HOW")
-      ->transform(one_of<Layout>({{"auto", Layout::automatic},
-                                  {"apart", Layout::apart},
-                                  {"together", Layout::together},
-                                  {"list", Layout::list}}))
-      ->default_str("auto");
-  app.add_flag("--difference", options.difference,
-               "Put the first two figures together and colour their joints by how far apart those "
-               "of the same name are");
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("inputs", options.inputs,
+                  "Motions (.anim, or a capture such as BVH), models and characters (.model, "
+                  ".character, moved by the motions of their skeleton), cameras (.cam), glTF; of a "
+                  "folder all motions, characters and glTF")
+      .type_name("IN")
+      .required();
+  command
+      .add_option("--layout", options.layout,
+                  "Several figures: apart (side by side), together (each where its file puts it), "
+                  "list (one at a time), or auto: apart up to four, a list of more")
+      .type_name("HOW")
+      .transform(one_of<Layout>({{"auto", Layout::automatic},
+                                 {"apart", Layout::apart},
+                                 {"together", Layout::together},
+                                 {"list", Layout::list}}))
+      .default_str("auto");
+  command.add_flag(
+      "--difference", options.difference,
+      "Put the first two figures together and colour their joints by how far apart those "
+      "of the same name are");
   add_body_option(
-      app, options.body,
+      command, options.body,
       "A body for motions without a model: none, low (2,500 vertices), medium (10,000), "
       "high (40,000), or auto: fewer for more files, none for more than four");
-  app.add_option("--keys", options.keys,
-                 "Contacts, coloured, and keytimes, marked on the time line: auto (those in the "
-                 "file NAME.keys.json beside a motion), find (found anew, as krok-keys does), none")
-      ->type_name("WHICH")
-      ->transform(one_of<KeysChoice>({{"auto", KeysChoice::automatic},
-                                      {"find", KeysChoice::find},
-                                      {"none", KeysChoice::none}}))
-      ->default_str("auto");
-  app.add_option("--title", options.title, "The page's title; otherwise the first file's name")
-      ->type_name("WORDS");
+  command
+      .add_option(
+          "--keys", options.keys,
+          "Contacts, coloured, and keytimes, marked on the time line: auto (those in the "
+          "file NAME.keys.json beside a motion), find (found anew, as krok-keys does), none")
+      .type_name("WHICH")
+      .transform(one_of<KeysChoice>({{"auto", KeysChoice::automatic},
+                                     {"find", KeysChoice::find},
+                                     {"none", KeysChoice::none}}))
+      .default_str("auto");
+  command.add_option("--title", options.title, "The page's title; otherwise the first file's name")
+      .type_name("WORDS");
 }
 
 Result<int> run(const Options& options, ToolContext& context) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -22,7 +21,7 @@ struct Options {
   std::string title;
 };
 
-void declare(CLI::App& app, Options& options);
+void declare(CommandOptions& command, Options& options);
 
 // Reads the files and writes one page that shows them.
 Result<int> run(const Options& options, ToolContext& context);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "cli/kept_files.h"
 
 namespace krok::test {
 namespace {
@@ -13,8 +14,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
-
-const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
 
 class KrokBlend : public CliTest {
  protected:

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "cli/kept_files.h"
 #include "core/file.h"
 #include "formats/model/model_format.h"
 
@@ -17,7 +18,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
 const std::string kMotion = kFrozen + "motion.anim";
 
 class KrokBody : public CliTest {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/judged_test.h"
+#include "cli/kept_files.h"
 #include "formats/cam/cam.h"
 #include "support/glb_builder.h"
 
@@ -18,8 +19,6 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
 
 constexpr const char* kKeys = R"({
   "schema": "krok.camera-keys/1",

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "cli/kept_files.h"
 #include "formats/model/model_format.h"
 #include "support/glb_builder.h"
 #include "unit/gltf/glb.h"
@@ -16,8 +17,6 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
-
-const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
 
 class KrokDiffHeatmap : public CliTest {
  protected:

@@ -68,7 +68,7 @@ class KrokDiff : public testing::Test {
   fs::path folder_;
 };
 
-Clip make_clip(int frames = 60) {
+Clip two_joint_clip(int frames = 60) {
   Clip clip;
   clip.rate = 60;
   clip.skeleton.add("Hips", -1, {Vec3(0, 1, 0), Quat::Identity()});
@@ -83,8 +83,8 @@ Clip make_clip(int frames = 60) {
 }
 
 TEST_F(KrokDiff, IdenticalFilesAreTheSame) {
-  write("a.anim", make_clip());
-  write("b.anim", make_clip());
+  write("a.anim", two_joint_clip());
+  write("b.anim", two_joint_clip());
   const Outcome done = run("a.anim b.anim");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("the same within 0.01 mm, 0.01 deg"));
@@ -92,9 +92,9 @@ TEST_F(KrokDiff, IdenticalFilesAreTheSame) {
 }
 
 TEST_F(KrokDiff, SaysHowFarWhereAndWhen) {
-  Clip moved = make_clip();
+  Clip moved = two_joint_clip();
   moved.frame_positions(37)[1].x() += 3.2e-4f;
-  write("a.anim", make_clip());
+  write("a.anim", two_joint_clip());
   write("b.anim", moved);
   const Outcome done = run("a.anim b.anim");
   EXPECT_EQ(done.exit_code, 1);
@@ -110,21 +110,21 @@ TEST_F(KrokDiff, SaysHowFarWhereAndWhen) {
 }
 
 TEST_F(KrokDiff, AnAngleHasItsOwnTolerance) {
-  Clip turned = make_clip();
+  Clip turned = two_joint_clip();
   Quatf& q = turned.frame_orientations(5)[0];
   q = (from_rotation_vector(Vec3(0, 0, 0.5 * kRadiansPerDegree)) * q.cast<double>()).cast<float>();
-  write("a.anim", make_clip());
+  write("a.anim", two_joint_clip());
   write("b.anim", turned);
   EXPECT_EQ(run("a.anim b.anim").exit_code, 1);
   EXPECT_EQ(run("a.anim b.anim --angle 0.6deg").exit_code, 0);
 }
 
 TEST_F(KrokDiff, AnotherSkeletonOrLengthIsADifference) {
-  Clip renamed = make_clip();
+  Clip renamed = two_joint_clip();
   renamed.skeleton.names[1] = "RightHand";
-  write("a.anim", make_clip());
+  write("a.anim", two_joint_clip());
   write("b.anim", renamed);
-  write("c.anim", make_clip(50));
+  write("c.anim", two_joint_clip(50));
   const Outcome skeleton = run("a.anim b.anim");
   EXPECT_EQ(skeleton.exit_code, 1);
   EXPECT_THAT(skeleton.out, HasSubstr("only in the first: LeftHand"));
@@ -196,7 +196,7 @@ TEST_F(KrokDiff, NotANumberIsTrouble) {
 }
 
 TEST_F(KrokDiff, KindsThatDifferAreTrouble) {
-  write("a.anim", make_clip());
+  write("a.anim", two_joint_clip());
   write("b.glb", test::square());
   write_text("points.pc2", std::string("POINTCACHE2\0\1\0\0\0", 16) + std::string(16, '\0'));
   write_text("c.fbx", "not read here");
@@ -214,7 +214,7 @@ TEST_F(KrokDiff, KindsThatDifferAreTrouble) {
 }
 
 TEST_F(KrokDiff, TroubleWithFilesAndOptionsIsExitCode2) {
-  write("a.anim", make_clip());
+  write("a.anim", two_joint_clip());
   write_text("empty.anim", "");
   write_text("cut.glb", "glTF\2");
   for (const char* arguments :
@@ -229,7 +229,7 @@ TEST_F(KrokDiff, TroubleWithFilesAndOptionsIsExitCode2) {
 }
 
 TEST_F(KrokDiff, JsonOnStandardOutputIsAlone) {
-  write("a.anim", make_clip());
+  write("a.anim", two_joint_clip());
   const Outcome done = run("a.anim a.anim --json");
   EXPECT_EQ(done.exit_code, 0);
   const auto report = nlohmann::json::parse(done.out);

@@ -51,7 +51,7 @@ class KrokDiffMatching : public test::FolderTest {
 };
 
 // A figure of three joints that turns, 600 frames long.
-Clip make_clip(const std::vector<std::string>& names = {"Hips", "Spine", "Head"}) {
+Clip three_joint_clip(const std::vector<std::string>& names = {"Hips", "Spine", "Head"}) {
   Clip clip;
   clip.rate = 60;
   for (int j = 0; j < 3; ++j) {
@@ -177,14 +177,14 @@ TEST_F(KrokDiffMatching, MeshesOfOtherNamesAreMatchedByOrderAndMissingOnesNamed)
 }
 
 TEST_F(KrokDiffMatching, JointsAndNormalsHaveTolerancesOfTheirOwn) {
-  Clip moved = make_clip();
+  Clip moved = three_joint_clip();
   for (int f = 0; f < 600; ++f) {
     moved.frame_positions(f)[2].y() += 2e-4F;
     Quatf& q = moved.frame_orientations(f)[1];
     q = (q.cast<double>() * from_rotation_vector(Vec3(0.1 * kRadiansPerDegree, 0, 0)))
             .cast<float>();
   }
-  write("a.anim", make_clip());
+  write("a.anim", three_joint_clip());
   write("b.anim", moved);
   const auto done = diff({"a.anim", "b.anim"});
   EXPECT_EQ(done.exit_code, 1);
@@ -219,7 +219,7 @@ TEST_F(KrokDiffMatching, JointsAndNormalsHaveTolerancesOfTheirOwn) {
 }
 
 TEST_F(KrokDiffMatching, AMotionIsHeldAgainstItsBvhAndItsGlb) {
-  write("walk.anim", make_clip());
+  write("walk.anim", three_joint_clip());
   ASSERT_EQ(run("krok-export", {"walk.anim", "-o", "walk.bvh"}).exit_code, 0);
   ASSERT_EQ(run("krok-export", {"walk.anim", "-o", "walk.glb"}).exit_code, 0);
   const auto bvh = diff({"walk.anim", "walk.bvh", "--joints", "0.1mm,0.1deg"});
@@ -237,7 +237,7 @@ TEST_F(KrokDiffMatching, AMotionIsHeldAgainstItsBvhAndItsGlb) {
   EXPECT_EQ(glb.exit_code, 0) << glb.out << glb.err;
   EXPECT_THAT(glb.out, HasSubstr("joint positions: equal in all 1,800"));
   EXPECT_THAT(glb.out, HasSubstr("compared at 600 moments"));
-  Clip moved = make_clip();
+  Clip moved = three_joint_clip();
   moved.frame_positions(37)[2].x() += 1e-3F;
   write("moved.anim", moved);
   const auto found = diff({"moved.anim", "walk.glb"});
@@ -264,7 +264,7 @@ TEST_F(KrokDiffMatching, MorphTargetsInExrAreCompared) {
   const auto done = diff({"a.exr", "b.exr"});
   EXPECT_EQ(done.exit_code, 1) << done.err;
   EXPECT_THAT(done.out, HasSubstr("positions: largest 2 mm at vertex 1, target frown"));
-  write("a.anim", make_clip());
+  write("a.anim", three_joint_clip());
   const auto mixed = diff({"a.exr", "a.anim"});
   EXPECT_EQ(mixed.exit_code, 2);
   EXPECT_THAT(mixed.err, HasSubstr("[diff-kinds]"));

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "cli/kept_files.h"
 #include "formats/anim/anim.h"
 #include "math/quaternion.h"
 #include "support/picture.h"
@@ -14,8 +15,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
 
 class KrokDiffPictures : public CliTest {
  protected:

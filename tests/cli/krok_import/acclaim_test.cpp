@@ -11,9 +11,9 @@
 namespace krok::test {
 namespace {
 
+using PlainJson = nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
-using Json = nlohmann::json;
 
 class AcclaimImport : public CliTest {
  protected:
@@ -54,7 +54,7 @@ TEST_F(AcclaimImport, TheSkeletonBesideIsFoundAndNamed) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("01.asf is taken as its skeleton"));
   EXPECT_TRUE(has_code(run.err, "acclaim-skeleton"));
-  const Json report = Json::parse(run.out);
+  const PlainJson report = PlainJson::parse(run.out);
   EXPECT_EQ(report["result"]["frames"], 3);
   EXPECT_EQ(report["result"]["first_frame_number"], 1);
   EXPECT_EQ(report["inputs"].size(), 2u);
@@ -98,7 +98,7 @@ TEST_F(AcclaimImport, TheFirstFrameIsLeftOutWhereAsked) {
   const ToolRun run = run_tool("krok-import", {path("walk.amc"), "--skip-rest-frame", "yes", "-o",
                                                path("out.anim"), "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Json result = Json::parse(run.out)["result"];
+  const PlainJson result = PlainJson::parse(run.out)["result"];
   EXPECT_EQ(result["frames"], 2);
   EXPECT_EQ(result["first_frame_number"], 2);
   EXPECT_EQ(result["rest_frame"]["left_out"], true);
@@ -122,7 +122,7 @@ TEST_F(AcclaimImport, InfoReadsBoth) {
   put("leg_1.amc", small_files::kAmc);
   const ToolRun run = run_tool("krok-info", {path("leg.asf"), path("leg_1.amc"), "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Json files = Json::parse(run.out)["result"]["files"];
+  const PlainJson files = PlainJson::parse(run.out)["result"]["files"];
   EXPECT_EQ(files[0]["kind"], "asf");
   EXPECT_FALSE(files[0].contains("frames"));
   EXPECT_EQ(files[1]["kind"], "amc");
@@ -143,7 +143,7 @@ TEST_F(AcclaimImport, ASkeletonThatCameLaterIsTakenByABatch) {
   put("in/other.asf", small_files::kAsf);
   const std::vector<std::string> batch = {path("in"), "--out-dir", path("out"), "--json"};
   const auto status = [&] {
-    const Json report = Json::parse(run_tool("krok-import", batch).out);
+    const PlainJson report = PlainJson::parse(run_tool("krok-import", batch).out);
     const auto& file = report["files"][0];
     return file["status"].get<std::string>() + " " +
            base_name(file["inputs"][1]["path"].get<std::string>());

@@ -9,7 +9,7 @@
 namespace krok::test {
 namespace {
 
-using Json = nlohmann::json;
+using PlainJson = nlohmann::json;
 
 class ImportTest : public CliTest {
  protected:
@@ -85,7 +85,7 @@ TEST_F(ImportTest, TheReportTellsEveryChoice) {
   const ToolRun run =
       run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--json", "--up", "y"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Json result = Json::parse(run.out)["result"];
+  const PlainJson result = PlainJson::parse(run.out)["result"];
   EXPECT_EQ(result["joints"], 4);
   EXPECT_EQ(result["frames"], 5);
   EXPECT_EQ(result["rate"], 30.0);
@@ -98,7 +98,7 @@ TEST_F(ImportTest, TheReportTellsEveryChoice) {
   for (const char* key : {"forward", "positions", "source_rate"}) {
     EXPECT_FALSE(result[key]["reason"].get<std::string>().empty()) << key;
   }
-  EXPECT_EQ(result["repairs"], Json::array());
+  EXPECT_EQ(result["repairs"], PlainJson::array());
 }
 
 TEST_F(ImportTest, GuessesAreWarnings) {
@@ -118,7 +118,7 @@ TEST_F(ImportTest, RepairsAreListed) {
   const ToolRun repaired =
       run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--repair", "--json"});
   ASSERT_EQ(repaired.exit_code, 0) << repaired.err;
-  const Json result = Json::parse(repaired.out)["result"];
+  const PlainJson result = PlainJson::parse(repaired.out)["result"];
   EXPECT_EQ(result["frames"], 5);
   EXPECT_EQ(result["repairs"].size(), 1u);
   const ToolRun both =
@@ -132,8 +132,8 @@ TEST_F(ImportTest, NumbersBeyondSenseAreToldOnceAndStrictRefusesThem) {
   const ToolRun run = run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   int told = 0;
-  const Json report = Json::parse(run.out);
-  for (const Json& issue : report["issues"]) {
+  const PlainJson report = PlainJson::parse(run.out);
+  for (const PlainJson& issue : report["issues"]) {
     if (issue["code"] != "bvh-far-position") continue;
     ++told;
     EXPECT_EQ(issue["severity"], "warning");

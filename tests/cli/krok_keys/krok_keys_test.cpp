@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "cli/kept_files.h"
 
 namespace krok::test {
 namespace {
@@ -15,8 +16,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
 
 class KrokKeys : public CliTest {
  protected:

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "cli/kept_files.h"
 
 namespace krok::test {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
-
-const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
 
 class KrokMix : public CliTest {
  protected:

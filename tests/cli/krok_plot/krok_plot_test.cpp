@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "cli/kept_files.h"
 
 namespace krok::test {
 namespace {
@@ -18,7 +19,6 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
 const std::string kTurn = KROK_SOURCE_DIR "/samples/captures/turn.bvh";
 
 class KrokPlot : public CliTest {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "cli/fixture.h"
+#include "cli/kept_files.h"
 #include "support/picture.h"
 
 namespace krok::test {
@@ -17,8 +18,6 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
 
 class KrokPlotSheet : public CliTest {
  protected:

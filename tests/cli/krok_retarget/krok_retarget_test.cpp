@@ -7,6 +7,7 @@
 
 #include "cli/fixture.h"
 #include "core/file.h"
+#include "core/index.h"
 #include "formats/anim/anim.h"
 #include "formats/model/model_format.h"
 #include "samples/generator/walk.h"
@@ -20,10 +21,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 class KrokRetarget : public test::CliTest {
  protected:

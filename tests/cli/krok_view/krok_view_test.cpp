@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "cli/kept_files.h"
 #include "shown_page.h"
 
 namespace krok::test {
@@ -18,9 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
 const std::string kMotion = kFrozen + "motion.anim";
-const std::string kWalk = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
 
 class KrokView : public CliTest {
  protected:

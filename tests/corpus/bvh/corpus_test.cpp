@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "core/file.h"
+#include "corpus/bvh/corpus_files.h"
 #include "corpus/bvh/naive_bvh.h"
 #include "formats/anim/anim.h"
 #include "formats/bvh/bvh_reader.h"
@@ -21,7 +21,8 @@
 namespace krok {
 namespace {
 
-const std::string kFolder = std::string(KROK_CORPUS_DIR) + "/bvh";
+using test::kBvhFolder;
+using test::text_of_file;
 
 struct Listed {
   std::string path;
@@ -43,17 +44,11 @@ std::vector<Listed> listed_files() {
   return files;
 }
 
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 class Corpus : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(kFolder)) GTEST_SKIP() << "skipped: no corpus at " << kFolder;
+    if (!std::filesystem::exists(kBvhFolder))
+      GTEST_SKIP() << "skipped: no corpus at " << kBvhFolder;
     files_ = listed_files();
     ASSERT_GT(files_.size(), 50u);
   }
@@ -113,7 +108,7 @@ bvh::ReadOptions unconverted(bool additive) {
 TEST_F(Corpus, LibraryAgreesWithIndependentKinematicsInBothReadings) {
   for (const Listed& file : files_) {
     SCOPED_TRACE(file.path);
-    const std::string text = text_of(kFolder + "/" + file.path);
+    const std::string text = text_of_file(kBvhFolder + file.path);
     const naive::Bvh expected = naive::parse(text);
     for (const bool additive : {false, true}) {
       const auto capture = bvh::read(text, file.path, unconverted(additive));
@@ -130,7 +125,7 @@ TEST_F(Corpus, ImportedFilesAgreeWithIndependentKinematics) {
       testing::TempDir() + "krok_corpus_bvh_" + std::to_string(getpid()) + ".anim";
   for (const Listed& file : files_) {
     SCOPED_TRACE(file.path);
-    const std::string path = kFolder + "/" + file.path;
+    const std::string path = kBvhFolder + file.path;
     const std::string command = std::string(KROK_BIN_DIR) + "/krok-import -q --unit m --up y " +
                                 "--forward z --positions " +
                                 (file.additive ? "additive" : "absolute") + " '" + path + "' -o '" +
@@ -140,7 +135,7 @@ TEST_F(Corpus, ImportedFilesAgreeWithIndependentKinematics) {
     ASSERT_TRUE(bytes.ok());
     const auto clip = anim::read(bytes->bytes());
     ASSERT_TRUE(clip.ok()) << clip.error().message;
-    expect_same_motion(naive::parse(text_of(path)), *clip, file.additive);
+    expect_same_motion(naive::parse(text_of_file(path)), *clip, file.additive);
   }
   std::filesystem::remove(out);
 }
@@ -152,7 +147,7 @@ TEST_F(Corpus, PositionChannelsAreReadAsTheExporterMeansThem) {
       "makehuman/benchmark", "makehuman/debug",   "makehuman/face",  "makehuman/walk1"};
   for (const Listed& file : files_) {
     SCOPED_TRACE(file.path);
-    const auto capture = bvh::read(text_of(kFolder + "/" + file.path), file.path);
+    const auto capture = bvh::read(text_of_file(kBvhFolder + file.path), file.path);
     ASSERT_TRUE(capture.ok()) << capture.error().message;
     const bool expected =
         std::any_of(additive.begin(), additive.end(),
@@ -168,7 +163,7 @@ TEST_F(Corpus, StrictRefusesJustTheFilesWithFaults) {
   for (const Listed& file : files_) {
     bvh::ReadOptions options;
     options.strictness = Strictness::strict;
-    const auto capture = bvh::read(text_of(kFolder + "/" + file.path), file.path, options);
+    const auto capture = bvh::read(text_of_file(kBvhFolder + file.path), file.path, options);
     if (capture.ok()) continue;
     refused.push_back(file.path);
     EXPECT_EQ(capture.error().code, "bvh-frame-count") << file.path;
@@ -181,13 +176,13 @@ TEST_F(Corpus, StrictRefusesJustTheFilesWithFaults) {
 TEST_F(Corpus, FramesInFrontOfCmuConversionsAreFoundAsRestPoses) {
   for (const char* name : {"assimp_testmodels/01_01.bvh", "pybvh/cmu_12_01_walk.bvh",
                            "walkset_cmu07/007_05.bvh", "makehuman/12_03.bvh"}) {
-    const auto capture = bvh::read(text_of(kFolder + "/" + name), name);
+    const auto capture = bvh::read(text_of_file(kBvhFolder + name), name);
     ASSERT_TRUE(capture.ok());
     EXPECT_TRUE(capture->rest_frame_found) << name;
   }
   for (const char* name : {"ipi_smartbody/Center.bvh", "pymo/AV_8Walk_Meredith_HVHA_Rep1.bvh",
                            "walkset_cmu07/007_02.bvh", "deep-motion-editing/demo_3d_1_raw.bvh"}) {
-    const auto capture = bvh::read(text_of(kFolder + "/" + name), name);
+    const auto capture = bvh::read(text_of_file(kBvhFolder + name), name);
     ASSERT_TRUE(capture.ok());
     EXPECT_FALSE(capture->rest_frame_found) << name;
   }
@@ -199,7 +194,7 @@ TEST_F(Corpus, WrittenFilesReadBackAsTheSameMotion) {
       testing::TempDir() + "krok_corpus_written_" + std::to_string(getpid()) + ".bvh";
   for (const Listed& file : files_) {
     SCOPED_TRACE(file.path);
-    const auto first = bvh::read(text_of(kFolder + "/" + file.path), file.path);
+    const auto first = bvh::read(text_of_file(kBvhFolder + file.path), file.path);
     ASSERT_TRUE(first.ok());
     auto output = OutputFile::create(out);
     ASSERT_TRUE(output.ok());
@@ -208,7 +203,7 @@ TEST_F(Corpus, WrittenFilesReadBackAsTheSameMotion) {
     bvh::ReadOptions options = unconverted(false);
     options.unit = Unit{0.01, "cm"};
     options.strictness = Strictness::strict;
-    const auto second = bvh::read(text_of(out), out, options);
+    const auto second = bvh::read(text_of_file(out), out, options);
     ASSERT_TRUE(second.ok()) << second.error().message;
     const Clip& a = first->clip;
     const Clip& b = second->clip;

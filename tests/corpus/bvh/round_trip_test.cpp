@@ -7,10 +7,9 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "core/file.h"
+#include "corpus/bvh/corpus_files.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/bvh/bvh_writer.h"
 #include "math/quaternion.h"
@@ -18,14 +17,8 @@
 namespace krok {
 namespace {
 
-const std::string kFolder = std::string(KROK_CORPUS_DIR) + "/bvh/";
-
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+using test::kBvhFolder;
+using test::text_of_file;
 
 struct Errors {
   double position = 0;  // metres
@@ -45,7 +38,7 @@ Errors round_trip(const Clip& clip, const bvh::WriteOptions& writing) {
   reading.forward = Direction::plus_z;
   reading.positions = bvh::Positions::absolute;
   reading.strictness = Strictness::strict;
-  const auto back = bvh::read(text_of(path), path, reading);
+  const auto back = bvh::read(text_of_file(path), path, reading);
   std::filesystem::remove(path);
   if (!back.ok()) {
     ADD_FAILURE() << back.error().message;
@@ -77,12 +70,12 @@ double reach_of(const Clip& clip) {
 }
 
 TEST(RoundTrip, DiffersByThePrintedDigitsAndTheRoundingOfFloats) {
-  if (!std::filesystem::exists(kFolder)) GTEST_SKIP() << "skipped: no corpus at " << kFolder;
+  if (!std::filesystem::exists(kBvhFolder)) GTEST_SKIP() << "skipped: no corpus at " << kBvhFolder;
   for (const char* name :
        {"ipi_smartbody/Center.bvh", "pybvh/bvh_test3.bvh", "makehuman/face-poseunits.bvh",
         "animated_drawings/cmu1_jumping_jacks.bvh", "iclone_cmu/002_03.bvh",
         "fairmotion/pfnn_hierarchy.bvh", "secondlife_opencollar/~run.bvh"}) {
-    const auto capture = bvh::read(text_of(kFolder + name), name);
+    const auto capture = bvh::read(text_of_file(kBvhFolder + name), name);
     ASSERT_TRUE(capture.ok()) << name;
     const Clip& clip = capture->clip;
     const double reach = reach_of(clip);

@@ -10,7 +10,7 @@ namespace krok {
 namespace {
 
 Skeleton human() {
-  return test::with_turned_joints(test::human_skeleton());
+  return test::turned_human();
 }
 
 TEST_F(GltfJudges, SkeletonsShowTheJointsOfTheTable) {

@@ -15,7 +15,7 @@ namespace {
 
 class GltfLook : public GltfJudges {
  protected:
-  GltfLook() : model_(test::tube_model(test::with_turned_joints(test::human_skeleton()))) {
+  GltfLook() : model_(test::tube_model(test::turned_human())) {
     model_.texture_coordinates.assign(model_.positions.size(), Vec2f(0.25f, 0.75f));
     const auto count = static_cast<std::uint32_t>(model_.triangles.size());
     model_.parts = {{"a", "skin", 0, 10}, {"b", "glass", 10, 10}, {"c", "", 20, count - 20}};

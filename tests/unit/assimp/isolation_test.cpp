@@ -8,19 +8,16 @@
 #include <thread>
 
 #include "formats/assimp/scene_transfer.h"
+#include "support/sanitized.h"
 #include "unit/assimp/reading.h"
 #include "unit/assimp/sample_files.h"
 
 namespace krok {
 namespace {
 
-using namespace test;
+using test::kSanitized;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
+using namespace test;
 
 TEST(Isolation, AFileThatCrashesAssimpIsAnError) {
   // CVE-2025-2757: Assimp 5.2 copies a name into 1024 bytes, however long it is.

@@ -9,6 +9,7 @@
 namespace krok {
 namespace {
 
+using test::build;
 using test::expect_valid_body;
 
 int add(Skeleton& skeleton, const std::string& name, int parent, const Vec3& offset,
@@ -20,10 +21,8 @@ int add(Skeleton& skeleton, const std::string& name, int parent, const Vec3& off
   return skeleton.add(name, parent, transform, end);
 }
 
-Body build(const Skeleton& skeleton, BodyOptions options = {.detail = BodyDetail::low}) {
-  auto body = make_body(skeleton, options);
-  EXPECT_TRUE(body.ok()) << (body.ok() ? "" : body.error().message);
-  return std::move(body).value();
+Body build_low(const Skeleton& skeleton) {
+  return build(skeleton, {.detail = BodyDetail::low});
 }
 
 Skeleton dog() {
@@ -49,7 +48,7 @@ Skeleton dog() {
 }
 
 TEST(GeneralBody, OfADog) {
-  const Body body = build(dog(), {});
+  const Body body = build(dog());
   expect_valid_body(body);
   EXPECT_FALSE(body.human);
   // The trunk is thicker than a leg.
@@ -69,7 +68,7 @@ TEST(GeneralBody, OfAChainBelongsToTheJointAtEachBonesStart) {
     parent =
         add(chain, "link" + std::to_string(i), parent, parent < 0 ? Vec3::Zero() : Vec3(0, 0.5, 0));
   }
-  const Body body = build(chain);
+  const Body body = build_low(chain);
   expect_valid_body(body);
   for (std::size_t v = 0; v < body.model.positions.size(); ++v) {
     const double bone = body.model.positions[v].y() / 0.5;
@@ -83,7 +82,7 @@ TEST(GeneralBody, OfAChainBelongsToTheJointAtEachBonesStart) {
 TEST(GeneralBody, OfOneJointIsABall) {
   Skeleton one;
   add(one, "only", -1, {3, 4, 5});
-  const Body body = build(one);
+  const Body body = build_low(one);
   expect_valid_body(body);
   for (const Vec3f& p : body.model.positions) {
     ASSERT_NEAR((p.cast<double>() - Vec3(3, 4, 5)).norm(), 0.1, 0.01);
@@ -96,7 +95,7 @@ TEST(GeneralBody, OfJointsInOnePointIsABall) {
   const int b = add(heap, "b", root, Vec3::Zero());
   add(heap, "c", root, Vec3::Zero());
   add(heap, "d", b, Vec3::Zero(), true);
-  const Body body = build(heap);
+  const Body body = build_low(heap);
   expect_valid_body(body);
 }
 
@@ -108,7 +107,7 @@ TEST(GeneralBody, PassesOverBonesOfNoLength) {
     add(skeleton, "side" + std::to_string(i), joint, Vec3::Zero(), true);
     joint = add(skeleton, "bone" + std::to_string(i), joint, {0.3, i % 2 ? 0.2 : -0.2, 0});
   }
-  const Body body = build(skeleton);
+  const Body body = build_low(skeleton);
   expect_valid_body(body);
 }
 
@@ -126,7 +125,7 @@ TEST(GeneralBody, OfTwoHundredJoints) {
                   0.1 * direction);
     }
   }
-  const Body body = build(skeleton, {});
+  const Body body = build(skeleton);
   EXPECT_EQ(skeleton.joint_count(), 201);
   expect_valid_body(body);
 }
@@ -135,8 +134,8 @@ TEST(GeneralBody, OfAnySize) {
   for (const double scale : {1e-4, 1e4}) {
     Skeleton skeleton = dog();
     for (Transform& t : skeleton.reference) t.position *= scale;
-    const Body body = build(skeleton);
-    const Body usual = build(dog());
+    const Body body = build_low(skeleton);
+    const Body usual = build_low(dog());
     EXPECT_NEAR(body.volume / (scale * scale * scale * usual.volume), 1, 0.05) << scale;
     EXPECT_TRUE(check(body.model).ok());
   }
@@ -148,7 +147,7 @@ TEST(GeneralBody, OfBonesThatFoldBackOnThemselves) {
   for (int i = 0; i < 6; ++i) {
     joint = add(skeleton, "fold" + std::to_string(i), joint, {0, i % 2 ? -0.4 : 0.4, 0});
   }
-  expect_valid_body(build(skeleton));
+  expect_valid_body(build_low(skeleton));
 }
 
 TEST(GeneralBody, OfVeryUnequalBones) {
@@ -157,7 +156,7 @@ TEST(GeneralBody, OfVeryUnequalBones) {
   const int far = add(skeleton, "far", root, {100, 0, 0});
   add(skeleton, "tiny", far, {0, 0.001, 0}, true);
   add(skeleton, "twig", root, {0, 0.01, 0}, true);
-  expect_valid_body(build(skeleton));
+  expect_valid_body(build_low(skeleton));
 }
 
 TEST(GeneralBody, FiguresOutOfBoundsAreRefused) {

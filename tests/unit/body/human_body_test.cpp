@@ -10,14 +10,9 @@
 namespace krok {
 namespace {
 
+using test::build;
 using test::expect_valid_body;
 using test::human_skeleton;
-
-Body build(const Skeleton& skeleton, BodyOptions options = {}) {
-  auto body = make_body(skeleton, options);
-  EXPECT_TRUE(body.ok()) << (body.ok() ? "" : body.error().message);
-  return std::move(body).value();
-}
 
 // The usual body, built once for all tests that look at it.
 const Body& usual() {

@@ -79,6 +79,12 @@ inline MeshFacts mesh_facts(const Model& model) {
   return facts;
 }
 
+inline Body build(const Skeleton& skeleton, BodyOptions options = {}) {
+  auto body = make_body(skeleton, options);
+  EXPECT_TRUE(body.ok()) << (body.ok() ? "" : body.error().message);
+  return std::move(body).value();
+}
+
 inline void expect_valid_body(const Body& body) {
   const Model& model = body.model;
   const Status sound = check(model);

@@ -47,6 +47,12 @@ inline ReadOptions plain_options() {
   return options;
 }
 
+inline ReadOptions with(Strictness strictness) {
+  ReadOptions options = plain_options();
+  options.strictness = strictness;
+  return options;
+}
+
 inline Capture read_ok(const std::string& text, const ReadOptions& options = plain_options()) {
   auto capture = read(text, "test.bvh", options);
   EXPECT_TRUE(capture.ok()) << capture.error().message;

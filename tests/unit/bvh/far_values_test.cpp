@@ -12,7 +12,7 @@ struct Damage {
   const char* text;
 };
 
-std::string rows(int count, const std::vector<Damage>& damages) {
+std::string damaged_rows(int count, const std::vector<Damage>& damages) {
   std::string text;
   for (int r = 0; r < count; ++r) {
     for (int c = 0; c < 9; ++c) {
@@ -38,8 +38,8 @@ TEST(FarValues, ARotationBeyondSenseIsToldOnceWithItsPlace) {
   for (const int jobs : {1, 3}) {
     ReadOptions options = plain_options();
     options.jobs = jobs;
-    const Capture capture =
-        read_ok(rows(300, {{290, 3, "-4e7"}, {130, 8, "12345678.5"}, {130, 4, "1e9"}}), options);
+    const Capture capture = read_ok(
+        damaged_rows(300, {{290, 3, "-4e7"}, {130, 8, "12345678.5"}, {130, 4, "1e9"}}), options);
     EXPECT_EQ(warnings(capture), 1);
     const Diagnostic* told = find(capture.diagnostics, "bvh-far-rotation");
     ASSERT_NE(told, nullptr);
@@ -56,15 +56,16 @@ TEST(FarValues, ARotationBeyondSenseIsToldOnceWithItsPlace) {
 
 // 12345678.5 degrees are 34293 turns and 198.5 degrees.
 TEST(FarValues, TheRotationIsReadLessItsTurns) {
-  const Capture far = read_ok(rows(3, {{1, 8, "12345678.5"}}));
-  const Capture near = read_ok(rows(3, {{1, 8, "198.5"}}));
+  const Capture far = read_ok(damaged_rows(3, {{1, 8, "12345678.5"}}));
+  const Capture near = read_ok(damaged_rows(3, {{1, 8, "198.5"}}));
   for (std::size_t i = 0; i < near.clip.positions.size(); ++i) {
     EXPECT_LT((far.clip.positions[i] - near.clip.positions[i]).norm(), 1e-6f) << i;
   }
 }
 
 TEST(FarValues, APositionBeyondSenseIsToldOnceWithItsPlace) {
-  const Capture capture = read_ok(rows(100, {{40, 1, "-2.5e5"}, {41, 0, "1e6"}, {90, 2, "1e6"}}));
+  const Capture capture =
+      read_ok(damaged_rows(100, {{40, 1, "-2.5e5"}, {41, 0, "1e6"}, {90, 2, "1e6"}}));
   EXPECT_EQ(warnings(capture), 1);
   const Diagnostic* told = find(capture.diagnostics, "bvh-far-position");
   ASSERT_NE(told, nullptr);
@@ -80,13 +81,14 @@ TEST(FarValues, APositionBeyondSenseIsToldOnceWithItsPlace) {
 
 TEST(FarValues, WhatMayBeIsNotToldOf) {
   // A dancer's 2,700 turns; a figure at the far side of a town.
-  const Capture capture = read_ok(rows(50, {{7, 3, "972000"}, {8, 4, "-999999"}, {9, 0, "29000"}}));
+  const Capture capture =
+      read_ok(damaged_rows(50, {{7, 3, "972000"}, {8, 4, "-999999"}, {9, 0, "29000"}}));
   EXPECT_EQ(warnings(capture), 0);
 }
 
 TEST(FarValues, FarIsMeasuredByTheSkeleton) {
   // 30 km is much for an arm of 3 m, as 40 km would not be for one of 5 m.
-  std::string large = rows(5, {{2, 0, "40000"}});
+  std::string large = damaged_rows(5, {{2, 0, "40000"}});
   EXPECT_EQ(warnings(read_ok(large)), 1);
   large.replace(large.find("OFFSET 2 0 0"), 12, "OFFSET 4 0 0");
   EXPECT_EQ(warnings(read_ok(large)), 0);
@@ -95,24 +97,25 @@ TEST(FarValues, FarIsMeasuredByTheSkeleton) {
 TEST(FarValues, StrictRefusesThem) {
   ReadOptions options = plain_options();
   options.strictness = Strictness::strict;
-  const Error turned = read_error(rows(50, {{7, 3, "1e8"}}), options);
+  const Error turned = read_error(damaged_rows(50, {{7, 3, "1e8"}}), options);
   EXPECT_EQ(turned.code, "bvh-far-rotation");
   EXPECT_EQ(turned.where.line, kFirstRowLine + 7);
-  EXPECT_EQ(read_error(rows(50, {{7, 3, "4"}, {9, 2, "1e8"}}), options).code, "bvh-far-position");
+  EXPECT_EQ(read_error(damaged_rows(50, {{7, 3, "4"}, {9, 2, "1e8"}}), options).code,
+            "bvh-far-position");
 }
 
 TEST(FarValues, RadiansAreMeasuredInDegrees) {
   ReadOptions options = plain_options();
   options.angles = Angles::radians;
-  EXPECT_EQ(warnings(read_ok(rows(9, {{3, 3, "17000"}}), options)), 0);
-  EXPECT_EQ(warnings(read_ok(rows(9, {{3, 3, "18000"}}), options)), 1);
+  EXPECT_EQ(warnings(read_ok(damaged_rows(9, {{3, 3, "17000"}}), options)), 0);
+  EXPECT_EQ(warnings(read_ok(damaged_rows(9, {{3, 3, "18000"}}), options)), 1);
 }
 
 // Rows that are left out are no frames, and have no say.
 TEST(FarValues, FaultyRowsHaveNone) {
   ReadOptions options = plain_options();
   options.strictness = Strictness::repair;
-  const Capture capture = read_ok(rows(40, {{5, 3, "1e8"}, {6, 3, "oops"}}), options);
+  const Capture capture = read_ok(damaged_rows(40, {{5, 3, "1e8"}, {6, 3, "oops"}}), options);
   const Diagnostic* told = find(capture.diagnostics, "bvh-far-rotation");
   ASSERT_NE(told, nullptr);
   EXPECT_EQ(told->frame, 5);

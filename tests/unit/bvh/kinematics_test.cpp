@@ -86,8 +86,8 @@ Hierarchy odd_hierarchy() {
   return hierarchy;
 }
 
-void expect_same(const Kinematics& kinematics, std::size_t channels, std::size_t frames,
-                 const std::function<double()>& value, bool near) {
+void expect_same_kinematics(const Kinematics& kinematics, std::size_t channels, std::size_t frames,
+                            const std::function<double()>& value, bool near) {
   struct alignas(64) Line {
     double values[kAtOnce];
   };
@@ -146,9 +146,9 @@ TEST(Kinematics, ManyFramesGiveTheBitsOfOneByOne) {
           const double part = static_cast<double>(engine()) / 2147483648.0 - 1.0;
           return engine() % 4 == 0 ? 0.0 : reach * part;
         };
-        expect_same(kinematics, channels, frames, value, reach <= 1e5);
+        expect_same_kinematics(kinematics, channels, frames, value, reach <= 1e5);
       }
-      expect_same(
+      expect_same_kinematics(
           kinematics, channels, frames, [] { return 0.0; }, true);
     }
   }

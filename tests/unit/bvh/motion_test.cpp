@@ -24,12 +24,6 @@ std::string rows_of(int frames) {
   return rows;
 }
 
-ReadOptions with(Strictness strictness) {
-  ReadOptions options = plain_options();
-  options.strictness = strictness;
-  return options;
-}
-
 TEST(Motion, RotationsApplyInTheOrderOfTheChannels) {
   // A quarter turn about z, then (in the turned frame) about x: the hand's +x points to +y.
   const Capture capture = read_ok(kArm + motion(1, "5 6 7 90 90 0 0 0 90\n"));

@@ -6,12 +6,6 @@
 namespace krok::bvh {
 namespace {
 
-ReadOptions with(Strictness strictness) {
-  ReadOptions options = plain_options();
-  options.strictness = strictness;
-  return options;
-}
-
 const std::string kRows = "0 0 0 0 0 0 0 0 0\n1 1 1 1 1 1 1 1 1\n";
 
 std::string headed(const std::string& header) {

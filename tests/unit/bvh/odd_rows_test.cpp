@@ -8,13 +8,7 @@
 namespace krok::bvh {
 namespace {
 
-ReadOptions with(Strictness strictness) {
-  ReadOptions options = plain_options();
-  options.strictness = strictness;
-  return options;
-}
-
-std::string row(int frame, int values = 9) {
+std::string repeated_row(int frame, int values = 9) {
   std::string text;
   for (int i = 0; i < values; ++i) text += std::to_string(frame) + " ";
   return text + "\n";
@@ -32,7 +26,7 @@ std::vector<int> frames_of(const Capture& capture) {
 TEST(OddRows, RowsThatAllHaveTooManyOrTooFewValuesAreAnError) {
   for (const int values : {3, 8, 10, 12, 13}) {
     std::string rows;
-    for (int f = 0; f < 6; ++f) rows += row(f, values);
+    for (int f = 0; f < 6; ++f) rows += repeated_row(f, values);
     for (const Strictness strictness :
          {Strictness::normal, Strictness::strict, Strictness::repair}) {
       const Error error = read_error(kArm + motion(6, rows), with(strictness));
@@ -44,7 +38,8 @@ TEST(OddRows, RowsThatAllHaveTooManyOrTooFewValuesAreAnError) {
 
 TEST(OddRows, AValueMissingInAWrappedRowCostsThatRowAlone) {
   std::string rows;
-  for (int f = 0; f < 6; ++f) rows += row(f, 4) + row(f, f == 2 ? 3 : 4) + row(f, 1);
+  for (int f = 0; f < 6; ++f)
+    rows += repeated_row(f, 4) + repeated_row(f, f == 2 ? 3 : 4) + repeated_row(f, 1);
   EXPECT_EQ(frames_of(read_ok(kArm + motion(6, rows))), (std::vector<int>{0, 1, 3, 4, 5}));
   EXPECT_EQ(frames_of(read_ok(kArm + motion(6, rows), with(Strictness::repair))),
             (std::vector<int>{0, 1, 2, 3, 4, 5}));
@@ -54,7 +49,8 @@ TEST(OddRows, AValueMissingInAWrappedRowCostsThatRowAlone) {
 }
 
 TEST(OddRows, LinesOfTextBetweenRowsAreNoFrames) {
-  const std::string rows = row(0) + "# note\n" + row(1) + "cut here\n" + row(2);
+  const std::string rows =
+      repeated_row(0) + "# note\n" + repeated_row(1) + "cut here\n" + repeated_row(2);
   const Capture capture = read_ok(kArm + motion(3, rows));
   EXPECT_EQ(frames_of(capture), (std::vector<int>{0, 1, 2}));
   const Diagnostic* told = find(capture.diagnostics, "bvh-syntax");
@@ -66,8 +62,8 @@ TEST(OddRows, LinesOfTextBetweenRowsAreNoFrames) {
 }
 
 TEST(OddRows, ASecondFileBehindTheFirstIsLeftOutWithAWarning) {
-  const std::string once = kArm + motion(2, row(0) + row(1));
-  for (const std::string& rest : {once, motion(2, row(5) + row(6))}) {
+  const std::string once = kArm + motion(2, repeated_row(0) + repeated_row(1));
+  for (const std::string& rest : {once, motion(2, repeated_row(5) + repeated_row(6))}) {
     const Capture capture = read_ok(once + rest);
     EXPECT_EQ(frames_of(capture), (std::vector<int>{0, 1}));
     const Diagnostic* told = find(capture.diagnostics, "bvh-text-after");
@@ -85,7 +81,7 @@ TEST(OddRows, WhereNoRowIsWholeRepairHasNothingToGoBy) {
 
 TEST(OddRows, TheHintTellsWhatDividesValues) {
   const auto hint = [](const std::string& first) {
-    return read_error(kArm + motion(2, row(0) + first + " 1 1 1 1 1 1 1 1\n")).hint;
+    return read_error(kArm + motion(2, repeated_row(0) + first + " 1 1 1 1 1 1 1 1\n")).hint;
   };
   EXPECT_NE(hint("0,5").find("--repair reads decimal commas"), std::string::npos);
   EXPECT_NE(hint("0.5,").find("blanks"), std::string::npos);

@@ -64,7 +64,7 @@ std::string stored_lying(const std::string& rows, int frames) {
   return text + "}\n" + motion(frames, rows);
 }
 
-std::string row(double turn, double bend) {
+std::string lying_row(double turn, double bend) {
   std::string row = "10 20 95 0 " + std::to_string(turn) + " 0";
   for (int value = 0; value < 45; ++value) {
     row += " " + std::to_string(value % 3 == 0 ? bend : -bend / 2);
@@ -74,7 +74,7 @@ std::string row(double turn, double bend) {
 
 TEST(ReferenceAxes, TheReferencePoseStandsUprightWhereTheRootRaisesIt) {
   std::string rows;
-  for (int frame = 0; frame < 8; ++frame) rows += row(90 + frame, 2.0 * frame);
+  for (int frame = 0; frame < 8; ++frame) rows += lying_row(90 + frame, 2.0 * frame);
   const std::string text = stored_lying(rows, 8);
   const Capture capture = read_ok(text, ReadOptions());
   const Conventions& found = capture.conventions;
@@ -108,7 +108,7 @@ TEST(ReferenceAxes, GivenAxesHoldForBoth) {
   ReadOptions options;
   options.up = Direction::plus_z;
   options.forward = Direction::minus_y;
-  const Capture capture = read_ok(stored_lying(row(90, 5) + row(91, 6), 2), options);
+  const Capture capture = read_ok(stored_lying(lying_row(90, 5) + lying_row(91, 6), 2), options);
   EXPECT_EQ(capture.conventions.reference_up, Direction::plus_z);
   EXPECT_LT(largest_distance_from_bones(capture.clip), 1e-5);
 }

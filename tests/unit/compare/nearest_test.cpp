@@ -11,6 +11,7 @@
 
 #include "compare/nearest_triangle_internal.h"
 #include "compare/scene_difference.h"
+#include "unit/compare/compare_scenes.h"
 
 namespace krok::compare {
 namespace {
@@ -195,11 +196,10 @@ Grid in_two_parts(const Grid& grid) {
   return other;
 }
 
-SceneDifference compare(const Scene& a, const Scene& b, Matching matching = Matching::nearest,
-                        int jobs = 1) {
+SceneDifference compare_by_place(const Scene& a, const Scene& b, int jobs = 1) {
   Progress progress;
   SceneOptions options;
-  options.matching = matching;
+  options.matching = Matching::nearest;
   options.keep_vertices = true;
   const auto found = difference(a, b, options, jobs, progress);
   EXPECT_TRUE(found.ok()) << found.error().message;
@@ -210,8 +210,8 @@ TEST(Nearest, AReorderedMeshIsTheSame) {
   const Grid grid = make_grid();
   for (const unsigned seed : {1u, 2u}) {
     const Grid other = shuffled(grid, seed);
-    EXPECT_FALSE(compare(scene_of(grid), scene_of(other), Matching::automatic).same());
-    const SceneDifference found = compare(scene_of(grid), scene_of(other));
+    EXPECT_FALSE(compare_scenes(scene_of(grid), scene_of(other)).same());
+    const SceneDifference found = compare_by_place(scene_of(grid), scene_of(other));
     EXPECT_TRUE(found.same());
     EXPECT_TRUE(found.structure.empty());
     EXPECT_LT(found.positions.largest, 1e-12);
@@ -224,12 +224,12 @@ TEST(Nearest, VerticesSplitAtSeamsAndOtherPartsAreTheSame) {
   const Grid grid = make_grid();
   const Grid split = exploded(grid);
   const Grid parts = in_two_parts(grid);
-  const SceneDifference seams = compare(scene_of(grid), scene_of(split));
+  const SceneDifference seams = compare_by_place(scene_of(grid), scene_of(split));
   EXPECT_TRUE(seams.same());
   EXPECT_EQ(seams.notes.size(), 1u);
-  EXPECT_TRUE(compare(scene_of(split), scene_of(grid)).same());
-  EXPECT_TRUE(compare(scene_of(grid), scene_of(parts)).same());
-  EXPECT_TRUE(compare(scene_of(parts), scene_of(split)).same());
+  EXPECT_TRUE(compare_by_place(scene_of(split), scene_of(grid)).same());
+  EXPECT_TRUE(compare_by_place(scene_of(grid), scene_of(parts)).same());
+  EXPECT_TRUE(compare_by_place(scene_of(parts), scene_of(split)).same());
 }
 
 TEST(Nearest, AVertexThatMovesLaterIsFoundAndNamed) {
@@ -239,8 +239,7 @@ TEST(Nearest, AVertexThatMovesLaterIsFoundAndNamed) {
     if (time == 0.5) state.positions[0][7].z() += 1e-4;
   };
   for (const int jobs : {1, 3}) {
-    const SceneDifference first =
-        compare(scene_of(grid, lift), scene_of(other), Matching::nearest, jobs);
+    const SceneDifference first = compare_by_place(scene_of(grid, lift), scene_of(other), jobs);
     EXPECT_FALSE(first.same());
     EXPECT_NEAR(first.positions.largest, 1e-4, 1e-12);
     EXPECT_EQ(first.positions.where.frame, 2);
@@ -249,7 +248,7 @@ TEST(Nearest, AVertexThatMovesLaterIsFoundAndNamed) {
     EXPECT_FLOAT_EQ(first.vertex_largest[0][7], 1e-4F);
     EXPECT_EQ(first.vertex_largest[0][8], 0.0F);
   }
-  const SceneDifference second = compare(scene_of(other), scene_of(grid, lift));
+  const SceneDifference second = compare_by_place(scene_of(other), scene_of(grid, lift));
   EXPECT_NEAR(second.positions.largest, 1e-4, 1e-12);
   // Its partner in the first is told first.
   EXPECT_EQ(other.vertices[0][static_cast<std::size_t>(second.positions.where.vertex)], 7);
@@ -258,7 +257,7 @@ TEST(Nearest, AVertexThatMovesLaterIsFoundAndNamed) {
 TEST(Nearest, WhatOnlyTheSecondHasIsFoundToo) {
   const Grid grid = make_grid(4);
   const Grid larger = make_grid(6);
-  const SceneDifference found = compare(scene_of(grid), scene_of(larger));
+  const SceneDifference found = compare_by_place(scene_of(grid), scene_of(larger));
   EXPECT_FALSE(found.same());
   EXPECT_TRUE(found.positions.where.in_second);
   ASSERT_EQ(found.parts.size(), 2u);
@@ -280,8 +279,8 @@ TEST(Nearest, SurfacesThatTouchAtFirstAreToldApart) {
       for (std::size_t v = upper; v < upper + 4; ++v) state.positions[0][v].z() += 0.1 * time;
     };
   };
-  EXPECT_TRUE(compare(scene_of(lips, open(4)), scene_of(swapped, open(0))).same());
-  EXPECT_FALSE(compare(scene_of(lips, open(4)), scene_of(swapped)).same());
+  EXPECT_TRUE(compare_by_place(scene_of(lips, open(4)), scene_of(swapped, open(0))).same());
+  EXPECT_FALSE(compare_by_place(scene_of(lips, open(4)), scene_of(swapped)).same());
 }
 
 TEST(Nearest, AMeshThatUnfoldsFromOnePointIsToldApart) {
@@ -290,7 +289,7 @@ TEST(Nearest, AMeshThatUnfoldsFromOnePointIsToldApart) {
   const Change folded = [](double time, SceneState& state) {
     for (Vec3& position : state.positions[0]) position *= time;
   };
-  EXPECT_TRUE(compare(scene_of(grid, folded), scene_of(other, folded)).same());
+  EXPECT_TRUE(compare_by_place(scene_of(grid, folded), scene_of(other, folded)).same());
 }
 
 TEST(Nearest, NormalsTellEdgesApart) {
@@ -307,7 +306,7 @@ TEST(Nearest, NormalsTellEdgesApart) {
       for (std::size_t v = side; v < side + 3; ++v) state.normals[0][v] = Vec3(0, -1, 0);
     };
   };
-  const SceneDifference found = compare(scene_of(edge, fold(0)), scene_of(other, fold(3)));
+  const SceneDifference found = compare_by_place(scene_of(edge, fold(0)), scene_of(other, fold(3)));
   EXPECT_TRUE(found.same());
   EXPECT_GT(found.normals.count, 0);
 }
@@ -322,7 +321,7 @@ TEST(Nearest, APointCloudIsHeldAgainstASurface) {
     plain(animation, time, state);
     state.normals[0].clear();
   };
-  const SceneDifference found = compare(scene_of(grid), points);
+  const SceneDifference found = compare_by_place(scene_of(grid), points);
   EXPECT_TRUE(found.same());
   EXPECT_EQ(found.normals.count, 0);
 }
@@ -332,7 +331,7 @@ TEST(Nearest, NothingToCompareWithIsADifference) {
   Scene none;
   none.animations.push_back({"", {0, 1}});
   none.evaluate = [](int, double, SceneState& state) { state = {}; };
-  EXPECT_FALSE(compare(scene_of(grid), none).same());
+  EXPECT_FALSE(compare_by_place(scene_of(grid), none).same());
   Scene empty = none;
   empty.meshes.emplace_back();
   empty.evaluate = [](int, double, SceneState& state) {
@@ -340,8 +339,8 @@ TEST(Nearest, NothingToCompareWithIsADifference) {
     state.normals.assign(1, {});
     state.joints.clear();
   };
-  EXPECT_FALSE(compare(scene_of(grid), empty).same());
-  EXPECT_TRUE(compare(empty, empty).same());
+  EXPECT_FALSE(compare_by_place(scene_of(grid), empty).same());
+  EXPECT_TRUE(compare_by_place(empty, empty).same());
 }
 
 }  // namespace

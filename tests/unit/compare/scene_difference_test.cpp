@@ -8,22 +8,24 @@
 #include <cmath>
 #include <limits>
 
+#include "unit/compare/compare_scenes.h"
+
 namespace krok::compare {
 namespace {
 
-const std::vector<Triangle>& triangles() {
+const std::vector<Triangle>& one_triangle() {
   static const std::vector<Triangle> list = {{0, 1, 2}};
   return list;
 }
 
 // A triangle that moves along X by a metre a second, and one joint with it.
-Scene make_scene(int keys = 11) {
+Scene moving_triangle(int keys = 11) {
   Scene scene;
   SceneMesh mesh;
   mesh.name = "Body";
   mesh.vertex_count = 3;
   mesh.has_normals = true;
-  mesh.triangles = triangles();
+  mesh.triangles = one_triangle();
   scene.meshes.push_back(mesh);
   scene.joint_names = {"Hips"};
   scene.joint_parents = {-1};
@@ -41,7 +43,7 @@ Scene make_scene(int keys = 11) {
 
 // The same with a change of its state.
 Scene changed(std::function<void(double time, SceneState&)> change, int keys = 11) {
-  Scene scene = make_scene(keys);
+  Scene scene = moving_triangle(keys);
   scene.evaluate = [plain = scene.evaluate, change](int which, double time, SceneState& state) {
     plain(which, time, state);
     change(time, state);
@@ -49,15 +51,8 @@ Scene changed(std::function<void(double time, SceneState&)> change, int keys = 1
   return scene;
 }
 
-SceneDifference compare(const Scene& a, const Scene& b, int jobs = 1) {
-  Progress progress;
-  const auto found = difference(a, b, {}, jobs, progress);
-  EXPECT_TRUE(found.ok()) << found.error().message;
-  return found.ok() ? *found : SceneDifference();
-}
-
 TEST(SceneDifference, ASceneIsTheSameAsItself) {
-  const SceneDifference found = compare(make_scene(), make_scene());
+  const SceneDifference found = compare_scenes(moving_triangle(), moving_triangle());
   EXPECT_TRUE(found.same());
   EXPECT_TRUE(found.notes.empty());
   EXPECT_EQ(found.compared_times, 11);
@@ -67,12 +62,13 @@ TEST(SceneDifference, ASceneIsTheSameAsItself) {
 
 TEST(SceneDifference, FindsOneVertexMovedByATenthOfAMillimetreInOneFrame) {
   for (const int jobs : {1, 2, 5}) {
-    const SceneDifference found = compare(make_scene(), changed([](double time, SceneState& state) {
-                                            if (std::abs(time - 0.7) < 1e-9) {
-                                              state.positions[0][2].y() += 1e-4;
-                                            }
-                                          }),
-                                          jobs);
+    const SceneDifference found =
+        compare_scenes(moving_triangle(), changed([](double time, SceneState& state) {
+                         if (std::abs(time - 0.7) < 1e-9) {
+                           state.positions[0][2].y() += 1e-4;
+                         }
+                       }),
+                       Matching::automatic, jobs);
     EXPECT_FALSE(found.same());
     EXPECT_NEAR(found.positions.largest, 1e-4, 1e-12);
     EXPECT_EQ(found.positions.over, 1);
@@ -88,8 +84,8 @@ TEST(SceneDifference, ResultsDoNotDependOnTheNumberOfJobs) {
   const Scene other = changed([](double time, SceneState& state) {
     for (Vec3& p : state.positions[0]) p.z() += 1e-3 * std::sin(40 * time);
   });
-  const SceneDifference one = compare(make_scene(500), other, 1);
-  const SceneDifference many = compare(make_scene(500), other, 7);
+  const SceneDifference one = compare_scenes(moving_triangle(500), other, Matching::automatic, 1);
+  const SceneDifference many = compare_scenes(moving_triangle(500), other, Matching::automatic, 7);
   EXPECT_EQ(one.positions.square_sum, many.positions.square_sum);
   EXPECT_EQ(one.positions.largest, many.positions.largest);
   EXPECT_EQ(one.positions.where.frame, many.positions.where.frame);
@@ -104,18 +100,18 @@ TEST(SceneDifference, ComparesAtTheKeysOfBoth) {
       11);
   Scene finer = other;
   finer.animations[0].key_times = {0, 0.05, 1.0};
-  const SceneDifference found = compare(make_scene(), finer);
+  const SceneDifference found = compare_scenes(moving_triangle(), finer);
   EXPECT_EQ(found.compared_times, 12);
   EXPECT_EQ(found.positions.largest, 0.5);
   EXPECT_EQ(found.notes.size(), 1u);
   // Times that only rounding parts are one.
-  Scene rounded = make_scene();
+  Scene rounded = moving_triangle();
   for (double& time : rounded.animations[0].key_times) time += 3e-8;
-  EXPECT_EQ(compare(make_scene(), rounded).compared_times, 11);
+  EXPECT_EQ(compare_scenes(moving_triangle(), rounded).compared_times, 11);
 }
 
 TEST(SceneDifference, AnotherDurationDiffersButWhatIsCommonIsCompared) {
-  const SceneDifference found = compare(make_scene(11), make_scene(6));
+  const SceneDifference found = compare_scenes(moving_triangle(11), moving_triangle(6));
   EXPECT_FALSE(found.same());
   EXPECT_EQ(found.compared_times, 6);
   EXPECT_TRUE(found.positions.within());
@@ -124,7 +120,7 @@ TEST(SceneDifference, AnotherDurationDiffersButWhatIsCommonIsCompared) {
 
 TEST(SceneDifference, MeshesAreMatchedByNameOrElseByPlace) {
   const auto two = [](bool swapped, const char* second_name) {
-    Scene scene = make_scene();
+    Scene scene = moving_triangle();
     scene.meshes.push_back(scene.meshes[0]);
     scene.meshes[1].name = second_name;
     scene.evaluate = [swapped](int, double, SceneState& state) {
@@ -136,44 +132,46 @@ TEST(SceneDifference, MeshesAreMatchedByNameOrElseByPlace) {
     if (swapped) std::swap(scene.meshes[0], scene.meshes[1]);
     return scene;
   };
-  EXPECT_TRUE(compare(two(false, "Hat"), two(true, "Hat")).same());
-  EXPECT_FALSE(compare(two(false, "Body"), two(true, "Body")).same());
-  EXPECT_TRUE(compare(two(false, "Body"), two(false, "Body")).same());
+  EXPECT_TRUE(compare_scenes(two(false, "Hat"), two(true, "Hat")).same());
+  EXPECT_FALSE(compare_scenes(two(false, "Body"), two(true, "Body")).same());
+  EXPECT_TRUE(compare_scenes(two(false, "Body"), two(false, "Body")).same());
 }
 
 TEST(SceneDifference, SaysWhatDiffersInStructure) {
-  Scene other = make_scene();
+  Scene other = moving_triangle();
   other.meshes[0].vertex_count = 4;
-  EXPECT_EQ(compare(make_scene(), other).structure.at(0),
+  EXPECT_EQ(compare_scenes(moving_triangle(), other).structure.at(0),
             "mesh Body: 3 vertices in the first, 4 in the second");
-  other = make_scene();
+  other = moving_triangle();
   const std::vector<Triangle> turned = {{0, 2, 1}};
   other.meshes[0].triangles = turned;
-  EXPECT_EQ(compare(make_scene(), other).structure.at(0),
+  EXPECT_EQ(compare_scenes(moving_triangle(), other).structure.at(0),
             "mesh Body: triangle 0 is (0, 1, 2) in the first and (0, 2, 1) in the second");
-  other = make_scene();
+  other = moving_triangle();
   other.joint_names = {"Pelvis"};
-  EXPECT_NE(compare(make_scene(), other).structure.at(0).find("only in the second: Pelvis"),
-            std::string::npos);
-  other = make_scene();
+  EXPECT_NE(
+      compare_scenes(moving_triangle(), other).structure.at(0).find("only in the second: Pelvis"),
+      std::string::npos);
+  other = moving_triangle();
   other.meshes.clear();
-  EXPECT_EQ(compare(make_scene(), other).structure.at(0), "1 mesh in the first, 0 in the second");
-  other = make_scene();
+  EXPECT_EQ(compare_scenes(moving_triangle(), other).structure.at(0),
+            "1 mesh in the first, 0 in the second");
+  other = moving_triangle();
   other.animations.clear();
-  EXPECT_FALSE(compare(make_scene(), other).same());
+  EXPECT_FALSE(compare_scenes(moving_triangle(), other).same());
 }
 
 TEST(SceneDifference, ARigAgainstItsBakedMotionIsComparedByVertices) {
   const std::vector<std::uint16_t> joints(3, 0);
   const std::vector<float> weights(3, 1.0f);
-  Scene rig = make_scene();
+  Scene rig = moving_triangle();
   rig.meshes[0].influences = {1, joints, weights};
   const std::vector<Vec3f> displacements(3, Vec3f(1, 0, 0));
-  Scene baked = make_scene();
+  Scene baked = moving_triangle();
   baked.joint_names.clear();
   baked.joint_parents.clear();
   baked.meshes[0].targets = {{"frame 1", displacements, {}}};
-  const SceneDifference found = compare(rig, baked);
+  const SceneDifference found = compare_scenes(rig, baked);
   EXPECT_TRUE(found.same());
   EXPECT_TRUE(found.structure.empty());
   EXPECT_EQ(found.notes.size(), 3u);  // joints, targets, skin
@@ -182,18 +180,18 @@ TEST(SceneDifference, ARigAgainstItsBakedMotionIsComparedByVertices) {
   // Two with other numbers of targets and no skin are no such pair.
   Scene more = baked;
   more.meshes[0].targets.push_back(more.meshes[0].targets[0]);
-  EXPECT_FALSE(compare(baked, more).same());
+  EXPECT_FALSE(compare_scenes(baked, more).same());
 }
 
 TEST(SceneDifference, ComparesMorphTargetsAndWeightsThemselves) {
   const std::vector<Vec3f> one(3, Vec3f(1, 0, 0));
   std::vector<Vec3f> two = one;
   two[1].y() = 0.5f;
-  Scene a = make_scene();
-  Scene b = make_scene();
+  Scene a = moving_triangle();
+  Scene b = moving_triangle();
   a.meshes[0].targets = {{"smile", one, {}}};
   b.meshes[0].targets = {{"smile", two, {}}};
-  const SceneDifference shapes = compare(a, b);
+  const SceneDifference shapes = compare_scenes(a, b);
   EXPECT_EQ(shapes.target_positions.largest, 0.5);
   EXPECT_EQ(shapes.target_positions.where.vertex, 1);
   EXPECT_EQ(shapes.target_positions.where.target, 0);
@@ -202,10 +200,10 @@ TEST(SceneDifference, ComparesMorphTargetsAndWeightsThemselves) {
   const std::vector<std::uint16_t> joints(6, 0);
   const std::vector<float> whole = {1, 0, 1, 0, 1, 0};
   const std::vector<float> less = {1, 0, 1, 0, 0.75f, 0};
-  a = b = make_scene();
+  a = b = moving_triangle();
   a.meshes[0].influences = {2, joints, whole};
   b.meshes[0].influences = {2, joints, less};
-  const SceneDifference skins = compare(a, b);
+  const SceneDifference skins = compare_scenes(a, b);
   EXPECT_EQ(skins.weights.largest, 0.25);
   EXPECT_EQ(skins.weights.where.vertex, 2);
 }
@@ -219,7 +217,7 @@ TEST(SceneDifference, TellsMomentsPartsJointsAndVertices) {
     Progress progress;
     SceneOptions options;
     options.keep_vertices = true;
-    const auto found = difference(make_scene(), other, options, jobs, progress);
+    const auto found = difference(moving_triangle(), other, options, jobs, progress);
     ASSERT_TRUE(found.ok());
     ASSERT_EQ(found->moments.size(), 11u);
     for (int f = 0; f < 11; ++f) {
@@ -243,33 +241,34 @@ TEST(SceneDifference, TellsMomentsPartsJointsAndVertices) {
     EXPECT_EQ(found->vertex_largest.at(0).at(1), 0.0F);
     EXPECT_NEAR(found->vertex_largest.at(0).at(2), 1e-3, 1e-9);
   }
-  EXPECT_TRUE(compare(make_scene(), other).vertex_largest.empty());
+  EXPECT_TRUE(compare_scenes(moving_triangle(), other).vertex_largest.empty());
 }
 
 TEST(SceneDifference, KeyTimesWithinTheToleranceAreOneMomentEachAtItsOwnTime) {
   // The same poses at keys that stand 3 ms later.
-  Scene late = make_scene();
+  Scene late = moving_triangle();
   for (double& time : late.animations[0].key_times) time += 3e-3;
   late.evaluate = [plain = late.evaluate](int which, double time, SceneState& state) {
     plain(which, time - 3e-3, state);
   };
-  EXPECT_FALSE(compare(make_scene(), late).same());
+  EXPECT_FALSE(compare_scenes(moving_triangle(), late).same());
   Progress progress;
   SceneOptions options;
   options.tolerance.time = 4e-3;
-  const auto found = difference(make_scene(), late, options, 1, progress);
+  const auto found = difference(moving_triangle(), late, options, 1, progress);
   ASSERT_TRUE(found.ok());
   EXPECT_TRUE(found->same());
   EXPECT_EQ(found->compared_times, 11);
   EXPECT_NEAR(found->times.largest, 3e-3, 1e-12);
   // A tolerance wider than the keys are apart neither drops nor shifts any.
   options.tolerance.time = 0.25;
-  EXPECT_EQ(difference(make_scene(), make_scene(), options, 1, progress)->compared_times, 11);
-  EXPECT_TRUE(difference(make_scene(), make_scene(), options, 1, progress)->same());
+  EXPECT_EQ(difference(moving_triangle(), moving_triangle(), options, 1, progress)->compared_times,
+            11);
+  EXPECT_TRUE(difference(moving_triangle(), moving_triangle(), options, 1, progress)->same());
 }
 
 TEST(SceneDifference, MatchingByNameComparesWhatBothHave) {
-  Scene other = make_scene();
+  Scene other = moving_triangle();
   other.meshes.push_back(other.meshes[0]);
   other.meshes[0].name = "Hat";
   other.joint_names = {"Pelvis"};
@@ -282,7 +281,7 @@ TEST(SceneDifference, MatchingByNameComparesWhatBothHave) {
   Progress progress;
   SceneOptions options;
   options.matching = Matching::name;
-  const auto found = difference(make_scene(), other, options, 1, progress);
+  const auto found = difference(moving_triangle(), other, options, 1, progress);
   ASSERT_TRUE(found.ok());
   ASSERT_EQ(found->structure.size(), 2u);
   EXPECT_EQ(found->structure[0],
@@ -293,7 +292,7 @@ TEST(SceneDifference, MatchingByNameComparesWhatBothHave) {
   EXPECT_TRUE(found->positions.within());
   EXPECT_EQ(found->joint_positions.count, 0);
   options.matching = Matching::order;
-  EXPECT_EQ(difference(make_scene(), other, options, 1, progress)->positions.largest, 5);
+  EXPECT_EQ(difference(moving_triangle(), other, options, 1, progress)->positions.largest, 5);
 }
 
 TEST(SceneDifference, ValuesThatAreNotNumbersAreTrouble) {
@@ -301,14 +300,14 @@ TEST(SceneDifference, ValuesThatAreNotNumbersAreTrouble) {
   const Scene bad = changed([](double, SceneState& state) {
     state.positions[0][0].x() = std::numeric_limits<double>::quiet_NaN();
   });
-  const auto found = difference(make_scene(), bad, {}, 1, progress);
+  const auto found = difference(moving_triangle(), bad, {}, 1, progress);
   ASSERT_FALSE(found.ok());
   EXPECT_EQ(found.error().code, "compare-value");
 }
 
 // With a material for its first mesh, or with none.
 Scene scene_with(const Material* material) {
-  Scene scene = make_scene();
+  Scene scene = moving_triangle();
   scene.knows_materials = true;
   scene.meshes[0].material = material;
   return scene;
@@ -319,7 +318,7 @@ TEST(SceneDifference, OtherMaterialsAreTold) {
   Material grey, red;
   red.base_color = {1, 0, 0, 1};
   const std::string told = "mesh Body, material: base colour 0.8, 0.8, 0.8, 1 and 1, 0, 0, 1";
-  SceneDifference found = compare(scene_with(&grey), scene_with(&red));
+  SceneDifference found = compare_scenes(scene_with(&grey), scene_with(&red));
   EXPECT_TRUE(found.same());
   EXPECT_EQ(found.notes, std::vector<std::string>{told});
 
@@ -334,7 +333,7 @@ TEST(SceneDifference, OtherMaterialsAreTold) {
   EXPECT_FALSE(difference(first, bare, strict, 1, progress)->same());
   EXPECT_TRUE(difference(bare, bare, strict, 1, progress)->same());
   // A file of another kind, which cannot tell.
-  EXPECT_TRUE(difference(first, make_scene(), strict, 1, progress)->same());
+  EXPECT_TRUE(difference(first, moving_triangle(), strict, 1, progress)->same());
 }
 
 TEST(SceneDifference, AMaterialOfManyMeshesIsToldOnce) {
@@ -351,7 +350,7 @@ TEST(SceneDifference, AMaterialOfManyMeshesIsToldOnce) {
     };
     return scene;
   };
-  EXPECT_EQ(compare(two(&grey), two(&red)).notes.size(), 1u);
+  EXPECT_EQ(compare_scenes(two(&grey), two(&red)).notes.size(), 1u);
 }
 
 }  // namespace

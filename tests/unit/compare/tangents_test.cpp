@@ -9,25 +9,26 @@
 
 #include "compare/mesh_difference.h"
 #include "compare/scene_difference.h"
+#include "unit/compare/compare_scenes.h"
 
 namespace krok::compare {
 namespace {
 
 using Change = std::function<void(double time, SceneState&)>;
 
-const std::vector<Triangle>& triangles() {
+const std::vector<Triangle>& square_triangles() {
   static const std::vector<Triangle> list = {{0, 1, 2}, {0, 2, 3}};
   return list;
 }
 
 // A square that turns about Z, its tangents with it, on another side at every second vertex.
-Scene make_scene(const Change& change = {}) {
+Scene turning_square(const Change& change = {}) {
   Scene scene;
   SceneMesh mesh;
   mesh.name = "Body";
   mesh.vertex_count = 4;
   mesh.has_normals = mesh.has_tangents = true;
-  mesh.triangles = triangles();
+  mesh.triangles = square_triangles();
   scene.meshes.push_back(mesh);
   scene.knows_materials = true;
   Scene::Animation animation{"Turn", {}};
@@ -47,16 +48,6 @@ bool is_frame(double time, int frame) {
   return std::abs(time - frame / 30.0) < 1e-9;
 }
 
-SceneDifference compare(const Scene& a, const Scene& b, Matching matching = Matching::automatic,
-                        int jobs = 1) {
-  Progress progress;
-  SceneOptions options;
-  options.matching = matching;
-  const auto found = difference(a, b, options, jobs, progress);
-  EXPECT_TRUE(found.ok()) << found.error().message;
-  return found.ok() ? *found : SceneDifference();
-}
-
 // One tangent turned by a degree in one frame.
 void turn_one(double time, SceneState& state) {
   if (!is_frame(time, 37)) return;
@@ -65,7 +56,7 @@ void turn_one(double time, SceneState& state) {
 }
 
 TEST(Tangents, TheSameAreTheSame) {
-  const SceneDifference found = compare(make_scene(), make_scene());
+  const SceneDifference found = compare_scenes(turning_square(), turning_square());
   EXPECT_TRUE(found.same());
   EXPECT_EQ(found.tangents.count, 4 * 60);
   EXPECT_EQ(found.tangent_sides.count, 4 * 60);
@@ -76,7 +67,8 @@ TEST(Tangents, TheSameAreTheSame) {
 TEST(Tangents, OneTurnedByADegreeInFrame37IsFoundAndNamed) {
   for (const Matching matching : {Matching::automatic, Matching::nearest}) {
     for (const int jobs : {1, 3}) {
-      const SceneDifference found = compare(make_scene(), make_scene(turn_one), matching, jobs);
+      const SceneDifference found =
+          compare_scenes(turning_square(), turning_square(turn_one), matching, jobs);
       EXPECT_FALSE(found.same());
       EXPECT_NEAR(found.tangents.largest, kRadiansPerDegree, 1e-9);
       EXPECT_EQ(found.tangents.where.mesh, 0);
@@ -99,7 +91,7 @@ TEST(Tangents, TheToleranceIsThatOfNormals) {
   Progress progress;
   SceneOptions options;
   options.tolerance.normals = 1.1 * kRadiansPerDegree;
-  const Scene first = make_scene(), second = make_scene(turn_one);
+  const Scene first = turning_square(), second = turning_square(turn_one);
   EXPECT_TRUE(difference(first, second, options, 1, progress)->same());
   options.tolerance.normals = 0.9 * kRadiansPerDegree;
   options.tolerance.angle = 1;
@@ -107,11 +99,11 @@ TEST(Tangents, TheToleranceIsThatOfNormals) {
 }
 
 TEST(Tangents, TheOtherHandednessIsADifferenceOfItsOwn) {
-  const Scene other = make_scene([](double time, SceneState& state) {
+  const Scene other = turning_square([](double time, SceneState& state) {
     if (is_frame(time, 5)) state.tangents[0][3].w() = 1;
   });
   for (const Matching matching : {Matching::automatic, Matching::nearest}) {
-    const SceneDifference found = compare(make_scene(), other, matching);
+    const SceneDifference found = compare_scenes(turning_square(), other, matching);
     EXPECT_FALSE(found.same());
     EXPECT_TRUE(found.tangents.within());
     EXPECT_EQ(found.tangent_sides.where.vertex, 3);
@@ -123,32 +115,32 @@ TEST(Tangents, TheOtherHandednessIsADifferenceOfItsOwn) {
   SceneOptions wide;
   wide.tolerance.normals = 10;
   wide.tolerance.ratio = 10;
-  EXPECT_FALSE(difference(make_scene(), other, wide, 1, progress)->same());
+  EXPECT_FALSE(difference(turning_square(), other, wide, 1, progress)->same());
 }
 
 TEST(Tangents, ThoseThatVanishHaveNeitherDirectionNorSide) {
-  const Scene zero = make_scene([](double, SceneState& state) {
+  const Scene zero = turning_square([](double, SceneState& state) {
     state.tangents[0][1] = Vec4(0, 0, 0, 1);  // the others' is on the other side
   });
-  SceneDifference found = compare(make_scene(), zero);
+  SceneDifference found = compare_scenes(turning_square(), zero);
   EXPECT_FALSE(found.same());
   EXPECT_EQ(found.tangents.largest, kPi);
   EXPECT_EQ(found.tangents.where.vertex, 1);
   EXPECT_TRUE(found.tangent_sides.within());
   const Scene other_side =
-      make_scene([](double, SceneState& state) { state.tangents[0][1] = Vec4(0, 0, 0, -1); });
-  EXPECT_TRUE(compare(zero, other_side).same());
+      turning_square([](double, SceneState& state) { state.tangents[0][1] = Vec4(0, 0, 0, -1); });
+  EXPECT_TRUE(compare_scenes(zero, other_side).same());
   EXPECT_FALSE(on_other_sides(Vec4(1, 0, 0, 1), Vec4(1, 0, 0, -0.4)));  // between two sides
   EXPECT_TRUE(on_other_sides(Vec4(1, 0, 0, 1), Vec4(0, 1, 0, -0.9)));
 }
 
 TEST(Tangents, OneThatIsNotANumberIsADifference) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Scene bad = make_scene([nan](double time, SceneState& state) {
+  const Scene bad = turning_square([nan](double time, SceneState& state) {
     if (is_frame(time, 8)) state.tangents[0][1].x() = nan;
   });
   for (const Matching matching : {Matching::automatic, Matching::nearest}) {
-    const SceneDifference found = compare(make_scene(), bad, matching);
+    const SceneDifference found = compare_scenes(turning_square(), bad, matching);
     EXPECT_FALSE(found.same());
     EXPECT_TRUE(std::isinf(found.tangents.largest));
     EXPECT_EQ(found.tangents.where.vertex, 1);
@@ -157,7 +149,7 @@ TEST(Tangents, OneThatIsNotANumberIsADifference) {
 }
 
 Scene without_tangents() {
-  Scene scene = make_scene([](double, SceneState& state) { state.tangents.clear(); });
+  Scene scene = turning_square([](double, SceneState& state) { state.tangents.clear(); });
   scene.meshes[0].has_tangents = false;
   return scene;
 }
@@ -165,7 +157,7 @@ Scene without_tangents() {
 TEST(Tangents, ThatOnlyOneHasThemIsADifferenceWhereANormalTextureShowsThem) {
   for (const Matching matching : {Matching::automatic, Matching::nearest}) {
     const std::string before = matching == Matching::nearest ? "" : "mesh Body: ";
-    SceneDifference found = compare(make_scene(), without_tangents(), matching);
+    SceneDifference found = compare_scenes(turning_square(), without_tangents(), matching);
     EXPECT_TRUE(found.same());
     EXPECT_EQ(found.notes, std::vector<std::string>{
                                before + "only the first has tangents, so they are not compared"});
@@ -173,9 +165,9 @@ TEST(Tangents, ThatOnlyOneHasThemIsADifferenceWhereANormalTextureShowsThem) {
 
     Material bumpy;
     bumpy.normal_texture.picture = std::make_shared<Picture>();
-    Scene first = without_tangents(), second = make_scene();
+    Scene first = without_tangents(), second = turning_square();
     first.meshes[0].material = second.meshes[0].material = &bumpy;
-    found = compare(first, second, matching);
+    found = compare_scenes(first, second, matching);
     EXPECT_FALSE(found.same());
     EXPECT_EQ(found.structure,
               std::vector<std::string>{before +
@@ -183,44 +175,44 @@ TEST(Tangents, ThatOnlyOneHasThemIsADifferenceWhereANormalTextureShowsThem) {
     // A normal texture that is new brings its tangents along, and other materials are no fault.
     Material plain;
     first.meshes[0].material = &plain;
-    found = compare(first, second, matching);
+    found = compare_scenes(first, second, matching);
     EXPECT_TRUE(found.same());
     EXPECT_FALSE(found.notes.empty());
     first.meshes[0].material = &bumpy;
     // A file of a kind that knows no materials cannot tell.
     first.knows_materials = false;
-    EXPECT_TRUE(compare(first, second, matching).same());
+    EXPECT_TRUE(compare_scenes(first, second, matching).same());
   }
-  EXPECT_TRUE(compare(without_tangents(), without_tangents()).notes.empty());
+  EXPECT_TRUE(compare_scenes(without_tangents(), without_tangents()).notes.empty());
 }
 
 TEST(Tangents, WhatMorphTargetsDoToThemIsCompared) {
   const std::vector<Vec3f> still(4, Vec3f::Zero());
   std::vector<Vec3f> moved = still;
   moved[3].y() = 0.25f;
-  Scene a = make_scene(), b = make_scene();
+  Scene a = turning_square(), b = turning_square();
   a.meshes[0].targets = {{"frame 1", still, {}, still}};
   b.meshes[0].targets = {{"frame 1", still, {}, moved}};
-  const SceneDifference found = compare(a, b);
+  const SceneDifference found = compare_scenes(a, b);
   EXPECT_FALSE(found.same());
   EXPECT_EQ(found.target_tangents.largest, 0.25);
   EXPECT_EQ(found.target_tangents.where.vertex, 3);
   // One that says nothing of them moves none.
   a.meshes[0].targets[0].tangents = {};
-  EXPECT_EQ(compare(a, b).target_tangents.largest, 0.25);
+  EXPECT_EQ(compare_scenes(a, b).target_tangents.largest, 0.25);
   b.meshes[0].targets[0].tangents = {};
-  EXPECT_EQ(compare(a, b).target_tangents.count, 0);
+  EXPECT_EQ(compare_scenes(a, b).target_tangents.count, 0);
   // Nor does it matter for a mesh that has none itself.
   b.meshes[0].targets[0].tangents = moved;
   a.meshes[0].has_tangents = false;
-  EXPECT_TRUE(compare(a, b).same());
+  EXPECT_TRUE(compare_scenes(a, b).same());
 }
 
 // Two triangles side by side whose vertices on the common edge are double, as at a texture's seam:
 // places and normals are the same, tangents are not.
 Scene seam(bool swapped) {
   static const std::vector<Triangle> apart = {{0, 1, 2}, {3, 4, 5}};
-  Scene scene = make_scene();
+  Scene scene = turning_square();
   scene.meshes[0].vertex_count = 6;
   scene.meshes[0].triangles = apart;
   scene.evaluate = [swapped](int, double time, SceneState& state) {
@@ -238,8 +230,8 @@ Scene seam(bool swapped) {
 }
 
 TEST(Tangents, NearestPointsAtATexturesSeamAreThoseOfTheirSide) {
-  EXPECT_FALSE(compare(seam(false), seam(true)).same());
-  const SceneDifference found = compare(seam(false), seam(true), Matching::nearest);
+  EXPECT_FALSE(compare_scenes(seam(false), seam(true)).same());
+  const SceneDifference found = compare_scenes(seam(false), seam(true), Matching::nearest);
   EXPECT_TRUE(found.same());
   EXPECT_EQ(found.tangents.count, 2 * 6 * 60);
   EXPECT_EQ(found.tangents.largest, 0);
@@ -271,12 +263,12 @@ TEST(Tangents, NearestPointsAreTakenFromMeshesThatHaveThemToo) {
     return parts;
   };
   const Scene half = split(true);
-  const SceneDifference found = compare(half, half, Matching::nearest);
+  const SceneDifference found = compare_scenes(half, half, Matching::nearest);
   EXPECT_TRUE(found.same());
   EXPECT_TRUE(found.notes.empty());
   EXPECT_EQ(found.tangents.count, 2 * 3 * 60);
   // One mesh against parts of which only one has them: that is said.
-  const SceneDifference partly = compare(scene, half, Matching::nearest);
+  const SceneDifference partly = compare_scenes(scene, half, Matching::nearest);
   ASSERT_EQ(partly.notes.size(), 2u);
   EXPECT_EQ(partly.notes[1],
             "mesh Body: 3 of its 6 nearest points have no tangents, so its tangents are not "

@@ -19,16 +19,14 @@
 #include <stdexcept>
 #include <thread>
 
+#include "support/sanitized.h"
+
 namespace krok {
 namespace {
 
-using Bytes = std::vector<std::byte>;
+using test::kSanitized;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
+using Bytes = std::vector<std::byte>;
 
 Bytes bytes_of(std::string_view text) {
   const auto bytes = std::as_bytes(std::span(text));

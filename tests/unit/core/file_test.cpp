@@ -15,9 +15,12 @@
 
 #include "core/hash.h"
 #include "support/folder_test.h"
+#include "support/sanitized.h"
 
 namespace krok {
 namespace {
+
+using test::kSanitized;
 
 namespace fs = std::filesystem;
 
@@ -331,12 +334,6 @@ class SignalTest : public FileTest, public testing::WithParamInterface<int> {
     return WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
   }
 };
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 TEST_P(SignalTest, RemovesTheTemporaryFileAndKeepsTheOldOne) {
   if (kSanitized && (GetParam() == SIGBUS || GetParam() == SIGSEGV)) {

@@ -19,15 +19,13 @@ namespace krok {
 namespace {
 
 using test::error_code;
+using test::turned_human;
 using test::wobble;
 using testing::Each;
 using testing::HasSubstr;
 
-Skeleton human() {
-  return test::with_turned_joints(test::human_skeleton());
-}
 Clip motion(int frames = 7) {
-  return test::swinging_clip(human(), frames, 30);
+  return test::swinging_clip(turned_human(), frames, 30);
 }
 
 test::Glb rig(const Model& model, const Clip& clip, const gltf::WriteOptions& options = {}) {
@@ -67,13 +65,13 @@ TEST(GltfWriter, ASkeletonWithoutFramesHasNoAnimation) {
 }
 
 TEST(GltfWriter, TheSameInputGivesTheSameBytes) {
-  const Model model = test::tube_model(human());
+  const Model model = test::tube_model(turned_human());
   EXPECT_EQ(rig(model, motion()).bytes, rig(model, motion()).bytes);
 }
 
 TEST(GltfWriter, RigHoldsTheMeshItsBoundsAndItsInfluences) {
   for (const int influences : {1, 3, 4, 8}) {
-    const Model model = test::tube_model(human(), influences);
+    const Model model = test::tube_model(turned_human(), influences);
     const auto glb = rig(model, motion());
     const auto& primitive = glb.json["meshes"][0]["primitives"][0];
     const auto& attributes = primitive["attributes"];
@@ -117,7 +115,7 @@ TEST(GltfWriter, RigHoldsTheMeshItsBoundsAndItsInfluences) {
 }
 
 TEST(GltfWriter, InverseBindMatricesUndoTheReferencePose) {
-  const Model model = test::tube_model(human());
+  const Model model = test::tube_model(turned_human());
   const auto glb = rig(model, motion());
   const auto matrices = glb.values<float>(glb.json["skins"][0]["inverseBindMatrices"]);
   for (std::size_t j = 0; j < model.skeleton.names.size(); ++j) {
@@ -156,7 +154,7 @@ TEST(GltfWriter, ManyJointsAndManyVerticesTakeWiderNumbers) {
 }
 
 TEST(GltfWriter, PartsBecomePrimitivesWithTheirMaterials) {
-  Model model = test::tube_model(human());
+  Model model = test::tube_model(turned_human());
   const auto count = static_cast<std::uint32_t>(model.triangles.size());
   model.parts = {{"a", "skin", 0, 10},
                  {"none", "unused", 10, 0},
@@ -172,7 +170,7 @@ TEST(GltfWriter, PartsBecomePrimitivesWithTheirMaterials) {
 }
 
 TEST(GltfWriter, BakedFramesAddUpToTheShapes) {
-  const Model model = test::tube_model(human());
+  const Model model = test::tube_model(turned_human());
   const auto baked = wobble(model, 6);
   const auto glb =
       test::written([&](OutputFile& file) { return gltf::write_baked(model, baked, {}, file); });
@@ -204,7 +202,7 @@ TEST(GltfWriter, BakedFramesAddUpToTheShapes) {
 }
 
 TEST(GltfWriter, OneBakedFrameIsAMesh) {
-  Model model = test::tube_model(human());
+  Model model = test::tube_model(turned_human());
   model.normals.clear();
   model.texture_coordinates.clear();
   const auto glb = test::written(
@@ -232,7 +230,7 @@ TEST(GltfWriter, TextHoldsTheSameData) {
 
 // Viewers' validators are stricter about length 1 than a model is.
 TEST(GltfWriter, RoundedNormalsAndTangentsAreMadeUnit) {
-  Model model = test::tube_model(human());
+  Model model = test::tube_model(turned_human());
   model.normals[0] = Vec3f(0, 1.0009f, 0);
   model.normals[1] *= 0.9991f;
   model.tangents.assign(model.positions.size(), Vec4f(0, 0, 0.9995f, -1));

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "support/test_scenes.h"
 
@@ -15,10 +14,7 @@ namespace {
 
 using gltf::joint_tracks;
 using gltf::JointTracks;
-
-Skeleton human() {
-  return test::with_turned_joints(test::human_skeleton());
-}
+using test::turned_human;
 
 // What a viewer shows at a frame, from the floats in the file.
 std::vector<Transform> viewed(const JointTracks& tracks, const Skeleton& skeleton, int frame) {
@@ -47,7 +43,7 @@ void expect_shown(const JointTracks& tracks, const Clip& clip) {
 }
 
 TEST(JointTracks, RigidBonesNeedNoTranslations) {
-  const Clip clip = test::swinging_clip(human(), 30, 30);
+  const Clip clip = test::swinging_clip(turned_human(), 30, 30);
   const auto tracks = joint_tracks(clip.skeleton, clip);
   ASSERT_TRUE(tracks.ok());
   expect_shown(*tracks, clip);
@@ -58,7 +54,7 @@ TEST(JointTracks, RigidBonesNeedNoTranslations) {
 
 TEST(JointTracks, RoundedOrientationsStillPutJointsInPlace) {
   // As the three stored components of a quaternion leave them: up to 1e-4 rad off.
-  Clip clip = test::swinging_clip(human(), 30, 30);
+  Clip clip = test::swinging_clip(turned_human(), 30, 30);
   for (std::size_t i = 0; i < clip.orientations.size(); ++i) {
     const double x = static_cast<double>(i);
     const Quat turn =
@@ -71,7 +67,7 @@ TEST(JointTracks, RoundedOrientationsStillPutJointsInPlace) {
 }
 
 TEST(JointTracks, AJointThatMovesInItsParentGetsATranslation) {
-  Clip clip = test::swinging_clip(human(), 10, 30);
+  Clip clip = test::swinging_clip(turned_human(), 10, 30);
   const int hand = clip.skeleton.find("LeftHand_end");
   clip.frame_positions(4)[hand].x() += 0.01f;
   const auto tracks = joint_tracks(clip.skeleton, clip);
@@ -94,7 +90,7 @@ TEST(JointTracks, ALongChainDoesNotDrift) {
 }
 
 TEST(JointTracks, SuccessiveRotationsLieInOneHemisphere) {
-  Clip clip = test::swinging_clip(human(), 40, 10);
+  Clip clip = test::swinging_clip(turned_human(), 40, 10);
   for (std::size_t i = 0; i < clip.orientations.size(); i += 3) {
     clip.orientations[i].coeffs() *= -1.0f;
   }
@@ -110,7 +106,7 @@ TEST(JointTracks, SuccessiveRotationsLieInOneHemisphere) {
 
 TEST(JointTracks, AFigureAtRestHasNone) {
   Clip clip;
-  clip.skeleton = human();
+  clip.skeleton = turned_human();
   clip.resize(5);
   for (int f = 0; f < 5; ++f) clip.set_pose(f, clip.skeleton.reference);
   const auto tracks = joint_tracks(clip.skeleton, clip);
@@ -123,7 +119,7 @@ TEST(JointTracks, AFigureAtRestHasNone) {
 }
 
 TEST(JointTracks, AnotherRestPoseIsBridged) {
-  const Clip clip = test::swinging_clip(human(), 6, 30);
+  const Clip clip = test::swinging_clip(turned_human(), 6, 30);
   const auto tracks = joint_tracks(test::human_skeleton(1.6), clip);
   ASSERT_TRUE(tracks.ok());
   expect_shown(*tracks, clip);
@@ -151,7 +147,7 @@ TEST(KeyTimes, RefuseFramesThatFloatsCannotTellApart) {
 // A motion long enough for many blocks, of which the first and a few others are looked at before:
 // a short one again and again, so that it does not walk to where floats are coarse.
 Clip long_clip() {
-  const Clip part = test::swinging_clip(human(), 30, 30);
+  const Clip part = test::swinging_clip(turned_human(), 30, 30);
   Clip clip = part;
   clip.resize(1500);
   for (int f = 0; f < clip.frame_count(); ++f) {

@@ -16,7 +16,7 @@ namespace {
 
 // A tube in three parts, with texture coordinates; two have the material "skin", one "cloth".
 Model dressed_model() {
-  Model model = test::tube_model(test::with_turned_joints(test::human_skeleton()));
+  Model model = test::tube_model(test::turned_human());
   model.texture_coordinates.assign(model.positions.size(), Vec2f(0.25f, 0.75f));
   const auto count = static_cast<std::uint32_t>(model.triangles.size());
   model.parts = {{"a", "skin", 0, 10}, {"b", "cloth", 10, 10}, {"c", "skin", 20, count - 20}};

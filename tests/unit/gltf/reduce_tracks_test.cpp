@@ -56,7 +56,7 @@ double largest_error(const nodes::Scene& all, const nodes::Scene& reduced, doubl
 }
 
 TEST_F(ReduceTracks, ShowsTheSameMotionWithinTheToleranceInASmallerFile) {
-  const Clip clip = test::swinging_clip(test::with_turned_joints(test::human_skeleton()), 300, 60);
+  const Clip clip = test::swinging_clip(test::turned_human(), 300, 60);
   auto tracks = gltf::joint_tracks(clip.skeleton, clip);
   ASSERT_TRUE(tracks.ok());
   nodes::Scene all, reduced;
@@ -119,7 +119,7 @@ TEST_F(ReduceTracks, AFigureThatStandsStillLastsAsLong) {
 }
 
 TEST_F(ReduceTracks, SuccessiveRotationsThatStayLieInOneHemisphere) {
-  const Clip clip = test::swinging_clip(test::with_turned_joints(test::human_skeleton()), 300, 60);
+  const Clip clip = test::swinging_clip(test::turned_human(), 300, 60);
   auto tracks = gltf::joint_tracks(clip.skeleton, clip);
   ASSERT_TRUE(tracks.ok());
   ASSERT_TRUE(gltf::reduce_tracks(clip.skeleton, {.tolerance = 0.05}, 1, *tracks).ok());

@@ -4,19 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "support/special_values.h"
+#include "unit/math/negated.h"
 
 namespace krok {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using test::kInfinity;
+using test::kNan;
+using test::negated;
 
 Quat about(const Vec3& axis, double angle) {
   return from_rotation_vector(axis.normalized() * angle);
-}
-Quat negated(const Quat& q) {
-  return Quat(Vec4(-q.coeffs()));
 }
 
 TEST(NormalizedOrIdentity, ScalesToUnitLength) {
@@ -27,7 +27,7 @@ TEST(NormalizedOrIdentity, ScalesToUnitLength) {
 
 TEST(NormalizedOrIdentity, GivesTheIdentityForWhatHasNoDirection) {
   for (const Quat& q : {Quat(0, 0, 0, 0), Quat(1e-160, 0, 0, 0), Quat(kNan, 0, 0, 0),
-                        Quat(1, kInf, 0, 0), Quat(0, 0, kNan, 1)}) {
+                        Quat(1, kInfinity, 0, 0), Quat(0, 0, kNan, 1)}) {
     EXPECT_EQ(normalized_or_identity(q).coeffs(), Quat::Identity().coeffs());
   }
 }
@@ -123,7 +123,7 @@ TEST(RotationVector, TakesTheShortWay) {
 TEST(RotationVector, ZeroAndBadInputGiveNoRotation) {
   EXPECT_EQ(rotation_vector(Quat(0, 0, 0, 0)), Vec3::Zero());
   EXPECT_EQ(from_rotation_vector(Vec3(kNan, 0, 0)).coeffs(), Quat::Identity().coeffs());
-  EXPECT_EQ(from_rotation_vector(Vec3(kInf, 0, 0)).coeffs(), Quat::Identity().coeffs());
+  EXPECT_EQ(from_rotation_vector(Vec3(kInfinity, 0, 0)).coeffs(), Quat::Identity().coeffs());
 }
 
 TEST(ShortestArc, TakesOneDirectionToTheOther) {

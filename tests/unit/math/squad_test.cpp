@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "math/quaternion.h"
+#include "unit/math/negated.h"
 
 namespace krok {
 namespace {
 
-Quat negated(const Quat& q) {
-  return Quat(Vec4(-q.coeffs()));
-}
+using test::negated;
 
 struct Keys {
   std::vector<double> times;

@@ -8,18 +8,18 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <random>
 #include <vector>
 
 #include "core/simd.h"
 #include "math/vector_arrays_internal.h"
+#include "support/special_values.h"
 
 namespace krok {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+using test::kInfinityF;
+using test::kNanF;
 
 // Runs the rest of a block with at most these instructions.
 class WithSimd {
@@ -56,7 +56,7 @@ TEST(AllFinite, FindsOneAmongMany) {
     EXPECT_TRUE(all_finite(std::span<const Vec3f>()));
     EXPECT_TRUE(all_finite(std::span<const Vec4f>()));
     for (std::size_t v = 0; v < vectors.size(); ++v) {
-      for (const float bad : {kInfinity, -kInfinity, kNan, -kNan}) {
+      for (const float bad : {kInfinityF, -kInfinityF, kNanF, -kNanF}) {
         const Vec3f was = vectors[v];
         vectors[v][static_cast<int>(v % 3)] = bad;
         EXPECT_FALSE(all_finite(vectors)) << v << " " << bad;
@@ -66,7 +66,7 @@ TEST(AllFinite, FindsOneAmongMany) {
     std::vector<Vec4f> tangents(37, Vec4f(0, 1, 0, -1));
     for (Vec4f& tangent : tangents) {
       EXPECT_TRUE(all_finite(tangents));
-      tangent.w() = kNan;
+      tangent.w() = kNanF;
       EXPECT_FALSE(all_finite(tangents));
       tangent.w() = 1;
     }
@@ -126,8 +126,8 @@ TEST(Subtract, BoundsOfZerosHaveNoSign) {
 TEST(Subtract, OfNothingGivesNoBox) {
   const VectorBounds bounds = subtract({}, {});
   EXPECT_TRUE(bounds.finite);
-  EXPECT_EQ(bounds.least, Vec3f::Constant(kInfinity));
-  EXPECT_EQ(bounds.most, Vec3f::Constant(-kInfinity));
+  EXPECT_EQ(bounds.least, Vec3f::Constant(kInfinityF));
+  EXPECT_EQ(bounds.most, Vec3f::Constant(-kInfinityF));
 }
 
 }  // namespace

@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "support/special_values.h"
 
 namespace krok {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 TEST(WrapTime, WithinTheDurationIsTheTimeItself) {
   for (const Wrap wrap : {Wrap::clamp, Wrap::loop, Wrap::ping_pong}) {

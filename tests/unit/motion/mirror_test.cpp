@@ -9,16 +9,15 @@
 #include "math/quaternion.h"
 #include "motion/local_motion.h"
 #include "support/test_scenes.h"
+#include "unit/motion/joint_place.h"
 
 namespace krok {
 namespace {
 
+using test::joint_place;
+
 Vec3 image(const Vec3& p) {
   return {-p.x(), p.y(), p.z()};
-}
-
-Vec3 place(const Clip& clip, int frame, int joint) {
-  return clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>();
 }
 
 MirrorPairs pairs_of(const Skeleton& skeleton) {
@@ -32,7 +31,7 @@ void expect_mirrored(const Clip& clip, const Clip& mirrored, const MirrorPairs& 
     for (int j = 0; j < clip.joint_count(); ++j) {
       const int other = pairs.partners[static_cast<std::size_t>(j)];
       ASSERT_GE(other, 0) << clip.skeleton.names[static_cast<std::size_t>(j)];
-      EXPECT_LT((place(mirrored, f, j) - image(place(clip, f, other))).norm(), within)
+      EXPECT_LT((joint_place(mirrored, f, j) - image(joint_place(clip, f, other))).norm(), within)
           << clip.skeleton.names[static_cast<std::size_t>(j)] << ", frame " << f;
     }
   }
@@ -198,8 +197,8 @@ TEST(Mirror, BonesKeepTheirOwnLengths) {
   const Clip mirrored = mirror(clip, pairs);
   for (int j = 1; j < clip.joint_count(); ++j) {
     const int parent = skeleton.parents[static_cast<std::size_t>(j)];
-    EXPECT_NEAR((place(mirrored, 3, j) - place(mirrored, 3, parent)).norm(),
-                (place(clip, 3, j) - place(clip, 3, parent)).norm(), 1e-6);
+    EXPECT_NEAR((joint_place(mirrored, 3, j) - joint_place(mirrored, 3, parent)).norm(),
+                (joint_place(clip, 3, j) - joint_place(clip, 3, parent)).norm(), 1e-6);
   }
   expect_twice_is_nothing(clip, pairs);
 }
@@ -223,7 +222,8 @@ TEST(Mirror, JointsThatMoveInTheirParentsAndThoseWithoutPartner) {
   for (const char* name : {"RightHand", "Spine1", "Head"}) {
     const int j = skeleton.find(name);
     const int other = pairs.partners[static_cast<std::size_t>(j)];
-    EXPECT_LT((place(mirrored, 7, j) - image(place(clip, 7, other))).norm(), 2e-6) << name;
+    EXPECT_LT((joint_place(mirrored, 7, j) - image(joint_place(clip, 7, other))).norm(), 2e-6)
+        << name;
   }
   const LocalMotion after = local_motion(mirrored);
   EXPECT_LT(angle_between(after.at(sword, 5).orientation, motion.at(sword, 5).orientation), 2e-6);

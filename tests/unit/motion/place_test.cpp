@@ -17,13 +17,11 @@
 namespace krok {
 namespace {
 
-Clip motion(int frames = 31) {
-  return test::swinging_clip(test::human_skeleton(), frames, 30);
-}
+using test::swinging_human;
 
 // The motion with the figure led astray first.
 Clip astray() {
-  Clip clip = motion();
+  Clip clip = swinging_human(31);
   move_clip({Vec3(3, 0.4, -2), from_rotation_vector(Vec3(0, 2.5, 0))}, clip);
   return clip;
 }
@@ -64,7 +62,7 @@ TEST(Place, AtTheOriginFacingAsAsked) {
   EXPECT_NEAR(ground_place(clip, 0, 0).x, 0, 1e-6);
   // Height is another matter, and the motion is the same but for where it happens.
   EXPECT_NEAR(clip.frame_positions(0)[0].y(), astray().frame_positions(0)[0].y(), 1e-6);
-  Clip back = motion();
+  Clip back = swinging_human(31);
   move_clip(to_origin(back, 0), back);
   move_clip(facing_at_start(back, 0, 1.1), back);
   move_clip({Vec3(0, 0.4, 0), Quat::Identity()}, back);
@@ -86,7 +84,7 @@ TEST(Place, TheLowestFootComesToTheGround) {
 }
 
 TEST(Place, NoFramesAreNoTrouble) {
-  Clip clip = motion(0);
+  Clip clip = swinging_human(0);
   for (const Transform& move : {to_origin(clip, 0), facing_at_start(clip, 0, 1),
                                 turned_about_start(clip, 0, 1), onto_ground(clip, {})}) {
     EXPECT_EQ(move.position, Vec3::Zero());
@@ -97,19 +95,21 @@ TEST(Place, NoFramesAreNoTrouble) {
 }
 
 TEST(Scale, FigureAndMotionTogether) {
-  Clip clip = motion();
+  Clip clip = swinging_human(31);
   EXPECT_NEAR(reference_height(clip.skeleton), 1.75 * (1 - 0.008), 1e-9);
   ASSERT_TRUE(scale_clip(2, clip).ok());
   EXPECT_NEAR(reference_height(clip.skeleton), 3.5 * (1 - 0.008), 1e-9);
-  EXPECT_LT((clip.frame_positions(9)[7] - 2 * motion().frame_positions(9)[7]).norm(), 1e-5f);
-  EXPECT_EQ(clip.frame_orientations(9)[7].coeffs(), motion().frame_orientations(9)[7].coeffs());
+  EXPECT_LT((clip.frame_positions(9)[7] - 2 * swinging_human(31).frame_positions(9)[7]).norm(),
+            1e-5f);
+  EXPECT_EQ(clip.frame_orientations(9)[7].coeffs(),
+            swinging_human(31).frame_orientations(9)[7].coeffs());
   EXPECT_TRUE(check(clip).ok());
   for (const double factor : {0.0, -1.0, double(NAN), double(HUGE_VAL), 1e300}) {
-    Clip other = motion();
+    Clip other = swinging_human(31);
     EXPECT_EQ(scale_clip(factor, other).error().code, "motion-scale") << factor;
-    EXPECT_EQ(distance(other, motion()), 0) << "half done";
+    EXPECT_EQ(distance(other, swinging_human(31)), 0) << "half done";
   }
-  Clip no_frames = motion(0);
+  Clip no_frames = swinging_human(0);
   EXPECT_EQ(scale_clip(1e308, no_frames).error().code, "motion-scale");
 }
 
@@ -128,8 +128,8 @@ TEST(InPlace, AllOrOnlyTheEvenPart) {
   EXPECT_GT(sway, 0.02);
   EXPECT_NEAR(ground_place(even, 0, 30).x, first.x, 1e-5);
   EXPECT_NEAR(ground_place(even, 0, 30).z, first.z, 1e-5);
-  EXPECT_EQ(in_place(motion(0), 0, Travel::all).frame_count(), 0);
-  EXPECT_EQ(in_place(motion(1), 0, Travel::trend).positions, motion(1).positions);
+  EXPECT_EQ(in_place(swinging_human(0), 0, Travel::all).frame_count(), 0);
+  EXPECT_EQ(in_place(swinging_human(1), 0, Travel::trend).positions, swinging_human(1).positions);
 }
 
 TEST(InPlace, AStillRootStaysWhereItIs) {
@@ -151,7 +151,7 @@ TEST(InPlace, AStillRootStaysWhereItIs) {
 }
 
 TEST(Retime, FasterAndAtAnotherRate) {
-  const Clip clip = motion(31);  // one second
+  const Clip clip = swinging_human(31);  // one second
   const auto fast = retime(clip, 30, 2, LastFrame::within);
   ASSERT_TRUE(fast.ok());
   EXPECT_EQ(fast->frame_count(), 16);
@@ -165,7 +165,7 @@ TEST(Retime, FasterAndAtAnotherRate) {
 }
 
 TEST(Retime, TheLastFrameStaysWhereALoopNeedsIt) {
-  const Clip clip = motion(31);
+  const Clip clip = swinging_human(31);
   const auto within = retime(clip, 30, 1.3, LastFrame::within);
   const auto kept = retime(clip, 30, 1.3, LastFrame::kept);
   EXPECT_EQ(within->frame_count(), 24);
@@ -178,7 +178,7 @@ TEST(Retime, TheLastFrameStaysWhereALoopNeedsIt) {
 
 TEST(Retime, NonsenseAndFewFrames) {
   for (const double speed : {0.0, -1.0, double(NAN), double(HUGE_VAL), 1e308}) {
-    const auto result = retime(motion(), 30, speed, LastFrame::within);
+    const auto result = retime(swinging_human(31), 30, speed, LastFrame::within);
     if (speed < 1e300) {
       ASSERT_FALSE(result.ok()) << speed;
     }
@@ -186,10 +186,10 @@ TEST(Retime, NonsenseAndFewFrames) {
       EXPECT_EQ(result.error().code, "motion-speed");
     }
   }
-  EXPECT_EQ(retime(motion(), -1, 1, LastFrame::kept).error().code, "clip-rate");
-  EXPECT_EQ(retime(motion(), 1e12, 1, LastFrame::kept).error().code, "clip-too-long");
-  EXPECT_EQ(retime(motion(0), 60, 2, LastFrame::kept)->frame_count(), 0);
-  EXPECT_EQ(retime(motion(1), 60, 2, LastFrame::kept)->frame_count(), 1);
+  EXPECT_EQ(retime(swinging_human(31), -1, 1, LastFrame::kept).error().code, "clip-rate");
+  EXPECT_EQ(retime(swinging_human(31), 1e12, 1, LastFrame::kept).error().code, "clip-too-long");
+  EXPECT_EQ(retime(swinging_human(0), 60, 2, LastFrame::kept)->frame_count(), 0);
+  EXPECT_EQ(retime(swinging_human(1), 60, 2, LastFrame::kept)->frame_count(), 1);
 }
 
 TEST(JointSelection, PatternsAndSubTrees) {

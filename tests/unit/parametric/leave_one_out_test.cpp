@@ -10,7 +10,7 @@
 namespace krok::parametric {
 namespace {
 
-const Library& library() {
+const Library& length_and_height_library() {
   static const Library made =
       test::library_of(test::grid_walks(false), {"step.length", "step.height"}, {.mirror = false})
           .library;
@@ -30,7 +30,7 @@ double mean(const std::vector<HeldOut>& all, double HeldOut::*value) {
 }
 
 TEST(LeaveOneOut, WeightsFillGapsBetterThanPlanesAndNeighbours) {
-  const auto held = leave_one_out(library(), rbf::Kernel::cubic);
+  const auto held = leave_one_out(length_and_height_library(), rbf::Kernel::cubic);
   ASSERT_TRUE(held.ok()) << held.error().message;
   ASSERT_EQ(held->size(), 9u);
   std::printf("inside, mean distance of joints: weights %.1f mm, planes %.1f mm, nearest %.1f mm\n",
@@ -46,7 +46,7 @@ TEST(LeaveOneOut, WeightsFillGapsBetterThanPlanesAndNeighbours) {
 
 // With the same example twice as another's neighbour nothing is missing.
 TEST(LeaveOneOut, AnExampleThatIsTwiceThereIsItsNearestNeighbour) {
-  Library twice = library();
+  Library twice = length_and_height_library();
   Example image = twice.examples[4];
   image.parameters[0] += 5e-3;
   twice.examples.push_back(image);
@@ -57,11 +57,12 @@ TEST(LeaveOneOut, AnExampleThatIsTwiceThereIsItsNearestNeighbour) {
 }
 
 TEST(LeaveOneOut, SaysWhenThereIsTooLittle) {
-  Library few = library();
+  Library few = length_and_height_library();
   few.examples.resize(2);
   EXPECT_EQ(leave_one_out(few, rbf::Kernel::cubic).error().code, "rbf-examples");
   // Without one of three there are too few for two parameters.
-  few.examples = {library().examples[0], library().examples[1], library().examples[3]};
+  few.examples = {length_and_height_library().examples[0], length_and_height_library().examples[1],
+                  length_and_height_library().examples[3]};
   const auto held = leave_one_out(few, rbf::Kernel::cubic);
   ASSERT_TRUE(held.ok()) << held.error().message;
   for (const HeldOut& one : *held) EXPECT_TRUE(one.failed);
@@ -70,9 +71,9 @@ TEST(LeaveOneOut, SaysWhenThereIsTooLittle) {
 // Each step twice, once leaning 5 cm to the left and once to the right, and measured a little off:
 // what weights that meet all would follow.
 Library contradicting() {
-  Library result = library();
+  Library result = length_and_height_library();
   result.examples.clear();
-  for (const Example& example : library().examples) {
+  for (const Example& example : length_and_height_library().examples) {
     for (const double sign : {-1.0, 1.0}) {
       Example& leaning = result.examples.emplace_back(example);
       const auto& names = leaning.motion.skeleton.names;
@@ -106,7 +107,7 @@ TEST(LeaveOneOut, SmoothingMakesContradictingExamplesBetter) {
   EXPECT_LT(means_of(*held).weighted, means_of(*held).linear);
   EXPECT_LT(means_of(*held).weighted, means_of(*held).nearest);
   // Of examples that agree there is nothing to average.
-  const auto agreed = try_smoothings(library(), rbf::Kernel::cubic, smoothings);
+  const auto agreed = try_smoothings(length_and_height_library(), rbf::Kernel::cubic, smoothings);
   ASSERT_TRUE(agreed.ok());
   EXPECT_LT((*agreed)[0].weighted, (*agreed)[2].weighted);
 }
@@ -132,7 +133,7 @@ TEST(LeaveOneOut, TellsHowFarOffExamplesComeBack) {
         EXPECT_LT(distance, 0.2);
       }
     }
-    EXPECT_EQ(distances_to_examples(library(), solver->function()).error().code,
+    EXPECT_EQ(distances_to_examples(length_and_height_library(), solver->function()).error().code,
               "parametric-weights");
   }
 }

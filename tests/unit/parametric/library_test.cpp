@@ -14,13 +14,13 @@ namespace {
 
 using testing::HasSubstr;
 
-const test::KeyedWalk& walk() {
+const test::KeyedWalk& plain_walk() {
   static const test::KeyedWalk made = test::keyed_walk({});
   return made;
 }
 
 Library frame() {
-  std::vector<test::KeyedWalk> walks = {walk()};
+  std::vector<test::KeyedWalk> walks = {plain_walk()};
   Library library = test::library_of(walks, {"step.length", "Head.up@swing_off"}).library;
   library.examples.clear();
   return library;
@@ -28,8 +28,8 @@ Library frame() {
 
 TEST(Library, AnExampleIsSetOnItsStanceFoot) {
   const Library library = frame();
-  Clip clip = walk().walk.clip;
-  const double strike = walk().keys.keytimes[0].time;
+  Clip clip = plain_walk().walk.clip;
+  const double strike = plain_walk().keys.keytimes[0].time;
   const std::vector<double> times = {strike, strike + 0.15, strike + 0.5};
   const auto wanted = make_example(library, "a", clip, times);
   ASSERT_TRUE(wanted.ok()) << wanted.error().message;
@@ -47,7 +47,7 @@ TEST(Library, AnExampleIsSetOnItsStanceFoot) {
 
 TEST(Library, ExamplesMustFit) {
   const Library library = frame();
-  const Clip& clip = walk().walk.clip;
+  const Clip& clip = plain_walk().walk.clip;
   const auto code = [&](const Clip& motion, std::vector<double> times) {
     const auto made = make_example(library, "one", motion, std::move(times));
     if (made.ok()) return std::string();
@@ -79,7 +79,7 @@ TEST(Library, IntervalsMayBeTwoFramesOrTenMilliseconds) {
 }
 
 TEST(Library, MirroredTwiceIsTheSame) {
-  std::vector<test::KeyedWalk> walks = {walk()};
+  std::vector<test::KeyedWalk> walks = {plain_walk()};
   const Library library = test::library_of(walks, {"step.length", "step.turn"}).library;
   const RoleMap roles = find_roles(library.skeleton);
   const auto twice = mirrored(*mirrored(library, roles), roles);

@@ -15,15 +15,16 @@
 #include "rbf/sobol.h"
 #include "rbf/weight_evaluator.h"
 #include "rbf/weight_solver.h"
+#include "support/special_values.h"
+#include "unit/rbf/kernels.h"
 
 namespace krok::rbf {
 namespace {
 
-using Values = std::vector<double>;
+using test::kKernels;
+using test::kNan;
 
-constexpr Kernel kKernels[] = {Kernel::cubic, Kernel::linear, Kernel::gaussian, Kernel::bspline,
-                               Kernel::wendland};
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using Values = std::vector<double>;
 
 // A function that no examples gave: any numbers of the right sums.
 WeightFunction any_function(Kernel kernel, int dimensions, int examples, int centres) {

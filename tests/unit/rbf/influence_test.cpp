@@ -7,14 +7,15 @@
 
 #include "rbf/weight_evaluator.h"
 #include "rbf/weight_solver.h"
+#include "unit/rbf/kernels.h"
 
 namespace krok::rbf {
 namespace {
 
+using test::kKernels;
+
 using Values = std::vector<double>;
 
-constexpr Kernel kKernels[] = {Kernel::cubic, Kernel::linear, Kernel::gaussian, Kernel::bspline,
-                               Kernel::wendland};
 const Values kExamples = {0, 0, 2, 0, 0, 3, 2, 3, 1, 1.4};
 const Values kInserted = {0.5, 0.8, 1.4, 2.2, 1.6, 0.5};
 constexpr std::size_t kRows = 3, kCount = 5;

@@ -13,13 +13,14 @@
 #include "rbf/sobol.h"
 #include "rbf/weight_solver.h"
 #include "support/arm.h"
+#include "support/special_values.h"
 
 namespace krok::rbf {
 namespace {
 
-using Values = std::vector<double>;
+using test::kInfinity;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using Values = std::vector<double>;
 
 WeightEvaluator evaluator_of(const test::Arm& arm) {
   const auto solver = WeightSolver::create(arm.dimensions, arm.parameters);

@@ -10,14 +10,15 @@
 #include "frozen_weights.h"
 #include "rbf/weight_evaluator.h"
 #include "rbf/weight_solver.h"
+#include "unit/rbf/kernels.h"
 
 namespace krok::rbf {
 namespace {
 
-using Values = std::vector<double>;
+using test::kKernels;
+using test::weights_at;
 
-constexpr Kernel kKernels[] = {Kernel::cubic, Kernel::linear, Kernel::gaussian, Kernel::bspline,
-                               Kernel::wendland};
+using Values = std::vector<double>;
 
 // As in frozen_weights.h, by scipy's RBFInterpolator(..., smoothing=[s, .., s, 0, 0]): the
 // examples' smoothing, none for inserted points.
@@ -70,14 +71,6 @@ WeightSolver solver_of(Kernel kernel, double smoothing) {
   auto solver = WeightSolver::create(2, test::kExamples, {kernel, {}, {}, smoothing});
   EXPECT_TRUE(solver.ok()) << solver.error().message;
   return std::move(*solver);
-}
-
-Values weights_at(const WeightFunction& function, std::span<const double> point) {
-  const auto evaluator = WeightEvaluator::create(function);
-  EXPECT_TRUE(evaluator.ok()) << evaluator.error().message;
-  Values weights(static_cast<std::size_t>(function.examples));
-  evaluator->weights(point, weights);
-  return weights;
 }
 
 TEST(Smoothing, GivesTheNumbersOfScipy) {

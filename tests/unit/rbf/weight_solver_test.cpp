@@ -15,28 +15,22 @@
 
 #include "frozen_weights.h"
 #include "rbf/weight_evaluator.h"
+#include "support/special_values.h"
+#include "unit/rbf/kernels.h"
 
 namespace krok::rbf {
 namespace {
 
-using Values = std::vector<double>;
+using test::kKernels;
+using test::kNan;
+using test::weights_at;
 
-constexpr Kernel kKernels[] = {Kernel::cubic, Kernel::linear, Kernel::gaussian, Kernel::bspline,
-                               Kernel::wendland};
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using Values = std::vector<double>;
 
 WeightSolver solver_of(int dimensions, const Values& examples, Kernel kernel) {
   auto solver = WeightSolver::create(dimensions, examples, {kernel, {}, {}});
   EXPECT_TRUE(solver.ok()) << solver.error().message;
   return std::move(*solver);
-}
-
-Values weights_at(const WeightFunction& function, const Values& point) {
-  const auto evaluator = WeightEvaluator::create(function);
-  EXPECT_TRUE(evaluator.ok()) << evaluator.error().message;
-  Values weights(static_cast<std::size_t>(function.examples));
-  evaluator->weights(point, weights);
-  return weights;
 }
 
 // The corners of the unit cube, and points that lie in it without coming close to each other: the
@@ -100,7 +94,7 @@ TEST(WeightSolver, TwoExamplesAreInterpolatedLinearly) {
   for (const Kernel kernel : kKernels) {
     const WeightSolver solver = solver_of(1, {2, 6}, kernel);
     for (const double p : {2.0, 3.0, 6.0, 10.0, -2.0}) {
-      const Values weights = weights_at(solver.function(), {p});
+      const Values weights = weights_at(solver.function(), Values{p});
       EXPECT_NEAR(weights[0], (6 - p) / 4, 1e-15) << kernel_name(kernel);
       EXPECT_NEAR(weights[1], (p - 2) / 4, 1e-15) << kernel_name(kernel);
     }
@@ -110,7 +104,7 @@ TEST(WeightSolver, TwoExamplesAreInterpolatedLinearly) {
 
 TEST(WeightSolver, LinearKernelInOneDimensionJoinsTheExamplesByStraightLines) {
   const WeightSolver solver = solver_of(1, {0, 1, 3, 4}, Kernel::linear);
-  const Values weights = weights_at(solver.function(), {1.5});
+  const Values weights = weights_at(solver.function(), Values{1.5});
   EXPECT_THAT(weights, testing::Pointwise(testing::DoubleNear(1e-14), Values{0, 0.75, 0.25, 0}));
 }
 
@@ -118,10 +112,10 @@ TEST(WeightSolver, CubicKernelInOneDimensionIsTheNaturalSpline) {
   // Through 0, 1, 0 at 0, 1, 2: 1.5 x - 0.5 x^3 on the first half, straight lines outside.
   const WeightSolver solver = solver_of(1, {0, 1, 2}, Kernel::cubic);
   for (const double x : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-    EXPECT_NEAR(weights_at(solver.function(), {x})[1], 1.5 * x - 0.5 * x * x * x, 1e-15);
-    EXPECT_NEAR(weights_at(solver.function(), {2 - x})[1], 1.5 * x - 0.5 * x * x * x, 1e-15);
+    EXPECT_NEAR(weights_at(solver.function(), Values{x})[1], 1.5 * x - 0.5 * x * x * x, 1e-15);
+    EXPECT_NEAR(weights_at(solver.function(), Values{2 - x})[1], 1.5 * x - 0.5 * x * x * x, 1e-15);
   }
-  EXPECT_NEAR(weights_at(solver.function(), {-1})[1], -1.5, 1e-14);
+  EXPECT_NEAR(weights_at(solver.function(), Values{-1})[1], -1.5, 1e-14);
 }
 
 // The weights of examples at their own parameters, and the identities at other points, beyond the

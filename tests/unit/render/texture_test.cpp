@@ -17,7 +17,8 @@ namespace {
 using Wrap = krok::Texture::Wrap;
 using Rgba = std::array<std::uint8_t, 4>;
 
-constexpr Rgba kRed = {200, 30, 20, 255}, kBlue = {20, 40, 180, 255}, kClear = {20, 40, 180, 0};
+constexpr Rgba kRedTexel = {200, 30, 20, 255}, kBlueTexel = {20, 40, 180, 255},
+               kClearTexel = {20, 40, 180, 0};
 
 std::shared_ptr<const Mipmap> mipmap(int width, int height,
                                      const std::function<Rgba(int x, int y)>& at) {
@@ -36,7 +37,7 @@ std::shared_ptr<const Mipmap> mipmap(int width, int height,
 // Red to the left, blue to the right; below, the same darker.
 std::shared_ptr<const Mipmap> four_fields(int side = 64) {
   return mipmap(side, side, [side](int x, int y) {
-    Rgba pixel = x < side / 2 ? kRed : kBlue;
+    Rgba pixel = x < side / 2 ? kRedTexel : kBlueTexel;
     if (y >= side / 2) {
       for (int c = 0; c < 3; ++c) pixel[static_cast<std::size_t>(c)] /= 2;
     }
@@ -99,16 +100,16 @@ void expect_as_plain(const SheetPicture& picture, double x, double y, Colour pla
 
 TEST(Texture, FieldsOfAPictureAreWhereTheCoordinatesPutThem) {
   const SheetPicture picture = shot({square(paint_of(four_fields()))});
-  expect_as_plain(picture, -0.25, 0.75, colour_of(kRed), "upper left");
-  expect_as_plain(picture, 0.25, 0.75, colour_of(kBlue), "upper right");
+  expect_as_plain(picture, -0.25, 0.75, colour_of(kRedTexel), "upper left");
+  expect_as_plain(picture, 0.25, 0.75, colour_of(kBlueTexel), "upper right");
   expect_as_plain(picture, -0.25, 0.25, {100, 15, 10}, "lower left");
   expect_as_plain(picture, 0.25, 0.25, {10, 20, 90}, "lower right");
 }
 
 TEST(Texture, StandsInForTheSurfacesColours) {
-  Surface surface = square(paint_of(mipmap(1, 1, [](int, int) { return kRed; })));
+  Surface surface = square(paint_of(mipmap(1, 1, [](int, int) { return kRedTexel; })));
   surface.colours.assign(4, colour(0x00FF00));
-  expect_as_plain(shot({surface}), 0, 0.5, colour_of(kRed), "middle");
+  expect_as_plain(shot({surface}), 0, 0.5, colour_of(kRedTexel), "middle");
 }
 
 // Three copies from u = -1 to 2, as glTF 2.0, section 5.26 (sampler) has them.
@@ -134,7 +135,7 @@ TEST(Texture, UpAndDownWrapOnTheirOwn) {
   paint.wrap_v = Wrap::clamp;
   const SheetPicture picture = shot({square(paint, {0, -1}, {1, 2})});
   for (const double y : {0.95, 0.75, 0.6}) {
-    expect_as_plain(picture, -0.25, y, colour_of(kRed), "the upper half and all above it");
+    expect_as_plain(picture, -0.25, y, colour_of(kRedTexel), "the upper half and all above it");
   }
   for (const double y : {0.4, 0.2, 0.05}) {
     expect_as_plain(picture, -0.25, y, {100, 15, 10}, "the lower half and all below it");
@@ -199,10 +200,11 @@ TEST(Texture, FromAfarACheckerboardIsEvenlyGrey) {
 // Stripes across the way in which a surface leans away keep their colours: only the other way is
 // averaged.
 TEST(Texture, StripesStaySharpOnASurfaceThatLeansAway) {
-  const auto stripes = mipmap(64, 64, [](int, int y) { return y / 16 % 2 == 0 ? kRed : kBlue; });
+  const auto stripes =
+      mipmap(64, 64, [](int, int y) { return y / 16 % 2 == 0 ? kRedTexel : kBlueTexel; });
   const double yaw = 80 * kRadiansPerDegree;
   const SheetPicture picture = shot({square(paint_of(stripes))}, 100, yaw);
-  const SheetPicture red = shot({square(colour_of(kRed))}, 100, yaw);
+  const SheetPicture red = shot({square(colour_of(kRedTexel))}, 100, yaw);
   expect_near(seen(picture, 0, 0.875), seen(red, 0, 0.875), 3, "the upper stripe");
   expect_near(seen(picture, 0, 0.375), seen(red, 0, 0.375), 3, "the third stripe");
 }
@@ -217,19 +219,20 @@ TEST(Texture, SmallerPicturesShareOddSidesOutEvenly) {
     EXPECT_NEAR(made->levels()[1].rgba[0], 156, 1);  // 1/3 of the light
     EXPECT_EQ(made->levels()[1].rgba[3], 85);
   }
-  const auto odd = mipmap(7, 5, [](int, int) { return kBlue; });
+  const auto odd = mipmap(7, 5, [](int, int) { return kBlueTexel; });
   ASSERT_EQ(odd->levels().size(), 3U);
   EXPECT_EQ(odd->levels()[1].width, 3);
   EXPECT_EQ(odd->levels()[1].height, 2);
   for (const Mipmap::Level& level : odd->levels()) {
     EXPECT_EQ(level.rgba.size(), 4U * static_cast<unsigned>(level.width * level.height));
-    EXPECT_EQ(level.rgba[2], kBlue[2]);
+    EXPECT_EQ(level.rgba[2], kBlueTexel[2]);
   }
 }
 
 // The right half is clear: what is behind it is seen, another surface or nothing.
 TEST(Texture, WhatIsCutOutShowsWhatIsBehind) {
-  Paint paint = paint_of(mipmap(64, 64, [](int x, int) { return x < 32 ? kRed : kClear; }));
+  Paint paint =
+      paint_of(mipmap(64, 64, [](int x, int) { return x < 32 ? kRedTexel : kClearTexel; }));
   const auto with_cutoff = [&paint](float cutoff) {
     paint.cutoff = cutoff;
     return square(paint);
@@ -243,7 +246,7 @@ TEST(Texture, WhatIsCutOutShowsWhatIsBehind) {
   EXPECT_LT(test::colourfulness(seen(alone, 0.25, 0.5)), 10) << "the picture's ground";
   EXPECT_GT(test::colourfulness(seen(alone, -0.25, 0.5)), 60);
   // Without a cutoff alpha does not count.
-  expect_as_plain(shot({with_cutoff(0)}), 0.25, 0.5, colour_of(kClear), "the clear half");
+  expect_as_plain(shot({with_cutoff(0)}), 0.25, 0.5, colour_of(kClearTexel), "the clear half");
 }
 
 TEST(Texture, AlphaAtTheCutoffIsDrawnAndTheFactorCounts) {
@@ -268,7 +271,7 @@ TEST(Texture, HolesKeepTheirShareFromAfar) {
   paint.smooth = false;
   paint.cutoff = 0.5F;
   const SheetPicture picture = shot({square(paint)}, 100);
-  const SheetPicture whole = shot({square(colour_of(kRed))}, 100);
+  const SheetPicture whole = shot({square(colour_of(kRedTexel))}, 100);
   double holes = 0, all = 0;
   for (double x = -0.4; x < 0.41; x += 0.02) {
     for (double y = 0.1; y < 0.91; y += 0.02) {

@@ -8,12 +8,13 @@
 #include "scene/clip.h"
 #include "scene/model.h"
 #include "scene/skeleton.h"
+#include "support/special_values.h"
 
 namespace krok {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
+using test::kNan;
+using test::kNanF;
 
 // Breaks one promise of a good value and names the code that must come.
 template <typename T>

@@ -3,13 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "scene/character.h"
 #include "scene/material.h"
+#include "support/special_values.h"
 
 namespace krok {
 namespace {
+
+using test::kNanF;
 
 template <typename Change>
 std::string material_fault(Change change) {
@@ -22,8 +24,6 @@ std::string material_fault(Change change) {
   return status ? "" : status.error().code;
 }
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
 TEST(CheckMaterials, FindsEachFault) {
   EXPECT_EQ(material_fault([](Material& m) { m.name.clear(); }), "material-name");
   EXPECT_EQ(material_fault([](Material& m) { m.name = "a"; }), "material-name");
@@ -31,13 +31,13 @@ TEST(CheckMaterials, FindsEachFault) {
   EXPECT_EQ(material_fault([](Material& m) { m.name = std::string("a\0b", 3); }), "material-name");
   EXPECT_EQ(material_fault([](Material& m) { m.name.assign(1001, 'a'); }), "material-name");
   EXPECT_EQ(material_fault([](Material& m) { m.base_color.w() = 1.5f; }), "material-value");
-  EXPECT_EQ(material_fault([](Material& m) { m.base_color.x() = kNan; }), "material-value");
+  EXPECT_EQ(material_fault([](Material& m) { m.base_color.x() = kNanF; }), "material-value");
   EXPECT_EQ(material_fault([](Material& m) { m.metallic = -0.1f; }), "material-value");
-  EXPECT_EQ(material_fault([](Material& m) { m.roughness = kNan; }), "material-value");
+  EXPECT_EQ(material_fault([](Material& m) { m.roughness = kNanF; }), "material-value");
   EXPECT_EQ(material_fault([](Material& m) { m.occlusion_strength = 2; }), "material-value");
   EXPECT_EQ(material_fault([](Material& m) { m.emissive.z() = 2; }), "material-value");
-  EXPECT_EQ(material_fault([](Material& m) { m.alpha_cutoff = kNan; }), "material-value");
-  EXPECT_EQ(material_fault([](Material& m) { m.normal_scale = kNan; }), "material-value");
+  EXPECT_EQ(material_fault([](Material& m) { m.alpha_cutoff = kNanF; }), "material-value");
+  EXPECT_EQ(material_fault([](Material& m) { m.normal_scale = kNanF; }), "material-value");
   EXPECT_EQ(material_fault([](Material& m) { m.normal_scale = 1001; }), "material-value");
   EXPECT_EQ(material_fault([](Material& m) { m.shaders = {"\xFF"}; }), "material-value");
   EXPECT_TRUE(check(std::vector<Material>()).ok());
@@ -66,11 +66,11 @@ TEST(CheckCharacter, FindsEachFault) {
   EXPECT_FALSE(is_good([](Character& c) { c.parts[0].material = "\xFF"; }));
   EXPECT_FALSE(is_good([](Character& c) { c.eyes.push_back(c.eyes[0]); }));
   EXPECT_FALSE(is_good([](Character& c) { c.eyes[0].joint.clear(); }));
-  EXPECT_FALSE(is_good([](Character& c) { c.eyes[0].position.y() = kNan; }));
+  EXPECT_FALSE(is_good([](Character& c) { c.eyes[0].position.y() = kNanF; }));
   EXPECT_FALSE(is_good([](Character& c) { c.eyes[0].position.y() = 2e6f; }));
   EXPECT_FALSE(is_good([](Character& c) { c.expressions[0].name.clear(); }));
   EXPECT_FALSE(is_good([](Character& c) { c.expressions[0].target = "\xFF"; }));
-  EXPECT_FALSE(is_good([](Character& c) { c.expressions[0].weight = kNan; }));
+  EXPECT_FALSE(is_good([](Character& c) { c.expressions[0].weight = kNanF; }));
   EXPECT_TRUE(is_good([](Character& c) { c.expressions.clear(); }));
 }
 

@@ -9,7 +9,7 @@
 namespace krok {
 namespace {
 
-MorphSet sound() {
+MorphSet sound_morphs() {
   MorphSet set;
   set.names = {"smile", "frown"};
   set.vertex_count = 3;
@@ -19,16 +19,16 @@ MorphSet sound() {
 }
 
 TEST(MorphSet, ASoundOnePasses) {
-  EXPECT_TRUE(check(sound()).ok());
+  EXPECT_TRUE(check(sound_morphs()).ok());
   EXPECT_TRUE(check(MorphSet()).ok());
-  MorphSet plain = sound();
+  MorphSet plain = sound_morphs();
   plain.normals.clear();
   EXPECT_TRUE(check(plain).ok());
   EXPECT_TRUE(plain.target_normals(1).empty());
 }
 
 TEST(MorphSet, TargetsStandOneAfterTheOther) {
-  const MorphSet set = sound();
+  const MorphSet set = sound_morphs();
   EXPECT_EQ(set.find("frown"), 1);
   EXPECT_EQ(set.find("Frown"), -1);
   EXPECT_EQ(set.target_positions(1)[0].x(), 3.0f);
@@ -36,21 +36,21 @@ TEST(MorphSet, TargetsStandOneAfterTheOther) {
 }
 
 TEST(MorphSet, FaultsAreFound) {
-  MorphSet set = sound();
+  MorphSet set = sound_morphs();
   set.positions.pop_back();
   EXPECT_EQ(check(set).error().code, "morph-shape");
-  set = sound();
+  set = sound_morphs();
   set.vertex_count = -1;
   EXPECT_EQ(check(set).error().code, "morph-shape");
-  set = sound();
+  set = sound_morphs();
   set.normals.pop_back();
   EXPECT_EQ(check(set).error().code, "morph-shape");
   for (const char* name : {"", "smile", "\xff"}) {
-    set = sound();
+    set = sound_morphs();
     set.names[1] = name;
     EXPECT_EQ(check(set).error().code, "morph-name");
   }
-  set = sound();
+  set = sound_morphs();
   set.positions[2].y() = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(check(set).error().code, "morph-value");
 }

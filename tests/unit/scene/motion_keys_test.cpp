@@ -18,32 +18,32 @@ Skeleton two_joints() {
   return skeleton;
 }
 
-MotionKeys sound() {
+MotionKeys sound_keys() {
   MotionKeys keys;
   keys.contacts = {{1, 0.0, 0.5, Vec3(0, 0, 0.1)}, {1, 1.0, 2.0, Vec3(0, 0, 0.9)}};
   keys.keytimes = {{0.0, "left_strike"}, {0.5, "left_off"}, {2.0, "end"}};
   return keys;
 }
 
-std::string code_of(const MotionKeys& keys) {
+std::string code_of_keys(const MotionKeys& keys) {
   const Status status = check(keys, two_joints(), 2.0);
   return status ? "" : status.error().code;
 }
 
 TEST(MotionKeys, SoundOnesPass) {
-  EXPECT_EQ(code_of(sound()), "");
-  EXPECT_EQ(code_of(MotionKeys()), "");
-  MotionKeys rounded = sound();
+  EXPECT_EQ(code_of_keys(sound_keys()), "");
+  EXPECT_EQ(code_of_keys(MotionKeys()), "");
+  MotionKeys rounded = sound_keys();
   rounded.contacts[1].end = 2.0004;  // as a file with three digits has it
-  EXPECT_EQ(code_of(rounded), "");
+  EXPECT_EQ(code_of_keys(rounded), "");
 }
 
 TEST(MotionKeys, FaultsAreFound) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto code_after = [](const auto& change) {
-    MotionKeys keys = sound();
+    MotionKeys keys = sound_keys();
     change(keys);
-    return code_of(keys);
+    return code_of_keys(keys);
   };
   using Keys = MotionKeys;
   EXPECT_EQ(code_after([](Keys& keys) { keys.contacts[0].joint = 2; }), "keys-joint");

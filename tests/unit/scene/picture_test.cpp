@@ -10,7 +10,7 @@
 namespace krok {
 namespace {
 
-std::string code_of(const std::vector<std::byte>& bytes) {
+std::string code_of_picture(const std::vector<std::byte>& bytes) {
   const auto facts = picture_facts(bytes);
   return facts ? "" : facts.error().code;
 }
@@ -32,17 +32,17 @@ TEST(PictureFacts, EveryTruncationIsTold) {
   for (const auto& whole : {test::png(), test::jpeg()}) {
     for (std::size_t size = 0; size < whole.size(); ++size) {
       const std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<long>(size));
-      EXPECT_NE(code_of(cut), "") << size;
+      EXPECT_NE(code_of_picture(cut), "") << size;
     }
   }
 }
 
 TEST(PictureFacts, OtherKindsAreTold) {
-  EXPECT_EQ(code_of({}), "picture-kind");
+  EXPECT_EQ(code_of_picture({}), "picture-kind");
   for (const char* start : {"GIF89a......", "RIFF....WEBPVP8 ", "BM..........", "DDS ......."}) {
     const std::string text = start;
     const auto bytes = std::as_bytes(std::span(text));
-    EXPECT_EQ(code_of({bytes.begin(), bytes.end()}), "picture-kind") << start;
+    EXPECT_EQ(code_of_picture({bytes.begin(), bytes.end()}), "picture-kind") << start;
   }
 }
 
@@ -51,10 +51,10 @@ TEST(PictureFacts, SizesBeyondReasonAreTold) {
   for (const std::size_t at : {16, 20}) {  // width, height
     auto odd = png;
     odd[at + 2] = std::byte{0x80};  // 32768 and some
-    EXPECT_EQ(code_of(odd), "picture-size");
+    EXPECT_EQ(code_of_picture(odd), "picture-size");
     odd = png;
     odd[at + 3] = std::byte{0};
-    EXPECT_EQ(code_of(odd), "picture-size");
+    EXPECT_EQ(code_of_picture(odd), "picture-size");
   }
 }
 

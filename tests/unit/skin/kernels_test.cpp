@@ -8,7 +8,7 @@
 namespace krok::test {
 namespace {
 
-constexpr int kJoints = 23;
+constexpr int kManyJoints = 23;
 
 void expect_kernels_agree(const SkinBinding& binding, const SkinPose& pose, const SkinSurface& in,
                           const std::string& what) {
@@ -28,9 +28,9 @@ void expect_kernels_agree(const Model& model, const SkinSurface& in, const std::
     const SkinBinding binding(model, method);
     SkinPose pose(binding);
     const std::string name = what + ", method " + std::to_string(static_cast<int>(method));
-    pose.set(random_pose(kJoints, 3));
+    pose.set(random_pose(kManyJoints, 3));
     expect_kernels_agree(binding, pose, in, name);
-    pose.set_palette(random_palette(kJoints, 4, true));
+    pose.set_palette(random_palette(kManyJoints, 4, true));
     expect_kernels_agree(binding, pose, in, name + ", deforming");
   }
 }
@@ -38,7 +38,7 @@ void expect_kernels_agree(const Model& model, const SkinSurface& in, const std::
 TEST(SkinKernels, GiveTheBitsOfTheReferenceTailsIncluded) {
   for (int influences = 1; influences <= Model::kMaxInfluences; ++influences) {
     for (std::size_t count = 0; count <= 67; count += influences == 4 ? 1 : 7) {
-      const Model model = random_model(count, influences, kJoints, 7, true);
+      const Model model = random_model(count, influences, kManyJoints, 7, true);
       expect_kernels_agree(model, skin_surface(model),
                            std::to_string(count) + " vertices, " + std::to_string(influences));
     }
@@ -47,13 +47,13 @@ TEST(SkinKernels, GiveTheBitsOfTheReferenceTailsIncluded) {
 
 TEST(SkinKernels, GiveTheBitsOfTheReferenceWhereInfluencesDifferInNumber) {
   for (const std::size_t count : {300u, 2049u}) {
-    const Model model = random_model(count, 8, kJoints, 8);
+    const Model model = random_model(count, 8, kManyJoints, 8);
     expect_kernels_agree(model, skin_surface(model), std::to_string(count) + " vertices");
   }
 }
 
 TEST(SkinKernels, NormalsAndTangentsMayBeMissing) {
-  const Model model = random_model(75, 4, kJoints, 9);
+  const Model model = random_model(75, 4, kManyJoints, 9);
   SkinSurface in = skin_surface(model);
   in.tangents = {};
   expect_kernels_agree(model, in, "no tangents");
@@ -69,10 +69,10 @@ TEST(SkinKernels, GiveTheBitsOfTheReferenceForOddVectors) {
   for (const Vec3f& odd : {Vec3f(0, 0, 0), Vec3f(1e-20f, 0, 0), Vec3f(3e7f, -2e7f, 1),
                            Vec3f(1e20f, 0, 0), Vec3f(kNan, 0, 0), Vec3f(0, kInfinity, 0)}) {
     for (const std::size_t place : {0u, 15u, 16u, 34u}) {
-      Model model = random_model(35, 4, kJoints, 10);
+      Model model = random_model(35, 4, kManyJoints, 10);
       model.normals[place] = odd;
       expect_kernels_agree(model, skin_surface(model), "an odd normal");
-      model = random_model(35, 4, kJoints, 10);
+      model = random_model(35, 4, kManyJoints, 10);
       model.tangents[place].head<3>() = odd;
       expect_kernels_agree(model, skin_surface(model), "an odd tangent");
     }
@@ -81,8 +81,8 @@ TEST(SkinKernels, GiveTheBitsOfTheReferenceForOddVectors) {
 
 // Zero weights are left out of a binding; the plain function reads them all.
 TEST(SkinKernels, PreparedInfluencesChangeNoBit) {
-  const Model model = random_model(333, 8, kJoints, 11);
-  const auto pose = random_pose(kJoints, 12);
+  const Model model = random_model(333, 8, kManyJoints, 11);
+  const auto pose = random_pose(kManyJoints, 12);
   std::vector<SkinMatrix> palette(pose.size());
   make_palette(inverse_reference(model.skeleton), pose, palette);
   std::vector<Vec3f> positions(333), normals(333);
@@ -93,11 +93,11 @@ TEST(SkinKernels, PreparedInfluencesChangeNoBit) {
 }
 
 TEST(SkinKernels, ThreadsDoNotChangeABit) {
-  const Model model = random_model(10007, 6, kJoints, 13);
+  const Model model = random_model(10007, 6, kManyJoints, 13);
   for (const SkinMethod method : kMethods) {
     const SkinBinding binding(model, method);
     SkinPose pose(binding);
-    pose.set(random_pose(kJoints, 14));
+    pose.set(random_pose(kManyJoints, 14));
     expect_same_bits(skinned(binding, pose, skin_surface(model), 1),
                      skinned(binding, pose, skin_surface(model), 4), "4 threads");
   }

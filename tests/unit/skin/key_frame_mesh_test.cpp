@@ -13,7 +13,7 @@
 namespace krok {
 namespace {
 
-constexpr int kVertices = 3000;  // more than one tile
+constexpr int kMeshVertices = 3000;  // more than one tile
 
 Vec3f place(int vertex, double time) {
   const double way = 0.3 + 0.001 * vertex;
@@ -24,9 +24,9 @@ Vec3f place(int vertex, double time) {
 KeyFrameMesh parabolas(const std::vector<double>& times) {
   KeyFrameMesh mesh;
   mesh.times = times;
-  mesh.vertex_count = kVertices;
+  mesh.vertex_count = kMeshVertices;
   for (const double time : times) {
-    for (int v = 0; v < kVertices; ++v) {
+    for (int v = 0; v < kMeshVertices; ++v) {
       mesh.positions.push_back(place(v, time));
       mesh.normals.push_back(Vec3(std::cos(time), std::sin(time), 0).cast<float>());
     }
@@ -35,8 +35,8 @@ KeyFrameMesh parabolas(const std::vector<double>& times) {
 }
 
 struct Shape {
-  std::vector<Vec3f> positions = std::vector<Vec3f>(kVertices);
-  std::vector<Vec3f> normals = std::vector<Vec3f>(kVertices);
+  std::vector<Vec3f> positions = std::vector<Vec3f>(kMeshVertices);
+  std::vector<Vec3f> normals = std::vector<Vec3f>(kMeshVertices);
 };
 
 Shape shape(const KeyFrameMesh& mesh, ShapeJoin join, double tension, double time, int jobs = 1) {
@@ -50,8 +50,8 @@ TEST(KeyFrameMesh, AKeyIsItselfToTheBit) {
   for (const ShapeJoin join : {ShapeJoin::linear, ShapeJoin::hermite}) {
     for (int key = 0; key < mesh.key_count(); ++key) {
       const Shape found = shape(mesh, join, 0.3, mesh.times[static_cast<std::size_t>(key)]);
-      for (std::size_t v = 0; v < kVertices; ++v) {
-        const std::size_t at = static_cast<std::size_t>(key) * kVertices + v;
+      for (std::size_t v = 0; v < kMeshVertices; ++v) {
+        const std::size_t at = static_cast<std::size_t>(key) * kMeshVertices + v;
         ASSERT_EQ(found.positions[v], mesh.positions[at]);
         ASSERT_EQ(found.normals[v], mesh.normals[at]);
       }
@@ -62,7 +62,7 @@ TEST(KeyFrameMesh, AKeyIsItselfToTheBit) {
 TEST(KeyFrameMesh, LinearIsTheChord) {
   const KeyFrameMesh mesh = parabolas({0, 1, 4});
   const Shape found = shape(mesh, ShapeJoin::linear, 0, 1.75);
-  for (int v = 0; v < kVertices; ++v) {
+  for (int v = 0; v < kMeshVertices; ++v) {
     const Vec3 expected = 0.75 * place(v, 1).cast<double>() + 0.25 * place(v, 4).cast<double>();
     ASSERT_LT((found.positions[static_cast<std::size_t>(v)].cast<double>() - expected).norm(),
               1e-5);
@@ -76,7 +76,7 @@ TEST(KeyFrameMesh, HermiteFollowsAParabola) {
     const Shape found = shape(mesh, ShapeJoin::hermite, 0, time);
     const Shape straight = shape(mesh, ShapeJoin::linear, 0, time);
     double off = 0, straight_off = 0;
-    for (int v = 0; v < kVertices; ++v) {
+    for (int v = 0; v < kMeshVertices; ++v) {
       const auto at = static_cast<std::size_t>(v);
       const Vec3f expected = place(v, time);
       off = std::max<double>(off, (found.positions[at] - expected).norm());

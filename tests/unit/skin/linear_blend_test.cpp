@@ -27,9 +27,9 @@ struct Vertices {
   SkinVertices view() const { return {positions, normals, influences, joints, weights}; }
 };
 
-struct Skinned {
+struct Blended {
   std::vector<Vec3f> positions, normals;
-  explicit Skinned(const SkinVertices& in)
+  explicit Blended(const SkinVertices& in)
       : positions(in.positions.size(), Vec3f::Constant(-7)),
         normals(in.normals.size(), Vec3f::Constant(-7)) {}
   SkinnedVertices view() { return {positions, normals}; }
@@ -83,11 +83,11 @@ testing::AssertionResult same_bits(const std::vector<Vec3f>& a, const std::vecto
 
 void expect_same(const std::vector<SkinMatrix>& palette, const SkinVertices& in,
                  const std::string& what) {
-  Skinned expected(in);
+  Blended expected(in);
   linear_blend_reference(palette, in, expected.view());
   for (const Simd simd : {Simd::other, Simd::avx2, Simd::avx512}) {
     limit_simd(simd);
-    Skinned result(in);
+    Blended result(in);
     linear_blend(palette, in, result.view());
     EXPECT_TRUE(same_bits(expected.positions, result.positions)) << what;
     EXPECT_TRUE(same_bits(expected.normals, result.normals)) << what;
@@ -134,7 +134,7 @@ TEST(LinearBlend, NormalsComeOutWithLengthOne) {
   in.normals[17] = {std::numeric_limits<float>::quiet_NaN(), 0, 0};
   in.normals[20] = {1e-14f, 0, 0};
   in.normals[21] = {1e14f, 3, 0};
-  Skinned out(in.view());
+  Blended out(in.view());
   linear_blend(palette, in.view(), out.view());
   for (const Vec3f& normal : out.normals) EXPECT_NEAR(normal.norm(), 1.0f, 3e-7f);
   EXPECT_EQ(out.normals[3], Vec3f::UnitY());
@@ -153,7 +153,7 @@ TEST(LinearBlend, NormalsThatCancelFollowTheFirstInfluence) {
   in.normals = {{0, 2, 0}};
   in.joints = {1, 0};
   in.weights = {0.5f, 0.5f};
-  Skinned out(in.view());
+  Blended out(in.view());
   linear_blend(palette, in.view(), out.view());
   EXPECT_LT((out.normals[0] - Vec3f(0, -1, 0)).norm(), 1e-6f);
   expect_same(palette, in.view(), "cancelling");
@@ -162,7 +162,7 @@ TEST(LinearBlend, NormalsThatCancelFollowTheFirstInfluence) {
 TEST(LinearBlend, ThreadsDoNotChangeABit) {
   const auto palette = palette_of(human_clip(), 6);
   const auto in = random_vertices(10007, 4, static_cast<int>(palette.size()), 11u);
-  Skinned one(in.view()), many(in.view());
+  Blended one(in.view()), many(in.view());
   linear_blend_parallel(palette, in.view(), one.view(), 1);
   linear_blend_parallel(palette, in.view(), many.view(), 4);
   EXPECT_TRUE(same_bits(one.positions, many.positions));
@@ -172,10 +172,10 @@ TEST(LinearBlend, ThreadsDoNotChangeABit) {
 TEST(LinearBlend, WithoutNormalsPositionsAreTheSame) {
   const auto palette = palette_of(human_clip(), 6);
   auto in = random_vertices(33, 4, static_cast<int>(palette.size()), 12u);
-  Skinned with(in.view());
+  Blended with(in.view());
   linear_blend(palette, in.view(), with.view());
   in.normals.clear();
-  Skinned without(in.view());
+  Blended without(in.view());
   linear_blend(palette, in.view(), without.view());
   EXPECT_TRUE(same_bits(with.positions, without.positions));
 }
@@ -199,7 +199,7 @@ TEST(LinearBlend, AgreesWithTheFormulaInDoubles) {
     for (int f = 0; f < clip.frame_count(); ++f) {
       std::vector<Transform> pose(clip.skeleton.names.size());
       clip.get_pose(f, pose);
-      Skinned out(skin_vertices(model));
+      Blended out(skin_vertices(model));
       linear_blend(palette_of(clip, f), skin_vertices(model), out.view());
       for (std::size_t v = 0; v < model.positions.size(); ++v) {
         ASSERT_LT((out.positions[v].cast<double>() - by_formula(model, pose, v)).norm(), 1e-6);
@@ -213,7 +213,7 @@ TEST(LinearBlend, ReferencePoseGivesTheReferenceMesh) {
   const Model model = test::tube_model(skeleton);
   std::vector<SkinMatrix> palette(skeleton.names.size());
   make_palette(inverse_reference(skeleton), skeleton.reference, palette);
-  Skinned out(skin_vertices(model));
+  Blended out(skin_vertices(model));
   linear_blend(palette, skin_vertices(model), out.view());
   for (std::size_t v = 0; v < model.positions.size(); ++v) {
     EXPECT_LT((out.positions[v] - model.positions[v]).norm(), 5e-7f);
@@ -229,7 +229,7 @@ TEST(LinearBlend, RigidMotionOfTheSkeletonMovesTheMeshRigidly) {
   for (const Transform& joint : skeleton.reference) pose.push_back(move * joint);
   std::vector<SkinMatrix> palette(pose.size());
   make_palette(inverse_reference(skeleton), pose, palette);
-  Skinned out(skin_vertices(model));
+  Blended out(skin_vertices(model));
   linear_blend(palette, skin_vertices(model), out.view());
   for (std::size_t v = 0; v < model.positions.size(); ++v) {
     const Vec3 expected = move * model.positions[v].cast<double>();
@@ -244,7 +244,7 @@ TEST(LinearBlend, OneInfluenceMovesVerticesWithTheirJoint) {
   const Model rigid = test::tube_model(clip.skeleton, 1);
   std::vector<Transform> pose(clip.skeleton.names.size());
   clip.get_pose(7, pose);
-  Skinned out(skin_vertices(rigid));
+  Blended out(skin_vertices(rigid));
   linear_blend(palette_of(clip, 7), skin_vertices(rigid), out.view());
   for (std::size_t v = 0; v < rigid.positions.size(); ++v) {
     const std::size_t j = rigid.influence_joints[v];
@@ -262,7 +262,7 @@ TEST(LinearBlend, OneInfluenceMovesVerticesWithTheirJoint) {
       spread.weights.push_back(k == 0 ? 1.0f : 0.0f);
     }
   }
-  Skinned four(spread.view());
+  Blended four(spread.view());
   linear_blend(palette_of(clip, 7), spread.view(), four.view());
   EXPECT_THAT(four.positions, testing::ContainerEq(out.positions));
 }

@@ -10,15 +10,15 @@
 namespace krok::test {
 namespace {
 
-constexpr std::size_t kVertices = 700;
+constexpr std::size_t kMorphVertices = 700;
 
 MorphSet random_morphs(int targets, unsigned seed) {
   Random random(seed);
   MorphSet morphs;
-  morphs.vertex_count = static_cast<int>(kVertices);
+  morphs.vertex_count = static_cast<int>(kMorphVertices);
   for (int i = 0; i < targets; ++i) {
     morphs.names.push_back("target" + std::to_string(i));
-    for (std::size_t v = 0; v < kVertices; ++v) {
+    for (std::size_t v = 0; v < kMorphVertices; ++v) {
       morphs.positions.push_back(random.vector().cast<float>());
       morphs.normals.push_back(random.direction().cast<float>());
     }
@@ -35,14 +35,14 @@ Skinned morphed(const MorphSet& morphs, const std::vector<float>& weights, const
 }
 
 TEST(Morph, AgreesWithTheFormula) {
-  const Model model = random_model(kVertices, 1, 2, 51);
+  const Model model = random_model(kMorphVertices, 1, 2, 51);
   const MorphSet morphs = random_morphs(3, 52);
   const std::vector<float> weights = {0.25f, -0.5f, 1.5f};
   const Skinned out = morphed(morphs, weights, model);
-  for (std::size_t v = 0; v < kVertices; ++v) {
+  for (std::size_t v = 0; v < kMorphVertices; ++v) {
     Vec3 position = model.positions[v].cast<double>(), normal = model.normals[v].cast<double>();
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t place = i * kVertices + v;
+      const std::size_t place = i * kMorphVertices + v;
       position += weights[i] * (morphs.positions[place] - model.positions[v]).cast<double>();
       normal += weights[i] * (morphs.normals[place] - model.normals[v]).cast<double>();
     }
@@ -52,7 +52,7 @@ TEST(Morph, AgreesWithTheFormula) {
 }
 
 TEST(Morph, AWholeTargetComesOutAsItStands) {
-  const Model model = random_model(kVertices, 1, 2, 53);
+  const Model model = random_model(kMorphVertices, 1, 2, 53);
   MorphSet morphs = random_morphs(2, 54);
   morphs.positions[5].x() = std::numeric_limits<float>::quiet_NaN();  // has weight 0, is not read
   const Skinned out = morphed(morphs, {0, 1}, model);
@@ -61,7 +61,7 @@ TEST(Morph, AWholeTargetComesOutAsItStands) {
 }
 
 TEST(Morph, WithoutWeightsNothingMoves) {
-  Model model = random_model(kVertices, 1, 2, 55);
+  Model model = random_model(kMorphVertices, 1, 2, 55);
   model.normals[3] *= 2;  // as they are, whatever that is
   const MorphSet morphs = random_morphs(2, 56);
   const Skinned out = morphed(morphs, {0, -0.0f}, model);
@@ -72,7 +72,7 @@ TEST(Morph, WithoutWeightsNothingMoves) {
 }
 
 TEST(Morph, NormalsWithoutLengthStayTheMeshs) {
-  const Model model = random_model(kVertices, 1, 2, 57);
+  const Model model = random_model(kMorphVertices, 1, 2, 57);
   MorphSet morphs = random_morphs(1, 58);
   morphs.normals[4] = -model.normals[4];
   morphs.normals[5].y() = std::numeric_limits<float>::infinity();
@@ -83,7 +83,7 @@ TEST(Morph, NormalsWithoutLengthStayTheMeshs) {
 }
 
 TEST(Morph, TargetsWithoutNormalsLeaveTheMeshs) {
-  const Model model = random_model(kVertices, 1, 2, 59);
+  const Model model = random_model(kMorphVertices, 1, 2, 59);
   MorphSet morphs = random_morphs(2, 60);
   const Skinned with = morphed(morphs, {0.5f, 0.5f}, model);
   morphs.normals.clear();
@@ -93,7 +93,7 @@ TEST(Morph, TargetsWithoutNormalsLeaveTheMeshs) {
 }
 
 TEST(Morph, ThreadsDoNotChangeABit) {
-  const Model model = random_model(kVertices, 1, 2, 61);
+  const Model model = random_model(kMorphVertices, 1, 2, 61);
   const MorphSet morphs = random_morphs(5, 62);
   const std::vector<float> weights = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f};
   expect_same_bits(morphed(morphs, weights, model, 1), morphed(morphs, weights, model, 4), "jobs");
@@ -101,7 +101,7 @@ TEST(Morph, ThreadsDoNotChangeABit) {
 
 // M (v + w (p - v)), not M v + w (p - v).
 TEST(Morph, ComesBeforeTheSkeleton) {
-  const Model model = random_model(kVertices, 1, 2, 63);
+  const Model model = random_model(kMorphVertices, 1, 2, 63);
   const MorphSet morphs = random_morphs(1, 64);
   const Skinned shape = morphed(morphs, {0.75f}, model);
   const auto pose = random_pose(2, 65);
@@ -110,7 +110,7 @@ TEST(Morph, ComesBeforeTheSkeleton) {
     SkinPose posed(binding);
     posed.set(pose);
     const Skinned out = skinned(binding, posed, {shape.positions, shape.normals, {}});
-    for (std::size_t v = 0; v < kVertices; ++v) {
+    for (std::size_t v = 0; v < kMorphVertices; ++v) {
       const std::size_t j = model.influence_joints[v];
       const Vec3 expected =
           pose[j] * (model.skeleton.reference[j].inverse() * shape.positions[v].cast<double>());

@@ -9,7 +9,7 @@
 namespace krok::test {
 namespace {
 
-constexpr int kJoints = 12;
+constexpr int kFewJoints = 12;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Mat4 palette_matrix(const Model& model, const std::vector<Transform>& pose, std::size_t joint) {
@@ -46,8 +46,8 @@ Mat4 by_formula(const Model& model, const std::vector<Transform>& pose, SkinMeth
 
 TEST(Skin, AgreesWithTheFormulasInDoubles) {
   for (int influences = 1; influences <= Model::kMaxInfluences; ++influences) {
-    const Model model = random_model(200, influences, kJoints, 21);
-    const auto pose = random_pose(kJoints, 22);
+    const Model model = random_model(200, influences, kFewJoints, 21);
+    const auto pose = random_pose(kFewJoints, 22);
     for (const SkinMethod method : kMethods) {
       const Skinned out = skinned(model, method, pose);
       for (std::size_t v = 0; v < model.positions.size(); ++v) {
@@ -69,7 +69,7 @@ TEST(Skin, AgreesWithTheFormulasInDoubles) {
 }
 
 TEST(Skin, RigidMotionOfTheSkeletonMovesEveryVertexRigidly) {
-  const Model model = random_model(100, 4, kJoints, 23);
+  const Model model = random_model(100, 4, kFewJoints, 23);
   const Transform move{Vec3(3, -2, 5), from_rotation_vector(Vec3(0.4, -2.0, 0.9))};
   std::vector<Transform> pose;
   for (const Transform& joint : model.skeleton.reference) pose.push_back(move * joint);
@@ -98,9 +98,9 @@ void make_weights_exact(Model& model) {
 }
 
 TEST(Skin, TheIdentityGivesTheReferenceMeshToTheBit) {
-  const std::vector<SkinMatrix> palette(kJoints, skin_matrix(Mat4::Identity()));
+  const std::vector<SkinMatrix> palette(kFewJoints, skin_matrix(Mat4::Identity()));
   for (int influences = 1; influences <= Model::kMaxInfluences; ++influences) {
-    const Model uneven = random_model(99, influences, kJoints, 24);
+    const Model uneven = random_model(99, influences, kFewJoints, 24);
     Model exact = uneven;
     make_weights_exact(exact);
     for (const SkinMethod method : kMethods) {
@@ -112,7 +112,7 @@ TEST(Skin, TheIdentityGivesTheReferenceMeshToTheBit) {
 }
 
 TEST(Skin, ANewPoseIsTheReferencePose) {
-  const Model model = random_model(99, 4, kJoints, 25);
+  const Model model = random_model(99, 4, kFewJoints, 25);
   for (const SkinMethod method : kMethods) {
     const SkinBinding binding(model, method);
     const Skinned out = skinned(binding, SkinPose(binding), skin_surface(model));
@@ -124,9 +124,9 @@ TEST(Skin, ANewPoseIsTheReferencePose) {
 }
 
 TEST(Skin, WithOneInfluenceAllMethodsAgree) {
-  const Model model = random_model(200, 1, kJoints, 26);
-  const auto pose = random_pose(kJoints, 27);
-  const auto deforming = random_palette(kJoints, 28, true);
+  const Model model = random_model(200, 1, kFewJoints, 26);
+  const auto pose = random_pose(kFewJoints, 27);
+  const auto deforming = random_palette(kFewJoints, 28, true);
   const auto expect_alike = [&](const auto& posed) {
     const Skinned linear = skinned(model, SkinMethod::linear, posed);
     expect_same_bits(linear, skinned(model, SkinMethod::rigid, posed), "rigid");
@@ -154,8 +154,8 @@ TEST(Skin, RigidFollowsTheStrongestJoint) {
 
 // q and -q are one rotation: which of them a file has must not show.
 TEST(Skin, TheSignOfAQuaternionDoesNotMatter) {
-  const Model model = random_model(150, 4, kJoints, 31);
-  const auto pose = random_pose(kJoints, 32);
+  const Model model = random_model(150, 4, kFewJoints, 31);
+  const auto pose = random_pose(kFewJoints, 32);
   auto turned = pose;
   for (std::size_t j = 0; j < turned.size(); j += 2) {
     turned[j].orientation.coeffs() = -turned[j].orientation.coeffs();
@@ -167,7 +167,7 @@ TEST(Skin, TheSignOfAQuaternionDoesNotMatter) {
 // Three points of each small triangle share their weights, so that the surface's differential is
 // that of the blended map.
 Model small_triangles(unsigned seed, double size) {
-  Model model = random_model(60, 4, kJoints, seed);
+  Model model = random_model(60, 4, kFewJoints, seed);
   Model result = model;
   for (auto* list : {&result.positions, &result.normals}) list->clear();
   result.tangents.clear();
@@ -193,7 +193,7 @@ Model small_triangles(unsigned seed, double size) {
 
 TEST(Skin, NormalsArePerpendicularToASurfaceThatDeforms) {
   const Model model = small_triangles(33, 0.05);
-  const auto palette = random_palette(kJoints, 34);
+  const auto palette = random_palette(kFewJoints, 34);
   for (const SkinMethod method : kMethods) {
     const Skinned out = skinned(model, method, palette);
     int checked = 0;
@@ -257,8 +257,8 @@ TEST(Skin, DualQuaternionsScaleAboutTheJoint) {
 }
 
 TEST(Skin, WeightsThatDoNotSumToOne) {
-  Model model = random_model(64, 3, kJoints, 37, true);
-  const auto pose = random_pose(kJoints, 38);
+  Model model = random_model(64, 3, kFewJoints, 37, true);
+  const auto pose = random_pose(kFewJoints, 38);
   std::vector<Skinned> before;
   for (const SkinMethod method : kMethods) before.push_back(skinned(model, method, pose));
   for (float& weight : model.influence_weights) weight *= 0.5f;
@@ -274,10 +274,10 @@ TEST(Skin, WeightsThatDoNotSumToOne) {
 
 TEST(Skin, VerticesWithoutWeightsFollowTheirFirstJoint) {
   for (const float none : {0.0f, -1.0f, kNan}) {
-    Model model = random_model(40, 4, kJoints, 39);
+    Model model = random_model(40, 4, kFewJoints, 39);
     for (std::size_t k = 0; k < 4; ++k) model.influence_weights[4 * 17 + k] = none;
     model.influence_joints[4 * 17] = 5;
-    const auto pose = random_pose(kJoints, 40);
+    const auto pose = random_pose(kFewJoints, 40);
     const Vec3 expected =
         pose[5] * (model.skeleton.reference[5].inverse() * model.positions[17].cast<double>());
     for (const SkinMethod method : kMethods) {
@@ -288,8 +288,8 @@ TEST(Skin, VerticesWithoutWeightsFollowTheirFirstJoint) {
 }
 
 TEST(Skin, NanInAPaletteReachesItsVerticesAlone) {
-  const Model model = random_model(100, 4, kJoints, 41);
-  auto palette = random_palette(kJoints, 42);
+  const Model model = random_model(100, 4, kFewJoints, 41);
+  auto palette = random_palette(kFewJoints, 42);
   std::vector<Skinned> before;
   for (const SkinMethod method : kMethods) before.push_back(skinned(model, method, palette));
   constexpr std::uint16_t kBad = 3;
@@ -337,12 +337,12 @@ TEST(Skin, OppositeInfluences) {
 }
 
 TEST(Skin, VectorsWithoutLengthGetADirection) {
-  Model model = random_model(20, 2, kJoints, 44);
+  Model model = random_model(20, 2, kFewJoints, 44);
   model.normals[7].setZero();
   model.normals[8] = {kNan, 0, 0};
   model.tangents[9] = {0, 0, 0, -1};
   for (const SkinMethod method : kMethods) {
-    const Skinned out = skinned(model, method, random_pose(kJoints, 45));
+    const Skinned out = skinned(model, method, random_pose(kFewJoints, 45));
     EXPECT_EQ(out.normals[7], Vec3f::UnitY());
     EXPECT_EQ(out.normals[8], Vec3f::UnitY());
     EXPECT_EQ(out.tangents[9], Vec4f(1, 0, 0, -1));

@@ -247,12 +247,12 @@ TEST_F(Layers, ContactsOfLegsTheyMoveAreDropped) {
 }
 
 TEST_F(Layers, WhatCannotBePlayedIsRefusedWithItsPlace) {
-  struct Refused {
+  struct RefusedLayer {
     const char* code;
     std::function<void(Layer&)> change;
   };
   const auto item = [](Layer& l) -> LayerItem& { return l.items[0]; };
-  const Refused cases[] = {
+  const RefusedLayer cases[] = {
       {"timeline-mask", [&](Layer& l) { l.mask = {below("Tail")}; }},
       {"timeline-mask", [&](Layer& l) { l.mask = {below("LeftArm", 1.5)}; }},
       {"timeline-mask", [&](Layer& l) { l.mask = {below("LeftArm", std::nan(""))}; }},

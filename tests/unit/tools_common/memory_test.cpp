@@ -25,7 +25,7 @@ class MemoryTest : public test::FolderTest {
       ToolSpec spec;
       spec.name = "krok-test";
       spec.has_output = false;
-      spec.declare = [](CLI::App&) {};
+      spec.declare = [](CommandOptions&) {};
       spec.run = [&](ToolContext&) -> Result<int> {
         auto file = OutputFile::create(path("out"));
         if (!file || !file->write("half")) return kExitNo;

@@ -11,8 +11,6 @@
 namespace krok::samples {
 namespace {
 
-constexpr double kDegree = kRadiansPerDegree;
-
 Clip made(Gesture kind, Side side = Side::right, double duration = 3) {
   auto clip = make_gesture({kind, side, 1.75, duration, 60});
   EXPECT_TRUE(clip.ok());
@@ -63,7 +61,7 @@ TEST_P(EachGesture, MovesWithoutJumps) {
     for (int j = 0; j < clip.joint_count(); ++j) {
       ASSERT_LT(
           angle_between(joint_at(clip, f - 1, j).orientation, joint_at(clip, f, j).orientation),
-          12 * kDegree)
+          12 * kRadiansPerDegree)
           << clip.skeleton.names[size_t(j)] << " frame " << f;
     }
   }

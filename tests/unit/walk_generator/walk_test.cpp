@@ -16,14 +16,12 @@
 namespace krok::samples {
 namespace {
 
-constexpr double kDegree = kRadiansPerDegree;
-
 WalkOptions walk(double step_length, double turn_degrees = 0, double rise = 0,
                  bool from_standing = false) {
   WalkOptions options;
   options.steps = 6;
   options.step_length = step_length;
-  options.turn = turn_degrees * kDegree;
+  options.turn = turn_degrees * kRadiansPerDegree;
   options.rise = rise;
   options.from_standing = from_standing;
   return options;
@@ -148,12 +146,12 @@ TEST_P(AnyWalk, KneesNeitherLockNorSnap) {
   for (const Side side : {Side::left, Side::right}) {
     const test::LegAngles angles = test::leg_angles(walk_.clip, side);
     EXPECT_EQ(angles.hyperextension, 0);
-    EXPECT_GT(*std::min_element(angles.knee.begin(), angles.knee.end()), 2.5 * kDegree);
-    EXPECT_LT(*std::max_element(angles.knee.begin(), angles.knee.end()), 110 * kDegree);
+    EXPECT_GT(*std::min_element(angles.knee.begin(), angles.knee.end()), 2.5 * kRadiansPerDegree);
+    EXPECT_LT(*std::max_element(angles.knee.begin(), angles.knee.end()), 110 * kRadiansPerDegree);
     for (std::size_t i = 2; i < angles.knee.size(); ++i) {
       const double acceleration = (angles.knee[i] - 2 * angles.knee[i - 1] + angles.knee[i - 2]) *
                                   walk_.clip.rate * walk_.clip.rate;
-      EXPECT_LT(std::abs(acceleration), 30000 * kDegree) << "frame " << i;
+      EXPECT_LT(std::abs(acceleration), 30000 * kRadiansPerDegree) << "frame " << i;
     }
   }
 }
@@ -217,7 +215,7 @@ TEST(OrdinaryWalk, TheLegsMoveAsPublished) {
   const test::LegAngles angles = test::leg_angles(made->clip, Side::left);
   const auto range = [](const std::vector<double>& values) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return std::pair(*low / kDegree, *high / kDegree);
+    return std::pair(*low / kRadiansPerDegree, *high / kRadiansPerDegree);
   };
   // Perry and Burnfield; Winter: thigh about -20 to 25, with the pelvis's rotation a little more.
   EXPECT_NEAR(range(angles.hip).first, -20, 6);
@@ -233,7 +231,7 @@ TEST(OrdinaryWalk, TheLegsMoveAsPublished) {
     const double difference = knee[static_cast<std::size_t>(i)] - knee_flexion(i / 40.0);
     sum += difference * difference;
   }
-  EXPECT_LT(std::sqrt(sum / 40), 6 * kDegree) << "the knee's curve over the stride";
+  EXPECT_LT(std::sqrt(sum / 40), 6 * kRadiansPerDegree) << "the knee's curve over the stride";
 }
 
 TEST(OrdinaryWalk, ThePelvisRisesTwiceAStride) {
@@ -295,7 +293,7 @@ TEST(WalkOptionsCheck, WhatIsOutOfRangeIsRefused) {
 TEST(Noise, HasTheDeviationAskedForAndComesFromTheSeed) {
   WalkOptions options = walk(0.7);
   const Result<Walk> clean = make_walk(options);
-  options.noise_angle = 0.5 * kDegree;
+  options.noise_angle = 0.5 * kRadiansPerDegree;
   options.noise_position = 0.002;
   const Result<Walk> noisy = make_walk(options);
   const Result<Walk> again = make_walk(options);
@@ -316,7 +314,7 @@ TEST(Noise, HasTheDeviationAskedForAndComesFromTheSeed) {
   }
   // Three components each.
   EXPECT_NEAR(std::sqrt(position / frames / 3), 0.002, 0.0003);
-  EXPECT_NEAR(std::sqrt(angle / frames / 3), 0.5 * kDegree, 0.08 * kDegree);
+  EXPECT_NEAR(std::sqrt(angle / frames / 3), 0.5 * kRadiansPerDegree, 0.08 * kRadiansPerDegree);
 }
 
 }  // namespace

@@ -93,25 +93,30 @@ const std::vector<PictureSide>& known_sides() {
 
 }  // namespace
 
-void declare_picture_options(CLI::App& app, PictureOptions& options, int by_default) {
-  app.add_option("--moments", options.moments,
-                 fmt::format("Which moments: how many, spread evenly (default: {}), or which: "
-                             "0s,1.5s,120f",
-                             by_default))
-      ->type_name("LIST");
-  app.add_option("--sides", options.sides,
-                 "The sides to look from, a row each: front, left, back, right, front-left, ..., "
-                 "top")
-      ->type_name("LIST")
-      ->default_str(options.sides);
-  app.add_option("--elevation", options.elevation,
-                 "How far the camera is raised; level, heights can be read off, raised, the ground "
-                 "is a grid of squares with shadows")
-      ->type_name("ANGLE")
-      ->default_str(options.elevation);
-  app.add_option("--size", options.size, "How tall a figure is drawn at most, pixels: 32 to 4000")
-      ->type_name("PIXELS")
-      ->default_str(std::to_string(options.size));
+void declare_picture_options(CommandOptions& command, PictureOptions& options, int by_default) {
+  command
+      .add_option("--moments", options.moments,
+                  fmt::format("Which moments: how many, spread evenly (default: {}), or which: "
+                              "0s,1.5s,120f",
+                              by_default))
+      .type_name("LIST");
+  command
+      .add_option("--sides", options.sides,
+                  "The sides to look from, a row each: front, left, back, right, front-left, ..., "
+                  "top")
+      .type_name("LIST")
+      .default_str(options.sides);
+  command
+      .add_option(
+          "--elevation", options.elevation,
+          "How far the camera is raised; level, heights can be read off, raised, the ground "
+          "is a grid of squares with shadows")
+      .type_name("ANGLE")
+      .default_str(options.elevation);
+  command
+      .add_option("--size", options.size, "How tall a figure is drawn at most, pixels: 32 to 4000")
+      .type_name("PIXELS")
+      .default_str(std::to_string(options.size));
 }
 
 std::string PictureMoment::label() const {

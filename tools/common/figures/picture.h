@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,7 @@ struct PictureOptions {
 };
 
 // --moments, --sides, --elevation, --size. `by_default` is the number of moments, for the help.
-void declare_picture_options(CLI::App& app, PictureOptions& options, int by_default);
+void declare_picture_options(CommandOptions& command, PictureOptions& options, int by_default);
 
 // A moment of a figure; `frame` is -1 where it has no frames.
 struct PictureMoment {

@@ -3,14 +3,15 @@
 #include <string>
 
 #include "skin/skin.h"
+#include "tools/common/command_options.h"
 #include "tools/common/option_kinds.h"
 
 namespace krok {
 
 // --method, for tools that move meshes by joints.
-inline CLI::Option* add_skin_method(CLI::App& app, SkinMethod& method,
-                                    const std::string& description) {
-  return add_choice(app, "--method", method,
+inline CommandOption add_skin_method(CommandOptions& command, SkinMethod& method,
+                                     const std::string& description) {
+  return add_choice(command, "--method", method,
                     {{"linear", SkinMethod::linear},
                      {"dual-quaternion", SkinMethod::dual_quaternion},
                      {"rigid", SkinMethod::rigid}},
