@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -140,7 +140,11 @@ class Writer {
 
   void number(double value, int decimals) {
     const std::size_t begin = text_.size();
-    fmt::format_to(std::back_inserter(text_), "{:.{}f}", value, decimals);
+    std::array<char, std::numeric_limits<double>::max_exponent10 + 32>
+        digits;  // 1e308 is written out
+    text_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                              std::chars_format::fixed, decimals)
+                                    .ptr);
     // "-0.000000" is zero.
     if (text_[begin] == '-' && text_.find_first_not_of("0.", begin + 1) == std::string::npos) {
       text_.erase(begin, 1);

@@ -76,7 +76,7 @@ Result<std::string> provenance_to_text(const Provenance& provenance) {
   json["conversions"] = provenance.conversions;
   json["warnings"] = provenance.warnings;
   // A file name may hold bytes that are no UTF-8; they become U+FFFD.
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = json_text(json);
   if (text.size() > kMaxProvenanceBytes) {
     return Error("container-provenance",
                  fmt::format("the provenance takes {} bytes, a file holds up to {}", text.size(),
@@ -94,7 +94,7 @@ Result<Provenance> provenance_from_text(std::string_view text) {
   if (text.size() > kMaxProvenanceBytes) {
     return fail(fmt::format("has {} bytes, the limit is {}", text.size(), kMaxProvenanceBytes));
   }
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_ordered_json(text);
   if (json.is_discarded() || !json.is_object()) return fail("is no JSON object");
   JsonTexts reader;
   provenance.tool = reader.text(json, "tool");

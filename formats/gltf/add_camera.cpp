@@ -245,7 +245,7 @@ Result<WithCamera> add_camera(std::span<const std::byte> gltf, const CameraTrack
   if (!packed) return packed.error();
   const auto container = open_container(packed->bytes);
   if (!container) return container.error();
-  auto result = with_camera(track, options, OrderedJson::parse(container->json, nullptr, false),
+  auto result = with_camera(track, options, parse_ordered_json(container->json),
                             {container->bin.begin(), container->bin.end()});
   if (!result) return result;
   result->files = std::move(packed->files);

@@ -22,7 +22,7 @@ Result<std::vector<std::byte>> assemble_glb(OrderedJson& json, std::span<const s
                  fmt::format("{} bytes are too many for a GLB in a page", data.size()));
   }
   if (!data.empty()) json["buffers"] = OrderedJson::array({{{"byteLength", data.size()}}});
-  std::string text = json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  std::string text = json_text(json);
   while (text.size() % kAlignment != 0) text += ' ';
   constexpr std::uint32_t kHeader = 12, kChunk = 8;
   const std::size_t size =

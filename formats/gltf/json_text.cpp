@@ -56,7 +56,7 @@ Result<Json> parse_text(const Container& container) {
                      container, place);
   }
   try {
-    Json json = Json::parse(text);
+    Json json = parse_json_or_throw(text);
     if (json.is_object()) return json;
     return Error("gltf-json", "the JSON is not an object");
   } catch (const Json::parse_error& error) {
@@ -239,7 +239,8 @@ Status check_integers(const Json& json, bool in_sparse = false) {
     const bool fits = json.is_number_unsigned() ? json.get<std::uint64_t>() <= 0x7FFFFFFFu
                                                 : json.get<std::int64_t>() >= -1;
     if (!fits) {
-      return Error("gltf-structure", fmt::format("the integer {} is out of range", json.dump()));
+      return Error("gltf-structure",
+                   fmt::format("the integer {} is out of range", json_text(json)));
     }
   }
   return {};
@@ -294,7 +295,7 @@ Result<ParsedJson> parse_json(const Container& container) {
   tinygltf::TinyGLTF loader;
   std::string errors, warnings;
   try {
-    const std::string text = used.dump();
+    const std::string text = json_text(used);
     const bool loaded = loader.LoadASCIIFromString(&result.model, &errors, &warnings, text.data(),
                                                    static_cast<unsigned int>(text.size()), "", 0);
     if (!loaded) {

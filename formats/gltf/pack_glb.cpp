@@ -97,7 +97,7 @@ Result<PackedGlb> pack_glb(std::span<const std::byte> gltf, const ReadOptions& o
   if (!parsed) return parsed.error();
   const auto buffers = open_buffers(parsed->buffers, *container, options);
   if (!buffers) return buffers.error();
-  OrderedJson json = OrderedJson::parse(container->json, nullptr, false);
+  OrderedJson json = parse_ordered_json(container->json);
   Packer packer(json, options);
   packer.put_buffers(*buffers);
   packer.put_images();

@@ -5,7 +5,7 @@
 namespace krok::json {
 
 std::string in_quotes(std::string_view text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return krok::json_text(nlohmann::json(text));
 }
 
 }  // namespace krok::json

@@ -6,7 +6,7 @@ namespace krok::steps {
 
 std::vector<std::string> parameter_names(const StepsFile& steps) {
   const parametric::Library& library = steps.library;
-  const auto report = nlohmann::json::parse(steps.report, nullptr, false);
+  const auto report = parse_json(steps.report);
   const auto list = report.is_object() ? report.value("parameters", nlohmann::json::array())
                                        : nlohmann::json::array();
   std::vector<std::string> names;

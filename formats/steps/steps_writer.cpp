@@ -145,7 +145,7 @@ Status check(const StepsFile& steps) {
     }
   }
   if (steps.report.empty()) return {};
-  const auto json = nlohmann::json::parse(steps.report.begin(), steps.report.end(), nullptr, false);
+  const auto json = parse_json(steps.report);
   if (steps.report.size() <= kMostReport && json.is_object()) return {};
   return Error("steps-report", "the report is no JSON object, or longer than 16 MiB");
 }

@@ -112,10 +112,9 @@ void write_field(const Field& field, const PlotArea& area, std::string& out) {
       }
       const double left = area.at_x(field.x_low + first * width);
       const double right = area.at_x(field.x_low + end * width);
-      fmt::format_to(std::back_inserter(out),
-                     "<rect fill=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                     colour_of_step(step, scale), number(left), number(top), number(right - left),
-                     number(bottom - top));
+      out += fmt::format("<rect fill=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
+                         colour_of_step(step, scale), number(left), number(top),
+                         number(right - left), number(bottom - top));
       first = end;
     }
   }
@@ -132,19 +131,16 @@ double write_field_bar(const Field& field, double right, double bottom, std::str
   const double begin = end - scale.steps * kBarStep;
   out += "<g shape-rendering=\"crispEdges\">";
   for (int k = 0; k < scale.steps; ++k) {
-    fmt::format_to(std::back_inserter(out),
-                   "<rect fill=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
-                   colour_of_step(k, scale), number(begin + k * kBarStep),
-                   number(bottom - kBarHeight), number(kBarStep), number(kBarHeight));
+    out += fmt::format("<rect fill=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
+                       colour_of_step(k, scale), number(begin + k * kBarStep),
+                       number(bottom - kBarHeight), number(kBarStep), number(kBarHeight));
   }
-  fmt::format_to(std::back_inserter(out),
-                 "<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></g>\n",
-                 number(begin), number(bottom - kBarHeight), number(end - begin),
-                 number(kBarHeight));
+  out += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></g>\n",
+                     number(begin), number(bottom - kBarHeight), number(end - begin),
+                     number(kBarHeight));
   const double left = begin - kTick - text_width(low);
-  fmt::format_to(std::back_inserter(out),
-                 "<text x=\"{}\" y=\"{}\">{}</text><text x=\"{}\" y=\"{}\">{}</text>\n",
-                 number(left), number(bottom), low, number(end + kTick), number(bottom), high);
+  out += fmt::format("<text x=\"{}\" y=\"{}\">{}</text><text x=\"{}\" y=\"{}\">{}</text>\n",
+                     number(left), number(bottom), low, number(end + kTick), number(bottom), high);
   return left;
 }
 

@@ -119,7 +119,7 @@ Result<std::string> write_viewer_page(const ViewerPage& page) {
   std::string html(text.substr(0, place));
   html += "<script type=\"application/json\" id=\"krok-data\">";
   // Names that are no UTF-8 are shown with replacement characters.
-  html += script_safe(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  html += script_safe(json_text(data));
   html += "</script>\n";
   html += parts.scripts;
   html += text.substr(place + kPlace.size());

@@ -135,7 +135,7 @@ std::string ground_truth_json(const Walk& walk, const std::string& capture_name)
     json["contacts"][side_name(side)]["heel"] = contacts(foot.heel, walk.clip);
     json["contacts"][side_name(side)]["toe"] = contacts(foot.toe, walk.clip);
   }
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 }  // namespace krok::samples

@@ -81,7 +81,7 @@ class ConsoleProgress : public Console {
     if (style_ == ProgressStyle::json) {
       const nlohmann::ordered_json line = {
           {"progress", {{"what", what_}, {"done", done_}, {"total", total_}}}};
-      put(line.dump() + "\n");
+      put(json_text(line) + "\n");
     } else if (style_ == ProgressStyle::plain) {
       put(fmt::format("{}: {}\n", what_, amount()));
     } else {

@@ -88,8 +88,7 @@ int finish(ToolContext& context, ReportFile& file, int exit_code) {
   for (const std::string& input : context.refused_inputs) {
     if (same_file(input, context.report_path)) return kExitTrouble;
   }
-  const std::string text =
-      context.report.to_json().dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string text = json_text(context.report.to_json(), 2) + "\n";
   (void)file->write(text).ok();  // a failure is kept and told by commit()
   if (const Status written = file->commit(); !written) {
     write_message(context.console, to_text(written.error()) + "\n");

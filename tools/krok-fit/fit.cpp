@@ -45,7 +45,7 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
   steps::StepsFile file;
   file.library = input.library;
   file.weights = fitted.refined.function;
-  file.report = saved_json(input, fitted).dump();
+  file.report = json_text(saved_json(input, fitted));
   file.provenance = context.provenance();
   OutputSet outputs(context);
   Status added = outputs.add(context.output,

@@ -109,7 +109,7 @@ fit::Refined refinement_of(const Json& json, const LibraryInput& input,
 Result<fit::Refined> read_refinement(const std::string& text, const LibraryInput& input,
                                      const rbf::WeightFunction& function) {
   try {
-    return refinement_of(Json::parse(text), input, function);
+    return refinement_of(parse_ordered_json(text), input, function);
   } catch (const std::exception&) {
     return Error(
         "fit-resume",

@@ -133,7 +133,7 @@ std::string Journal::output_of(std::string_view line) const {
   // Lines of this run need not be read again.
   const auto added = added_outputs_.find(checksum_of_line(line));
   if (added != added_outputs_.end()) return added->second;
-  const Json record = Json::parse(line, nullptr, false);
+  const Json record = parse_ordered_json(line);
   return record.is_object() ? text_of(record, "output") : std::string();
 }
 
@@ -166,7 +166,7 @@ std::optional<Json> Journal::unchanged(const std::string& output, const std::str
   std::string input_checksum;
   // The newest first.
   for (auto place = found->second.rbegin(); place != found->second.rend(); ++place) {
-    Json record = Json::parse(line(*place), nullptr, false);
+    Json record = parse_ordered_json(line(*place));
     if (!record.is_object() || text_of(record, "made_with") != made_with) continue;
     const std::string recorded_input = text_of(record, "input");
     bool holds = !array_of(record, "inputs").empty() && !array_of(record, "outputs").empty();
