@@ -26,7 +26,7 @@ constexpr double kInch = 0.0254;
 // frequently asked questions).
 constexpr double kCmuLengthUnit = 0.45;
 constexpr double kUsualRate = 120.0;
-constexpr std::size_t kMostSamples = 200;
+constexpr std::size_t kMaxSamples = 200;
 constexpr std::size_t kFramesAtOnce = 64;
 
 class Reader {
@@ -39,10 +39,11 @@ class Reader {
         options_(options) {}
 
   Result<Capture> read() {
-    if (Status kind = check_kind(asf_.text(), asf_.file_name(), true); !kind) return kind.error();
+    if (Status status = check_kind(asf_.text(), asf_.file_name(), true); !status)
+      return status.error();
     if (has_motion_) {
-      if (Status kind = check_kind(amc_.text(), amc_.file_name(), false); !kind) {
-        return kind.error();
+      if (Status status = check_kind(amc_.text(), amc_.file_name(), false); !status) {
+        return status.error();
       }
     }
     auto skeleton = parse_skeleton(asf_, options_);
@@ -58,10 +59,10 @@ class Reader {
     }
     const Kinematics kinematics(file_,
                                 motion_.degrees.value_or(file_.degrees) ? kRadiansPerDegree : 1.0);
-    if (Status chosen = choose_conventions(kinematics); !chosen) return chosen.error();
-    if (Status placed = place_frames(); !placed) return placed.error();
+    if (Status status = choose_conventions(kinematics); !status) return status.error();
+    if (Status status = place_frames(); !status) return status.error();
     choose_rate();
-    if (Status filled = fill_clip(kinematics); !filled) return filled.error();
+    if (Status status = fill_clip(kinematics); !status) return status.error();
     fill_freedoms(kinematics);
     settle_rest();
     asf_.finish();
@@ -90,7 +91,7 @@ class Reader {
     if (!options_.complete()) {
       std::vector<Vec3> samples;
       std::vector<Transform> pose(kinematics.joint_count());
-      const std::size_t count = std::min(motion_.frame_count(), kMostSamples);
+      const std::size_t count = std::min(motion_.frame_count(), kMaxSamples);
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t frame = count < 2 ? 0 : i * (motion_.frame_count() - 1) / (count - 1);
         kinematics.pose(motion_.frame(frame), pose);
@@ -270,7 +271,7 @@ class Reader {
     });
     if (options_.progress != nullptr) options_.progress->end();
     if (!finite) return overflow(amc_);
-    if (Status told = tell_of_far_values(kinematics, far); !told) return told;
+    if (Status status = report_far_values(kinematics, far); !status) return status;
     for (std::size_t i = 1; i < count; ++i) {
       if (places_[i] - places_[i - 1] < 2) continue;
       fill_frames_between(clip, static_cast<int>(places_[i - 1]), static_cast<int>(places_[i]));
@@ -278,7 +279,7 @@ class Reader {
     return {};
   }
 
-  Status tell_of_far_values(const Kinematics& kinematics, const FarValues& far) {
+  Status report_far_values(const Kinematics& kinematics, const FarValues& far) {
     for (Error& fault :
          far_frame_faults(amc_.text(), motion_, kinematics, far, capture_.clip, places_)) {
       fault.where.file = amc_.file_name();
@@ -342,7 +343,7 @@ class Reader {
 Result<Capture> read(std::string_view asf_text, const std::string& asf_name,
                      std::string_view amc_text, const std::string& amc_name,
                      const ReadOptions& options) {
-  if (Status rate = check_rate(options.rate, "acclaim-rate"); !rate) return rate.error();
+  if (Status status = check_rate(options.rate, "acclaim-rate"); !status) return status.error();
   return Reader(asf_text, asf_name, amc_text, amc_name, options).read();
 }
 

@@ -46,7 +46,7 @@ class BoneParser {
         return source_.error(token.offset, "acclaim-limit",
                              fmt::format("more than {} joints", options_.max_joints));
       }
-      if (Status done = parse_bone(token.offset); !done) return done;
+      if (Status status = parse_bone(token.offset); !status) return status;
     }
     return {};
   }
@@ -69,9 +69,9 @@ class BoneParser {
                              token.end() ? "the file is cut short; export or copy it again" : "");
       }
       if (same_word(token.text, "end")) break;
-      if (Status done = parse_bone_item(token, bone, axes, seen); !done) return done;
+      if (Status status = parse_bone_item(token, bone, axes, seen); !status) return status;
     }
-    if (Status whole = check_bone(bone, seen); !whole) return whole;
+    if (Status status = check_bone(bone, seen); !status) return status;
     bone.axes = axes;
     bones_.push_back(std::move(bone));
     return {};
@@ -109,7 +109,7 @@ class BoneParser {
     }
     if (key == "axis") {
       seen.axis = true;
-      if (Status angles = items_.vector("axis of " + whose, axes.angles); !angles) return angles;
+      if (Status status = items_.vector("axis of " + whose, axes.angles); !status) return status;
       return items_.axis_order(whose, axes.order);
     }
     if (key == "dof") {
@@ -163,13 +163,13 @@ class BoneParser {
     const double norm = direction.stableNorm();
     if (std::abs(norm - 1.0) > kRounding && bone.joint.length != 0) {
       const char* taken = norm > 0 ? "only its direction counts" : "the bone has no length then";
-      if (Status told =
+      if (Status status =
               source_.fault(bone.offset, "acclaim-bone",
                             fmt::format("the direction of {} has length {}, expected 1; {}",
                                         shown(bone.name), readable(norm, 4), taken),
                             {}, joint);
-          !told) {
-        return told;
+          !status) {
+        return status;
       }
     }
     direction = norm > 0 && std::isfinite(norm) ? Vec3(direction / norm) : Vec3::Zero();

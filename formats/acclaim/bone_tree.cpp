@@ -19,14 +19,14 @@ class BoneTree {
       : bones_(bones), source_(source), skeleton_(skeleton) {}
 
   Status hang(const std::vector<HierarchyLink>& links) {
-    if (Status named = collect_names(); !named) return named;
+    if (Status status = collect_names(); !status) return status;
     children_.resize(bones_.size() + 1);
     hangs_.assign(bones_.size() + 1, false);
     for (const HierarchyLink& link : links) {
-      if (Status added = add(link); !added) return added;
+      if (Status status = add(link); !status) return status;
     }
     place_bones();
-    return tell_loose_bones();
+    return report_loose_bones();
   }
 
  private:
@@ -122,7 +122,7 @@ class BoneTree {
     return candidate;
   }
 
-  Status tell_loose_bones() {
+  Status report_loose_bones() {
     std::size_t count = 0;
     const LooseBone* first = nullptr;
     for (std::size_t i = 0; i < bones_.size(); ++i) {

@@ -79,9 +79,9 @@ class MotionParser {
     while (line_begin_ < text_.size()) {
       std::size_t end = line_begin_;
       while (end < text_.size() && !is_line_end(text_[end])) ++end;
-      if (Status read = parse_line(end); !read) {
+      if (Status status = parse_line(end); !status) {
         const bool unfinished = end == text_.size();
-        if (Status handled = handle_fault(std::move(read).error(), unfinished); !handled) {
+        if (Status handled = handle_fault(std::move(status).error(), unfinished); !handled) {
           return handled.error();
         }
         if (cut_) break;
@@ -90,18 +90,18 @@ class MotionParser {
       line_begin_ = end + (pair ? 2 : 1);
       ++line_number_;
     }
-    if (Status finished = finish_last_frame(); !finished) return finished.error();
-    if (lines_left_out_ > kMostRepairs) {
+    if (Status status = finish_last_frame(); !status) return status.error();
+    if (lines_left_out_ > kMaxRepairs) {
       motion_.repairs.push_back(
-          fmt::format("{} more lines left out", lines_left_out_ - kMostRepairs));
+          fmt::format("{} more lines left out", lines_left_out_ - kMaxRepairs));
     }
-    if (Status told = tell_oddities(); !told) return told.error();
+    if (Status status = report_oddities(); !status) return status.error();
     return std::move(motion_);
   }
 
  private:
   // A place in the line being read.
-  SourceText::Place place_of(const char* position) const {
+  SourceText::OrderedJoint place_of(const char* position) const {
     return {line_number_, position - text_.data() - static_cast<std::ptrdiff_t>(line_begin_) + 1};
   }
 
@@ -117,7 +117,7 @@ class MotionParser {
         error.code == "acclaim-syntax") {
       return error;
     }
-    if (++lines_left_out_ <= kMostRepairs) {
+    if (++lines_left_out_ <= kMaxRepairs) {
       motion_.repairs.push_back(
           fmt::format("line {} left out: {}", error.where.line, error.message));
     }
@@ -146,7 +146,7 @@ class MotionParser {
   }
 
   Status parse_keyword(LineCursor& line) {
-    const SourceText::Place place = place_of(line.position());
+    const SourceText::OrderedJoint place = place_of(line.position());
     const std::string_view word = line.word();
     const std::string keyword = ascii_lower(word);
     if (in_frame_) {
@@ -171,9 +171,9 @@ class MotionParser {
     return {};
   }
 
-  Status begin_frame(long long number, const SourceText::Place& place) {
+  Status begin_frame(long long number, const SourceText::OrderedJoint& place) {
     if (in_frame_) {
-      if (Status finished = finish_frame(); !finished) return finished;
+      if (Status status = finish_frame(); !status) return status;
     }
     if (motion_.frame_count() >= most_frames_) {
       return source_.error(place, "acclaim-limit",
@@ -210,7 +210,8 @@ class MotionParser {
     return joint;
   }
 
-  Status parse_values(std::string_view name, const SourceText::Place& place, LineCursor& line) {
+  Status parse_values(std::string_view name, const SourceText::OrderedJoint& place,
+                      LineCursor& line) {
     const int joint = joint_of(name);
     if (joint == SkeletonFile::kLeftOut) return {};
     if (joint == SkeletonFile::kUnknown) {
@@ -229,7 +230,7 @@ class MotionParser {
     double value = 0;
     while (line.number(value)) values_.push_back(value);
     if (!line.at_end()) {
-      const SourceText::Place place_of_value = place_of(line.position());
+      const SourceText::OrderedJoint place_of_value = place_of(line.position());
       return source_.error(place_of_value, "acclaim-number",
                            fmt::format("'{}' in the values of {} is not a finite number",
                                        shown(line.word()), shown(name)),
@@ -301,12 +302,12 @@ class MotionParser {
         kCutHint);
   }
 
-  Status tell_oddities() {
+  Status report_oddities() {
     if (!specified_) {
-      if (Status told = source_.fault(0, "acclaim-keyword",
-                                      "the motion does not say :FULLY-SPECIFIED; read as such");
-          !told) {
-        return told;
+      if (Status status = source_.fault(0, "acclaim-keyword",
+                                        "the motion does not say :FULLY-SPECIFIED; read as such");
+          !status) {
+        return status;
       }
     }
     if (motion_.frame_count() == 0) {
@@ -314,17 +315,17 @@ class MotionParser {
                            kCutHint);
     }
     if (odd_number_place_) {
-      if (Status told = source_.fault(*odd_number_place_, "acclaim-frame",
-                                      "the number of this frame is not greater than the one "
-                                      "before; frames are taken in the file's order");
-          !told) {
-        return told;
+      if (Status status = source_.fault(*odd_number_place_, "acclaim-frame",
+                                        "the number of this frame is not greater than the one "
+                                        "before; frames are taken in the file's order");
+          !status) {
+        return status;
       }
     }
-    return tell_missing();
+    return report_missing();
   }
 
-  Status tell_missing() {
+  Status report_missing() {
     std::size_t never = 0, now_and_then = 0;
     std::size_t first_never = 0, first_short = 0;
     for (std::size_t j = 0; j < lines_.size(); ++j) {
@@ -337,14 +338,14 @@ class MotionParser {
     }
     if (never > 0) {
       const std::string& name = skeleton_.joints[first_never].name;
-      if (Status told = source_.fault(
+      if (Status status = source_.fault(
               0, "acclaim-missing",
               fmt::format("the motion has no values for {} bone{} that can move (the first: {}); "
                           "they stay as in the reference pose",
                           never, never == 1 ? "" : "s", name),
               "perhaps it was made for another skeleton", name);
-          !told) {
-        return told;
+          !status) {
+        return status;
       }
     }
     if (now_and_then == 0) return {};
@@ -358,7 +359,7 @@ class MotionParser {
   }
 
   static constexpr std::size_t kSearch = 64;
-  static constexpr std::size_t kMostRepairs = 1000;
+  static constexpr std::size_t kMaxRepairs = 1000;
 
   SourceText& source_;
   const SkeletonFile& skeleton_;
@@ -370,17 +371,17 @@ class MotionParser {
   std::size_t moving_ = 0;  // joints with channels
   std::vector<std::size_t> first_channel_;
 
-  struct Place {
+  struct OrderedJoint {
     std::string_view name;
     int joint;
   };
-  std::vector<Place> order_;  // as in the first frame
+  std::vector<OrderedJoint> order_;  // as in the first frame
   std::size_t place_ = 0;
 
   // The frame being read.
   bool in_frame_ = false, cut_ = false, specified_ = false;
   long long number_ = 0;
-  SourceText::Place frame_place_ = 0;
+  SourceText::OrderedJoint frame_place_ = 0;
   std::size_t stamp_ = 0;  // counts begun frames
   std::size_t seen_ = 0;   // moving joints
   std::vector<double> current_, values_;
@@ -389,8 +390,8 @@ class MotionParser {
 
   std::size_t seen_before_ = 0;
   std::size_t lines_left_out_ = 0;
-  SourceText::Place first_place_ = 0;
-  std::optional<SourceText::Place> short_place_, odd_number_place_;
+  SourceText::OrderedJoint first_place_ = 0;
+  std::optional<SourceText::OrderedJoint> short_place_, odd_number_place_;
 };
 
 }  // namespace

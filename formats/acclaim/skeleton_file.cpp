@@ -21,9 +21,9 @@ class SkeletonParser {
     root.name = "root";
     result_.joints.push_back(std::move(root));
     for (Token token = cursor_.next(); !token.end(); token = cursor_.next()) {
-      if (Status done = parse_section(token); !done) return done.error();
+      if (Status status = parse_section(token); !status) return status.error();
     }
-    if (Status whole = check_whole(); !whole) return whole.error();
+    if (Status status = check_whole(); !status) return status.error();
     const double radians = result_.degrees ? kRadiansPerDegree : 1.0;
     result_.root_orientation = root_axes_.rotation(radians);
     std::vector<LooseBone> bones;
@@ -37,7 +37,7 @@ class SkeletonParser {
       }
       bones.push_back(std::move(bone));
     }
-    if (Status hung = hang_bones(bones, links_, source_, result_); !hung) return hung.error();
+    if (Status status = hang_bones(bones, links_, source_, result_); !status) return status.error();
     return std::move(result_);
   }
 
@@ -76,11 +76,11 @@ class SkeletonParser {
     if (keyword == ":bonedata") return parse_bones(source_, cursor_, options_, printed_);
     if (keyword == ":hierarchy") return parse_hierarchy(token.offset);
     if (keyword != ":skin") {
-      if (Status told = source_.fault(
+      if (Status status = source_.fault(
               token.offset, "acclaim-keyword",
               fmt::format("the section {} is unknown and left out", shown(token.text)));
-          !told) {
-        return told;
+          !status) {
+        return status;
       }
     }
     skip_section();
@@ -128,8 +128,8 @@ class SkeletonParser {
               fmt::format("a unit of {} of {} is not positive", unit, shown(value.text)));
         }
         if (unit == "length") result_.length_unit = *factor;
-      } else if (Status told = items_.skip_unknown(token); !told) {
-        return told;
+      } else if (Status status = items_.skip_unknown(token); !status) {
+        return status;
       }
     }
     return {};
@@ -155,20 +155,20 @@ class SkeletonParser {
     for (Token token = cursor_.peek(); !token.end() && !is_section(token); token = cursor_.peek()) {
       cursor_.next();
       const std::string key = ascii_lower(token.text);
-      Status done;
+      Status status;
       if (key == "order") {
         result_.joints[0].channels.clear();
-        done = items_.channels(result_.joints[0].channels, "the root");
+        status = items_.channels(result_.joints[0].channels, "the root");
       } else if (key == "axis") {
-        done = items_.axis_order("root", root_axes_.order);
+        status = items_.axis_order("root", root_axes_.order);
       } else if (key == "position") {
-        done = items_.vector("position of the root", result_.root_position);
+        status = items_.vector("position of the root", result_.root_position);
       } else if (key == "orientation") {
-        done = items_.vector("orientation of the root", root_axes_.angles);
+        status = items_.vector("orientation of the root", root_axes_.angles);
       } else {
-        done = items_.skip_unknown(token);
+        status = items_.skip_unknown(token);
       }
-      if (!done) return done;
+      if (!status) return status;
     }
     const bool moved = !result_.root_position.isZero(0) || !root_axes_.angles.isZero(0);
     if (!moved) return {};

@@ -8,7 +8,7 @@
 
 namespace krok::acclaim {
 
-Error SourceText::error(const Place& place, std::string code, std::string message,
+Error SourceText::error(const TextLocation& place, std::string code, std::string message,
                         std::string hint) const {
   Error error(std::move(code), std::move(message), std::move(hint));
   if (place.line == 0) {
@@ -21,16 +21,16 @@ Error SourceText::error(const Place& place, std::string code, std::string messag
   return error;
 }
 
-void SourceText::warn(const Place& place, std::string code, std::string message, std::string hint,
-                      std::string joint) {
-  if (++warnings_ > kMostWarnings) return;
+void SourceText::warn(const TextLocation& place, std::string code, std::string message,
+                      std::string hint, std::string joint) {
+  if (++warnings_ > kMaxWarnings) return;
   Error told = error(place, std::move(code), std::move(message), std::move(hint));
   told.severity = Severity::warning;
   told.joint = std::move(joint);
   diagnostics_.push_back(std::move(told));
 }
 
-Status SourceText::fault(const Place& place, std::string code, std::string message,
+Status SourceText::fault(const TextLocation& place, std::string code, std::string message,
                          std::string hint, std::string joint) {
   if (strictness_ == Strictness::strict) {
     Error refused = error(place, std::move(code), std::move(message), std::move(hint));
@@ -42,11 +42,11 @@ Status SourceText::fault(const Place& place, std::string code, std::string messa
 }
 
 void SourceText::finish() {
-  if (warnings_ <= kMostWarnings) return;
+  if (warnings_ <= kMaxWarnings) return;
   Diagnostic more;
   more.severity = Severity::warning;
   more.code = "acclaim-more";
-  more.message = fmt::format("{} more warnings are not shown", warnings_ - kMostWarnings);
+  more.message = fmt::format("{} more warnings are not shown", warnings_ - kMaxWarnings);
   more.where.file = file_name_;
   diagnostics_.push_back(std::move(more));
 }

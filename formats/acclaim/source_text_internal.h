@@ -35,28 +35,28 @@ class SourceText {
 
   // A place in the text, by its byte or where the line is known. Finding the line of a byte takes
   // time with the byte's offset.
-  struct Place {
-    Place(std::size_t byte) : offset(byte) {}  // NOLINT: implicit
-    Place(std::int64_t line_number, std::int64_t column_number)
+  struct TextLocation {
+    TextLocation(std::size_t byte) : offset(byte) {}  // NOLINT: implicit
+    TextLocation(std::int64_t line_number, std::int64_t column_number)
         : line(line_number), column(column_number) {}
     std::size_t offset = 0;
     std::int64_t line = 0;  // 0: by offset
     std::int64_t column = 0;
   };
 
-  Error error(const Place& place, std::string code, std::string message,
+  Error error(const TextLocation& place, std::string code, std::string message,
               std::string hint = {}) const;
 
   // After kMostWarnings of them only their number is told, by finish().
-  void warn(const Place& place, std::string code, std::string message, std::string hint = {},
+  void warn(const TextLocation& place, std::string code, std::string message, std::string hint = {},
             std::string joint = {});
   // A warning that is an error where reading is strict.
-  Status fault(const Place& place, std::string code, std::string message, std::string hint = {},
-               std::string joint = {});
+  Status fault(const TextLocation& place, std::string code, std::string message,
+               std::string hint = {}, std::string joint = {});
   void finish();
 
  private:
-  static constexpr int kMostWarnings = 50;
+  static constexpr int kMaxWarnings = 50;
 
   std::string_view text_;
   const std::string& file_name_;

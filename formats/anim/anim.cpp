@@ -56,10 +56,10 @@ Status write_frames(const FrameSource& source, const WriteOptions& options,
     block.bytes.resize(count * frame_size);
     const auto positions = std::span(block.positions).first(count * joints);
     const auto orientations = std::span(block.orientations).first(count * joints);
-    Status done =
+    Status status =
         source.read(static_cast<int>(first), static_cast<int>(count), positions, orientations);
-    if (done) write_transforms(positions, orientations, options.orientation, block.bytes.data());
-    return done;
+    if (status) write_transforms(positions, orientations, options.orientation, block.bytes.data());
+    return status;
   };
   const auto take = [&](std::size_t item, std::size_t slot) {
     if (source.release) {
@@ -67,7 +67,7 @@ Status write_frames(const FrameSource& source, const WriteOptions& options,
     }
     return container.append(blocks[slot].bytes);
   };
-  if (Status done = container.begin("FRAMES"); !done) return done;
+  if (Status status = container.begin("FRAMES"); !status) return status;
   if (frames == 0) return {};
   return make_in_order((frames + at_once - 1) / at_once, options.jobs, make, take);
 }
@@ -88,30 +88,30 @@ Error with_place(Error error, const Clip& clip, const ContainerReader& container
 }  // namespace
 
 Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
-  if (Status holds = check(clip); !holds) return holds;
+  if (Status status = check(clip); !status) return status;
   return write(
       frames_of(clip), [&] { return clip.provenance; }, options, file);
 }
 
 Status write(const FrameSource& source, const std::function<Provenance()>& provenance,
              const WriteOptions& options, OutputFile& file) {
-  if (Status holds = check_storable(source.skeleton); !holds) return holds;
+  if (Status status = check_storable(source.skeleton); !status) return status;
   Clip head;
   head.skeleton = source.skeleton;
   head.rate = source.rate;
-  if (Status holds = check(head); !holds) return holds;
+  if (Status status = check(head); !status) return status;
   const auto joints = static_cast<std::uint32_t>(source.joint_count());
   const Info info = {source.rate, static_cast<std::uint64_t>(source.frame_count), joints, 0};
   ContainerWriter container(file, kFormat, orientation_flags(options.orientation),
                             3 + kSkeletonSections);
-  if (Status done = container.section("INFO", std::as_bytes(std::span(&info, 1))); !done) {
-    return done;
+  if (Status status = container.section("INFO", std::as_bytes(std::span(&info, 1))); !status) {
+    return status;
   }
-  if (Status done = write_skeleton(source.skeleton, options.orientation, container); !done) {
-    return done;
+  if (Status status = write_skeleton(source.skeleton, options.orientation, container); !status) {
+    return status;
   }
-  if (Status done = write_frames(source, options, container); !done) return done;
-  if (Status done = write_provenance(provenance(), container); !done) return done;
+  if (Status status = write_frames(source, options, container); !status) return status;
+  if (Status status = write_provenance(provenance(), container); !status) return status;
   return container.finish();
 }
 
@@ -154,8 +154,8 @@ Result<Clip> read(std::span<const std::byte> file) {
     read_transform(&frames->bytes[i * size], encoding, clip.positions[i], orientation);
     clip.orientations[i] = orientation.cast<float>();
   }
-  if (Status holds = check(clip); !holds) {
-    return with_place(std::move(holds).error(), clip, *container);
+  if (Status status = check(clip); !status) {
+    return with_place(std::move(status).error(), clip, *container);
   }
   return clip;
 }

@@ -9,7 +9,7 @@
 #include "core/child_process.h"
 #include "core/file.h"
 #include "formats/assimp/companions_internal.h"
-#include "formats/assimp/find_pictures_internal.h"
+#include "formats/assimp/find_images_internal.h"
 #include "formats/assimp/run_assimp_internal.h"
 #include "formats/assimp/scene_transfer.h"
 #include "formats/registry/registry.h"
@@ -122,7 +122,7 @@ Result<nodes::Scene> read_file(const std::string& path, const ReadOptions& optio
   }
   auto scene = read_in_child(files, kind, options);
   if (!scene) return std::move(scene.error()).in_file(path);
-  if (options.with_materials) find_pictures(path, options.most_file_bytes, *scene);
+  if (options.with_materials) find_images(path, options.most_file_bytes, *scene);
   scene->diagnostics.insert(scene->diagnostics.begin(), companions.diagnostics.begin(),
                             companions.diagnostics.end());
   for (Diagnostic& diagnostic : scene->diagnostics) diagnostic.where.file = path;

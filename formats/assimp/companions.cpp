@@ -126,8 +126,8 @@ void find_md5_mesh(CompanionFinder& finder, std::string_view motion) {
     candidates = finder.with_ending(".md5mesh");
   }
   std::vector<std::pair<fs::path, InputFile>> fitting;
-  constexpr std::size_t kMostCandidates = 64;
-  candidates.resize(std::min(candidates.size(), kMostCandidates));
+  constexpr std::size_t kMaxCandidates = 64;
+  candidates.resize(std::min(candidates.size(), kMaxCandidates));
   for (const fs::path& path : candidates) {
     auto file = finder.open(path);
     if (file && md5_joints(file->text()) == joints) fitting.emplace_back(path, std::move(*file));
@@ -185,15 +185,15 @@ void find_smd_motions(CompanionFinder& finder, const std::string& path) {
   if (!fs::is_regular_file(list_path, trouble)) return;
   auto list = finder.open(list_path);
   if (!list) return;
-  constexpr std::size_t kMostMotions = 256;
+  constexpr std::size_t kMaxMotions = 256;
   std::vector<ListedMotion> motions = listed_motions(list->text());
   const std::string list_name = shown(list_path.filename().string());
-  if (motions.size() > kMostMotions) {
+  if (motions.size() > kMaxMotions) {
     finder.tell(Severity::warning,
                 fmt::format("of the {} motions of '{}' the first {} are taken", motions.size(),
-                            list_name, kMostMotions),
+                            list_name, kMaxMotions),
                 "import the others for themselves");
-    motions.resize(kMostMotions);
+    motions.resize(kMaxMotions);
   }
   std::string text;
   for (const ListedMotion& motion : motions) {

@@ -61,9 +61,9 @@ void convert_cameras(Conversion& conversion);  // after nodes
 // and meshes.
 void convert_animations(Conversion& conversion, const aiScene& source);
 void convert_space(Conversion& conversion);
-void tell_of_same_names(Conversion& conversion);
-void tell_of_layers(Conversion& conversion);
-void rename_collada_nodes(Conversion& conversion);  // last: others go by Assimp's names
-void tell_what_is_missing(Conversion& conversion);  // last
+void report_same_names(Conversion& conversion);
+void report_layers(Conversion& conversion);
+void rename_collada_nodes(Conversion& conversion);    // last: others go by Assimp's names
+void report_what_is_missing(Conversion& conversion);  // last
 
 }  // namespace krok::assimp

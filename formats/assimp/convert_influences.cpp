@@ -110,14 +110,14 @@ void tidy(std::vector<Influence>& list, MeshTotals& totals) {
                    [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
   double all = 0;
   for (const Influence& influence : list) all += static_cast<double>(influence.weight);
-  if (list.size() > Primitive::kMostInfluences) {
+  if (list.size() > Primitive::kMaxInfluences) {
     ++totals.vertices_with_too_many;
     double dropped = 0;
-    for (std::size_t k = Primitive::kMostInfluences; k < list.size(); ++k) {
+    for (std::size_t k = Primitive::kMaxInfluences; k < list.size(); ++k) {
       dropped += static_cast<double>(list[k].weight) / all;
     }
     totals.largest_dropped = std::max(totals.largest_dropped, dropped);
-    list.resize(Primitive::kMostInfluences);
+    list.resize(Primitive::kMaxInfluences);
     all = 0;
     for (const Influence& influence : list) all += static_cast<double>(influence.weight);
   }

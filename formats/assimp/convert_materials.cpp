@@ -37,12 +37,12 @@ float roughness_of(float exponent) {
 std::string material_name(const aiScene& source, unsigned index) {
   if (index >= source.mNumMaterials) return {};
   const aiMaterial& material = *source.mMaterials[index];
-  aiString name, picture;
+  aiString name, image;
   const bool named = material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS;
   const std::string text = named ? to_text(name) : std::string();
   const bool by_assimp = text.empty() || text.starts_with("Texture_");
-  if (by_assimp && material.GetTexture(aiTextureType_DIFFUSE, 0, &picture) == aiReturn_SUCCESS) {
-    std::string path = to_text(picture);
+  if (by_assimp && material.GetTexture(aiTextureType_DIFFUSE, 0, &image) == aiReturn_SUCCESS) {
+    std::string path = to_text(image);
     std::replace(path.begin(), path.end(), '\\', '/');
     return base_name(path);
   }
@@ -122,7 +122,7 @@ Texture MaterialBuilder::texture(const aiMaterial& source, aiTextureType type) {
     ++other_coordinates_;
     return texture;
   }
-  texture.picture = picture(to_text(path));
+  texture.image = image(to_text(path));
   if (source.Get(AI_MATKEY_MAPPINGMODE_U(type, 0), number) == aiReturn_SUCCESS) {
     texture.wrap_u = wrap_of(number);
   }
@@ -132,10 +132,10 @@ Texture MaterialBuilder::texture(const aiMaterial& source, aiTextureType type) {
   return texture;
 }
 
-std::shared_ptr<const Picture> MaterialBuilder::picture(const std::string& path) {
-  const auto [place, added] = pictures_.try_emplace(path);
+std::shared_ptr<const EncodedImage> MaterialBuilder::image(const std::string& path) {
+  const auto [place, added] = images_.try_emplace(path);
   if (!added) return place->second;
-  Picture picture{{}, path, {}};
+  EncodedImage image{{}, path, {}};
   if (const aiTexture* inside = to_.source.GetEmbeddedTexture(path.c_str())) {
     // Decoded pixels, of which it has as many as width and height say, are another thing.
     if (inside->mHeight != 0 || inside->pcData == nullptr) {
@@ -143,10 +143,10 @@ std::shared_ptr<const Picture> MaterialBuilder::picture(const std::string& path)
       return nullptr;
     }
     const auto* bytes = reinterpret_cast<const std::byte*>(inside->pcData);
-    picture.bytes.assign(bytes, bytes + inside->mWidth);
-    if (inside->mFilename.length > 0) picture.path = to_text(inside->mFilename);
+    image.bytes.assign(bytes, bytes + inside->mWidth);
+    if (inside->mFilename.length > 0) image.path = to_text(inside->mFilename);
   }
-  return place->second = std::make_shared<const Picture>(std::move(picture));
+  return place->second = std::make_shared<const EncodedImage>(std::move(image));
 }
 
 void MaterialBuilder::report() {

@@ -54,7 +54,7 @@ bool has_sparse_keys(const Scene& scene) {
 
 // Assimp tells nodes by their names: of several with one name only the first is meant by a bone or
 // a curve.
-void tell_of_same_names(Conversion& to) {
+void report_same_names(Conversion& to) {
   std::map<std::string, int> uses;
   for (const Node& node : to.scene.nodes) ++uses[node.name];
   std::set<std::string> doubtful;
@@ -94,7 +94,7 @@ void rename_collada_nodes(Conversion& to) {
   }
 }
 
-void tell_of_layers(Conversion& to) {
+void report_layers(Conversion& to) {
   if (to.kind != Kind::fbx) return;
   const std::size_t layers = fbx_object_count(to.text, "AnimationLayer");
   const std::size_t takes = fbx_object_count(to.text, "AnimationStack");
@@ -106,7 +106,7 @@ void tell_of_layers(Conversion& to) {
           "merge the layers before exporting if the motion looks wrong");
 }
 
-void tell_what_is_missing(Conversion& to) {
+void report_what_is_missing(Conversion& to) {
   const Scene& scene = to.scene;
   std::vector<std::string> missing;
   if (scene.meshes.empty()) missing.emplace_back("no mesh");

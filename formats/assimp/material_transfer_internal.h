@@ -28,9 +28,9 @@ void put_array(ByteWriter& out, const std::vector<T>& values) {
 
 // Pictures that several textures share are put once: `number_of` has those before.
 void put_material(ByteWriter& out, const Material& material,
-                  std::map<const Picture*, std::int32_t>& number_of);
+                  std::map<const EncodedImage*, std::int32_t>& number_of);
 
 // `pictures` are those that were taken before.
-Material take_material(Parser& in, std::vector<std::shared_ptr<const Picture>>& pictures);
+Material take_material(Parser& in, std::vector<std::shared_ptr<const EncodedImage>>& images);
 
 }  // namespace krok::assimp

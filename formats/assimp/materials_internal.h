@@ -29,11 +29,11 @@ class MaterialBuilder {
   Material convert(const aiMaterial& source);
   Texture texture(const aiMaterial& source, aiTextureType type);
   Texture first_texture(const aiMaterial& source, std::initializer_list<aiTextureType> types);
-  std::shared_ptr<const Picture> picture(const std::string& path);
+  std::shared_ptr<const EncodedImage> image(const std::string& path);
 
   Conversion& to_;
   std::map<unsigned, int> places_;
-  std::map<std::string, std::shared_ptr<const Picture>> pictures_;  // by path
+  std::map<std::string, std::shared_ptr<const EncodedImage>> images_;  // by path
   std::size_t other_coordinates_ = 0, undecoded_ = 0, separate_ = 0;
 };
 

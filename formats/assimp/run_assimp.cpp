@@ -53,8 +53,8 @@ std::string reason(const Assimp::Importer& importer) {
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < 32) c = ' ';
   }
-  constexpr std::size_t kMost = 300;
-  if (text.size() > kMost) text = to_utf8(text.substr(0, kMost)) + "...";
+  constexpr std::size_t kMax = 300;
+  if (text.size() > kMax) text = to_utf8(text.substr(0, kMax)) + "...";
   while (!text.empty() && (text.back() == '.' || text.back() == ' ')) text.pop_back();
   return text.empty() ? "no reason given" : text;
 }
@@ -87,11 +87,11 @@ namespace {
 
 // The animation of the first of COLLADA's clips is there; those of the others are read by turns.
 void convert_further_clips(Conversion& to, const std::vector<ColladaClip>& clips) {
-  constexpr std::size_t kMostClips = 100;
+  constexpr std::size_t kMaxClips = 100;
   if (clips.empty()) return;
   std::vector<nodes::Animation>& animations = to.scene.animations;
   if (animations.size() == 1) shape_clip(clips[0], animations[0]);
-  const std::size_t count = std::min(clips.size(), kMostClips);
+  const std::size_t count = std::min(clips.size(), kMaxClips);
   if (count < clips.size()) {
     to.warn("assimp-clips", fmt::format("of {} clips the first {} are read", clips.size(), count));
   }
@@ -167,7 +167,7 @@ Status convert(Conversion& to, const Input& input) {
     convert_animations(to, to.source);
     convert_further_clips(to, input.clips);
     convert_space(to);
-    tell_of_same_names(to);
+    report_same_names(to);
     rename_collada_nodes(to);
   } catch (const ConversionError& error) {
     return Error("assimp-refused", fmt::format("the file cannot be read: {}", error.what()),
@@ -207,8 +207,8 @@ Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, Kind kind,
     to.note("assimp-normals",
             fmt::format("{} meshes have no normals; smooth ones were computed", without_normals));
   }
-  tell_of_layers(to);
-  tell_what_is_missing(to);
+  report_layers(to);
+  report_what_is_missing(to);
   return std::move(to.scene);
 }
 

@@ -101,7 +101,7 @@ std::vector<std::byte> pack(const Scene& scene) {
     put_text(to, animation.name);
     put_list(to, animation.channels, put_channel);
   });
-  std::map<const Picture*, std::int32_t> number_of;
+  std::map<const EncodedImage*, std::int32_t> number_of;
   put_list(out, scene.materials, [&](ByteWriter& to, const Material& material) {
     put_material(to, material, number_of);
   });

@@ -254,8 +254,8 @@ Result<Scene> unpack(std::span<const std::byte> bytes) {
     take_list(from, animation.channels, take_channel);
     return animation;
   });
-  std::vector<std::shared_ptr<const Picture>> pictures;
-  take_list(in, scene.materials, [&](Parser& from) { return take_material(from, pictures); });
+  std::vector<std::shared_ptr<const EncodedImage>> images;
+  take_list(in, scene.materials, [&](Parser& from) { return take_material(from, images); });
   in.require(check(scene.materials).ok(), "a material has values that it cannot have");
   const bool has_metres = in.number<std::uint8_t>() != 0;
   const double metres = in.finite();

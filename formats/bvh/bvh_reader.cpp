@@ -28,7 +28,7 @@ namespace krok::bvh {
 
 namespace {
 
-constexpr std::size_t kMostSamples = 200;
+constexpr std::size_t kMaxSamples = 200;
 
 class Reader {
  public:
@@ -58,9 +58,9 @@ class Reader {
     if (!one_row_a_line) return one_row_a_line.error();
     const Diagnostics before = capture_.diagnostics;
     if (*one_row_a_line) {
-      Status done = convert();
+      Status status = convert();
       if (!row_is_faulty_) {
-        if (!done) return std::move(done).error();
+        if (!status) return std::move(status).error();
         return std::move(capture_);
       }
       capture_.clip = {};
@@ -73,7 +73,7 @@ class Reader {
     capture_.repairs = std::move(index->repairs);
     row_is_faulty_ = false;
     careful_ = true;
-    if (Status done = convert(); !done) return std::move(done).error();
+    if (Status status = convert(); !status) return std::move(status).error();
     assert(!row_is_faulty_);
     return std::move(capture_);
   }
@@ -116,7 +116,7 @@ class Reader {
   }
 
   // By the names of the joints, and how the file is written.
-  void tell_exporter(const SampleRows& samples) {
+  void report_exporter(const SampleRows& samples) {
     Skeleton names;
     for (const auto& joint : hierarchy_.joints) {
       names.add(joint.name, joint.parent, {}, joint.end_site);
@@ -153,10 +153,10 @@ class Reader {
   // From the places of the rows to the clip.
   Status convert() {
     choose_rate();
-    if (Status chosen = choose_conventions(); !chosen) return chosen;
-    if (Status filled = fill_clip(); !filled) return filled;
+    if (Status status = choose_conventions(); !status) return status;
+    if (Status status = fill_clip(); !status) return status;
     if (row_is_faulty_) return {};
-    if (Status told = report_far_values(); !told) return told;
+    if (Status status = report_far_values(); !status) return status;
     report_rest_pose();
     return {};
   }
@@ -192,7 +192,7 @@ class Reader {
   SampleRows sample_rows() const {
     SampleRows samples;
     samples.channels = hierarchy_.channels.size();
-    const std::size_t count = std::min(rows_.size(), kMostSamples);
+    const std::size_t count = std::min(rows_.size(), kMaxSamples);
     std::vector<double> values(samples.channels);
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t row = count < 2 ? 0 : i * (rows_.size() - 1) / (count - 1);
@@ -205,7 +205,7 @@ class Reader {
 
   Status choose_conventions() {
     const SampleRows samples = sample_rows();
-    tell_exporter(samples);
+    report_exporter(samples);
     choose_angles(samples);
     PositionChoice positions;
     if (options_.positions == Positions::automatic) {
@@ -216,7 +216,7 @@ class Reader {
       positions.choice.reason = "as given";
       positions.choice.confidence = Confidence::certain;
     }
-    if (Status detected = detect(samples, positions.positions); !detected) return detected;
+    if (Status status = detect(samples, positions.positions); !status) return status;
     if (options_.positions == Positions::automatic && samples.count() > 0) {
       positions = choose_positions(hierarchy_, samples, capture_.conventions.up);
     }
@@ -326,7 +326,7 @@ class Reader {
   }
 
   Status fill_clip() {
-    if (Status fits = check_size(); !fits) return fits;
+    if (Status status = check_size(); !status) return status;
     make_frames();
     Clip& clip = capture_.clip;
     const std::size_t count = frames_->rows().size();
@@ -412,7 +412,7 @@ class Reader {
 
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options) {
-  if (Status rate = check_rate(options.rate, "bvh-frame-time"); !rate) return rate.error();
+  if (Status status = check_rate(options.rate, "bvh-frame-time"); !status) return status.error();
   const bool repair = options.strictness == Strictness::repair;
   const auto pointed = repair ? with_decimal_points(text) : std::nullopt;
   if (!pointed) return Reader(text, file_name, options).read();

@@ -49,7 +49,7 @@ class Writer {
     find_moving_translations();
     write_hierarchy();
     write_motion_header();
-    if (Status flushed = flush(); !flushed) return flushed;
+    if (Status status = flush(); !status) return status;
     return write_frames();
   }
 
@@ -206,9 +206,9 @@ class Writer {
   }
 
   Status flush() {
-    const Status written = file_.write(text_);
+    const Status status = file_.write(text_);
     text_.clear();
-    return written;
+    return status;
   }
 
   Status write_frames() {
@@ -224,7 +224,7 @@ class Writer {
         write_joint(joint, pose, previous[static_cast<std::size_t>(joint.index)]);
       }
       text_ += '\n';
-      if (Status flushed = flush(); !flushed) return flushed;
+      if (Status status = flush(); !status) return status;
     }
     return {};
   }
@@ -263,7 +263,7 @@ class Writer {
 }  // namespace
 
 Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
-  if (Status checked = check(clip); !checked) return checked;
+  if (Status status = check(clip); !status) return status;
   if (options.decimals < 1 || options.decimals > 15) {
     return Error("bvh-options", fmt::format("{} decimals, expected 1 to 15", options.decimals));
   }

@@ -32,7 +32,7 @@ class HierarchyParser {
         cursor_(text) {}
 
   Result<Hierarchy> parse() {
-    if (Status begun = parse_start(); !begun) return begun.error();
+    if (Status status = parse_start(); !status) return status.error();
     for (;;) {
       const std::string_view word = cursor_.word();
       if (word.empty()) return end_of_file();
@@ -44,17 +44,17 @@ class HierarchyParser {
         }
         break;
       }
-      if (Status done = parse_item(word); !done) return done.error();
+      if (Status status = parse_item(word); !status) return status.error();
     }
     result_.end = cursor_.position();
     if (result_.joints.empty()) {
       return fail("bvh-syntax", "the hierarchy has no ROOT", "the file holds no skeleton");
     }
-    if (Status useful = check_channels(); !useful) return useful.error();
-    if (Status joined = join_roots(); !joined) return joined.error();
-    if (warnings_ > kMostWarnings) {
-      tell_in_file(Severity::warning, "bvh-syntax",
-                   fmt::format("{} more such oddities", warnings_ - kMostWarnings));
+    if (Status status = check_channels(); !status) return status.error();
+    if (Status status = join_roots(); !status) return status.error();
+    if (warnings_ > kMaxWarnings) {
+      report_in_file(Severity::warning, "bvh-syntax",
+                     fmt::format("{} more such oddities", warnings_ - kMaxWarnings));
     }
     name_joints();
     count_zero_bones();
@@ -78,11 +78,11 @@ class HierarchyParser {
     warning.joint = std::move(joint);
     if (options_.strictness == Strictness::strict) return warning;
     warning.severity = Severity::warning;
-    if (++warnings_ <= kMostWarnings) diagnostics_.push_back(std::move(warning));
+    if (++warnings_ <= kMaxWarnings) diagnostics_.push_back(std::move(warning));
     return {};
   }
 
-  void tell_in_file(Severity severity, std::string code, std::string message) {
+  void report_in_file(Severity severity, std::string code, std::string message) {
     Error told = Error(std::move(code), std::move(message)).in_file(file_name_);
     told.severity = severity;
     diagnostics_.push_back(std::move(told));
@@ -96,19 +96,19 @@ class HierarchyParser {
     if (cursor_.accept("HIERARCHY")) return {};
     const auto start = find_start(text_.substr(begin));
     if (!start) {
-      Status kind = check_file_kind(text_, file_name_);
-      if (!kind) return kind;
+      Status status = check_file_kind(text_, file_name_);
+      if (!status) return status;
       return fail("bvh-kind", "does not begin with HIERARCHY, as a BVH file does",
                   "give a BVH capture");
     }
     cursor_.seek(begin + start->offset);
     if (start->lines > 0) {
-      Status told =
+      Status status =
           warn_at(begin, "bvh-text-before",
                   fmt::format("{} before the hierarchy {} left out", counted(start->lines, "line"),
                               start->lines == 1 ? "is" : "are"),
                   {});
-      if (!told) return told;
+      if (!status) return status;
     }
     if (cursor_.accept("HIERARCHY")) return {};
     return warn_at(begin + start->offset, "bvh-syntax", "the word HIERARCHY is missing before ROOT",
@@ -254,9 +254,9 @@ class HierarchyParser {
     seen_positions_.fill(false);
     seen_rotations_.fill(false);
     if (*count > 0 && result_.joints[index].end_site) {
-      Status told = warn_at(count_place, "bvh-channels",
-                            "an End Site has channels, so that it moves as a joint does", {});
-      if (!told) return told;
+      Status status = warn_at(count_place, "bvh-channels",
+                              "an End Site has channels, so that it moves as a joint does", {});
+      if (!status) return status;
     }
     for (long long i = 0; i < *count; ++i) {
       const std::string_view word = cursor_.peek();
@@ -267,7 +267,7 @@ class HierarchyParser {
                        kChannelsHint);
       }
       cursor_.word();
-      if (Status added = add_channel(word, index); !added) return added;
+      if (Status status = add_channel(word, index); !status) return status;
     }
     result_.joints[index].channel_count =
         result_.channels.size() - result_.joints[index].first_channel;
@@ -277,34 +277,36 @@ class HierarchyParser {
   Status add_channel(std::string_view word, std::size_t joint) {
     std::string_view name = word;
     while (!name.empty() && (name.back() == ',' || name.back() == ';')) name.remove_suffix(1);
-    if (name.size() != word.size() && !commas_told_) {
-      commas_told_ = true;
-      Status told = warn_at(cursor_.word_begin(), "bvh-channels",
-                            "the names of channels are divided by commas, which are left out", {});
-      if (!told) return told;
+    if (name.size() != word.size() && !commas_reported_) {
+      commas_reported_ = true;
+      Status status =
+          warn_at(cursor_.word_begin(), "bvh-channels",
+                  "the names of channels are divided by commas, which are left out", {});
+      if (!status) return status;
     }
     Channel channel;
     channel.joint = static_cast<int>(joint);
     const auto meaning = channel_meaning(name);
-    Status told;
+    Status status;
     if (meaning) {
       channel.kind = meaning->kind;
       channel.axis = meaning->axis;
-      told = check_repeated(channel, name);
+      status = check_repeated(channel, name);
     } else if (same_word(name, "Wrotation")) {
-      told =
+      status =
           fail("bvh-channels",
                fmt::format("{} has a channel Wrotation: its rotation is a quaternion", open_name()),
                "BVH has Euler angles; export them");
     } else {
-      told = warn_at(cursor_.word_begin(), "bvh-channels",
-                     fmt::format("the channel '{}' of {} is neither a position nor a rotation, its "
-                                 "values are left out",
-                                 shown(word), open_name()),
-                     open_name());
+      status =
+          warn_at(cursor_.word_begin(), "bvh-channels",
+                  fmt::format("the channel '{}' of {} is neither a position nor a rotation, its "
+                              "values are left out",
+                              shown(word), open_name()),
+                  open_name());
     }
-    if (told.ok()) result_.channels.push_back(channel);
-    return told;
+    if (status.ok()) result_.channels.push_back(channel);
+    return status;
   }
 
   // A joint may turn about one axis twice, though hardly any exporter means it.
@@ -336,8 +338,8 @@ class HierarchyParser {
                   "channels are named Xposition .. Zrotation");
     }
     if (any && !positions) {
-      tell_in_file(Severity::note, "bvh-channels",
-                   "no joint has position channels: the figure turns and bends in place");
+      report_in_file(Severity::note, "bvh-channels",
+                     "no joint has position channels: the figure turns and bends in place");
     }
     return {};
   }
@@ -353,14 +355,14 @@ class HierarchyParser {
     name_places_.insert(name_places_.begin(), 0);
     for (std::size_t i = 1; i < result_.joints.size(); ++i) ++result_.joints[i].parent;
     for (Channel& channel : result_.channels) ++channel.joint;
-    tell_in_file(
+    report_in_file(
         Severity::warning, "bvh-roots",
         fmt::format("the file has {} ROOTs; a joint at the origin was put above them", roots));
     return {};
   }
 
   void name_joints() {
-    std::vector<NamedPlace> places;
+    std::vector<JointName> places;
     places.reserve(result_.joints.size());
     for (std::size_t i = 0; i < result_.joints.size(); ++i) {
       auto& joint = result_.joints[i];
@@ -377,14 +379,14 @@ class HierarchyParser {
       if (zero++ == 0) first = joint.name;
     }
     if (zero == 0) return;
-    tell_in_file(
+    report_in_file(
         Severity::note, "bvh-zero-bones",
         fmt::format("{} joint{} at the place of {} parent (the first: {})", zero,
                     zero == 1 ? " stands" : "s stand", zero == 1 ? "its" : "their", first));
   }
 
   // More than these would drown what else there is to say.
-  static constexpr int kMostWarnings = 20;
+  static constexpr int kMaxWarnings = 20;
 
   std::string_view text_;
   const std::string& file_name_;
@@ -392,7 +394,7 @@ class HierarchyParser {
   Diagnostics& diagnostics_;
   Locator locate_;
   int warnings_ = 0;
-  bool commas_told_ = false;
+  bool commas_reported_ = false;
   std::array<bool, 3> seen_positions_{}, seen_rotations_{};  // of the joint being read
   TextCursor cursor_;
   Hierarchy result_;

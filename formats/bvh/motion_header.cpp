@@ -37,17 +37,17 @@ class HeaderParser {
 
   Result<MotionHeader> parse() {
     while (!has_frames_ || !has_time_) {
-      Status done;
+      Status status;
       if (!has_frames_ && cursor_.accept("Frames")) {
-        done = parse_frames();
+        status = parse_frames();
       } else if (!has_time_ && cursor_.accept("Frame")) {
-        done = parse_frame_time();
+        status = parse_frame_time();
       } else {
-        done = something_else();
+        status = something_else();
       }
-      if (!done) return done.error();
+      if (!status) return status.error();
     }
-    if (Status skipped = skip_other_lines(); !skipped) return skipped.error();
+    if (Status status = skip_other_lines(); !status) return status.error();
     header_.end = cursor_.position();
     if (count_rows_) count_rows();
     return header_;
@@ -105,10 +105,11 @@ class HeaderParser {
     const auto number = parse_finite(word);
     if (number && *number >= 0 && *number < 1e9 && *number == std::floor(*number)) {
       header_.frames = static_cast<long long>(*number);
-      Status told = warn(error_at(header_.frames_offset, "bvh-frame-count",
-                                  fmt::format("the number of frames is written as '{}', read as {}",
-                                              shown(word), header_.frames)));
-      return told ? skip_rest("number of frames") : told;
+      Status status =
+          warn(error_at(header_.frames_offset, "bvh-frame-count",
+                        fmt::format("the number of frames is written as '{}', read as {}",
+                                    shown(word), header_.frames)));
+      return status ? skip_rest("number of frames") : status;
     }
     Error wrong =
         error_at(header_.frames_offset, "bvh-frame-count",
@@ -130,7 +131,7 @@ class HeaderParser {
     header_.frame_time_text = value_after_colon();
     header_.frame_time_offset = cursor_.word_begin();
     has_time_ = true;
-    if (Status read = read_frame_time(); !read) return read;
+    if (Status status = read_frame_time(); !status) return status;
     if (header_.frame_time > 1e-6 && header_.frame_time < 1e6) return skip_rest("Frame Time");
     header_.frame_time = 0;
     Error wrong =
@@ -141,7 +142,7 @@ class HeaderParser {
                                    shown(header_.frame_time_text)),
                  kRateHint);
     if (!options_.rate) return wrong;
-    if (Status told = warn(std::move(wrong)); !told) return told;
+    if (Status status = warn(std::move(wrong)); !status) return status;
     return skip_rest("Frame Time");
   }
 
@@ -196,15 +197,15 @@ class HeaderParser {
         cursor_ = before;
         return {};
       }
-      if (++lines_left_out_ > kMostTold && options_.strictness != Strictness::strict) {
+      if (++lines_left_out_ > kMaxTold && options_.strictness != Strictness::strict) {
         cursor_.line();
         continue;
       }
-      Status told =
+      Status status =
           warn(error_at(place, "bvh-syntax",
                         fmt::format("the line '{}' is no part of the format and is left out",
                                     shown(cursor_.line()))));
-      if (!told) return told;
+      if (!status) return status;
     }
   }
 
@@ -221,7 +222,7 @@ class HeaderParser {
   bool has_frames_ = false;
   bool has_time_ = false;
   // Finding a line takes time with its place, and more would drown what else there is to say.
-  static constexpr int kMostTold = 20;
+  static constexpr int kMaxTold = 20;
   int lines_left_out_ = 0;
   bool count_rows_ = false;  // what Frames: says is no number
 };

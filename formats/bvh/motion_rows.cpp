@@ -16,8 +16,8 @@ namespace krok::bvh {
 namespace {
 
 constexpr int kFarthest = 64;
-constexpr int kMostDigits = 15;
-constexpr std::array<double, kMostDigits + 1> kPowersOfTen = {
+constexpr int kMaxDigits = 15;
+constexpr std::array<double, kMaxDigits + 1> kPowersOfTen = {
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
 // Reads a number as nearly all are printed, [-]digits[.digits] with up to 15 of them, before white
@@ -45,7 +45,7 @@ inline bool parse_plain_number(const char*& at, double& value) {
     after = take_digits();
     if (after == 0) return false;
   }
-  if (before == 0 || before + after > kMostDigits || !is_space(*p)) return false;
+  if (before == 0 || before + after > kMaxDigits || !is_space(*p)) return false;
   const double size = static_cast<double>(integer) / kPowersOfTen[static_cast<std::size_t>(after)];
   value = negative ? -size : size;
   at = p;

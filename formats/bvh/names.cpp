@@ -12,18 +12,18 @@ namespace krok::bvh {
 namespace {
 
 // More than these would drown what else there is to say.
-constexpr int kMostWarnings = 20;
+constexpr int kMaxWarnings = 20;
 
 }  // namespace
 
-void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
+void make_names_unique(std::vector<JointName>& places, std::string_view text,
                        const std::string& file_name, Diagnostics& diagnostics) {
   Locator locate(text, file_name);
   int duplicates = 0;
   int recoded = 0;
   int cleaned = 0;
   int nameless = 0;
-  const auto warn = [&](const NamedPlace& place, const char* code, std::string message) {
+  const auto warn = [&](const JointName& place, const char* code, std::string message) {
     Diagnostic warning;
     warning.severity = Severity::warning;
     warning.code = code;
@@ -37,11 +37,11 @@ void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
   std::vector<std::size_t> renamed;
   // Names that the file gives come first, so that a made-up one never takes a given one's place.
   for (std::size_t i = 0; i < places.size(); ++i) {
-    NamedPlace& place = places[i];
+    JointName& place = places[i];
     if (place.end_site) continue;
     if (!is_utf8(*place.name)) {
       *place.name = to_utf8(*place.name);
-      if (++recoded <= kMostWarnings) {
+      if (++recoded <= kMaxWarnings) {
         warn(place, "bvh-name",
              fmt::format("the name of joint {} is not UTF-8 and was read as Latin-1", *place.name));
       }
@@ -49,7 +49,7 @@ void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
     std::string cleaned_name = readable_joint_name(*place.name);
     if (cleaned_name != *place.name) {
       *place.name = std::move(cleaned_name);
-      if (++cleaned <= kMostWarnings) {
+      if (++cleaned <= kMaxWarnings) {
         warn(place, "bvh-name",
              fmt::format("a joint's name has control characters; it is called {}", *place.name));
       }
@@ -57,28 +57,28 @@ void make_names_unique(std::vector<NamedPlace>& places, std::string_view text,
     if (place.name->empty() || !names.claim(*place.name)) renamed.push_back(i);
   }
   for (const std::size_t i : renamed) {
-    NamedPlace& place = places[i];
+    JointName& place = places[i];
     const std::string given = *place.name;
     *place.name = names.make(given.empty() ? "joint" : given);
-    if (given.empty() && ++nameless <= kMostWarnings) {
+    if (given.empty() && ++nameless <= kMaxWarnings) {
       warn(place, "bvh-name", fmt::format("a joint without a name is called {}", *place.name));
     }
-    if (!given.empty() && ++duplicates <= kMostWarnings) {
+    if (!given.empty() && ++duplicates <= kMaxWarnings) {
       warn(place, "bvh-name-duplicate",
            fmt::format("another joint is named {} already; this one is called {}", given,
                        *place.name));
     }
   }
-  if (duplicates > kMostWarnings) {
+  if (duplicates > kMaxWarnings) {
     Diagnostic more;
     more.severity = Severity::warning;
     more.code = "bvh-name-duplicate";
     more.message = fmt::format("{} with a name that was given before",
-                               counted(duplicates - kMostWarnings, "more joint", "more joints"));
+                               counted(duplicates - kMaxWarnings, "more joint", "more joints"));
     more.where.file = file_name;
     diagnostics.push_back(std::move(more));
   }
-  for (NamedPlace& place : places) {
+  for (JointName& place : places) {
     if (!place.end_site) continue;
     *place.name = names.make(*places[static_cast<std::size_t>(place.parent)].name + "_end");
   }

@@ -27,12 +27,12 @@ class CarefulIndexer {
 
   Result<RowIndex> index() {
     lines_ = split_lines(text_, header_.end);
-    Status done = channels_ == 0     ? index_nothing()
-                  : one_row_a_line() ? index_rows_as_lines()
-                                     : index_rows_over_lines();
-    if (!done) return done.error();
-    if (Status settled = settle_faults(); !settled) return settled.error();
-    if (Status counted = compare_count(); !counted) return counted.error();
+    Status status = channels_ == 0     ? index_nothing()
+                    : one_row_a_line() ? index_rows_as_lines()
+                                       : index_rows_over_lines();
+    if (!status) return status.error();
+    if (Status status = settle_faults(); !status) return status.error();
+    if (Status status = compare_count(); !status) return status.error();
     return std::move(result_);
   }
 
@@ -83,13 +83,13 @@ class CarefulIndexer {
       // rows is a row cut short.
       if (i > last_row && (enough_rows() || line.text)) return text_after(i);
       if (line.text && 2 * line.words < channels_) {
-        if (Status told = text_between(line); !told) return told;
+        if (Status status = text_between(line); !status) return status;
         continue;
       }
       if (too_many_faults(line.words == channels_)) continue;
-      Status kept = add_fault(line.words == channels_ ? words_for_.number_fault(line.begin)
-                                                      : words_for_.length_fault(line));
-      if (!kept) return kept;
+      Status status = add_fault(line.words == channels_ ? words_for_.number_fault(line.begin)
+                                                        : words_for_.length_fault(line));
+      if (!status) return status;
     }
     return {};
   }
@@ -122,7 +122,7 @@ class CarefulIndexer {
         fmt::format("the line '{}' stands between the rows and is left out",
                     shown(trimmed(text_.substr(line.begin, end - line.begin)))));
     if (strict()) return told;
-    if (++texts_between_ <= kMostTold) tell(Severity::warning, std::move(told));
+    if (++texts_between_ <= kMaxTold) tell(Severity::warning, std::move(told));
     return {};
   }
 
@@ -162,7 +162,7 @@ class CarefulIndexer {
                         : words_for_.error_at(row.begin, "bvh-channel-count",
                                               fmt::format("{}, expected {}",
                                                           counted(row.words, "value"), channels_));
-      if (Status kept = add_fault(std::move(fault)); !kept) return kept;
+      if (Status status = add_fault(std::move(fault)); !status) return status;
     }
     if (whole > 0) return {};
     Error none = words_for_.error_at(
@@ -186,7 +186,7 @@ class CarefulIndexer {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       const Line& line = lines_[i];
       if (line.text && begins_another(line)) {
-        if (Status told = another_begins(i); !told) return told;
+        if (Status status = another_begins(i); !status) return status;
         break;
       }
       if (line.text && values % channels_ == 0) return text_after(i);
@@ -200,8 +200,8 @@ class CarefulIndexer {
         if (row_is_whole && !line.numbers && !is_number(word)) {
           row_is_whole = false;
           if (!too_many_faults(true)) {
-            Status kept = add_fault(words_for_.number_fault_at(word, at, values % channels_));
-            if (!kept) return kept;
+            Status status = add_fault(words_for_.number_fault_at(word, at, values % channels_));
+            if (!status) return status;
           }
         }
         if (++values % channels_ == 0 && row_is_whole) result_.begins.push_back(row_begin);
@@ -244,7 +244,7 @@ class CarefulIndexer {
   // Keeps a file of faults alone from making more messages than text: beyond a number only the
   // frame is marked. A number that is none must be listed where it is an error.
   bool too_many_faults(bool number) {
-    if (faults_.size() < kMostListed || (number && !repair())) return false;
+    if (faults_.size() < kMaxListed || (number && !repair())) return false;
     ++unlisted_;
     result_.begins.push_back(RowIndex::kFaulty);
     return true;
@@ -275,7 +275,7 @@ class CarefulIndexer {
   }
 
   Status settle_faults() {
-    if (Status doubted = doubt_cut_value(); !doubted) return doubted;
+    if (Status status = doubt_cut_value(); !status) return status;
     std::vector<std::size_t> kept;
     // Only rows between whole ones can be filled.
     std::size_t first = result_.begins.size();
@@ -299,7 +299,7 @@ class CarefulIndexer {
         result_.repairs.push_back(fmt::format("line {}: frame {} {}: {}", fault.error.where.line,
                                               fault.row, what, fault.error.message));
       }
-      if (++told_ > kMostTold) continue;
+      if (++reported_ > kMaxTold) continue;
       fault.error.message += fmt::format("; frame {} {}", fault.row, what);
       fault.error.hint.clear();
       if (!repair() && can_fill) {
@@ -309,9 +309,9 @@ class CarefulIndexer {
       if (repair()) fault.error.code = "bvh-repair";
       tell(Severity::warning, std::move(fault.error));
     }
-    if (told_ > kMostTold) {
+    if (reported_ > kMaxTold) {
       Error more(repair() ? "bvh-repair" : "bvh-channel-count",
-                 fmt::format("{} more faulty frames", told_ - kMostTold + unlisted_));
+                 fmt::format("{} more faulty frames", reported_ - kMaxTold + unlisted_));
       if (repair() && unlisted_ > 0) result_.repairs.push_back(more.message);
       tell(Severity::warning, std::move(more).in_file(file_name_));
     }
@@ -361,8 +361,8 @@ class CarefulIndexer {
     return {};
   }
 
-  static constexpr int kMostTold = 20;
-  static constexpr std::size_t kMostListed = 1000;
+  static constexpr int kMaxTold = 20;
+  static constexpr std::size_t kMaxListed = 1000;
 
   std::string_view text_;
   const MotionHeader& header_;
@@ -375,7 +375,7 @@ class CarefulIndexer {
   std::vector<Line> lines_;
   std::vector<Fault> faults_;
   std::size_t rows_found_ = 0;
-  int told_ = 0;
+  int reported_ = 0;
   int texts_between_ = 0;
   int unlisted_ = 0;
   bool text_ended_early_ = false;  // something that is no data follows the data

@@ -28,7 +28,7 @@ constexpr std::size_t frame_size(OrientationEncoding encoding) {
 }  // namespace
 
 Status write(const CameraTrack& camera, const WriteOptions& options, OutputFile& file) {
-  if (Status holds = check(camera); !holds) return holds;
+  if (Status status = check(camera); !status) return status;
   const Info info = {camera.rate, camera.positions.size()};
   const std::size_t size = frame_size(options.orientation);
   std::vector<std::byte> frames(camera.positions.size() * size);
@@ -39,11 +39,11 @@ Status write(const CameraTrack& camera, const WriteOptions& options, OutputFile&
     std::memcpy(frame + size - sizeof(float), &camera.fields_of_view[i], sizeof(float));
   }
   ContainerWriter container(file, kFormat, orientation_flags(options.orientation), 3);
-  Status done = container.section("INFO", std::as_bytes(std::span(&info, 1)));
-  if (done) done = container.section("FRAMES", frames);
-  if (done) done = write_provenance(camera.provenance, container);
-  if (done) done = container.finish();
-  return done;
+  Status status = container.section("INFO", std::as_bytes(std::span(&info, 1)));
+  if (status) status = container.section("FRAMES", frames);
+  if (status) status = write_provenance(camera.provenance, container);
+  if (status) status = container.finish();
+  return status;
 }
 
 Result<CameraTrack> read(std::span<const std::byte> file) {
@@ -79,9 +79,9 @@ Result<CameraTrack> read(std::span<const std::byte> file) {
     camera.orientations[i] = orientation.cast<float>();
     std::memcpy(&camera.fields_of_view[i], frame + size - sizeof(float), sizeof(float));
   }
-  if (Status holds = check(camera); !holds) {
-    const bool rate = holds.error().code == "camera-rate";
-    return at_section(std::move(holds).error(), *container, rate ? "INFO" : "FRAMES");
+  if (Status status = check(camera); !status) {
+    const bool rate = status.error().code == "camera-rate";
+    return at_section(std::move(status).error(), *container, rate ? "INFO" : "FRAMES");
   }
   return camera;
 }

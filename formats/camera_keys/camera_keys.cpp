@@ -19,7 +19,7 @@ using json::Value;
 using Kind = Value::Kind;
 
 constexpr std::string_view kSchema = "krok.camera-keys/1";
-constexpr std::size_t kMostKeys = 100'000;
+constexpr std::size_t kMaxKeys = 100'000;
 constexpr double kFurthest = 1e6;       // metres
 constexpr double kLatest = 1e6;         // seconds
 constexpr double kSensorHeight = 24.0;  // millimetres
@@ -32,16 +32,16 @@ class Reader {
   Result<CameraKeyFile> read() {
     const auto root = json::parse(text_);
     if (!root) return root.error();
-    if (Status known = in_.only(*root, kWhole,
-                                {"schema", "comment", "length_unit", "angle_unit", "rate",
-                                 "between", "tension", "closed", "keys"});
-        !known) {
-      return known.error();
+    if (Status status = in_.only(*root, kWhole,
+                                 {"schema", "comment", "length_unit", "angle_unit", "rate",
+                                  "between", "tension", "closed", "keys"});
+        !status) {
+      return status.error();
     }
-    if (Status schema = in_.has_schema(*root, kWhole, kSchema); !schema) return schema.error();
+    if (Status status = in_.has_schema(*root, kWhole, kSchema); !status) return status.error();
     for (const auto part :
          {&Reader::read_units, &Reader::read_defaults, &Reader::read_keys, &Reader::check_closed}) {
-      if (Status done = (this->*part)(*root); !done) return done.error();
+      if (Status status = (this->*part)(*root); !status) return status.error();
     }
     return std::move(file_);
   }
@@ -170,11 +170,12 @@ class Reader {
 
   Result<CameraKey> read_key(const Value& item, std::size_t index) const {
     const std::string what = fmt::format("key {}", index);
-    if (Status known = in_.only(item, what,
-                                {"time", "position", "target", "orientation", "roll",
-                                 "field_of_view", "focal_length", "between", "tension", "comment"});
-        !known) {
-      return known.error();
+    if (Status status =
+            in_.only(item, what,
+                     {"time", "position", "target", "orientation", "roll", "field_of_view",
+                      "focal_length", "between", "tension", "comment"});
+        !status) {
+      return status.error();
     }
     CameraKey key = usual_;
     const auto when = in_.moment(item, what, "time", rate_, kLatest);
@@ -185,14 +186,14 @@ class Reader {
     const auto at = place(**position, what, "position");
     if (!at) return at.error();
     key.position = *at;
-    if (Status done = read_direction(item, what, key); !done) return done.error();
+    if (Status status = read_direction(item, what, key); !status) return status.error();
     if (item.find("roll") != nullptr) {
       const auto roll = in_.number(item, what, "roll", -1e4, 1e4);
       if (!roll) return roll.error();
       key.roll = *roll * radians_;
     }
-    if (Status done = read_lens(item, what, key); !done) return done.error();
-    if (Status done = read_join(item, what, key); !done) return done.error();
+    if (Status status = read_lens(item, what, key); !status) return status.error();
+    if (Status status = read_join(item, what, key); !status) return status.error();
     return key;
   }
 
@@ -200,8 +201,8 @@ class Reader {
     const auto list = in_.get(root, kWhole, "keys", Kind::array);
     if (!list) return list.error();
     const std::size_t count = (*list)->items.size();
-    if (count == 0 || count > kMostKeys) {
-      return in_.wrong(**list, fmt::format("{} keys, expected 1 to {}", count, kMostKeys));
+    if (count == 0 || count > kMaxKeys) {
+      return in_.wrong(**list, fmt::format("{} keys, expected 1 to {}", count, kMaxKeys));
     }
     std::vector<CameraKey>& keys = file_.camera.keys;
     for (std::size_t i = 0; i < count; ++i) {

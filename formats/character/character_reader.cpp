@@ -16,7 +16,7 @@ namespace {
 using json::Value;
 using Kind = Value::Kind;
 
-constexpr std::size_t kMostItems = 100'000;  // of any list
+constexpr std::size_t kMaxItems = 100'000;  // of any list
 
 class Reader {
  public:
@@ -25,16 +25,16 @@ class Reader {
   Result<Character> read() {
     const auto root = json::parse(text_);
     if (!root) return root.error();
-    if (Status known = in_.only(*root, kWhole,
-                                {"schema", "comment", "name", "model", "materials", "parts", "eyes",
-                                 "morphs", "expressions", "role_map"});
-        !known) {
-      return known.error();
+    if (Status status = in_.only(*root, kWhole,
+                                 {"schema", "comment", "name", "model", "materials", "parts",
+                                  "eyes", "morphs", "expressions", "role_map"});
+        !status) {
+      return status.error();
     }
-    if (Status schema = in_.has_schema(*root, kWhole, kSchema); !schema) return schema.error();
+    if (Status status = in_.has_schema(*root, kWhole, kSchema); !status) return status.error();
     for (const auto part : {&Reader::read_files, &Reader::read_materials, &Reader::read_parts,
                             &Reader::read_eyes, &Reader::read_expressions}) {
-      if (Status done = (this->*part)(*root); !done) return done.error();
+      if (Status status = (this->*part)(*root); !status) return status.error();
     }
     return std::move(character_);
   }
@@ -79,9 +79,9 @@ class Reader {
     for (const Value& item : *list) {
       Character::Part& part = character_.parts.emplace_back();
       const std::string what = fmt::format("part {}", character_.parts.size() - 1);
-      if (Status known = in_.only(item, what, {"name", "material", "comment"}); !known)
-        return known;
-      if (Status named = read_name(item, what, names, part.name); !named) return named;
+      if (Status status = in_.only(item, what, {"name", "material", "comment"}); !status)
+        return status;
+      if (Status status = read_name(item, what, names, part.name); !status) return status;
       const auto material = in_.get(item, what, "material", Kind::string);
       if (!material) return material.error();
       part.material = (*material)->text;
@@ -96,10 +96,10 @@ class Reader {
     for (const Value& item : *list) {
       Character::Eye& eye = character_.eyes.emplace_back();
       const std::string what = fmt::format("eye {}", character_.eyes.size() - 1);
-      if (Status known = in_.only(item, what, {"name", "joint", "position", "comment"}); !known) {
-        return known;
+      if (Status status = in_.only(item, what, {"name", "joint", "position", "comment"}); !status) {
+        return status;
       }
-      if (Status named = read_name(item, what, names, eye.name); !named) return named;
+      if (Status status = read_name(item, what, names, eye.name); !status) return status;
       const auto joint = in_.get(item, what, "joint", Kind::string);
       if (!joint) return joint.error();
       if (!is_name((*joint)->text)) {
@@ -108,7 +108,7 @@ class Reader {
       eye.joint = (*joint)->text;
       const auto position = in_.get(item, what, "position", Kind::array);
       if (!position) return position.error();
-      if (Status placed = read_place(**position, what, eye.position); !placed) return placed;
+      if (Status status = read_place(**position, what, eye.position); !status) return status;
     }
     return {};
   }
@@ -139,10 +139,10 @@ class Reader {
     for (const Value& item : *list) {
       Character::Expression& expression = character_.expressions.emplace_back();
       const std::string what = fmt::format("expression {}", character_.expressions.size() - 1);
-      if (Status known = in_.only(item, what, {"name", "target", "weight", "comment"}); !known) {
-        return known;
+      if (Status status = in_.only(item, what, {"name", "target", "weight", "comment"}); !status) {
+        return status;
       }
-      if (Status named = read_name(item, what, names, expression.name); !named) return named;
+      if (Status status = read_name(item, what, names, expression.name); !status) return status;
       const auto target = in_.find(item, what, "target", Kind::string);
       if (!target) return target.error();
       if (*target != nullptr) expression.target = (*target)->text;
@@ -150,10 +150,10 @@ class Reader {
       if (!weight) return weight.error();
       if (*weight == nullptr) continue;
       const double found = (*weight)->number;
-      if (!(std::abs(found) <= Character::kMostWeight)) {
-        return in_.wrong(**weight, fmt::format("the weight of {} is {}, expected {} to {}", what,
-                                               readable(found), -Character::kMostWeight,
-                                               Character::kMostWeight));
+      if (!(std::abs(found) <= Character::kMaxWeight)) {
+        return in_.wrong(
+            **weight, fmt::format("the weight of {} is {}, expected {} to {}", what,
+                                  readable(found), -Character::kMaxWeight, Character::kMaxWeight));
       }
       expression.weight = static_cast<float>(found);
     }
@@ -165,9 +165,9 @@ class Reader {
     const auto list = in_.find(root, kWhole, key, Kind::array);
     if (!list) return list.error();
     if (*list == nullptr) return std::vector<Value>();
-    if ((*list)->items.size() <= kMostItems) return (*list)->items;
+    if ((*list)->items.size() <= kMaxItems) return (*list)->items;
     return in_.wrong(**list, fmt::format("\"{}\" has {} items, expected at most {}", key,
-                                         (*list)->items.size(), kMostItems));
+                                         (*list)->items.size(), kMaxItems));
   }
 
   // The member "name", which no other of the list may have.

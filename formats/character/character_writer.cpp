@@ -69,8 +69,8 @@ void put_list(std::vector<std::string>& lines, std::string_view key,
 }  // namespace
 
 Result<std::string> write(const Character& character) {
-  if (Status sound = check(character); !sound) return sound.error();
-  if (Status good = check_paths(character); !good) return good.error();
+  if (Status status = check(character); !status) return status.error();
+  if (Status status = check_paths(character); !status) return status.error();
   std::vector<std::string> lines;
   const auto put = [&](std::string_view key, const std::string& text) {
     if (!text.empty()) lines.push_back(fmt::format("\"{}\": {}", key, in_quotes(text)));

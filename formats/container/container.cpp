@@ -217,9 +217,9 @@ Status ContainerWriter::begin(std::string_view name) {
   assert(!name.empty() && name.size() <= kNameSize && entries_.size() < section_count_);
   if (entries_.empty()) {
     // Header and table stay out of the checksum until they are known.
-    if (Status done = put(head(0)); !done) return done;
+    if (Status status = put(head(0)); !status) return status;
   }
-  if (Status done = pad(); !done) return done;
+  if (Status status = pad(); !status) return status;
   entries_.push_back({std::string(name), position_, 0});
   return {};
 }
@@ -232,7 +232,7 @@ Status ContainerWriter::append(std::span<const std::byte> bytes) {
 }
 
 Status ContainerWriter::section(std::string_view name, std::span<const std::byte> bytes) {
-  if (Status done = begin(name); !done) return done;
+  if (Status status = begin(name); !status) return status;
   return append(bytes);
 }
 
@@ -262,9 +262,9 @@ Status ContainerWriter::finish() {
   const auto filled = head(checksum_.digest());
   if (!in_memory_) return file_.overwrite(0, filled);
   std::copy(filled.begin(), filled.end(), memory_.begin());
-  const Status done = file_.write(memory_);
+  const Status status = file_.write(memory_);
   memory_ = {};
-  return done;
+  return status;
 }
 
 }  // namespace krok

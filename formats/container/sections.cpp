@@ -122,7 +122,7 @@ Status write_texts(std::string_view name, std::span<const std::string> texts,
 }
 
 Status check_storable(const Skeleton& skeleton) {
-  if (Status holds = check(skeleton); !holds) return holds;
+  if (Status status = check(skeleton); !status) return status;
   if (skeleton.names.size() > kMaxFileJoints) {
     return Error("skeleton-shape", fmt::format("{} joints, a file holds up to {}",
                                                skeleton.names.size(), kMaxFileJoints));
@@ -147,8 +147,8 @@ Status write_skeleton(const Skeleton& skeleton, OrientationEncoding encoding,
   for (std::size_t i = 0; i < count; ++i) {
     joints.write(JointRecord{skeleton.parents[i], skeleton.end_sites[i] ? kJointIsEndSite : 0});
   }
-  if (Status done = container.section("JOINTS", joints.bytes()); !done) return done;
-  if (Status done = write_texts("NAMES", skeleton.names, container); !done) return done;
+  if (Status status = container.section("JOINTS", joints.bytes()); !status) return status;
+  if (Status status = write_texts("NAMES", skeleton.names, container); !status) return status;
   const std::size_t size = transform_size(encoding);
   std::vector<std::byte> pose(count * size);
   for (std::size_t i = 0; i < count; ++i) {
@@ -188,9 +188,9 @@ Result<Skeleton> read_skeleton(const ContainerReader& container, std::uint32_t j
     joint.position = position.cast<double>();
     skeleton.reference.push_back(joint);
   }
-  if (Status holds = check(skeleton); !holds) {
-    const std::string& code = holds.error().code;
-    return at_section(holds.error(), container,
+  if (Status status = check(skeleton); !status) {
+    const std::string& code = status.error().code;
+    return at_section(status.error(), container,
                       code == "skeleton-name"    ? "NAMES"
                       : code == "skeleton-value" ? "REFPOSE"
                                                  : "JOINTS");

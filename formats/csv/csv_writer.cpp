@@ -26,7 +26,7 @@ std::string csv_field(std::string_view name) {
 }  // namespace
 
 Status write(const Clip& clip, OutputFile& file) {
-  if (Status sound = check(clip); !sound) return sound;
+  if (Status status = check(clip); !status) return status;
   constexpr std::size_t kFlushAt = std::size_t{1} << 20;
 
   std::vector<std::string> names;
@@ -46,7 +46,7 @@ Status write(const Clip& clip, OutputFile& file) {
       text += '\n';
     }
     if (text.size() < kFlushAt) continue;
-    if (Status written = file.write(text); !written) return written;
+    if (Status status = file.write(text); !status) return status;
     text.clear();
   }
   return file.write(text);

@@ -105,8 +105,8 @@ std::string Table::text_of(const Cell& cell) const {
 Result<Table> Table::read(std::string_view text, const std::string& path) {
   Table table(without_byte_order_mark(text), path);
   std::size_t at = 0;
-  if (Status read = table.read_header(at); !read) return read.error();
-  if (Status read = table.read_rows(at); !read) return read.error();
+  if (Status status = table.read_header(at); !status) return status.error();
+  if (Status status = table.read_rows(at); !status) return status.error();
   return table;
 }
 
@@ -190,13 +190,13 @@ Result<std::size_t> Table::find(std::string_view name) const {
     found = c;
   }
   if (found) return *found;
-  constexpr std::size_t kMostNames = 12;
+  constexpr std::size_t kMaxNames = 12;
   std::string names;
-  for (std::size_t c = 0; c < std::min(columns_.size(), kMostNames); ++c) {
+  for (std::size_t c = 0; c < std::min(columns_.size(), kMaxNames); ++c) {
     names += (c > 0 ? ", " : "") + shown(columns_[c].header);
   }
-  if (columns_.size() > kMostNames)
-    names += fmt::format(" and {} more", columns_.size() - kMostNames);
+  if (columns_.size() > kMaxNames)
+    names += fmt::format(" and {} more", columns_.size() - kMaxNames);
   return Error("csv-column", fmt::format("no column is called '{}'", shown(name)),
                "there are " + names)
       .in_file(path_);
@@ -247,7 +247,7 @@ Location Table::place(std::size_t row, std::size_t column) const {
   return place_in(rows_[row], column);
 }
 
-Location Table::header_place(std::size_t column) const {
+Location Table::header_location(std::size_t column) const {
   return place_in(header_, column);
 }
 

@@ -50,7 +50,7 @@ class Table {
 
   // Where a cell begins, and a column's name; for messages. Takes time with the text before it.
   Location place(std::size_t row, std::size_t column) const;
-  Location header_place(std::size_t column) const;
+  Location header_location(std::size_t column) const;
 
   // A column's cells as they stand, quotes taken off. [rows]
   std::vector<std::string> texts(std::size_t column) const;

@@ -71,7 +71,7 @@ OrderedJson provenance_json(const Provenance& provenance) {
 }
 
 Status check_all(const CameraTrack& track, const CameraOptions& options) {
-  if (Status sound = check(track); !sound) return sound;
+  if (Status status = check(track); !status) return status;
   if (track.frame_count() == 0) return Error("camera-shape", "the camera has no frames");
   const bool good_aspect =
       !options.aspect || (*options.aspect > 0 && std::isfinite(*options.aspect));
@@ -229,7 +229,7 @@ Result<WithCamera> with_camera(const CameraTrack& track, const CameraOptions& op
                                OrderedJson json, std::vector<std::byte> data) {
   WithCamera result;
   CameraPutter putter(track, options, json, data);
-  if (Status done = putter.put(result.diagnostics); !done) return done.error();
+  if (Status status = putter.put(result.diagnostics); !status) return status.error();
   auto bytes = assemble_glb(json, data);
   if (!bytes) return bytes.error();
   result.bytes = *std::move(bytes);
@@ -240,7 +240,7 @@ Result<WithCamera> with_camera(const CameraTrack& track, const CameraOptions& op
 
 Result<WithCamera> add_camera(std::span<const std::byte> gltf, const CameraTrack& track,
                               const CameraOptions& options, const ReadOptions& reading) {
-  if (Status sound = check_all(track, options); !sound) return sound.error();
+  if (Status status = check_all(track, options); !status) return status.error();
   auto packed = pack_glb(gltf, reading);
   if (!packed) return packed.error();
   const auto container = open_container(packed->bytes);
@@ -255,7 +255,7 @@ Result<WithCamera> add_camera(std::span<const std::byte> gltf, const CameraTrack
 }
 
 Result<WithCamera> camera_alone(const CameraTrack& track, const CameraOptions& options) {
-  if (Status sound = check_all(track, options); !sound) return sound.error();
+  if (Status status = check_all(track, options); !status) return status.error();
   const std::string& version = track.provenance.version;
   OrderedJson json;
   json["asset"] = {{"version", "2.0"},

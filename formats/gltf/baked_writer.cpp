@@ -46,7 +46,7 @@ class BakedClip {
         bounds_(static_cast<std::size_t>(motion.frames) - 1) {}
 
   Status write(std::span<const float> times, OutputFile& file) {
-    if (Status added = add_first_frame(); !added) return added;
+    if (Status status = add_first_frame(); !status) return status;
     if (targets() == 0) return document_.write(file);
     promise_targets(times);
     const bool twice = options_.binary && !file.can_overwrite();
@@ -54,14 +54,14 @@ class BakedClip {
       progress_->begin("baking frames", static_cast<std::uint64_t>(targets()) * (twice ? 2 : 1));
     }
     if (twice) {
-      const Status seen = go_through([](auto) { return Status(); });
-      if (!seen) return seen;
+      const Status status = go_through([](auto) { return Status(); });
+      if (!status) return status;
     }
     std::span<const Document::Bounds> known;
     if (twice) known = bounds_;
-    if (Status begun = document_.begin(file, known); !begun) return begun;
+    if (Status status = document_.begin(file, known); !status) return status;
     std::vector<std::span<const std::byte>> bytes;
-    const Status written = go_through([&](std::span<const ShapeRoom> shapes) {
+    const Status status = go_through([&](std::span<const ShapeRoom> shapes) {
       bytes.clear();
       for (const ShapeRoom& shape : shapes) {
         bytes.push_back(std::as_bytes(std::span(shape.positions)));
@@ -70,8 +70,8 @@ class BakedClip {
       }
       return document_.append(bytes);
     });
-    if (!written) return written;
-    if (Status done = append_weights(); !done) return done;
+    if (!status) return status;
+    if (Status status = append_weights(); !status) return status;
     return document_.end(bounds_);
   }
 
@@ -146,13 +146,13 @@ class BakedClip {
   // At the time of a frame its target alone.
   Status append_weights() {
     std::vector<float> row(targets(), 0.0f);
-    Status done = document_.append(std::as_bytes(std::span(row)));
-    for (std::size_t t = 0; t < targets() && done; ++t) {
+    Status status = document_.append(std::as_bytes(std::span(row)));
+    for (std::size_t t = 0; t < targets() && status; ++t) {
       row[t] = 1.0f;
-      done = document_.append(std::as_bytes(std::span(row)));
+      status = document_.append(std::as_bytes(std::span(row)));
       row[t] = 0.0f;
     }
-    return done;
+    return status;
   }
 
   const Model& model_;
@@ -178,7 +178,7 @@ std::uint64_t baked_bytes(const Model& model, std::int64_t frames,
 
 Status write_baked(const Model& model, const MeshMotion& motion, const WriteOptions& options,
                    OutputFile& file, Progress* progress, int jobs) {
-  if (Status sound = check_mesh(model); !sound) return sound;
+  if (Status status = check_mesh(model); !status) return status;
   if (motion.frames < 1) return Error("gltf-structure", "the motion has no frames to bake");
   const auto times = key_times(motion.frames, motion.rate);
   if (!times) return times.error();

@@ -67,7 +67,7 @@ Status write_coloured(std::span<const ColouredMesh> meshes, const std::string& m
   document.gltf.materials.push_back(std::move(white));
   for (const ColouredMesh& coloured : meshes) {
     if (coloured.positions.empty()) continue;
-    if (Status sound = check_coloured(coloured); !sound) return sound;
+    if (Status status = check_coloured(coloured); !status) return status;
     tinygltf::Mesh mesh;
     mesh.name = coloured.name;
     mesh.primitives.push_back(primitive_of(coloured, document));

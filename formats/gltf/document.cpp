@@ -240,7 +240,7 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
 
 Result<int> Document::add_mesh(const Model& model, const std::map<std::string, int>& attributes,
                                const std::string& name) {
-  if (Status sound = check(options_.materials); !sound) return sound.error();
+  if (Status status = check(options_.materials); !status) return status.error();
   tinygltf::Mesh mesh;
   mesh.name = name;
   const auto largest = static_cast<std::uint32_t>(model.positions.size() - 1);

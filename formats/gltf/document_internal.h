@@ -101,7 +101,7 @@ class Document {
   };
 
   void put(std::span<const std::byte> bytes, Keep keep);
-  Result<int> add_picture(const Picture& picture);
+  Result<int> add_image(const EncodedImage& image);
   Result<int> add_texture(const Texture& texture);
   int add_sampler(const Texture& texture);
   int add_accessor(std::span<const std::byte> bytes, int component, std::size_t component_size,
@@ -127,7 +127,7 @@ class Document {
   std::vector<std::byte> unencoded_;  // the last of a text's data
   std::set<std::string> node_names_;
   std::map<std::string, int> materials_;
-  std::map<const Picture*, int> pictures_;
+  std::map<const EncodedImage*, int> images_;
   std::map<std::pair<int, int>, int> textures_;  // by picture and sampler
 };
 

@@ -60,7 +60,7 @@ std::vector<Vec4f> missing_tangents(const Model& model, const MeshShape& shape,
 }  // namespace
 
 Status write_skeleton(const Clip& clip, const WriteOptions& options, OutputFile& file) {
-  if (Status sound = check(clip); !sound) return sound;
+  if (Status status = check(clip); !status) return status;
   const auto tracks = joint_tracks(clip.skeleton, clip);
   if (!tracks) return tracks.error();
   return write_skeleton(clip.skeleton, *tracks, options, file);
@@ -68,7 +68,7 @@ Status write_skeleton(const Clip& clip, const WriteOptions& options, OutputFile&
 
 Status write_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
                       const WriteOptions& options, OutputFile& file) {
-  if (Status sound = check(skeleton); !sound) return sound;
+  if (Status status = check(skeleton); !status) return status;
   if (skeleton.empty()) return Error("gltf-structure", "the motion has no joints");
   assert(tracks.joints.size() == skeleton.names.size());
   Document document(options);
@@ -78,8 +78,8 @@ Status write_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
 
 Status write_rig(const Model& model, const Clip& clip, const WriteOptions& options,
                  OutputFile& file) {
-  if (Status sound = check(clip); !sound) return sound;
-  if (Status sound = check_mesh(model); !sound) return sound;
+  if (Status status = check(clip); !status) return status;
+  if (Status status = check_mesh(model); !status) return status;
   const std::string difference = difference_in_structure(model.skeleton, clip.skeleton);
   if (!difference.empty()) {
     return Error("gltf-structure", "model and motion have different skeletons: " + difference);
@@ -91,12 +91,12 @@ Status write_rig(const Model& model, const Clip& clip, const WriteOptions& optio
 
 Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptions& options,
                  OutputFile& file) {
-  if (Status sound = check_mesh(model); !sound) return sound;
-  if (Status fit = check_morphs(model, options); !fit) return fit;
+  if (Status status = check_mesh(model); !status) return status;
+  if (Status status = check_morphs(model, options); !status) return status;
   assert(tracks.joints.size() == model.skeleton.names.size());
   Document document(options);
   const int skin = document.add_skeleton(model.skeleton, tracks, options.name);
-  if (Status added = document.add_eyes(model.skeleton, skin, options.eyes); !added) return added;
+  if (Status status = document.add_eyes(model.skeleton, skin, options.eyes); !status) return status;
   MeshShape shape{model.positions, model.normals, model.tangents};
   const std::vector<Vec4f> tangents = missing_tangents(model, shape, options);
   if (!tangents.empty()) shape.tangents = tangents;
@@ -105,14 +105,14 @@ Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptio
   const auto mesh = document.add_mesh(model, attributes, mesh_name(options));
   if (!mesh) return mesh.error();
   const int node = document.add_mesh_node(*mesh, skin, mesh_name(options));
-  Status added = add_morphs(document, model, attributes, *mesh, node, options);
-  return added ? document.write(file) : added;
+  Status status = add_morphs(document, model, attributes, *mesh, node, options);
+  return status ? document.write(file) : status;
 }
 
 Status write_mesh(const Model& model, const MeshShape& given, const WriteOptions& options,
                   OutputFile& file) {
-  if (Status sound = check_mesh(model); !sound) return sound;
-  if (Status fit = check_morphs(model, options); !fit) return fit;
+  if (Status status = check_mesh(model); !status) return status;
+  if (Status status = check_morphs(model, options); !status) return status;
   Document document(options);
   MeshShape shape = given;
   const std::vector<Vec4f> tangents = missing_tangents(model, shape, options);
@@ -121,8 +121,8 @@ Status write_mesh(const Model& model, const MeshShape& given, const WriteOptions
   const auto mesh = document.add_mesh(model, attributes, mesh_name(options));
   if (!mesh) return mesh.error();
   const int node = document.add_mesh_node(*mesh, -1, mesh_name(options));
-  Status added = add_morphs(document, model, attributes, *mesh, node, options);
-  return added ? document.write(file) : added;
+  Status status = add_morphs(document, model, attributes, *mesh, node, options);
+  return status ? document.write(file) : status;
 }
 
 }  // namespace krok::gltf

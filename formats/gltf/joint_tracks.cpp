@@ -46,11 +46,11 @@ class TrackBuilder {
 
   Status build() {
     if (frames_ == 0) return {};
-    if (Status sampled = settle_on_samples(); !sampled) return sampled;
+    if (Status status = settle_on_samples(); !status) return status;
     for (;;) {
       take_memory();
       Seen seen(joints_, 0);
-      if (Status done = fill(seen); !done) return done;
+      if (Status status = fill(seen); !status) return status;
       if (seen == tracks_) break;
       tracks_ = std::move(seen);
     }
@@ -87,10 +87,10 @@ class TrackBuilder {
     room.orientations.resize(kFramesAtOnce * joints_);
     room.scratch.resize(track_detail::kScratch * joints_ + kAlignment / sizeof(double));
     room.seen.resize(joints_, 0);
-    Status read = source_.read(static_cast<int>(first), static_cast<int>(count),
-                               std::span(room.positions).first(count * joints_),
-                               std::span(room.orientations).first(count * joints_));
-    if (!read) return read;
+    Status status = source_.read(static_cast<int>(first), static_cast<int>(count),
+                                 std::span(room.positions).first(count * joints_),
+                                 std::span(room.orientations).first(count * joints_));
+    if (!status) return status;
     room.places.assign(joints_, {});
     for (std::size_t j = 0; keep && j < joints_; ++j) {
       JointTrack& track = result_.joints[j];
@@ -118,8 +118,8 @@ class TrackBuilder {
     for (std::size_t round = 0; round < kSamples; ++round) {
       Room room;
       for (std::size_t i = 0; i < std::min(kSamples, blocks_); ++i) {
-        if (Status done = do_block(i * blocks_ / kSamples % blocks_, false, room); !done)
-          return done;
+        if (Status status = do_block(i * blocks_ / kSamples % blocks_, false, room); !status)
+          return status;
       }
       if (room.seen == tracks_) break;
       tracks_ = std::move(room.seen);
@@ -146,7 +146,7 @@ class TrackBuilder {
       }
       return Status();
     };
-    if (Status done = make_in_order(blocks_, jobs_, make, take); !done) return done;
+    if (Status status = make_in_order(blocks_, jobs_, make, take); !status) return status;
     for (const Room& room : rooms) {
       for (std::size_t j = 0; j < room.seen.size(); ++j) seen[j] |= room.seen[j];
     }
@@ -225,7 +225,7 @@ Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source
   JointTracks tracks = rest_tracks(rest);
   tracks.times = std::move(*times);
   TrackBuilder builder(rest, source, tolerance, jobs, tracks);
-  if (Status built = builder.build(); !built) return built.error();
+  if (Status status = builder.build(); !status) return status.error();
   return tracks;
 }
 

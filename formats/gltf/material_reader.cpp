@@ -7,8 +7,8 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
+#include "formats/gltf/image_reader_internal.h"
 #include "formats/gltf/material_reader_internal.h"
-#include "formats/gltf/picture_reader_internal.h"
 #include "formats/gltf/reader_words_internal.h"
 #include "nodes/materials.h"
 
@@ -44,7 +44,7 @@ class MaterialReader {
  public:
   MaterialReader(const ParsedJson& parsed, std::span<const std::span<const std::byte>> buffers,
                  const ReadOptions& options, nodes::Scene& scene)
-      : parsed_(parsed), scene_(scene), pictures_(parsed, buffers, options) {}
+      : parsed_(parsed), scene_(scene), images_(parsed, buffers, options) {}
 
   void read() {
     const auto list = parsed_.look.find("materials");
@@ -54,7 +54,7 @@ class MaterialReader {
       scene_.materials.back().name = parsed_.material_names[m];
     }
     nodes::make_names_unique(scene_.materials);
-    for (const std::string& file : pictures_.files()) scene_.files.push_back(file);
+    for (const std::string& file : images_.files()) scene_.files.push_back(file);
     tell();
   }
 
@@ -65,7 +65,7 @@ class MaterialReader {
     read_surface(json, material);
     const Json& normal = object_in(json, "normalTexture");
     material.normal_texture = texture(normal);
-    material.normal_scale = factor(normal, "scale", 1, -kMostNormalScale, kMostNormalScale);
+    material.normal_scale = factor(normal, "scale", 1, -kMaxNormalScale, kMaxNormalScale);
     const Json& occlusion = object_in(json, "occlusionTexture");
     material.occlusion_texture = texture(occlusion);
     material.occlusion_strength = factor(occlusion, "strength", 1);
@@ -115,10 +115,10 @@ class MaterialReader {
     const Json* entry = entry_of(parsed_.look, "textures", info.value("index", Json()));
     const auto source = entry == nullptr ? kNothing.end() : entry->find("source");
     if (entry == nullptr || source == entry->end() || !source->is_number_unsigned()) {
-      ++without_picture_;
+      ++without_image_;
       return texture;
     }
-    texture.picture = pictures_.get(source->get<std::size_t>(), scene_.diagnostics);
+    texture.image = images_.get(source->get<std::size_t>(), scene_.diagnostics);
     const Json* sampler = entry_of(parsed_.look, "samplers", entry->value("sampler", Json()));
     if (sampler == nullptr || !texture) return texture;
     texture.wrap_u = wrap(*sampler, "wrapS");
@@ -174,8 +174,8 @@ class MaterialReader {
     if (!left_aside_.empty()) {
       std::vector<std::string> names;
       for (const std::string& name : left_aside_) names.push_back(shown(name));
-      constexpr std::size_t kMostNames = 10;
-      if (names.size() > kMostNames) names.resize(kMostNames);
+      constexpr std::size_t kMaxNames = 10;
+      if (names.size() > kMaxNames) names.resize(kMaxNames);
       warn(fmt::format("materials use what is left aside: {}", fmt::join(names, ", ")),
            "they may look otherwise than in other programs");
     }
@@ -183,7 +183,7 @@ class MaterialReader {
       if (count > 0) warn(fmt::format("{} {}: left out", counted(count, "texture"), what));
     };
     left_out(of_other_coordinates_, "laid out by other texture coordinates than the first");
-    left_out(without_picture_, "without an image that can be used");
+    left_out(without_image_, "without an image that can be used");
     if (out_of_range_ > 0) {
       warn(fmt::format("{} of materials out of range: brought into it",
                        counted(out_of_range_, "factor")));
@@ -192,9 +192,9 @@ class MaterialReader {
 
   const ParsedJson& parsed_;
   nodes::Scene& scene_;
-  Pictures pictures_;
+  Images images_;
   std::set<std::string> left_aside_;
-  int of_other_coordinates_ = 0, without_picture_ = 0, out_of_range_ = 0;
+  int of_other_coordinates_ = 0, without_image_ = 0, out_of_range_ = 0;
 };
 
 }  // namespace

@@ -61,23 +61,23 @@ constexpr const char* kUnlit = "KHR_materials_unlit";
 
 }  // namespace
 
-Result<int> Document::add_picture(const Picture& picture) {
-  if (const auto known = pictures_.find(&picture); known != pictures_.end()) return known->second;
-  auto facts = picture_facts(picture.bytes);
-  if (!facts) return std::move(facts.error()).in_file(picture.path);
+Result<int> Document::add_image(const EncodedImage& image) {
+  if (const auto known = images_.find(&image); known != images_.end()) return known->second;
+  auto facts = image_info(image.bytes);
+  if (!facts) return std::move(facts.error()).in_file(image.path);
   tinygltf::BufferView view;
   view.buffer = 0;
   view.byteOffset = size_;
-  view.byteLength = picture.bytes.size();
-  put(picture.bytes, Keep::view);
+  view.byteLength = image.bytes.size();
+  put(image.bytes, Keep::view);
   tinygltf::Image image;
-  image.name = picture.name;
+  image.name = image.name;
   image.mimeType = media_type(facts->kind);
   image.bufferView = static_cast<int>(gltf.bufferViews.size());
   gltf.bufferViews.push_back(std::move(view));
   const int index = static_cast<int>(gltf.images.size());
   gltf.images.push_back(std::move(image));
-  pictures_.emplace(&picture, index);
+  images_.emplace(&image, index);
   return index;
 }
 
@@ -92,16 +92,16 @@ int Document::add_sampler(const Texture& texture) {
 // The index of a texture, -1 for none.
 Result<int> Document::add_texture(const Texture& texture) {
   if (!texture) return -1;
-  const auto picture = add_picture(*texture.picture);
-  if (!picture) return picture;
+  const auto image = add_image(*texture.image);
+  if (!image) return image;
   // The usual needs no words.
-  const Texture usual{texture.picture};
+  const Texture usual{texture.image};
   const int sampler = texture == usual ? -1 : add_sampler(texture);
   const auto [place, made] =
-      textures_.emplace(std::pair(*picture, sampler), static_cast<int>(gltf.textures.size()));
+      textures_.emplace(std::pair(*image, sampler), static_cast<int>(gltf.textures.size()));
   if (made) {
     tinygltf::Texture added;
-    added.source = *picture;
+    added.source = *image;
     added.sampler = sampler;
     gltf.textures.push_back(std::move(added));
   }

@@ -223,9 +223,9 @@ Status read_targets(const tinygltf::Primitive& source, const std::vector<std::st
     for (const auto& [what, values] : {std::pair{"POSITION", &target.positions},
                                        {"NORMAL", &target.normals},
                                        {"TANGENT", &target.tangents}}) {
-      const Status read = read_vectors(source.targets[t], what, primitive.vertex_count(), accessors,
-                                       target_name, *values);
-      if (!read) return read;
+      const Status status = read_vectors(source.targets[t], what, primitive.vertex_count(),
+                                         accessors, target_name, *values);
+      if (!status) return status;
     }
   }
   return {};

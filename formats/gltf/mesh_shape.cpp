@@ -35,7 +35,7 @@ std::vector<Vec3f> unit_vectors(std::span<const Vec3f> vectors) {
 }
 
 Status check_mesh(const Model& model) {
-  if (Status sound = check(model); !sound) return sound;
+  if (Status status = check(model); !status) return status;
   if (model.positions.empty() || model.triangles.empty()) {
     return Error("gltf-empty-mesh", "the model has no triangles, and glTF knows no empty mesh");
   }

@@ -34,10 +34,10 @@ std::vector<Vec3f> displacements(std::span<const Vec3f> target, std::span<const 
 
 Status check_morphs(const Model& model, const WriteOptions& options) {
   if (options.weights != nullptr) {
-    if (Status fits = check_weights(*options.weights, options.morphs); !fits) return fits;
+    if (Status status = check_weights(*options.weights, options.morphs); !status) return status;
   }
   if (options.morphs == nullptr) return {};
-  if (Status sound = check(*options.morphs); !sound) return sound;
+  if (Status status = check(*options.morphs); !status) return status;
   if (options.morphs->vertex_count == model.vertex_count()) return {};
   return Error("gltf-morphs", fmt::format("the morph targets have {} vertices, the model has {}",
                                           options.morphs->vertex_count, model.vertex_count()));

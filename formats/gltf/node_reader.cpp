@@ -148,8 +148,8 @@ Status read_scene(const tinygltf::Model& model, Scene& scene) {
 }  // namespace
 
 Status read_nodes(const tinygltf::Model& model, Scene& scene) {
-  if (Status taken = take_nodes(model, scene); !taken) return taken;
-  if (Status linked = link_nodes(scene.nodes); !linked) return linked;
+  if (Status status = take_nodes(model, scene); !status) return status;
+  if (Status status = link_nodes(scene.nodes); !status) return status;
   return read_scene(model, scene);
 }
 

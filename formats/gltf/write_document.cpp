@@ -61,7 +61,7 @@ int Document::promise_positions(std::size_t count) {
 
 Status Document::write(OutputFile& file) {
   assert(promised_ == 0);
-  if (Status begun = begin(file); !begun) return begun;
+  if (Status status = begin(file); !status) return status;
   return end({});
 }
 
@@ -81,9 +81,9 @@ Status Document::begin(OutputFile& file, std::span<const Bounds> bounds) {
                  "rename the joint or material");
   }
   fill_in(bounds);
-  if (Status begun = options_.binary ? begin_binary() : begin_text(); !begun) return begun;
+  if (Status status = options_.binary ? begin_binary() : begin_text(); !status) return status;
   for (const Part& part : parts_) {
-    if (Status done = append(part.bytes()); !done) return done;
+    if (Status status = append(part.bytes()); !status) return status;
   }
   return {};
 }
@@ -123,8 +123,8 @@ Status Document::begin_binary() {
   const std::array<std::uint32_t, 5> head = {kMagic, 2, 12 + 8 + json_size + data_chunk, json_size,
                                              kJson};
   static_assert(sizeof head == kJsonBegin);
-  if (Status done = file_->write(std::as_bytes(std::span(head))); !done) return done;
-  if (Status done = file_->write(json_); !done) return done;
+  if (Status status = file_->write(std::as_bytes(std::span(head))); !status) return status;
+  if (Status status = file_->write(json_); !status) return status;
   if (size_ == 0) return {};
   const std::array<std::uint32_t, 2> data_head = {data_size, kBinary};
   return file_->write(std::as_bytes(std::span(data_head)));
@@ -142,7 +142,7 @@ Status Document::begin_text() {
 Status Document::append(std::span<const std::span<const std::byte>> parts) {
   if (options_.binary) return file_->write(parts);
   for (const auto part : parts) {
-    if (Status done = append_encoded(part); !done) return done;
+    if (Status status = append_encoded(part); !status) return status;
   }
   return {};
 }
@@ -153,7 +153,7 @@ Status Document::append_encoded(std::span<const std::byte> bytes) {
     unencoded_.insert(unencoded_.end(), here.begin(), here.end());
     bytes = bytes.subspan(here.size());
     if (unencoded_.size() < kEncodedAtOnce) break;
-    if (Status done = file_->write(to_base64(unencoded_)); !done) return done;
+    if (Status status = file_->write(to_base64(unencoded_)); !status) return status;
     unencoded_.clear();
   }
   return {};
@@ -167,8 +167,8 @@ Status Document::end(std::span<const Bounds> bounds) {
     return later ? file_->overwrite(kJsonBegin, std::as_bytes(std::span(json_))) : Status();
   }
   if (size_ == 0) return file_->write(json_);
-  if (Status done = file_->write(to_base64(unencoded_)); !done) return done;
-  if (Status done = file_->write("\"\n    }\n  ],\n"); !done) return done;
+  if (Status status = file_->write(to_base64(unencoded_)); !status) return status;
+  if (Status status = file_->write("\"\n    }\n  ],\n"); !status) return status;
   return file_->write(std::string_view(json_).substr(2));  // without the brace and its line's end
 }
 

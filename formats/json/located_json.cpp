@@ -13,7 +13,7 @@ namespace krok::json {
 namespace {
 
 constexpr std::size_t kDeepest = 32;
-constexpr std::size_t kMostMembers = 1000;  // keys are held against each other one by one
+constexpr std::size_t kMaxMembers = 1000;  // keys are held against each other one by one
 
 // Finds where tokens begin, in step with the parser's events. The text between two events holds
 // nothing but white space, commas and colons, for the parser has accepted it.
@@ -75,9 +75,9 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
     const std::size_t offset = places_.next();
-    if (stack_.back().members.size() >= kMostMembers) {
+    if (stack_.back().members.size() >= kMaxMembers) {
       error_ = error_at(text_, offset, "json-limit",
-                        fmt::format("an object has more than {} keys", kMostMembers));
+                        fmt::format("an object has more than {} keys", kMaxMembers));
       return false;
     }
     for (const Value::Member& member : stack_.back().members) {

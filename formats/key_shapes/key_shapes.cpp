@@ -14,7 +14,7 @@ using Kind = Value::Kind;
 
 constexpr std::string_view kSchema = "krok.key-shapes/1";
 constexpr std::string_view kWhole = "the file";
-constexpr std::size_t kMostKeys = 100'000;
+constexpr std::size_t kMaxKeys = 100'000;
 constexpr double kLatest = 1e6;  // seconds
 
 Status read_join(const Value& root, const json::Members& in, KeyShapeFile& file) {
@@ -31,7 +31,7 @@ Status read_join(const Value& root, const json::Members& in, KeyShapeFile& file)
 Status read_key(std::string_view text, const Value& item, const json::Members& in,
                 KeyShapeFile& file) {
   const std::string what = fmt::format("key {}", file.times.size());
-  if (Status known = in.only(item, what, {"time", "shape", "comment"}); !known) return known;
+  if (Status status = in.only(item, what, {"time", "shape", "comment"}); !status) return status;
   const auto time = in.moment(item, what, "time", file.rate, kLatest);
   if (!time) return time.error();
   if (!file.times.empty() && !(*time > file.times.back())) {
@@ -54,27 +54,27 @@ Result<KeyShapeFile> read(std::string_view text) {
   const auto root = json::parse(text);
   if (!root) return root.error();
   const json::Members in(text, "key-shapes");
-  if (Status known =
+  if (Status status =
           in.only(*root, kWhole, {"schema", "comment", "rate", "between", "tension", "keys"});
-      !known) {
-    return known.error();
+      !status) {
+    return status.error();
   }
-  if (Status schema = in.has_schema(*root, kWhole, kSchema); !schema) return schema.error();
+  if (Status status = in.has_schema(*root, kWhole, kSchema); !status) return status.error();
   KeyShapeFile file;
   if (root->find("rate") != nullptr) {
     const auto rate = in.number(*root, kWhole, "rate", 1e-3, 1e6);
     if (!rate) return rate.error();
     file.rate = *rate;
   }
-  if (Status done = read_join(*root, in, file); !done) return done.error();
+  if (Status status = read_join(*root, in, file); !status) return status.error();
   const auto list = in.get(*root, kWhole, "keys", Kind::array);
   if (!list) return list.error();
   const std::size_t count = (*list)->items.size();
-  if (count == 0 || count > kMostKeys) {
-    return in.wrong(**list, fmt::format("{} keys, expected 1 to {}", count, grouped(kMostKeys)));
+  if (count == 0 || count > kMaxKeys) {
+    return in.wrong(**list, fmt::format("{} keys, expected 1 to {}", count, grouped(kMaxKeys)));
   }
   for (const Value& item : (*list)->items) {
-    if (Status done = read_key(text, item, in, file); !done) return done.error();
+    if (Status status = read_key(text, item, in, file); !status) return status.error();
   }
   return file;
 }

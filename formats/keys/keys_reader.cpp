@@ -36,15 +36,15 @@ class Reader {
   Result<Sidecar> read() {
     const auto root = json::parse(text_);
     if (!root) return root.error();
-    if (Status known = in_.only(
+    if (Status status = in_.only(
             *root, "the file",
             {"schema", "comment", "duration", "edited", "found_xxh3", "contacts", "keytimes"});
-        !known) {
-      return known.error();
+        !status) {
+      return status.error();
     }
-    if (Status schema = in_.has_schema(*root, "the file", kSchema); !schema) return schema.error();
+    if (Status status = in_.has_schema(*root, "the file", kSchema); !status) return status.error();
     for (const auto part : {&Reader::read_facts, &Reader::read_contacts, &Reader::read_keytimes}) {
-      if (Status done = (this->*part)(*root); !done) return done.error();
+      if (Status status = (this->*part)(*root); !status) return status.error();
     }
     // A file without a checksum was written by hand altogether.
     sidecar_.edited = sidecar_.edited || checksum(sidecar_, skeleton_) != checksum_;
@@ -130,9 +130,9 @@ class Reader {
   }
 
   Result<Contact> read_contact(const Value& item) {
-    if (Status known = in_.only(item, "a contact", {"joint", "start", "end", "place", "by"});
-        !known) {
-      return known.error();
+    if (Status status = in_.only(item, "a contact", {"joint", "start", "end", "place", "by"});
+        !status) {
+      return status.error();
     }
     Contact contact;
     const auto on = joint(item);
@@ -177,8 +177,8 @@ class Reader {
   }
 
   Result<Keytime> read_keytime(const Value& item) {
-    if (Status known = in_.only(item, "a keytime", {"name", "time", "by"}); !known) {
-      return known.error();
+    if (Status status = in_.only(item, "a keytime", {"name", "time", "by"}); !status) {
+      return status.error();
     }
     const auto name = in_.get(item, "a keytime", "name", Kind::string);
     if (!name) return name.error();
@@ -259,8 +259,8 @@ Result<Sidecar> read_sidecar(std::string_view text, const std::string& path,
                              const Skeleton& skeleton, double duration) {
   auto sidecar = Reader(text, skeleton, duration).read();
   if (!sidecar) return std::move(sidecar).error().in_file(path);
-  if (Status sound = check(sidecar->keys, skeleton, duration); !sound) {
-    return std::move(sound).error().in_file(path);
+  if (Status status = check(sidecar->keys, skeleton, duration); !status) {
+    return std::move(status).error().in_file(path);
   }
   return sidecar;
 }

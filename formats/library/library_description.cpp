@@ -18,9 +18,9 @@ using Kind = Value::Kind;
 
 constexpr std::string_view kSchema = "krok.library/1";
 constexpr std::size_t kLargestFile = std::size_t{4} << 20;
-constexpr std::size_t kMostParameters = 8;
-constexpr std::size_t kMostExamples = 10'000;
-constexpr std::size_t kMostKeytimes = 100;
+constexpr std::size_t kMaxParameters = 8;
+constexpr std::size_t kMaxExamples = 10'000;
+constexpr std::size_t kMaxKeytimes = 100;
 constexpr std::size_t kLongestName = 200;
 
 json::Members::Parser parser_of(std::string_view measures) {
@@ -43,15 +43,15 @@ class Reader {
   Result<LibraryDescription> read() {
     const auto root = json::parse(text_, kLargestFile);
     if (!root) return root.error();
-    Status done = members_.only(
+    Status status = members_.only(
         *root, "the file",
         {"schema", "comment", "name", "skeleton", "map", "swing", "mirror", "keytimes", "rate",
          "outlier_deviations", "spacing", "parameters", "steps", "examples"});
-    if (done) done = members_.has_schema(*root, "the file", kSchema);
-    if (done) done = read_general(*root);
-    if (done) done = read_list(*root, "parameters", kMostParameters, &Reader::read_parameter);
-    if (done) done = read_list(*root, "examples", kMostExamples, &Reader::read_example);
-    if (!done) return done.error();
+    if (status) status = members_.has_schema(*root, "the file", kSchema);
+    if (status) status = read_general(*root);
+    if (status) status = read_list(*root, "parameters", kMaxParameters, &Reader::read_parameter);
+    if (status) status = read_list(*root, "examples", kMaxExamples, &Reader::read_example);
+    if (!status) return status.error();
     return std::move(library_);
   }
 
@@ -126,19 +126,19 @@ class Reader {
   }
 
   Status read_general(const Value& root) {
-    Status done = take(root, "the file", "name", library_.name);
-    if (done) done = take(root, "the file", "skeleton", library_.skeleton);
-    if (done) done = take(root, "the file", "map", library_.map);
-    if (done) done = take_flag(root, "the file", "mirror", library_.mirror);
-    if (done) done = take_positive(root, "the file", "rate", library_.rate);
-    if (done) done = read_swing(root);
-    if (done) done = read_steps(root, "the file", all_automatic_);
-    if (done) done = read_keytimes(root);
-    if (done) {
-      done = take_positive(root, "the file", "outlier_deviations", library_.outlier_deviations);
+    Status status = take(root, "the file", "name", library_.name);
+    if (status) status = take(root, "the file", "skeleton", library_.skeleton);
+    if (status) status = take(root, "the file", "map", library_.map);
+    if (status) status = take_flag(root, "the file", "mirror", library_.mirror);
+    if (status) status = take_positive(root, "the file", "rate", library_.rate);
+    if (status) status = read_swing(root);
+    if (status) status = read_steps(root, "the file", all_automatic_);
+    if (status) status = read_keytimes(root);
+    if (status) {
+      status = take_positive(root, "the file", "outlier_deviations", library_.outlier_deviations);
     }
-    if (done) done = read_spacing(root);
-    return done;
+    if (status) status = read_spacing(root);
+    return status;
   }
 
   Status read_spacing(const Value& root) {
@@ -179,9 +179,9 @@ class Reader {
     if (!found) return found.error();
     if (*found == nullptr) return {};
     const auto& items = (*found)->items;
-    if (items.size() < 2 || items.size() > kMostKeytimes) {
+    if (items.size() < 2 || items.size() > kMaxKeytimes) {
       return members_.wrong(
-          **found, fmt::format("{} keytimes, expected 2 to {}", items.size(), kMostKeytimes));
+          **found, fmt::format("{} keytimes, expected 2 to {}", items.size(), kMaxKeytimes));
     }
     for (const Value& item : items) {
       if (item.kind != Kind::string || item.text.empty() || item.text.size() > kLongestName) {
@@ -204,23 +204,23 @@ class Reader {
           **list, fmt::format("{} {}, expected 1 to {}", (*list)->items.size(), key, most));
     }
     for (const Value& item : (*list)->items) {
-      if (Status done = (this->*entry)(item); !done) return done;
+      if (Status status = (this->*entry)(item); !status) return status;
     }
     return {};
   }
 
   Status read_parameter(const Value& item) {
-    Status done =
+    Status status =
         members_.only(item, "a parameter", {"name", "measures", "tolerance", "from", "to"});
-    if (!done) return done;
+    if (!status) return status;
     ParameterEntry entry;
     entry.place = place_of(item);
     const auto measures = members_.get(item, "a parameter", "measures", Kind::string);
     if (!measures) return measures.error();
-    done = take(item, "a parameter", "measures", entry.measures);
+    status = take(item, "a parameter", "measures", entry.measures);
     entry.name = entry.measures.substr(entry.measures.rfind('.') + 1);
-    if (done) done = take(item, "a parameter", "name", entry.name);
-    if (!done) return done;
+    if (status) status = take(item, "a parameter", "name", entry.name);
+    if (!status) return status;
     if (entry.name.find('=') != std::string::npos || entry.name.size() > kLongestName) {
       return members_.wrong(item, fmt::format("'{}' is no name for a parameter", shown(entry.name)),
                             "names have no = in them and at most 200 bytes");
@@ -230,7 +230,7 @@ class Reader {
       return members_.wrong(item, fmt::format("two parameters are called '{}'", shown(entry.name)),
                             "give one another \"name\"");
     }
-    if (Status read = read_range(item, entry); !read) return read;
+    if (Status status = read_range(item, entry); !status) return status;
     library_.parameters.push_back(std::move(entry));
     return {};
   }
@@ -261,22 +261,22 @@ class Reader {
   }
 
   Status read_example(const Value& item) {
-    Status done = members_.only(item, "an example",
-                                {"name", "clip", "steps", "from", "to", "keys", "keytimes"});
-    if (!done) return done;
+    Status status = members_.only(item, "an example",
+                                  {"name", "clip", "steps", "from", "to", "keys", "keytimes"});
+    if (!status) return status;
     ExampleEntry entry;
     entry.place = place_of(item);
     entry.automatic = all_automatic_;
     const auto clip = members_.get(item, "an example", "clip", Kind::string);
     if (!clip) return clip.error();
-    done = take(item, "an example", "clip", entry.clip);
-    if (done) done = take(item, "an example", "name", entry.name);
-    if (done) done = take(item, "an example", "keys", entry.keys);
-    if (done) done = read_steps(item, "an example", entry.automatic);
-    if (done) done = take_moment(item, "an example", "from", entry.from);
-    if (done) done = take_moment(item, "an example", "to", entry.to);
-    if (done) done = read_given_keytimes(item, entry);
-    if (!done) return done;
+    status = take(item, "an example", "clip", entry.clip);
+    if (status) status = take(item, "an example", "name", entry.name);
+    if (status) status = take(item, "an example", "keys", entry.keys);
+    if (status) status = read_steps(item, "an example", entry.automatic);
+    if (status) status = take_moment(item, "an example", "from", entry.from);
+    if (status) status = take_moment(item, "an example", "to", entry.to);
+    if (status) status = read_given_keytimes(item, entry);
+    if (!status) return status;
     library_.examples.push_back(std::move(entry));
     return {};
   }

@@ -26,7 +26,7 @@ Result<std::string> write(std::span<const Material> materials);
 
 // Fills in the bytes of all pictures, each of which `open` is asked for once, in the order of the
 // materials. Codes: those of `open` and of picture_facts, with the picture's file.
-using OpenPicture = std::function<Result<InputFile>(const std::string& path)>;
-Status load_pictures(std::span<Material> materials, const OpenPicture& open);
+using OpenImage = std::function<Result<InputFile>(const std::string& path)>;
+Status load_images(std::span<Material> materials, const OpenImage& open);
 
 }  // namespace krok::material

@@ -18,7 +18,7 @@ namespace {
 using json::Value;
 using Kind = Value::Kind;
 
-constexpr std::size_t kMostMaterials = 10'000;
+constexpr std::size_t kMaxMaterials = 10'000;
 
 // The linear value of one that a screen takes. Source: IEC 61966-2-1 (sRGB).
 double linear_of(double shown_value) {
@@ -33,18 +33,18 @@ class Reader {
   Result<std::vector<Material>> read() {
     const auto root = json::parse(text_);
     if (!root) return root.error();
-    if (Status known = in_.only(*root, kWhole, {"schema", "comment", "materials"}); !known) {
-      return known.error();
+    if (Status status = in_.only(*root, kWhole, {"schema", "comment", "materials"}); !status) {
+      return status.error();
     }
-    if (Status schema = in_.has_schema(*root, kWhole, kSchema); !schema) return schema.error();
+    if (Status status = in_.has_schema(*root, kWhole, kSchema); !status) return status.error();
     const auto list = in_.get(*root, kWhole, "materials", Kind::array);
     if (!list) return list.error();
-    if ((*list)->items.size() > kMostMaterials) {
+    if ((*list)->items.size() > kMaxMaterials) {
       return in_.wrong(**list, fmt::format("{} materials, expected at most {}",
-                                           (*list)->items.size(), kMostMaterials));
+                                           (*list)->items.size(), kMaxMaterials));
     }
     for (const Value& item : (*list)->items) {
-      if (Status done = read_material(item); !done) return done.error();
+      if (Status status = read_material(item); !status) return status.error();
     }
     return std::move(materials_);
   }
@@ -56,18 +56,18 @@ class Reader {
     object_ = &item;
     what_ = fmt::format("material {}", materials_.size());
     material_ = Material();
-    if (Status known =
+    if (Status status =
             in_.only(item, what_,
                      {"name", "base_color", "base_color_texture", "metallic", "roughness",
                       "metallic_roughness_texture", "normal_texture", "normal_scale",
                       "occlusion_texture", "occlusion_strength", "emissive", "emissive_texture",
                       "alpha", "alpha_cutoff", "double_sided", "unlit", "shaders", "comment"});
-        !known) {
-      return known;
+        !status) {
+      return status;
     }
     for (const auto part : {&Reader::read_name, &Reader::read_textures, &Reader::read_factors,
                             &Reader::read_alpha, &Reader::read_shaders}) {
-      if (Status done = (this->*part)(); !done) return done;
+      if (Status status = (this->*part)(); !status) return status;
     }
     materials_.push_back(std::move(material_));
     return {};
@@ -101,9 +101,9 @@ class Reader {
           {"emissive_texture", &material_.emissive_texture}}) {
       const Value* value = object_->find(key);
       if (value == nullptr) continue;
-      if (Status done = read_texture(*value, fmt::format("\"{}\" of {}", key, what_), *texture);
-          !done) {
-        return done;
+      if (Status status = read_texture(*value, fmt::format("\"{}\" of {}", key, what_), *texture);
+          !status) {
+        return status;
       }
     }
     return {};
@@ -113,26 +113,26 @@ class Reader {
   Status read_texture(const Value& value, const std::string& what, Texture& texture) {
     const Value* file = &value;
     if (value.kind != Kind::string) {
-      if (Status known = in_.only(value, what, {"file", "wrap_u", "wrap_v", "smooth", "comment"});
-          !known) {
-        return known;
+      if (Status status = in_.only(value, what, {"file", "wrap_u", "wrap_v", "smooth", "comment"});
+          !status) {
+        return status;
       }
       const auto found = in_.get(value, what, "file", Kind::string);
       if (!found) return found.error();
       file = *found;
       for (const auto& [key, wrap] :
            {std::pair{"wrap_u", &texture.wrap_u}, {"wrap_v", &texture.wrap_v}}) {
-        if (Status done = read_word(value, what, key, kWrapWords, *wrap); !done) return done;
+        if (Status status = read_word(value, what, key, kWrapWords, *wrap); !status) return status;
       }
-      if (Status done = read_truth(value, what, "smooth", texture.smooth); !done) return done;
+      if (Status status = read_truth(value, what, "smooth", texture.smooth); !status) return status;
     }
     const auto path = in_.path(*file, what);
     if (!path) return path.error();
-    std::shared_ptr<const Picture>& picture = pictures_[*path];
-    if (picture == nullptr) {
-      picture = std::make_shared<const Picture>(Picture{{}, *path, {}});
+    std::shared_ptr<const EncodedImage>& image = images_[*path];
+    if (image == nullptr) {
+      image = std::make_shared<const EncodedImage>(EncodedImage{{}, *path, {}});
     }
-    texture.picture = picture;
+    texture.image = image;
     return {};
   }
 
@@ -142,18 +142,18 @@ class Reader {
     material_.metallic = usual.metallic;
     material_.roughness = usual.roughness;
     material_.emissive = usual.emissive;
-    if (Status done = read_color("base_color", material_.base_color); !done) return done;
+    if (Status status = read_color("base_color", material_.base_color); !status) return status;
     Vec4f emissive;
     emissive << material_.emissive, 1.0f;
-    if (Status done = read_color("emissive", emissive); !done) return done;
+    if (Status status = read_color("emissive", emissive); !status) return status;
     material_.emissive = emissive.head<3>();
     for (const auto& [key, factor] : {std::pair{"metallic", &material_.metallic},
                                       {"roughness", &material_.roughness},
                                       {"occlusion_strength", &material_.occlusion_strength},
                                       {"alpha_cutoff", &material_.alpha_cutoff}}) {
-      if (Status done = read_number(key, 0, 1, *factor); !done) return done;
+      if (Status status = read_number(key, 0, 1, *factor); !status) return status;
     }
-    return read_number("normal_scale", -kMostNormalScale, kMostNormalScale, material_.normal_scale);
+    return read_number("normal_scale", -kMaxNormalScale, kMaxNormalScale, material_.normal_scale);
   }
 
   Status read_number(const char* key, double least, double most, float& number) {
@@ -217,11 +217,13 @@ class Reader {
   }
 
   Status read_alpha() {
-    if (Status done = read_word(*object_, what_, "alpha", kAlphaWords, material_.alpha); !done) {
-      return done;
+    if (Status status = read_word(*object_, what_, "alpha", kAlphaWords, material_.alpha);
+        !status) {
+      return status;
     }
-    if (Status done = read_truth(*object_, what_, "double_sided", material_.double_sided); !done) {
-      return done;
+    if (Status status = read_truth(*object_, what_, "double_sided", material_.double_sided);
+        !status) {
+      return status;
     }
     return read_truth(*object_, what_, "unlit", material_.unlit);
   }
@@ -270,7 +272,7 @@ class Reader {
   Material material_;              // ... and what is known of it
   std::vector<Material> materials_;
   std::map<std::string, std::size_t> numbers_;  // of materials, by name
-  std::map<std::string, std::shared_ptr<const Picture>> pictures_;
+  std::map<std::string, std::shared_ptr<const EncodedImage>> images_;
 };
 
 }  // namespace

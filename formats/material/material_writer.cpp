@@ -36,7 +36,7 @@ std::string text_of(const Texture& texture) {
     more += fmt::format(", \"{}\": \"{}\"", key, word_of(kWrapWords, wrap));
   }
   if (!texture.smooth) more += ", \"smooth\": false";
-  const std::string path = in_quotes(texture.picture->path);
+  const std::string path = in_quotes(texture.image->path);
   return more.empty() ? path : fmt::format("{{\"file\": {}{}}}", path, more);
 }
 
@@ -92,7 +92,7 @@ class Writer {
 Status check_paths(const Material& material) {
   for (const Texture* texture : textures_of(material)) {
     if (!*texture) continue;
-    const std::string& path = texture->picture->path;
+    const std::string& path = texture->image->path;
     const std::string fault = path_fault(path);
     if (fault.empty()) continue;
     return Error("material-path", fmt::format("material '{}': the path of a texture, '{}', {}",
@@ -104,10 +104,10 @@ Status check_paths(const Material& material) {
 }  // namespace
 
 Result<std::string> write(std::span<const Material> materials) {
-  if (Status sound = check(materials); !sound) return sound.error();
+  if (Status status = check(materials); !status) return status.error();
   std::vector<std::string> texts;
   for (const Material& material : materials) {
-    if (Status good = check_paths(material); !good) return good.error();
+    if (Status status = check_paths(material); !status) return status.error();
     texts.push_back(Writer().text_of(material));
   }
   const std::string list =

@@ -59,13 +59,13 @@ Status write_parts(const Model& model, ContainerWriter& container) {
     names.push_back(part.name);
     names.push_back(part.material);
   }
-  if (Status done = write_array("PARTS", records, container); !done) return done;
+  if (Status status = write_array("PARTS", records, container); !status) return status;
   return write_texts("PARTNAME", names, container);
 }
 
 Status read_parts(const ContainerReader& container, std::uint32_t part_count, Model& model) {
   std::vector<PartRecord> records;
-  if (Status done = read_array(container, "PARTS", part_count, records); !done) return done;
+  if (Status status = read_array(container, "PARTS", part_count, records); !status) return status;
   auto names = read_texts(container, "PARTNAME", std::uint64_t{2} * part_count);
   if (!names) return names.error();
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -76,8 +76,8 @@ Status read_parts(const ContainerReader& container, std::uint32_t part_count, Mo
 }
 
 Status check_storable(const Model& model) {
-  if (Status holds = check(model); !holds) return holds;
-  if (Status holds = krok::check_storable(model.skeleton); !holds) return holds;
+  if (Status status = check(model); !status) return status;
+  if (Status status = krok::check_storable(model.skeleton); !status) return status;
   if (model.positions.size() > kMaxCount || model.triangles.size() > kMaxCount ||
       model.parts.size() > kMaxCount) {
     return Error("model-shape",
@@ -103,7 +103,7 @@ std::string_view section_of(const std::string& code) {
 }  // namespace
 
 Status write(const Model& model, const WriteOptions& options, OutputFile& file) {
-  if (Status holds = check_storable(model); !holds) return holds;
+  if (Status status = check_storable(model); !status) return status;
   const Info info = {static_cast<std::uint32_t>(model.skeleton.names.size()),
                      static_cast<std::uint32_t>(model.positions.size()),
                      static_cast<std::uint32_t>(model.triangles.size()),
@@ -116,19 +116,19 @@ Status write(const Model& model, const WriteOptions& options, OutputFile& file) 
   const std::size_t optional_sections = std::size_t{normals} + coordinates + tangents;
   ContainerWriter container(file, kFormat, orientation_flags(options.orientation),
                             8 + kSkeletonSections + optional_sections);
-  Status done = container.section("INFO", std::as_bytes(std::span(&info, 1)));
-  if (done) done = write_skeleton(model.skeleton, options.orientation, container);
-  if (done) done = write_array("POSITION", model.positions, container);
-  if (done && normals) done = write_array("NORMAL", model.normals, container);
-  if (done && coordinates) done = write_array("TEXCOORD", model.texture_coordinates, container);
-  if (done && tangents) done = write_array("TANGENT", model.tangents, container);
-  if (done) done = write_array("VJOINTS", model.influence_joints, container);
-  if (done) done = write_array("VWEIGHTS", model.influence_weights, container);
-  if (done) done = write_array("TRIANGLE", model.triangles, container);
-  if (done) done = write_parts(model, container);
-  if (done) done = write_provenance(model.provenance, container);
-  if (done) done = container.finish();
-  return done;
+  Status status = container.section("INFO", std::as_bytes(std::span(&info, 1)));
+  if (status) status = write_skeleton(model.skeleton, options.orientation, container);
+  if (status) status = write_array("POSITION", model.positions, container);
+  if (status && normals) status = write_array("NORMAL", model.normals, container);
+  if (status && coordinates) status = write_array("TEXCOORD", model.texture_coordinates, container);
+  if (status && tangents) status = write_array("TANGENT", model.tangents, container);
+  if (status) status = write_array("VJOINTS", model.influence_joints, container);
+  if (status) status = write_array("VWEIGHTS", model.influence_weights, container);
+  if (status) status = write_array("TRIANGLE", model.triangles, container);
+  if (status) status = write_parts(model, container);
+  if (status) status = write_provenance(model.provenance, container);
+  if (status) status = container.finish();
+  return status;
 }
 
 Result<Model> read(std::span<const std::byte> file) {
@@ -162,21 +162,21 @@ Result<Model> read(std::span<const std::byte> file) {
   const std::uint64_t vertices = info.vertex_count;
   const std::uint64_t influences = vertices * info.influences_per_vertex;
   model.influences_per_vertex = static_cast<int>(info.influences_per_vertex);
-  Status done = read_array(*container, "POSITION", vertices, model.positions);
-  if (done) done = read_optional_array(*container, "NORMAL", vertices, model.normals);
-  if (done) {
-    done = read_optional_array(*container, "TEXCOORD", vertices, model.texture_coordinates);
+  Status status = read_array(*container, "POSITION", vertices, model.positions);
+  if (status) status = read_optional_array(*container, "NORMAL", vertices, model.normals);
+  if (status) {
+    status = read_optional_array(*container, "TEXCOORD", vertices, model.texture_coordinates);
   }
-  if (done) done = read_optional_array(*container, "TANGENT", vertices, model.tangents);
-  if (done) done = read_array(*container, "VJOINTS", influences, model.influence_joints);
-  if (done) done = read_array(*container, "VWEIGHTS", influences, model.influence_weights);
-  if (done) done = read_array(*container, "TRIANGLE", info.triangle_count, model.triangles);
-  if (done) done = read_parts(*container, info.part_count, model);
-  if (!done) return done.error();
+  if (status) status = read_optional_array(*container, "TANGENT", vertices, model.tangents);
+  if (status) status = read_array(*container, "VJOINTS", influences, model.influence_joints);
+  if (status) status = read_array(*container, "VWEIGHTS", influences, model.influence_weights);
+  if (status) status = read_array(*container, "TRIANGLE", info.triangle_count, model.triangles);
+  if (status) status = read_parts(*container, info.part_count, model);
+  if (!status) return status.error();
 
-  if (Status holds = check(model); !holds) {
-    const std::string_view section = section_of(holds.error().code);
-    return at_section(std::move(holds).error(), *container, section);
+  if (Status status = check(model); !status) {
+    const std::string_view section = section_of(status.error().code);
+    return at_section(std::move(status).error(), *container, section);
   }
   return model;
 }

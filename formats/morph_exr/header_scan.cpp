@@ -19,9 +19,9 @@ constexpr std::uint32_t kMagic = 20000630;
 constexpr std::uint32_t kExrVersion = 2;
 constexpr std::uint32_t kLongNames = 0x400;
 constexpr std::size_t kLongestName = 255;
-constexpr std::uint32_t kMostAttributes = 1000;
+constexpr std::uint32_t kMaxAttributes = 1000;
 // What deflate can make of a byte at most, and room for small files.
-constexpr std::uint64_t kMostExpansion = 1040;
+constexpr std::uint64_t kMaxExpansion = 1040;
 
 // Types whose readers take no more memory than the attribute's bytes; texts are looked at here.
 constexpr std::string_view kTypes[] = {"box2f",       "box2i",    "chlist",       "chromaticities",
@@ -42,7 +42,7 @@ class Scan {
       return fail("it is tiled, deep, of several parts or of another version of OpenEXR",
                   "save it as a single-part scan-line picture");
     }
-    for (std::uint32_t i = 0; i < kMostAttributes; ++i) {
+    for (std::uint32_t i = 0; i < kMaxAttributes; ++i) {
       std::string_view name, type;
       if (!take_name(name)) return fail("its header is cut short");
       if (name.empty()) return finish();
@@ -105,7 +105,7 @@ class Scan {
     if (texels == 0) return fail("its header has no data window");
     // Each block of up to 16 lines has an offset and a head of 8 bytes each.
     const std::uint64_t blocks = (facts_.height + 15) / 16;
-    if (texels * 12 > kMostExpansion * file_.size() || blocks * 16 > file_.size()) {
+    if (texels * 12 > kMaxExpansion * file_.size() || blocks * 16 > file_.size()) {
       return fail(fmt::format("it says that it is {} by {} texels, which {} bytes cannot hold",
                               facts_.width, facts_.height, file_.size()));
     }

@@ -24,8 +24,8 @@ namespace krok::morph_exr {
 namespace {
 
 constexpr int kMorphVersion = 1;
-constexpr std::uint64_t kMostWidth = 16384;
-constexpr std::uint64_t kMostRows = 16384;  // of a half
+constexpr std::uint64_t kMaxWidth = 16384;
+constexpr std::uint64_t kMaxRows = 16384;  // of a half
 constexpr const char* kChannels[] = {"R", "G", "B"};
 constexpr const char* kVersionName = "krokMorphVersion";
 constexpr const char* kNamesName = "krokMorphTargets";
@@ -104,7 +104,7 @@ struct Layout {
 // The width is the power of two that makes the picture nearly square.
 Layout layout_of(std::uint64_t vertices) {
   std::uint64_t width = 1;
-  while (width < kMostWidth && width * width < 2 * vertices) width *= 2;
+  while (width < kMaxWidth && width * width < 2 * vertices) width *= 2;
   return {static_cast<std::size_t>(width),
           static_cast<std::size_t>((vertices + width - 1) / width)};
 }
@@ -136,7 +136,7 @@ Result<MorphSet> read_checked(std::span<const std::byte> file, const HeaderFacts
     return not_morphs(
         fmt::format("its version is {}, this program reads up to {}", version, kMorphVersion));
   }
-  if (Status fits = check_channels(header); !fits) return fits.error();
+  if (Status status = check_channels(header); !status) return status.error();
   MorphSet morphs;
   morphs.names = names->value();
   morphs.vertex_count = int_attribute(header, kVerticesName);
@@ -168,7 +168,7 @@ Result<MorphSet> read_checked(std::span<const std::byte> file, const HeaderFacts
     input.readPixels(last + 1, 2 * last + 1);
     morphs.normals.resize(static_cast<std::size_t>(texels));
   }
-  if (Status sound = check(morphs); !sound) return sound.error();
+  if (Status status = check(morphs); !status) return status.error();
   return morphs;
 }
 
@@ -183,10 +183,10 @@ void write_half(Imf::OutputFile& output, const std::vector<Vec3f>& values, const
 
 }  // namespace
 
-Result<PictureSize> picture_size(std::span<const std::byte> file) {
+Result<ImageSize> image_size(std::span<const std::byte> file) {
   const auto facts = scan_header(file);
   if (!facts) return facts.error();
-  return PictureSize{static_cast<int>(facts->width), static_cast<int>(facts->height)};
+  return ImageSize{static_cast<int>(facts->width), static_cast<int>(facts->height)};
 }
 
 Result<MorphSet> read(std::span<const std::byte> file) {
@@ -203,11 +203,11 @@ Result<MorphSet> read(std::span<const std::byte> file) {
 }
 
 Status write(const MorphSet& morphs, OutputFile& file) {
-  if (Status sound = check(morphs); !sound) return sound;
+  if (Status status = check(morphs); !status) return status;
   const std::uint64_t texels = morphs.positions.size();
   if (texels == 0) return Error("exr-morphs", "there are no morph targets to write");
   const Layout layout = layout_of(texels);
-  if (layout.rows > kMostRows) {
+  if (layout.rows > kMaxRows) {
     return Error("exr-morphs", fmt::format("{} targets of {} vertices are too many for a texture",
                                            morphs.target_count(), morphs.vertex_count));
   }

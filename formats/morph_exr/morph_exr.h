@@ -21,10 +21,10 @@ namespace krok::morph_exr {
 Result<MorphSet> read(std::span<const std::byte> file);
 
 // How large the picture of such a file is, in texels; both halves together.
-struct PictureSize {
+struct ImageSize {
   int width = 0, height = 0;
 };
-Result<PictureSize> picture_size(std::span<const std::byte> file);
+Result<ImageSize> image_size(std::span<const std::byte> file);
 
 // Appends the whole file to `file`, to which nothing was written before; the caller commits. The
 // same targets give the same bytes, and targets that were read come back bit for bit. An Error for

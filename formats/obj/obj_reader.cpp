@@ -16,8 +16,8 @@ namespace krok::obj {
 
 namespace {
 
-constexpr std::size_t kMostParts = 65'536;
-constexpr std::size_t kMostElements = std::numeric_limits<std::int32_t>::max();
+constexpr std::size_t kMaxParts = 65'536;
+constexpr std::size_t kMaxElements = std::numeric_limits<std::int32_t>::max();
 
 // Statements of free-form geometry and of display, which have no part in a mesh.
 constexpr std::array kPassedOver = {"s",        "mtllib",     "vp",       "lod",
@@ -40,7 +40,7 @@ class Reader {
   Result<Shape> read() {
     while (next_statement()) {
       if (words_.empty()) continue;
-      if (Status done = read_statement(); !done) return done.error();
+      if (Status status = read_statement(); !status) return status.error();
     }
     return finish();
   }
@@ -139,7 +139,7 @@ class Reader {
 
   template <typename Value>
   Status append(std::vector<Value>& list, const Value& value) {
-    if (list.size() == kMostElements) {
+    if (list.size() == kMaxElements) {
       return fault("obj-limit", words_[0], "the file has more of these than can be counted");
     }
     list.push_back(value);
@@ -203,7 +203,7 @@ class Reader {
                    fmt::format("a face has {}, expected 3 or more",
                                counted(static_cast<long long>(words_.size()) - 1, "corner")));
     }
-    if (Status begun = begin_part(); !begun) return begun;
+    if (Status status = begin_part(); !status) return status;
     Model& model = shape_.model;
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t i = 1; i < words_.size(); ++i) {
@@ -215,7 +215,7 @@ class Reader {
       triangle[1] = triangle[2];
       triangle[2] = vertex;
       if (i < 3) continue;
-      if (Status added = append(model.triangles, triangle); !added) return added;
+      if (Status status = append(model.triangles, triangle); !status) return status;
       ++model.parts.back().triangle_count;
     }
     take_corners();
@@ -227,9 +227,9 @@ class Reader {
     if (!new_part_) return {};
     new_part_ = false;
     Model& model = shape_.model;
-    if (model.parts.size() == kMostParts) {
+    if (model.parts.size() == kMaxParts) {
       return fault("obj-limit", words_[0],
-                   fmt::format("the file has more than {} groups", grouped(kMostParts)));
+                   fmt::format("the file has more than {} groups", grouped(kMaxParts)));
     }
     model.parts.push_back(
         {name_, material_, static_cast<std::uint32_t>(model.triangles.size()), 0});
@@ -326,7 +326,7 @@ class Reader {
                        "first is taken",
                        counted(several_textures_, "corner")));
     }
-    if (Status sound = check(model); !sound) return std::move(sound).error().in_file(path_);
+    if (Status status = check(model); !status) return std::move(status).error().in_file(path_);
     return std::move(shape_);
   }
 

@@ -27,7 +27,7 @@ class Lines {
   // "v 1 2 3"
   Status add(std::string_view keyword, const Vec3f& vector) {
     if (used_ + kLineRoom > text_.size()) {
-      if (Status done = flush(); !done) return done;
+      if (Status status = flush(); !status) return status;
     }
     char* at = std::copy(keyword.begin(), keyword.end(), text_.data() + used_);
     for (const float value : vector) {
@@ -52,7 +52,7 @@ class Lines {
 
 Status add_all(Lines& lines, std::string_view keyword, std::span<const Vec3f> vectors) {
   for (const Vec3f& vector : vectors) {
-    if (Status done = lines.add(keyword, vector); !done) return done;
+    if (Status status = lines.add(keyword, vector); !status) return status;
   }
   return {};
 }
@@ -142,7 +142,7 @@ std::string faces_text(const Model& model) {
 }  // namespace
 
 Result<Writer> Writer::create(const Model& model, const WriteOptions& options) {
-  if (Status sound = check(model); !sound) return sound.error();
+  if (Status status = check(model); !status) return status.error();
   if (model.triangles.empty()) {
     return Error("obj-empty-mesh", "the model has no triangles, so there is no mesh to write");
   }
@@ -165,13 +165,13 @@ Status Writer::write(const MeshShape& shape, OutputFile& file) const {
   if (!all_finite(shape.positions) || !all_finite(shape.normals)) {
     return Error("obj-shape", "a vertex is not finite");
   }
-  if (Status done = file.write(head_); !done) return done;
+  if (Status status = file.write(head_); !status) return status;
   Lines lines(file);
-  if (Status done = add_all(lines, "v", shape.positions); !done) return done;
-  if (Status done = lines.flush(); !done) return done;
-  if (Status done = file.write(texture_coordinates_); !done) return done;
-  if (Status done = add_all(lines, "vn", shape.normals); !done) return done;
-  if (Status done = lines.flush(); !done) return done;
+  if (Status status = add_all(lines, "v", shape.positions); !status) return status;
+  if (Status status = lines.flush(); !status) return status;
+  if (Status status = file.write(texture_coordinates_); !status) return status;
+  if (Status status = add_all(lines, "vn", shape.normals); !status) return status;
+  if (Status status = lines.flush(); !status) return status;
   return file.write(faces_);
 }
 

@@ -50,7 +50,7 @@ Result<PointCache> PointCache::read(std::span<const std::byte> file) {
                  fmt::format("the file ends within its header, after {} bytes", file.size()));
   }
   std::memcpy(&header, file.data(), sizeof header);
-  if (Status sound = check(header); !sound) return sound.error();
+  if (Status status = check(header); !status) return status.error();
 
   // At most 12 * 2^62, which 64 bits do not hold: so by division.
   const std::uint64_t left = file.size() - sizeof header;

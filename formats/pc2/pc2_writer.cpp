@@ -18,9 +18,9 @@ Status check_option(const char* what, double value) {
 }
 
 Status check(const WriteOptions& options) {
-  if (Status fits = check_option("start frame", options.start_frame); !fits) return fits;
-  if (Status fits = check_option("scale", options.scale); !fits) return fits;
-  if (Status fits = check_option("sampling", options.frames_per_sample); !fits) return fits;
+  if (Status status = check_option("start frame", options.start_frame); !status) return status;
+  if (Status status = check_option("scale", options.scale); !status) return status;
+  if (Status status = check_option("sampling", options.frames_per_sample); !status) return status;
   if (!(options.scale > 0)) return Error("pc2-option", "the scale must be more than 0");
   if (static_cast<float>(options.frames_per_sample) > 0) return {};
   return Error("pc2-option", "the frames a sample must be more than 0");
@@ -43,7 +43,7 @@ Status convert(const WriteOptions& options, int frame, std::span<Vec3f> position
 
 Status write(const Model& model, const MeshMotion& motion, const WriteOptions& options,
              OutputFile& file, Progress* progress, int jobs) {
-  if (Status fits = check(options); !fits) return fits;
+  if (Status status = check(options); !status) return status;
   const std::size_t points = model.positions.size();
   if (points > kMaxCount) {
     return Error("pc2-too-large",
@@ -54,7 +54,7 @@ Status write(const Model& model, const MeshMotion& motion, const WriteOptions& o
   header.start_frame = static_cast<float>(options.start_frame);
   header.frames_per_sample = static_cast<float>(options.frames_per_sample);
   header.samples = std::max(motion.frames, 0);
-  if (Status done = file.write(std::as_bytes(std::span(&header, 1))); !done) return done;
+  if (Status status = file.write(std::as_bytes(std::span(&header, 1))); !status) return status;
   if (progress != nullptr) {
     progress->begin("writing frames", static_cast<std::uint64_t>(header.samples));
   }

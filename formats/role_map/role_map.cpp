@@ -27,7 +27,7 @@ std::vector<std::string> all_labels() {
   }
   for (const char* side : {"left_", "right_"}) {
     for (int f = static_cast<int>(Finger::thumb); f <= static_cast<int>(Finger::all); ++f) {
-      for (int phalanx = FingerPlace::kMetacarpal; phalanx <= FingerPlace::kTip; ++phalanx) {
+      for (int phalanx = FingerJoint::kMetacarpal; phalanx <= FingerJoint::kTip; ++phalanx) {
         labels.push_back(side + finger_place_name({static_cast<Finger>(f), phalanx}));
       }
     }
@@ -43,9 +43,9 @@ class Reader {
     auto root = json::parse(text_);
     if (!root) return root.error();
     const json::Value* joints = nullptr;
-    if (Status shape = check_shape(*root, joints); !shape) return shape.error();
+    if (Status status = check_shape(*root, joints); !status) return status.error();
     for (const json::Value::Member& member : joints->members) {
-      if (Status added = add(member); !added) return added.error();
+      if (Status status = add(member); !status) return status.error();
     }
     auto map = find_roles(skeleton_, given_);
     if (!map) return located(std::move(map).error(), *joints);

@@ -20,7 +20,7 @@ constexpr std::string_view kSchema = "krok.sequences/1";
 constexpr std::size_t kLargestFile = std::size_t{1} << 20;
 constexpr std::size_t kLongestName = 200;
 constexpr double kLastFrame = 1e9;
-constexpr std::size_t kMostSequences = 10'000;
+constexpr std::size_t kMaxSequences = 10'000;
 
 class Reader {
  public:
@@ -29,11 +29,12 @@ class Reader {
   Result<SequenceFile> read() {
     const auto root = json::parse(text_, kLargestFile);
     if (!root) return root.error();
-    if (Status known = members_.only(*root, "the file", {"schema", "rate", "sequences"}); !known) {
-      return known.error();
+    if (Status status = members_.only(*root, "the file", {"schema", "rate", "sequences"});
+        !status) {
+      return status.error();
     }
-    if (Status right = members_.has_schema(*root, "the file", kSchema); !right) {
-      return right.error();
+    if (Status status = members_.has_schema(*root, "the file", kSchema); !status) {
+      return status.error();
     }
     SequenceFile file;
     if (root->find("rate") != nullptr) {
@@ -43,9 +44,9 @@ class Reader {
     }
     const auto list = members_.get(*root, "the file", "sequences", Kind::array);
     if (!list) return list.error();
-    if ((*list)->items.size() > kMostSequences) {
+    if ((*list)->items.size() > kMaxSequences) {
       return members_.wrong(**list, fmt::format("{} sequences are more than {}",
-                                                (*list)->items.size(), kMostSequences));
+                                                (*list)->items.size(), kMaxSequences));
     }
     for (const Value& item : (*list)->items) {
       auto sequence = read_sequence(item, file);
@@ -96,14 +97,14 @@ class Reader {
   }
 
   Result<Sequence> read_sequence(const Value& item, const SequenceFile& file) const {
-    if (Status known =
+    if (Status status =
             members_.only(item, "a sequence", {"name", "first", "last", "speed", "loop"});
-        !known) {
-      return known.error();
+        !status) {
+      return status.error();
     }
     const auto name = members_.get(item, "a sequence", "name", Kind::string);
     if (!name) return name.error();
-    if (Status good = check_name(**name, file); !good) return good.error();
+    if (Status status = check_name(**name, file); !status) return status.error();
     Sequence sequence;
     sequence.name = (*name)->text;
     const std::string what = fmt::format("'{}'", shown(sequence.name));

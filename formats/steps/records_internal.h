@@ -69,13 +69,13 @@ struct WeightsInfo {
 };
 static_assert(sizeof(WeightsInfo) == 16);
 
-inline constexpr std::uint32_t kMostKeytimes = 1000;
-inline constexpr std::uint32_t kMostParameters = 64;
-inline constexpr std::uint32_t kMostExamples = 65535;
-inline constexpr std::size_t kMostReport = std::size_t{16} << 20;
+inline constexpr std::uint32_t kMaxKeytimes = 1000;
+inline constexpr std::uint32_t kMaxParameters = 64;
+inline constexpr std::uint32_t kMaxExamples = 65535;
+inline constexpr std::size_t kMaxReport = std::size_t{16} << 20;
 
 // Each example has the joints' names in memory: no more than this of them in all.
-inline constexpr std::uint64_t kMostNames = std::uint64_t{64} << 20;  // bytes
+inline constexpr std::uint64_t kMaxNames = std::uint64_t{64} << 20;  // bytes
 Status check_names(const Skeleton& skeleton, std::uint64_t examples);
 
 }  // namespace krok::steps::detail

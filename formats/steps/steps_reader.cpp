@@ -30,9 +30,8 @@ Result<Info> read_info(const ContainerReader& container) {
   if (!section) return section.error();
   const auto info = ByteReader(section->bytes).read<Info>();
   if (info.joints >= 1 && info.joints <= kMaxFileJoints && info.keytimes >= 2 &&
-      info.keytimes <= kMostKeytimes && info.parameters >= 1 &&
-      info.parameters <= kMostParameters && info.examples >= 1 && info.examples <= kMostExamples &&
-      info.swing <= 1) {
+      info.keytimes <= kMaxKeytimes && info.parameters >= 1 && info.parameters <= kMaxParameters &&
+      info.examples >= 1 && info.examples <= kMaxExamples && info.swing <= 1) {
     return info;
   }
   return invalid(
@@ -49,7 +48,7 @@ Status read_frame(const ContainerReader& container, const Info& info, Library& l
   library.rate = info.rate;
   library.swing = info.swing == 0 ? FootSide::left : FootSide::right;
   std::vector<Foot> feet;
-  if (Status done = read_array(container, "FEET", 2, feet); !done) return done;
+  if (Status status = read_array(container, "FEET", 2, feet); !status) return status;
   for (std::size_t f = 0; f < 2; ++f) {
     library.feet[f] = {feet[f].joint, vector(feet[f].heel), vector(feet[f].forward),
                        feet[f].length};
@@ -58,7 +57,8 @@ Status read_frame(const ContainerReader& container, const Info& info, Library& l
   if (!keytimes) return keytimes.error();
   library.keytimes = *std::move(keytimes);
   std::vector<ParameterRecord> records;
-  if (Status done = read_array(container, "PARAMS", info.parameters, records); !done) return done;
+  if (Status status = read_array(container, "PARAMS", info.parameters, records); !status)
+    return status;
   for (const ParameterRecord& record : records) {
     if (record.quantity > static_cast<std::uint32_t>(parametric::Quantity::joint) ||
         record.direction > static_cast<std::uint32_t>(parametric::Direction::along)) {
@@ -102,17 +102,18 @@ Status read_examples(const ContainerReader& container, const Info& info, Library
   std::vector<ExampleRecord> records;
   std::vector<double> keytimes, measured;
   std::vector<ContactRecord> contacts;
-  if (Status done = read_array(container, "EXAMPLES", info.examples, records); !done) return done;
+  if (Status status = read_array(container, "EXAMPLES", info.examples, records); !status)
+    return status;
   const auto totals = totals_of(container, records);
   if (!totals) return totals.error();
-  Status done =
+  Status status =
       read_array(container, "KEYTIMES", std::uint64_t{info.examples} * info.keytimes, keytimes);
-  if (done) {
-    done =
+  if (status) {
+    status =
         read_array(container, "MEASURED", std::uint64_t{info.examples} * info.parameters, measured);
   }
-  if (done) done = read_array(container, "CONTACTS", totals->contacts, contacts);
-  if (!done) return done;
+  if (status) status = read_array(container, "CONTACTS", totals->contacts, contacts);
+  if (!status) return status;
   auto names = read_texts(container, "EXNAMES", info.examples);
   if (!names) return names.error();
   const OrientationEncoding encoding = orientation_encoding(container);
@@ -149,7 +150,7 @@ Result<rbf::WeightFunction> read_weights(const ContainerReader& container, const
   const auto record = ByteReader(section->bytes).read<WeightsInfo>();
   const std::uint64_t n = info.examples, d = info.parameters, m = record.centres;
   if (record.kernel > static_cast<std::uint32_t>(rbf::Kernel::wendland) || m < n ||
-      m > static_cast<std::uint64_t>(rbf::kMostCentres)) {
+      m > static_cast<std::uint64_t>(rbf::kMaxCentres)) {
     return invalid(container, "WEIGHTS",
                    fmt::format("says it has kernel {} and {} centres for {} examples, which is not "
                                "possible",
@@ -160,21 +161,21 @@ Result<rbf::WeightFunction> read_weights(const ContainerReader& container, const
   weights.dimensions = static_cast<int>(d);
   weights.examples = static_cast<int>(n);
   std::vector<double> ranges;
-  Status done = read_array(container, "RANGES", 2 * d, ranges);
-  if (done) done = read_array(container, "CENTRES", m * d, weights.centres);
-  if (done && container.find("RADII")) done = read_array(container, "RADII", m, weights.radii);
+  Status status = read_array(container, "RANGES", 2 * d, ranges);
+  if (status) status = read_array(container, "CENTRES", m * d, weights.centres);
+  if (status && container.find("RADII")) status = read_array(container, "RADII", m, weights.radii);
   std::vector<double> smoothing;
-  if (done && container.find("SMOOTH")) done = read_array(container, "SMOOTH", 1, smoothing);
+  if (status && container.find("SMOOTH")) status = read_array(container, "SMOOTH", 1, smoothing);
   if (!smoothing.empty()) weights.smoothing = smoothing.front();
-  if (done) done = read_array(container, "INSERTED", (m - n) * n, weights.inserted_rows);
-  if (done) done = read_array(container, "AFFINE", (d + 1) * n, weights.affine);
-  if (done) done = read_array(container, "COEFFS", m * n, weights.coefficients);
-  if (!done) return done.error();
+  if (status) status = read_array(container, "INSERTED", (m - n) * n, weights.inserted_rows);
+  if (status) status = read_array(container, "AFFINE", (d + 1) * n, weights.affine);
+  if (status) status = read_array(container, "COEFFS", m * n, weights.coefficients);
+  if (!status) return status.error();
   const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(d);
   weights.lower.assign(ranges.begin(), middle);
   weights.upper.assign(middle, ranges.end());
-  if (Status sound = weights.check(); !sound) {
-    return at_section(std::move(sound).error(), container, "WEIGHTS");
+  if (Status status = weights.check(); !status) {
+    return at_section(std::move(status).error(), container, "WEIGHTS");
   }
   return weights;
 }
@@ -198,12 +199,13 @@ Result<StepsFile> read(std::span<const std::byte> file) {
   const auto info = read_info(*container);
   if (!info) return info.error();
   StepsFile steps;
-  if (Status done = read_frame(*container, *info, steps.library); !done) return done.error();
+  if (Status status = read_frame(*container, *info, steps.library); !status) return status.error();
   // Before each example has a skeleton of its own in memory.
-  if (Status sound = check_names(steps.library.skeleton, info->examples); !sound) {
-    return at_section(std::move(sound).error(), *container, "INFO");
+  if (Status status = check_names(steps.library.skeleton, info->examples); !status) {
+    return at_section(std::move(status).error(), *container, "INFO");
   }
-  if (Status done = read_examples(*container, *info, steps.library); !done) return done.error();
+  if (Status status = read_examples(*container, *info, steps.library); !status)
+    return status.error();
   if (container->find("WEIGHTS")) {
     auto weights = read_weights(*container, *info);
     if (!weights) return weights.error();
@@ -215,9 +217,9 @@ Result<StepsFile> read(std::span<const std::byte> file) {
   auto provenance = read_provenance(*container);
   if (!provenance) return provenance.error();
   steps.provenance = *std::move(provenance);
-  if (Status holds = check(steps); !holds) {
-    const std::string_view section = section_of(holds.error().code);
-    return at_section(std::move(holds).error(), *container, section);
+  if (Status status = check(steps); !status) {
+    const std::string_view section = section_of(status.error().code);
+    return at_section(std::move(status).error(), *container, section);
   }
   return steps;
 }

@@ -48,11 +48,11 @@ std::vector<ParameterRecord> parameters_of(const Library& library) {
 
 Status write_frames(const Library& library, OrientationEncoding encoding,
                     ContainerWriter& container) {
-  if (Status done = container.begin("FRAMES"); !done) return done;
+  if (Status status = container.begin("FRAMES"); !status) return status;
   for (const Example& example : library.examples) {
     std::vector<std::byte> bytes(example.motion.positions.size() * transform_size(encoding));
     write_transforms(example.motion.positions, example.motion.orientations, encoding, bytes.data());
-    if (Status done = container.append(bytes); !done) return done;
+    if (Status status = container.append(bytes); !status) return status;
   }
   return {};
 }
@@ -74,13 +74,13 @@ Status write_examples(const Library& library, OrientationEncoding encoding,
       contacts.push_back({contact.joint, 0, contact.start, contact.end, numbers(contact.place)});
     }
   }
-  Status done = container.section("EXAMPLES", bytes_of(records));
-  if (done) done = write_texts("EXNAMES", names, container);
-  if (done) done = container.section("KEYTIMES", bytes_of(keytimes));
-  if (done) done = container.section("MEASURED", bytes_of(measured));
-  if (done) done = container.section("CONTACTS", bytes_of(contacts));
-  if (done) done = write_frames(library, encoding, container);
-  return done;
+  Status status = container.section("EXAMPLES", bytes_of(records));
+  if (status) status = write_texts("EXNAMES", names, container);
+  if (status) status = container.section("KEYTIMES", bytes_of(keytimes));
+  if (status) status = container.section("MEASURED", bytes_of(measured));
+  if (status) status = container.section("CONTACTS", bytes_of(contacts));
+  if (status) status = write_frames(library, encoding, container);
+  return status;
 }
 
 std::size_t weight_sections(const rbf::WeightFunction& weights) {
@@ -92,17 +92,18 @@ Status write_weights(const rbf::WeightFunction& weights, ContainerWriter& contai
                             static_cast<std::uint64_t>(weights.centre_count())};
   std::vector<double> ranges = weights.lower;
   ranges.insert(ranges.end(), weights.upper.begin(), weights.upper.end());
-  Status done = container.section("WEIGHTS", std::as_bytes(std::span(&info, 1)));
-  if (done) done = container.section("RANGES", bytes_of(ranges));
-  if (done) done = container.section("CENTRES", bytes_of(weights.centres));
-  if (done && !weights.radii.empty()) done = container.section("RADII", bytes_of(weights.radii));
-  if (done && weights.smoothing > 0) {
-    done = container.section("SMOOTH", std::as_bytes(std::span(&weights.smoothing, 1)));
+  Status status = container.section("WEIGHTS", std::as_bytes(std::span(&info, 1)));
+  if (status) status = container.section("RANGES", bytes_of(ranges));
+  if (status) status = container.section("CENTRES", bytes_of(weights.centres));
+  if (status && !weights.radii.empty())
+    status = container.section("RADII", bytes_of(weights.radii));
+  if (status && weights.smoothing > 0) {
+    status = container.section("SMOOTH", std::as_bytes(std::span(&weights.smoothing, 1)));
   }
-  if (done) done = container.section("INSERTED", bytes_of(weights.inserted_rows));
-  if (done) done = container.section("AFFINE", bytes_of(weights.affine));
-  if (done) done = container.section("COEFFS", bytes_of(weights.coefficients));
-  return done;
+  if (status) status = container.section("INSERTED", bytes_of(weights.inserted_rows));
+  if (status) status = container.section("AFFINE", bytes_of(weights.affine));
+  if (status) status = container.section("COEFFS", bytes_of(weights.coefficients));
+  return status;
 }
 
 bool all_storable(std::span<const std::string> texts) {
@@ -114,23 +115,24 @@ bool all_storable(std::span<const std::string> texts) {
 Status detail::check_names(const Skeleton& skeleton, std::uint64_t examples) {
   std::uint64_t bytes = 0;
   for (const std::string& name : skeleton.names) bytes += name.size();
-  if (bytes <= kMostNames / std::max<std::uint64_t>(examples, 1)) return {};
+  if (bytes <= kMaxNames / std::max<std::uint64_t>(examples, 1)) return {};
   return shape(
       fmt::format("{} bytes of joints' names are too many for {} examples", bytes, examples));
 }
 
 Status check(const StepsFile& steps) {
   const Library& library = steps.library;
-  if (Status sound = check_storable(library.skeleton); !sound) return sound;
-  if (Status fits = check_names(library.skeleton, library.examples.size()); !fits) return fits;
-  if (Status sound = parametric::check(library); !sound) return sound;
-  if (library.examples.empty() || library.examples.size() > kMostExamples ||
-      library.keytimes.size() > kMostKeytimes || library.parameters.size() > kMostParameters) {
+  if (Status status = check_storable(library.skeleton); !status) return status;
+  if (Status status = check_names(library.skeleton, library.examples.size()); !status)
+    return status;
+  if (Status status = parametric::check(library); !status) return status;
+  if (library.examples.empty() || library.examples.size() > kMaxExamples ||
+      library.keytimes.size() > kMaxKeytimes || library.parameters.size() > kMaxParameters) {
     return shape(
         fmt::format("{} examples, {} keytimes and {} parameters; a file holds 1 to {}, "
                     "2 to {} and 1 to {}",
                     library.examples.size(), library.keytimes.size(), library.parameters.size(),
-                    kMostExamples, kMostKeytimes, kMostParameters));
+                    kMaxExamples, kMaxKeytimes, kMaxParameters));
   }
   std::vector<std::string> names = library.keytimes;
   for (const Example& example : library.examples) names.push_back(example.name);
@@ -138,7 +140,7 @@ Status check(const StepsFile& steps) {
     return shape("the name of an example or keytime is no valid UTF-8 or has a zero byte");
   }
   if (steps.weights) {
-    if (Status sound = steps.weights->check(); !sound) return sound;
+    if (Status status = steps.weights->check(); !status) return status;
     if (steps.weights->examples != static_cast<int>(library.examples.size()) ||
         steps.weights->dimensions != library.dimensions()) {
       return shape("the weights are for another number of examples or parameters");
@@ -146,12 +148,12 @@ Status check(const StepsFile& steps) {
   }
   if (steps.report.empty()) return {};
   const auto json = parse_json(steps.report);
-  if (steps.report.size() <= kMostReport && json.is_object()) return {};
+  if (steps.report.size() <= kMaxReport && json.is_object()) return {};
   return Error("steps-report", "the report is no JSON object, or longer than 16 MiB");
 }
 
 Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& file) {
-  if (Status holds = check(steps); !holds) return holds;
+  if (Status status = check(steps); !status) return status;
   const Library& library = steps.library;
   const Info info = {library.rate,
                      static_cast<std::uint32_t>(library.skeleton.names.size()),
@@ -163,17 +165,17 @@ Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& fi
   std::size_t sections = 12 + kSkeletonSections;
   if (steps.weights) sections += weight_sections(*steps.weights);
   ContainerWriter container(file, kStepsFormat, orientation_flags(options.orientation), sections);
-  Status done = container.section("INFO", std::as_bytes(std::span(&info, 1)));
-  if (done) done = write_skeleton(library.skeleton, options.orientation, container);
-  if (done) done = container.section("FEET", bytes_of(feet_of(library)));
-  if (done) done = write_texts("KEYNAMES", library.keytimes, container);
-  if (done) done = container.section("PARAMS", bytes_of(parameters_of(library)));
-  if (done) done = write_examples(library, options.orientation, container);
-  if (done && steps.weights) done = write_weights(*steps.weights, container);
-  if (done) done = container.section("REPORT", std::as_bytes(std::span(steps.report)));
-  if (done) done = write_provenance(steps.provenance, container);
-  if (done) done = container.finish();
-  return done;
+  Status status = container.section("INFO", std::as_bytes(std::span(&info, 1)));
+  if (status) status = write_skeleton(library.skeleton, options.orientation, container);
+  if (status) status = container.section("FEET", bytes_of(feet_of(library)));
+  if (status) status = write_texts("KEYNAMES", library.keytimes, container);
+  if (status) status = container.section("PARAMS", bytes_of(parameters_of(library)));
+  if (status) status = write_examples(library, options.orientation, container);
+  if (status && steps.weights) status = write_weights(*steps.weights, container);
+  if (status) status = container.section("REPORT", std::as_bytes(std::span(steps.report)));
+  if (status) status = write_provenance(steps.provenance, container);
+  if (status) status = container.finish();
+  return status;
 }
 
 }  // namespace krok::steps

@@ -65,7 +65,7 @@ Status Items::read_play(const Value& item, std::string_view what, std::string& n
     return fields_.whole(field, 1, 100'000);
   });
   take("name", name, text);
-  if (Status done = take.done(); !done) return done;
+  if (Status status = take.done(); !status) return status;
   return fields_.each(item, what, "marks", [&](const Value& entry) -> Status {
     auto made = mark(entry);
     if (!made) return made.error();
@@ -76,8 +76,8 @@ Status Items::read_play(const Value& item, std::string_view what, std::string& n
 
 Result<Mark> Items::mark(const Value& value) const {
   constexpr std::string_view kMark = "a mark";
-  if (Status known = fields_.only(value, kMark, {"name", "at", "source_at"}); !known) {
-    return known.error();
+  if (Status status = fields_.only(value, kMark, {"name", "at", "source_at"}); !status) {
+    return status.error();
   }
   const auto name = fields_.members().get(value, kMark, "name", Kind::string);
   if (!name) return name.error();
@@ -90,46 +90,46 @@ Result<Mark> Items::mark(const Value& value) const {
   take("name", mark.name, [&](const Field& field) { return fields_.name(field); });
   take(mark.of_source ? "source_at" : "at", mark.at,
        [&](const Field& field) { return fields_.time(field); });
-  if (Status done = take.done(); !done) return done.error();
+  if (Status status = take.done(); !status) return status.error();
   return mark;
 }
 
-Result<GroundPlace> Items::ground_place(const Value& value) const {
+Result<GroundFrame> Items::ground_frame(const Value& value) const {
   constexpr std::string_view kPlace = "\"place\"";
-  if (Status known = fields_.only(value, kPlace, {"x", "z", "heading"}); !known) {
-    return known.error();
+  if (Status status = fields_.only(value, kPlace, {"x", "z", "heading"}); !status) {
+    return status.error();
   }
-  GroundPlace place;
+  GroundFrame place;
   const auto length = [&](const Field& field) { return fields_.length(field); };
   Taker take(value, kPlace);
   take("x", place.x, length)("z", place.z, length);
   take("heading", place.heading, [&](const Field& field) { return fields_.angle(field); });
-  if (Status done = take.done(); !done) return done.error();
+  if (Status status = take.done(); !status) return status.error();
   return place;
 }
 
 Result<BaseItem> Items::base_item(const Value& value, bool is_first) const {
   constexpr std::string_view kItem = "an item";
-  if (Status known = fields_.only(value, kItem,
-                                  {"name", "source", "sequence", "from", "to", "speed", "loop",
-                                   "until", "at", "place", "change", "marks", "comment"});
-      !known) {
-    return known.error();
+  if (Status status = fields_.only(value, kItem,
+                                   {"name", "source", "sequence", "from", "to", "speed", "loop",
+                                    "until", "at", "place", "change", "marks", "comment"});
+      !status) {
+    return status.error();
   }
   BaseItem item;
   item.where = place_of(value);
-  if (Status read = read_play(value, kItem, item.name, item.play, item.marks); !read) {
-    return read.error();
+  if (Status status = read_play(value, kItem, item.name, item.play, item.marks); !status) {
+    return status.error();
   }
   Taker take(value, kItem);
   take("at", item.at, [&](const Field& field) { return fields_.time(field); });
-  take("place", item.place, [&](const Field& field) { return ground_place(*field.value); });
+  take("place", item.place, [&](const Field& field) { return ground_frame(*field.value); });
   take("change", item.change, [&](const Field& field) -> Result<Change> {
     if (!is_first) return change(field);
     return fields_.members().wrong(*field.value,
                                    "the first item has no change: nothing is before it");
   });
-  if (Status done = take.done(); !done) return done.error();
+  if (Status status = take.done(); !status) return status.error();
   return item;
 }
 
@@ -162,10 +162,10 @@ Result<Change> Items::change(const Field& field) const {
         value, fmt::format("a change of kind {} needs a duration", value.text),
         fmt::format("write {{\"kind\": \"{}\", \"duration\": \"0.3s\"}}", value.text));
   }
-  if (Status known =
+  if (Status status =
           fields_.only(value, kChange, {"kind", "duration", "easing", "sync", "align", "guard"});
-      !known) {
-    return known.error();
+      !status) {
+    return status.error();
   }
   if (const auto kind = fields_.members().get(value, kChange, "kind", Kind::string); !kind) {
     return kind.error();
@@ -189,7 +189,7 @@ Result<Change> Items::change(const Field& field) const {
         told, {{"root", timeline::Align::root}, {"stance", timeline::Align::stance}});
   });
   take("guard", change.guard, [&](const Field& told) { return fields_.truth(told); });
-  if (Status done = take.done(); !done) return done.error();
+  if (Status status = take.done(); !status) return status.error();
   return change;
 }
 

@@ -17,8 +17,8 @@ using json::Value;
 using Kind = Value::Kind;
 
 constexpr std::size_t kLongestName = 200;
-constexpr std::size_t kMostEntries = 10'000;
-constexpr double kMost = 1e9;  // of any number
+constexpr std::size_t kMaxEntries = 10'000;
+constexpr double kMax = 1e9;  // of any number
 
 }  // namespace
 
@@ -40,7 +40,7 @@ Error Fields::wrong(const Field& field, const std::string& expected,
 template <typename T, typename Parse, typename Make>
 Result<T> Fields::quantity(const Field& field, const Parse& parse, const Make& make) const {
   if (field.value->kind == Kind::number) {
-    if (std::isfinite(field.value->number) && std::abs(field.value->number) <= kMost) {
+    if (std::isfinite(field.value->number) && std::abs(field.value->number) <= kMax) {
       return make(field.value->number);
     }
     return wrong(field, "a number of a sensible size");
@@ -59,7 +59,7 @@ Result<ClipTime> Fields::time(const Field& field) const {
   auto found = quantity<ClipTime>(field, parse_clip_time, [](double seconds) {
     return ClipTime{seconds, false};
   });
-  if (found && !(std::abs(found->value) <= kMost)) return wrong(field, "a time of a sensible size");
+  if (found && !(std::abs(found->value) <= kMax)) return wrong(field, "a time of a sensible size");
   return found;
 }
 
@@ -77,7 +77,7 @@ Result<double> Fields::angle(const Field& field) const {
 }
 
 Result<double> Fields::number(const Field& field) const {
-  if (field.value->kind != Kind::number || !(std::abs(field.value->number) <= kMost)) {
+  if (field.value->kind != Kind::number || !(std::abs(field.value->number) <= kMax)) {
     return wrong(field, "a number");
   }
   return field.value->number;
@@ -110,9 +110,9 @@ Result<double> Fields::duration(const Field& field, double rate) const {
 Result<const Value*> Fields::entries(const Value& object, std::string_view what,
                                      std::string_view key) const {
   auto list = in_.find(object, what, key, Kind::array);
-  if (list && *list != nullptr && (*list)->items.size() > kMostEntries) {
+  if (list && *list != nullptr && (*list)->items.size() > kMaxEntries) {
     return in_.wrong(**list, fmt::format("\"{}\" has {} entries, more than {}", key,
-                                         (*list)->items.size(), kMostEntries));
+                                         (*list)->items.size(), kMaxEntries));
   }
   return list;
 }

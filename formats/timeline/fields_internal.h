@@ -65,7 +65,7 @@ class Fields {
     if (!list) return list.error();
     if (*list == nullptr) return {};
     for (const json::Value& entry : (*list)->items) {
-      if (Status used = use(entry); !used) return used;
+      if (Status status = use(entry); !status) return status;
     }
     return {};
   }

@@ -25,7 +25,7 @@ class Items {
   Status read_play(const json::Value& item, std::string_view what, std::string& name,
                    timeline::Play& play, std::vector<timeline::Mark>& marks) const;
   Result<timeline::Mark> mark(const json::Value& value) const;
-  Result<GroundPlace> ground_place(const json::Value& value) const;
+  Result<GroundFrame> ground_frame(const json::Value& value) const;
   Result<timeline::Change> change(const Field& field) const;
   Status check_change_keys(const json::Value& value, timeline::ChangeKind kind) const;
   Result<timeline::Easing> easing(const Field& field) const;

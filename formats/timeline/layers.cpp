@@ -16,7 +16,7 @@ using timeline::MaskRule;
 using timeline::Space;
 using Kind = Value::Kind;
 
-constexpr std::size_t kMostPoints = 10'000;
+constexpr std::size_t kMaxPoints = 10'000;
 
 }  // namespace
 
@@ -30,13 +30,13 @@ Result<Fade> Items::fade(const Field& field) const {
     fade.duration = *lasts;
     return fade;
   }
-  if (Status known = fields_.only(*field.value, field.key, {"duration", "easing"}); !known) {
-    return known.error();
+  if (Status status = fields_.only(*field.value, field.key, {"duration", "easing"}); !status) {
+    return status.error();
   }
   Taker take(*field.value, field.key);
   take("duration", fade.duration, seconds);
   take("easing", fade.easing, [&](const Field& told) { return easing(told); });
-  if (Status done = take.done(); !done) return done.error();
+  if (Status status = take.done(); !status) return status.error();
   return fade;
 }
 
@@ -48,9 +48,9 @@ Result<blend::WeightCurve> Items::weight(const Field& field) const {
     return blend::WeightCurve::constant(*constant);
   }
   blend::WeightCurve curve;
-  if (field.value->items.empty() || field.value->items.size() > kMostPoints) {
-    return fields_.members().wrong(
-        *field.value, fmt::format("a weight has 1 to {} points", grouped(kMostPoints)));
+  if (field.value->items.empty() || field.value->items.size() > kMaxPoints) {
+    return fields_.members().wrong(*field.value,
+                                   fmt::format("a weight has 1 to {} points", grouped(kMaxPoints)));
   }
   for (const Value& point : field.value->items) {
     if (point.kind != Kind::array || point.items.size() != 2) {
@@ -72,31 +72,31 @@ Result<blend::WeightCurve> Items::weight(const Field& field) const {
 
 Result<LayerItem> Items::layer_item(const Value& value) const {
   constexpr std::string_view kItem = "an item of a layer";
-  if (Status known =
+  if (Status status =
           fields_.only(value, kItem,
                        {"name", "source", "sequence", "from", "to", "speed", "loop", "until", "at",
                         "fade_in", "fade_out", "weight", "marks", "comment"});
-      !known) {
-    return known.error();
+      !status) {
+    return status.error();
   }
   LayerItem item;
   item.where = place_of(value);
-  if (Status read = read_play(value, kItem, item.name, item.play, item.marks); !read) {
-    return read.error();
+  if (Status status = read_play(value, kItem, item.name, item.play, item.marks); !status) {
+    return status.error();
   }
   const auto fading = [&](const Field& field) { return fade(field); };
   Taker take(value, kItem);
   take("at", item.at, [&](const Field& field) { return fields_.time(field); });
   take("fade_in", item.fade_in, fading)("fade_out", item.fade_out, fading);
   take("weight", item.weight, [&](const Field& field) { return weight(field); });
-  if (Status done = take.done(); !done) return done.error();
+  if (Status status = take.done(); !status) return status.error();
   return item;
 }
 
 Result<MaskRule> Items::rule(const Value& value) const {
   constexpr std::string_view kRule = "a rule of a mask";
-  if (Status known = fields_.only(value, kRule, {"joints", "below", "weight", "soft"}); !known) {
-    return known.error();
+  if (Status status = fields_.only(value, kRule, {"joints", "below", "weight", "soft"}); !status) {
+    return status.error();
   }
   MaskRule rule;
   rule.where = place_of(value);
@@ -116,16 +116,16 @@ Result<MaskRule> Items::rule(const Value& value) const {
     if (!by_name) return fields_.whole(field, 0, 1000);
     return fields_.members().wrong(*field.value, "a soft edge is one of a sub-tree: \"below\"");
   });
-  if (Status done = take.done(); !done) return done.error();
+  if (Status status = take.done(); !status) return status.error();
   return rule;
 }
 
 Result<Layer> Items::layer(const Value& value, std::size_t number) const {
   constexpr std::string_view kLayer = "a layer";
-  if (Status known = fields_.only(
+  if (Status status = fields_.only(
           value, kLayer, {"name", "mode", "space", "mask", "reference", "items", "comment"});
-      !known) {
-    return known.error();
+      !status) {
+    return status.error();
   }
   Layer layer;
   layer.where = place_of(value);
@@ -155,23 +155,23 @@ Result<Layer> Items::layer(const Value& value, std::size_t number) const {
     layer.reference = *time;
     return {};
   });
-  if (Status done = take.done(); !done) return done.error();
-  Status done = fields_.each(value, kLayer, "mask", [&](const Value& entry) -> Status {
+  if (Status status = take.done(); !status) return status.error();
+  Status status = fields_.each(value, kLayer, "mask", [&](const Value& entry) -> Status {
     auto made = rule(entry);
     if (!made) return made.error();
     layer.mask.push_back(std::move(*made));
     return {};
   });
-  if (!done) return done.error();
+  if (!status) return status.error();
   const auto list = fields_.members().get(value, kLayer, "items", Kind::array);
   if (!list) return list.error();
-  done = fields_.each(value, kLayer, "items", [&](const Value& entry) -> Status {
+  status = fields_.each(value, kLayer, "items", [&](const Value& entry) -> Status {
     auto item = layer_item(entry);
     if (!item) return item.error();
     layer.items.push_back(std::move(*item));
     return {};
   });
-  if (!done) return done.error();
+  if (!status) return status.error();
   return layer;
 }
 

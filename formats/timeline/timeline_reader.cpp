@@ -13,7 +13,7 @@ using json::Value;
 using Kind = Value::Kind;
 
 constexpr std::string_view kSchema = "krok.timeline/1";
-constexpr double kLeastRate = 1e-3, kMostRate = 1e6;
+constexpr double kMinRate = 1e-3, kMaxRate = 1e6;
 
 class Reader {
  public:
@@ -23,17 +23,17 @@ class Reader {
   Result<Document> read() {
     const auto root = json::parse(text_);
     if (!root) return root.error();
-    if (Status known =
+    if (Status status =
             fields_.only(*root, kFile, {"schema", "comment", "rate", "sources", "base", "layers"});
-        !known) {
-      return known.error();
+        !status) {
+      return status.error();
     }
-    if (Status schema = fields_.members().has_schema(*root, kFile, kSchema); !schema) {
-      return schema.error();
+    if (Status status = fields_.members().has_schema(*root, kFile, kSchema); !status) {
+      return status.error();
     }
     for (const auto part :
          {&Reader::read_rate, &Reader::read_sources, &Reader::read_base, &Reader::read_layers}) {
-      if (Status done = (this->*part)(*root); !done) return done.error();
+      if (Status status = (this->*part)(*root); !status) return status.error();
     }
     return std::move(document_);
   }
@@ -45,7 +45,7 @@ class Reader {
     Taker take(root, kFile);
     take("rate", document_.timeline.rate, [&](const Field& field) -> Result<double> {
       auto rate = fields_.number(field);
-      if (rate && (*rate < kLeastRate || *rate > kMostRate)) {
+      if (rate && (*rate < kMinRate || *rate > kMaxRate)) {
         return fields_.wrong(field, "frames a second from 0.001 to 1000000");
       }
       return rate;
@@ -80,14 +80,14 @@ class Reader {
       source.path = std::move(*path);
       return source;
     }
-    if (Status known = fields_.only(value, what, {"file", "sequences"}); !known) {
-      return known.error();
+    if (Status status = fields_.only(value, what, {"file", "sequences"}); !status) {
+      return status.error();
     }
     const auto file = fields_.members().get(value, what, "file", Kind::string);
     if (!file) return file.error();
     Taker take(value, what);
     take("file", source.path, name)("sequences", source.sequences, name);
-    if (Status done = take.done(); !done) return done.error();
+    if (Status status = take.done(); !status) return status.error();
     return source;
   }
 

@@ -16,7 +16,7 @@ using json::Value;
 using Kind = Value::Kind;
 
 constexpr std::string_view kSchema = "krok.weights/1";
-constexpr std::size_t kMostKeys = 1'000'000;  // of all curves
+constexpr std::size_t kMaxKeys = 1'000'000;  // of all curves
 
 struct Join {
   WeightJoin join = WeightJoin::linear;
@@ -31,19 +31,19 @@ class Reader {
   Result<WeightFile> read() {
     const auto root = json::parse(text_);
     if (!root) return root.error();
-    if (Status known =
+    if (Status status =
             in_.only(*root, kWhole, {"schema", "comment", "rate", "between", "tension", "curves"});
-        !known) {
-      return known.error();
+        !status) {
+      return status.error();
     }
-    if (Status schema = in_.has_schema(*root, kWhole, kSchema); !schema) return schema.error();
+    if (Status status = in_.has_schema(*root, kWhole, kSchema); !status) return status.error();
     if (root->find("rate") != nullptr) {
       const auto rate = in_.number(*root, kWhole, "rate", 1e-3, 1e6);
       if (!rate) return rate.error();
       file_.rate = *rate;
     }
-    if (Status done = read_join(*root, kWhole, usual_); !done) return done.error();
-    if (Status done = read_curves(*root); !done) return done.error();
+    if (Status status = read_join(*root, kWhole, usual_); !status) return status.error();
+    if (Status status = read_curves(*root); !status) return status.error();
     return std::move(file_);
   }
 
@@ -70,17 +70,17 @@ class Reader {
     file_.curves.names.assign(targets_.begin(), targets_.end());
     file_.curves.curves.resize(targets_.size());
     for (std::size_t i = 0; i < (*list)->items.size(); ++i) {
-      if (Status done = read_curve((*list)->items[i], fmt::format("curve {}", i)); !done) {
-        return done;
+      if (Status status = read_curve((*list)->items[i], fmt::format("curve {}", i)); !status) {
+        return status;
       }
     }
     return {};
   }
 
   Status read_curve(const Value& item, const std::string& what) {
-    if (Status known = in_.only(item, what, {"target", "between", "tension", "keys", "comment"});
-        !known) {
-      return known;
+    if (Status status = in_.only(item, what, {"target", "between", "tension", "keys", "comment"});
+        !status) {
+      return status;
     }
     const auto name = in_.get(item, what, "target", Kind::string);
     if (!name) return name.error();
@@ -95,8 +95,8 @@ class Reader {
                             fmt::format("two curves are of the target '{}'", shown(*target)));
     }
     Join join = usual_;
-    if (Status done = read_join(item, what, join); !done) return done;
-    if (Status done = read_keys(item, what, curve); !done) return done;
+    if (Status status = read_join(item, what, join); !status) return status;
+    if (Status status = read_keys(item, what, curve); !status) return status;
     join_keys(curve, join.join, join.tension);
     return {};
   }
@@ -106,10 +106,10 @@ class Reader {
     if (!list) return list.error();
     const std::size_t count = (*list)->items.size();
     keys_ += count;
-    if (count == 0 || keys_ > kMostKeys) {
+    if (count == 0 || keys_ > kMaxKeys) {
       return in_.wrong(
           **list, fmt::format("{} has {}, expected 1 to {} in all", what,
-                              counted(static_cast<long long>(count), "key"), grouped(kMostKeys)));
+                              counted(static_cast<long long>(count), "key"), grouped(kMaxKeys)));
     }
     for (std::size_t i = 0; i < count; ++i) {
       const Value& pair = (*list)->items[i];

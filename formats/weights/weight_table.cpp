@@ -39,13 +39,13 @@ Result<Columns> find_columns(const csv::Table& table, std::span<const std::strin
     } else {
       const auto target = std::ranges::find(targets, names[c].header);
       if (target == targets.end()) {
-        return at(unknown_target(names[c].header, targets), table.header_place(c));
+        return at(unknown_target(names[c].header, targets), table.header_location(c));
       }
       const auto index = static_cast<std::size_t>(target - targets.begin());
       if (std::ranges::find(columns.targets, index) != columns.targets.end()) {
         return at(Error("weights-structure",
                         fmt::format("two columns are called '{}'", shown(names[c].header))),
-                  table.header_place(c));
+                  table.header_location(c));
       }
       columns.weights.push_back(c);
       columns.targets.push_back(index);
@@ -54,7 +54,7 @@ Result<Columns> find_columns(const csv::Table& table, std::span<const std::strin
   if (columns.time == kNone) {
     return at(Error("weights-structure", "no column is called 'time'",
                     "it holds seconds; krok-import --morph-weights writes such tables"),
-              table.header_place(0));
+              table.header_location(0));
   }
   return columns;
 }
@@ -103,7 +103,7 @@ Result<WeightFile> read_table(std::string_view text, const std::string& path,
   const auto numbers = table->numbers(wanted);
   if (!numbers) return numbers.error();
   const std::vector<double>& times = numbers->back();
-  if (Status rise = check_times(*table, columns->time, times); !rise) return rise.error();
+  if (Status status = check_times(*table, columns->time, times); !status) return status.error();
 
   WeightFile file;
   file.rate = rate_of(times);

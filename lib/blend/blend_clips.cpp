@@ -19,15 +19,15 @@ namespace krok::blend {
 
 namespace {
 
-constexpr double kMostTransforms = 1e8;
+constexpr double kMaxTransforms = 1e8;
 constexpr double kRounding = 1e-6;  // of a frame, for the number of frames
 constexpr std::size_t kFramesAtOnce = 32;
 
 Status check_inputs(std::span<const BlendInput> inputs) {
   if (inputs.empty()) return Error("blend-empty", "there is no motion to blend");
   for (const BlendInput& input : inputs) {
-    if (Status sound = check(*input.clip); !sound) {
-      return std::move(sound).error().in_file(input.name);
+    if (Status status = check(*input.clip); !status) {
+      return std::move(status).error().in_file(input.name);
     }
     if (input.clip->frame_count() == 0) {
       return Error("blend-empty", fmt::format("{} has no frames", input.name));
@@ -41,8 +41,8 @@ Status check_inputs(std::span<const BlendInput> inputs) {
                    "krok-retarget brings one on the other's skeleton");
     }
     if (input.keys == nullptr) continue;
-    if (Status sound = check(*input.keys, input.clip->skeleton, input.clip->duration()); !sound) {
-      return std::move(sound).error().in_file(input.name);
+    if (Status status = check(*input.keys, input.clip->skeleton, input.clip->duration()); !status) {
+      return std::move(status).error().in_file(input.name);
     }
   }
   return {};
@@ -145,12 +145,12 @@ class Blender {
                  });
   }
 
-  GroundPlace first_place() const {
-    GroundPlace sum;
+  GroundFrame first_place() const {
+    GroundFrame sum;
     const double reference = motions_.front().place(blended_.times.front().front()).heading;
     double all = 0;
     for (std::size_t m = 0; m < motions_.size(); ++m) {
-      const GroundPlace place = motions_[m].place(blended_.times[m].front());
+      const GroundFrame place = motions_[m].place(blended_.times[m].front());
       const double share = weight(m, 0);
       all += share;
       sum.x += share * place.x;
@@ -165,7 +165,7 @@ class Blender {
     Clip& clip = blended_.clip;
     std::vector<Transform> pose(clip.skeleton.names.size());
     std::vector<Vec3> before(pose.size());
-    GroundPlace place = first_place();
+    GroundFrame place = first_place();
     for (int f = 0; f < frames(); ++f) {
       clip.get_pose(f, pose);
       if (f > 0) place = next_place(place, f, before, pose);
@@ -176,15 +176,15 @@ class Blender {
     }
   }
 
-  GroundPlace next_place(const GroundPlace& place, int frame, std::span<const Vec3> before,
+  GroundFrame next_place(const GroundFrame& place, int frame, std::span<const Vec3> before,
                          std::span<const Transform> pose) const {
     Vec3 way = Vec3::Zero();
     double turn = 0;
     for (std::size_t m = 0; m < motions_.size(); ++m) {
       const double share = weight(m, frame);
       if (share == 0) continue;
-      const GroundPlace from = motions_[m].place(blended_.times[m][at(frame - 1)]);
-      const GroundPlace to = motions_[m].place(blended_.times[m][at(frame)]);
+      const GroundFrame from = motions_[m].place(blended_.times[m][at(frame - 1)]);
+      const GroundFrame to = motions_[m].place(blended_.times[m][at(frame)]);
       way +=
           share * (axis_rotation(Axis::y, -from.heading) * Vec3(to.x - from.x, 0, to.z - from.z));
       turn += share * (to.heading - from.heading);
@@ -304,13 +304,13 @@ class Blender {
 
 Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& roles,
                             const Correspondence& correspondence, const BlendOptions& options) {
-  if (Status sound = check_inputs(inputs); !sound) return sound.error();
-  if (Status sound = check(correspondence); !sound) return sound.error();
+  if (Status status = check_inputs(inputs); !status) return status.error();
+  if (Status status = check(correspondence); !status) return status.error();
   if (correspondence.times.size() != inputs.size()) {
     return Error("blend-keys", "there are not as many motions as there are lists of moments");
   }
   if (!options.any_sum) {
-    if (Status sound = check_sum(inputs); !sound) return sound.error();
+    if (Status status = check_sum(inputs); !status) return status.error();
   }
   const double rate = options.rate > 0 ? options.rate : inputs.front().clip->rate;
   if (!std::isfinite(rate) || options.rate < 0) {
@@ -324,7 +324,7 @@ Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& r
   }
   const auto time = BlendTime::create(std::move(maps), std::move(weights), 2 / rate * (1 - 1e-9));
   if (!time) return time.error();
-  if (time->duration() * rate * inputs.front().clip->joint_count() > kMostTransforms) {
+  if (time->duration() * rate * inputs.front().clip->joint_count() > kMaxTransforms) {
     return Error("clip-too-long", fmt::format("{} s at {} frames a second are too many frames",
                                               readable(time->duration()), readable(rate)));
   }

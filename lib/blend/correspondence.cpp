@@ -158,12 +158,12 @@ Result<Correspondence> ends_alone(std::span<const double> durations) {
 }
 
 Result<Correspondence> match_keytimes(std::span<const KeyedMotion> motions) {
-  constexpr std::size_t kMost = 5000;
+  constexpr std::size_t kMax = 5000;
   for (const KeyedMotion& motion : motions) {
-    if (motion.keys != nullptr && motion.keys->keytimes.size() > kMost) {
+    if (motion.keys != nullptr && motion.keys->keytimes.size() > kMax) {
       return Error("blend-keys",
                    fmt::format("{} has {} keytimes; {} are the most that can be matched",
-                               motion.name, motion.keys->keytimes.size(), kMost),
+                               motion.name, motion.keys->keytimes.size(), kMax),
                    "cut the motion with krok-edit --from --to");
     }
     if (motion.keys == nullptr || motion.keys->keytimes.empty()) {

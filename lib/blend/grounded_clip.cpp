@@ -14,8 +14,8 @@ GroundedClip::GroundedClip(const Clip& clip, int carrier) : clip_(clip) {
   Clip grounded = clip;
   std::vector<Transform> pose(clip.skeleton.names.size());
   for (int f = 0; f < frames; ++f) {
-    GroundPlace& place = places_[static_cast<std::size_t>(f)];
-    place = ground_place(clip, carrier, f);
+    GroundFrame& place = places_[static_cast<std::size_t>(f)];
+    place = ground_frame(clip, carrier, f);
     if (f > 0) {
       const double before = places_[static_cast<std::size_t>(f - 1)].heading;
       place.heading = before + wrapped(place.heading - before);
@@ -28,12 +28,12 @@ GroundedClip::GroundedClip(const Clip& clip, int carrier) : clip_(clip) {
   poses_ = pack_clip(grounded);
 }
 
-GroundPlace GroundedClip::place(double time) const {
+GroundFrame GroundedClip::place(double time) const {
   const FrameMoment moment = frame_moment(time, clip_.rate, clip_.frame_count());
   const auto i = static_cast<std::size_t>(moment.before);
-  GroundPlace place = places_[i];
+  GroundFrame place = places_[i];
   if (moment.fraction == 0) return place;
-  const GroundPlace& next = places_[i + 1];
+  const GroundFrame& next = places_[i + 1];
   place.x += moment.fraction * (next.x - place.x);
   place.z += moment.fraction * (next.z - place.z);
   place.heading += moment.fraction * (next.heading - place.heading);

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "pose/packed_pose.h"
 #include "scene/clip.h"
 
@@ -20,7 +20,7 @@ class GroundedClip {
   const PackedClip& poses() const { return poses_; }
 
   // The place at `time` seconds, between frames evenly; the heading goes on beyond half turns.
-  GroundPlace place(double time) const;
+  GroundFrame place(double time) const;
 
   // A joint's position in the world.
   Vec3 position(int joint, double time) const;
@@ -28,7 +28,7 @@ class GroundedClip {
  private:
   const Clip& clip_;
   PackedClip poses_;
-  std::vector<GroundPlace> places_;  // [frames], headings without jumps
+  std::vector<GroundFrame> places_;  // [frames], headings without jumps
 };
 
 }  // namespace krok::blend

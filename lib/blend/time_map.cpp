@@ -13,7 +13,7 @@ namespace krok::blend {
 namespace {
 
 constexpr int kParts = 64;  // of an interval, for weights that change
-constexpr double kLeastSum = 1e-3;
+constexpr double kMinSum = 1e-3;
 
 std::size_t at_index(double value) {
   return static_cast<std::size_t>(value);
@@ -77,7 +77,7 @@ double WeightCurve::at(double time) const {
 Result<BlendTime> BlendTime::create(std::vector<TimeMap> maps, std::vector<WeightCurve> weights,
                                     double shortest) {
   BlendTime result(std::move(maps), std::move(weights));
-  if (Status done = result.integrate(shortest); !done) return done.error();
+  if (Status status = result.integrate(shortest); !status) return status.error();
   return result;
 }
 
@@ -103,7 +103,7 @@ Status BlendTime::integrate(double shortest) {
   for (int part = 0; part <= intervals * kParts; ++part) {
     double all = 0;
     for (const WeightCurve& curve : weights_) all += curve.at(static_cast<double>(part) / kParts);
-    if (!(std::abs(all) >= kLeastSum) || !std::isfinite(all)) {
+    if (!(std::abs(all) >= kMinSum) || !std::isfinite(all)) {
       return Error("blend-weights",
                    fmt::format("the weights sum to {} at generic time {}", readable(all),
                                readable(static_cast<double>(part) / kParts)),

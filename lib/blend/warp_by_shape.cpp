@@ -8,14 +8,14 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/sample.h"
 
 namespace krok::blend {
 
 namespace {
 
-constexpr int kMostMoments = 1000;
+constexpr int kMaxMoments = 1000;
 constexpr double kUsualRate = 30;
 constexpr double kVelocityTime = 0.1;  // seconds
 
@@ -29,7 +29,7 @@ class Shapes {
     for (int i = 0; i < moments; ++i) {
       sample(clip, i * step, pose, scratch);
       const Transform world_to_place =
-          ground_place(clip.skeleton, carrier, pose[at(carrier)]).to_world().inverse();
+          ground_frame(clip.skeleton, carrier, pose[at(carrier)]).to_world().inverse();
       for (const Transform& joint : pose) {
         positions_.push_back((world_to_place * joint.position).cast<float>());
       }
@@ -128,7 +128,7 @@ Result<Correspondence> warp_by_shape(std::span<const Clip* const> clips, const R
   auto result = ends_alone(durations);
   if (!result || clips.size() < 2) return result;
   const int n = static_cast<int>(
-      std::clamp(std::round(longest * kUsualRate) + 1, 3.0, static_cast<double>(kMostMoments)));
+      std::clamp(std::round(longest * kUsualRate) + 1, 3.0, static_cast<double>(kMaxMoments)));
   const int carrier = carrying_joint(roles);
   std::vector<std::vector<double>> paths(clips.size());
   const Shapes first(*clips[0], carrier, n);

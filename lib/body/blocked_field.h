@@ -26,11 +26,11 @@ class BlockedField {
   BlockedField(const Field& field, double cell, int jobs);
 
   double value(const Vec3& point) const { return field_.value(point, near(point)); }
-  std::vector<TubePlace> places(const Vec3& point) const {
+  std::vector<TubePoint> places(const Vec3& point) const {
     return field_.places(point, near(point));
   }
   // The nearest of them; its tube is -1 where there is none.
-  TubePlace nearest_place(const Vec3& point) const {
+  TubePoint nearest_place(const Vec3& point) const {
     return field_.nearest_place(point, near(point));
   }
   // Moves a point near the surface onto it, by at most `limit`.

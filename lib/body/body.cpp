@@ -75,7 +75,7 @@ Mesh build_mesh(const BlockedField& blocked, std::size_t target, int jobs, Progr
   std::vector<double> detail(mesh.positions.size(), 1.0);
   parallel_for(detail.size(), 256, jobs, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const TubePlace place = blocked.nearest_place(mesh.positions[v]);
+      const TubePoint place = blocked.nearest_place(mesh.positions[v]);
       if (place.tube >= 0) detail[v] = blocked.field().detail_at(place);
     }
   });
@@ -105,7 +105,7 @@ void move_to(const Skeleton& skeleton, std::span<const Transform> built,
 }
 
 Status check_request(const Clip& clip, const BodyOptions& options) {
-  if (Status sound = check(clip); !sound) return sound;
+  if (Status status = check(clip); !status) return status;
   if (options.pose == BodyPose::frame &&
       (options.frame < 0 || options.frame >= clip.frame_count())) {
     return Error(
@@ -129,21 +129,21 @@ struct Plan {
 
 Plan make_plan(const Clip& clip, const BodyOptions& options, Body& body) {
   const Skeleton& skeleton = clip.skeleton;
-  const auto figure = find_human(skeleton, find_roles(skeleton));
-  body.human = figure.has_value();
+  const auto actor = find_human(skeleton, find_roles(skeleton));
+  body.human = actor.has_value();
   Plan plan;
   if (options.pose == BodyPose::reference) plan.wanted = skeleton.reference;
   if (options.pose == BodyPose::frame) plan.wanted = clip_pose(clip, options.frame);
-  BuildPose pose = figure ? human_build_pose(clip, *figure) : general_build_pose(clip);
+  BuildPose pose = actor ? human_build_pose(clip, *actor) : general_build_pose(clip);
   body.pose = options.pose == BodyPose::automatic   ? pose.name
               : options.pose == BodyPose::reference ? "reference"
                                                     : fmt::format("frame {}", options.frame);
-  if (figure) {
-    body.stature = figure->stature;
+  if (actor) {
+    body.stature = actor->stature;
     // Built with fanned fingers, so that the surface does not grow together between them.
-    plan.built = spread_fingers(skeleton, *figure, pose.joint_to_world);
+    plan.built = spread_fingers(skeleton, *actor, pose.joint_to_world);
     if (plan.wanted.empty()) plan.wanted = std::move(pose.joint_to_world);
-    plan.shape = human_shape(skeleton, *figure, plan.built);
+    plan.shape = human_shape(skeleton, *actor, plan.built);
   } else {
     plan.built = std::move(plan.wanted.empty() ? pose.joint_to_world : plan.wanted);
     plan.wanted.clear();
@@ -155,8 +155,8 @@ Plan make_plan(const Clip& clip, const BodyOptions& options, Body& body) {
 }  // namespace
 
 Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
-  if (Status possible = check_request(clip, options); !possible) {
-    return std::move(possible).error();
+  if (Status status = check_request(clip, options); !status) {
+    return std::move(status).error();
   }
   Progress silent;
   Progress& progress = options.progress ? *options.progress : silent;
@@ -191,7 +191,7 @@ Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
   model.triangles = mesh.triangles;
   model.parts = {{"body", "body", 0, static_cast<std::uint32_t>(model.triangles.size())}};
   body.volume = signed_volume(mesh);
-  if (Status sound = check(model); !sound) return std::move(sound).error();
+  if (Status status = check(model); !status) return std::move(status).error();
   return body;
 }
 

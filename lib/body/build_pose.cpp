@@ -61,9 +61,9 @@ std::vector<Transform> clip_pose(const Clip& clip, int frame) {
   return pose;
 }
 
-BuildPose human_build_pose(const Clip& clip, const HumanFigure& figure) {
+BuildPose human_build_pose(const Clip& clip, const HumanActor& actor) {
   const Skeleton& skeleton = clip.skeleton;
-  StandingPose best = stand_upright(skeleton, figure, skeleton.reference);
+  StandingPose best = stand_upright(skeleton, actor, skeleton.reference);
   std::string name = best.turned > 0    ? "reference, limbs turned aside"
                      : best.heading > 0 ? "reference, turned upright"
                                         : "reference";
@@ -72,7 +72,7 @@ BuildPose human_build_pose(const Clip& clip, const HumanFigure& figure) {
     const int step = std::max(1, frames / kSamples);
     double least = 0.6 * best.turned;
     for (int frame = 0; frame < frames; frame += step) {
-      StandingPose candidate = stand_upright(skeleton, figure, clip_pose(clip, frame));
+      StandingPose candidate = stand_upright(skeleton, actor, clip_pose(clip, frame));
       if (candidate.turned >= least) continue;
       least = candidate.turned;
       best = std::move(candidate);

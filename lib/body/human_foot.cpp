@@ -9,7 +9,7 @@ namespace krok::body {
 
 void HumanBuilder::build_foot(std::size_t side) {
   const double u = unit_;
-  const auto& leg = figure_.legs[side];
+  const auto& leg = actor_.legs[side];
   const Vec3 ankle = position(leg.ankle);
   const int far = leg.toes >= 0 ? leg.toes : leg.tip;
   // Forward along the foot, level; the ball of the foot where the skeleton has it.

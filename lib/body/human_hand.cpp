@@ -21,11 +21,11 @@ bool named_thumb(const std::string& name) {
 
 }  // namespace
 
-HandLayout hand_layout(const Skeleton& skeleton, const HumanFigure& figure, std::size_t side,
+HandLayout hand_layout(const Skeleton& skeleton, const HumanActor& actor, std::size_t side,
                        std::span<const Transform> pose) {
   const auto at = [&pose](int joint) { return pose[static_cast<std::size_t>(joint)].position; };
-  const double u = figure.stature;
-  const auto& arm = figure.arms[side];
+  const double u = actor.stature;
+  const auto& arm = actor.arms[side];
   const Vec3 wrist = at(arm.wrist);
   HandLayout hand;
   const Vec3 forearm = (wrist - at(arm.elbow)).normalized();
@@ -95,16 +95,16 @@ HandLayout hand_layout(const Skeleton& skeleton, const HumanFigure& figure, std:
   return hand;
 }
 
-std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanFigure& figure,
+std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanActor& actor,
                                       std::span<const Transform> pose) {
   std::vector<Transform> spread(pose.begin(), pose.end());
   for (std::size_t side = 0; side < 2; ++side) {
-    const HandLayout hand = hand_layout(skeleton, figure, side, spread);
+    const HandLayout hand = hand_layout(skeleton, actor, side, spread);
     if (!hand.whole()) continue;
     const auto turn = [&](int joint, int child, const Vec3& wanted) {
       const Vec3 now = spread[static_cast<std::size_t>(child)].position -
                        spread[static_cast<std::size_t>(joint)].position;
-      if (now.norm() < 1e-4 * figure.stature) return;
+      if (now.norm() < 1e-4 * actor.stature) return;
       turn_joint(skeleton, joint, shortest_arc(now, wanted), spread);
     };
     const auto count = static_cast<double>(hand.fingers.size());

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "body/human_figure.h"
+#include "body/human_actor.h"
 
 namespace krok::body {
 
@@ -18,11 +18,11 @@ struct HandLayout {
   bool whole() const { return fingers.size() >= 3; }
 };
 
-HandLayout hand_layout(const Skeleton& skeleton, const HumanFigure& figure, std::size_t side,
+HandLayout hand_layout(const Skeleton& skeleton, const HumanActor& actor, std::size_t side,
                        std::span<const Transform> pose);
 
 // `pose` with the fingers of whole hands straight and fanned out, so that none touches another.
-std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanFigure& figure,
+std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanActor& actor,
                                       std::span<const Transform> pose);
 
 }  // namespace krok::body

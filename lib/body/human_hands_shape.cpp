@@ -9,8 +9,8 @@ namespace krok::body {
 
 void HumanBuilder::build_hand(std::size_t side) {
   const double u = unit_;
-  const auto& arm = figure_.arms[side];
-  const HandLayout hand = hand_layout(skeleton_, figure_, side, pose_);
+  const auto& arm = actor_.arms[side];
+  const HandLayout hand = hand_layout(skeleton_, actor_, side, pose_);
   const Vec3 wrist = position(arm.wrist), thick = hand.along.cross(hand.across);
   struct Row {
     double ahead, width, thick;
@@ -51,7 +51,7 @@ void HumanBuilder::build_hand(std::size_t side) {
 void HumanBuilder::build_finger_along(std::size_t side, const HandLayout& hand,
                                       const std::vector<int>& chain) {
   const double u = unit_;
-  const int wrist_joint = figure_.arms[side].wrist;
+  const int wrist_joint = actor_.arms[side].wrist;
   const Vec3 wrist = position(wrist_joint), thick = hand.along.cross(hand.across);
   const double radius = 0.0047 * u;
   Tube tube;
@@ -99,7 +99,7 @@ void HumanBuilder::build_finger_along(std::size_t side, const HandLayout& hand,
 
 void HumanBuilder::build_free_finger(std::size_t side, const HandLayout& hand, int finger) {
   const double u = unit_;
-  const int wrist_joint = figure_.arms[side].wrist;
+  const int wrist_joint = actor_.arms[side].wrist;
   const Vec3 wrist = position(wrist_joint), thick = hand.along.cross(hand.across);
   std::vector<int> chain = hand.thumb;
   if (finger > 0) chain = hand.fingers.empty() ? std::vector<int>() : hand.fingers.front();

@@ -8,8 +8,8 @@
 namespace krok::body {
 
 int HumanBuilder::chest_joint() const {
-  const auto path = joint_path(skeleton_, 0, figure_.arms[0].shoulder);
-  const auto other = joint_path(skeleton_, 0, figure_.arms[1].shoulder);
+  const auto path = joint_path(skeleton_, 0, actor_.arms[0].shoulder);
+  const auto other = joint_path(skeleton_, 0, actor_.arms[1].shoulder);
   int common = path.front();
   for (std::size_t i = 0; i < std::min(path.size(), other.size()) && path[i] == other[i]; ++i) {
     common = path[i];
@@ -20,11 +20,11 @@ int HumanBuilder::chest_joint() const {
 // The top of the head: the end site where it is plausible, else from the joint at the skull's base.
 void HumanBuilder::place_head() {
   const double u = unit_;
-  head_ = figure_.head >= 0 ? figure_.head : figure_.neck;
+  head_ = actor_.head >= 0 ? actor_.head : actor_.neck;
   const Vec3 joint = position(head_);
   double top = joint.y() + 0.118 * u;
-  if (figure_.head_top >= 0) {
-    const double above = position(figure_.head_top).y() - joint.y();
+  if (actor_.head_top >= 0) {
+    const double above = position(actor_.head_top).y() - joint.y();
     if (above > 0.085 * u && above < 0.16 * u) top = joint.y() + above;
   }
   // Not sunk into the shoulders, not on a stalk.

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "body/human_figure.h"
+#include "body/human_actor.h"
 #include "body/human_hand.h"
 #include "body/implicit.h"
 
@@ -15,8 +15,7 @@ namespace krok::body {
 
 class HumanBuilder {
  public:
-  HumanBuilder(const Skeleton& skeleton, const HumanFigure& figure,
-               std::span<const Transform> pose);
+  HumanBuilder(const Skeleton& skeleton, const HumanActor& actor, std::span<const Transform> pose);
   Shape build();
 
  private:
@@ -54,7 +53,7 @@ class HumanBuilder {
   void join();
 
   const Skeleton& skeleton_;
-  const HumanFigure& figure_;
+  const HumanActor& actor_;
   std::span<const Transform> pose_;
   double unit_;                // stature, metres
   std::vector<double> along_;  // distance from the root along the bones, [joints]

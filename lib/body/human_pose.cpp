@@ -14,8 +14,8 @@ constexpr double kDegree = kRadiansPerDegree;
 
 class Straightener {
  public:
-  Straightener(const Skeleton& skeleton, const HumanFigure& figure, std::span<const Transform> pose)
-      : skeleton_(skeleton), figure_(figure), pose_(pose.begin(), pose.end()) {}
+  Straightener(const Skeleton& skeleton, const HumanActor& actor, std::span<const Transform> pose)
+      : skeleton_(skeleton), actor_(actor), pose_(pose.begin(), pose.end()) {}
 
   StandingPose run() {
     face_forward();
@@ -40,7 +40,7 @@ class Straightener {
   // away from it.
   void point(int joint, int child, const Vec3& wanted, double tolerance) {
     const Vec3 now = bone(joint, child);
-    if (now.norm() < 1e-3 * figure_.stature) return;
+    if (now.norm() < 1e-3 * actor_.stature) return;
     const double off = turn_angle(now, wanted);
     if (off <= tolerance) return;
     rotate(joint, shortest_arc(now, wanted));
@@ -48,7 +48,7 @@ class Straightener {
   }
 
   void face_forward() {
-    const HumanAxes axes = human_axes(figure_, pose_);
+    const HumanAxes axes = human_axes(actor_, pose_);
     const double tilt = turn_angle(axes.up, Vec3::UnitY());
     Vec3 forward = axes.forward;
     Quat rotation = Quat::Identity();
@@ -81,12 +81,11 @@ class Straightener {
   }
 
   void straighten_trunk() {
-    const int top = figure_.head >= 0 ? figure_.head : figure_.neck;
+    const int top = actor_.head >= 0 ? actor_.head : actor_.neck;
     const Quat before = pose_[static_cast<std::size_t>(top)].orientation;
     const int chest =
-        skeleton_
-            .parents[static_cast<std::size_t>(figure_.neck >= 0 ? figure_.neck : figure_.head)];
-    straighten(figure_.hips, chest);
+        skeleton_.parents[static_cast<std::size_t>(actor_.neck >= 0 ? actor_.neck : actor_.head)];
+    straighten(actor_.hips, chest);
     straighten(chest, top);
     // The face looks where it did. (Where the end site of the head lies tells nothing: some
     // exporters put it anywhere.)
@@ -96,7 +95,7 @@ class Straightener {
 
   // A thigh that crosses to the other side, is spread wide or is raised.
   bool leg_in_the_way(std::size_t side) const {
-    const auto& leg = figure_.legs[side];
+    const auto& leg = actor_.legs[side];
     const Vec3 thigh = bone(leg.hip, leg.knee).normalized();
     const double apart = (side == 0 ? 1.0 : -1.0) * thigh.x();
     return apart < -0.06 || apart > 0.28 || std::abs(thigh.z()) > 0.30 || thigh.y() > 0;
@@ -104,14 +103,14 @@ class Straightener {
 
   // An upper arm beside the trunk, raised, or well before or behind it.
   bool arm_in_the_way(std::size_t side) const {
-    const auto& arm = figure_.arms[side];
+    const auto& arm = actor_.arms[side];
     const Vec3 upper = bone(arm.shoulder, arm.elbow).normalized();
     const double out = (side == 0 ? 1.0 : -1.0) * upper.x();
     return out < 0.45 || upper.y() > 0.21 || std::abs(upper.z()) > 0.4;
   }
 
   void place_leg(std::size_t side, bool turn) {
-    const auto& leg = figure_.legs[side];
+    const auto& leg = actor_.legs[side];
     const double out = side == 0 ? 1.0 : -1.0;
     if (turn) point(leg.hip, leg.knee, Vec3(0.06 * out, -1, 0), 0);
     const Vec3 upper = bone(leg.hip, leg.knee).normalized();
@@ -131,12 +130,12 @@ class Straightener {
     if (leg.toes >= 0 && leg.tip >= 0 && leg.tip != leg.toes) {
       Vec3 ahead = bone(leg.ankle, leg.toes);
       ahead.y() = 0;
-      if (ahead.norm() > 1e-6 * figure_.stature) point(leg.toes, leg.tip, ahead, 35 * kDegree);
+      if (ahead.norm() > 1e-6 * actor_.stature) point(leg.toes, leg.tip, ahead, 35 * kDegree);
     }
   }
 
   void place_arm(std::size_t side, bool turn) {
-    const auto& arm = figure_.arms[side];
+    const auto& arm = actor_.arms[side];
     const double out = side == 0 ? 1.0 : -1.0;
     if (arm.collar >= 0) {
       const Vec3 collar = bone(arm.collar, arm.shoulder);
@@ -157,7 +156,7 @@ class Straightener {
     for (const auto& chain : arm.fingers) {
       for (const int joint : chain) {
         const Vec3 offset = bone(arm.wrist, joint);
-        if (offset.norm() < 0.02 * figure_.stature) continue;
+        if (offset.norm() < 0.02 * actor_.stature) continue;
         knuckles += offset.normalized();
         ++count;
         break;
@@ -173,16 +172,16 @@ class Straightener {
   }
 
   const Skeleton& skeleton_;
-  const HumanFigure& figure_;
+  const HumanActor& actor_;
   std::vector<Transform> pose_;
   double turned_ = 0, heading_ = 0;
 };
 
 }  // namespace
 
-StandingPose stand_upright(const Skeleton& skeleton, const HumanFigure& figure,
+StandingPose stand_upright(const Skeleton& skeleton, const HumanActor& actor,
                            std::span<const Transform> pose) {
-  return Straightener(skeleton, figure, pose).run();
+  return Straightener(skeleton, actor, pose).run();
 }
 
 }  // namespace krok::body

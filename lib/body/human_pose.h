@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "body/human_figure.h"
+#include "body/human_actor.h"
 
 namespace krok::body {
 
@@ -19,7 +19,7 @@ struct StandingPose {
 // knees and toes that are bent by more than some 25 degrees straight, legs side by side under the
 // hips, feet level and forward, a folded trunk or neck up. What one side needs, both get. Bones
 // keep their lengths. Limbs are turned by the shortest way, so that they keep their twist.
-StandingPose stand_upright(const Skeleton& skeleton, const HumanFigure& figure,
+StandingPose stand_upright(const Skeleton& skeleton, const HumanActor& actor,
                            std::span<const Transform> pose);
 
 }  // namespace krok::body

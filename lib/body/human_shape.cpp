@@ -49,12 +49,12 @@ constexpr TrunkRow kTrunk[] = {
 
 }  // namespace
 
-HumanBuilder::HumanBuilder(const Skeleton& skeleton, const HumanFigure& figure,
+HumanBuilder::HumanBuilder(const Skeleton& skeleton, const HumanActor& actor,
                            std::span<const Transform> pose)
     : skeleton_(skeleton),
-      figure_(figure),
+      actor_(actor),
       pose_(pose),
-      unit_(figure.stature),
+      unit_(actor.stature),
       along_(skeleton.names.size(), 0) {
   for (std::size_t j = 1; j < along_.size(); ++j) {
     const auto parent = static_cast<std::size_t>(skeleton.parents[j]);
@@ -92,20 +92,20 @@ std::vector<TubeJoint> HumanBuilder::joints_along(const std::vector<int>& path, 
 }
 
 void HumanBuilder::build_trunk() {
-  const Vec3 hips = 0.5 * (position(figure_.legs[0].hip) + position(figure_.legs[1].hip));
+  const Vec3 hips = 0.5 * (position(actor_.legs[0].hip) + position(actor_.legs[1].hip));
   const Vec3 shoulders =
-      0.5 * (position(figure_.arms[0].shoulder) + position(figure_.arms[1].shoulder));
+      0.5 * (position(actor_.arms[0].shoulder) + position(actor_.arms[1].shoulder));
   const double length = (shoulders - hips).norm();
   trunk_base_ = hips;
   trunk_axis_ = (shoulders - hips) / length;
   trunk_scale_ = length / (kTrunkLength * unit_);
   const double half_breadth =
-      0.5 * (position(figure_.arms[0].shoulder) - position(figure_.arms[1].shoulder)).norm();
+      0.5 * (position(actor_.arms[0].shoulder) - position(actor_.arms[1].shoulder)).norm();
   // Narrow shoulders get a narrow chest, so that the arms stand off it.
   chest_scale_ = std::clamp(half_breadth / (0.105 * unit_), 0.8, 1.3);
   // Hip joints far apart get wide hips and thighs, or the thighs would stand out as lumps.
   const double half_hips =
-      0.5 * (position(figure_.legs[0].hip) - position(figure_.legs[1].hip)).norm();
+      0.5 * (position(actor_.legs[0].hip) - position(actor_.legs[1].hip)).norm();
   hip_scale_ = std::clamp((half_hips / unit_ + 0.045) / 0.097, 0.95, 1.4);
 
   Tube tube;
@@ -122,11 +122,11 @@ void HumanBuilder::build_trunk() {
     station.side = Vec3::UnitX();
     station.front = Vec3::UnitZ();
     station.arc = row.height * trunk_scale_ * unit_;
-    station.along = along_[static_cast<std::size_t>(figure_.hips)] + std::max(0.0, station.arc);
+    station.along = along_[static_cast<std::size_t>(actor_.hips)] + std::max(0.0, station.arc);
     station.detail = row.detail;
     tube.stations.push_back(station);
   }
-  tube.joints = joints_along(joint_path(skeleton_, figure_.hips, chest_joint()), trunk_base_,
+  tube.joints = joints_along(joint_path(skeleton_, actor_.hips, chest_joint()), trunk_base_,
                              trunk_axis_, 0.04 * unit_);
   // What lies below the first spine joint follows the hips.
   trunk_ = shape_.add(std::move(tube));
@@ -169,7 +169,7 @@ int HumanBuilder::add_ball(const Vec3& center, const Vec3& axes, double detail, 
 }
 
 void HumanBuilder::build_leg(std::size_t side) {
-  const auto& leg = figure_.legs[side];
+  const auto& leg = actor_.legs[side];
   const Vec3 hip = position(leg.hip), knee = position(leg.knee), ankle = position(leg.ankle);
   const double out = side == 0 ? 1.0 : -1.0;
   Tube tube;
@@ -218,7 +218,7 @@ void HumanBuilder::push_path(Tube& tube, int from, int to, const Vec3& origin, c
 }
 
 void HumanBuilder::build_arm(std::size_t side) {
-  const auto& arm = figure_.arms[side];
+  const auto& arm = actor_.arms[side];
   const Vec3 shoulder = position(arm.shoulder), elbow = position(arm.elbow),
              wrist = position(arm.wrist);
   const double upper = (elbow - shoulder).norm(), lower = (wrist - elbow).norm();
@@ -294,9 +294,9 @@ void HumanBuilder::join() {
   }
 }
 
-Shape human_shape(const Skeleton& skeleton, const HumanFigure& figure,
+Shape human_shape(const Skeleton& skeleton, const HumanActor& actor,
                   std::span<const Transform> pose) {
-  return HumanBuilder(skeleton, figure, pose).build();
+  return HumanBuilder(skeleton, actor, pose).build();
 }
 
 }  // namespace krok::body

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "body/human_figure.h"
+#include "body/human_actor.h"
 #include "body/implicit.h"
 
 namespace krok::body {
@@ -14,7 +14,7 @@ namespace krok::body {
 // by Winter; breadths, depths and girths over stature rounded from the means of ANSUR II (Gordon et
 // al. 2014, 1.756 m men and 1.629 m women), between the two and slightly leaner. Girths become
 // ellipses of that circumference.
-Shape human_shape(const Skeleton& skeleton, const HumanFigure& figure,
+Shape human_shape(const Skeleton& skeleton, const HumanActor& actor,
                   std::span<const Transform> pose);
 
 }  // namespace krok::body

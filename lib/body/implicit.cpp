@@ -223,11 +223,11 @@ double Field::tube_value(int tube, int first, int last, const Vec3& point, int* 
 }
 
 double Field::value(const Vec3& point, const Near& near) const {
-  constexpr std::size_t kMost = 64;
-  std::array<double, kMost> few;
+  constexpr std::size_t kMax = 64;
+  std::array<double, kMax> few;
   std::vector<double> many;
   double* values = few.data();
-  if (near.ranges.size() > kMost) {
+  if (near.ranges.size() > kMax) {
     many.resize(near.ranges.size());
     values = many.data();
   }
@@ -272,11 +272,11 @@ Vec3 Field::gradient(const Vec3& point, double value_there, const Near& near, do
   return result;
 }
 
-TubePlace Field::nearest_place(const Vec3& point, const Near& near) const {
-  TubePlace nearest;
+TubePoint Field::nearest_place(const Vec3& point, const Near& near) const {
+  TubePoint nearest;
   nearest.tube = -1;
   for (const Near::Range& range : near.ranges) {
-    TubePlace place;
+    TubePoint place;
     place.tube = range.tube;
     place.value =
         tube_value(range.tube, range.first, range.last, point, &place.segment, &place.fraction);
@@ -285,10 +285,10 @@ TubePlace Field::nearest_place(const Vec3& point, const Near& near) const {
   return nearest;
 }
 
-std::vector<TubePlace> Field::places(const Vec3& point, const Near& near) const {
-  std::vector<TubePlace> places;
+std::vector<TubePoint> Field::places(const Vec3& point, const Near& near) const {
+  std::vector<TubePoint> places;
   for (const Near::Range& range : near.ranges) {
-    TubePlace place;
+    TubePoint place;
     place.tube = range.tube;
     place.segment = range.first;
     place.value =
@@ -296,11 +296,11 @@ std::vector<TubePlace> Field::places(const Vec3& point, const Near& near) const 
     places.push_back(place);
   }
   std::stable_sort(places.begin(), places.end(),
-                   [](const TubePlace& a, const TubePlace& b) { return a.value < b.value; });
+                   [](const TubePoint& a, const TubePoint& b) { return a.value < b.value; });
   return places;
 }
 
-Station Field::station_at(const TubePlace& place) const {
+Station Field::station_at(const TubePoint& place) const {
   const auto& stations = paths_[static_cast<std::size_t>(place.tube)].stations;
   const auto i = static_cast<std::size_t>(place.segment);
   Station station =
@@ -309,14 +309,14 @@ Station Field::station_at(const TubePlace& place) const {
   return station;
 }
 
-double Field::detail_at(const TubePlace& place) const {
+double Field::detail_at(const TubePoint& place) const {
   const auto& stations = paths_[static_cast<std::size_t>(place.tube)].stations;
   const auto i = static_cast<std::size_t>(place.segment);
   const double from = stations[i].detail;
   return from + place.fraction * (stations[std::min(i + 1, stations.size() - 1)].detail - from);
 }
 
-void Field::bind(const TubePlace& place, double scale,
+void Field::bind(const TubePoint& place, double scale,
                  std::vector<std::pair<int, double>>& weights) const {
   const Path& path = paths_[static_cast<std::size_t>(place.tube)];
   const double arc = station_at(place).arc;

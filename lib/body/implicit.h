@@ -61,7 +61,7 @@ struct Shape {
 };
 
 // Where a point lies on a tube.
-struct TubePlace {
+struct TubePoint {
   double value = 0;  // signed distance, about
   int tube = 0;
   int segment = 0;      // between stations segment and segment + 1 of Field::tube_stations
@@ -90,16 +90,16 @@ class Field {
   Vec3 gradient(const Vec3& point, double value, const Near& near, double step) const;
 
   // The places on all tubes of `near`, nearest first.
-  std::vector<TubePlace> places(const Vec3& point, const Near& near) const;
+  std::vector<TubePoint> places(const Vec3& point, const Near& near) const;
 
   // The first of them, or one with tube -1 where there is none.
-  TubePlace nearest_place(const Vec3& point, const Near& near) const;
+  TubePoint nearest_place(const Vec3& point, const Near& near) const;
 
-  Station station_at(const TubePlace& place) const;
-  double detail_at(const TubePlace& place) const;  // of station_at
+  Station station_at(const TubePoint& place) const;
+  double detail_at(const TubePoint& place) const;  // of station_at
   // The joints that move the place, with weights that sum to 1; appended to `weights`, times
   // `scale`.
-  void bind(const TubePlace& place, double scale,
+  void bind(const TubePoint& place, double scale,
             std::vector<std::pair<int, double>>& weights) const;
   bool blended(int tube_a, int tube_b) const;
   double blend_radius(int tube_a, int tube_b) const;

@@ -13,15 +13,15 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 // A list in place: of the triangles at a vertex, or of its neighbours.
 struct Ring {
-  static constexpr std::size_t kMost = 16;
-  std::array<std::uint32_t, kMost> items;
+  static constexpr std::size_t kMax = 16;
+  std::array<std::uint32_t, kMax> items;
   std::uint32_t count = 0;
 
   const std::uint32_t* begin() const { return items.data(); }
   const std::uint32_t* end() const { return items.data() + count; }
   bool has(std::uint32_t item) const { return std::find(begin(), end(), item) != end(); }
   void add(std::uint32_t item) {
-    if (count == kMost) throw std::length_error("a vertex of more than 16 triangles");
+    if (count == kMax) throw std::length_error("a vertex of more than 16 triangles");
     items[count++] = item;
   }
   void remove(std::uint32_t item) {

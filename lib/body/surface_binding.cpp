@@ -37,7 +37,7 @@ Weights raw_weights(const BlockedField& field, const Vec3& point) {
   Weights weights;
   const auto places = field.places(point);
   if (places.empty()) return {{0, 1.0}};
-  const TubePlace& nearest = places.front();
+  const TubePoint& nearest = places.front();
   field.field().bind(nearest, 1.0, weights);
   for (std::size_t i = 1; i < places.size(); ++i) {
     const double radius = 1.2 * field.field().blend_radius(nearest.tube, places[i].tube);

@@ -15,7 +15,7 @@ namespace krok {
 
 namespace {
 
-constexpr double kMostFrames = 1e7;
+constexpr double kMaxFrames = 1e7;
 
 // Values that are added: places and numbers.
 template <typename T>
@@ -95,7 +95,7 @@ Status check(const KeyedCamera& camera) {
   if (camera.keys.empty()) return Error("camera-keys", "there are no keys");
   for (std::size_t i = 0; i < camera.keys.size(); ++i) {
     const CameraKey& key = camera.keys[i];
-    if (Status sound = check_key(i, key); !sound) return sound;
+    if (Status status = check_key(i, key); !status) return status;
     if (i > 0 && !(key.time > camera.keys[i - 1].time)) {
       return wrong(i, fmt::format("its time, {} s, is not after that of the key before",
                                   readable(key.time)));
@@ -183,7 +183,7 @@ Result<std::vector<double>> frame_times(double end, double rate) {
                  fmt::format("the frame rate is {}, expected a positive number", readable(rate)));
   }
   const double last = std::ceil(end * rate - 1e-6);
-  if (!(last < kMostFrames)) {
+  if (!(last < kMaxFrames)) {
     return Error("camera-too-long",
                  fmt::format("{} s at {} frames a second are more than 10 million frames",
                              readable(end), readable(rate)));
@@ -196,7 +196,7 @@ Result<std::vector<double>> frame_times(double end, double rate) {
 }  // namespace
 
 Result<CameraTrack> make_track(const KeyedCamera& camera, double rate) {
-  if (Status sound = check(camera); !sound) return sound.error();
+  if (Status status = check(camera); !status) return status.error();
   const auto moments = frame_times(camera.keys.back().time, rate);
   if (!moments) return moments.error();
 
@@ -217,7 +217,7 @@ Result<CameraTrack> make_track(const KeyedCamera& camera, double rate) {
     track.orientations.push_back(turned.cast<float>().normalized());
     track.fields_of_view.push_back(static_cast<float>(lens[i]));
   }
-  if (Status sound = krok::check(track); !sound) {
+  if (Status status = krok::check(track); !status) {
     return Error("camera-keys", "between its keys the camera leaves what numbers hold",
                  "are positions and tensions as they should be?");
   }

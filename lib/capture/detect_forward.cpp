@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <optional>
 
-#include "capture/figure_internal.h"
+#include "capture/actor_internal.h"
 
-namespace krok::figure {
+namespace krok::actor {
 
 namespace {
 
@@ -135,4 +135,4 @@ void detect_reference_axes(const Evidence& evidence, Conventions& found) {
   found.reference_forward = nearest_axis(*forward).direction;
 }
 
-}  // namespace krok::figure
+}  // namespace krok::actor

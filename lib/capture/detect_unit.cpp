@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "capture/figure_internal.h"
+#include "capture/actor_internal.h"
 
-namespace krok::figure {
+namespace krok::actor {
 
 namespace {
 
@@ -28,7 +28,7 @@ bool is_sensible(double metres) {
   return metres >= 0.01 && metres <= 1000.0;
 }
 
-void detect_unit_of_figure(double height, bool cmu_names, Conventions& found) {
+void detect_unit_of_actor(double height, bool cmu_names, Conventions& found) {
   constexpr double kUsualHeight = 1.72;
   double best = INFINITY;
   double second = INFINITY;
@@ -92,7 +92,7 @@ bool has_cmu_names(const Skeleton& skeleton) {
 
 void detect_unit(const Evidence& evidence, Conventions& found) {
   const double height = height_of(evidence);
-  if (height > 0) return detect_unit_of_figure(height, has_cmu_names(evidence.skeleton), found);
+  if (height > 0) return detect_unit_of_actor(height, has_cmu_names(evidence.skeleton), found);
   const double extent = largest_extent(evidence);
   constexpr double kLargest = 10.0;  // metres
   for (const char* name : {"m", "cm", "mm"}) {
@@ -113,4 +113,4 @@ void detect_unit(const Evidence& evidence, Conventions& found) {
   }
 }
 
-}  // namespace krok::figure
+}  // namespace krok::actor

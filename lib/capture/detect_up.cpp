@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "capture/figure_internal.h"
+#include "capture/actor_internal.h"
 
-namespace krok::figure {
+namespace krok::actor {
 
 namespace {
 
@@ -65,7 +65,7 @@ bool is_usual(Direction up) {
 void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
   constexpr double kNear = 0.08;  // all of the figure's height
   constexpr double kBelow = -0.03;
-  constexpr double kLeastHips = 0.03;  // flesh is between a body and the ground
+  constexpr double kMinHips = 0.03;  // flesh is between a body and the ground
   const auto& reference = evidence.reference_stands;
   const bool unusual = !is_usual(found.up) && reference && is_usual(reference->direction);
   const auto standing = heights_along(evidence, found.up);
@@ -73,7 +73,7 @@ void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
   const auto lies = [&](Direction up) {
     if (on_one_axis(up, found.up)) return false;
     const auto lying = heights_along(evidence, up);
-    return lying && lying->lowest >= kBelow && lying->lowest <= kNear && lying->hips >= kLeastHips;
+    return lying && lying->lowest >= kBelow && lying->lowest <= kNear && lying->hips >= kMinHips;
   };
   std::optional<Direction> ground;
   if (reference) {
@@ -220,4 +220,4 @@ void detect_up(const Evidence& evidence, Conventions& found) {
   if (found.up_confidence == Confidence::certain) found.up_confidence = Confidence::likely;
 }
 
-}  // namespace krok::figure
+}  // namespace krok::actor

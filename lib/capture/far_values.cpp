@@ -21,12 +21,12 @@ std::string frames_of(std::size_t frames) {
 
 double farthest_position(std::span<const Transform> reference) {
   constexpr double kTimesTheSize = 1e4;
-  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
+  constexpr auto kMax = static_cast<double>(std::numeric_limits<float>::max());
   Eigen::AlignedBox3d box;
   for (const Transform& joint : reference) box.extend(joint.position);
   const double size = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
-  if (!std::isfinite(size)) return kMost;
-  return std::min(kMost, kTimesTheSize * std::max(size, 1.0));
+  if (!std::isfinite(size)) return kMax;
+  return std::min(kMax, kTimesTheSize * std::max(size, 1.0));
 }
 
 void FarValues::add_rotation(std::size_t frame) {

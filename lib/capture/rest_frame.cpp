@@ -133,12 +133,11 @@ RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   clip.get_pose(0, pose);
   const bool t_pose = kind_of_pose(roles, pose) == PoseKind::t_pose;
   // A T-pose is half the evidence.
-  constexpr double kLeastStep = 15.0;  // degrees
+  constexpr double kMinStep = 15.0;  // degrees
   const double factor = t_pose ? 2.5 : 4.0;
   // One or two joints that jump are a fault of the tracking.
   const int fewest_joints = std::min(4, clip.joint_count() / 2);
-  const bool apart = first_step.largest >= kLeastStep &&
-                     first_step.largest >= factor * later_step &&
+  const bool apart = first_step.largest >= kMinStep && first_step.largest >= factor * later_step &&
                      first_step.many_degrees >= fewest_joints;
   if (!apart || (!t_pose && unturned_share(clip, 0) < 0.6)) {
     if (t_pose) result.reference += "; the motion begins in a T-pose";

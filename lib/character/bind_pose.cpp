@@ -17,8 +17,8 @@ using nodes::Scene;
 
 namespace {
 
-void tell_of_joint(Diagnostics& diagnostics, Severity severity, std::string code,
-                   std::string message, std::string joint = {}) {
+void report_joint(Diagnostics& diagnostics, Severity severity, std::string code,
+                  std::string message, std::string joint = {}) {
   Diagnostic told;
   told.severity = severity;
   told.code = std::move(code);
@@ -71,7 +71,7 @@ class Finder {
     find_weighted();
     for (const int skin : by_size()) use_skin(skin);
     follow_nodes();
-    tell_of_binds();
+    report_binds();
     return {std::move(reference_), std::move(weighted_)};
   }
 
@@ -95,7 +95,7 @@ class Finder {
   bool fits_parent(std::size_t joint, const Mat4& place) const;
   void use_skin(int skin);
   void follow_nodes();
-  void tell_of_binds();
+  void report_binds();
 
   const Scene& scene_;
   const nodes::Evaluator& evaluator_;
@@ -293,7 +293,7 @@ void Finder::use_skin(int skin) {
   }
   if (worst < 0) return;
   const std::string joint = scene_.nodes[at(worst)].name;
-  tell_of_joint(
+  report_joint(
       diagnostics_, Severity::warning, "scene-bind",
       fmt::format("{} binds {} {} units and {} degrees from where another skin does; the pose of "
                   "the skin with most joints is kept",
@@ -326,9 +326,9 @@ void Finder::follow_nodes() {
   }
 }
 
-void Finder::tell_of_binds() {
+void Finder::report_binds() {
   if (unusable_ > 0) {
-    tell_of_joint(
+    report_joint(
         diagnostics_, Severity::warning, "scene-bind",
         fmt::format("{} cannot be inverted, the first that of {}; such a joint is placed by its "
                     "node",
@@ -356,7 +356,7 @@ void Finder::tell_of_binds() {
   if (worst < 0) return;
   const int node = joints_.nodes[at(worst)];
   const std::string joint = node < 0 ? std::string() : scene_.nodes[at(node)].name;
-  tell_of_joint(
+  report_joint(
       diagnostics_, Severity::note, "scene-pose",
       fmt::format("without animation the joints stand in another pose than the one the mesh is "
                   "bound in ({} is turned by {} degrees); the bind pose is the reference pose",

@@ -16,8 +16,8 @@ using nodes::Scene;
 
 namespace {
 
-constexpr std::size_t kMostJoints = 65535;
-constexpr std::size_t kMostNamed = 6;  // in a message
+constexpr std::size_t kMaxJoints = 65535;
+constexpr std::size_t kMaxNamed = 6;  // in a message
 
 // Sets that grow together.
 class Groups {
@@ -97,7 +97,7 @@ class Chooser {
 
   Result<Joints> choose(const std::string& skin) {
     if (!scene_.skins.empty()) {
-      if (Status chosen = take_skins(skin); !chosen) return chosen.error();
+      if (Status status = take_skins(skin); !status) return status.error();
     } else if (!skin.empty()) {
       return Error("scene-skin", fmt::format("no skin '{}': the file has no skins", shown(skin)));
     } else {
@@ -115,7 +115,7 @@ class Chooser {
   Status take_skins(const std::string& skin);
   void group_skins(Groups& groups);
   Result<int> find_skin(const std::string& name) const;
-  void tell_of_choice(int chosen, const std::vector<std::vector<int>>& skeletons, bool by_name);
+  void report_choice(int chosen, const std::vector<std::vector<int>>& skeletons, bool by_name);
   void take_without_skin();
   int top_of_joints() const;
   void join_trees();
@@ -172,7 +172,7 @@ Result<int> Chooser::find_skin(const std::string& name) const {
     return static_cast<int>(*number);
   }
   std::vector<std::string> known;
-  for (std::size_t s = 0; s < std::min(scene_.skins.size(), kMostNamed); ++s) {
+  for (std::size_t s = 0; s < std::min(scene_.skins.size(), kMaxNamed); ++s) {
     known.push_back(skin_label(static_cast<int>(s)));
   }
   return Error("scene-skin", fmt::format("no skin '{}' is in the file", shown(name)),
@@ -209,19 +209,19 @@ Status Chooser::take_skins(const std::string& skin) {
     if (keep && groups.root(skeleton[0]) == chosen) skins_ = skeleton;
     return !keep;
   });
-  tell_of_choice(chosen, skeletons, !skin.empty());
+  report_choice(chosen, skeletons, !skin.empty());
   for (const int member : skins_) {
     for (const int joint : scene_.skins[at(member)].joints) taken_[at(joint)] = 1;
   }
   return {};
 }
 
-void Chooser::tell_of_choice(int chosen, const std::vector<std::vector<int>>& skeletons,
-                             bool by_name) {
+void Chooser::report_choice(int chosen, const std::vector<std::vector<int>>& skeletons,
+                            bool by_name) {
   if (skeletons.size() < 2) return;
   std::vector<std::string> others;
   for (const auto& skeleton : skeletons) {
-    if (skeleton[0] == chosen || others.size() == kMostNamed) continue;
+    if (skeleton[0] == chosen || others.size() == kMaxNamed) continue;
     others.push_back(skin_label(skeleton[0]));
   }
   Diagnostic told;
@@ -328,9 +328,9 @@ Result<Joints> Chooser::order_joints() {
   for (const int node : order_) {
     if (taken_[at(node)]) result.nodes.push_back(node);
   }
-  if (result.nodes.size() > kMostJoints) {
+  if (result.nodes.size() > kMaxJoints) {
     return Error("scene-joints", fmt::format("the skeleton has {} joints; {} is the limit",
-                                             result.nodes.size(), kMostJoints));
+                                             result.nodes.size(), kMaxJoints));
   }
   if (skins_.size() == 1) {
     Joints as_in_skin = result;

@@ -45,7 +45,7 @@ class NameList {
 class MeshBuilder {
  public:
   MeshBuilder(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
-              const Conversion& conversion, const FigureOptions& options, Diagnostics& diagnostics)
+              const Conversion& conversion, const ActorOptions& options, Diagnostics& diagnostics)
       : scene_(scene),
         evaluator_(evaluator),
         rig_(rig),
@@ -54,19 +54,19 @@ class MeshBuilder {
         placements_(scene, evaluator, rig, conversion),
         targets_(scene, evaluator) {}
 
-  Result<Figure> build() {
+  Result<Actor> build() {
     for (const nodes::Instance& instance : evaluator_.instances()) {
       if (is_wanted(instance)) wanted_.push_back(instance);
     }
-    tell_of_what_is_left();
+    report_what_is_left();
     look_at_attributes();
     for (const nodes::Instance& instance : wanted_) add(instance);
-    if (with_normals_) make_missing_normals(figure_.model);
-    if (Status finished = finish(); !finished) return finished.error();
+    if (with_normals_) make_missing_normals(actor_.model);
+    if (Status status = finish(); !status) return status.error();
     if (options_.with_morphs) {
-      if (Status added = add_targets(); !added) return added.error();
+      if (Status status = add_targets(); !status) return status.error();
     }
-    return std::move(figure_);
+    return std::move(actor_);
   }
 
  private:
@@ -77,7 +77,7 @@ class MeshBuilder {
     return placements_.is_skinned(instance);
   }
   bool is_wanted(const nodes::Instance& instance);
-  void tell_of_what_is_left();
+  void report_what_is_left();
   void look_at_attributes();
   void add(const nodes::Instance& instance);
   void add_vertices(const nodes::Instance& instance);
@@ -90,13 +90,13 @@ class MeshBuilder {
   const Scene& scene_;
   const nodes::Evaluator& evaluator_;
   const Rig& rig_;
-  const FigureOptions& options_;
+  const ActorOptions& options_;
   Diagnostics& diagnostics_;
   Placements placements_;  // of the primitive being added
   std::vector<nodes::Instance> wanted_;
   std::vector<std::size_t> first_vertices_;  // in the model, of those of wanted_ that are added
   TargetNames targets_;
-  Figure figure_;
+  Actor actor_;
   NameList elsewhere_, other_skeleton_, without_triangles_;
   bool with_normals_ = false, with_texture_ = false, with_tangents_ = false;
   int influences_ = 4;
@@ -123,7 +123,7 @@ bool MeshBuilder::is_wanted(const nodes::Instance& instance) {
   return true;
 }
 
-void MeshBuilder::tell_of_what_is_left() {
+void MeshBuilder::report_what_is_left() {
   const auto left_out = [&](const NameList& names, const char* why) {
     if (names.empty()) return;
     tell(diagnostics_, Severity::warning, "scene-mesh",
@@ -148,7 +148,7 @@ void MeshBuilder::look_at_attributes() {
 
 void MeshBuilder::add_influences(const nodes::Instance& instance, std::size_t vertices) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
-  Model& model = figure_.model;
+  Model& model = actor_.model;
   const std::size_t first = model.influence_joints.size();
   const auto places = at(influences_);
   model.influence_joints.resize(first + vertices * places, 0);
@@ -180,16 +180,16 @@ void MeshBuilder::add_normals(const nodes::Primitive& shape) {
       const Vec3 normal = shape.normals
                               ? Vec3(normal_matrix(linear) * (*shape.normals)[v].cast<double>())
                               : Vec3(Vec3::Zero());
-      figure_.model.normals.push_back(normal.stableNormalized().cast<float>());
+      actor_.model.normals.push_back(normal.stableNormalized().cast<float>());
     }
     if (with_tangents_) {
       const Vec4f& tangent = (*shape.tangents)[v];
       const Vec3 turned = (linear * tangent.head<3>().cast<double>()).stableNormalized();
       const bool mirrored = linear.determinant() < 0;
       const float side = (tangent.w() < 0) != mirrored ? -1.0f : 1.0f;
-      figure_.model.tangents.emplace_back(static_cast<float>(turned.x()),
-                                          static_cast<float>(turned.y()),
-                                          static_cast<float>(turned.z()), side);
+      actor_.model.tangents.emplace_back(static_cast<float>(turned.x()),
+                                         static_cast<float>(turned.y()),
+                                         static_cast<float>(turned.z()), side);
     }
   }
 }
@@ -197,7 +197,7 @@ void MeshBuilder::add_normals(const nodes::Primitive& shape) {
 // Where the placement mirrors, what was counter-clockwise is turned back.
 void MeshBuilder::add_triangles(const nodes::Instance& instance, std::uint32_t first) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
-  Model& model = figure_.model;
+  Model& model = actor_.model;
   const nodes::Mesh& mesh = scene_.meshes[at(instance.mesh)];
   const std::string& node_name = node_of(instance).name;
   const std::string& mesh_name = mesh.name.empty() ? node_name : mesh.name;
@@ -205,7 +205,7 @@ void MeshBuilder::add_triangles(const nodes::Instance& instance, std::uint32_t f
                          to_utf8(shape.material),
                          static_cast<std::uint32_t>(model.triangles.size()),
                          static_cast<std::uint32_t>(shape.triangles.size())});
-  figure_.part_materials.push_back(shape.material_index);
+  actor_.part_materials.push_back(shape.material_index);
   for (auto triangle : shape.triangles) {
     const bool mirrored = placements_.of(triangle[0]).leftCols<3>().determinant() < 0;
     if (mirrored) std::swap(triangle[1], triangle[2]);
@@ -222,7 +222,7 @@ void MeshBuilder::add(const nodes::Instance& instance) {
       same_vertices(evaluator_.primitive(wanted_[place - 1]), shape)) {
     first_vertices_.push_back(first_vertices_.back());
   } else {
-    first_vertices_.push_back(figure_.model.positions.size());
+    first_vertices_.push_back(actor_.model.positions.size());
     add_vertices(instance);
   }
   add_triangles(instance, static_cast<std::uint32_t>(first_vertices_.back()));
@@ -230,7 +230,7 @@ void MeshBuilder::add(const nodes::Instance& instance) {
 
 void MeshBuilder::add_vertices(const nodes::Instance& instance) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
-  Model& model = figure_.model;
+  Model& model = actor_.model;
   for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
     const Vec3 position = (*shape.positions)[v].cast<double>();
     model.positions.push_back((placements_.of(v) * position.homogeneous()).cast<float>());
@@ -249,7 +249,7 @@ void MeshBuilder::add_vertices(const nodes::Instance& instance) {
 }
 
 Status MeshBuilder::finish() {
-  Model& model = figure_.model;
+  Model& model = actor_.model;
   const auto finite = [](const auto& value) { return value.allFinite(); };
   if (!std::all_of(model.positions.begin(), model.positions.end(), finite) ||
       !std::all_of(model.texture_coordinates.begin(), model.texture_coordinates.end(), finite)) {
@@ -268,21 +268,21 @@ Status MeshBuilder::finish() {
 
 Status MeshBuilder::add_targets() {
   for (const nodes::Instance& instance : wanted_) targets_.add(instance);
-  MorphSet& morphs = figure_.morphs;
-  const std::size_t vertices = figure_.model.positions.size();
+  MorphSet& morphs = actor_.morphs;
+  const std::size_t vertices = actor_.model.positions.size();
   morphs.names = targets_.names();
   morphs.vertex_count = static_cast<int>(vertices);
-  figure_.weight_sources = targets_.sources();
+  actor_.weight_sources = targets_.sources();
   const std::size_t all = morphs.names.size() * vertices;
-  constexpr std::size_t kMost = 50'000'000;
-  if (!morphs.names.empty() && vertices > kMost / morphs.names.size()) {
+  constexpr std::size_t kMax = 50'000'000;
+  if (!morphs.names.empty() && vertices > kMax / morphs.names.size()) {
     return Error("scene-morphs",
                  fmt::format("{} morph targets of {} vertices are out of proportion",
                              morphs.names.size(), vertices));
   }
   morphs.positions.reserve(all);
   for (std::size_t t = 0; t < morphs.names.size(); ++t) {
-    const auto& base = figure_.model;
+    const auto& base = actor_.model;
     morphs.positions.insert(morphs.positions.end(), base.positions.begin(), base.positions.end());
     morphs.normals.insert(morphs.normals.end(), base.normals.begin(), base.normals.end());
   }
@@ -316,15 +316,15 @@ Status MeshBuilder::add_targets() {
 
 }  // namespace
 
-Result<Figure> make_figure(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
-                           const Conversion& conversion, const FigureOptions& options,
-                           Diagnostics& diagnostics) {
-  auto figure = MeshBuilder(scene, evaluator, rig, conversion, options, diagnostics).build();
-  if (!figure) return figure;
-  figure->model.skeleton = rig.skeleton;
-  for (Transform& joint : figure->model.skeleton.reference) joint = conversion.reference(joint);
-  if (Status sound = check(figure->model); !sound) return sound.error();
-  return figure;
+Result<Actor> make_actor(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
+                         const Conversion& conversion, const ActorOptions& options,
+                         Diagnostics& diagnostics) {
+  auto actor = MeshBuilder(scene, evaluator, rig, conversion, options, diagnostics).build();
+  if (!actor) return actor;
+  actor->model.skeleton = rig.skeleton;
+  for (Transform& joint : actor->model.skeleton.reference) joint = conversion.reference(joint);
+  if (Status status = check(actor->model); !status) return status.error();
+  return actor;
 }
 
 }  // namespace krok::character

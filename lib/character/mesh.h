@@ -13,7 +13,7 @@
 
 namespace krok::character {
 
-struct Figure {
+struct Actor {
   Model model;      // in the rig's reference pose and Krok's frame; its skeleton is the rig's
   MorphSet morphs;  // of the model's vertices; no targets where the scene has none
 
@@ -27,7 +27,7 @@ struct Figure {
   std::vector<int> part_materials;  // [parts] of the model, in the scene's materials; -1 for none
 };
 
-struct FigureOptions {
+struct ActorOptions {
   bool with_morphs = false;  // fill `morphs`
 };
 
@@ -47,13 +47,13 @@ struct FigureOptions {
 //
 // An Error where vertices are not finite (scene-value) or morph targets are out of proportion
 // (scene-morphs: more than 50 million vertices in all targets together).
-Result<Figure> make_figure(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
-                           const Rig& rig, const Conversion& conversion,
-                           const FigureOptions& options, Diagnostics& diagnostics);
+Result<Actor> make_actor(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
+                         const Rig& rig, const Conversion& conversion, const ActorOptions& options,
+                         Diagnostics& diagnostics);
 
 // The weights of a figure's targets over time; animation -1: as they are without. An Error (code
 // scene-too-long) for more than 100 million weights in all.
-Result<MorphWeights> make_weights(const Figure& figure, const nodes::Evaluator& evaluator,
+Result<MorphWeights> make_weights(const Actor& actor, const nodes::Evaluator& evaluator,
                                   int animation, const Sampling& sampling);
 
 }  // namespace krok::character

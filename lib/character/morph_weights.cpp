@@ -6,11 +6,11 @@
 
 namespace krok::character {
 
-Result<MorphWeights> make_weights(const Figure& figure, const nodes::Evaluator& evaluator,
+Result<MorphWeights> make_weights(const Actor& actor, const nodes::Evaluator& evaluator,
                                   int animation, const Sampling& sampling) {
-  constexpr std::size_t kMost = 100'000'000;
-  const std::size_t targets = figure.weight_sources.size();
-  if (targets > 0 && at(sampling.frames) > kMost / targets) {
+  constexpr std::size_t kMax = 100'000'000;
+  const std::size_t targets = actor.weight_sources.size();
+  if (targets > 0 && at(sampling.frames) > kMax / targets) {
     return Error("scene-too-long",
                  fmt::format("{} frames of {} morph targets' weights are out of proportion",
                              sampling.frames, targets),
@@ -18,12 +18,12 @@ Result<MorphWeights> make_weights(const Figure& figure, const nodes::Evaluator& 
   }
   MorphWeights weights;
   weights.rate = sampling.rate;
-  weights.names = figure.morphs.names;
+  weights.names = actor.morphs.names;
   weights.values.reserve(at(sampling.frames) * targets);
   nodes::Evaluation state;
   for (int frame = 0; frame < sampling.frames; ++frame) {
     evaluator.place_nodes(animation, sampling.time(frame), state);
-    for (const Figure::WeightSource& source : figure.weight_sources) {
+    for (const Actor::WeightSource& source : actor.weight_sources) {
       weights.values.push_back(
           static_cast<float>(state.node_weights[at(source.node)][at(source.target)]));
     }

@@ -17,7 +17,7 @@ using nodes::Scene;
 
 namespace {
 
-constexpr double kMostTransforms = 1e8;
+constexpr double kMaxTransforms = 1e8;
 constexpr std::size_t kFramesAtOnce = 16;
 constexpr double kStretchTold = 1e-3;  // a tenth of a percent
 constexpr double kUsualFieldOfView = kPi / 4;
@@ -38,8 +38,8 @@ double stretch_of(const Mat3& linear, const Quat& rotation) {
   return rest.colwise().norm().maxCoeff();
 }
 
-void tell_of_scale(const std::vector<Stretch>& worst_of_frames, const Rig& rig,
-                   Diagnostics& diagnostics) {
+void report_scale(const std::vector<Stretch>& worst_of_frames, const Rig& rig,
+                  Diagnostics& diagnostics) {
   Stretch worst;
   std::size_t frame = 0;
   for (std::size_t f = 0; f < worst_of_frames.size(); ++f) {
@@ -90,7 +90,7 @@ Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
   auto skeleton = skeleton_in_krok(rig, conversion);
   if (!skeleton) return skeleton.error();
   const double transforms = static_cast<double>(sampling.frames) * rig.joints.count();
-  if (transforms > kMostTransforms) {
+  if (transforms > kMaxTransforms) {
     return Error("scene-too-long",
                  fmt::format("{} frames of {} joints are more than can be held", sampling.frames,
                              rig.joints.count()),
@@ -123,7 +123,7 @@ Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
   });
   if (progress != nullptr) progress->end();
   if (!finite) return overflow();
-  tell_of_scale(stretches, rig, diagnostics);
+  report_scale(stretches, rig, diagnostics);
   return clip;
 }
 

@@ -35,7 +35,7 @@ class RigBuilder {
       : scene_(scene), diagnostics_(diagnostics), rig_(std::move(rig)) {}
 
   Result<Rig> build(const std::vector<char>& weighted) {
-    if (Status folded = fold_scales(); !folded) return folded.error();
+    if (Status status = fold_scales(); !status) return status.error();
     name_joints();
     mark_ends(weighted);
     return std::move(rig_);

@@ -18,10 +18,10 @@ constexpr std::array kCommonRates = {30.0,         24.0,         25.0,          
                                      50.0,         48.0,         120.0,         100.0,
                                      90.0,         240.0,        30.0 / 1.001,  24.0 / 1.001,
                                      60.0 / 1.001, 48.0 / 1.001, 120.0 / 1.001, 240.0 / 1.001};
-constexpr double kLeastRate = 20.0;  // below it keys are too sparse to be frames
+constexpr double kMinRate = 20.0;  // below it keys are too sparse to be frames
 constexpr double kUsualRate = 30.0;
 constexpr double kUnevenRate = 60.0;
-constexpr double kMostFrames = 1e7;
+constexpr double kMaxFrames = 1e7;
 
 // What rounding to floats makes of a time, in frames. From half a frame on all times would fit.
 double float_rounding(double rate, double time) {
@@ -64,7 +64,7 @@ struct FoundRate {
 FoundRate find_rate(const std::vector<double>& times) {
   if (times.size() < 2) return {kUsualRate, true, "there is one key alone", Confidence::guess};
   const auto even = even_rate(times);
-  if (even && *even >= kLeastRate) {
+  if (even && *even >= kMinRate) {
     return {*even, true, fmt::format("the keys come {} a second", readable(*even)),
             Confidence::certain};
   }
@@ -161,7 +161,7 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   sampling.step = stretch / sampling.rate;
 
   const double steps = (chosen.keys_to - chosen.keys_from) / sampling.step;
-  if (!(steps < kMostFrames)) {
+  if (!(steps < kMaxFrames)) {
     return Error("scene-too-long",
                  fmt::format("{} frames a second over {} s are too many frames",
                              readable(sampling.rate), readable(chosen.keys_to - chosen.keys_from)));

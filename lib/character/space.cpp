@@ -86,7 +86,7 @@ void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& dia
        "say what the file's unit is with --unit");
 }
 
-void check_figure(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
+void check_actor(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
   if (!roles.humanoid) return;
   const Conventions found = detect_conventions(skeleton, roles, {});
   if (found.up_confidence != Confidence::guess && found.up != Direction::plus_y) {

@@ -32,6 +32,6 @@ void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& dia
 // otherwise is warned of with the option that mends it (codes scene-up, scene-forward); figures
 // that are not humanoid pass. For scenes whose axes were not detected, but said by the file or the
 // user.
-void check_figure(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics);
+void check_actor(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics);
 
 }  // namespace krok::character

@@ -30,7 +30,7 @@ Result<CameraDifference> difference(const CameraTrack& first, const CameraTrack&
   for (const auto& [frame_a, frame_b] : frames.frames) {
     const auto i = static_cast<std::size_t>(frame_a);
     const auto j = static_cast<std::size_t>(frame_b);
-    const Place place{.frame = frame_a, .time = frame_a / first.rate};
+    const ValueLocation place{.frame = frame_a, .time = frame_a / first.rate};
     const Vec3 apart = first.positions[i].cast<double>() - second.positions[j].cast<double>();
     result.positions.add(apart.norm(), place);
     result.orientations.add(

@@ -20,7 +20,7 @@ void compare_references(const Skeleton& first, const Skeleton& second, const Pai
   for (const auto& [i, j] : joints) {
     const Transform& a = first.reference[static_cast<std::size_t>(i)];
     const Transform& b = second.reference[static_cast<std::size_t>(j)];
-    const Place place{.joint = i};
+    const ValueLocation place{.joint = i};
     result.reference_positions.add((a.position - b.position).norm(), place);
     result.reference_orientations.add(angle_between(a.orientation, b.orientation), place);
   }
@@ -39,7 +39,8 @@ void compare_frames(const Clip& first, const Clip& second, const Pairs& joints,
     for (std::size_t k = 0; k < joints.size(); ++k) {
       const Transform& one = a[static_cast<std::size_t>(joints[k].first)];
       const Transform& other = b[static_cast<std::size_t>(joints[k].second)];
-      const Place place{.joint = joints[k].first, .frame = frame_a, .time = frame_a / first.rate};
+      const ValueLocation place{
+          .joint = joints[k].first, .frame = frame_a, .time = frame_a / first.rate};
       const double distance = (one.position - other.position).norm();
       const double angle = angle_between(one.orientation, other.orientation);
       result.positions.add(distance, place);

@@ -48,7 +48,7 @@ const char* word_of(bool value) {
   return value ? "yes" : "no";
 }
 
-bool same_picture(const Picture& first, const Picture& second) {
+bool same_image(const EncodedImage& first, const EncodedImage& second) {
   if (first.bytes.empty() && second.bytes.empty()) return first.path == second.path;
   return first.bytes == second.bytes;
 }
@@ -74,7 +74,7 @@ class Comparison {
     if (!first || !second) {
       const char* const article = *what == 'o' || *what == 'e' ? "an" : "a";
       say(fmt::format("only the {} has {} {} texture", first ? "first" : "second", article, what));
-    } else if (!same_picture(*first.picture, *second.picture)) {
+    } else if (!same_image(*first.image, *second.image)) {
       say(fmt::format("another {} texture", what));
     } else if (first.wrap_u != second.wrap_u || first.wrap_v != second.wrap_v ||
                first.smooth != second.smooth) {

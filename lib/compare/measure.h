@@ -30,7 +30,7 @@ struct Tolerance {
 };
 
 // Where a value is; -1 for what does not apply.
-struct Place {
+struct ValueLocation {
   int mesh = -1;
   int vertex = -1;
   int joint = -1;
@@ -46,7 +46,7 @@ struct Place {
 struct Totals {
   double tolerance = 0;
   double largest = 0;
-  Place where;  // of the largest; meaningful if largest > 0
+  ValueLocation where;  // of the largest; meaningful if largest > 0
   double square_sum = 0;
   std::int64_t count = 0;  // how many values were compared
   std::int64_t over = 0;   // how many of them differ by more than the tolerance
@@ -55,7 +55,7 @@ struct Totals {
   explicit Totals(double allowed) : tolerance(allowed) {}
 
   // `difference` >= 0. One that is not a number counts as infinite.
-  void add(double difference, const Place& place) {
+  void add(double difference, const ValueLocation& place) {
     difference = finite_or_infinite(difference);
     if (difference > largest) {
       largest = difference;
@@ -86,7 +86,7 @@ struct Measure : Totals {
   Measure() = default;
   explicit Measure(double allowed) : Totals(allowed) {}
 
-  void add(double difference, const Place& place) {
+  void add(double difference, const ValueLocation& place) {
     Totals::add(difference, place);
     spread.add(finite_or_infinite(difference));
   }

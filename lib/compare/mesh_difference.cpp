@@ -40,8 +40,8 @@ double weight_of(const Influences& influences, std::span<const int> joint_map, s
 }
 
 template <typename Vector>
-void add_distances_of(std::span<const Vector> first, std::span<const Vector> second, Place place,
-                      Measure& measure) {
+void add_distances_of(std::span<const Vector> first, std::span<const Vector> second,
+                      ValueLocation place, Measure& measure) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     place.vertex = static_cast<int>(i);
     const Vec3 apart = first[i].template cast<double>() - second[i].template cast<double>();
@@ -50,8 +50,8 @@ void add_distances_of(std::span<const Vector> first, std::span<const Vector> sec
 }
 
 template <typename Vector>
-void add_angles_of(std::span<const Vector> first, std::span<const Vector> second, Place place,
-                   Measure& measure) {
+void add_angles_of(std::span<const Vector> first, std::span<const Vector> second,
+                   ValueLocation place, Measure& measure) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     place.vertex = static_cast<int>(i);
     measure.add(angle_between_directions(first[i].template cast<double>(),
@@ -76,7 +76,8 @@ std::string difference_in_triangles(std::span<const Triangle> first,
 }
 
 void add_weight_differences(const Influences& first, const Influences& second,
-                            std::span<const int> first_of_second, Place place, Measure& measure) {
+                            std::span<const int> first_of_second, ValueLocation place,
+                            Measure& measure) {
   const auto per_first = static_cast<std::size_t>(first.per_vertex);
   const auto per_second = static_cast<std::size_t>(second.per_vertex);
   const std::size_t vertices = per_first == 0 ? 0 : first.weights.size() / per_first;
@@ -100,28 +101,28 @@ void add_weight_differences(const Influences& first, const Influences& second,
   }
 }
 
-void add_distances(std::span<const Vec3> first, std::span<const Vec3> second, Place place,
+void add_distances(std::span<const Vec3> first, std::span<const Vec3> second, ValueLocation place,
                    Measure& measure) {
   add_distances_of(first, second, place, measure);
 }
 
-void add_distances(std::span<const Vec3f> first, std::span<const Vec3f> second, Place place,
+void add_distances(std::span<const Vec3f> first, std::span<const Vec3f> second, ValueLocation place,
                    Measure& measure) {
   add_distances_of(first, second, place, measure);
 }
 
-void add_angles(std::span<const Vec3> first, std::span<const Vec3> second, Place place,
+void add_angles(std::span<const Vec3> first, std::span<const Vec3> second, ValueLocation place,
                 Measure& measure) {
   add_angles_of(first, second, place, measure);
 }
 
-void add_angles(std::span<const Vec3f> first, std::span<const Vec3f> second, Place place,
+void add_angles(std::span<const Vec3f> first, std::span<const Vec3f> second, ValueLocation place,
                 Measure& measure) {
   add_angles_of(first, second, place, measure);
 }
 
 void add_coordinate_differences(std::span<const Vec2f> first, std::span<const Vec2f> second,
-                                Place place, Measure& measure) {
+                                ValueLocation place, Measure& measure) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     place.vertex = static_cast<int>(i);
     const Vec2 apart = first[i].cast<double>() - second[i].cast<double>();

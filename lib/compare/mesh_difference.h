@@ -31,20 +31,21 @@ struct Influences {
 // vertex counts with the sum. `first_of_second` turns a joint of the second into one of the first
 // (-1: it has none; any weight on it differs). `place` gives the mesh.
 void add_weight_differences(const Influences& first, const Influences& second,
-                            std::span<const int> first_of_second, Place place, Measure& measure);
+                            std::span<const int> first_of_second, ValueLocation place,
+                            Measure& measure);
 
 // Adds for each vertex the distance of positions, the angle of directions, or the largest
 // difference of texture coordinates. Spans of equal length; places get `vertex` on top of `place`.
-void add_distances(std::span<const Vec3> first, std::span<const Vec3> second, Place place,
+void add_distances(std::span<const Vec3> first, std::span<const Vec3> second, ValueLocation place,
                    Measure& measure);
-void add_distances(std::span<const Vec3f> first, std::span<const Vec3f> second, Place place,
+void add_distances(std::span<const Vec3f> first, std::span<const Vec3f> second, ValueLocation place,
                    Measure& measure);
-void add_angles(std::span<const Vec3> first, std::span<const Vec3> second, Place place,
+void add_angles(std::span<const Vec3> first, std::span<const Vec3> second, ValueLocation place,
                 Measure& measure);
-void add_angles(std::span<const Vec3f> first, std::span<const Vec3f> second, Place place,
+void add_angles(std::span<const Vec3f> first, std::span<const Vec3f> second, ValueLocation place,
                 Measure& measure);
 void add_coordinate_differences(std::span<const Vec2f> first, std::span<const Vec2f> second,
-                                Place place, Measure& measure);
+                                ValueLocation place, Measure& measure);
 
 // Whether two tangents stand on other sides: the signs of their w differ. One that vanishes, or
 // that lies between corners which disagree (|w| < 0.5), has no side.

@@ -66,7 +66,7 @@ void compare_tangents(const Model& first, const Model& second, ModelDifference& 
   for (std::size_t i = 0; i < first.tangents.size(); ++i) {
     const Vec4 a = first.tangents[i].cast<double>();
     const Vec4 b = second.tangents[i].cast<double>();
-    const Place place{.vertex = static_cast<int>(i)};
+    const ValueLocation place{.vertex = static_cast<int>(i)};
     result.tangents.add(angle_between_directions(a.head<3>(), b.head<3>()), place);
     result.tangent_sides.add(on_other_sides(a, b) ? 1 : 0, place);
   }
@@ -79,7 +79,7 @@ void compare_skeletons(const Model& first, const Model& second, const SkeletonMa
     const Transform& a = first.skeleton.reference[j];
     const Transform& b =
         second.skeleton.reference[static_cast<std::size_t>(match.second_of_first[j])];
-    const Place place{.joint = static_cast<int>(j)};
+    const ValueLocation place{.joint = static_cast<int>(j)};
     JointDifference joint{place.joint, Measure(result.reference_positions.tolerance),
                           Measure(result.reference_orientations.tolerance)};
     joint.positions.add((a.position - b.position).norm(), place);

@@ -45,7 +45,7 @@ Result<MorphDifference> difference(const MorphSet& first, const MorphSet& second
   say_only_in("first", first, match.only_first, result);
   say_only_in("second", second, match.only_second, result);
   for (const auto& [i, j] : match.pairs) {
-    const Place place{.target = i};
+    const ValueLocation place{.target = i};
     add_distances(first.target_positions(i), second.target_positions(j), place, result.positions);
     if (first.normals.empty() || second.normals.empty()) continue;
     add_angles(first.target_normals(i), second.target_normals(j), place, result.normals);

@@ -64,8 +64,8 @@ bool has_normal_texture(const SceneMesh& mesh);
 
 // Says that only one has tangents: a difference where normal textures of both would show them
 // (`shown`), else a note.
-void tell_of_tangents(SceneComparison& comparison, const std::string& before, bool first_has,
-                      bool shown);
+void report_tangents(SceneComparison& comparison, const std::string& before, bool first_has,
+                     bool shown);
 
 // Fills `moments`; code compare-too-long.
 Status choose_moments(SceneComparison& comparison);

@@ -31,9 +31,9 @@ Result<SceneDifference> difference(const Scene& first, const Scene& second,
   set_tolerances(options.tolerance, comparison.result);
   match_scene_joints(comparison);
   match_scene_meshes(comparison);
-  if (Status chosen = choose_moments(comparison); !chosen) return chosen.error();
-  if (Status matched = match_surfaces(comparison, jobs); !matched) return matched.error();
-  if (Status done = compare_moments(comparison, jobs, progress); !done) return done.error();
+  if (Status status = choose_moments(comparison); !status) return status.error();
+  if (Status status = match_surfaces(comparison, jobs); !status) return status.error();
+  if (Status status = compare_moments(comparison, jobs, progress); !status) return status.error();
   return std::move(comparison.result);
 }
 

@@ -61,7 +61,7 @@ std::size_t vertices_of(const std::vector<SceneMesh>& meshes) {
   return count;
 }
 
-void tell_of_tangents_in_groups(SceneComparison& comparison) {
+void report_tangents_in_groups(SceneComparison& comparison) {
   bool has[2] = {false, false}, textured[2] = {false, false};
   const std::vector<SceneMesh>* both[2] = {&comparison.first.meshes, &comparison.second.meshes};
   for (int i = 0; i < 2; ++i) {
@@ -72,7 +72,7 @@ void tell_of_tangents_in_groups(SceneComparison& comparison) {
     }
     if (both[i]->empty()) return;
   }
-  if (has[0] != has[1]) tell_of_tangents(comparison, "", has[0], textured[0] && textured[1]);
+  if (has[0] != has[1]) report_tangents(comparison, "", has[0], textured[0] && textured[1]);
 }
 
 void group_meshes(SceneComparison& comparison, const ListMatch& match) {
@@ -87,7 +87,7 @@ void group_meshes(SceneComparison& comparison, const ListMatch& match) {
     comparison.say(
         fmt::format("only the {} has normals", have_normals(first) ? "first" : "second"));
   }
-  tell_of_tangents_in_groups(comparison);
+  report_tangents_in_groups(comparison);
   if (first.empty() != second.empty()) {
     comparison.say(fmt::format("only the {} has meshes", first.empty() ? "second" : "first"));
   } else if (first.size() != second.size() || vertices_of(first) != vertices_of(second)) {

@@ -12,7 +12,7 @@ namespace krok::compare {
 
 namespace {
 
-constexpr std::size_t kMostMoments = 1'000'000;
+constexpr std::size_t kMaxMoments = 1'000'000;
 constexpr double kRounding = 1e-4;  // seconds
 
 using Times = std::vector<std::pair<double, double>>;  // of the first, of the second
@@ -66,7 +66,7 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
     }
     return {};
   }
-  if (a.key_times.size() + b.key_times.size() + comparison.moments.size() > kMostMoments) {
+  if (a.key_times.size() + b.key_times.size() + comparison.moments.size() > kMaxMoments) {
     return Error("compare-too-long", fmt::format("{} has more than a million key times", name));
   }
   if (std::abs(a.key_times.back() - b.key_times.back()) > same ||
@@ -82,9 +82,9 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
   for (const auto& [first_time, second_time] : common_times(a.key_times, b.key_times, same)) {
     comparison.moments.push_back(
         {first_animation, second_animation, frame, first_time, second_time});
-    Place place{.animation = comparison.first.animations.size() > 1 ? first_animation : -1,
-                .frame = frame++,
-                .time = first_time};
+    ValueLocation place{.animation = comparison.first.animations.size() > 1 ? first_animation : -1,
+                        .frame = frame++,
+                        .time = first_time};
     comparison.result.times.add(std::abs(first_time - second_time), place);
   }
   const auto frames = static_cast<std::size_t>(frame);

@@ -9,7 +9,7 @@ namespace krok::compare {
 namespace {
 
 void compare_targets(SceneComparison& comparison, const SceneMesh& a, const SceneMesh& b,
-                     const std::string& name, Place place) {
+                     const std::string& name, ValueLocation place) {
   if (a.targets.size() != b.targets.size()) {
     std::string text = fmt::format("{}: {} morph targets in the first, {} in the second", name,
                                    a.targets.size(), b.targets.size());
@@ -53,7 +53,7 @@ void compare_targets(SceneComparison& comparison, const SceneMesh& a, const Scen
 }
 
 void compare_weights(SceneComparison& comparison, const SceneMesh& a, const SceneMesh& b,
-                     const std::string& name, Place place) {
+                     const std::string& name, ValueLocation place) {
   const bool first_has = a.influences.per_vertex > 0;
   const bool second_has = b.influences.per_vertex > 0;
   if (first_has && second_has) {
@@ -97,11 +97,11 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
 }  // namespace
 
 bool has_normal_texture(const SceneMesh& mesh) {
-  return mesh.material != nullptr && mesh.material->normal_texture.picture != nullptr;
+  return mesh.material != nullptr && mesh.material->normal_texture.image != nullptr;
 }
 
-void tell_of_tangents(SceneComparison& comparison, const std::string& before, bool first_has,
-                      bool shown) {
+void report_tangents(SceneComparison& comparison, const std::string& before, bool first_has,
+                     bool shown) {
   std::string text =
       fmt::format("{}only the {} has tangents", before, first_has ? "first" : "second");
   // A format that knows no materials may lack tangents, or have some that none of them uses.
@@ -116,15 +116,15 @@ void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh
   const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(first_mesh)];
   const SceneMesh& b = comparison.second.meshes[static_cast<std::size_t>(second_mesh)];
   const std::string name = label("mesh", a.name, first_mesh);
-  const Place place{.mesh = first_mesh};
+  const ValueLocation place{.mesh = first_mesh};
   if (a.only_points || b.only_points) return;
   if (std::string text = difference_in_triangles(a.triangles, b.triangles); !text.empty()) {
     comparison.say(fmt::format("{}: {}", name, text));
   }
   say_only_one_has(comparison, name, "normals", a.has_normals, b.has_normals);
   if (a.has_tangents != b.has_tangents) {
-    tell_of_tangents(comparison, name + ": ", a.has_tangents,
-                     has_normal_texture(a) && has_normal_texture(b));
+    report_tangents(comparison, name + ": ", a.has_tangents,
+                    has_normal_texture(a) && has_normal_texture(b));
   }
   say_only_one_has(comparison, name, "texture coordinates", !a.texture_coordinates.empty(),
                    !b.texture_coordinates.empty());

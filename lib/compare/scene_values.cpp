@@ -69,7 +69,7 @@ std::vector<Part> parts_of(const SceneComparison& comparison) {
 }
 
 // Adds up values in order, of vertices from `begin` on.
-void gather(std::span<const double> values, std::size_t begin, Place place, Totals& totals,
+void gather(std::span<const double> values, std::size_t begin, ValueLocation place, Totals& totals,
             Spread& spread) {
   std::size_t worst = values.size();
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -152,11 +152,11 @@ class Measuring {
     const auto& moments = comparison_.moments;
     comparison_.result.moments.reserve(moments.size());
     progress_.begin("comparing", moments.size());
-    const Status done = make_in_order(
+    const Status status = make_in_order(
         moments.size(), jobs,
         [&](std::size_t item, std::size_t slot) { return measure(moments[item], slots_[slot]); },
         [&](std::size_t item, std::size_t slot) { return take(moments[item], slots_[slot]); });
-    if (!done) return done;
+    if (!status) return status;
     progress_.end();
     finish();
     return {};
@@ -166,12 +166,12 @@ class Measuring {
   std::vector<std::vector<float>> no_vertices() const;
   Status measure(const Moment& moment, Slot& slot) const;
   PartTotals no_totals() const;
-  void measure_part(std::size_t index, Place place, Slot& slot) const;
+  void measure_part(std::size_t index, ValueLocation place, Slot& slot) const;
   Status take(const Moment& moment, Slot& slot);
   MomentDifference take_parts(const Slot& slot);
-  void take_joints(Place place, const Slot& slot, MomentDifference& moment);
+  void take_joints(ValueLocation place, const Slot& slot, MomentDifference& moment);
   void finish();
-  Place place_of(const Moment& moment) const {
+  ValueLocation place_of(const Moment& moment) const {
     return {.animation = comparison_.first.animations.size() > 1 ? moment.first_animation : -1,
             .frame = moment.frame,
             .time = moment.first_time};
@@ -222,7 +222,7 @@ PartTotals Measuring::no_totals() const {
   return totals;
 }
 
-void Measuring::measure_part(std::size_t index, Place place, Slot& slot) const {
+void Measuring::measure_part(std::size_t index, ValueLocation place, Slot& slot) const {
   const Part& part = parts_[index];
   place.mesh = part.mesh;
   place.in_second = part.in_second;
@@ -309,7 +309,7 @@ MomentDifference Measuring::take_parts(const Slot& slot) {
   return found;
 }
 
-void Measuring::take_joints(Place place, const Slot& slot, MomentDifference& moment) {
+void Measuring::take_joints(ValueLocation place, const Slot& slot, MomentDifference& moment) {
   SceneDifference& result = comparison_.result;
   Totals positions(result.joint_positions.tolerance);
   Totals orientations(result.joint_orientations.tolerance);
@@ -358,7 +358,7 @@ void Measuring::finish() {
 
 Status compare_moments(SceneComparison& comparison, int jobs, Progress& progress) {
   Measuring measuring(comparison, jobs, progress);
-  if (Status done = measuring.run(jobs); !done) return done;
+  if (Status status = measuring.run(jobs); !status) return status;
   comparison.result.compared_times = static_cast<int>(comparison.moments.size());
   return {};
 }

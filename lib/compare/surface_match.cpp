@@ -17,10 +17,10 @@ namespace krok::compare {
 
 namespace {
 
-constexpr std::size_t kMostProbes = 5;    // moments at which touching surfaces are told apart
-constexpr std::size_t kMostTried = 1024;  // points that touch, so that time stays in bounds
-constexpr double kNoShare = 1e-9;         // less of a corner is rounding
-constexpr double kSameAngle = 1e-4;       // radians; normals that float noise alone tells apart
+constexpr std::size_t kMaxProbes = 5;    // moments at which touching surfaces are told apart
+constexpr std::size_t kMaxTried = 1024;  // points that touch, so that time stays in bounds
+constexpr double kNoShare = 1e-9;        // less of a corner is rounding
+constexpr double kSameAngle = 1e-4;      // radians; normals that float noise alone tells apart
 
 std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> meshes) {
   std::vector<Facet> facets;
@@ -137,7 +137,7 @@ bool finite(const SceneState& state) {
 
 std::vector<std::size_t> probes_of(std::size_t moments) {
   std::vector<std::size_t> probes;
-  const std::size_t count = std::min(moments, kMostProbes);
+  const std::size_t count = std::min(moments, kMaxProbes);
   for (std::size_t i = 0; i < count; ++i) {
     probes.push_back(count == 1 ? 0 : i * (moments - 1) / (count - 1));
   }
@@ -169,7 +169,7 @@ std::vector<SurfacePoint> distinct_points(const FacetTree& tree, const Vec3& pla
     return std::tie(a.mesh, a.corners) < std::tie(b.mesh, b.corners);
   });
   points.erase(std::unique(points.begin(), points.end(), same_corners), points.end());
-  points.resize(std::min(points.size(), kMostTried));
+  points.resize(std::min(points.size(), kMaxTried));
   return points;
 }
 
@@ -210,7 +210,7 @@ SurfaceMatch match_surface(const SurfaceMoments& own, int mesh, const SurfaceMom
 }
 
 // A mesh is compared in what all of its nearest points have.
-void tell_of_tangents_left_out(SceneComparison& comparison) {
+void report_tangents_left_out(SceneComparison& comparison) {
   for (const SurfaceMatch& match : comparison.surfaces) {
     const auto& own = match.in_second ? comparison.second.meshes : comparison.first.meshes;
     const auto& other = match.in_second ? comparison.first.meshes : comparison.second.meshes;
@@ -268,7 +268,7 @@ Status match_surfaces(SceneComparison& comparison, int jobs) {
       comparison.surfaces.back().in_second = true;
     }
   }
-  tell_of_tangents_left_out(comparison);
+  report_tangents_left_out(comparison);
   return {};
 }
 

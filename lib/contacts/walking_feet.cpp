@@ -4,7 +4,7 @@
 
 #include "contacts/series_internal.h"
 #include "contacts/walking_feet_internal.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 
 namespace krok::contacts {
 
@@ -103,7 +103,7 @@ void WalkingFeet::take_directions() {
   for (int f = 0; f < clip_.frame_count(); ++f) {
     const Vec3& v = slow[static_cast<std::size_t>(f)];
     const double speed = level_norm(v);
-    const double heading = ground_place(clip_, carrier_, f).heading;
+    const double heading = ground_frame(clip_, carrier_, f).heading;
     const Vec3 facing(std::sin(heading), 0, std::cos(heading));
     const bool travels = speed > kTravelSpeed * leg_ / kUsualLeg;
     directions_.push_back(travels ? Vec3(v.x() / speed, 0, v.z() / speed) : facing);

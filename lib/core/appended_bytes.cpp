@@ -12,7 +12,7 @@ namespace {
 // Whole stretches of a file, which the system keeps in large pieces at half the cost of others.
 constexpr std::uint64_t kFlushedBytes = std::uint64_t{1} << 18;
 constexpr std::uint64_t kWorthStoring = std::uint64_t{8} << 20;
-constexpr std::size_t kMostParts = 1024;  // that the system takes at once (IOV_MAX)
+constexpr std::size_t kMaxParts = 1024;  // that the system takes at once (IOV_MAX)
 
 }  // namespace
 
@@ -56,7 +56,7 @@ void AppendedBytes::plan(std::span<const std::byte> bytes) {
 int AppendedBytes::carry_out() {
   std::span<iovec> left = planned_;
   while (!left.empty()) {
-    const auto at_once = static_cast<int>(std::min(left.size(), kMostParts));
+    const auto at_once = static_cast<int>(std::min(left.size(), kMaxParts));
     const ssize_t count = ::writev(descriptor_, left.data(), at_once);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {

@@ -77,7 +77,7 @@ void send(std::span<const std::byte> bytes) {
   _exit(0);  // without what runs at the end of a program: buffers, leak checks
 }
 
-[[noreturn]] void finish_for_want_of_memory() {
+[[noreturn]] void report_out_of_memory() {
   finish(ChildEnd::out_of_memory, {});
 }
 
@@ -141,14 +141,14 @@ void close_descriptors() {
   set_limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(std::max(limits.seconds, 1.0))));
   set_limit(RLIMIT_FSIZE, 0);
   if (!kSanitized) set_limit(RLIMIT_NOFILE, 0);  // nothing more can be opened
-  std::set_new_handler(finish_for_want_of_memory);
+  std::set_new_handler(report_out_of_memory);
   const auto text = [](const char* what) {
     return std::as_bytes(std::span(what, std::min<std::size_t>(std::strlen(what), 4096)));
   };
   try {
     finish(ChildEnd::returned, work());
   } catch (const std::bad_alloc&) {
-    finish_for_want_of_memory();
+    report_out_of_memory();
   } catch (const std::exception& exception) {
     finish(ChildEnd::threw, text(exception.what()));
   } catch (...) {
@@ -207,8 +207,8 @@ ChildReport receive_report(int descriptor, const ChildLimits& limits, Clock::tim
                       header.end == static_cast<std::uint32_t>(ChildEnd::threw) ||
                       header.end == static_cast<std::uint32_t>(ChildEnd::out_of_memory));
   if (!known) return report_of(ChildEnd::crashed);
-  constexpr std::uint64_t kMostText = 4096;
-  const std::uint64_t most = end == ChildEnd::returned ? limits.result_bytes : kMostText;
+  constexpr std::uint64_t kMaxText = 4096;
+  const std::uint64_t most = end == ChildEnd::returned ? limits.result_bytes : kMaxText;
   if (header.size > most) return report_of(ChildEnd::result_too_large);
   bytes.clear();
   arrival = receive(descriptor, header.size, deadline, bytes);
@@ -289,8 +289,8 @@ ChildReport run_in_child(const std::function<std::vector<std::byte>()>& work,
     report.what = std::strerror(why);
     return report;
   };
-  constexpr double kMostSeconds = 1e6;
-  const double seconds = std::clamp(limits.seconds, 0.0, kMostSeconds);
+  constexpr double kMaxSeconds = 1e6;
+  const double seconds = std::clamp(limits.seconds, 0.0, kMaxSeconds);
   Pipe pipe;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return not_started(errno);

@@ -171,7 +171,7 @@ Threads* kept_threads() {
 }
 
 // The threads are not there in a child, and what they share may be in any state.
-const int told_of_forks =
+const int forks_reported =
     pthread_atfork(nullptr, nullptr, [] { of_parent = kept.exchange(nullptr); });
 
 struct ProgramEnd {

@@ -53,7 +53,7 @@ Error exists_error(const std::string& path) {
 
 // How many files without a name wait for their place. Each takes a descriptor, of which a program
 // may have few; further ones get a name to wait under.
-constexpr int kMostKeptOpen = 16;
+constexpr int kMaxKeptOpen = 16;
 std::atomic<int> kept_open{0};
 
 std::string folder_of(const std::string& path) {
@@ -137,17 +137,17 @@ struct OutputFile::State {
   Status seal() {
     if (!failure) return failure;
     if (sealed) return {};
-    if (Status flushed = written(bytes.flush()); !flushed) return flushed;
+    if (Status status = written(bytes.flush()); !status) return status;
     bytes.end();
     if (!direct()) {
-      if (Status stored = store(); !stored) return stored;
+      if (Status status = store(); !status) return status;
     }
     sealed = true;
     if (unnamed) {
-      is_kept_open = ++kept_open <= kMostKeptOpen;
+      is_kept_open = ++kept_open <= kMaxKeptOpen;
       if (is_kept_open) return {};
       --kept_open;
-      if (Status named = give_temporary_name(); !named) return named;
+      if (Status status = give_temporary_name(); !status) return status;
     }
     const int closing = std::exchange(descriptor, -1);
     if (closing > STDERR_FILENO && ::close(closing) != 0) return written(errno);
@@ -168,7 +168,7 @@ struct OutputFile::State {
       }
       if (trouble != EEXIST || no_clobber) return cannot_be_placed(trouble);
       // Something has come there since.
-      if (Status named = give_temporary_name(); !named) return named;
+      if (Status status = give_temporary_name(); !status) return status;
       close();
     }
     bool is_new = no_clobber;
@@ -299,7 +299,7 @@ Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> by
   if (state_->direct()) {
     return file_error("file-unwritable", state_->path, "is a stream and cannot be rewritten");
   }
-  if (Status done = state_->written(state_->bytes.flush()); !done) return done;
+  if (Status status = state_->written(state_->bytes.flush()); !status) return status;
   while (!bytes.empty()) {
     const ssize_t count =
         pwrite(state_->descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
@@ -331,10 +331,10 @@ Status OutputFile::place_all(std::span<OutputFile> files) {
     return failure;
   };
   for (OutputFile& file : files) {
-    if (const Status sealed = file.seal(); !sealed) return give_up(sealed);
+    if (const Status status = file.seal(); !status) return give_up(status);
   }
   for (OutputFile& file : files) {
-    if (const Status placed = file.state_->place(files.size() > 1); !placed) return give_up(placed);
+    if (const Status status = file.state_->place(files.size() > 1); !status) return give_up(status);
   }
   // What was replaced goes.
   for (OutputFile& file : files) file.state_->discard();
@@ -349,7 +349,7 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes,
                   OutputFile::Options options) {
   auto file = OutputFile::create(path, options);
   if (!file) return file.error();
-  if (Status written = file->write(bytes); !written) return written;
+  if (Status status = file->write(bytes); !status) return status;
   return file->commit();
 }
 

@@ -108,10 +108,10 @@ std::string to_utf8(std::string_view text) {
 }
 
 std::string shown(std::string_view text) {
-  constexpr std::size_t kMost = 40;
-  std::size_t length = std::min(text.size(), kMost);
+  constexpr std::size_t kMax = 40;
+  std::size_t length = std::min(text.size(), kMax);
   // Not in the middle of a character.
-  while (length < text.size() && length > kMost - 4 &&
+  while (length < text.size() && length > kMax - 4 &&
          (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) {
     --length;
   }

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "draw/chart_style_internal.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 
 namespace krok::draw {
 

@@ -13,8 +13,8 @@ namespace {
 
 // The sine of 15 degrees: of a thigh closer to the line from hip to hip the direction in the
 // sagittal plane is chance.
-constexpr double kLeastInPlane = 0.2588;
-constexpr double kMostExtended = -120;  // degrees: no hip is, so flexion is counted up from there
+constexpr double kMinInPlane = 0.2588;
+constexpr double kMaxExtended = -120;  // degrees: no hip is, so flexion is counted up from there
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double degrees(double radians) {
@@ -95,9 +95,9 @@ std::vector<double> hip_flexion(const Clip& clip, const Trunk& trunk, const Limb
     const Vec3 up = (upright - left * left.dot(upright)).stableNormalized();
     const Vec3 thigh = position(clip, f, limbs.lower_leg) - position(clip, f, limbs.upper_leg);
     const double forward = left.cross(up).dot(thigh), down = -up.dot(thigh);
-    const bool sideways = !(std::hypot(forward, down) > kLeastInPlane * thigh.norm());
+    const bool sideways = !(std::hypot(forward, down) > kMinInPlane * thigh.norm());
     const double angle = degrees(std::atan2(forward, down));
-    angles.push_back(sideways ? kNone : angle < kMostExtended ? angle + 360 : angle);
+    angles.push_back(sideways ? kNone : angle < kMaxExtended ? angle + 360 : angle);
   }
   return angles;
 }

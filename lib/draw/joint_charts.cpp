@@ -151,7 +151,7 @@ std::vector<Panel> turn_panels(std::span<const ChartedMotion> motions,
 }
 
 std::vector<std::string> most_turning_joints(const ChartedMotion& motion, int count) {
-  constexpr double kLeast = 0.5;  // degrees
+  constexpr double kMin = 0.5;  // degrees
   const Skeleton& skeleton = motion.clip->skeleton;
   std::vector<std::pair<double, int>> turns;
   for (int j = 0; j < skeleton.joint_count(); ++j) {
@@ -159,7 +159,7 @@ std::vector<std::string> most_turning_joints(const ChartedMotion& motion, int co
     const auto angles = turn_angle(*motion.clip, j, motion.frames);
     if (angles.empty()) continue;
     const auto [low, high] = std::minmax_element(angles.begin(), angles.end());
-    if (*high - *low >= kLeast) turns.emplace_back(*high - *low, j);
+    if (*high - *low >= kMin) turns.emplace_back(*high - *low, j);
   }
   const auto kept = std::min(turns.size(), static_cast<std::size_t>(std::max(count, 0)));
   std::stable_sort(turns.begin(), turns.end(),

@@ -25,7 +25,7 @@ class LookPacker {
     Json look;
     look["parts"] = std::move(parts);
     look["materials"] = std::move(materials_);
-    look["pictures"] = std::move(pictures_);
+    look["pictures"] = std::move(images_);
     if (!body_.texture_coordinates.empty()) {
       look["coordinates"] = blob_.add(std::span(body_.texture_coordinates.front().data(),
                                                 body_.texture_coordinates.size() * 2));
@@ -75,13 +75,13 @@ class LookPacker {
 
   Result<Json> to_json(const Texture& texture) {
     static constexpr std::array<const char*, 3> kWraps = {"repeat", "clamp", "mirror"};
-    const auto [at, added] = picture_places_.try_emplace(texture.picture.get(), pictures_.size());
+    const auto [at, added] = image_places_.try_emplace(texture.image.get(), images_.size());
     if (added) {
-      const auto facts = picture_facts(texture.picture->bytes);
+      const auto facts = image_info(texture.image->bytes);
       if (!facts) return facts.error();
-      Json picture = blob_.add(std::span(texture.picture->bytes));
-      picture["type"] = media_type(facts->kind);
-      pictures_.push_back(std::move(picture));
+      Json image = blob_.add(std::span(texture.image->bytes));
+      image["type"] = media_type(facts->kind);
+      images_.push_back(std::move(image));
     }
     return Json{{"picture", at->second},
                 {"wrapU", kWraps[static_cast<std::size_t>(texture.wrap_u)]},
@@ -98,9 +98,9 @@ class LookPacker {
 
   const Model& body_;
   Blob& blob_;
-  Json materials_ = Json::array(), pictures_ = Json::array();
+  Json materials_ = Json::array(), images_ = Json::array();
   std::map<std::string, std::size_t> places_;
-  std::map<const Picture*, std::size_t> picture_places_;
+  std::map<const EncodedImage*, std::size_t> image_places_;
 };
 
 }  // namespace

@@ -5,14 +5,14 @@
 
 #include "core/numbers.h"
 #include "draw/chart_style_internal.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 
 namespace krok::draw {
 
 namespace {
 
-constexpr int kMostDots = 15;
-constexpr double kLeastExtent = 0.5;  // metres, so that standing still looks like it
+constexpr int kMaxDots = 15;
+constexpr double kMinExtent = 0.5;  // metres, so that standing still looks like it
 
 Vec3 carrier_position(const ChartedMotion& motion, int frame) {
   const auto carrier = static_cast<std::size_t>(carrying_joint(*motion.roles));
@@ -27,7 +27,7 @@ double dot_step(std::span<const ChartedMotion> motions) {
   }
   for (double power = 0.1; power < 1e9; power *= 10) {
     for (const double factor : {1.0, 2.0, 5.0}) {
-      if (longest <= kMostDots * factor * power) return factor * power;
+      if (longest <= kMaxDots * factor * power) return factor * power;
     }
   }
   return 1e9;
@@ -96,7 +96,7 @@ void set_limits(Panel& panel) {
       }
     }
     if (!(low <= high)) return;
-    const double half = std::max((high - low) * 0.54, kLeastExtent / 2);
+    const double half = std::max((high - low) * 0.54, kMinExtent / 2);
     axis.low = (low + high) / 2 - half;
     axis.high = (low + high) / 2 + half;
   };

@@ -30,18 +30,18 @@ constexpr const char* kStyle =
     ".name{paint-order:stroke;stroke:#fff;stroke-width:3px}"
     ".moment{stroke:#555;stroke-width:1;stroke-dasharray:3 3}</style>\n";
 
-Status check_figure(const Figure& figure) {
-  if (figure.panels.empty()) return Error("plot-empty", "a figure needs a panel");
+Status check_chart(const Chart& chart) {
+  if (chart.panels.empty()) return Error("plot-empty", "a figure needs a panel");
   const auto is_length = [](double length) { return length >= 1 && length <= 1e5; };
-  if (!is_length(figure.panel_width) || !is_length(figure.panel_height)) {
+  if (!is_length(chart.panel_width) || !is_length(chart.panel_height)) {
     return Error("plot-size", "a panel is 1 to 100,000 pixels wide and high");
   }
-  for (const Panel& panel : figure.panels) {
+  for (const Panel& panel : chart.panels) {
     for (const Axis* axis : {&panel.x, &panel.y}) {
-      if (Status good = check_axis(*axis); !good) return good;
+      if (Status status = check_axis(*axis); !status) return status;
     }
     if (panel.field) {
-      if (Status good = check_field(*panel.field); !good) return good;
+      if (Status status = check_field(*panel.field); !status) return status;
     }
     for (const Series& series : panel.series) {
       if (series.x.size() != series.y.size()) {
@@ -54,26 +54,26 @@ Status check_figure(const Figure& figure) {
 }
 
 // The panels row by row, from `y` downwards; returns where they end.
-double write_panels(const Figure& figure, int columns, double y, std::string& body) {
-  const double cell_width = kLeft + figure.panel_width + kRight;
-  for (std::size_t first = 0; first < figure.panels.size();) {
+double write_panels(const Chart& chart, int columns, double y, std::string& body) {
+  const double cell_width = kLeft + chart.panel_width + kRight;
+  for (std::size_t first = 0; first < chart.panels.size();) {
     double legend_room = 0;
     const std::size_t end =
-        std::min(figure.panels.size(), first + static_cast<std::size_t>(columns));
+        std::min(chart.panels.size(), first + static_cast<std::size_t>(columns));
     for (std::size_t i = first; i < end; ++i) {
-      legend_room = std::max(legend_room, write_legend(legend_of(figure.panels[i]), 0, 0,
-                                                       figure.panel_width, nullptr));
+      legend_room = std::max(
+          legend_room, write_legend(legend_of(chart.panels[i]), 0, 0, chart.panel_width, nullptr));
     }
     for (std::size_t i = first; i < end; ++i) {
       const double left = kLeft + static_cast<double>(i - first) * cell_width;
       const double top = y + kTop;
-      PanelWriter(figure.panels[i], left, top, figure.panel_width, figure.panel_height,
+      PanelWriter(chart.panels[i], left, top, chart.panel_width, chart.panel_height,
                   static_cast<int>(i), body)
           .write();
-      write_legend(legend_of(figure.panels[i]), left, top + figure.panel_height + kBottom - 6,
-                   figure.panel_width, &body);
+      write_legend(legend_of(chart.panels[i]), left, top + chart.panel_height + kBottom - 6,
+                   chart.panel_width, &body);
     }
-    y += kTop + figure.panel_height + kBottom + legend_room;
+    y += kTop + chart.panel_height + kBottom + legend_room;
     first = end;
   }
   return y;
@@ -99,23 +99,23 @@ const char* dash_pattern(int dash, std::size_t place) {
   return kDashes[which % std::size(kDashes)];
 }
 
-Result<std::string> to_svg(const Figure& figure) {
-  if (Status good = check_figure(figure); !good) return good.error();
-  const int columns = std::max(1, std::min(figure.columns, static_cast<int>(figure.panels.size())));
-  const double full_width = (kLeft + figure.panel_width + kRight) * columns;
+Result<std::string> to_svg(const Chart& chart) {
+  if (Status status = check_chart(chart); !status) return status.error();
+  const int columns = std::max(1, std::min(chart.columns, static_cast<int>(chart.panels.size())));
+  const double full_width = (kLeft + chart.panel_width + kRight) * columns;
 
   std::string body;
   double y = 0;
-  if (!figure.title.empty()) {
-    const double room = (full_width - 2 * kMargin) * kTextSize / kFigureTitleSize;
+  if (!chart.title.empty()) {
+    const double room = (full_width - 2 * kMargin) * kTextSize / kChartTitleSize;
     body += fmt::format(
         "<text class=\"title\" style=\"font-size:16px\" x=\"16\" "
         "y=\"22\">{}</text>\n",
-        to_markup(shortened(figure.title, room)));
+        to_markup(shortened(chart.title, room)));
     y += kTitleSize + 14;
   }
-  y += write_legend(figure.legend, kMargin, y + 2, full_width - 2 * kMargin, &body);
-  y = write_panels(figure, columns, y, body);
+  y += write_legend(chart.legend, kMargin, y + 2, full_width - 2 * kMargin, &body);
+  y = write_panels(chart, columns, y, body);
 
   const std::string width = number(full_width);
   const std::string height = number(y);
@@ -123,7 +123,7 @@ Result<std::string> to_svg(const Figure& figure) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
       "{1}\" role=\"img\">\n",
       width, height);
-  if (!figure.title.empty()) svg += fmt::format("<title>{}</title>\n", to_markup(figure.title));
+  if (!chart.title.empty()) svg += fmt::format("<title>{}</title>\n", to_markup(chart.title));
   svg += kStyle;
   svg += fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", width, height);
   svg += body;

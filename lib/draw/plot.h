@@ -80,7 +80,7 @@ struct LegendEntry {
   SeriesStyle style = SeriesStyle::line;
 };
 
-struct Figure {
+struct Chart {
   std::string title;
   std::vector<LegendEntry> legend;  // of all panels, below the title; panels may have their own
   std::vector<Panel> panels;
@@ -93,7 +93,7 @@ struct Figure {
 // and for a field whose values do not fill its grid or whose edges do not rise; plot-size for
 // panels under a pixel or over 100,000; plot-axis for limits that are not finite, not rising, or
 // not positive on a logarithmic axis.
-Result<std::string> to_svg(const Figure& figure);
+Result<std::string> to_svg(const Chart& chart);
 
 // The colours that series take in turn, as "#rrggbb".
 const std::vector<std::string>& palette();

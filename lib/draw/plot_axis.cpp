@@ -8,7 +8,7 @@ namespace krok::draw {
 
 namespace {
 
-constexpr double kLeast = 1e-250;     // values below are 0 to an axis
+constexpr double kMin = 1e-250;       // values below are 0 to an axis
 constexpr double kSameValue = 1e-12;  // relative
 
 // The smallest 1, 2 or 5 times a power of ten that is not below `value`; their inverses are of the
@@ -21,7 +21,7 @@ double round_up(double value) {
 
 void Range::add(double value, Scale scale) {
   if (!can_show(value, scale)) return;
-  if (scale == Scale::linear && std::abs(value) < kLeast) value = 0;
+  if (scale == Scale::linear && std::abs(value) < kMin) value = 0;
   low = std::min(low, value);
   high = std::max(high, value);
 }

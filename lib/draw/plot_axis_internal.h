@@ -13,8 +13,8 @@ namespace krok::draw {
 // Whether a value has a place on such an axis. Those near the end of what doubles hold have none,
 // for the length of an axis must be a number too.
 inline bool can_show(double value, Scale scale) {
-  constexpr double kMost = 1e250;
-  return std::abs(value) <= kMost && (scale == Scale::linear || value >= 1 / kMost);
+  constexpr double kMax = 1e250;
+  return std::abs(value) <= kMax && (scale == Scale::linear || value >= 1 / kMax);
 }
 
 // Where on an axis a value lies, from 0 to 1.

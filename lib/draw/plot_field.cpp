@@ -15,7 +15,7 @@ namespace krok::draw {
 
 namespace {
 
-constexpr int kMostCells = 1000;  // in a row or a column
+constexpr int kMaxCells = 1000;   // in a row or a column
 constexpr int kColourSteps = 24;  // of colour, about
 constexpr double kBarStep = 4.0;  // pixels of a bar for one colour
 constexpr double kBarHeight = 8.0;
@@ -60,8 +60,7 @@ Status check_field(const Field& field) {
   const auto rise = [](double low, double high) {
     return std::isfinite(low) && std::isfinite(high) && low < high;
   };
-  if (field.columns < 1 || field.rows < 1 || field.columns > kMostCells ||
-      field.rows > kMostCells ||
+  if (field.columns < 1 || field.rows < 1 || field.columns > kMaxCells || field.rows > kMaxCells ||
       field.values.size() !=
           static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows)) {
     return Error("plot-shape", fmt::format("a field of {} by {} has {} values", field.columns,

@@ -11,7 +11,7 @@ namespace krok::draw {
 // Lengths in CSS pixels.
 inline constexpr double kTextSize = 12.0;
 inline constexpr double kTitleSize = 14.0;  // of a panel
-inline constexpr double kFigureTitleSize = 16.0;
+inline constexpr double kChartTitleSize = 16.0;
 // A letter's width at kTextSize in the wider of common sans-serif faces.
 inline constexpr double kCharacter = 7.2;
 inline constexpr double kTick = 4.0;

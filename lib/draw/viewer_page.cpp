@@ -35,13 +35,13 @@ struct Parts {
 
 Status add_motion(const ViewedMotion& viewed, Parts& parts) {
   const Clip& clip = *viewed.clip;
-  if (Status good = check(clip); !good) return good;
+  if (Status status = check(clip); !status) return status;
   Json item = parts.start("motion", viewed.name, viewed.facts);
   item["visible"] = viewed.visible;
   Blob blob;
   pack_motion(clip, item, blob);
   if (viewed.body != nullptr) {
-    if (Status good = check(*viewed.body); !good) return good;
+    if (Status status = check(*viewed.body); !status) return status;
     const std::string difference = difference_in_structure(clip.skeleton, viewed.body->skeleton);
     if (!difference.empty()) {
       return Error("viewer-body",
@@ -49,14 +49,14 @@ Status add_motion(const ViewedMotion& viewed, Parts& parts) {
     }
     Json body = pack_body(*viewed.body, blob);
     if (!viewed.materials.empty()) {
-      if (Status good = check(viewed.materials); !good) return good;
+      if (Status status = check(viewed.materials); !status) return status;
       auto look = pack_look(*viewed.body, viewed.materials, blob);
       if (!look) return look.error();
       body["look"] = std::move(*look);
     }
     item["body"] = std::move(body);
   }
-  if (Status good = check(viewed.keys, clip.skeleton, clip.duration()); !good) return good;
+  if (Status status = check(viewed.keys, clip.skeleton, clip.duration()); !status) return status;
   Json contacts = Json::array();
   for (const Contact& contact : viewed.keys.contacts) {
     contacts.push_back({{"joint", contact.joint}, {"start", contact.start}, {"end", contact.end}});
@@ -90,7 +90,7 @@ std::string script_safe(std::string text) {
 Result<std::string> write_viewer_page(const ViewerPage& page) {
   Parts parts;
   for (const ViewedMotion& motion : page.motions) {
-    if (Status added = add_motion(motion, parts); !added) return added.error();
+    if (Status status = add_motion(motion, parts); !status) return status.error();
   }
   for (const ViewedGlb& file : page.files) {
     Json item = parts.start("gltf", file.name, file.facts);
@@ -100,7 +100,7 @@ Result<std::string> write_viewer_page(const ViewerPage& page) {
     parts.finish(std::move(item), to_base64(file.bytes));
   }
   for (const ViewedCamera& viewed : page.cameras) {
-    if (Status good = check(*viewed.camera); !good) return good.error();
+    if (Status status = check(*viewed.camera); !status) return status.error();
     Json item = parts.start("camera", viewed.name, viewed.facts);
     Blob blob;
     pack_camera(*viewed.camera, item, blob);

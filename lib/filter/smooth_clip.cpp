@@ -20,7 +20,7 @@ Result<SeriesFilter> series_filter(const Butterworth& filter, double rate) {
 }
 
 Result<SeriesFilter> series_filter(const SavitzkyGolay& filter, double) {
-  if (Status checked = check(filter); !checked) return checked.error();
+  if (Status status = check(filter); !status) return status.error();
   return SeriesFilter([smoother = PolynomialSmoother(filter)](std::span<double> series) {
     smoother.smooth(series);
   });

@@ -4,16 +4,16 @@
 #include "fit/error_field_internal.h"
 #include "fit/held_out_internal.h"
 #include "fit/low_weights_internal.h"
-#include "rbf/weight_figures.h"
+#include "rbf/weight_metrics.h"
 
 namespace krok::fit::detail {
 
 namespace {
 
 constexpr int kHeldOutPerParameter = 256;  // for each parameter
-constexpr int kMostPoints = 1024;
+constexpr int kMaxPoints = 1024;
 constexpr int kOutsidePoints = 256;
-constexpr int kFigurePoints = 128;  // for the range and roughness of weights
+constexpr int kActorPoints = 128;  // for the range and roughness of weights
 
 }  // namespace
 
@@ -29,14 +29,14 @@ HeldOut::HeldOut(const rbf::WeightFunction& function, const rbf::Measure& measur
       within_(places_within(function,
                             options.held_out > 0
                                 ? options.held_out
-                                : std::min(kHeldOutPerParameter * function.dimensions, kMostPoints),
+                                : std::min(kHeldOutPerParameter * function.dimensions, kMaxPoints),
                             seed_for(options.seed, Use::held_out), options.inside)),
       outside_(places_around(function, kOutsidePoints, seed_for(options.seed, Use::outside),
                              options.inside)) {}
 
-RefineFigures HeldOut::errors(const rbf::WeightFunction& function,
+RefineMetrics HeldOut::errors(const rbf::WeightFunction& function,
                               const rbf::WeightEvaluator& evaluator, Error* failure) const {
-  RefineFigures result;
+  RefineMetrics result;
   const ErrorField field(function, evaluator, measure_, options_.inside, options_.jobs);
   const std::vector<double> within = field.at(within_, failure);
   result.within = field.by_parameter(within);
@@ -56,15 +56,15 @@ double HeldOut::lowest(const rbf::WeightFunction& function,
 }
 
 void HeldOut::add_rest(const rbf::WeightSolver& solver, const rbf::WeightEvaluator& evaluator,
-                       RefineFigures& figures) const {
+                       RefineMetrics& metrics) const {
   const ErrorField field(solver.function(), evaluator, measure_, options_.inside, options_.jobs);
-  figures.outside = field.by_parameter(field.at(outside_));
-  if (const auto weights = rbf::weight_figures(solver.function(), kFigurePoints, options_.inside)) {
-    figures.least_weight = weights->least;
-    figures.largest_weight = weights->largest;
-    figures.roughness = weights->roughness;
+  metrics.outside = field.by_parameter(field.at(outside_));
+  if (const auto weights = rbf::weight_metrics(solver.function(), kActorPoints, options_.inside)) {
+    metrics.least_weight = weights->least;
+    metrics.largest_weight = weights->largest;
+    metrics.roughness = weights->roughness;
   }
-  figures.condition = solver.condition();
+  metrics.condition = solver.condition();
 }
 
 }  // namespace krok::fit::detail

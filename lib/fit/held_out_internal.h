@@ -24,13 +24,13 @@ class HeldOut {
 
   // Of the figures the errors within, which decide. The first failure in `failure`, if it is not
   // null.
-  RefineFigures errors(const rbf::WeightFunction& function, const rbf::WeightEvaluator& evaluator,
+  RefineMetrics errors(const rbf::WeightFunction& function, const rbf::WeightEvaluator& evaluator,
                        Error* failure = nullptr) const;
   // Of all weights.
   double lowest(const rbf::WeightFunction& function, const rbf::WeightEvaluator& evaluator) const;
   // The figures that are only told.
   void add_rest(const rbf::WeightSolver& solver, const rbf::WeightEvaluator& evaluator,
-                RefineFigures& figures) const;
+                RefineMetrics& metrics) const;
 
  private:
   const rbf::Measure& measure_;

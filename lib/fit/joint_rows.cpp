@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kRowGrain = 16;      // points, or rows, that a thread takes at once
 constexpr std::size_t kPointsAtOnce = 64;  // whose weights fit into the fastest memory
-constexpr double kLeastGain = 1e-4;        // of the cost in one iteration, or it ends
+constexpr double kMinGain = 1e-4;          // of the cost in one iteration, or it ends
 constexpr int kMemory = 20;                // gradients that the direction is made of
 constexpr double kNothing = 1e-24;         // cost at the start that is none
 
@@ -118,7 +118,7 @@ std::vector<double> joint_changes(const JointRows& problem, const JointTerms& te
   solving.max_lbfgs_rank = kMemory;
   solving.use_approximate_eigenvalue_bfgs_scaling = true;
   solving.max_num_iterations = terms.iterations;
-  solving.function_tolerance = kLeastGain;
+  solving.function_tolerance = kMinGain;
   solving.logging_type = ceres::SILENT;
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(solving, gradient_problem, changes.data(), &summary);

@@ -34,7 +34,7 @@ double lowest_weight(const rbf::WeightFunction& function, const rbf::WeightEvalu
 std::vector<std::vector<double>> low_places(const rbf::WeightFunction& function,
                                             const rbf::WeightEvaluator& evaluator,
                                             std::span<const double> places,
-                                            const std::vector<ErrorPlace>& avoided,
+                                            const std::vector<ErrorPoint>& avoided,
                                             std::size_t wanted, double limit, double usual) {
   const auto d = static_cast<std::size_t>(function.dimensions);
   const std::vector<double> lowest = lowest_at(function, evaluator, places);
@@ -42,7 +42,7 @@ std::vector<std::vector<double>> low_places(const rbf::WeightFunction& function,
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t p) { return lowest[p]; });
   std::vector<std::vector<double>> found;
-  std::vector<ErrorPlace> taken;
+  std::vector<ErrorPoint> taken;
   for (const std::size_t p : order) {
     if (found.size() == wanted || !(lowest[p] < limit)) break;
     const auto place = places.subspan(p * d, d);

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "fit/worst_places_internal.h"
+#include "fit/worst_points_internal.h"
 #include "rbf/weight_evaluator.h"
 
 namespace krok::fit::detail {
@@ -17,7 +17,7 @@ double lowest_weight(const rbf::WeightFunction& function, const rbf::WeightEvalu
 std::vector<std::vector<double>> low_places(const rbf::WeightFunction& function,
                                             const rbf::WeightEvaluator& evaluator,
                                             std::span<const double> places,
-                                            const std::vector<ErrorPlace>& avoided,
+                                            const std::vector<ErrorPoint>& avoided,
                                             std::size_t wanted, double limit, double usual);
 
 }  // namespace krok::fit::detail

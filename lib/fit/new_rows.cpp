@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "fit/blend_weights_internal.h"
-#include "fit/worst_places_internal.h"
+#include "fit/worst_points_internal.h"
 
 namespace krok::fit::detail {
 

@@ -23,22 +23,22 @@ using rbf::WeightSolver;
 // Points for each row and at least, that the rows are fitted to: with fewer, errors between them
 // grow.
 constexpr int kPointsPerRow = 16;
-constexpr int kLeastPoints = 1024;
-constexpr int kMostPoints = 4096;
+constexpr int kMinPoints = 1024;
+constexpr int kMaxPoints = 4096;
 // For each parameter but the first, points are drawn from a range that is larger by so much on each
 // side, and brought back: errors are largest at the edge, of which there is more with each.
 constexpr double kEdge = 0.015;
-constexpr std::uint32_t kMostTries = 1000;  // for each point that is inside
+constexpr std::uint32_t kMaxTries = 1000;  // for each point that is inside
 constexpr detail::JointTerms kTerms = {.stay = 0.003, .positive = 0.1, .low = 0, .iterations = 100};
 constexpr double kParts[] = {1, 0.5, 0.25};  // of the way
-constexpr double kMostRoughness = 1.1;       // of the unrefined
+constexpr double kMaxRoughness = 1.1;        // of the unrefined
 constexpr std::size_t kPolishGrain = 8;
 
 // Weight functions, and how good they are.
 struct Candidate {
   WeightSolver solver;
   WeightEvaluator evaluator;
-  RefineFigures figures;
+  RefineMetrics metrics;
   double lowest = 0;  // weight at the points held out
 };
 
@@ -76,21 +76,20 @@ Result<Candidate> Polisher::candidate(const std::vector<double>& rows) const {
   auto evaluator = WeightEvaluator::create(solver->function());
   if (!evaluator) return evaluator.error();
   Candidate made{*std::move(solver), *std::move(evaluator), {}, 0};
-  made.figures = held_out_.errors(made.solver.function(), made.evaluator);
+  made.metrics = held_out_.errors(made.solver.function(), made.evaluator);
   made.lowest = held_out_.lowest(made.solver.function(), made.evaluator);
-  held_out_.add_rest(made.solver, made.evaluator, made.figures);
+  held_out_.add_rest(made.solver, made.evaluator, made.metrics);
   return made;
 }
 
 std::vector<double> Polisher::training_points() const {
-  const int wanted =
-      std::clamp(kPointsPerRow * start_.function.inserted(), kLeastPoints, kMostPoints);
+  const int wanted = std::clamp(kPointsPerRow * start_.function.inserted(), kMinPoints, kMaxPoints);
   const rbf::Sobol sobol(start_.function.dimensions,
                          detail::seed_for(options_.seed, detail::Use::polish));
   const auto most = static_cast<std::size_t>(wanted) * d_;
   const double edge = kEdge * static_cast<double>(d_ - 1);
   std::vector<double> points, place(d_), point(d_);
-  for (std::uint32_t p = 0; points.size() < most && p / kMostTries < most / d_; ++p) {
+  for (std::uint32_t p = 0; points.size() < most && p / kMaxTries < most / d_; ++p) {
     sobol.point(p, place);
     for (double& value : place) value = std::clamp(value * (1 + 2 * edge) - edge, 0.0, 1.0);
     detail::unscale(start_.function, place, point);
@@ -120,14 +119,14 @@ detail::JointRows Polisher::about(const Candidate& found) const {
       const auto slopes = std::span(rows.slopes).subspan(p * d_ * n_, d_ * n_);
       found.solver.influences(point, std::span(rows.influences).subspan(p * rows.rows, rows.rows));
       found.evaluator.weights(point, weights);
-      const Status measured = measure_(weights, errors, slopes);
+      const Status status = measure_(weights, errors, slopes);
       for (std::size_t a = 0; a < d_; ++a) {
         const double scale = found.evaluator.inverse_ranges()[a];
         errors[a] = (errors[a] - point[a]) * scale;
         for (double& slope : slopes.subspan(a * n_, n_)) slope *= scale;
       }
       const auto finite = [](double value) { return std::isfinite(value); };
-      if (measured.ok() && std::ranges::all_of(errors, finite) &&
+      if (status.ok() && std::ranges::all_of(errors, finite) &&
           std::ranges::all_of(slopes, finite)) {
         continue;
       }
@@ -146,7 +145,7 @@ bool Polisher::rows_stay_within(const std::vector<double>& rows) const {
 }
 
 bool Polisher::is_better(const Candidate& polished, const Candidate& found) const {
-  const RefineFigures &now = polished.figures, &was = found.figures;
+  const RefineMetrics &now = polished.metrics, &was = found.metrics;
   if (!(now.mean_square < was.mean_square) || now.largest > was.largest ||
       now.failed > was.failed) {
     return false;
@@ -157,7 +156,7 @@ bool Polisher::is_better(const Candidate& polished, const Candidate& found) cons
   }
   return std::min(polished.lowest, now.least_weight) >=
              std::min({options_.lowest, found.lowest, was.least_weight}) &&
-         now.roughness <= std::max(kMostRoughness * start_.before.roughness, was.roughness);
+         now.roughness <= std::max(kMaxRoughness * start_.before.roughness, was.roughness);
 }
 
 Result<Refined> Polisher::run() const {
@@ -176,7 +175,7 @@ Result<Refined> Polisher::run() const {
     const auto polished = candidate(rows);
     if (!polished || !is_better(*polished, *found)) continue;
     result.function = polished->solver.function();
-    result.polished = Polished{found_rows, polished->figures};
+    result.polished = Polished{found_rows, polished->metrics};
     break;
   }
   return result;
@@ -200,8 +199,8 @@ Result<Refined> polish(const Refined& start, const rbf::Measure& measure,
   const Refined found = detail::without_polish(start);
   if (Status status = found.function.check(); !status) return status.error();
   const int inserted = found.function.inserted();
-  if (inserted == 0 || inserted > kMostPolished ||
-      found.function.inserted_rows.size() > kMostPolishedWeights) {
+  if (inserted == 0 || inserted > kMaxPolished ||
+      found.function.inserted_rows.size() > kMaxPolishedWeights) {
     return start;
   }
   return Polisher(found, measure, options).run();

@@ -19,8 +19,8 @@ namespace krok::fit {
 
 // Over so many inserted points, or weights of them all, nothing is polished: it takes time with the
 // square of the points, and what was found is kept besides.
-inline constexpr int kMostPolished = 1024;
-inline constexpr std::size_t kMostPolishedWeights = 1 << 19;
+inline constexpr int kMaxPolished = 1024;
+inline constexpr std::size_t kMaxPolishedWeights = 1 << 19;
 
 // Moves the rows of a refinement's inserted points, the whole way or a half or a quarter of it:
 // the first that, at the points held out, makes the mean square of the error smaller, the largest

@@ -15,7 +15,7 @@
 #include "fit/low_weights_internal.h"
 #include "fit/new_rows_internal.h"
 #include "fit/polished_internal.h"
-#include "fit/worst_places_internal.h"
+#include "fit/worst_points_internal.h"
 #include "rbf/weight_solver.h"
 
 namespace krok::fit {
@@ -63,7 +63,7 @@ class Refiner {
   // False: there is no error left.
   Result<bool> make_round();
   Status insert(std::vector<Found>& found, RefineRound& round);
-  bool has_grown(const RefineFigures& now) const;
+  bool has_grown(const RefineMetrics& now) const;
   double lowest_allowed(double before) const;
   void refuse(const Found& found, RefineRound& round);
 
@@ -74,7 +74,7 @@ class Refiner {
   const RefineOptions& options_;
   std::size_t d_, n_;
   detail::HeldOut held_out_;
-  RefineFigures now_;
+  RefineMetrics now_;
   double lowest_ = 0;  // weight at the points held out
 };
 
@@ -186,7 +186,7 @@ std::vector<Found> Refiner::seek(double usual, double& worst) const {
   const std::vector<double> sweep_places = detail::places_within(
       solver_.function(), sweep,
       detail::seed_for(options_.seed, detail::Use::sweep, state_.rounds.size()), options_.inside);
-  std::vector<detail::ErrorPlace> avoided;
+  std::vector<detail::ErrorPoint> avoided;
   for (const RefusedPoint& refused : state_.refused) {
     if (refused.round + kRefusedRounds < static_cast<int>(state_.rounds.size())) continue;
     avoided.push_back({std::vector<double>(d_), 0});
@@ -208,14 +208,14 @@ std::vector<Found> Refiner::seek(double usual, double& worst) const {
     avoided.push_back({place, 0});
     take(std::move(place), field().lengths(field().at(avoided.back().place)).front(), true);
   }
-  for (detail::ErrorPlace& top :
-       detail::worst_places(field(), sweep_places, avoided, wanted - found.size(), usual, worst)) {
+  for (detail::ErrorPoint& top :
+       detail::worst_points(field(), sweep_places, avoided, wanted - found.size(), usual, worst)) {
     if (!is_good()) take(std::move(top.place), top.error, false);
   }
   return found;
 }
 
-bool Refiner::has_grown(const RefineFigures& now) const {
+bool Refiner::has_grown(const RefineMetrics& now) const {
   double least = std::min(state_.before.mean_square, now_.mean_square);
   for (const RefineRound& round : state_.rounds) {
     least = std::min(least, round.after.mean_square);
@@ -250,17 +250,17 @@ Status Refiner::insert(std::vector<Found>& found, RefineRound& round) {
     }
     const double lowest_before = lowest_;
     if (Status status = update(); !status) return status;
-    RefineFigures figures = held_out_.errors(solver_.function(), *evaluator_);
+    RefineMetrics metrics = held_out_.errors(solver_.function(), *evaluator_);
     const bool lower = lowest_ < lowest_allowed(lowest_before);
-    if (lower || has_grown(figures)) {
+    if (lower || has_grown(metrics)) {
       for (Found& each : some) {
         each.refusal = lower ? Refusal::weights : Refusal::growth;
-        each.value = lower ? lowest_ : figures.largest;
+        each.value = lower ? lowest_ : metrics.largest;
       }
       solver_.remove_last(static_cast<int>(some.size()));
       return update();
     }
-    now_ = std::move(figures);
+    now_ = std::move(metrics);
     round.inserted += static_cast<int>(some.size());
     for (Found& each : some) {
       round.by_point += each.by_point ? 1 : 0;

@@ -65,7 +65,7 @@ struct ParameterError {
 };
 
 // How good weight functions are.
-struct RefineFigures {
+struct RefineMetrics {
   std::vector<ParameterError> within;  // [d], at the points held out
   std::vector<ParameterError>
       outside;             // [d], at points up to a quarter of the range beyond it, and not inside
@@ -75,7 +75,7 @@ struct RefineFigures {
   double least_weight = 0, largest_weight = 0, roughness = 0;  // see rbf/weight_figures.h
   double condition = 1;                                        // see rbf/weight_solver.h
 
-  bool operator==(const RefineFigures&) const = default;
+  bool operator==(const RefineMetrics&) const = default;
 };
 
 enum class Refusal : unsigned char {
@@ -101,7 +101,7 @@ struct RefineRound {
   int inserted = 0, refused = 0;
   int by_point = 0;   // of those inserted: found as w(p')
   double sought = 0;  // the largest scaled error that the round found before it inserted
-  RefineFigures after;
+  RefineMetrics after;
 
   bool operator==(const RefineRound&) const = default;
 };
@@ -120,7 +120,7 @@ std::string_view stop_name(Stop stop);
 // What polishing made of the weights, see polish.h.
 struct Polished {
   std::vector<double> found_rows;  // [inserted x N], as they were before
-  RefineFigures after;
+  RefineMetrics after;
 
   bool operator==(const Polished&) const = default;
 };
@@ -129,7 +129,7 @@ struct Polished {
 struct Refined {
   rbf::WeightFunction function;
   double example_error = 0;  // the largest scaled error at the examples themselves; should be 0
-  RefineFigures before;
+  RefineMetrics before;
   std::vector<RefineRound> rounds;
   std::vector<RefusedPoint> refused;
   Stop stop = Stop::none;

@@ -7,7 +7,7 @@
 
 #include "core/numbers.h"
 #include "math/quaternion.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
 #include "motion/sample.h"
@@ -47,8 +47,8 @@ Status same_skeleton(const Skeleton& first, const Skeleton& second) {
 // Takes the second's figure to where the first's is.
 Transform alignment(const Clip& first, int first_frame, const Clip& second, int second_frame,
                     int carrier, bool match_height) {
-  Transform move = ground_place(first, carrier, first_frame).to_world() *
-                   ground_place(second, carrier, second_frame).to_world().inverse();
+  Transform move = ground_frame(first, carrier, first_frame).to_world() *
+                   ground_frame(second, carrier, second_frame).to_world().inverse();
   if (match_height) {
     const auto c = static_cast<std::size_t>(carrier);
     move.position.y() = static_cast<double>(first.frame_positions(first_frame)[c].y()) -
@@ -61,7 +61,8 @@ Transform alignment(const Clip& first, int first_frame, const Clip& second, int 
 
 Result<Joined> join(const Clip& first, const Clip& second, int carrier,
                     const JoinOptions& options) {
-  if (Status same = same_skeleton(first.skeleton, second.skeleton); !same) return same.error();
+  if (Status status = same_skeleton(first.skeleton, second.skeleton); !status)
+    return status.error();
   if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
     return Error("motion-blend", "the time that two motions share is 0 or more");
   }

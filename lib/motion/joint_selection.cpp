@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/text.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 
 namespace krok {
 

@@ -7,7 +7,7 @@
 #include "core/index.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/local_motion.h"
 #include "motion/seam_curves.h"
 
@@ -68,8 +68,8 @@ class Looper {
     }
     return sum;
   }
-  GroundPlace place(int frame) const {
-    return ground_place(clip_.skeleton, carrier_, carrier_to_world(frame));
+  GroundFrame place(int frame) const {
+    return ground_frame(clip_.skeleton, carrier_, carrier_to_world(frame));
   }
   Transform way(int from, int to) const {
     return place(to).to_world() * place(from).to_world().inverse();
@@ -162,13 +162,13 @@ class Looper {
                           (options_.turn == LoopTurn::automatic && std::abs(drift) <= kDrift);
     if (!take_out || drift == 0) return;
     result_.straightened = drift;
-    std::vector<GroundPlace> places;
+    std::vector<GroundFrame> places;
     for (int f = 0; f <= last(); ++f) places.push_back(place(f));
     Vec3 now(places[0].x, 0, places[0].z);
     for (int f = 0; f <= last(); ++f) {
-      const GroundPlace& old = places[static_cast<std::size_t>(f)];
+      const GroundFrame& old = places[static_cast<std::size_t>(f)];
       if (f > 0) {
-        const GroundPlace& before = places[static_cast<std::size_t>(f) - 1];
+        const GroundFrame& before = places[static_cast<std::size_t>(f) - 1];
         now += turn_about_vertical(-drift * (f - 0.5) / last()) *
                Vec3(old.x - before.x, 0, old.z - before.z);
       }
@@ -180,7 +180,7 @@ class Looper {
   void choose_displacement() {
     result_.turn = wrapped(place(last()).heading - place(0).heading);
     if (result_.straightened != 0) result_.turn = 0;
-    const GroundPlace from = place(0), to = place(last());
+    const GroundFrame from = place(0), to = place(last());
     Transform& displacement = result_.displacement;
     displacement.orientation = turn_about_vertical(result_.turn);
     displacement.position =

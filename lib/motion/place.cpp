@@ -8,7 +8,7 @@
 
 #include "math/euler.h"
 #include "math/quaternion.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 
 namespace krok {
 
@@ -26,7 +26,7 @@ void move_clip(const Transform& world_to_world, Clip& clip) {
 Transform to_origin(const Clip& clip, int carrier) {
   Transform move;
   if (clip.frame_count() == 0) return move;
-  const GroundPlace place = ground_place(clip, carrier, 0);
+  const GroundFrame place = ground_frame(clip, carrier, 0);
   move.position = Vec3(-place.x, 0, -place.z);
   return move;
 }
@@ -34,7 +34,7 @@ Transform to_origin(const Clip& clip, int carrier) {
 Transform turned_about_start(const Clip& clip, int carrier, double angle) {
   Transform move;
   if (clip.frame_count() == 0 || angle == 0) return move;
-  const GroundPlace place = ground_place(clip, carrier, 0);
+  const GroundFrame place = ground_frame(clip, carrier, 0);
   const Vec3 centre(place.x, 0, place.z);
   move.orientation = axis_rotation(Axis::y, angle);
   move.position = centre - move.orientation * centre;
@@ -44,7 +44,7 @@ Transform turned_about_start(const Clip& clip, int carrier, double angle) {
 Transform facing_at_start(const Clip& clip, int carrier, double heading) {
   if (clip.frame_count() == 0) return {};
   return turned_about_start(clip, carrier,
-                            wrapped(heading - ground_place(clip, carrier, 0).heading));
+                            wrapped(heading - ground_frame(clip, carrier, 0).heading));
 }
 
 Transform onto_ground(const Clip& clip, std::span<const int> joints) {

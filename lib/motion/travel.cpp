@@ -1,6 +1,6 @@
 #include "motion/travel.h"
 
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 
 namespace krok {
 
@@ -33,10 +33,10 @@ Clip in_place(const Clip& clip, int carrier, Travel removed) {
   const int last = clip.frame_count() - 1;
   if (last < 1) return result;
   const auto within = subtree(clip.skeleton, top_traveller(clip, carrier));
-  const GroundPlace first = ground_place(clip, carrier, 0);
-  const GroundPlace end = ground_place(clip, carrier, last);
+  const GroundFrame first = ground_frame(clip, carrier, 0);
+  const GroundFrame end = ground_frame(clip, carrier, last);
   for (int f = 1; f <= last; ++f) {
-    const GroundPlace now = ground_place(clip, carrier, f);
+    const GroundFrame now = ground_frame(clip, carrier, f);
     const double share = static_cast<double>(f) / last;
     const Vec3 travel = removed == Travel::all
                             ? Vec3(now.x - first.x, 0, now.z - first.z)

@@ -14,7 +14,7 @@ namespace {
 
 using Affine = Eigen::Matrix<double, 3, 4>;
 
-constexpr std::size_t kMostVertices = 20'000'000;
+constexpr std::size_t kMaxVertices = 20'000'000;
 
 Mat4 matrix_of(const Vec3& translation, const Quat& rotation, const Vec3& scale) {
   Mat4 matrix = Mat4::Identity();
@@ -180,9 +180,9 @@ Status Evaluator::find_instances() {
       instances_.push_back({index, node.mesh, static_cast<int>(p)});
       vertices += mesh.primitives[p].vertex_count();
     }
-    if (vertices > kMostVertices) {
+    if (vertices > kMaxVertices) {
       return Error("scene-too-large",
-                   fmt::format("the scene shows more than {} vertices", kMostVertices));
+                   fmt::format("the scene shows more than {} vertices", kMaxVertices));
     }
   }
   return {};

@@ -48,7 +48,7 @@ struct MorphTarget {
 };
 
 struct Primitive {
-  static constexpr int kMostInfluences = 8;
+  static constexpr int kMaxInfluences = 8;
 
   std::string material;     // its name as the file has it; may be empty
   int material_index = -1;  // in Scene::materials; -1: none, or materials were not asked for

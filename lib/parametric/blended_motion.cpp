@@ -16,7 +16,7 @@ namespace krok::parametric {
 namespace {
 
 constexpr double kSumOff = 1e-6;
-constexpr double kMostTransforms = 1e8;
+constexpr double kMaxTransforms = 1e8;
 constexpr double kNoWeight = 1e-9;
 constexpr int kPosesAtOnce = 16;  // as many as local_to_model() takes in one go
 
@@ -121,7 +121,7 @@ BlendedMotion::Scratch BlendedMotion::make_scratch() const {
 
 float BlendedMotion::pose(double time, std::span<PoseBlock> pose, Scratch& scratch) const {
   const double generic = generic_at(time);
-  const GenericPlace place = generic_place(packed_.generic, generic);
+  const GenericTimePoint place = generic_place(packed_.generic, generic);
   scratch.terms.clear();
   for (std::size_t i = 0; i < weights_.size(); ++i) {
     if (weights_[i] == 0) continue;
@@ -147,7 +147,7 @@ Result<BlendedMotion::Made> BlendedMotion::make(double rate, LastFrame last) con
   }
   const double frames = duration() * rate;
   const auto joints = library_.skeleton.names.size();
-  if (!(frames * static_cast<double>(joints) <= kMostTransforms)) {
+  if (!(frames * static_cast<double>(joints) <= kMaxTransforms)) {
     return Error("clip-too-long", fmt::format("{} s at {} frames a second are too many frames",
                                               readable(duration()), readable(rate)));
   }
@@ -226,7 +226,7 @@ std::vector<Contact> BlendedMotion::contacts() const {
   for (const auto& [key, sum] : sums) {
     if (sum.count != examples || !(sum.start < sum.end)) continue;
     const auto time = [&](double generic) {
-      const GenericPlace place = generic_place(packed_.generic, generic);
+      const GenericTimePoint place = generic_place(packed_.generic, generic);
       const auto k = static_cast<std::size_t>(place.interval);
       return place.value[0] * keytimes_[k] + place.slope[0] * slopes_[k] +
              place.value[1] * keytimes_[k + 1] + place.slope[1] * slopes_[k + 1];

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastRange = 1e-9;
+constexpr double kMinRange = 1e-9;
 constexpr double kRounding = 1e-9;    // of scaled distances
 constexpr double kTolerance = 1e-10;  // of squares of scaled distances
 
@@ -85,7 +85,7 @@ VectorXd nearest_to_origin(const MatrixXd& points) {
 void Bounds::scale(std::span<const double> point, std::span<double> scaled) const {
   for (std::size_t d = 0; d < point.size(); ++d) {
     const double range = upper[d] - lower[d];
-    scaled[d] = (point[d] - lower[d]) / (range > kLeastRange ? range : 1);
+    scaled[d] = (point[d] - lower[d]) / (range > kMinRange ? range : 1);
   }
 }
 
@@ -129,7 +129,7 @@ Outside outside(const Bounds& bounds, std::span<const double> point) {
   for (Index i = 0; i < d; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double range = bounds.upper[k] - bounds.lower[k];
-    result.nearest[k] = bounds.lower[k] + inside[i] * (range > kLeastRange ? range : 1);
+    result.nearest[k] = bounds.lower[k] + inside[i] * (range > kMinRange ? range : 1);
   }
   return result;
 }

@@ -20,7 +20,7 @@ constexpr double kJumpWay = 0.3;  // metres
 constexpr double kTouch = 0.05;   // seconds; less of a contact within a step is none of it
 // What an outlier must be further off than.
 constexpr double kFarLength = 0.1, kFarAngle = 15 * kRadiansPerDegree, kFarTime = 0.3;
-constexpr std::ptrdiff_t kMostOutliers = 10;  // one of so many
+constexpr std::ptrdiff_t kMaxOutliers = 10;  // one of so many
 constexpr double kNormal = 1.4826;  // standard deviation of a normal distribution over its MAD
 
 // From a strike of the stance foot to the swing foot's.
@@ -130,8 +130,8 @@ class Cutter {
     if (options_.pass) library.keytimes.insert(library.keytimes.end() - 1, "swing_pass");
     std::vector<ClipContacts> clips;
     for (const Walk& walk : walks) {
-      if (Status same = same_skeleton(library.skeleton, walk.clip->skeleton); !same) {
-        return std::move(same).error().in_file(walk.name);
+      if (Status status = same_skeleton(library.skeleton, walk.clip->skeleton); !status) {
+        return std::move(status).error().in_file(walk.name);
       }
       clips.push_back({walk.clip, walk.found});
     }
@@ -270,7 +270,7 @@ class Cutter {
     const double far = std::max(floor, options_.outlier * kNormal * median(apart));
     // Outliers are few; where they are more, the library is made of such variations.
     const auto beyond = std::ranges::count_if(apart, [&](double value) { return value > far; });
-    if (beyond * kMostOutliers > static_cast<std::ptrdiff_t>(apart.size())) return;
+    if (beyond * kMaxOutliers > static_cast<std::ptrdiff_t>(apart.size())) return;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (apart[i] <= far || !faults[i].empty()) continue;
       const std::string name =
@@ -301,7 +301,7 @@ Result<StepLibrary> cut_steps(std::span<const Walk> walks, const RoleMap& roles,
                               std::span<const std::string> parameters, const CutOptions& options) {
   if (walks.empty()) return Error("parametric-none", "there is no walk to cut steps out of");
   Cutter cutter(roles, options);
-  if (Status begun = cutter.begin(walks, parameters); !begun) return begun.error();
+  if (Status status = cutter.begin(walks, parameters); !status) return status.error();
   for (const Walk& walk : walks) cutter.add(walk);
   cutter.drop_outliers();
   return cutter.finish();

@@ -159,7 +159,7 @@ HeldOut hold_out(const Library& library, std::size_t index, rbf::Kernel kernel, 
 
 Result<std::vector<HeldOut>> leave_one_out(const Library& library, rbf::Kernel kernel,
                                            double smoothing, int jobs) {
-  if (Status sound = check(library); !sound) return sound.error();
+  if (Status status = check(library); !status) return status.error();
   if (const auto all = weights_of(library, kernel, smoothing); !all) return all.error();
   std::vector<HeldOut> results(library.examples.size());
   parallel_for(results.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
@@ -187,7 +187,7 @@ LeftOutMeans means_of(std::span<const HeldOut> left_out) {
 
 Result<std::vector<double>> distances_to_examples(const Library& library,
                                                   const rbf::WeightFunction& function) {
-  if (Status sound = check(library); !sound) return sound.error();
+  if (Status status = check(library); !status) return status.error();
   const auto evaluator = rbf::WeightEvaluator::create(function);
   if (!evaluator) return evaluator.error();
   if (function.examples != static_cast<int>(library.examples.size()) ||
@@ -207,7 +207,7 @@ Result<std::vector<double>> distances_to_examples(const Library& library,
 
 Result<std::vector<SmoothingTrial>> try_smoothings(const Library& library, rbf::Kernel kernel,
                                                    std::span<const double> smoothings, int jobs) {
-  if (Status sound = check(library); !sound) return sound.error();
+  if (Status status = check(library); !status) return status.error();
   for (const double smoothing : smoothings) {
     if (const auto all = weights_of(library, kernel, smoothing); !all) return all.error();
   }

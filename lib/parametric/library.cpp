@@ -81,11 +81,12 @@ Status check_example(const Library& library, std::size_t index) {
       !std::ranges::all_of(example.parameters, [](double p) { return std::isfinite(p); })) {
     return example_error(index, "has not all parameters measured");
   }
-  if (Status sound = check(example.motion); !sound) return sound;
-  if (Status sound = same_skeleton(library.skeleton, example.motion.skeleton); !sound) return sound;
-  if (Status sound = check({example.contacts, {}}, library.skeleton, example.motion.duration());
-      !sound) {
-    return sound;
+  if (Status status = check(example.motion); !status) return status;
+  if (Status status = same_skeleton(library.skeleton, example.motion.skeleton); !status)
+    return status;
+  if (Status status = check({example.contacts, {}}, library.skeleton, example.motion.duration());
+      !status) {
+    return status;
   }
   return check_keytimes(library, example.name, example.motion, example.keytimes);
 }
@@ -133,8 +134,10 @@ Status same_skeleton(const Skeleton& library, const Skeleton& other) {
 
 Result<Example> make_example(const Library& library, std::string name, const Clip& motion,
                              std::vector<double> keytimes, std::vector<Contact> contacts) {
-  if (Status same = same_skeleton(library.skeleton, motion.skeleton); !same) return same.error();
-  if (Status fits = check_keytimes(library, name, motion, keytimes); !fits) return fits.error();
+  if (Status status = same_skeleton(library.skeleton, motion.skeleton); !status)
+    return status.error();
+  if (Status status = check_keytimes(library, name, motion, keytimes); !status)
+    return status.error();
   const FootShape& stance = library.foot(library.stance());
   const Footprint print = footprint(stance, pose_of_joint(motion, stance.joint, keytimes.front()));
   const Transform to_stance = print.to_world().inverse();
@@ -156,14 +159,14 @@ Result<Example> make_example(const Library& library, std::string name, const Cli
   auto scratch = measure.make_scratch();
   example.parameters.resize(library.parameters.size());
   const double all = 1;
-  if (Status done = measure({&all, 1}, example.parameters, {}, scratch); !done) {
-    return std::move(done).error().in_file(example.name);
+  if (Status status = measure({&all, 1}, example.parameters, {}, scratch); !status) {
+    return std::move(status).error().in_file(example.name);
   }
   return example;
 }
 
 Status check(const Library& library) {
-  if (Status sound = check(library.skeleton); !sound) return sound;
+  if (Status status = check(library.skeleton); !status) return status;
   for (const FootShape& foot : library.feet) {
     if (foot.joint >= 0 && foot.joint < library.skeleton.joint_count() && foot.heel.allFinite() &&
         foot.length >= 0 && std::isfinite(foot.length) &&
@@ -179,11 +182,11 @@ Status check(const Library& library) {
   if (!(library.rate > 0) || !std::isfinite(library.rate)) {
     return Error("clip-rate", "the rate of a library must be a positive number");
   }
-  if (Status sound = check(library.parameters, library.skeleton, library.keytimes); !sound) {
-    return sound;
+  if (Status status = check(library.parameters, library.skeleton, library.keytimes); !status) {
+    return status;
   }
   for (std::size_t i = 0; i < library.examples.size(); ++i) {
-    if (Status sound = check_example(library, i); !sound) return sound;
+    if (Status status = check_example(library, i); !status) return status;
   }
   return {};
 }

@@ -4,16 +4,16 @@
 #include <cmath>
 
 #include "math/quaternion.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "pose/sample_pose.h"
 
 namespace krok::parametric {
 
 namespace {
 
-constexpr double kLeastSum = 1e-6;
-constexpr double kLeastLevel = 1e-3;  // of the sole's direction
-constexpr double kSamePlace = 2e-6;   // metres, within the rounding of floats
+constexpr double kMinSum = 1e-6;
+constexpr double kMinLevel = 1e-3;   // of the sole's direction
+constexpr double kSamePlace = 2e-6;  // metres, within the rounding of floats
 
 Vec3 forward_of(double heading) {
   return {std::sin(heading), 0, std::cos(heading)};
@@ -113,7 +113,7 @@ Status Measure::pose(const Eigen::Ref<const Eigen::VectorXd>& weights, Scratch& 
     Vec4 sum;
     for (int c = 0; c < 4; ++c) sum[c] = rotations_.col(4 * column + c).dot(weights);
     state.length = sum.norm();
-    if (!(state.length > kLeastSum)) {
+    if (!(state.length > kMinSum)) {
       return Error("parametric-sum", "rotations of the examples cancel each other",
                    "use examples that are more alike, or weights that are less extreme");
     }
@@ -136,7 +136,7 @@ Status Measure::print_of(const FootShape& foot, int node, const Scratch& scratch
   print.node = node;
   print.heel = to_world * foot.heel;
   print.forward = to_world.orientation * foot.forward;
-  if (std::hypot(print.forward.x(), print.forward.z()) < kLeastLevel) {
+  if (std::hypot(print.forward.x(), print.forward.z()) < kMinLevel) {
     return Error("parametric-foot", "a foot stands upright, so that it points nowhere",
                  "take a keytime at which it stands flat");
   }
@@ -165,7 +165,7 @@ Status Measure::evaluate(const Parameter& parameter, const Print& stance, Scratc
   Print print;
   Vec3 place = state.to_world.position;
   if (!joint) {
-    if (Status done = print_of(swing_, moved, scratch, print); !done) return done;
+    if (Status status = print_of(swing_, moved, scratch, print); !status) return status;
     place = print.print.place;
   }
   const double heading = stance.print.heading;
@@ -240,9 +240,10 @@ Status Measure::operator()(std::span<const double> weights, std::span<double> pa
   assert(parameters.size() == parameters_.size() && scratch.size() == nodes_.size());
   assert(jacobian.empty() || jacobian.size() == weights.size() * parameters.size());
   const Eigen::Map<const Eigen::VectorXd> w(weights.data(), examples_);
-  if (Status done = pose(w, scratch); !done) return done;
+  if (Status status = pose(w, scratch); !status) return status;
   Print stance;
-  if (Status done = print_of(stance_, node(0, stance_.joint), scratch, stance); !done) return done;
+  if (Status status = print_of(stance_, node(0, stance_.joint), scratch, stance); !status)
+    return status;
   for (std::size_t d = 0; d < parameters_.size(); ++d) {
     Eigen::Map<Eigen::RowVectorXd> row(jacobian.empty() ? nullptr : &jacobian[d * weights.size()],
                                        jacobian.empty() ? 0 : examples_);
@@ -253,8 +254,9 @@ Status Measure::operator()(std::span<const double> weights, std::span<double> pa
     }
     for (NodeState& state : scratch) state.force = state.moment = Vec3::Zero();
     const bool gradient = !jacobian.empty();
-    if (Status done = evaluate(parameters_[d], stance, scratch, parameters[d], gradient); !done) {
-      return done;
+    if (Status status = evaluate(parameters_[d], stance, scratch, parameters[d], gradient);
+        !status) {
+      return status;
     }
     if (gradient) gather(scratch, row);
   }

@@ -11,10 +11,10 @@ namespace krok::parametric {
 
 namespace {
 
-constexpr double kReferenceRate = 60;    // poses of the reference a second of generic time
-constexpr double kMostReference = 4096;  // of them
-constexpr double kLeastReach = 0.01;     // of the figure's extent
-constexpr int kSpreadParts = 4;          // of an interval, where the spread is looked for
+constexpr double kReferenceRate = 60;   // poses of the reference a second of generic time
+constexpr double kMaxReference = 4096;  // of them
+constexpr double kMinReach = 0.01;      // of the figure's extent
+constexpr int kSpreadParts = 4;         // of an interval, where the spread is looked for
 
 void add_times(const Library& library, PackedExamples& packed) {
   const auto keytimes = static_cast<Eigen::Index>(library.keytimes.size());
@@ -55,7 +55,7 @@ void add_reference(PackedExamples& packed) {
   reference.joints = joints;
   // However long a motion says it is, the reference stays small.
   const double last = packed.generic.back();
-  const double count = std::clamp(std::ceil(last * kReferenceRate), 1.0, kMostReference);
+  const double count = std::clamp(std::ceil(last * kReferenceRate), 1.0, kMaxReference);
   reference.rate = count / last;
   reference.frames = static_cast<int>(count) + 1;
   const auto blocks = static_cast<std::size_t>(reference.blocks_per_pose());
@@ -82,7 +82,7 @@ void add_reference(PackedExamples& packed) {
 
 std::vector<std::uint8_t> carrying_joints(const Skeleton& skeleton) {
   std::vector<std::uint8_t> carries(skeleton.names.size(), 0);
-  const double least = kLeastReach * reference_extent(skeleton);
+  const double least = kMinReach * reference_extent(skeleton);
   for (std::size_t j = carries.size(); j-- > 1;) {
     const auto parent = static_cast<std::size_t>(skeleton.parents[j]);
     const Vec3 bone = skeleton.reference[j].position - skeleton.reference[parent].position;
@@ -102,7 +102,7 @@ PackedExamples pack_examples(const Library& library) {
   return packed;
 }
 
-GenericPlace generic_place(std::span<const double> knots, double generic) {
+GenericTimePoint generic_place(std::span<const double> knots, double generic) {
   const std::size_t last = knots.size() - 1;
   std::size_t k = 0;
   while (k + 1 < last && generic >= knots[k + 1]) ++k;

@@ -33,16 +33,17 @@ struct PackedExamples {
 PackedExamples pack_examples(const Library& library);
 
 // A place within generic time: the interval, and what values and slopes at its ends count there.
-struct GenericPlace {
+struct GenericTimePoint {
   int interval = 0;
   double value[2] = {1, 0}, slope[2] = {0, 0};
 };
 
 // `generic` is brought between the first keytime and the last.
-GenericPlace generic_place(std::span<const double> knots, double generic);
+GenericTimePoint generic_place(std::span<const double> knots, double generic);
 
 // Seconds in the example's motion.
-inline double example_time(const PackedExamples& packed, const GenericPlace& place, int example) {
+inline double example_time(const PackedExamples& packed, const GenericTimePoint& place,
+                           int example) {
   const int k = place.interval;
   return place.value[0] * packed.times(k, example) + place.slope[0] * packed.slopes(k, example) +
          place.value[1] * packed.times(k + 1, example) +

@@ -86,8 +86,8 @@ Result<Parameter> parse_parameter(std::string_view name, const Skeleton& skeleto
   const std::string_view what = name.substr(0, at);
   if (const auto quantity = index_of(kQuantities, what)) {
     parameter.quantity = static_cast<Quantity>(*quantity);
-  } else if (Status found = parse_joint(what, skeleton, parameter); !found) {
-    return found.error();
+  } else if (Status status = parse_joint(what, skeleton, parameter); !status) {
+    return status.error();
   }
   parameter.tolerance = usual_tolerance(parameter.quantity);
   parameter.keytime = static_cast<int>(keytimes.size()) - 1;

@@ -43,7 +43,7 @@ Synthesiser::Synthesiser(const Library& library, PackedExamples packed,
 
 Result<Synthesiser> Synthesiser::create(const Library& library,
                                         const rbf::WeightFunction& weights) {
-  if (Status sound = check(library); !sound) return sound.error();
+  if (Status status = check(library); !status) return status.error();
   if (weights.examples != static_cast<int>(library.examples.size()) ||
       weights.dimensions != library.dimensions()) {
     return Error("parametric-weights",
@@ -86,12 +86,12 @@ Result<Synthesis> Synthesiser::weights(std::span<const double> parameters,
   synthesis.parameters.resize(parameters.size());
   evaluator_.weights(parameters, synthesis.weights);
   auto scratch = measure_.make_scratch();
-  if (Status done = measure_(synthesis.weights, synthesis.parameters, {}, scratch); !done) {
-    return done.error();
+  if (Status status = measure_(synthesis.weights, synthesis.parameters, {}, scratch); !status) {
+    return status.error();
   }
   synthesis.error = synthesis.error_before = error_of(parameters, synthesis.parameters);
-  if (Status done = correct(parameters, options.corrections, synthesis); !done) {
-    return done.error();
+  if (Status status = correct(parameters, options.corrections, synthesis); !status) {
+    return status.error();
   }
   return synthesis;
 }
@@ -105,9 +105,9 @@ Status Synthesiser::correct(std::span<const double> parameters, int steps,
   std::vector<double> weights(synthesis.weights.size()), measured(parameters.size());
   const auto size = static_cast<std::size_t>(jacobian.size());
   for (int step = 0; step < steps && synthesis.error > kGoodEnough; ++step) {
-    if (Status done = measure_(synthesis.weights, measured, {jacobian.data(), size}, scratch);
-        !done) {
-      return done;
+    if (Status status = measure_(synthesis.weights, measured, {jacobian.data(), size}, scratch);
+        !status) {
+      return status;
     }
     Eigen::VectorXd missing(d);
     for (Eigen::Index k = 0; k < d; ++k) {

@@ -138,7 +138,7 @@ float blend(const Between* terms, std::size_t count, Round round, const PoseBloc
       add_terms(terms, count, towards, b, lane, position, rotation);
       if (round.last) {
         const V square = dot(rotation, rotation);
-        const auto regular = hn::Gt(square, number(kLeastSquare));
+        const auto regular = hn::Gt(square, number(kMinSquare));
         least = hn::Min(least, hn::IfThenElseZero(regular, square));
         const Rotation unit = scaled(inverse_length(square), rotation);
         rotation = {

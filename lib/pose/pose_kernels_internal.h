@@ -22,7 +22,7 @@ struct Between {
 };
 
 // Under this square of its length a sum of rotations has no direction.
-inline constexpr float kLeastSquare = 1e-12f;
+inline constexpr float kMinSquare = 1e-12f;
 
 // Where a sum comes from and goes to, so that it can be made in several rounds of terms.
 struct Round {

@@ -96,7 +96,7 @@ float blend_scalar(const Between* terms, std::size_t count, Round round, const P
       for (int i = 0; i < 3; ++i) sum[b].position[i][lane] = position[i];
       if (round.last) {
         const float square = dot(rotation, rotation);
-        const bool regular = square > kLeastSquare;
+        const bool regular = square > kMinSquare;
         const float counted = regular ? square : 0.0f;
         least = any && least < counted ? least : counted;
         any = true;

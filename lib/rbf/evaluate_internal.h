@@ -40,7 +40,7 @@ struct Basis {
 Basis basis_scalar(Kernel kernel, double square, double inverse_square);
 
 // exp(x) for x <= 0: x = n ln 2 + r, and Taylor's polynomial in r.
-inline constexpr double kLeastExponent = -700;  // under it 0 is given
+inline constexpr double kMinExponent = -700;  // under it 0 is given
 inline constexpr double kLog2E = 0x1.71547652b82fep+0;
 inline constexpr double kRounder = 0x1.8p+52;  // brings n into the low bits
 inline constexpr double kLn2High = 0x1.62e42fefa0000p-1;

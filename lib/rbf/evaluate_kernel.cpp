@@ -42,8 +42,7 @@ HWY_INLINE V exp_of(V x) {
   for (int i = 1; i < kExpTerms; ++i) p = hn::MulAdd(p, r, number(kInverseFactorials[i]));
   const auto exponent =
       hn::ShiftLeft<52>(hn::Add(hn::BitCast(u, rounding), hn::Set(u, std::uint64_t{1023})));
-  return hn::IfThenElseZero(hn::Ge(x, number(kLeastExponent)),
-                            hn::Mul(p, hn::BitCast(d, exponent)));
+  return hn::IfThenElseZero(hn::Ge(x, number(kMinExponent)), hn::Mul(p, hn::BitCast(d, exponent)));
 }
 
 // phi and, unless it is not asked for, the slope by the distance; see basis_scalar().

@@ -10,7 +10,7 @@ namespace krok::rbf::detail {
 namespace {
 
 double exp_of(double x) {
-  if (!(x >= kLeastExponent)) return 0;
+  if (!(x >= kMinExponent)) return 0;
   const double rounding = std::fma(x, kLog2E, kRounder);
   const double n = rounding - kRounder;
   const double r = std::fma(n, -kLn2Low, std::fma(n, -kLn2High, x));

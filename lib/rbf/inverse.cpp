@@ -11,16 +11,16 @@ namespace {
 
 // At most kMostDimensions: these stay on the stack.
 using SmallMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostDimensions, kMostDimensions>;
-using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostDimensions, 1>;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDimensions, kMaxDimensions>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxDimensions, 1>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRidge = 1e-12;  // relative, so that directions without effect do no harm
-constexpr int kMostHalvings = 4;  // of a Gauss-Newton step
+constexpr int kMaxHalvings = 4;   // of a Gauss-Newton step
 constexpr double kBeyond = 0.5;   // of the range: how far outside a point may be searched
 constexpr int kPointSteps = 20;   // of weights_for()
 constexpr int kWeightSteps = 10;
-constexpr double kLeastDamping = 1e-6, kMostDamping = 1e6;
+constexpr double kMinDamping = 1e-6, kMaxDamping = 1e6;
 
 }  // namespace
 
@@ -101,7 +101,7 @@ Match InverseSearch::correct(std::span<const double> wanted, int steps, double e
     }
     const bool last = step + 1 == steps;
     double part = 1, tried = kInfinity;
-    for (int halving = 0; halving < kMostHalvings; ++halving, part *= 0.5) {
+    for (int halving = 0; halving < kMaxHalvings; ++halving, part *= 0.5) {
       for (std::size_t j = 0; j < n_; ++j) weights_[j] = weights[j] + part * direction_[j];
       tried = measure_at(weights_, wanted, !last, tried_error_);
       if (tried < now) break;
@@ -153,11 +153,11 @@ Match InverseSearch::find_point(std::span<const double> wanted, int steps, doubl
       error_.swap(tried_error_);
       const bool slow = tried > 0.999 * now;
       now = tried;
-      damping = std::max(damping * 0.1, kLeastDamping);
+      damping = std::max(damping * 0.1, kMinDamping);
       if (slow) break;
     } else {
       damping *= 10;
-      if (damping > kMostDamping) break;
+      if (damping > kMaxDamping) break;
     }
   }
   return {before, now, measured_};

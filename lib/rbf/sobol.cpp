@@ -14,7 +14,7 @@ struct Polynomial {
   std::uint32_t degree, inner;
   std::array<std::uint32_t, 5> first;
 };
-constexpr Polynomial kPolynomials[kMostDimensions - 1] = {
+constexpr Polynomial kPolynomials[kMaxDimensions - 1] = {
     {1, 0, {1}},          {2, 1, {1, 3}},        {3, 1, {1, 3, 1}},       {3, 2, {1, 1, 1}},
     {4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}}, {5, 2, {1, 1, 5, 5, 17}}};
 
@@ -48,7 +48,7 @@ Sobol::Sobol(int dimensions, std::uint64_t seed)
   }
   if (seed == 0) return;
   for (std::size_t i = 0; i < dimensions_; ++i) {
-    shift_[i] = static_cast<std::uint32_t>(mixed(seed * kMostDimensions + i) >> 32);
+    shift_[i] = static_cast<std::uint32_t>(mixed(seed * kMaxDimensions + i) >> 32);
   }
 }
 
@@ -65,12 +65,12 @@ void Sobol::point(std::uint32_t index, std::span<double> point) const {
 
 std::vector<double> points_inside(const WeightFunction& function, int count, std::uint64_t seed,
                                   const Inside& inside) {
-  constexpr std::uint32_t kMostTried = 1000;  // for each one wanted
+  constexpr std::uint32_t kMaxTried = 1000;  // for each one wanted
   const auto d = static_cast<std::size_t>(function.dimensions);
   const Sobol sobol(function.dimensions, seed);
   const auto wanted = static_cast<std::uint32_t>(std::max(count, 0));
   std::vector<double> points, point(d);
-  for (std::uint32_t p = 0; points.size() < wanted * d && p / kMostTried < wanted; ++p) {
+  for (std::uint32_t p = 0; points.size() < wanted * d && p / kMaxTried < wanted; ++p) {
     sobol.point(p, point);
     for (std::size_t i = 0; i < d; ++i) {
       point[i] = function.lower[i] + point[i] * (function.upper[i] - function.lower[i]);

@@ -24,8 +24,8 @@ class Sobol {
 
  private:
   std::size_t dimensions_;
-  std::array<std::array<std::uint32_t, 32>, kMostDimensions> directions_ = {};
-  std::array<std::uint32_t, kMostDimensions> shift_ = {};
+  std::array<std::array<std::uint32_t, 32>, kMaxDimensions> directions_ = {};
+  std::array<std::uint32_t, kMaxDimensions> shift_ = {};
 };
 
 // The first `count` points of the sequence over a function's range that are inside, [count x d] in

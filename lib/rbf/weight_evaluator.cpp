@@ -33,7 +33,7 @@ Result<WeightEvaluator> WeightEvaluator::create(const WeightFunction& function) 
   e.centres_.resize(d * e.centre_blocks_);
   e.inverse_squares_.resize(e.centre_blocks_);
   for (Block& block : e.inverse_squares_) std::ranges::fill(block.values, 1.0);
-  double scaled[kMostDimensions];
+  double scaled[kMaxDimensions];
   for (std::size_t k = 0; k < centres; ++k) {
     function.scale(function.centre(static_cast<int>(k)), scaled);
     for (std::size_t i = 0; i < d; ++i) {
@@ -62,7 +62,7 @@ Result<WeightEvaluator> WeightEvaluator::create(const WeightFunction& function) 
 }
 
 void WeightEvaluator::run(const double* point, double* weights, double* slopes) const {
-  double scaled[kMostDimensions];
+  double scaled[kMaxDimensions];
   for (std::size_t i = 0; i < dimensions_; ++i) {
     scaled[i] = (point[i] - lower_[i]) * inverse_range_[i];
   }

@@ -35,23 +35,23 @@ Status check_counts(const WeightFunction& f) {
   if (static_cast<std::size_t>(f.kernel) >= std::size(kNames)) {
     return Error("rbf-kernel", "the kernel of a weight function is none that is known");
   }
-  if (f.dimensions < 1 || f.dimensions > kMostDimensions) {
+  if (f.dimensions < 1 || f.dimensions > kMaxDimensions) {
     return Error("rbf-dimensions", fmt::format("a weight function of {} parameters", f.dimensions),
-                 fmt::format("it has 1 to {}", kMostDimensions));
+                 fmt::format("it has 1 to {}", kMaxDimensions));
   }
-  if (f.examples < f.dimensions + 1 || f.examples > kMostExamples) {
+  if (f.examples < f.dimensions + 1 || f.examples > kMaxExamples) {
     return Error(
         "rbf-examples",
         fmt::format("a weight function of {} examples for {} parameters", f.examples, f.dimensions),
-        fmt::format("it takes one more than there are parameters, and at most {}", kMostExamples));
+        fmt::format("it takes one more than there are parameters, and at most {}", kMaxExamples));
   }
   const auto d = static_cast<std::size_t>(f.dimensions);
   if (f.centres.size() % d != 0 || f.centres.size() / d < static_cast<std::size_t>(f.examples) ||
-      f.centres.size() / d > kMostCentres) {
+      f.centres.size() / d > kMaxCentres) {
     return Error("rbf-centres",
                  fmt::format("{} numbers for the centres of {} examples in {} parameters",
                              f.centres.size(), f.examples, f.dimensions),
-                 fmt::format("each example is a centre; there are at most {}", kMostCentres));
+                 fmt::format("each example is a centre; there are at most {}", kMaxCentres));
   }
   return {};
 }

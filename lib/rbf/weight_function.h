@@ -27,9 +27,9 @@
 
 namespace krok::rbf {
 
-inline constexpr int kMostDimensions = 8;
-inline constexpr int kMostExamples = 1024;
-inline constexpr int kMostCentres = 4096;
+inline constexpr int kMaxDimensions = 8;
+inline constexpr int kMaxExamples = 1024;
+inline constexpr int kMaxCentres = 4096;
 
 // Tells points of which anything is known from others; empty, all within the range count. Examples
 // of captures rarely fill the box of their ranges: long steps at a run, short ones at a stroll.

@@ -14,7 +14,7 @@ namespace krok::rbf {
 
 namespace {
 
-constexpr double kLeastDistance = 1e-6;    // of the ranges, between centres
+constexpr double kMinDistance = 1e-6;      // of the ranges, between centres
 constexpr double kRowSumTolerance = 1e-6;  // of rows that are given
 
 double radius_factor(Kernel kernel) {
@@ -38,7 +38,7 @@ Result<std::vector<double>> example_distances(const WeightFunction& f) {
         square += along * along;
       }
       const double distance = std::sqrt(square);
-      if (!(distance >= kLeastDistance)) {
+      if (!(distance >= kMinDistance)) {
         return Error("rbf-duplicate",
                      fmt::format("examples {} and {} have the same parameters, {}", i + 1, k + 1,
                                  detail::place_text(f.centre(static_cast<int>(k)))),
@@ -59,9 +59,9 @@ Result<WeightSolver> WeightSolver::create(int dimensions, std::span<const double
   f.kernel = options.kernel;
   f.dimensions = dimensions;
   f.smoothing = options.smoothing;
-  if (dimensions >= 1 && dimensions <= kMostDimensions) {
+  if (dimensions >= 1 && dimensions <= kMaxDimensions) {
     f.examples = static_cast<int>(std::min<std::size_t>(
-        parameters.size() / static_cast<std::size_t>(dimensions), kMostCentres));
+        parameters.size() / static_cast<std::size_t>(dimensions), kMaxCentres));
   }
   f.centres.assign(parameters.begin(), parameters.end());
   f.lower = options.lower;
@@ -129,9 +129,9 @@ Status WeightSolver::insert(std::span<const double> points, std::span<const doub
   detail::WeightSystem& system = *system_;
   const std::size_t before = system.matrix.size();
   const std::size_t count = points.size() / system.d();
-  if (before + count > kMostCentres) {
+  if (before + count > kMaxCentres) {
     return Error("rbf-centres", fmt::format("{} centres", before + count),
-                 fmt::format("there are at most {}", kMostCentres));
+                 fmt::format("there are at most {}", kMaxCentres));
   }
   std::vector<double> affine = system.f.affine, coefficients = system.f.coefficients;
   const double residual = system.residual;
@@ -156,7 +156,7 @@ Status WeightSolver::insert(std::span<const double> points, std::span<const doub
 }
 
 double WeightSolver::distance_to_centres(std::span<const double> point) const {
-  double place_values[kMostDimensions];
+  double place_values[kMaxDimensions];
   const auto place = std::span(place_values).first(system_->d());
   system_->f.scale(point, place);
   return system_->matrix.nearest(place);
@@ -172,7 +172,7 @@ Status WeightSolver::check_insertion(std::span<const double> point,
     return Error("rbf-sum", fmt::format("the weights wanted at {} sum to {}, not to 1",
                                         detail::place_text(point), readable(sum)));
   }
-  if (!(distance_to_centres(point) >= kLeastDistance)) {
+  if (!(distance_to_centres(point) >= kMinDistance)) {
     return Error("rbf-duplicate",
                  fmt::format("there is a centre at {} already", detail::place_text(point)),
                  "two centres differ by a millionth of the ranges at least");

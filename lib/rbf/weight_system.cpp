@@ -15,9 +15,9 @@ namespace krok::rbf::detail {
 namespace {
 
 constexpr double kRankTolerance = 1e-6;
-constexpr double kLeastPivot = 1e-13;    // relative to the diagonal
+constexpr double kMinPivot = 1e-13;      // relative to the diagonal
 constexpr double kGoodResidual = 3e-13;  // not worth another round of improvement
-constexpr int kMostImprovements = 3;
+constexpr int kMaxImprovements = 3;
 
 }  // namespace
 
@@ -98,7 +98,7 @@ void WeightSystem::less_planes(std::span<const double> values, std::size_t k,
 
 Status WeightSystem::add_centre(std::span<const double> point, std::span<const double> row,
                                 double radius) {
-  double place_values[kMostDimensions];
+  double place_values[kMaxDimensions];
   const auto place = std::span(place_values).first(d());
   f.scale(point, place);
   const std::size_t k = matrix.size();
@@ -117,7 +117,7 @@ Status WeightSystem::add_centre(std::span<const double> point, std::span<const d
   }
   const double corner = matrix.kappa(k, k);
   others.push_back(k);
-  if (corner == 0 || !factors.append(in_row, in_column, corner, kLeastPivot * std::abs(corner))) {
+  if (corner == 0 || !factors.append(in_row, in_column, corner, kMinPivot * std::abs(corner))) {
     return Error(
         "rbf-conditioning",
         fmt::format("the weights at {} depend too much on those around", place_text(point)),
@@ -209,7 +209,7 @@ Status WeightSystem::solve() {
   add_solution(forward, wanted);
   std::vector<double> left(wanted.size()), before_affine, before_coefficients;
   residual = find_residual(left);
-  for (int i = 0; i < kMostImprovements && residual > kGoodResidual; ++i) {
+  for (int i = 0; i < kMaxImprovements && residual > kGoodResidual; ++i) {
     before_affine = f.affine;
     before_coefficients = f.coefficients;
     std::vector<double> below(others.size() * n());
@@ -270,7 +270,7 @@ double WeightSystem::condition() const {
 // kappa and u the wanted weights less the planes through the base: rows that are inserted stand in
 // u as they are.
 void WeightSystem::influences(std::span<const double> point, std::span<double> of_rows) const {
-  double place_values[kMostDimensions];
+  double place_values[kMaxDimensions];
   const auto place = std::span(place_values).first(d());
   f.scale(point, place);
   std::vector<double> values(others.size());

@@ -10,8 +10,8 @@ namespace krok::render {
 
 namespace {
 
-constexpr int kMostPixelsAcross = 30'000;
-constexpr double kMostPixels = 100e6;
+constexpr int kMaxPixelsAcross = 30'000;
+constexpr double kMaxPixels = 100e6;
 constexpr double kHeightLines = 44;  // pixels from one to the next, at least
 
 // What cells show, in metres to the right of and above their centres.
@@ -56,10 +56,10 @@ Window window_of(const SheetRow& row, const SheetCell& cell) {
     window.add(at + reach);
   };
   for (const SheetCell::Layer& layer : cell.layers) {
-    for (const Surface& surface : layer.figure->surfaces) {
+    for (const Surface& surface : layer.actor->surfaces) {
       for (const Vec3f& point : surface.positions) window.add(plane.at(point.cast<double>()));
     }
-    for (const Bone& bone : layer.figure->bones) {
+    for (const Bone& bone : layer.actor->bones) {
       add_ball(bone.from, bone.from_radius);
       add_ball(bone.to, bone.to_radius);
     }
@@ -69,7 +69,7 @@ Window window_of(const SheetRow& row, const SheetCell& cell) {
 }
 
 // A row's window, with the ground where that is near enough.
-Window window_of(const SheetRow& row, RowPlace& place) {
+Window window_of(const SheetRow& row, RowLayout& place) {
   Window window;
   for (const SheetCell& cell : row.cells) {
     window.add(window_of(row, cell));
@@ -120,7 +120,7 @@ double round_step(double least) {
 }
 
 Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options) {
-  if (Status good = check_options(sheet, options); !good) return good.error();
+  if (Status status = check_options(sheet, options); !status) return status.error();
   Layout layout;
   layout.rows.resize(sheet.rows.size());
   std::vector<Window> windows;
@@ -152,17 +152,16 @@ Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options) {
   double y = kMargin;
   for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
     const SheetRow& row = sheet.rows[r];
-    RowPlace& place = layout.rows[r];
+    RowLayout& place = layout.rows[r];
     const Window& window = windows[r];
     const double high = (window.high.y() - window.low.y()) * per_metre;
     const double bottom = y + kHeader + std::ceil(high) + 2 * kAir + kGroundBand;
-    if (wide > kMostPixelsAcross || bottom > kMostPixelsAcross || wide * bottom > kMostPixels) {
-      return Error(
-          "sheet-size",
-          fmt::format("the picture would be {:.0f} pixels wide and {:.0f} high or more; "
-                      "at most {} million pixels and {} in one direction are made",
-                      wide, bottom, static_cast<int>(kMostPixels / 1e6), kMostPixelsAcross),
-          "take a smaller size, or fewer moments, sides or files");
+    if (wide > kMaxPixelsAcross || bottom > kMaxPixelsAcross || wide * bottom > kMaxPixels) {
+      return Error("sheet-size",
+                   fmt::format("the picture would be {:.0f} pixels wide and {:.0f} high or more; "
+                               "at most {} million pixels and {} in one direction are made",
+                               wide, bottom, static_cast<int>(kMaxPixels / 1e6), kMaxPixelsAcross),
+                   "take a smaller size, or fewer moments, sides or files");
     }
     place.header = static_cast<int>(y);
     place.top = place.header + (row.title.empty() && row.note.empty() ? 0 : kHeader);
@@ -172,7 +171,7 @@ Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options) {
     place.low = (place.ground - place.bottom) / per_metre;
     place.high = (place.ground - place.top) / per_metre;
     for (std::size_t c = 0; c < row.cells.size(); ++c) {
-      CellPlace cell;
+      CellLayout cell;
       cell.row = static_cast<int>(r);
       cell.column = static_cast<int>(c);
       cell.left = kMargin + kGutter + static_cast<int>(c) * layout.cell_width;

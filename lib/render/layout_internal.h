@@ -22,7 +22,7 @@ inline constexpr double kTitleSize = 14, kTextSize = 12, kSmallSize = 11;
 // Above this the ground is seen from above.
 inline constexpr double kRaised = 2 * kRadiansPerDegree;
 
-struct RowPlace {
+struct RowLayout {
   int header = 0;           // the upper edge of its title
   int top = 0, bottom = 0;  // of its cells
   double ground = 0;        // the pixel line of y = 0 through the cells' centres
@@ -37,8 +37,8 @@ struct Layout {
   double pixels_per_metre = 0;
   double height_step = 0;
   int cell_width = 0;
-  std::vector<RowPlace> rows;
-  std::vector<CellPlace> cells;
+  std::vector<RowLayout> rows;
+  std::vector<CellLayout> cells;
   int key_top = 0;
 };
 

@@ -19,7 +19,7 @@ constexpr float kShadowReach = 0.35F;  // the same for the ground
 constexpr float kShadow = 0.55F;
 
 // The rays that one of a pixel's samples follows; all samples together follow all.
-TracedFigure::Rays rays_of(int sample, int directions) {
+TracedActor::Rays rays_of(int sample, int directions) {
   const int count = directions / kSamples;
   return {directions, sample * count, count};
 }
@@ -70,7 +70,7 @@ class ViewPainter {
         up_(view.camera.up()),
         towards_(view.camera.towards()),
         step_(1 / (kAcross * view.camera.pixels_per_metre)) {
-    for (const View::Layer& layer : view.layers) reaches_.push_back(reach_of(*layer.figure));
+    for (const View::Layer& layer : view.layers) reaches_.push_back(reach_of(*layer.actor));
   }
 
   void paint(int left, int top, int right, int bottom, Image& image) const {
@@ -96,10 +96,10 @@ class ViewPainter {
   };
 
   // The pixels that a figure and its shadow may lie on.
-  Box reach_of(const TracedFigure& figure) const {
-    Bounds box = figure.box();
+  Box reach_of(const TracedActor& actor) const {
+    Bounds box = actor.box();
     if (view_.shadows) {
-      const double reach = static_cast<double>(kShadowReach) * figure.unit();
+      const double reach = static_cast<double>(kShadowReach) * actor.unit();
       box.low -= Vec3(reach, 0, reach);
       box.high += Vec3(reach, 0, reach);
       box.low.y() = std::min(box.low.y(), 0.0);
@@ -142,11 +142,11 @@ class ViewPainter {
     for (const std::size_t i : near) {
       const View::Layer& layer = view_.layers[i];
       const auto hit =
-          layer.figure->look({point, towards_, Vec3(step_ * right_), Vec3(-step_ * up_)});
+          layer.actor->look({point, towards_, Vec3(step_ * right_), Vec3(-step_ * up_)});
       if (!hit) continue;
       const float occlusion =
-          layer.figure->occlusion(hit->point, hit->normal, rays_of(sample, 18), kReach);
-      const double depth = hit->depth + (layer.figure->middle() - camera.target).dot(towards_);
+          layer.actor->occlusion(hit->point, hit->normal, rays_of(sample, 18), kReach);
+      const double depth = hit->depth + (layer.actor->middle() - camera.target).dot(towards_);
       seen.push_back({layer.behind ? -std::numeric_limits<double>::infinity() : depth,
                       layer.opacity, lights_.shaded(*hit, occlusion)});
     }
@@ -164,9 +164,9 @@ class ViewPainter {
     const Vec3 on_ground = point - point.y() / towards_.y() * towards_;
     float open = 1;
     for (const std::size_t i : near) {
-      const TracedFigure& figure = *view_.layers[i].figure;
-      const float occlusion = figure.occlusion(figure.local(on_ground), Vec3f::UnitY(),
-                                               rays_of(sample, 54), kShadowReach);
+      const TracedActor& actor = *view_.layers[i].actor;
+      const float occlusion = actor.occlusion(actor.local(on_ground), Vec3f::UnitY(),
+                                              rays_of(sample, 54), kShadowReach);
       open *= 1 - kShadow * view_.layers[i].opacity * occlusion;
     }
     light *= open;

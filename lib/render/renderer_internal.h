@@ -14,7 +14,7 @@ namespace krok::render {
 // One look at some figures.
 struct View {
   struct Layer {
-    const TracedFigure* figure = nullptr;
+    const TracedActor* actor = nullptr;
     float opacity = 1;    // of its whole silhouette
     bool behind = false;  // behind the others wherever it is
   };

@@ -26,7 +26,7 @@ constexpr Colour kInk = colour(0x1B1F24);
 constexpr Colour kSoft = colour(0x5B6570);
 constexpr Colour kAccent = colour(0xC2251C);
 
-Box box_of(const CellPlace& cell) {
+Box box_of(const CellLayout& cell) {
   return {Vec2(cell.left, cell.top), Vec2(cell.right, cell.bottom)};
 }
 
@@ -40,7 +40,7 @@ class SheetPainter {
     for (std::size_t r = 0; r < sheet_.rows.size(); ++r) {
       if (!sheet_.rows[r].cells.empty()) paint_row(sheet_.rows[r], layout_.rows[r]);
     }
-    for (const CellPlace& cell : layout_.cells) {
+    for (const CellLayout& cell : layout_.cells) {
       const SheetRow& row = sheet_.rows[static_cast<std::size_t>(cell.row)];
       if (row.elevation > kRaised) paint_grid(cell);
       paint_path(content(cell).path, cell);
@@ -49,7 +49,7 @@ class SheetPainter {
 
   // What is before the figures.
   void paint_words() {
-    for (const CellPlace& cell : layout_.cells) {
+    for (const CellLayout& cell : layout_.cells) {
       const bool raised = sheet_.rows[static_cast<std::size_t>(cell.row)].elevation > kRaised;
       // Looks at different grounds are kept apart.
       if (raised && cell.column > 0) {
@@ -59,17 +59,17 @@ class SheetPainter {
     for (std::size_t r = 0; r < sheet_.rows.size(); ++r) {
       paint_header(sheet_.rows[r], layout_.rows[r]);
     }
-    for (const CellPlace& cell : layout_.cells) paint_labels(cell);
+    for (const CellLayout& cell : layout_.cells) paint_labels(cell);
     if (sheet_.key) paint_key(*sheet_.key);
   }
 
  private:
-  const SheetCell& content(const CellPlace& cell) const {
+  const SheetCell& content(const CellLayout& cell) const {
     return sheet_.rows[static_cast<std::size_t>(cell.row)]
         .cells[static_cast<std::size_t>(cell.column)];
   }
 
-  void paint_row(const SheetRow& row, const RowPlace& place) {
+  void paint_row(const SheetRow& row, const RowLayout& place) {
     const double left = kMargin + kGutter;
     const double right =
         left + static_cast<double>(row.cells.size()) * static_cast<double>(layout_.cell_width);
@@ -92,7 +92,7 @@ class SheetPainter {
   }
 
   // Lines on the ground as far apart as those of equal height, fainter away from the centre.
-  void paint_grid(const CellPlace& cell) {
+  void paint_grid(const CellLayout& cell) {
     const Camera& camera = cell.camera;
     const double step = layout_.height_step;
     const double reach =
@@ -120,7 +120,7 @@ class SheetPainter {
     lines(2, 0);
   }
 
-  void paint_path(const std::vector<Vec3>& path, const CellPlace& cell) {
+  void paint_path(const std::vector<Vec3>& path, const CellLayout& cell) {
     // In steps of some pixels, for where pieces overlap a line is darker.
     constexpr double kStep = 4;
     std::vector<Vec2> line;
@@ -133,7 +133,7 @@ class SheetPainter {
     }
   }
 
-  void paint_header(const SheetRow& row, const RowPlace& place) {
+  void paint_header(const SheetRow& row, const RowLayout& place) {
     const double line = place.header + 16;
     const double right = layout_.width - kMargin;
     double x = kMargin + kGutter;
@@ -149,7 +149,7 @@ class SheetPainter {
     text_.draw(image_, {x, line}, text_.fitted(note, kTextSize, right - x), kTextSize, kSoft);
   }
 
-  void paint_labels(const CellPlace& cell) {
+  void paint_labels(const CellLayout& cell) {
     const SheetCell& what = content(cell);
     const double middle = 0.5 * (cell.left + cell.right);
     const double most = cell.right - cell.left - 4;
@@ -209,23 +209,23 @@ Colour ColourKey::at(double value) const {
   return share < 0.5 ? mixed(kSmall, kMiddle, 2 * share) : mixed(kMiddle, kLarge, 2 * share - 1);
 }
 
-Result<SheetPicture> make_sheet(const Sheet& sheet, const SheetOptions& options) {
+Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
   // Each figure once, however many cells show it.
-  std::map<const Figure*, std::size_t> places;
-  std::vector<const Figure*> figures;
+  std::map<const Actor*, std::size_t> places;
+  std::vector<const Actor*> actors;
   for (const SheetRow& row : sheet.rows) {
     for (const SheetCell& cell : row.cells) {
       for (const SheetCell::Layer& layer : cell.layers) {
-        if (places.emplace(layer.figure, figures.size()).second) figures.push_back(layer.figure);
+        if (places.emplace(layer.actor, actors.size()).second) actors.push_back(layer.actor);
       }
     }
   }
   const auto tracer = Tracer::create();
   if (!tracer) return tracer.error();
-  std::vector<TracedFigure> traced;
-  traced.reserve(figures.size());
-  for (const Figure* figure : figures) {
-    auto ready = tracer->add(*figure);
+  std::vector<TracedActor> traced;
+  traced.reserve(actors.size());
+  for (const Actor* actor : actors) {
+    auto ready = tracer->add(*actor);
     if (!ready) return ready.error();
     traced.push_back(std::move(*ready));
   }
@@ -234,28 +234,28 @@ Result<SheetPicture> make_sheet(const Sheet& sheet, const SheetOptions& options)
   auto text = TextPainter::create();
   if (!text) return text.error();
 
-  SheetPicture picture;
-  picture.image = Image(layout->width, layout->height, kPaper);
-  SheetPainter painter(sheet, *layout, *text, picture.image);
+  SheetImage image;
+  image.image = Image(layout->width, layout->height, kPaper);
+  SheetPainter painter(sheet, *layout, *text, image.image);
   painter.paint_behind();
   std::vector<View> views;
-  for (const CellPlace& place : layout->cells) {
+  for (const CellLayout& place : layout->cells) {
     const SheetRow& row = sheet.rows[static_cast<std::size_t>(place.row)];
     const SheetCell& cell = row.cells[static_cast<std::size_t>(place.column)];
     View view{place.camera, place.left, place.top, place.right, place.bottom, {}, false};
     view.shadows = row.elevation > kRaised;
     for (const SheetCell::Layer& layer : cell.layers) {
       view.layers.push_back(
-          {&traced[places.at(layer.figure)], static_cast<float>(layer.opacity), layer.behind});
+          {&traced[places.at(layer.actor)], static_cast<float>(layer.opacity), layer.behind});
     }
     views.push_back(std::move(view));
   }
-  render(views, picture.image, options.jobs);
+  render(views, image.image, options.jobs);
   painter.paint_words();
-  picture.cells = std::move(layout->cells);
-  picture.pixels_per_metre = layout->pixels_per_metre;
-  picture.height_step = layout->height_step;
-  return picture;
+  image.cells = std::move(layout->cells);
+  image.pixels_per_metre = layout->pixels_per_metre;
+  image.height_step = layout->height_step;
+  return image;
 }
 
 }  // namespace krok::render

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/result.h"
+#include "render/actor.h"
 #include "render/camera.h"
-#include "render/figure.h"
 #include "render/image.h"
 
 // Contact sheets: figures at several moments in rows and columns, all at one scale, with the
@@ -27,7 +27,7 @@ struct ColourKey {
 
 struct SheetCell {
   struct Layer {
-    const Figure* figure = nullptr;
+    const Actor* actor = nullptr;
     double opacity = 1;   // of its silhouette, 0 .. 1
     bool behind = false;  // behind the others wherever it stands
   };
@@ -63,17 +63,17 @@ struct SheetOptions {
 };
 
 // Where a cell is in the picture, and the camera that shows what is in it.
-struct CellPlace {
+struct CellLayout {
   int row = 0, column = 0;
   Camera camera;
   int left = 0, top = 0, right = 0, bottom = 0;  // pixels, right and bottom beyond the last
 };
 
-struct SheetPicture {
+struct SheetImage {
   Image image;
-  std::vector<CellPlace> cells;  // row by row
-  double pixels_per_metre = 0;   // of all cells
-  double height_step = 0;        // metres from one line of equal height to the next
+  std::vector<CellLayout> cells;  // row by row
+  double pixels_per_metre = 0;    // of all cells
+  double height_step = 0;         // metres from one line of equal height to the next
 };
 
 // With the camera level the ground is a line and heights can be read off; raised by more than two
@@ -82,6 +82,6 @@ struct SheetPicture {
 //
 // Codes: sheet-empty for a sheet without a cell; sheet-size for options out of range or a picture
 // of more than 100 million pixels or 30,000 in one direction; those of check(Figure).
-Result<SheetPicture> make_sheet(const Sheet& sheet, const SheetOptions& options = {});
+Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options = {});
 
 }  // namespace krok::render

@@ -12,7 +12,7 @@ namespace krok::render {
 
 struct Strip {
   struct Moment {
-    const Figure* figure = nullptr;  // must outlive what is made of the strip
+    const Actor* actor = nullptr;  // must outlive what is made of the strip
     std::string label;
   };
   std::string title, note;
@@ -28,8 +28,8 @@ enum class Spread : unsigned char {
 };
 
 struct StripCells {
-  SheetRow row;               // one cell
-  std::vector<Figure> moved;  // figures that stand elsewhere than in the strip; the row uses them
+  SheetRow row;              // one cell
+  std::vector<Actor> moved;  // figures that stand elsewhere than in the strip; the row uses them
   bool spread_by_time = false;
 };
 

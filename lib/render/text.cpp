@@ -32,8 +32,8 @@ std::vector<char32_t> characters(const std::string& text) {
 }
 
 constexpr char32_t kEllipsis = 0x2026;
-constexpr double kMaxPixels = 1e6;  // pixels; beyond it is no picture
-constexpr double kFixed = 64.0;     // FreeType counts in 1/64 pixels
+constexpr double kMaxCoordinate = 1e6;  // pixels
+constexpr double kFixed = 64.0;         // FreeType counts in 1/64 pixels
 
 }  // namespace
 
@@ -93,7 +93,7 @@ double TextPainter::width(std::string_view text, double size) {
 
 void TextPainter::draw(Image& image, const Vec2& place, std::string_view text, double size,
                        Colour colour, Align align) {
-  if (!(place.cwiseAbs().maxCoeff() < kMaxPixels)) return;
+  if (!(place.cwiseAbs().maxCoeff() < kMaxCoordinate)) return;
   face_->set_size(size);
   const auto letters = characters(to_utf8(text));
   double x = place.x();

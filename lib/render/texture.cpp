@@ -107,7 +107,7 @@ class Sampler {
   explicit Sampler(const Paint& paint) : paint_(paint) {}
 
   Vec4f at(const Vec2f& place, double level) const {
-    const auto& levels = paint_.picture->levels();
+    const auto& levels = paint_.image->levels();
     const double u = wrapped(place.x(), paint_.wrap_u), v = wrapped(place.y(), paint_.wrap_v);
     if (!(level > 0)) return paint_.smooth ? smooth(levels[0], u, v) : nearest(levels[0], u, v);
     const double last = static_cast<double>(levels.size() - 1);
@@ -154,7 +154,7 @@ Result<Mipmap> Mipmap::create(int width, int height, std::vector<std::uint8_t> r
 }
 
 Vec4f Paint::at(const Vec2f& place, const Vec2f& across, const Vec2f& down) const {
-  const Mipmap::Level& whole = picture->levels()[0];
+  const Mipmap::Level& whole = image->levels()[0];
   const Vec2f size(static_cast<float>(whole.width), static_cast<float>(whole.height));
   const double first = static_cast<double>(across.cwiseProduct(size).norm());
   const double second = static_cast<double>(down.cwiseProduct(size).norm());
@@ -162,10 +162,10 @@ Vec4f Paint::at(const Vec2f& place, const Vec2f& across, const Vec2f& down) cons
   double longer = wider ? first : second, shorter = wider ? second : first;
   // A surface seen edge on has no way that can be told: all of the picture.
   if (!std::isfinite(longer + shorter)) longer = shorter = 1e9;
-  shorter = std::max(shorter, longer / kMostProbes);
+  shorter = std::max(shorter, longer / kMaxProbes);
   const double level = shorter > 1 ? std::log2(shorter) : 0.0;
   const int probes =
-      std::clamp(static_cast<int>(std::ceil(longer / std::max(shorter, 1.0))), 1, kMostProbes);
+      std::clamp(static_cast<int>(std::ceil(longer / std::max(shorter, 1.0))), 1, kMaxProbes);
   const Sampler sampler(*this);
   if (probes == 1) return factor.cwiseProduct(sampler.at(place, level));
   const Vec2f& way = wider ? across : down;

@@ -36,7 +36,7 @@ class Mipmap {
 
 // What a surface shows of a picture. Light is linear.
 struct Paint {
-  std::shared_ptr<const Mipmap> picture;  // not null; several paints may share one
+  std::shared_ptr<const Mipmap> image;  // not null; several paints may share one
   // [vertices of the surface], u to the right and v down, the picture from 0 to 1; shared by the
   // moments of a figure.
   std::shared_ptr<const std::vector<Vec2f>> coordinates;
@@ -59,7 +59,7 @@ struct Paint {
   // The alpha alone, of the picture as it is: cut-outs of averages would vanish from afar.
   float alpha_at(const Vec2f& place) const;
 
-  static constexpr int kMostProbes = 8;
+  static constexpr int kMaxProbes = 8;
 };
 
 }  // namespace krok::render

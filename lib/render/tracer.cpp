@@ -60,7 +60,7 @@ struct Tracer::Device {
   }
 };
 
-struct TracedFigure::Scene {
+struct TracedActor::Scene {
   RTCScene scene = nullptr;
   // Which bones are bars and which are balls, in the order that Embree has them.
   std::vector<std::size_t> bars, balls;
@@ -98,7 +98,7 @@ Vec2f coordinates_at(const Surface& surface, std::size_t triangle, const Vec3f& 
          shares[2] * coordinates[corners[2]];
 }
 
-RTCGeometry mesh(RTCDevice device, const Surface& surface, const TracedFigure& figure) {
+RTCGeometry mesh(RTCDevice device, const Surface& surface, const TracedActor& actor) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (surface.triangles->empty()) return geometry;
   auto* points = buffer<float>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
@@ -107,7 +107,7 @@ RTCGeometry mesh(RTCDevice device, const Surface& surface, const TracedFigure& f
                                         3 * sizeof(std::uint32_t), surface.triangles->size());
   if (points == nullptr || corners == nullptr) return geometry;
   for (const Vec3f& point : surface.positions) {
-    put(points, figure.local(point.cast<double>()));
+    put(points, actor.local(point.cast<double>()));
     points += 3;
   }
   for (const auto& triangle : *surface.triangles) {
@@ -160,9 +160,9 @@ RTCGeometry balls(RTCDevice device, std::span<const Curve> curves) {
 Tracer::Tracer(Tracer&&) noexcept = default;
 Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 Tracer::~Tracer() = default;
-TracedFigure::TracedFigure(TracedFigure&&) noexcept = default;
-TracedFigure& TracedFigure::operator=(TracedFigure&&) noexcept = default;
-TracedFigure::~TracedFigure() = default;
+TracedActor::TracedActor(TracedActor&&) noexcept = default;
+TracedActor& TracedActor::operator=(TracedActor&&) noexcept = default;
+TracedActor::~TracedActor() = default;
 
 Result<Tracer> Tracer::create() {
   Tracer tracer;
@@ -174,20 +174,20 @@ Result<Tracer> Tracer::create() {
   return tracer;
 }
 
-Result<TracedFigure> Tracer::add(const Figure& figure) const {
-  if (Status good = check(figure); !good) return good.error();
-  TracedFigure traced;
-  traced.figure_ = &figure;
-  traced.box_ = bounds(figure);
+Result<TracedActor> Tracer::add(const Actor& actor) const {
+  if (Status status = check(actor); !status) return status.error();
+  TracedActor traced;
+  traced.actor_ = &actor;
+  traced.box_ = bounds(actor);
   traced.middle_ = 0.5 * (traced.box_.low + traced.box_.high);
   traced.unit_ = std::max(traced.box_.extent(), 1e-30);
 
   const RTCDevice device = device_->device;
-  traced.scene_ = std::make_unique<TracedFigure::Scene>();
-  TracedFigure::Scene& scene = *traced.scene_;
+  traced.scene_ = std::make_unique<TracedActor::Scene>();
+  TracedActor::Scene& scene = *traced.scene_;
   scene.scene = rtcNewScene(device);
   rtcSetSceneFlags(scene.scene, RTC_SCENE_FLAG_ROBUST);
-  for (const Surface& surface : figure.surfaces) {
+  for (const Surface& surface : actor.surfaces) {
     const RTCGeometry geometry = mesh(device, surface, traced);
     if (surface.paint != nullptr && surface.paint->cutoff > 0) {
       rtcSetGeometryUserData(geometry, const_cast<Surface*>(&surface));
@@ -199,8 +199,8 @@ Result<TracedFigure> Tracer::add(const Figure& figure) const {
 
   std::vector<Curve> bar_curves;
   std::vector<Curve> ball_curves;
-  for (std::size_t i = 0; i < figure.bones.size(); ++i) {
-    const Bone& bone = figure.bones[i];
+  for (std::size_t i = 0; i < actor.bones.size(); ++i) {
+    const Bone& bone = actor.bones[i];
     const auto unit = static_cast<float>(traced.unit_);
     const Curve curve{traced.local(bone.from.cast<double>()), traced.local(bone.to.cast<double>()),
                       bone.from_radius / unit, bone.to_radius / unit};
@@ -218,8 +218,8 @@ Result<TracedFigure> Tracer::add(const Figure& figure) const {
 
 // How far the shares of a triangle's corners go from one line of sight to the next decides how much
 // of the picture lies between them.
-Light TracedFigure::painted(const Surface& surface, std::size_t triangle, const Vec3f& shares,
-                            const Sight& sight) const {
+Light TracedActor::painted(const Surface& surface, std::size_t triangle, const Vec3f& shares,
+                           const Sight& sight) const {
   const auto& corners = (*surface.triangles)[triangle];
   const Vec3f origin = local(surface.positions[corners[0]].cast<double>());
   const Vec3f first = local(surface.positions[corners[1]].cast<double>()) - origin;
@@ -241,17 +241,17 @@ Light TracedFigure::painted(const Surface& surface, std::size_t triangle, const 
   return surface.paint->at(place, way(sight.right), way(sight.down)).head<3>();
 }
 
-Vec3f TracedFigure::normal_of(const void* ray_hit, const Sight& sight, Light& colour) const {
+Vec3f TracedActor::normal_of(const void* ray_hit, const Sight& sight, Light& colour) const {
   const RTCHit& hit = static_cast<const RTCRayHit*>(ray_hit)->hit;
   const Vec3f flat(hit.Ng_x, hit.Ng_y, hit.Ng_z);
   if (hit.geomID == scene_->bars_geometry || hit.geomID == scene_->balls_geometry) {
     const bool bar = hit.geomID == scene_->bars_geometry;
-    const Bone& bone = figure_->bones[(bar ? scene_->bars : scene_->balls)[hit.primID]];
+    const Bone& bone = actor_->bones[(bar ? scene_->bars : scene_->balls)[hit.primID]];
     const float along = bar ? std::clamp(hit.u, 0.0F, 1.0F) : 0.0F;
     colour = (1 - along) * to_light(bone.from_colour) + along * to_light(bone.to_colour);
     return flat;
   }
-  const Surface& surface = figure_->surfaces[hit.geomID];
+  const Surface& surface = actor_->surfaces[hit.geomID];
   const auto& corners = (*surface.triangles)[hit.primID];
   const std::array<float, 3> share = {1 - hit.u - hit.v, hit.u, hit.v};
   if (surface.paint != nullptr) {
@@ -269,7 +269,7 @@ Vec3f TracedFigure::normal_of(const void* ray_hit, const Sight& sight, Light& co
   return smooth.squaredNorm() > 1e-12F ? smooth : flat;
 }
 
-std::optional<Hit> TracedFigure::look(const Sight& sight) const {
+std::optional<Hit> TracedActor::look(const Sight& sight) const {
   const Vec3& towards = sight.towards;
   const Vec3 offset = (sight.point - middle_) / unit_;
   const Vec3 aside = offset - towards.dot(offset) * towards;
@@ -303,8 +303,8 @@ std::optional<Hit> TracedFigure::look(const Sight& sight) const {
   return hit;
 }
 
-float TracedFigure::occlusion(const Vec3f& point, const Vec3f& normal, const Rays& rays,
-                              float reach) const {
+float TracedActor::occlusion(const Vec3f& point, const Vec3f& normal, const Rays& rays,
+                             float reach) const {
   if (!(point.norm() <= static_cast<float>(kMaxDistance) + reach)) return 0;
   // Two directions across the normal. Source: Duff et al., Building an Orthonormal Basis, Revisited
   // (JCGT 6(1), 2017).

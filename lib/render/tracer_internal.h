@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/result.h"
-#include "render/figure.h"
+#include "render/actor.h"
 
 // Figures made ready for rays, by Intel Embree.
 
@@ -31,11 +31,11 @@ class Tracer;
 
 // A figure in a box of its own, the middle in the origin and about one unit wide, so that neither
 // very large and small figures nor far ones lose digits. The figure must outlive it.
-class TracedFigure {
+class TracedActor {
  public:
-  TracedFigure(TracedFigure&&) noexcept;
-  TracedFigure& operator=(TracedFigure&&) noexcept;
-  ~TracedFigure();
+  TracedActor(TracedActor&&) noexcept;
+  TracedActor& operator=(TracedActor&&) noexcept;
+  ~TracedActor();
 
   const Bounds& box() const { return box_; }
   const Vec3& middle() const { return middle_; }
@@ -60,12 +60,12 @@ class TracedFigure {
  private:
   friend class Tracer;
   struct Scene;
-  TracedFigure() = default;
+  TracedActor() = default;
   Vec3f normal_of(const void* ray_hit, const Sight& sight, Light& colour) const;
   Light painted(const Surface& surface, std::size_t triangle, const Vec3f& shares,
                 const Sight& sight) const;
 
-  const Figure* figure_ = nullptr;
+  const Actor* actor_ = nullptr;
   Bounds box_;
   Vec3 middle_ = Vec3::Zero();
   double unit_ = 1;
@@ -82,7 +82,7 @@ class Tracer {
   ~Tracer();
 
   // Codes: those of check(Figure); render-memory.
-  Result<TracedFigure> add(const Figure& figure) const;
+  Result<TracedActor> add(const Actor& actor) const;
 
  private:
   struct Device;

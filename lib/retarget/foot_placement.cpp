@@ -8,7 +8,7 @@
 #include "core/index.h"
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
-#include "retarget/figure_measure_internal.h"
+#include "retarget/actor_measure_internal.h"
 
 namespace krok::retarget {
 
@@ -34,8 +34,8 @@ double elevation(const Vec3& v) {
 }  // namespace
 
 int softening_reach(double rate) {
-  constexpr double kMost = 256;  // what only rates of thousands of frames a second come to
-  return static_cast<int>(std::lround(std::min(0.12 * rate, kMost)));
+  constexpr double kMax = 256;  // what only rates of thousands of frames a second come to
+  return static_cast<int>(std::lround(std::min(0.12 * rate, kMax)));
 }
 
 std::vector<double> softened(const std::vector<double>& values, int reach) {
@@ -63,20 +63,20 @@ std::vector<double> softened(const std::vector<double>& values, int reach) {
   return result;
 }
 
-double lowest_of_foot(const Figure& figure, Role foot) {
+double lowest_of_foot(const Actor& actor, Role foot) {
   double lowest = std::numeric_limits<double>::max();
-  for (const int joint : subtree(figure.skeleton, figure.roles.joint(foot))) {
-    lowest = std::min(lowest, figure.pose[at(joint)].position.y());
+  for (const int joint : subtree(actor.skeleton, actor.roles.joint(foot))) {
+    lowest = std::min(lowest, actor.pose[at(joint)].position.y());
   }
   return lowest;
 }
 
-double ankle_over_floor(const Figure& figure, Role foot, const Floor& floor) {
-  const double ankle = figure.pose[at(figure.roles.joint(foot))].position.y();
-  return ankle - lowest_of_foot(figure, foot) + floor.sole;
+double ankle_over_floor(const Actor& actor, Role foot, const Floor& floor) {
+  const double ankle = actor.pose[at(actor.roles.joint(foot))].position.y();
+  return ankle - lowest_of_foot(actor, foot) + floor.sole;
 }
 
-double standing_height(const Clip& clip, const Figure& stance) {
+double standing_height(const Clip& clip, const Actor& stance) {
   if (clip.frame_count() == 0) return 0;
   std::vector<std::pair<int, float>> heights;  // joints of the feet, over the lowest of the foot
   for (const Role foot : {Role::left_foot, Role::right_foot}) {
@@ -99,16 +99,16 @@ double standing_height(const Clip& clip, const Figure& stance) {
   return *place;
 }
 
-std::vector<LegPlacement::Point> LegPlacement::points_of_foot(const Figure& figure, int ankle,
+std::vector<LegPlacement::Point> LegPlacement::points_of_foot(const Actor& actor, int ankle,
                                                               double floor) {
   std::vector<Point> points;
-  for (const int joint : subtree(figure.skeleton, ankle)) {
-    points.push_back({joint, figure.pose[at(joint)].position.y() - floor});
+  for (const int joint : subtree(actor.skeleton, ankle)) {
+    points.push_back({joint, actor.pose[at(joint)].position.y() - floor});
   }
   return points;
 }
 
-std::optional<LegPlacement> LegPlacement::create(const Figure& source, const Figure& target,
+std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Actor& target,
                                                  std::span<const Quat> turns, double scale,
                                                  const Floor& source_floor,
                                                  const Floor& target_floor, bool is_left) {
@@ -159,12 +159,12 @@ std::optional<LegPlacement> LegPlacement::create(const Figure& source, const Fig
   return leg;
 }
 
-void LegPlacement::find_soles(const Figure& source, const Figure& target, const Quat& turn,
+void LegPlacement::find_soles(const Actor& source, const Actor& target, const Quat& turn,
                               Role foot) {
-  const auto reach = [&](const Figure& figure, int front) {
-    const int ankle = figure.roles.joint(foot);
+  const auto reach = [&](const Actor& actor, int front) {
+    const int ankle = actor.roles.joint(foot);
     return front < 0 ? Vec3(Vec3::Zero())
-                     : flat(figure.pose[at(front)].position - figure.pose[at(ankle)].position);
+                     : flat(actor.pose[at(front)].position - actor.pose[at(ankle)].position);
   };
   // How far ahead of the ankle the ball is: at the toes, or by the other figure's, or a part of the
   // way to the tip.

@@ -27,15 +27,15 @@ struct Floor {
 
 // The height of the lowest joint of a foot in a pose, end sites included. The figure must have the
 // foot.
-double lowest_of_foot(const Figure& figure, Role foot);
+double lowest_of_foot(const Actor& actor, Role foot);
 
 // The height of the ankle over the floor in a pose in which the foot stands.
-double ankle_over_floor(const Figure& figure, Role foot, const Floor& floor);
+double ankle_over_floor(const Actor& actor, Role foot, const Floor& floor);
 
 // The height that the lowest joints of the feet stand at in a motion: of all frames' lowest ones,
 // each against its height in the foot as it stands in `stance`, the twentieth from below in a
 // hundred. 0 for a clip without frames.
-double standing_height(const Clip& clip, const Figure& stance);
+double standing_height(const Clip& clip, const Actor& stance);
 
 // The frames of 0.12 s at `rate` frames a second, at most 256.
 int softening_reach(double rate);
@@ -49,7 +49,7 @@ class LegPlacement {
  public:
   // `turns` is the alignment of the target's reference pose, `scale` lengths of the target over
   // those of the source. Nothing where a figure lacks a joint of this leg.
-  static std::optional<LegPlacement> create(const Figure& source, const Figure& target,
+  static std::optional<LegPlacement> create(const Actor& source, const Actor& target,
                                             std::span<const Quat> turns, double scale,
                                             const Floor& source_floor, const Floor& target_floor,
                                             bool is_left);
@@ -81,7 +81,7 @@ class LegPlacement {
     int joint = -1;
     double height = 0;
   };
-  static std::vector<Point> points_of_foot(const Figure& figure, int ankle, double floor);
+  static std::vector<Point> points_of_foot(const Actor& actor, int ankle, double floor);
 
   // A point of the sole on the floor below, as seen from the ankles in their frames.
   struct Sole {
@@ -89,7 +89,7 @@ class LegPlacement {
     Vec3 target = Vec3::Zero();
     double longer = 0;  // how much further ahead the target's is than the source's, scaled
   };
-  void find_soles(const Figure& source, const Figure& target, const Quat& turn, Role foot);
+  void find_soles(const Actor& source, const Actor& target, const Quat& turn, Role foot);
 
   Vec3 goal_of(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
                double standing) const;

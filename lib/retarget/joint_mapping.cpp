@@ -124,7 +124,7 @@ class RoleMapper {
     if (palm != to) mapping_[at(palm)].first = from;
     if (!with_fingers) return;
     for (const int joint : target_roles_.joints(fingers)) {
-      const FingerPlace place = target_roles_.fingers[at(joint)];
+      const FingerJoint place = target_roles_.fingers[at(joint)];
       if (joint != palm && place.finger != Finger::none) {
         mapping_[at(joint)].first = finger_source(fingers, place);
       }
@@ -141,10 +141,10 @@ class RoleMapper {
     return false;
   }
 
-  int finger_source(Role fingers, FingerPlace place) const {
-    if (place.phalanx == FingerPlace::kTip) return -1;
+  int finger_source(Role fingers, FingerJoint place) const {
+    if (place.phalanx == FingerJoint::kTip) return -1;
     if (has_finger(fingers, place.finger)) return source_roles_.finger_joint(fingers, place);
-    if (place.finger == Finger::thumb || place.phalanx == FingerPlace::kMetacarpal) return -1;
+    if (place.finger == Finger::thumb || place.phalanx == FingerJoint::kMetacarpal) return -1;
     // The nearest finger that there is, the inner one of two, or the joint for all of them.
     constexpr std::array kFour = {Finger::index, Finger::middle, Finger::ring, Finger::little};
     const Finger wanted = place.finger == Finger::all ? Finger::middle : place.finger;

@@ -7,7 +7,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "retarget/figure_measure_internal.h"
+#include "retarget/actor_measure_internal.h"
 
 namespace krok::retarget {
 
@@ -63,12 +63,12 @@ constexpr std::array kLegs = {
 
 class View {
  public:
-  explicit View(const Figure& figure) : figure_(figure), children_(figure.skeleton.children()) {}
+  explicit View(const Actor& actor) : actor_(actor), children_(actor.skeleton.children()) {}
 
-  const RoleMap& roles() const { return figure_.roles; }
-  const Skeleton& skeleton() const { return figure_.skeleton; }
-  int joint(Role role) const { return figure_.roles.joint(role); }
-  Vec3 place(int joint) const { return figure_.pose[at(joint)].position; }
+  const RoleMap& roles() const { return actor_.roles; }
+  const Skeleton& skeleton() const { return actor_.skeleton; }
+  int joint(Role role) const { return actor_.roles.joint(role); }
+  Vec3 place(int joint) const { return actor_.pose[at(joint)].position; }
 
   // The unit direction between two joints, nothing where one is absent or they are in one place.
   std::optional<Vec3> direction(int from, int to) const {
@@ -123,7 +123,7 @@ class View {
 
   // The first joint of a finger beyond the palm, its metacarpal where it has no more.
   int knuckle(Role fingers, Finger finger) const {
-    for (const int phalanx : {1, FingerPlace::kMetacarpal}) {
+    for (const int phalanx : {1, FingerJoint::kMetacarpal}) {
       const int joint = roles().finger_joint(fingers, {finger, phalanx});
       if (joint >= 0) return joint;
     }
@@ -173,13 +173,13 @@ class View {
   }
 
  private:
-  const Figure& figure_;
+  const Actor& actor_;
   std::vector<std::vector<int>> children_;
 };
 
 class Aligner {
  public:
-  Aligner(const Figure& source, const Figure& target, const JointMapping& mapping)
+  Aligner(const Actor& source, const Actor& target, const JointMapping& mapping)
       : source_(source), target_(target), mapping_(mapping), turns_(mapping.size()) {
     set_.assign(mapping.size(), 0);
   }
@@ -377,12 +377,12 @@ Quat best_turn(const std::vector<Vec3>& from, const std::vector<Vec3>& to, const
 
 }  // namespace
 
-std::vector<Quat> align_by_roles(const Figure& source, const Figure& target,
+std::vector<Quat> align_by_roles(const Actor& source, const Actor& target,
                                  const JointMapping& mapping) {
   return Aligner(source, target, mapping).align();
 }
 
-std::vector<Quat> align_by_names(const Figure& source, const Figure& target,
+std::vector<Quat> align_by_names(const Actor& source, const Actor& target,
                                  const JointMapping& mapping) {
   const View from(target);
   const View to(source);

@@ -21,19 +21,19 @@
 namespace krok::retarget {
 
 // A pose and what its joints are.
-struct Figure {
+struct Actor {
   const Skeleton& skeleton;
   const RoleMap& roles;
   std::span<const Transform> pose;  // joint_to_world, shape [joints]
 };
 
 // Shape [target joints]; joints that are not mapped get their parent's turn.
-std::vector<Quat> align_by_roles(const Figure& source, const Figure& target,
+std::vector<Quat> align_by_roles(const Actor& source, const Actor& target,
                                  const JointMapping& mapping);
 
 // For figures mapped by names: each joint is turned so that the bones to its mapped children point
 // as the source's; by its parent's turn where it has none.
-std::vector<Quat> align_by_names(const Figure& source, const Figure& target,
+std::vector<Quat> align_by_names(const Actor& source, const Actor& target,
                                  const JointMapping& mapping);
 
 // The place that shows where a foot points: its first joint of the toes, or the end of the foot.

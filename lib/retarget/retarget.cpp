@@ -10,7 +10,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "math/quaternion.h"
-#include "retarget/figure_measure_internal.h"
+#include "retarget/actor_measure_internal.h"
 #include "retarget/foot_placement.h"
 #include "retarget/joint_mapping.h"
 #include "retarget/pose_alignment.h"
@@ -105,8 +105,8 @@ class Transfer {
     report_.target_frame = target_stance->frame;
     if (by_roles) {
       prepare_roles();
-    } else if (Status prepared = prepare_names(); !prepared) {
-      return prepared.error();
+    } else if (Status status = prepare_names(); !status) {
+      return status.error();
     }
     if (!(report_.scale > 0) || !std::isfinite(report_.scale)) {
       return Error("retarget-scale", "the lengths of the two skeletons give no scale",
@@ -133,8 +133,8 @@ class Transfer {
         fingers_never_move(source_, source_roles_, rest_, Role::right_hand, Role::right_fingers);
     mapping_ = map_by_roles(source_.skeleton, source_roles_, target_, target_roles_,
                             report_.left_fingers_at_rest, report_.right_fingers_at_rest);
-    const Figure from{source_.skeleton, source_roles_, rest_};
-    const Figure to{target_, target_roles_, target_rest_};
+    const Actor from{source_.skeleton, source_roles_, rest_};
+    const Actor to{target_, target_roles_, target_rest_};
     turns_ = align_by_roles(from, to, mapping_);
     report_.scale = options_.scale.value_or(leg_length(target_, target_roles_) /
                                             leg_length(source_.skeleton, source_roles_));
@@ -161,7 +161,7 @@ class Transfer {
 
   // How thick the target's soles are below the joints of its feet, where that is known: by its
   // mesh, or by how high its feet stand in its own motion.
-  std::optional<double> target_sole(const Figure& to) const {
+  std::optional<double> target_sole(const Actor& to) const {
     if (options_.target_floor) {
       return std::min(lowest_of_foot(to, Role::left_foot), lowest_of_foot(to, Role::right_foot)) -
              *options_.target_floor;
@@ -176,7 +176,7 @@ class Transfer {
     return height > -0.02 * leg && height < 0.08 * leg;
   }
 
-  void prepare_feet(const Figure& from, const Figure& to) {
+  void prepare_feet(const Actor& from, const Actor& to) {
     const double standing = standing_height(source_, from);
     const auto sole = target_sole(to);
     if (sole && is_sole(standing, leg_length(source_.skeleton, source_roles_))) {

@@ -8,13 +8,13 @@
 #include <limits>
 
 #include "math/quaternion.h"
-#include "retarget/figure_measure_internal.h"
+#include "retarget/actor_measure_internal.h"
 
 namespace krok::retarget {
 
 namespace {
 
-constexpr int kMostFrames = 2000;
+constexpr int kMaxFrames = 2000;
 
 struct Side {
   Role upper_arm, lower_arm, hand, upper_leg, lower_leg, foot;
@@ -27,18 +27,18 @@ constexpr std::array kSides = {
 
 class Posture {
  public:
-  explicit Posture(const Figure& figure) : figure_(figure) {}
+  explicit Posture(const Actor& actor) : actor_(actor) {}
 
   // The unit direction from one role's joint to another's; zero where one is absent.
   Vec3 bone(Role from, Role to) const {
-    const int a = figure_.roles.joint(from);
-    const int b = figure_.roles.joint(to);
+    const int a = actor_.roles.joint(from);
+    const int b = actor_.roles.joint(to);
     if (a < 0 || b < 0) return Vec3::Zero();
     return (place(b) - place(a)).stableNormalized();
   }
 
   double least_upright() const {
-    const Role top = figure_.roles.joint(Role::head) >= 0 ? Role::head : Role::neck;
+    const Role top = actor_.roles.joint(Role::head) >= 0 ? Role::head : Role::neck;
     double least = bone(Role::hips, top).y();
     for (const Side& side : kSides) {
       least = std::min(
@@ -50,7 +50,7 @@ class Posture {
   // How near the pose comes to standing with arms to the sides, feet side by side.
   double likeness() const {
     const Vec3 left = bone(Role::right_upper_leg, Role::left_upper_leg);
-    const Role top = figure_.roles.joint(Role::head) >= 0 ? Role::head : Role::neck;
+    const Role top = actor_.roles.joint(Role::head) >= 0 ? Role::head : Role::neck;
     double sum = bone(Role::hips, top).y();
     double outward = 1;
     for (const Side& side : kSides) {
@@ -65,9 +65,9 @@ class Posture {
 
  private:
   const Vec3& place(int joint) const {
-    return figure_.pose[static_cast<std::size_t>(joint)].position;
+    return actor_.pose[static_cast<std::size_t>(joint)].position;
   }
-  const Figure& figure_;
+  const Actor& actor_;
 };
 
 // Turns a joint and all that hangs on it about its own place.
@@ -139,8 +139,8 @@ class LegStraightener {
 
 }  // namespace
 
-bool stands(const Figure& figure) {
-  return Posture(figure).least_upright() > 0.5;
+bool stands(const Actor& actor) {
+  return Posture(actor).least_upright() > 0.5;
 }
 
 Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame) {
@@ -161,12 +161,12 @@ Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional
   if (!roles.humanoid || stands({clip.skeleton, roles, stance.pose})) return stance;
   std::vector<Transform> pose = stance.pose;
   double best = 0;
-  const int step = 1 + frames / kMostFrames;
+  const int step = 1 + frames / kMaxFrames;
   for (int f = 0; f < frames; f += step) {
     clip.get_pose(f, pose);
-    const Figure figure{clip.skeleton, roles, pose};
-    if (!stands(figure)) continue;
-    const double likeness = Posture(figure).likeness();
+    const Actor actor{clip.skeleton, roles, pose};
+    if (!stands(actor)) continue;
+    const double likeness = Posture(actor).likeness();
     if (stance.frame && likeness <= best) continue;
     best = likeness;
     stance.frame = f;

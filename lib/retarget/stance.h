@@ -17,7 +17,7 @@ struct Stance {
 
 // Whether a human figure stands in a pose: trunk, thighs and shanks within 60 degrees of upright.
 // Exporters whose bones all lie along one axis have reference poses that do not.
-bool stands(const Figure& figure);
+bool stands(const Actor& actor);
 
 // The reference pose of a clip's skeleton; where it does not stand, the frame that comes nearest to
 // a T-pose among up to 2,000 evenly spaced ones, if any stands, with its legs straightened and its

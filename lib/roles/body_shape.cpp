@@ -34,7 +34,7 @@ class ShapeFinder {
         if (!arms) continue;
         const int head = leading_on(chest, *arms);
         if (head < 0) break;
-        return name_figure(hips, *legs, chest, *arms, head);
+        return name_actor(hips, *legs, chest, *arms, head);
       }
     }
     return std::nullopt;
@@ -101,8 +101,8 @@ class ShapeFinder {
   }
 
   // The last three joints before the hand's own, or of the leg the first three that have a length.
-  std::optional<std::vector<JointName>> name_figure(int hips, const Pair& legs, int chest,
-                                                    const Pair& arms, int neck) const {
+  std::optional<std::vector<JointName>> name_actor(int hips, const Pair& legs, int chest,
+                                                   const Pair& arms, int neck) const {
     const auto leg = [&](const Chain& chain) {
       const bool short_first = chain.size() > 3 && (place(chain[1]) - place(chain[0])).norm() <
                                                        0.15 * reach_[at(chain.front())];

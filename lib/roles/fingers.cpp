@@ -127,19 +127,19 @@ class FingerFinder {
     }
   }
 
-  std::vector<FingerPlace> find() {
+  std::vector<FingerJoint> find() {
     name_counted_fingers();
     inherit();
-    std::vector<FingerPlace> places(joints_.size());
+    std::vector<FingerJoint> places(joints_.size());
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const Finger finger = names_[i].finger;
       if (finger == Finger::none) continue;
       const bool continues = above_[i] >= 0 && names_[at(above_[i])].finger == finger;
       int phalanx = 1;
       if (continues) {
-        phalanx = std::min(places[at(above_[i])].phalanx + 1, FingerPlace::kTip);
+        phalanx = std::min(places[at(above_[i])].phalanx + 1, FingerJoint::kTip);
       } else if (leads_to_knuckle(i)) {
-        phalanx = FingerPlace::kMetacarpal;
+        phalanx = FingerJoint::kMetacarpal;
       }
       places[i] = {finger, phalanx};
     }
@@ -216,25 +216,25 @@ constexpr std::array<std::string_view, 7> kFingerNames = {"",     "thumb",  "ind
 
 }  // namespace
 
-std::string finger_place_name(FingerPlace place) {
+std::string finger_place_name(FingerJoint place) {
   if (place.finger == Finger::none) return {};
   std::string name(kFingerNames[static_cast<std::size_t>(place.finger)]);
-  if (place.phalanx == FingerPlace::kMetacarpal) return name + "_metacarpal";
-  if (place.phalanx == FingerPlace::kTip) return name + "_tip";
+  if (place.phalanx == FingerJoint::kMetacarpal) return name + "_metacarpal";
+  if (place.phalanx == FingerJoint::kTip) return name + "_tip";
   return name + "_" + std::to_string(place.phalanx);
 }
 
-std::optional<FingerPlace> parse_finger_place(std::string_view name) {
+std::optional<FingerJoint> parse_finger_joint(std::string_view name) {
   for (std::size_t f = 1; f < kFingerNames.size(); ++f) {
-    for (int phalanx = FingerPlace::kMetacarpal; phalanx <= FingerPlace::kTip; ++phalanx) {
-      const FingerPlace place{static_cast<Finger>(f), phalanx};
+    for (int phalanx = FingerJoint::kMetacarpal; phalanx <= FingerJoint::kTip; ++phalanx) {
+      const FingerJoint place{static_cast<Finger>(f), phalanx};
       if (finger_place_name(place) == name) return place;
     }
   }
   return std::nullopt;
 }
 
-std::vector<FingerPlace> find_fingers(const Skeleton& skeleton, std::span<const int> beyond_wrist) {
+std::vector<FingerJoint> find_fingers(const Skeleton& skeleton, std::span<const int> beyond_wrist) {
   return FingerFinder(skeleton, beyond_wrist).find();
 }
 

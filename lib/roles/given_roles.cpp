@@ -70,7 +70,7 @@ Status check_once(const Skeleton& skeleton, std::span<const GivenRole> given) {
   for (std::size_t i = 0; i < given.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       const bool one_phalanx = given[i].finger.finger != Finger::none &&
-                               given[i].finger.phalanx != FingerPlace::kTip &&
+                               given[i].finger.phalanx != FingerJoint::kTip &&
                                given[i].finger == given[k].finger;
       if (given[i].role != given[k].role || (is_role_of_many(given[i].role) && !one_phalanx)) {
         continue;
@@ -159,7 +159,7 @@ std::vector<JointName> names_with(const Skeleton& skeleton, std::span<const Give
 
 Result<RoleMap> find_roles(const Skeleton& skeleton, std::span<const GivenRole> given) {
   if (given.empty()) return find_roles(skeleton);
-  if (Status once = check_once(skeleton, given); !once) return once.error();
+  if (Status status = check_once(skeleton, given); !status) return status.error();
   RoleMap map = roles_from_names(skeleton, names_with(skeleton, given));
   for (const GivenRole& entry : given) {
     if (!is_role_of_many(entry.role)) {
@@ -177,7 +177,7 @@ Result<RoleMap> find_roles(const Skeleton& skeleton, std::span<const GivenRole> 
     map.roles[at(entry.joint)] = entry.role;
     map.fingers[at(entry.joint)] = entry.finger;
   }
-  if (Status order = check_order(skeleton, map, given); !order) return order.error();
+  if (Status status = check_order(skeleton, map, given); !status) return status.error();
   map.humanoid = missing_roles(map).empty();
   return map;
 }

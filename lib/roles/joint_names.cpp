@@ -227,12 +227,12 @@ bool is_body_word(const std::string& token) {
 // Takes off the words that more than half of the names begin or end with and that are no part of a
 // body.
 void strip_common_words(std::vector<Tokens>& names, bool at_end) {
-  constexpr int kMostWords = 6;
+  constexpr int kMaxWords = 6;
   if (names.size() < 4) return;
   const auto place = [at_end](const Tokens& tokens) {
     return at_end ? tokens.end() - 1 : tokens.begin();
   };
-  for (int round = 0; round < kMostWords; ++round) {
+  for (int round = 0; round < kMaxWords; ++round) {
     std::map<std::string, std::size_t> counts;
     for (const Tokens& tokens : names) {
       if (!tokens.empty()) ++counts[*place(tokens)];

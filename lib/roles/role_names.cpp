@@ -84,7 +84,7 @@ std::vector<int> RoleMap::joints(Role role) const {
   return found;
 }
 
-int RoleMap::finger_joint(Role fingers_role, FingerPlace place) const {
+int RoleMap::finger_joint(Role fingers_role, FingerJoint place) const {
   for (std::size_t i = 0; i < fingers.size(); ++i) {
     if (roles[i] == fingers_role && fingers[i] == place) return static_cast<int>(i);
   }
@@ -106,7 +106,7 @@ std::optional<GivenRole> parse_role_label(std::string_view label) {
        {std::pair<std::string_view, Role>{"left_", Role::left_fingers},
         std::pair<std::string_view, Role>{"right_", Role::right_fingers}}) {
     if (!label.starts_with(side)) continue;
-    const auto place = parse_finger_place(label.substr(side.size()));
+    const auto place = parse_finger_joint(label.substr(side.size()));
     if (place) return GivenRole{0, role, *place};
   }
   return std::nullopt;

@@ -358,7 +358,7 @@ class RoleFinder {
     map_.fingers.assign(map_.roles.size(), {});
     for (const Role fingers : {Role::left_fingers, Role::right_fingers}) {
       const std::vector<int> joints = map_.joints(fingers);
-      const std::vector<FingerPlace> places = find_fingers(skeleton_, joints);
+      const std::vector<FingerJoint> places = find_fingers(skeleton_, joints);
       for (std::size_t i = 0; i < joints.size(); ++i) map_.fingers[at(joints[i])] = places[i];
     }
   }

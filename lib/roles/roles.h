@@ -57,7 +57,7 @@ bool is_role_of_many(Role role);
 
 struct RoleMap {
   std::vector<Role> roles;           // [joints]
-  std::vector<FingerPlace> fingers;  // [joints], set for left_fingers and right_fingers
+  std::vector<FingerJoint> fingers;  // [joints], set for left_fingers and right_fingers
 
   // True where hips, head or neck, both upper legs, lower legs and feet, and both upper arms and
   // hands were found: a figure that limb-wise operations can rely on.
@@ -74,7 +74,7 @@ struct RoleMap {
   std::vector<int> joints(Role role) const;
 
   // The joint of one phalanx of the hand whose fingers' role is `fingers`, or -1.
-  int finger_joint(Role fingers, FingerPlace place) const;
+  int finger_joint(Role fingers, FingerJoint place) const;
 };
 
 // What a joint is, as one word: "left_upper_arm", for a joint of a finger "left_index_1", for other
@@ -98,7 +98,7 @@ RoleMap find_roles(const Skeleton& skeleton);
 struct GivenRole {
   int joint = 0;
   Role role = Role::none;
-  FingerPlace finger;  // for left_fingers and right_fingers, where it is known
+  FingerJoint finger;  // for left_fingers and right_fingers, where it is known
 };
 
 // "left_hand", "left_index_1": what role_label gives, the joint left out. Nothing for other texts.

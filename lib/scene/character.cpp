@@ -34,9 +34,9 @@ Status check_names(const std::vector<Item>& items, const char* what) {
 
 Status check(const Character& character) {
   if (character.model.empty()) return fault("the character has no model");
-  if (Status good = check_names(character.parts, "a part"); !good) return good;
-  if (Status good = check_names(character.eyes, "an eye"); !good) return good;
-  if (Status good = check_names(character.expressions, "an expression"); !good) return good;
+  if (Status status = check_names(character.parts, "a part"); !status) return status;
+  if (Status status = check_names(character.eyes, "an eye"); !status) return status;
+  if (Status status = check_names(character.expressions, "an expression"); !status) return status;
   if (!is_utf8(character.name)) return fault("the character's name is not UTF-8");
   for (const Character::Part& part : character.parts) {
     if (is_utf8(part.material)) continue;
@@ -53,9 +53,9 @@ Status check(const Character& character) {
     if (!is_utf8(expression.target)) {
       return fault(fmt::format("the target of '{}' is not UTF-8", shown(expression.name)));
     }
-    if (std::abs(expression.weight) <= Character::kMostWeight) continue;
+    if (std::abs(expression.weight) <= Character::kMaxWeight) continue;
     return fault(fmt::format("the weight of expression '{}' is not within {}",
-                             shown(expression.name), Character::kMostWeight));
+                             shown(expression.name), Character::kMaxWeight));
   }
   if (!character.expressions.empty() && character.morphs.empty()) {
     return fault("the character has expressions but no file with morph targets");

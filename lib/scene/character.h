@@ -12,7 +12,7 @@ namespace krok {
 // them says. Paths are relative to the character's own file, with '/', and stay in its folder.
 struct Character {
   static constexpr float kFurthest = 1e6f;
-  static constexpr float kMostWeight = 1000.0f;
+  static constexpr float kMaxWeight = 1000.0f;
 
   std::string name;                    // for people; may be empty
   std::string model;                   // mesh, skin and skeleton, a .model file

@@ -46,7 +46,7 @@ void Clip::set_pose(int frame, std::span<const Transform> joint_to_world) {
 }
 
 Status check(const Clip& clip) {
-  if (Status skeleton = check(clip.skeleton); !skeleton) return skeleton;
+  if (Status status = check(clip.skeleton); !status) return status;
   if (clip.positions.size() != clip.orientations.size() ||
       clip.positions.size() % clip.skeleton.names.size() != 0) {
     return Error(

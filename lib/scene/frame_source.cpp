@@ -32,7 +32,7 @@ Result<Clip> load(const FrameSource& source, int jobs) {
     return Status();
   };
   const std::size_t blocks = (frames + kFramesAtOnce - 1) / kFramesAtOnce;
-  if (Status done = make_in_order(blocks, jobs, read, release); !done) return done.error();
+  if (Status status = make_in_order(blocks, jobs, read, release); !status) return status.error();
   return clip;
 }
 

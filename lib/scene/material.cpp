@@ -27,8 +27,8 @@ std::string fault_of(const Material& material) {
   if (outside(material.occlusion_strength)) return out_of_range("occlusion strength");
   if (any(material.emissive)) return out_of_range("emissive colour");
   if (outside(material.alpha_cutoff)) return out_of_range("alpha cutoff");
-  if (!(std::abs(material.normal_scale) <= kMostNormalScale)) {
-    return fmt::format("its normal scale is not within {}", kMostNormalScale);
+  if (!(std::abs(material.normal_scale) <= kMaxNormalScale)) {
+    return fmt::format("its normal scale is not within {}", kMaxNormalScale);
   }
   return {};
 }

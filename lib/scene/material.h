@@ -8,7 +8,7 @@
 
 #include "core/result.h"
 #include "math/types.h"
-#include "scene/picture.h"
+#include "scene/encoded_image.h"
 
 namespace krok {
 
@@ -17,12 +17,12 @@ namespace krok {
 struct Texture {
   enum class Wrap : unsigned char { repeat, clamp, mirror };  // beyond 0 .. 1
 
-  std::shared_ptr<const Picture> picture;  // null: no texture. Several textures may share one
+  std::shared_ptr<const EncodedImage> image;  // null: no texture. Several textures may share one
   Wrap wrap_u = Wrap::repeat;
   Wrap wrap_v = Wrap::repeat;
   bool smooth = true;  // false: from near each pixel is a square
 
-  explicit operator bool() const { return picture != nullptr; }
+  explicit operator bool() const { return image != nullptr; }
   friend bool operator==(const Texture&, const Texture&) = default;  // the very same picture
 };
 
@@ -59,7 +59,7 @@ struct Material {
   std::vector<std::string> shaders;
 };
 
-inline constexpr float kMostNormalScale = 1000.0f;
+inline constexpr float kMaxNormalScale = 1000.0f;
 
 // All its textures, those that are none too: base colour, metallic-roughness, normal, occlusion,
 // emissive.

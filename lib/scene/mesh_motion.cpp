@@ -11,7 +11,7 @@ namespace {
 
 // Who takes is one thread; what it takes is made by about as much work, so that with more threads
 // than these the others would wait.
-constexpr int kMostThreads = 8;
+constexpr int kMaxThreads = 8;
 
 std::size_t frame_bytes(const ShapeRange& range) {
   return range.vertices *
@@ -22,16 +22,16 @@ std::size_t frame_bytes(const ShapeRange& range) {
 // wait longer than they work, and files are written best in large pieces.
 int frames_together(const ShapeRange& range) {
   constexpr std::size_t kBytes = std::size_t{1} << 20;
-  constexpr std::size_t kMostFrames = 16;
+  constexpr std::size_t kMaxFrames = 16;
   return static_cast<int>(std::clamp<std::size_t>(
-      kBytes / std::max<std::size_t>(frame_bytes(range), 1), 1, kMostFrames));
+      kBytes / std::max<std::size_t>(frame_bytes(range), 1), 1, kMaxFrames));
 }
 
 // Frames of many vertices are held by few threads.
 int threads_for(const ShapeRange& range, int jobs) {
   constexpr std::size_t kBytes = std::size_t{256} << 20;
   const std::size_t each = 2 * std::max<std::size_t>(frame_bytes(range), 1);
-  const auto fit = static_cast<int>(std::clamp<std::size_t>(kBytes / each, 2, kMostThreads));
+  const auto fit = static_cast<int>(std::clamp<std::size_t>(kBytes / each, 2, kMaxThreads));
   return std::min(thread_count(jobs), fit);
 }
 
@@ -77,7 +77,7 @@ Status make_shapes(const MeshMotion& motion, const ShapeRange& range, int jobs,
         int frame = first_of(item);
         for (ShapeRoom& room : rooms_of(item, slot)) {
           slots[slot].source(frame, room.place());
-          if (Status done = prepare(frame++, room); !done) return done;
+          if (Status status = prepare(frame++, room); !status) return status;
         }
         return {};
       },

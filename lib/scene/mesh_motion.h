@@ -22,7 +22,7 @@ struct MeshShape {
 };
 
 // Where the vertices of a shape go: [vertices] each, or none.
-struct ShapePlace {
+struct ShapeOutput {
   std::span<Vec3f> positions;
   std::span<Vec3f> normals;
   std::span<Vec4f> tangents;
@@ -31,7 +31,7 @@ struct ShapePlace {
 // Fills in the vertices of a frame, 0 <= frame < MeshMotion::frames: all positions, and the normals
 // and tangents that have a place. Gives the same numbers whenever it is asked for the same frame.
 // May own working memory: one thread at a time uses it.
-using ShapeSource = std::function<void(int frame, const ShapePlace& to)>;
+using ShapeSource = std::function<void(int frame, const ShapeOutput& to)>;
 
 // A motion as shapes that are made when they are asked for, so that a clip of any length takes the
 // memory of a few frames. Frame f is at f / rate seconds.
@@ -55,7 +55,7 @@ struct ShapeRoom {
   std::vector<Vec3f> positions, normals;
   std::vector<Vec4f> tangents;
 
-  ShapePlace place() { return {positions, normals, tangents}; }
+  ShapeOutput place() { return {positions, normals, tangents}; }
 };
 
 // What make_shapes() makes.

@@ -96,7 +96,7 @@ Status check_directions(const Model& model) {
 }  // namespace
 
 Status check(const Model& model) {
-  if (Status skeleton = check(model.skeleton); !skeleton) return skeleton;
+  if (Status status = check(model.skeleton); !status) return status;
   const std::size_t count = model.positions.size();
   const auto fits = [count](std::size_t size) { return size == 0 || size == count; };
   if (!fits(model.normals.size()) || !fits(model.texture_coordinates.size()) ||
@@ -116,8 +116,8 @@ Status check(const Model& model) {
       !all_finite(model.texture_coordinates) || !all_finite(model.tangents)) {
     return Error("model-value", "a vertex is not finite");
   }
-  if (Status directions_hold = check_directions(model); !directions_hold) return directions_hold;
-  if (Status influences_hold = check_influences(model); !influences_hold) return influences_hold;
+  if (Status status = check_directions(model); !status) return status;
+  if (Status status = check_influences(model); !status) return status;
   return check_triangles(model);
 }
 

@@ -12,12 +12,12 @@ namespace krok {
 
 namespace {
 
-constexpr double kMostFrames = 10e6;
-constexpr double kMostWeights = 100e6;
-constexpr double kLeastRate = 1e-3, kMostRate = 1e6;
+constexpr double kMaxFrames = 10e6;
+constexpr double kMaxWeights = 100e6;
+constexpr double kMinRate = 1e-3, kMaxRate = 1e6;
 
 Status check_rate(double rate) {
-  if (rate >= kLeastRate && rate <= kMostRate) return {};
+  if (rate >= kMinRate && rate <= kMaxRate) return {};
   return Error("morph-rate", fmt::format("{} is no rate from 0.001 to 1000000", rate));
 }
 
@@ -72,7 +72,7 @@ Status check(const MorphCurves& curves) {
                                             curves.names.size()));
   }
   for (std::size_t i = 0; i < curves.curves.size(); ++i) {
-    if (Status sound = check_curve(curves.curves[i], curves.names[i]); !sound) return sound;
+    if (Status status = check_curve(curves.curves[i], curves.names[i]); !status) return status;
   }
   return {};
 }
@@ -90,21 +90,21 @@ double weight_at(const MorphCurve& curve, double time) {
 }
 
 Result<int> frames_of(const MorphCurves& curves, double rate) {
-  if (Status sound = check(curves); !sound) return sound.error();
-  if (Status fits = check_rate(rate); !fits) return fits.error();
+  if (Status status = check(curves); !status) return status.error();
+  if (Status status = check_rate(rate); !status) return status.error();
   // A last key that a product of floats puts just behind a frame is that frame's.
   const double frames = std::ceil(curves.duration() * rate - 1e-6) + 1;
-  if (frames <= kMostFrames) return static_cast<int>(frames);
+  if (frames <= kMaxFrames) return static_cast<int>(frames);
   return Error("morph-too-long", fmt::format("the weights last {} s, which makes {} frames",
                                              curves.duration(), frames));
 }
 
 Result<MorphWeights> sample(const MorphCurves& curves, double rate, int frames) {
   assert(frames >= 0);
-  if (Status sound = check(curves); !sound) return sound.error();
-  if (Status fits = check_rate(rate); !fits) return fits.error();
+  if (Status status = check(curves); !status) return status.error();
+  if (Status status = check_rate(rate); !status) return status.error();
   const std::size_t targets = curves.names.size();
-  if (static_cast<double>(frames) * static_cast<double>(targets) > kMostWeights) {
+  if (static_cast<double>(frames) * static_cast<double>(targets) > kMaxWeights) {
     return Error(
         "morph-too-long",
         fmt::format("{} frames of {} targets' weights are out of proportion", frames, targets));

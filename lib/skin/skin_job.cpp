@@ -9,12 +9,12 @@ namespace krok::skin_detail {
 void over_tiles(Kernel kernel, const Job& job, std::size_t count, int jobs) {
   // A few tiles a thread, so that one that is held up leaves work to others; not more, for the
   // memory's read-ahead begins anew with each. Small meshes are not worth a thread's while.
-  constexpr std::size_t kLeast = 128 * kBlock;
+  constexpr std::size_t kMin = 128 * kBlock;
   constexpr std::size_t kTilesAThread = 4;
   const std::size_t threads = static_cast<std::size_t>(thread_count(jobs));
-  if (threads == 1 || count <= kLeast) return kernel(job, 0, count);
+  if (threads == 1 || count <= kMin) return kernel(job, 0, count);
   const std::size_t blocks = count / kBlock / (kTilesAThread * threads);
-  parallel_for(count, std::max(kLeast, blocks * kBlock), jobs,
+  parallel_for(count, std::max(kMin, blocks * kBlock), jobs,
                [&](std::size_t begin, std::size_t end) { kernel(job, begin, end); });
 }
 

@@ -18,7 +18,7 @@ class Transition {
  public:
   virtual ~Transition() = default;
   // The figure at a moment of the result within the transition.
-  virtual FigurePose at(double time) const = 0;
+  virtual ActorPose at(double time) const = 0;
 };
 
 // The two items that a transition lies between. The next one's player is put in its place by the
@@ -29,7 +29,7 @@ struct TransitionSides {
   const ScheduledItem& previous_times;
   const ScheduledItem& next_times;
   const Change& change;
-  std::optional<GroundPlace> place;  // where the next one is told to stand
+  std::optional<GroundFrame> place;  // where the next one is told to stand
   double rate;                       // of the result
 };
 

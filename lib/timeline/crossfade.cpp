@@ -9,18 +9,18 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr double kMostNodes = 100'000;
+constexpr double kMaxNodes = 100'000;
 
 class Crossfade : public Transition {
  public:
   Crossfade(const TransitionSides& sides, bool& on_feet)
       : sides_(sides), begin_(sides.next_times.begin), end_(sides.next_times.settled) {
     walk(on_feet);
-    const GroundPlace reached = places_.back();
+    const GroundFrame reached = places_.back();
     const double play = sides.next_times.play_time(end_);
     if (sides.place) {
       sides.next.put(sides.next_times.skipped, *sides.place);
-      const Vec3 off = difference(reached, sides.next.figure(play).place);
+      const Vec3 off = difference(reached, sides.next.actor(play).place);
       for (std::size_t n = 0; n < places_.size(); ++n) {
         places_[n] = moved(places_[n], weight(n) * off);
       }
@@ -29,8 +29,8 @@ class Crossfade : public Transition {
     }
   }
 
-  FigurePose at(double time) const override {
-    FigurePose pose = mixed(time, sides_.change.easing.at((time - begin_) / (end_ - begin_)));
+  ActorPose at(double time) const override {
+    ActorPose pose = mixed(time, sides_.change.easing.at((time - begin_) / (end_ - begin_)));
     const double last = static_cast<double>(places_.size() - 1);
     const double node = std::clamp((time - begin_) / (end_ - begin_) * last, 0.0, last);
     const auto n = std::min(static_cast<std::size_t>(node), places_.size() - 2);
@@ -49,13 +49,13 @@ class Crossfade : public Transition {
   }
 
   // The poses seen from the place, without one.
-  FigurePose mixed(double time, double weight_of_next) const {
-    const FigurePose a = sides_.previous.figure(sides_.previous_times.play_time(time));
-    const FigurePose b = sides_.next.figure(sides_.next_times.play_time(time));
+  ActorPose mixed(double time, double weight_of_next) const {
+    const ActorPose a = sides_.previous.actor(sides_.previous_times.play_time(time));
+    const ActorPose b = sides_.next.actor(sides_.next_times.play_time(time));
     return mixed(a, b, weight_of_next);
   }
-  static FigurePose mixed(const FigurePose& a, const FigurePose& b, double weight_of_next) {
-    FigurePose pose;
+  static ActorPose mixed(const ActorPose& a, const ActorPose& b, double weight_of_next) {
+    ActorPose pose;
     pose.local.resize(a.local.size());
     for (std::size_t j = 0; j < a.local.size(); ++j) {
       pose.local[j] = {
@@ -69,16 +69,16 @@ class Crossfade : public Transition {
   // feet in place.
   void walk(bool& on_feet) {
     const double wanted = std::ceil((end_ - begin_) * sides_.rate * 2);
-    const auto last = static_cast<std::size_t>(std::clamp(wanted, 8.0, kMostNodes));
+    const auto last = static_cast<std::size_t>(std::clamp(wanted, 8.0, kMaxNodes));
     const bool stance = sides_.change.align == Align::stance;
     const std::set<int> joints = stance ? contact_joints(sides_) : std::set<int>();
     std::vector<Vec3> feet_before;
-    FigurePose a_before, b_before;
+    ActorPose a_before, b_before;
     for (std::size_t n = 0; n <= last; ++n) {
       const double time = time_of(n, last);
       const double part = static_cast<double>(n) / static_cast<double>(last);
-      const FigurePose a = sides_.previous.figure(sides_.previous_times.play_time(time));
-      const FigurePose b = sides_.next.figure(sides_.next_times.play_time(time));
+      const ActorPose a = sides_.previous.actor(sides_.previous_times.play_time(time));
+      const ActorPose b = sides_.next.actor(sides_.next_times.play_time(time));
       std::vector<Vec3> feet;
       if (stance) {
         feet = places_of_joints(skeleton_of(sides_), mixed(a, b, sides_.change.easing.at(part)));
@@ -104,7 +104,7 @@ class Crossfade : public Transition {
   }
 
   // x, z, turn in the heading that the figure had before.
-  static Vec3 way(const GroundPlace& from, const GroundPlace& to) {
+  static Vec3 way(const GroundFrame& from, const GroundFrame& to) {
     const Vec3 went = difference(from, to);
     const Vec3 seen = axis_rotation(Axis::y, -from.heading) * Vec3(went.x(), 0, went.y());
     return {seen.x(), seen.z(), went.z()};
@@ -136,7 +136,7 @@ class Crossfade : public Transition {
 
   TransitionSides sides_;
   double begin_, end_;
-  std::vector<GroundPlace> places_;  // evenly spaced in time
+  std::vector<GroundFrame> places_;  // evenly spaced in time
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLongestStep = 10;  // seconds between keytimes that belong together
 constexpr int kParts = 256;          // of a crossfade
-constexpr std::size_t kMostKeys = 4000;
+constexpr std::size_t kMaxKeys = 4000;
 
 struct Pairs {
   std::vector<double> previous, next;  // play times of moments in common
@@ -83,12 +83,12 @@ std::optional<InStep> play_in_step(const StepSide& previous, const StepSide& nex
                                    double previous_play, double duration, const Easing& easing) {
   if (previous.keys == nullptr || next.keys == nullptr) return std::nullopt;
   const auto before = played_keys(previous.range, *previous.keys, previous_play - kLongestStep,
-                                  previous_play + 4 * duration + kLongestStep, kMostKeys);
+                                  previous_play + 4 * duration + kLongestStep, kMaxKeys);
   const double most = std::min(next.range.duration(), 60.0);
   const auto after =
-      played_keys(next.range, *next.keys, -kLongestStep, most + 4 * duration, kMostKeys);
-  if (before.size() < 2 || after.size() < 2 || before.size() > kMostKeys ||
-      after.size() > kMostKeys) {
+      played_keys(next.range, *next.keys, -kLongestStep, most + 4 * duration, kMaxKeys);
+  if (before.size() < 2 || after.size() < 2 || before.size() > kMaxKeys ||
+      after.size() > kMaxKeys) {
     return std::nullopt;
   }
   // The last keytime with another behind it: a motion that ends with a step is in it.

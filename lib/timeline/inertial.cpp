@@ -9,9 +9,9 @@ class Inertial : public Transition {
  public:
   Inertial(const TransitionSides& sides, bool& on_feet)
       : next_(sides.next), next_times_(sides.next_times) {
-    const FigureState from = state_before(sides);
+    const ActorState from = state_before(sides);
     put_next(sides, from.pose, on_feet);
-    const FigureState to = state_after(sides);
+    const ActorState to = state_after(sides);
     const auto decay = [&](const Vec3& value, const Rates& a, const Rates& b) {
       return Decay(value, {a.velocity - b.velocity, a.acceleration - b.acceleration},
                    sides.change.duration, sides.change.guard);
@@ -28,9 +28,9 @@ class Inertial : public Transition {
     }
   }
 
-  FigurePose at(double time) const override {
+  ActorPose at(double time) const override {
     const double t = time - next_times_.begin;
-    FigurePose pose = next_.figure(next_times_.play_time(time));
+    ActorPose pose = next_.actor(next_times_.play_time(time));
     pose.place = moved(pose.place, place_.at(t));
     for (std::size_t j = 0; j < pose.local.size(); ++j) {
       pose.local[j].position += positions_[j].at(t);

@@ -17,7 +17,7 @@ void sample_source(const Clip& clip, double time, std::span<Transform> joint_to_
   sample(clip, time, joint_to_world, scratch);
 }
 
-bool is_nowhere_else(const GroundPlace& place) {
+bool is_nowhere_else(const GroundFrame& place) {
   return place.x == 0 && place.z == 0 && place.heading == 0;
 }
 
@@ -31,22 +31,22 @@ ItemPlayer::ItemPlayer(const Source& source, const PlayedRange& range, int carri
   std::vector<Transform> pose(clip.skeleton.names.size());
   const auto place_at = [&](double time) {
     sample_source(clip, time, pose);
-    return ground_place(clip.skeleton, carrier, pose[static_cast<std::size_t>(carrier)]);
+    return ground_frame(clip.skeleton, carrier, pose[static_cast<std::size_t>(carrier)]);
   };
   const bool forward = range.speed > 0;
-  const GroundPlace step = combined(place_at(forward ? range.to : range.from),
+  const GroundFrame step = combined(place_at(forward ? range.to : range.from),
                                     inverse(place_at(forward ? range.from : range.to)));
   steps_.push_back(step);
   while (last >> steps_.size() != 0) steps_.push_back(combined(steps_.back(), steps_.back()));
 }
 
-void ItemPlayer::put(double play_time, const GroundPlace& place) {
+void ItemPlayer::put(double play_time, const GroundFrame& place) {
   motion_to_world_ = {};
-  motion_to_world_ = combined(place, inverse(figure(play_time).place));
+  motion_to_world_ = combined(place, inverse(actor(play_time).place));
 }
 
-GroundPlace ItemPlayer::round_place(int round) const {
-  GroundPlace place = motion_to_world_;
+GroundFrame ItemPlayer::round_place(int round) const {
+  GroundFrame place = motion_to_world_;
   for (std::size_t bit = 0; bit < steps_.size(); ++bit) {
     if ((round >> bit & 1) != 0) place = combined(place, steps_[bit]);
   }
@@ -56,17 +56,17 @@ GroundPlace ItemPlayer::round_place(int round) const {
 void ItemPlayer::pose(double play_time, std::span<Transform> joint_to_world) const {
   const auto moment = range_.at(play_time);
   sample_source(*source_->clip, moment.time, joint_to_world);
-  const GroundPlace place = round_place(moment.round);
+  const GroundFrame place = round_place(moment.round);
   if (is_nowhere_else(place)) return;
   const Transform motion_to_world = place.to_world();
   for (Transform& joint : joint_to_world) joint = motion_to_world * joint;
 }
 
-FigurePose ItemPlayer::figure(double play_time) const {
+ActorPose ItemPlayer::actor(double play_time) const {
   const Skeleton& skeleton = source_->clip->skeleton;
   std::vector<Transform> joint_to_world(skeleton.names.size());
   pose(play_time, joint_to_world);
-  return figure_pose(skeleton, carrier_, joint_to_world);
+  return actor_pose(skeleton, carrier_, joint_to_world);
 }
 
 int ItemPlayer::untouched_frame(double play_time) const {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "timeline/figure_pose.h"
+#include "timeline/actor_pose.h"
 #include "timeline/played_range.h"
 #include "timeline/timeline.h"
 
@@ -20,16 +20,16 @@ class ItemPlayer {
   const Source& source() const { return *source_; }
 
   // Where the motion as a whole is put; the identity at first.
-  void set_place(const GroundPlace& motion_to_world) { motion_to_world_ = motion_to_world; }
+  void set_place(const GroundFrame& motion_to_world) { motion_to_world_ = motion_to_world; }
   // Puts it so that the figure stands at `place` at a play time.
-  void put(double play_time, const GroundPlace& place);
+  void put(double play_time, const GroundFrame& place);
 
   // motion_to_world in a round.
-  GroundPlace round_place(int round) const;
+  GroundFrame round_place(int round) const;
 
   // joint_to_world at a play time.
   void pose(double play_time, std::span<Transform> joint_to_world) const;
-  FigurePose figure(double play_time) const;
+  ActorPose actor(double play_time) const;
 
   // The frame of the motion that is the pose at a play time, untouched; -1 where there is none.
   int untouched_frame(double play_time) const;
@@ -41,9 +41,9 @@ class ItemPlayer {
   const Source* source_;
   PlayedRange range_;
   int carrier_;
-  GroundPlace motion_to_world_;
+  GroundFrame motion_to_world_;
   // From one round to the next, to the second next, to the fourth next, and so on.
-  std::vector<GroundPlace> steps_;
+  std::vector<GroundFrame> steps_;
 };
 
 }  // namespace krok::timeline

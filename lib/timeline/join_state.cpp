@@ -43,16 +43,16 @@ Rates rates_of(const Vec3& one, const Vec3& two, double step, int known) {
   return {(4 * one - two) / (2 * step), (two - 2 * one) / (step * step)};
 }
 
-FigureState figure_state(const std::function<FigurePose(int)>& pose_at, double step, int known) {
-  FigureState state;
+ActorState actor_state(const std::function<ActorPose(int)>& pose_at, double step, int known) {
+  ActorState state;
   state.pose = pose_at(0);
-  const FigurePose one = known > 0 ? pose_at(1) : state.pose;
-  const FigurePose two = known > 1 ? pose_at(2) : one;
+  const ActorPose one = known > 0 ? pose_at(1) : state.pose;
+  const ActorPose two = known > 1 ? pose_at(2) : one;
   state.place = rates_of(difference(state.pose.place, one.place),
                          difference(state.pose.place, two.place), step, known);
   for (std::size_t j = 0; j < state.pose.local.size(); ++j) {
     const Transform& at = state.pose.local[j];
-    const auto turned = [&](const FigurePose& other) {
+    const auto turned = [&](const ActorPose& other) {
       return rotation_vector(other.local[j].orientation * at.orientation.conjugate());
     };
     state.rotations.push_back(rates_of(turned(one), turned(two), step, known));

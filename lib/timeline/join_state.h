@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "timeline/figure_pose.h"
+#include "timeline/actor_pose.h"
 
 // Values with velocities and accelerations where two motions join, and the curves that go over from
 // one to the other.
@@ -21,8 +21,8 @@ struct Rates {
 Rates rates_of(const Vec3& one, const Vec3& two, double step, int known);
 
 // A figure at a moment and how all of it moves.
-struct FigureState {
-  FigurePose pose;
+struct ActorState {
+  ActorPose pose;
   Rates place;                   // x, z, heading
   std::vector<Rates> rotations;  // [joints], rotation vectors put on from the left
   std::vector<Rates> positions;  // [joints]
@@ -30,7 +30,7 @@ struct FigureState {
 
 // From the pose at the moment and up to two more, `step` seconds apart (negative: before it);
 // `pose_at(k)` gives the kth, `known` is how many there are beside the first.
-FigureState figure_state(const std::function<FigurePose(int)>& pose_at, double step, int known);
+ActorState actor_state(const std::function<ActorPose(int)>& pose_at, double step, int known);
 
 // The velocity of a rotation vector v with which exp(v) turns at `rate`, seen from outside: the
 // inverse of the left Jacobian of the exponential map (Chirikjian, Stochastic Models, Information

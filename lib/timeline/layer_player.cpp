@@ -61,9 +61,9 @@ Result<LayerTimes> times_of(const LayerItem& item, std::span<const Source> sourc
     }
     times.end = std::min(until, times.end);
   }
-  if (times.range.round > 0 && (times.end - times.start) / times.range.round > kMostRounds) {
+  if (times.range.round > 0 && (times.end - times.start) / times.range.round > kMaxRounds) {
     return Error("timeline-limit",
-                 fmt::format("it is played more than {} times", grouped(kMostRounds)));
+                 fmt::format("it is played more than {} times", grouped(kMaxRounds)));
   }
   for (const Fade* fade : {&item.fade_in, &item.fade_out}) {
     if (fade->duration >= 0 && fade->duration <= times.end - times.start + kTimeRounding) continue;
@@ -75,10 +75,10 @@ Result<LayerTimes> times_of(const LayerItem& item, std::span<const Source> sourc
 }
 
 // The moment of a source that a layer differs from.
-Result<FigurePose> reference_of(const Layer& layer, const ItemPlayer& player, int carrier) {
+Result<ActorPose> reference_of(const Layer& layer, const ItemPlayer& player, int carrier) {
   const Clip& clip = *player.source().clip;
-  if (layer.reference_pose) return figure_pose(clip.skeleton, carrier, clip.skeleton.reference);
-  if (!layer.reference) return player.figure(0);
+  if (layer.reference_pose) return actor_pose(clip.skeleton, carrier, clip.skeleton.reference);
+  if (!layer.reference) return player.actor(0);
   const double time = layer.reference->seconds(clip.rate);
   if (!(time >= 0) || time > clip.duration() + kTimeRounding) {
     Error error("timeline-time",
@@ -89,7 +89,7 @@ Result<FigurePose> reference_of(const Layer& layer, const ItemPlayer& player, in
   }
   std::vector<Transform> pose(clip.skeleton.names.size()), scratch(3 * pose.size());
   sample(clip, time, pose, scratch);
-  return figure_pose(clip.skeleton, carrier, pose);
+  return actor_pose(clip.skeleton, carrier, pose);
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ Result<LayerPlayer> LayerPlayer::create(const Layer& layer, std::span<const Sour
       error.message = fmt::format("{}: {}", shown(item.name), error.message);
       return error;
     };
-    if (Status sound = check_weight(item, layer.mode); !sound) return located(sound.error());
+    if (Status status = check_weight(item, layer.mode); !status) return located(status.error());
     const auto times = times_of(item, sources, rate, end);
     if (!times) return located(times.error());
     player.items_.push_back(*times);
@@ -145,11 +145,11 @@ bool LayerPlayer::is_seen(double time) const {
   return false;
 }
 
-void LayerPlayer::apply(double time, FigurePose& pose) const {
+void LayerPlayer::apply(double time, ActorPose& pose) const {
   for (std::size_t i = 0; i < items_.size(); ++i) {
     const double share = weight(i, time);
     if (share == 0) continue;
-    const FigurePose layer = players_[i].figure(time - items_[i].start);
+    const ActorPose layer = players_[i].actor(time - items_[i].start);
     if (layer_->mode != LayerMode::override) {
       add(layer, references_[i], share, pose);
     } else if (layer_->space == Space::model) {
@@ -160,7 +160,7 @@ void LayerPlayer::apply(double time, FigurePose& pose) const {
   }
 }
 
-void LayerPlayer::override_pose(const FigurePose& layer, double weight, FigurePose& pose) const {
+void LayerPlayer::override_pose(const ActorPose& layer, double weight, ActorPose& pose) const {
   for (std::size_t j = 0; j < mask_.size(); ++j) {
     const double share = weight * mask_[j];
     if (share == 0) continue;
@@ -170,8 +170,7 @@ void LayerPlayer::override_pose(const FigurePose& layer, double weight, FigurePo
   }
 }
 
-void LayerPlayer::override_in_model(const FigurePose& layer, double weight,
-                                    FigurePose& pose) const {
+void LayerPlayer::override_in_model(const ActorPose& layer, double weight, ActorPose& pose) const {
   std::vector<Quat> below(mask_.size()), above(mask_.size());  // joints' rotations to the place
   for (std::size_t j = 0; j < mask_.size(); ++j) {
     const int parent = skeleton_->parents[j];
@@ -188,8 +187,8 @@ void LayerPlayer::override_in_model(const FigurePose& layer, double weight,
   }
 }
 
-void LayerPlayer::add(const FigurePose& layer, const FigurePose& reference, double weight,
-                      FigurePose& pose) const {
+void LayerPlayer::add(const ActorPose& layer, const ActorPose& reference, double weight,
+                      ActorPose& pose) const {
   for (std::size_t j = 0; j < mask_.size(); ++j) {
     const double share = weight * mask_[j];
     if (share == 0) continue;

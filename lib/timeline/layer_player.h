@@ -34,13 +34,13 @@ class LayerPlayer {
   const std::vector<std::uint8_t>& touched() const { return touched_; }
 
   // Changes the joints of the mask.
-  void apply(double time, FigurePose& pose) const;
+  void apply(double time, ActorPose& pose) const;
 
  private:
-  void override_pose(const FigurePose& layer, double weight, FigurePose& pose) const;
-  void override_in_model(const FigurePose& layer, double weight, FigurePose& pose) const;
-  void add(const FigurePose& layer, const FigurePose& reference, double weight,
-           FigurePose& pose) const;
+  void override_pose(const ActorPose& layer, double weight, ActorPose& pose) const;
+  void override_in_model(const ActorPose& layer, double weight, ActorPose& pose) const;
+  void add(const ActorPose& layer, const ActorPose& reference, double weight,
+           ActorPose& pose) const;
 
   const Layer* layer_ = nullptr;
   const Skeleton* skeleton_ = nullptr;
@@ -48,7 +48,7 @@ class LayerPlayer {
   std::vector<std::uint8_t> touched_;
   std::vector<LayerTimes> items_;
   std::vector<ItemPlayer> players_;
-  std::vector<FigurePose> references_;  // [items], of additive layers
+  std::vector<ActorPose> references_;  // [items], of additive layers
 };
 
 }  // namespace krok::timeline

@@ -30,7 +30,7 @@ Result<std::vector<double>> mask_weights(const Skeleton& skeleton,
       error.where = rule.where;
       return error;
     };
-    if (Status sound = check_rule(rule); !sound) return located(sound.error());
+    if (Status status = check_rule(rule); !status) return located(status.error());
     JointSelection selection;
     if (rule.below.empty()) {
       selection.patterns = {rule.joints};

@@ -16,14 +16,14 @@ namespace krok::timeline {
 namespace {
 
 constexpr std::size_t kFramesAtOnce = 32;
-constexpr double kMostEvents = 2e6;
-constexpr std::size_t kMostLayerItems = 20'000;
-constexpr double kMostWork = 2e9;  // frames or contacts, times items of layers
+constexpr double kMaxEvents = 2e6;
+constexpr std::size_t kMaxLayerItems = 20'000;
+constexpr double kMaxWork = 2e9;  // frames or contacts, times items of layers
 
 Status check_sources(std::span<const Source> sources) {
   for (const Source& source : sources) {
-    if (Status sound = check(*source.clip); !sound) {
-      return std::move(sound).error().in_file(source.name);
+    if (Status status = check(*source.clip); !status) {
+      return std::move(status).error().in_file(source.name);
     }
     if (source.clip->frame_count() == 0) {
       return Error("timeline-empty", fmt::format("{} has no frames", shown(source.name)));
@@ -37,9 +37,9 @@ Status check_sources(std::span<const Source> sources) {
                    "krok-retarget brings one on the other's skeleton");
     }
     if (source.keys == nullptr) continue;
-    if (Status sound = check(*source.keys, source.clip->skeleton, source.clip->duration());
-        !sound) {
-      return std::move(sound).error().in_file(source.name);
+    if (Status status = check(*source.keys, source.clip->skeleton, source.clip->duration());
+        !status) {
+      return std::move(status).error().in_file(source.name);
     }
   }
   return {};
@@ -67,12 +67,12 @@ Status check_work(const Timeline& timeline, std::span<const Source> sources,
       transforms += ((times.end - times.start) * clip.rate + 1) * clip.joint_count();
     }
   }
-  if (events > kMostEvents) {
+  if (events > kMaxEvents) {
     return Error("timeline-limit", "more than two million keytimes, contacts and events would come",
                  "let short motions repeat less often");
   }
   const double frames = clip.frame_count();
-  if (std::max({frames * on_top, events * on_top, transforms}) > kMostWork) {
+  if (std::max({frames * on_top, events * on_top, transforms}) > kMaxWork) {
     return Error("timeline-limit", "too many items of layers on too many frames",
                  "make it in several timelines");
   }
@@ -105,7 +105,7 @@ void make_frames(const BaseMotion& base, std::span<const LayerPlayer> layers, in
             continue;
           }
           clip.get_pose(frame, world);
-          FigurePose pose = figure_pose(clip.skeleton, base.carrier(), world);
+          ActorPose pose = actor_pose(clip.skeleton, base.carrier(), world);
           std::ranges::fill(touched, std::uint8_t{0});
           for (const LayerPlayer& layer : layers) {
             if (!layer.is_seen(time)) continue;
@@ -129,7 +129,7 @@ Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, con
   if (timeline.base.empty() || sources.empty()) {
     return Error("timeline-empty", "there is nothing to play");
   }
-  if (Status sound = check_sources(sources); !sound) return sound.error();
+  if (Status status = check_sources(sources); !status) return status.error();
   double rate = timeline.rate;
   if (rate == 0) {
     // Where there is no such motion schedule() says so.
@@ -150,9 +150,9 @@ Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, con
   std::size_t layer_items = 0;
   for (const Layer& layer : timeline.layers) {
     layer_items += layer.items.size();
-    if (layer_items > kMostLayerItems) {
+    if (layer_items > kMaxLayerItems) {
       return Error("timeline-limit",
-                   fmt::format("layers have more than {} items in all", grouped(kMostLayerItems)));
+                   fmt::format("layers have more than {} items in all", grouped(kMaxLayerItems)));
     }
     auto player = LayerPlayer::create(layer, sources, carrier, rate, end);
     if (!player) return player.error();
@@ -162,8 +162,8 @@ Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, con
   mixed.clip.skeleton = skeleton;
   mixed.clip.rate = rate;
   mixed.clip.resize(*frames);
-  if (Status sound = check_work(timeline, sources, *items, layers, mixed.clip); !sound) {
-    return sound.error();
+  if (Status status = check_work(timeline, sources, *items, layers, mixed.clip); !status) {
+    return status.error();
   }
   const BaseMotion base(timeline, sources, roles, std::move(*items), rate);
   make_frames(base, layers, options.jobs, mixed.clip);

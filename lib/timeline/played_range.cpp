@@ -13,7 +13,7 @@ namespace krok::timeline {
 namespace {
 
 constexpr double kFrameRounding = 1e-3;  // of a frame, by which a moment may lie outside a motion
-constexpr double kLeastSpeed = 1e-3, kMostSpeed = 1e3;
+constexpr double kMinSpeed = 1e-3, kMaxSpeed = 1e3;
 constexpr double kSameKey = 0.05;  // seconds between the two ends of a seam
 
 Result<double> moment_of(const ClipTime& time, const Source& source, std::string_view which) {
@@ -51,7 +51,7 @@ double PlayedRange::duration() const {
 PlayedRange::Moment PlayedRange::at(double play_time) const {
   if (!(round > 0)) return {0, from};
   const double into = std::clamp(play_time, 0.0, duration());
-  int number = static_cast<int>(std::min(std::floor(into / round), kMostRounds + 1.0));
+  int number = static_cast<int>(std::min(std::floor(into / round), kMaxRounds + 1.0));
   // A play time that is a seam's up to rounding is the seam's.
   if ((number + 1) * round - into < 1e-9 * round) ++number;
   if (number >= rounds) number = static_cast<int>(rounds) - 1;
@@ -93,16 +93,16 @@ Result<PlayedRange> resolve(const Play& play, std::span<const Source> sources) {
   range.from = *begin;
   range.to = *end;
   range.speed = play.speed.value_or(range.speed);
-  if (!(std::abs(range.speed) >= kLeastSpeed && std::abs(range.speed) <= kMostSpeed)) {
+  if (!(std::abs(range.speed) >= kMinSpeed && std::abs(range.speed) <= kMaxSpeed)) {
     return Error("timeline-time",
                  fmt::format("a speed of {} is not between 0.001 and 1000, forwards or backwards",
                              readable(range.speed)));
   }
   range.round = (range.to - range.from) / std::abs(range.speed);
   const int rounds = play.rounds.value_or(1);
-  if (rounds < 0 || rounds > kMostRounds) {
+  if (rounds < 0 || rounds > kMaxRounds) {
     return Error("timeline-limit",
-                 fmt::format("{} rounds are not between 0 and {}", rounds, grouped(kMostRounds)));
+                 fmt::format("{} rounds are not between 0 and {}", rounds, grouped(kMaxRounds)));
   }
   range.rounds = rounds == 0 ? HUGE_VAL : rounds;
   return range;
@@ -120,7 +120,7 @@ std::vector<PlayedKey> played_keys(const PlayedRange& range, const MotionKeys& k
   if (of_a_round.empty()) return found;
   const auto round_at = [&](double time) {
     return static_cast<int>(std::clamp(std::floor(time / range.round), 0.0,
-                                       std::min(range.rounds - 1, double(kMostRounds))));
+                                       std::min(range.rounds - 1, double(kMaxRounds))));
   };
   const int first = once ? 0 : round_at(low), last = once ? 0 : round_at(high);
   for (int round = first; round <= last; ++round) {

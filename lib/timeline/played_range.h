@@ -33,7 +33,7 @@ struct PlayedRange {
   double play_time(int round, double source_time) const;
 };
 
-inline constexpr int kMostRounds = 100'000;
+inline constexpr int kMaxRounds = 100'000;
 
 // What a play means in numbers. Codes
 // timeline-source (no such source or part), timeline-time (outside the motion, the end before the

@@ -13,7 +13,7 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr std::size_t kMostFrames = 4000;  // of a motion that are looked at for what is usual
+constexpr std::size_t kMaxFrames = 4000;  // of a motion that are looked at for what is usual
 constexpr double kUsual = 0.99;
 
 struct Angle {
@@ -35,7 +35,7 @@ double usual_speed(const Clip& clip, int jobs) {
   const int frames = clip.frame_count();
   if (frames < 2) return 0;
   const auto steps = static_cast<std::size_t>(frames - 1);
-  const std::size_t stride = (steps + kMostFrames - 1) / kMostFrames;
+  const std::size_t stride = (steps + kMaxFrames - 1) / kMaxFrames;
   std::vector<double> speeds((steps + stride - 1) / stride);
   parallel_for(speeds.size(), 64, jobs, [&](std::size_t begin, std::size_t end) {
     const std::size_t joints = clip.skeleton.names.size();
@@ -97,8 +97,8 @@ class ChangeFinder {
     facts.end = item.settled;
     facts.in_step = item.in_step;
     facts.on_feet = parts_.base.on_feet(i);
-    const FigurePose from = parts_.base.player(i - 1).figure(before.play_time(item.begin));
-    const FigurePose to = parts_.base.player(i).figure(item.play_time(item.start));
+    const ActorPose from = parts_.base.player(i - 1).actor(before.play_time(item.begin));
+    const ActorPose to = parts_.base.player(i).actor(item.play_time(item.start));
     const Angle bridged = largest_angle(from.local, to.local);
     facts.angle = bridged.angle;
     facts.angle_joint = bridged.joint;
@@ -129,7 +129,7 @@ class ChangeFinder {
     PlayedRange once = item.range;
     once.rounds = 1;
     const ItemPlayer round(player.source(), once, parts_.base.carrier(), 0);
-    const Angle jump = largest_angle(round.figure(0).local, round.figure(once.round).local);
+    const Angle jump = largest_angle(round.actor(0).local, round.actor(once.round).local);
     const double usual_turn = usual(i) / parts_.clip.rate;
     if (usual_turn == 0 || jump.angle <= usual_turn) return;
     Diagnostic seam;

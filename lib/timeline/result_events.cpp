@@ -31,7 +31,7 @@ class Events {
   Status add(const Happening& item) {
     push(item, Event::Kind::begin, item.start);
     for (const Mark& mark : item.marks) {
-      if (Status added = add_mark(item, mark); !added) return added;
+      if (Status status = add_mark(item, mark); !status) return status;
     }
     if (item.range.round > 0) {
       for (int round = 1; round < item.range.rounds; ++round) {
@@ -113,21 +113,21 @@ Result<std::vector<Event>> result_events(const Parts& parts, Diagnostics& warnin
   for (std::size_t i = 0; i < parts.base.items().size(); ++i) {
     const ScheduledItem& item = parts.base.items()[i];
     const BaseItem& told = parts.timeline.base[i];
-    const Status added =
+    const Status status =
         events.add({told.name, told.marks, told.where, item.range, -1, static_cast<int>(i),
                     item.start, item.end, item.skipped, item.play_time(item.end),
                     [&](double play) { return item.time_of(play); }});
-    if (!added) return added.error();
+    if (!status) return status.error();
   }
   for (std::size_t l = 0; l < parts.layers.size(); ++l) {
     for (std::size_t i = 0; i < parts.layers[l].items().size(); ++i) {
       const LayerTimes& times = parts.layers[l].items()[i];
       const LayerItem& told = parts.timeline.layers[l].items[i];
-      const Status added =
+      const Status status =
           events.add({told.name, told.marks, told.where, times.range, static_cast<int>(l),
                       static_cast<int>(i), times.start, times.end, 0, times.end - times.start,
                       [&](double play) { return times.start + play; }});
-      if (!added) return added.error();
+      if (!status) return status.error();
     }
   }
   return events.in_order();

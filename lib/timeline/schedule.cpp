@@ -23,7 +23,7 @@ class Scheduler {
   Result<std::vector<ScheduledItem>> run() {
     if (timeline_.base.empty()) return Error("timeline-empty", "there is nothing to play");
     for (std::size_t i = 0; i < timeline_.base.size(); ++i) {
-      if (Status placed = add(i); !placed) return located(std::move(placed).error(), i);
+      if (Status status = add(i); !status) return located(std::move(status).error(), i);
     }
     ScheduledItem& last = items_.back();
     const auto end = natural_end(items_.size() - 1, false);
@@ -34,8 +34,8 @@ class Scheduler {
           items_.size() - 1);
     }
     last.end = *end;
-    if (Status lasts = check_length(items_.size() - 1); !lasts) {
-      return located(lasts.error(), items_.size() - 1);
+    if (Status status = check_length(items_.size() - 1); !status) {
+      return located(status.error(), items_.size() - 1);
     }
     return std::move(items_);
   }
@@ -83,9 +83,9 @@ class Scheduler {
                                readable(item.end), readable(item.settled)),
                    "shorten the change, or let it play longer");
     }
-    if (item.range.round > 0 && (item.end - item.start) / item.range.round > kMostRounds) {
+    if (item.range.round > 0 && (item.end - item.start) / item.range.round > kMaxRounds) {
       return Error("timeline-limit",
-                   fmt::format("it is played more than {} times", grouped(kMostRounds)));
+                   fmt::format("it is played more than {} times", grouped(kMaxRounds)));
     }
     return {};
   }
@@ -101,8 +101,8 @@ class Scheduler {
         return Error("timeline-time", "the first item begins at 0");
       }
     } else {
-      if (Status sound = check_change(told.change); !sound) return sound;
-      if (Status joined = follow(i, item); !joined) return joined;
+      if (Status status = check_change(told.change); !status) return status;
+      if (Status status = follow(i, item); !status) return status;
     }
     items_.push_back(std::move(item));
     return {};
@@ -145,7 +145,7 @@ class Scheduler {
     item.start = change.kind == ChangeKind::smooth ? item.settled : item.begin;
     before.end = needed;
     if (fades) {
-      if (Status stepped = keep_in_step(told, before, item); !stepped) return stepped;
+      if (Status status = keep_in_step(told, before, item); !status) return status;
     }
     return check_length(i - 1);
   }

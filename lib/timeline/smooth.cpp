@@ -21,7 +21,7 @@ class Smooth : public Transition {
         from_(state_before(sides)) {
     to_ = state_after(sides);
     const Vec3 entered = heading_frame(to_);  // the motion is not in its place yet
-    GroundPlace place = from_.pose.place;
+    GroundFrame place = from_.pose.place;
     if (sides.place) {
       place = *sides.place;
     } else if (sides.change.align == Align::stance &&
@@ -44,9 +44,9 @@ class Smooth : public Transition {
     }
   }
 
-  FigurePose at(double time) const override {
+  ActorPose at(double time) const override {
     const double t = time - begin_;
-    FigurePose pose;
+    ActorPose pose;
     const Vec3 end = as_vector(from_.pose.place) + difference(from_.pose.place, to_.pose.place);
     const Vec3 place = hermite(as_vector(from_.pose.place), from_.place.velocity, end,
                                to_.place.velocity, duration_, t / duration_);
@@ -66,7 +66,7 @@ class Smooth : public Transition {
   }
 
  private:
-  static Vec3 heading_frame(const FigureState& state) {
+  static Vec3 heading_frame(const ActorState& state) {
     const Vec3& v = state.place.velocity;
     const Vec3 seen = axis_rotation(Axis::y, -state.pose.place.heading) * Vec3(v.x(), 0, v.y());
     return {seen.x(), seen.z(), v.z()};
@@ -82,7 +82,7 @@ class Smooth : public Transition {
 
   Easing easing_;
   double begin_, duration_;
-  FigureState from_, to_;
+  ActorState from_, to_;
   std::vector<Vec3> gaps_, entering_;
 };
 

@@ -7,7 +7,7 @@
 #include "blend/time_map.h"
 #include "core/quantity.h"
 #include "core/result.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
 #include "timeline/easing.h"
@@ -91,7 +91,7 @@ struct BaseItem {
   std::optional<ClipTime> at;
   // Where the figure stands in its first frame; left out, where the item before left it, the first
   // one where its motion has it.
-  std::optional<GroundPlace> place;
+  std::optional<GroundFrame> place;
   std::vector<Mark> marks;
   Location where;
 };

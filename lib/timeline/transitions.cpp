@@ -16,10 +16,10 @@ double step_of(const ItemPlayer& player, double rate) {
 
 // The figure where a motion is left or entered, and how it moves there: by what is played before,
 // or by what is played after.
-FigureState state_at(const ItemPlayer& player, double play_time, double room, double step) {
+ActorState state_at(const ItemPlayer& player, double play_time, double room, double step) {
   const int known =
       static_cast<int>(std::clamp(std::floor(room / std::abs(step) + 1e-6), 0.0, 2.0));
-  return figure_state([&](int k) { return player.figure(play_time + k * step); }, step, known);
+  return actor_state([&](int k) { return player.actor(play_time + k * step); }, step, known);
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ const Skeleton& skeleton_of(const TransitionSides& sides) {
   return sides.previous.source().clip->skeleton;
 }
 
-std::vector<Vec3> places_of_joints(const Skeleton& skeleton, const FigurePose& pose) {
+std::vector<Vec3> places_of_joints(const Skeleton& skeleton, const ActorPose& pose) {
   std::vector<Transform> joint_to_world(skeleton.names.size());
   to_world(skeleton, pose, joint_to_world);
   std::vector<Vec3> places;
@@ -46,8 +46,8 @@ std::set<int> contact_joints(const TransitionSides& sides) {
   return joints;
 }
 
-bool stand_on_feet(const TransitionSides& sides, const FigurePose& previous, const FigurePose& next,
-                   GroundPlace& place) {
+bool stand_on_feet(const TransitionSides& sides, const ActorPose& previous, const ActorPose& next,
+                   GroundFrame& place) {
   const double left = sides.previous_times.play_time(sides.next_times.begin);
   const Skeleton& skeleton = skeleton_of(sides);
   const auto before = places_of_joints(skeleton, previous);
@@ -68,23 +68,23 @@ bool stand_on_feet(const TransitionSides& sides, const FigurePose& previous, con
   return true;
 }
 
-void put_next(const TransitionSides& sides, const FigurePose& left, bool& on_feet) {
-  GroundPlace place = left.place;
+void put_next(const TransitionSides& sides, const ActorPose& left, bool& on_feet) {
+  GroundFrame place = left.place;
   if (sides.place) {
     place = *sides.place;
   } else if (sides.change.align == Align::stance) {
-    on_feet = stand_on_feet(sides, left, sides.next.figure(0), place);
+    on_feet = stand_on_feet(sides, left, sides.next.actor(0), place);
   }
   sides.next.put(0, place);
 }
 
-FigureState state_before(const TransitionSides& sides) {
+ActorState state_before(const TransitionSides& sides) {
   const double step = step_of(sides.previous, sides.rate);
   return state_at(sides.previous, sides.previous_times.play_time(sides.next_times.begin),
                   sides.next_times.begin - sides.previous_times.settled, -step);
 }
 
-FigureState state_after(const TransitionSides& sides) {
+ActorState state_after(const TransitionSides& sides) {
   const double step = step_of(sides.next, sides.rate);
   return state_at(sides.next, 0, sides.next.range().duration(), step);
 }
@@ -100,7 +100,7 @@ std::unique_ptr<Transition> make_transition(const TransitionSides& sides, bool& 
     case ChangeKind::cut:
       break;
   }
-  put_next(sides, sides.previous.figure(sides.previous_times.play_time(sides.next_times.begin)),
+  put_next(sides, sides.previous.actor(sides.previous_times.play_time(sides.next_times.begin)),
            on_feet);
   return nullptr;
 }

@@ -19,22 +19,22 @@ std::unique_ptr<Transition> make_inertial(const TransitionSides& sides, bool& on
 const Skeleton& skeleton_of(const TransitionSides& sides);
 
 // Positions in the world.
-std::vector<Vec3> places_of_joints(const Skeleton& skeleton, const FigurePose& pose);
+std::vector<Vec3> places_of_joints(const Skeleton& skeleton, const ActorPose& pose);
 
 // Joints that contacts of either motion tell of.
 std::set<int> contact_joints(const TransitionSides& sides);
 
 // Moves the place where the next figure stands so that the joints that stand in both poses, the
 // previous one's last and the next one's first, stay where they are. False where there are none.
-bool stand_on_feet(const TransitionSides& sides, const FigurePose& previous, const FigurePose& next,
-                   GroundPlace& place);
+bool stand_on_feet(const TransitionSides& sides, const ActorPose& previous, const ActorPose& next,
+                   GroundFrame& place);
 
 // Puts the next motion where the previous one leaves the figure.
-void put_next(const TransitionSides& sides, const FigurePose& left, bool& on_feet);
+void put_next(const TransitionSides& sides, const ActorPose& left, bool& on_feet);
 
 // The figure where the one motion is left and the other entered, and how it moves there: by what is
 // played before, and by what is played after.
-FigureState state_before(const TransitionSides& sides);
-FigureState state_after(const TransitionSides& sides);
+ActorState state_before(const TransitionSides& sides);
+ActorState state_after(const TransitionSides& sides);
 
 }  // namespace krok::timeline

@@ -222,8 +222,8 @@ bool Reducer::one_key_fits(std::size_t track, std::size_t a, std::size_t b, std:
 // allows it. Returns it, or nothing if all is as before.
 std::optional<std::size_t> Reducer::merged(std::size_t track, std::size_t f, std::size_t g) {
   const std::size_t a = neighbour(track, f, -1), b = neighbour(track, g, 1);
-  constexpr std::size_t kMostPlaces = 9;
-  const std::size_t places = std::min(g - f + 1, kMostPlaces);
+  constexpr std::size_t kMaxPlaces = 9;
+  const std::size_t places = std::min(g - f + 1, kMaxPlaces);
   std::uint8_t* keys = is_key_.data() + track * frames_;
   for (std::size_t i = 0; i < places; ++i) {
     const std::size_t place = (i + places / 2) % places;  // from the middle on

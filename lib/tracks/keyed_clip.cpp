@@ -96,7 +96,7 @@ void set_curve(RotationTrack& track, RotationCurve curve, double tension, Ends e
 }
 
 Status check(const KeyedClip& clip) {
-  if (Status skeleton = check(clip.skeleton); !skeleton) return skeleton;
+  if (Status status = check(clip.skeleton); !status) return status;
   if (clip.joints.size() != clip.skeleton.names.size()) {
     return Error("keyed-shape", fmt::format("keys for {} joints, the skeleton has {}",
                                             clip.joints.size(), clip.skeleton.names.size()));

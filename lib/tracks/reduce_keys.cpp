@@ -147,7 +147,7 @@ void keep(const Track& all, std::span<const int> frames, Track& kept) {
 Result<Reduction> choose_keys(std::span<const int> parents, std::span<const double> times,
                               std::span<const Transform> joint_to_parent,
                               const ReduceOptions& options, int jobs) {
-  if (Status fine = check(options); !fine) return fine.error();
+  if (Status status = check(options); !status) return status.error();
   const std::size_t joints = parents.size(), frames = times.size();
   assert(joint_to_parent.size() == joints * frames);
   if (frames == 0 || joints == 0) {

@@ -12,13 +12,13 @@ namespace {
 
 // A place between two keys; `part` 0 is the key itself, as it is before the first and after the
 // last.
-struct Place {
+struct KeyInterval {
   std::size_t key = 0;
   double part = 0;
   double span = 1;  // seconds to the next key
 };
 
-Place find_place(std::span<const double> times, double time, std::size_t& cursor) {
+KeyInterval find_place(std::span<const double> times, double time, std::size_t& cursor) {
   if (!(time > times.front())) return {};
   cursor = key_before(times, time, cursor);
   if (cursor + 1 == times.size()) return {cursor, 0, 1};

@@ -17,10 +17,10 @@ Result<int> run(ToolContext& context, const std::string& model_path) {
   const Clip clip = samples::make_twist();
   OutputSet outputs(context);
   const auto write_model = [&](OutputFile& file) { return model::write(model, {}, file); };
-  if (Status done = outputs.add(model_path, write_model); !done) return done.error();
+  if (Status status = outputs.add(model_path, write_model); !status) return status.error();
   const auto write_clip = [&](OutputFile& file) { return anim::write(clip, {}, file); };
-  if (Status done = outputs.add(context.output, write_clip); !done) return done.error();
-  if (Status done = outputs.finish(); !done) return done.error();
+  if (Status status = outputs.add(context.output, write_clip); !status) return status.error();
+  if (Status status = outputs.finish(); !status) return status.error();
   context.say(fmt::format("{}: {} vertices, {} triangles", model_path, model.positions.size(),
                           model.triangles.size()));
   context.say(

@@ -45,11 +45,11 @@ double load(const Footprint& print, double stride, double time) {
 
 }  // namespace
 
-BodyMotion::BodyMotion(const WalkOptions& options, const Figure& figure, const FootPlan& plan)
+BodyMotion::BodyMotion(const WalkOptions& options, const Actor& actor, const FootPlan& plan)
     : options_(options),
-      figure_(figure),
+      actor_(actor),
       plan_(plan),
-      feet_{FootMotion(Side::left, plan, figure), FootMotion(Side::right, plan, figure)},
+      feet_{FootMotion(Side::left, plan, actor), FootMotion(Side::right, plan, actor)},
       path_(over_prints<Vec3>(plan,
                               [](const Footprint& a, const Footprint& b) {
                                 return Vec3(0.5 * (a.path_point + b.path_point));
@@ -77,7 +77,7 @@ Transform BodyMotion::pelvis_without_height(double time) const {
   const double phase = left_phase(time);
   const double activity = activity_(time);
   const double heading = heading_(time);
-  const double stature = figure_.stature;
+  const double stature = actor_.stature;
 
   // Towards the foot that stands, most in the middle of its single support, phase 0.31.
   const double moving = std::min(1.0, 2.5 * activity);
@@ -126,10 +126,9 @@ double BodyMotion::level_height(double time) const {
         std::max(least_knee_flexion(activity_(time)),
                  kStandingKneeFlexion + activity * (knee_flexion(phase) - kStandingKneeFlexion));
     const Vec3 hip_local =
-        figure_.skeleton.reference_local(figure_.legs[static_cast<std::size_t>(side)].upper)
-            .position;
+        actor_.skeleton.reference_local(actor_.legs[static_cast<std::size_t>(side)].upper).position;
     const Vec3 hip = pelvis * hip_local;
-    const double reach = two_bone_reach(figure_.thigh, figure_.shank, flexion);
+    const double reach = two_bone_reach(actor_.thigh, actor_.shank, flexion);
     height += carried * (hip_height(hip, foot.at(time).ankle, reach) - hip.y());
     weight += carried;
   }
@@ -139,9 +138,9 @@ double BodyMotion::level_height(double time) const {
 // On stairs the body rises evenly while the knee that leads extends, bent by as much as it is
 // ahead.
 double BodyMotion::stairs_height(double time) const {
-  const Vec3 hip = figure_.skeleton.reference_local(figure_.legs[0].upper).position;
-  const double standing = two_bone_reach(figure_.thigh, figure_.shank, kStandingKneeFlexion) -
-                          figure_.heel.y() - hip.y();
+  const Vec3 hip = actor_.skeleton.reference_local(actor_.legs[0].upper).position;
+  const double standing =
+      two_bone_reach(actor_.thigh, actor_.shank, kStandingKneeFlexion) - actor_.heel.y() - hip.y();
   const double moving = std::min(1.0, 2.5 * activity_(time));
   return path_(time).y() + standing - 0.3 * moving * std::abs(plan_.rise);
 }
@@ -149,12 +148,11 @@ double BodyMotion::stairs_height(double time) const {
 double BodyMotion::highest(double time) const {
   const Transform pelvis = pelvis_without_height(time);
   const double reach =
-      two_bone_reach(figure_.thigh, figure_.shank, least_knee_flexion(activity_(time)));
+      two_bone_reach(actor_.thigh, actor_.shank, least_knee_flexion(activity_(time)));
   double height = 1e30;
   for (const Side side : {Side::left, Side::right}) {
     const Vec3 hip_local =
-        figure_.skeleton.reference_local(figure_.legs[static_cast<std::size_t>(side)].upper)
-            .position;
+        actor_.skeleton.reference_local(actor_.legs[static_cast<std::size_t>(side)].upper).position;
     const Vec3 hip = pelvis * hip_local;
     const Vec3 ankle = feet_[static_cast<std::size_t>(side)].at(time).ankle;
     height = std::min(height, hip_height(hip, ankle, reach) - hip.y());
@@ -171,7 +169,7 @@ void BodyMotion::plan_height() {
       static_cast<std::size_t>((plan_.last_time - plan_.first_time + 2 * margin) / kHeightSpacing) +
       1;
   const double on_stairs = plan_.ground == Ground::stairs
-                               ? std::min(1.0, std::abs(plan_.rise) / (0.05 * figure_.stature))
+                               ? std::min(1.0, std::abs(plan_.rise) / (0.05 * actor_.stature))
                                : 0;
   std::vector<double> heights(count), limits(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -201,35 +199,35 @@ void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
   const double heading = heading_(time);
   const auto place = [&](int joint, const Quat& orientation) {
     const auto index = static_cast<std::size_t>(joint);
-    const auto parent = static_cast<std::size_t>(figure_.skeleton.parents[index]);
-    world[index].position = world[parent] * figure_.skeleton.reference_local(joint).position;
+    const auto parent = static_cast<std::size_t>(actor_.skeleton.parents[index]);
+    world[index].position = world[parent] * actor_.skeleton.reference_local(joint).position;
     world[index].orientation = orientation;
   };
   // The shoulders turn against the pelvis, a little later than it, and stay nearly level.
   const double turn = activity * 5.5 * kRadiansPerDegree * std::cos(2 * kPi * (phase - 0.03));
   const double list = -0.35 * std::min(1.0, 2.5 * activity) * pelvis_list(phase);
-  const double climb = plan_.ground == Ground::stairs ? plan_.rise / (0.1 * figure_.stature) : 0;
+  const double climb = plan_.ground == Ground::stairs ? plan_.rise / (0.1 * actor_.stature) : 0;
   const double lean = (2.0 + 1.5 * activity + 1.0 * activity * std::sin(4 * kPi * (phase - 0.05)) +
                        6.0 * std::max(0.0, climb) * std::min(1.0, 2.5 * activity)) *
                       kRadiansPerDegree;
   const Quat chest = axis_rotation(Axis::y, heading + turn) * axis_rotation(Axis::z, list) *
                      axis_rotation(Axis::x, lean);
-  const Quat hips = world[static_cast<std::size_t>(figure_.hips)].orientation;
-  place(figure_.spine, slerp(hips, chest, 0.3));
-  place(figure_.spine1, slerp(hips, chest, 0.65));
-  place(figure_.spine2, chest);
+  const Quat hips = world[static_cast<std::size_t>(actor_.hips)].orientation;
+  place(actor_.spine, slerp(hips, chest, 0.3));
+  place(actor_.spine1, slerp(hips, chest, 0.65));
+  place(actor_.spine2, chest);
   // The head keeps level and looks where the walk goes next.
   const double ahead = heading_(time + 0.35);
   const Quat head =
       axis_rotation(Axis::y, ahead + 0.15 * turn) *
       axis_rotation(
           Axis::x, (1.5 - 0.6 * activity * std::sin(4 * kPi * (phase - 0.05))) * kRadiansPerDegree);
-  place(figure_.neck, slerp(chest, head, 0.5) * axis_rotation(Axis::x, 6 * kRadiansPerDegree));
-  place(figure_.head, head);
+  place(actor_.neck, slerp(chest, head, 0.5) * axis_rotation(Axis::x, 6 * kRadiansPerDegree));
+  place(actor_.head, head);
 }
 
 void BodyMotion::pose_arm(Side side, double time, std::span<Transform> world) const {
-  const ArmJoints& arm = figure_.arms[static_cast<std::size_t>(side)];
+  const ArmJoints& arm = actor_.arms[static_cast<std::size_t>(side)];
   const double own_phase = left_phase(time) + (side == Side::left ? 0 : 0.5);
   const double activity = activity_(time);
   const double swing = std::min(1.15, activity);
@@ -240,8 +238,8 @@ void BodyMotion::pose_arm(Side side, double time, std::span<Transform> world) co
 
   const auto set = [&](int joint, const Quat& left_local) {
     const auto index = static_cast<std::size_t>(joint);
-    const auto parent = static_cast<std::size_t>(figure_.skeleton.parents[index]);
-    world[index] = world[parent] * Transform{figure_.skeleton.reference_local(joint).position,
+    const auto parent = static_cast<std::size_t>(actor_.skeleton.parents[index]);
+    world[index] = world[parent] * Transform{actor_.skeleton.reference_local(joint).position,
                                              on_side(side, left_local)};
   };
   // In the left arm's own frame the bone runs along +X; hanging down, its +Y points away from the
@@ -258,21 +256,21 @@ void BodyMotion::pose_arm(Side side, double time, std::span<Transform> world) co
 }
 
 void BodyMotion::pose_leg(Side side, double time, std::span<Transform> world) const {
-  const LegJoints& leg = figure_.legs[static_cast<std::size_t>(side)];
+  const LegJoints& leg = actor_.legs[static_cast<std::size_t>(side)];
   const auto upper = static_cast<std::size_t>(leg.upper);
   const auto lower = static_cast<std::size_t>(leg.lower);
   const auto foot = static_cast<std::size_t>(leg.foot);
   const auto toes = static_cast<std::size_t>(leg.toes);
-  const Transform& hips = world[static_cast<std::size_t>(figure_.hips)];
+  const Transform& hips = world[static_cast<std::size_t>(actor_.hips)];
   const FootPose planned = feet_[static_cast<std::size_t>(side)].at(time);
 
   // The knee points between where the pelvis and where the foot points, mostly the foot.
   const Vec3 foot_forward = (planned.foot * Vec3(Vec3::UnitX())).cross(Vec3(Vec3::UnitY()));
   const Vec3 hips_forward = (hips.orientation * Vec3(Vec3::UnitX())).cross(Vec3(Vec3::UnitY()));
   TwoBoneChain chain;
-  chain.root = hips * figure_.skeleton.reference_local(leg.upper).position;
-  chain.middle = chain.root + hips.orientation * Vec3(0, -figure_.thigh, 0);
-  chain.end = chain.middle + hips.orientation * Vec3(0, -figure_.shank, 0);
+  chain.root = hips * actor_.skeleton.reference_local(leg.upper).position;
+  chain.middle = chain.root + hips.orientation * Vec3(0, -actor_.thigh, 0);
+  chain.end = chain.middle + hips.orientation * Vec3(0, -actor_.shank, 0);
   chain.hinge = hips.orientation * Vec3(Vec3::UnitX());
   TwoBoneGoal goal;
   goal.target = planned.ankle;
@@ -281,21 +279,21 @@ void BodyMotion::pose_leg(Side side, double time, std::span<Transform> world) co
   world[upper] = {chain.root, solved.root_rotation * hips.orientation};
   world[lower] = {solved.middle, solved.middle_rotation * hips.orientation};
   world[foot] = {solved.end, planned.foot};
-  world[toes] = {world[foot] * figure_.toe_joint, planned.toes};
+  world[toes] = {world[foot] * actor_.toe_joint, planned.toes};
 }
 
 void BodyMotion::pose(double time, std::span<Transform> world) const {
-  world[static_cast<std::size_t>(figure_.hips)] = pelvis(time);
+  world[static_cast<std::size_t>(actor_.hips)] = pelvis(time);
   pose_trunk(time, world);
   for (const Side side : {Side::left, Side::right}) {
     pose_arm(side, time, world);
     pose_leg(side, time, world);
   }
-  for (int i = 0; i < figure_.skeleton.joint_count(); ++i) {
+  for (int i = 0; i < actor_.skeleton.joint_count(); ++i) {
     const auto index = static_cast<std::size_t>(i);
-    if (!figure_.skeleton.end_sites[index]) continue;
-    const auto parent = static_cast<std::size_t>(figure_.skeleton.parents[index]);
-    world[index] = world[parent] * figure_.skeleton.reference_local(i);
+    if (!actor_.skeleton.end_sites[index]) continue;
+    const auto parent = static_cast<std::size_t>(actor_.skeleton.parents[index]);
+    world[index] = world[parent] * actor_.skeleton.reference_local(i);
   }
 }
 

@@ -15,7 +15,7 @@ namespace krok::samples {
 
 class BodyMotion {
  public:
-  BodyMotion(const WalkOptions& options, const Figure& figure, const FootPlan& plan);
+  BodyMotion(const WalkOptions& options, const Actor& actor, const FootPlan& plan);
 
   // joint_to_world of all joints of figure.skeleton, shape [joints].
   void pose(double time, std::span<Transform> joint_to_world) const;
@@ -35,7 +35,7 @@ class BodyMotion {
   void pose_leg(Side side, double time, std::span<Transform> world) const;
 
   const WalkOptions options_;
-  const Figure figure_;
+  const Actor actor_;
   const FootPlan plan_;
   std::array<FootMotion, 2> feet_;  // [Side]
   Spline<Vec3> path_;               // the middle between the feet, along the walk

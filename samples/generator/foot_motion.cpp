@@ -90,8 +90,8 @@ State<Vec3> turned(const Vec3& v, const State<double>& pitch) {
 
 }  // namespace
 
-FootMotion::FootMotion(Side side, const FootPlan& plan, const Figure& figure)
-    : figure_(figure), stride_(2 * plan.step_time) {
+FootMotion::FootMotion(Side side, const FootPlan& plan, const Actor& actor)
+    : actor_(actor), stride_(2 * plan.step_time) {
   for (const Footprint& print : plan.prints) {
     if (print.side == side) prints_.push_back(print);
   }
@@ -135,7 +135,7 @@ FootMotion::FootMotion(Side side, const FootPlan& plan, const Figure& figure)
     swing.direction.y() = 0;
     if (swing.climb == 0) {
       const double flatness = std::max(0.0, 1 - std::abs(next.strike_pitch) / kFlatPitch);
-      swing.to.acceleration.y() += flatness * kSettingDown * figure.stature / 1.75;
+      swing.to.acceleration.y() += flatness * kSettingDown * actor.stature / 1.75;
     }
     if (swing.direction.norm() > 0) swing.direction.normalize();
     swings_.push_back(swing);
@@ -165,11 +165,11 @@ State<Vec3> FootMotion::ankle_state(std::size_t index, const State<double>& foot
   Vec3 pivot = print.heel;
   State<Vec3> from_ankle;  // the pivot seen from the ankle, in the ground's frame
   if (foot_pitch.position >= 0) {
-    from_ankle = turned(figure_.heel, foot_pitch);
+    from_ankle = turned(actor_.heel, foot_pitch);
   } else {
-    pivot += ground * Vec3(figure_.toe_tip - figure_.heel);
-    const State<Vec3> foot = turned(figure_.toe_joint, foot_pitch);
-    const State<Vec3> toes = turned(figure_.toe_tip - figure_.toe_joint, toe_pitch);
+    pivot += ground * Vec3(actor_.toe_tip - actor_.heel);
+    const State<Vec3> foot = turned(actor_.toe_joint, foot_pitch);
+    const State<Vec3> toes = turned(actor_.toe_tip - actor_.toe_joint, toe_pitch);
     from_ankle = {foot.position + toes.position, foot.velocity + toes.velocity,
                   foot.acceleration + toes.acceleration};
   }
@@ -224,11 +224,11 @@ void FootMotion::clear_ground(std::size_t index, const FootPlan& plan) {
     for (int k = 2; k < kSamples - 1; ++k) {
       const double u = static_cast<double>(k) / kSamples;
       const FootPose pose = swing(index, from.off + u * (to.strike - from.off));
-      const Vec3 toe_joint = pose.ankle + pose.foot * figure_.toe_joint;
+      const Vec3 toe_joint = pose.ankle + pose.foot * actor_.toe_joint;
       const std::array<Vec3, 3> sole = {
-          pose.ankle + pose.foot * figure_.heel,
-          toe_joint + pose.toes * Vec3(figure_.ball - figure_.toe_joint),
-          toe_joint + pose.toes * Vec3(figure_.toe_tip - figure_.toe_joint)};
+          pose.ankle + pose.foot * actor_.heel,
+          toe_joint + pose.toes * Vec3(actor_.ball - actor_.toe_joint),
+          toe_joint + pose.toes * Vec3(actor_.toe_tip - actor_.toe_joint)};
       for (const Vec3& point : sole) {
         const double missing = plan.ground_height(point) - point.y();
         lift = std::max(lift, missing / lift_shape(u, swing_of.climb) + kClearance);

@@ -21,7 +21,7 @@ struct FootPose {
 // lifted and held back as far as it takes to clear the ground.
 class FootMotion {
  public:
-  FootMotion(Side side, const FootPlan& plan, const Figure& figure);
+  FootMotion(Side side, const FootPlan& plan, const Actor& actor);
 
   FootPose at(double time) const;
 
@@ -47,7 +47,7 @@ class FootMotion {
   void clear_ground(std::size_t print, const FootPlan& plan);
   std::size_t index_at(double time) const;
 
-  Figure figure_;
+  Actor actor_;
   double stride_ = 0;
   std::vector<Footprint> prints_;
   std::vector<KnotCurve> pitch_;          // from print i's strike to the strike of print i + 1

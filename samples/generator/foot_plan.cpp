@@ -81,7 +81,7 @@ double FootPlan::ground_height(const Vec3& place) const {
   return nearest->path_point.y() + along * std::tan(nearest->slope);
 }
 
-FootPlan plan_feet(const WalkOptions& options, const Figure& figure) {
+FootPlan plan_feet(const WalkOptions& options, const Actor& actor) {
   const std::vector<Step> steps = steps_of(options);
   const int count = static_cast<int>(steps.size()) + 1;
   // The print before the first step asked for.
@@ -92,7 +92,7 @@ FootPlan plan_feet(const WalkOptions& options, const Figure& figure) {
   plan.rise = options.rise;
   plan.ground = options.ground;
   // A foot stands in the middle of its tread.
-  const double foot_length = figure.toe_tip.z() - figure.heel.z();
+  const double foot_length = actor.toe_tip.z() - actor.heel.z();
   plan.edge_behind_heel = std::max(0.0, 0.5 * (options.step_length - foot_length));
   const double stride = 2 * plan.step_time;
   const double slope = options.ground == Ground::slope && options.step_length > 0

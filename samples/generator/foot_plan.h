@@ -49,7 +49,7 @@ struct FootPlan {
 // print before the first step) facing +Z: each step goes its length in the direction half-way
 // through its turn. In a steady walk some prints before the first and after the last are planned
 // too, so that the ends are no different from the middle.
-FootPlan plan_feet(const WalkOptions& options, const Figure& figure);
+FootPlan plan_feet(const WalkOptions& options, const Actor& actor);
 
 // Directions of a heading about +Y.
 Vec3 forward_of(double heading);

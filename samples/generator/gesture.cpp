@@ -36,9 +36,9 @@ double up_and_down(double now, double duration, double time) {
 // A pose whose joints are turned one by one, from the root on.
 class Posing {
  public:
-  Posing(const Figure& figure, std::vector<Transform> joint_to_world)
-      : figure_(figure), local_(std::move(joint_to_world)) {
-    const Skeleton& skeleton = figure.skeleton;
+  Posing(const Actor& actor, std::vector<Transform> joint_to_world)
+      : actor_(actor), local_(std::move(joint_to_world)) {
+    const Skeleton& skeleton = actor.skeleton;
     for (int j = skeleton.joint_count() - 1; j > 0; --j) {
       local_[at(j)] = local_[at(skeleton.parents[at(j)])].inverse() * local_[at(j)];
     }
@@ -55,14 +55,14 @@ class Posing {
 
   std::vector<Transform> world() const {
     std::vector<Transform> world = local_;
-    for (int j = 1; j < figure_.skeleton.joint_count(); ++j) {
-      world[at(j)] = world[at(figure_.skeleton.parents[at(j)])] * local_[at(j)];
+    for (int j = 1; j < actor_.skeleton.joint_count(); ++j) {
+      world[at(j)] = world[at(actor_.skeleton.parents[at(j)])] * local_[at(j)];
     }
     return world;
   }
 
  private:
-  const Figure& figure_;
+  const Actor& actor_;
   std::vector<Transform> local_;
 };
 
@@ -77,9 +77,9 @@ Quat frame_of(const Vec3& x, const Vec3& y) {
 
 // The arm goes out to the side and the forearm up, the palm to the front. In the reference pose an
 // arm runs along x, away from the body, and its elbow bends about y.
-void wave(const Figure& figure, const GestureOptions& options, double time, Posing& pose) {
+void wave(const Actor& actor, const GestureOptions& options, double time, Posing& pose) {
   const double sign = side_sign(options.side);
-  const ArmJoints& arm = figure.arms[at(static_cast<int>(options.side))];
+  const ArmJoints& arm = actor.arms[at(static_cast<int>(options.side))];
   const double up = up_and_down(time, options.duration, kLifting);
   const double swing = 24 * kRadiansPerDegree *
                        std::sin(2 * kPi * kWavesASecond * (time - kLifting)) *
@@ -94,66 +94,66 @@ void wave(const Figure& figure, const GestureOptions& options, double time, Posi
   pose.bring(arm.upper, upper_to_chest, up);
   pose.bring(arm.lower, upper_to_chest.conjugate() * lower_to_chest, up);
   pose.bring(arm.hand, axis_rotation(Axis::z, -sign * 0.5 * swing), up);
-  pose.turn(figure.head, axis_rotation(Axis::y, sign * 12 * kRadiansPerDegree * up));
+  pose.turn(actor.head, axis_rotation(Axis::y, sign * 12 * kRadiansPerDegree * up));
 }
 
 // As people spare an aching hip: the trunk over the leg that stands, the head kept level.
-void limp(const Figure& figure, const GestureOptions& options, double time, Posing& pose) {
+void limp(const Actor& actor, const GestureOptions& options, double time, Posing& pose) {
   const double sign = side_sign(options.side);
   const double phase = std::clamp(time / options.duration / kStance, 0.0, 1.0);
   const double lean = 0.5 - 0.5 * std::cos(2 * kPi * phase);
   const Quat third = axis_rotation(Axis::z, -sign * 5 * kRadiansPerDegree * lean) *
                      axis_rotation(Axis::x, 2.5 * kRadiansPerDegree * lean);
-  for (const int joint : {figure.spine, figure.spine1, figure.spine2}) pose.turn(joint, third);
-  for (const int joint : {figure.neck, figure.head}) pose.turn(joint, third.conjugate());
-  const ArmJoints& arm = figure.arms[at(static_cast<int>(options.side))];
+  for (const int joint : {actor.spine, actor.spine1, actor.spine2}) pose.turn(joint, third);
+  for (const int joint : {actor.neck, actor.head}) pose.turn(joint, third.conjugate());
+  const ArmJoints& arm = actor.arms[at(static_cast<int>(options.side))];
   pose.turn(arm.upper, axis_rotation(Axis::z, sign * 10 * kRadiansPerDegree * lean));
 }
 
-void look(const Figure& figure, const GestureOptions& options, double time, Posing& pose) {
+void look(const Actor& actor, const GestureOptions& options, double time, Posing& pose) {
   const double turned = side_sign(options.side) * up_and_down(time, options.duration, kTurning);
-  pose.turn(figure.spine2, axis_rotation(Axis::y, 8 * kRadiansPerDegree * turned));
-  pose.turn(figure.neck, axis_rotation(Axis::y, 22 * kRadiansPerDegree * turned));
-  pose.turn(figure.head, axis_rotation(Axis::y, 30 * kRadiansPerDegree * turned));
+  pose.turn(actor.spine2, axis_rotation(Axis::y, 8 * kRadiansPerDegree * turned));
+  pose.turn(actor.neck, axis_rotation(Axis::y, 22 * kRadiansPerDegree * turned));
+  pose.turn(actor.head, axis_rotation(Axis::y, 30 * kRadiansPerDegree * turned));
 }
 
 Status check(const GestureOptions& options) {
-  if (Status sound = check_range("stature", options.stature, 0.5, 2.5); !sound) return sound;
-  if (Status sound = check_range("duration", options.duration, 0.2, 600); !sound) return sound;
+  if (Status status = check_range("stature", options.stature, 0.5, 2.5); !status) return status;
+  if (Status status = check_range("duration", options.duration, 0.2, 600); !status) return status;
   return check_range("rate", options.rate, 1, 1000);
 }
 
 }  // namespace
 
 Result<Clip> make_gesture(const GestureOptions& options) {
-  if (Status sound = check(options); !sound) return sound.error();
+  if (Status status = check(options); !status) return status.error();
   WalkOptions standing;
   standing.stature = options.stature;
   standing.steps = 1;
   standing.from_standing = true;
   const auto walk = make_walk(standing);
   if (!walk) return walk.error();
-  const Figure& figure = walk->figure;
-  std::vector<Transform> stance(figure.skeleton.names.size());
+  const Actor& actor = walk->actor;
+  std::vector<Transform> stance(actor.skeleton.names.size());
   walk->clip.get_pose(0, stance);
 
   Clip clip;
-  clip.skeleton = figure.skeleton;
+  clip.skeleton = actor.skeleton;
   clip.rate = options.rate;
   clip.resize(static_cast<int>(std::floor(options.duration * options.rate + 1e-6)) + 1);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     // The last frame is the end, whether or not the duration is a whole number of frames.
     const double time = options.duration * frame / std::max(1, clip.frame_count() - 1);
-    Posing pose(figure, stance);
+    Posing pose(actor, stance);
     switch (options.gesture) {
       case Gesture::wave:
-        wave(figure, options, time, pose);
+        wave(actor, options, time, pose);
         break;
       case Gesture::limp:
-        limp(figure, options, time, pose);
+        limp(actor, options, time, pose);
         break;
       case Gesture::look:
-        look(figure, options, time, pose);
+        look(actor, options, time, pose);
         break;
     }
     clip.set_pose(frame, pose.world());

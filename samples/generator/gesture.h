@@ -1,6 +1,6 @@
 #pragma once
 
-#include "samples/generator/figure.h"
+#include "samples/generator/actor.h"
 #include "scene/clip.h"
 
 // Motions of the figure's upper body, standing where a walk from standing begins: what is laid over

@@ -47,18 +47,18 @@ Json parameters(const Walk& walk) {
   return json;
 }
 
-Json contact_points(const Figure& figure) {
+Json contact_points(const Actor& actor) {
   Json json = Json::object();
   for (const Side side : {Side::left, Side::right}) {
-    const LegJoints& leg = figure.legs[static_cast<std::size_t>(side)];
+    const LegJoints& leg = actor.legs[static_cast<std::size_t>(side)];
     const auto point = [&](int joint, const Vec3& offset) {
       Json entry;
-      entry["joint"] = figure.skeleton.names[static_cast<std::size_t>(joint)];
+      entry["joint"] = actor.skeleton.names[static_cast<std::size_t>(joint)];
       entry["offset"] = vector(offset);
       return entry;
     };
-    json[side_name(side)]["heel"] = point(leg.foot, figure.heel);
-    json[side_name(side)]["toe"] = point(leg.toes, figure.toe_tip - figure.toe_joint);
+    json[side_name(side)]["heel"] = point(leg.foot, actor.heel);
+    json[side_name(side)]["toe"] = point(leg.toes, actor.toe_tip - actor.toe_joint);
   }
   return json;
 }
@@ -123,7 +123,7 @@ std::string ground_truth_json(const Walk& walk, const std::string& capture_name)
   json["rate"] = walk.clip.rate;
   json["frames"] = walk.clip.frame_count();
   json["parameters"] = parameters(walk);
-  json["contact_points"] = contact_points(walk.figure);
+  json["contact_points"] = contact_points(walk.actor);
   for (const Side side : {Side::left, Side::right}) {
     const FootContacts& foot = walk.feet[static_cast<std::size_t>(side)];
     json["keytimes"][std::string(side_name(side)) + "_strike"] = times(foot.strikes);

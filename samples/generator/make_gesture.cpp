@@ -56,7 +56,7 @@ Result<int> run(ToolContext& context, Arguments& arguments) {
   const auto clip = samples::make_gesture(gesture);
   if (!clip) return clip.error();
   const auto write = [&](OutputFile& file) { return bvh::write(*clip, {.decimals = 4}, file); };
-  if (Status done = write_output(context, context.output, write); !done) return done.error();
+  if (Status status = write_output(context, context.output, write); !status) return status.error();
   context.say(fmt::format("{}: a {}, {} frames at {:g}/s, {:.1f} s", context.output, arguments.kind,
                           clip->frame_count(), clip->rate, clip->duration()));
   return kExitDone;

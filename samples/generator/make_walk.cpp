@@ -107,7 +107,7 @@ Status read_quantities(Arguments& arguments) {
       {arguments.noise_position, parse_length, walk.noise_position},
   };
   for (const auto& quantity : quantities) {
-    if (Status done = set(quantity.text, quantity.parse, quantity.value); !done) return done;
+    if (Status status = set(quantity.text, quantity.parse, quantity.value); !status) return status;
   }
   walk.ground = arguments.ground == "slope" ? samples::Ground::slope : samples::Ground::stairs;
   walk.first_side = arguments.first == "right" ? samples::Side::right : samples::Side::left;
@@ -120,7 +120,7 @@ std::string contacts_path(const std::string& capture) {
 }
 
 Result<int> run(ToolContext& context, Arguments& arguments) {
-  if (Status done = read_quantities(arguments); !done) return std::move(done).error();
+  if (Status status = read_quantities(arguments); !status) return std::move(status).error();
   Result<samples::Walk> walk = samples::make_walk(arguments.walk);
   if (!walk) return std::move(walk).error();
 
@@ -128,19 +128,19 @@ Result<int> run(ToolContext& context, Arguments& arguments) {
   if (!capture) return std::move(capture).error();
   bvh::WriteOptions options;
   options.decimals = kDecimals;
-  if (Status done = bvh::write(walk->clip, options, *capture); !done) {
-    return std::move(done).error();
+  if (Status status = bvh::write(walk->clip, options, *capture); !status) {
+    return std::move(status).error();
   }
   const std::string truth = samples::ground_truth_json(*walk, base_name(context.output));
   std::string truth_path = arguments.contacts;
   if (truth_path.empty() && context.output != "-") truth_path = contacts_path(context.output);
   if (!truth_path.empty()) {
-    if (Status done = write_file(truth_path, truth, context.output_options()); !done) {
-      return std::move(done).error();
+    if (Status status = write_file(truth_path, truth, context.output_options()); !status) {
+      return std::move(status).error();
     }
     context.wrote(truth_path);
   }
-  if (Status done = capture->commit(); !done) return std::move(done).error();
+  if (Status status = capture->commit(); !status) return std::move(status).error();
   context.wrote(context.output);
   context.say(fmt::format("{}: {} steps, {} frames at {:g}/s, {:.1f} s", context.output,
                           arguments.walk.steps, walk->clip.frame_count(), walk->clip.rate,

@@ -19,7 +19,7 @@ void add_contact(std::vector<Contact>& contacts, Contact contact, double last) {
 }
 
 // What of the plan falls into the clip, on the clip's clock.
-void record_contacts(const FootPlan& plan, const Figure& figure, Walk& walk) {
+void record_contacts(const FootPlan& plan, const Actor& actor, Walk& walk) {
   const double last = plan.last_time - plan.first_time;
   for (Footprint print : plan.prints) {
     for (double* time :
@@ -48,7 +48,7 @@ void record_contacts(const FootPlan& plan, const Figure& figure, Walk& walk) {
                 print.off,
                 print.first_of_foot,
                 print.last_of_foot,
-                print.heel + ground * Vec3(figure.toe_tip - figure.heel)};
+                print.heel + ground * Vec3(actor.toe_tip - actor.heel)};
     add_contact(foot.heel, heel, last);
     add_contact(foot.toe, toe, last);
     if (!starts_before) foot.strikes.push_back(print.strike);
@@ -59,11 +59,11 @@ void record_contacts(const FootPlan& plan, const Figure& figure, Walk& walk) {
 }  // namespace
 
 Result<Walk> make_walk(const WalkOptions& options) {
-  if (Status valid = check(options); !valid) return std::move(valid).error();
+  if (Status status = check(options); !status) return std::move(status).error();
   Walk walk;
   walk.options = options;
-  walk.figure = make_figure(options.stature);
-  const FootPlan plan = plan_feet(options, walk.figure);
+  walk.actor = make_actor(options.stature);
+  const FootPlan plan = plan_feet(options, walk.actor);
   walk.step_time = plan.step_time;
 
   const double frames = std::floor((plan.last_time - plan.first_time) * options.rate + 1e-6) + 1;
@@ -71,18 +71,18 @@ Result<Walk> make_walk(const WalkOptions& options) {
     return Error("walk-too-long", "the walk would have more than a million frames",
                  "ask for fewer steps or a lower rate");
   }
-  const BodyMotion body(options, walk.figure, plan);
-  walk.clip.skeleton = walk.figure.skeleton;
+  const BodyMotion body(options, walk.actor, plan);
+  walk.clip.skeleton = walk.actor.skeleton;
   walk.clip.rate = options.rate;
   walk.clip.resize(static_cast<int>(frames));
-  std::vector<Transform> world(walk.figure.skeleton.names.size());
+  std::vector<Transform> world(walk.actor.skeleton.names.size());
   NoiseSource noise(options.seed);
   for (int frame = 0; frame < walk.clip.frame_count(); ++frame) {
     body.pose(plan.first_time + frame / options.rate, world);
-    add_noise(options, walk.figure.skeleton, noise, world);
+    add_noise(options, walk.actor.skeleton, noise, world);
     walk.clip.set_pose(frame, world);
   }
-  record_contacts(plan, walk.figure, walk);
+  record_contacts(plan, walk.actor, walk);
   return walk;
 }
 

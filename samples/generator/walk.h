@@ -27,7 +27,7 @@ struct FootContacts {
 
 struct Walk {
   Clip clip;
-  Figure figure;
+  Actor actor;
   WalkOptions options;
   double step_time = 0;
   std::vector<Footprint> prints;     // all that touch the clip's range; times from the clip's start

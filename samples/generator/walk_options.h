@@ -4,7 +4,7 @@
 
 #include "core/result.h"
 #include "math/types.h"
-#include "samples/generator/figure.h"
+#include "samples/generator/actor.h"
 
 namespace krok::samples {
 

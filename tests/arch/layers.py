@@ -59,7 +59,7 @@ ALLOWED = {
     "formats/obj": BASE,
     "formats/pc2": BASE,
     "formats/weights": BASE | {"lib/skin", "formats/csv", "formats/json"},
-    "formats/picture": BASE,
+    "formats/image": BASE,
     "formats/material": BASE | {"formats/json"},
     "formats/character": BASE | {"formats/json"},
     "formats/key_shapes": BASE | {"lib/skin", "formats/json"},

@@ -56,7 +56,7 @@ struct Scene {
     motion.source = [this]() -> ShapeSource {
       return [this, pose = std::make_shared<SkinPose>(binding),
               joints = std::vector<Transform>(clip.skeleton.names.size())](
-                 int frame, const ShapePlace& to) mutable {
+                 int frame, const ShapeOutput& to) mutable {
         clip.get_pose(frame, joints);
         pose->set(joints);
         SkinSurface in = skin_surface(model);
@@ -93,8 +93,8 @@ Cost cost_to_write(const std::string& path, bool wait, const Write& write) {
   options.stored_later = !wait;
   auto file = OutputFile::create(path, options);
   if (!file) stop(file.error());
-  if (const Status done = write(*file); !done) stop(done.error());
-  if (const Status done = file->commit(); !done) stop(done.error());
+  if (const Status status = write(*file); !status) stop(status.error());
+  if (const Status status = file->commit(); !status) stop(status.error());
   return {seconds_since(begin), static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC};
 }
 
@@ -103,7 +103,7 @@ Write plain(std::uint64_t bytes) {
              OutputFile& file) -> Status {
     for (std::uint64_t left = bytes; left > 0;) {
       const auto count = std::min<std::uint64_t>(left, block.size());
-      if (Status done = file.write(std::span(block).first(count)); !done) return done;
+      if (Status status = file.write(std::span(block).first(count)); !status) return status;
       left -= count;
     }
     return {};

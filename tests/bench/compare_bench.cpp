@@ -86,7 +86,7 @@ MeshMotion skinned(const Model& model, const Clip& clip) {
   MeshMotion motion;
   motion.frames = clip.frame_count();
   motion.rate = clip.rate;
-  motion.source = copies_of([&model, &clip](int frame, const ShapePlace& to) {
+  motion.source = copies_of([&model, &clip](int frame, const ShapeOutput& to) {
     std::vector<Transform> pose(model.skeleton.reference.size());
     clip.get_pose(frame, pose);
     for (std::size_t v = 0; v < model.positions.size(); ++v) {
@@ -153,10 +153,10 @@ double seconds_of(const std::function<void()>& work) {
 }
 
 std::string hash_of(const compare::SceneDifference& found) {
-  const double figures[] = {found.positions.largest,          found.positions.square_sum,
-                            found.positions.percentile(0.95), found.normals.largest,
-                            found.normals.square_sum,         found.normals.percentile(0.95)};
-  return hex(xxh3(std::as_bytes(std::span(figures))));
+  const double actors[] = {found.positions.largest,          found.positions.square_sum,
+                           found.positions.percentile(0.95), found.normals.largest,
+                           found.normals.square_sum,         found.normals.percentile(0.95)};
+  return hex(xxh3(std::as_bytes(std::span(actors))));
 }
 
 void static_meshes(const std::filesystem::path& folder) {

@@ -37,7 +37,7 @@ void plain_pose(const Library& library, const PackedExamples& packed,
     sum[j].position.setZero();
     sum[j].orientation.coeffs().setZero();
   }
-  const GenericPlace place = generic_place(packed.generic, generic);
+  const GenericTimePoint place = generic_place(packed.generic, generic);
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const double time = example_time(packed, place, static_cast<int>(i));
     sample(library.examples[i].motion, time, pose, space.first(3 * joints));

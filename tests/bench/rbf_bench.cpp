@@ -30,7 +30,7 @@ constexpr std::size_t kPoints = 256;  // a round
 // The sum as it stands in the header of weight functions, cubic.
 void plain_weights(const rbf::WeightFunction& f, const double* point, double* weights) {
   const auto d = static_cast<std::size_t>(f.dimensions), n = static_cast<std::size_t>(f.examples);
-  double scaled[rbf::kMostDimensions];
+  double scaled[rbf::kMaxDimensions];
   for (std::size_t i = 0; i < d; ++i) {
     scaled[i] = (point[i] - f.lower[i]) / (f.upper[i] - f.lower[i]);
   }

@@ -21,7 +21,7 @@
 #include "parametric/measure.h"
 #include "parametric/synthesise.h"
 #include "rbf/sobol.h"
-#include "rbf/weight_figures.h"
+#include "rbf/weight_metrics.h"
 #include "rbf/weight_solver.h"
 
 namespace {
@@ -98,8 +98,8 @@ class Trial {
   }
 
   double roughness(const rbf::WeightFunction& function) const {
-    const auto figures = rbf::weight_figures(function, 256, inside());
-    return figures ? figures->roughness : NAN;
+    const auto actors = rbf::weight_metrics(function, 256, inside());
+    return actors ? actors->roughness : NAN;
   }
 
   Errors errors_of(const Weigh& weigh, double& least) const {

@@ -12,7 +12,7 @@ inline MeshMotion wobble(const Model& model, int frames) {
   MeshMotion result;
   result.frames = frames;
   result.rate = 25;
-  result.source = copies_of([&model](int frame, const ShapePlace& to) {
+  result.source = copies_of([&model](int frame, const ShapeOutput& to) {
     for (std::size_t v = 0; v < to.positions.size(); ++v) {
       const float angle = 0.01f * static_cast<float>(v % 100) * static_cast<float>(frame);
       to.positions[v] = model.positions[v] + Vec3f(std::sin(angle), 0, 1 - std::cos(angle));

@@ -211,7 +211,7 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
                  fmt::format("see {} --help{}", tool_,
                              too_many ? "; many files go into a folder, --out-dir DIR" : ""));
   }
-  if (Status fits = check_use_of_batch_options(); !fits) return fits.error();
+  if (Status status = check_use_of_batch_options(); !status) return status.error();
   note_given();
   return Wish::run;
 }

@@ -95,7 +95,7 @@ Status ToolContext::check_output(const std::string& path) {
     return replaced_error(input.path);
   }
   if (check_unforeseen && !is_destination(path)) {
-    if (Status fits = check_unforeseen(path); !fits) return fits;
+    if (Status status = check_unforeseen(path); !status) return status;
   }
   const std::string place = place_of(path);
   if (!place.empty()) written_.insert(place);

@@ -68,7 +68,7 @@ class Search {
     }
     const bool any_folders = pattern == "**";
     if (any_folders && !last) {
-      if (Status here = in(folder, part + 1); !here) return here;
+      if (Status status = in(folder, part + 1); !status) return status;
     }
     std::error_code trouble;
     fs::directory_iterator entry(folder.empty() ? "." : folder, trouble);
@@ -80,7 +80,7 @@ class Search {
       if (!entry->is_directory(unknown)) {
         if (last) add(path);
       } else if (any_folders ? !entry->is_symlink(unknown) : !last) {
-        if (Status below = in(path, any_folders ? part : part + 1); !below) return below;
+        if (Status status = in(path, any_folders ? part : part + 1); !status) return status;
       }
     }
     if (trouble) {
@@ -158,13 +158,13 @@ Result<std::vector<std::string>> find_files(const std::string& pattern) {
   Search search(parts_of(pattern.substr(std::min(fixed.size(), pattern.size()))));
   std::error_code missing;
   if (!fixed.empty() && !fs::is_directory(fixed, missing)) return std::vector<std::string>();
-  if (Status done = search.in(fixed, 0); !done) return done.error();
+  if (Status status = search.in(fixed, 0); !status) return status.error();
   return std::move(search).found();
 }
 
 Result<std::vector<std::string>> find_files_below(const std::string& folder) {
   Search search({"**"});
-  if (Status done = search.in(folder, 0); !done) return done.error();
+  if (Status status = search.in(folder, 0); !status) return status.error();
   return std::move(search).found();
 }
 

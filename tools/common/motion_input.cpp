@@ -78,9 +78,9 @@ FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty) {
   FrameSource watching = frames;
   watching.read = [&](int first, int count, std::span<Vec3f> positions,
                       std::span<Quatf> orientations) {
-    Status read = frames.read(first, count, positions, orientations);
-    if (!read) faulty = true;
-    return read;
+    Status status = frames.read(first, count, positions, orientations);
+    if (!status) faulty = true;
+    return status;
   };
   return watching;
 }
@@ -121,9 +121,9 @@ Result<MotionFacts> use_motion(const std::string& path, ToolContext& context,
     if (opened) {
       std::atomic<bool> faulty = false;
       const FrameSource frames = watched(opened->frames, faulty);
-      const Status used = use(frames);
+      const Status status = use(frames);
       if (!faulty) {
-        if (!used) return used.error();
+        if (!status) return status.error();
         context.tell(opened->diagnostics);
         return facts_of(frames, std::move(opened->clip.provenance.conversions));
       }
@@ -132,7 +132,7 @@ Result<MotionFacts> use_motion(const std::string& path, ToolContext& context,
   const auto clip = read_motion(*input, context);
   if (!clip) return clip.error();
   const FrameSource frames = frames_of(*clip);
-  if (Status used = use(frames); !used) return used.error();
+  if (Status status = use(frames); !status) return status.error();
   return facts_of(frames,
                   is_capture(*input) ? clip->provenance.conversions : std::vector<std::string>());
 }

@@ -16,8 +16,8 @@ Result<OutputFile> written(const std::string& path, OutputFile::Options options,
                            const std::function<Status(OutputFile&)>& write) {
   auto file = OutputFile::create(path, options);
   if (!file) return file.error();
-  if (Status done = write(*file); !done) return std::move(done.error()).in_file(path);
-  if (Status sealed = file->seal(); !sealed) return sealed.error();
+  if (Status status = write(*file); !status) return std::move(status.error()).in_file(path);
+  if (Status status = file->seal(); !status) return status.error();
   return file;
 }
 
@@ -31,7 +31,7 @@ Status OutputSet::add(const std::string& path, const std::function<Status(Output
 Status OutputSet::add_all(const std::vector<std::string>& paths, int jobs,
                           const std::function<Status(std::size_t, OutputFile&)>& write) {
   for (const std::string& path : paths) {
-    if (Status fits = context_.check_output(path); !fits) return fits;
+    if (Status status = context_.check_output(path); !status) return status;
     const std::string place = place_of(path);
     if (!place.empty() && !places_.insert(place).second) return twice_error(path);
   }
@@ -61,8 +61,8 @@ Status OutputSet::finish() {
   if (context_.kept_messages != nullptr && !foreseen) {
     std::move(files_.begin(), files_.end(), std::back_inserter(context_.held_files));
     context_.held_paths.insert(context_.held_paths.end(), paths_.begin(), paths_.end());
-  } else if (Status placed = OutputFile::place_all(files_); !placed) {
-    return placed;
+  } else if (Status status = OutputFile::place_all(files_); !status) {
+    return status;
   }
   for (const std::string& path : paths_) context_.wrote(path);
   return {};
@@ -77,7 +77,7 @@ std::string OutputSet::names() const {
 Status write_output(ToolContext& context, const std::string& path,
                     const std::function<Status(OutputFile&)>& write) {
   OutputSet outputs(context);
-  if (Status added = outputs.add(path, write); !added) return added;
+  if (Status status = outputs.add(path, write); !status) return status;
   return outputs.finish();
 }
 

@@ -30,10 +30,10 @@ std::string short_name(Role role) {
 
 // "Neck Head", of more than a few "... and 7 more".
 std::string joints_of(const Skeleton& skeleton, const std::vector<int>& joints) {
-  constexpr std::size_t kMost = 6;
+  constexpr std::size_t kMax = 6;
   std::string text;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (i == kMost) return text + fmt::format(" and {} more", joints.size() - kMost);
+    if (i == kMax) return text + fmt::format(" and {} more", joints.size() - kMax);
     text += (i == 0 ? "" : " ") + skeleton.names[at(joints[i])];
   }
   return text;
@@ -123,18 +123,18 @@ std::vector<int> given_joints(const RoleMap& map) {
 
 // "Bone_012 left_hand, Bone_013 none".
 std::string given_of(const Skeleton& skeleton, const RoleMap& map) {
-  constexpr std::size_t kMost = 12;
+  constexpr std::size_t kMax = 12;
   const std::vector<int> joints = given_joints(map);
   std::string text;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (i == kMost) return text + fmt::format(" and {} more", joints.size() - kMost);
+    if (i == kMax) return text + fmt::format(" and {} more", joints.size() - kMax);
     text += fmt::format("{}{} {}", i == 0 ? "" : ", ", skeleton.names[at(joints[i])],
                         role_label(map, joints[i]));
   }
   return text;
 }
 
-std::string figure_of(const RoleMap& map) {
+std::string actor_of(const RoleMap& map) {
   if (!map.humanoid) return "not recognised as a humanoid";
   const auto placed = std::count_if(map.roles.begin(), map.roles.end(), is_of_body);
   return fmt::format("humanoid, {} with a role in the body", counted(placed, "joint"));
@@ -144,7 +144,7 @@ std::string figure_of(const RoleMap& map) {
 
 std::vector<RoleRow> role_rows(const Skeleton& skeleton, const RoleMap& map) {
   std::vector<RoleRow> rows;
-  rows.push_back({"figure", figure_of(map)});
+  rows.push_back({"figure", actor_of(map)});
   add_parts(skeleton, map, rows);
   std::string missing;
   for (const Role role : missing_roles(map)) {

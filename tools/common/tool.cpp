@@ -90,8 +90,8 @@ int finish(ToolContext& context, ReportFile& file, int exit_code) {
   }
   const std::string text = json_text(context.report.to_json(), 2) + "\n";
   (void)file->write(text).ok();  // a failure is kept and told by commit()
-  if (const Status written = file->commit(); !written) {
-    write_message(context.console, to_text(written.error()) + "\n");
+  if (const Status status = file->commit(); !status) {
+    write_message(context.console, to_text(status.error()) + "\n");
     return kExitTrouble;
   }
   return exit_code;
@@ -123,15 +123,15 @@ int run_single(const ToolSpec& spec, const CommandLine& line) {
                 Error("usage", "the report and the output cannot both go to standard output",
                       fmt::format("see {} --help", spec.name)));
   }
-  if (Status apart = check_destinations(context); !apart) return fail(context, apart.error());
+  if (Status status = check_destinations(context); !status) return fail(context, status.error());
   ReportFile report;
-  if (Status begun = begin_report(context, report); !begun) return fail(context, begun.error());
+  if (Status status = begin_report(context, report); !status) return fail(context, status.error());
   const bool silent = context.quiet && line.style == ProgressStyle::automatic;
   const auto console = console_progress(silent ? ProgressStyle::none : line.style);
   context.console = console.get();
   context.progress = console.get();
-  const Status fits = spec.check ? spec.check() : Status();
-  const Result<int> done = fits ? run_guarded(spec, context) : Result<int>(fits.error());
+  const Status status = spec.check ? spec.check() : Status();
+  const Result<int> done = status ? run_guarded(spec, context) : Result<int>(status.error());
   console->end();
   if (!done) return fail(context, report, done.error());
   if (!standard_output_written()) return fail(context, report, standard_output_error());
@@ -151,9 +151,9 @@ int fail_usage(const ToolSpec& spec, const std::vector<std::string>& arguments, 
     context.report_path.clear();  // a pattern may stand for it
   }
   ReportFile report;
-  const Status begun = begin_report(context, report);
+  const Status status = begin_report(context, report);
   const int code = fail(context, report, error);
-  return begun ? code : fail(context, begun.error());
+  return status ? code : fail(context, status.error());
 }
 
 int run_arguments(const MakeToolSpec& make_spec, const std::vector<std::string>& arguments) {
@@ -184,12 +184,12 @@ Error error_of_exception(const std::string& tool) {
   }
 }
 
-constexpr std::size_t kMostName = 64;
-char name_when_ending[kMostName] = "krok";
+constexpr std::size_t kMaxName = 64;
+char name_when_ending[kMaxName] = "krok";
 
 // Where memory is at an end, even what lets go of memory may ask for some (the destructors of JSON
 // values do), and an exception may find no place for itself. Neither can be caught.
-[[noreturn]] void end_for_want_of_memory() {
+[[noreturn]] void exit_out_of_memory() {
   remove_temporaries();
   for (const char* words : {static_cast<const char*>(name_when_ending),
                             ": error: there is not enough memory [out-of-memory]\n"}) {
@@ -206,12 +206,12 @@ void end_by_exception() {
   } catch (...) {
     std::abort();  // a bug
   }
-  end_for_want_of_memory();
+  exit_out_of_memory();
 }
 
-void be_ready_for_want_of_memory(const char* path) {
+void install_out_of_memory_handler(const char* path) {
   const char* slash = std::strrchr(path, '/');
-  std::strncpy(name_when_ending, slash == nullptr ? path : slash + 1, kMostName - 1);
+  std::strncpy(name_when_ending, slash == nullptr ? path : slash + 1, kMaxName - 1);
   std::set_terminate(end_by_exception);
 }
 
@@ -243,7 +243,7 @@ int print_and_end(const std::string& tool, const std::string& text) {
 int run_tool(const MakeToolSpec& make_spec, int argc, char** argv) {
   open_missing_standard_streams();
   remove_temporaries_on_signals();
-  be_ready_for_want_of_memory(argc > 0 ? argv[0] : "krok");
+  install_out_of_memory_handler(argc > 0 ? argv[0] : "krok");
   try {
     return run_arguments(make_spec, arguments_of(argc, argv));
   } catch (const std::exception&) {

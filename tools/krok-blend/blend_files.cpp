@@ -126,26 +126,27 @@ Status write_results(const Options& options, const std::vector<Motion>& motions,
     }
   }
   OutputSet outputs(context);
-  Status added = outputs.add(context.output, [&](OutputFile& file) {
+  Status status = outputs.add(context.output, [&](OutputFile& file) {
     return anim::write(blended.clip,
                        {.orientation = options.orientation, .jobs = thread_count(context.jobs)},
                        file);
   });
-  if (added && !keys_path->empty()) {
-    added = outputs.add(*keys_path, [&](OutputFile& file) {
+  if (status && !keys_path->empty()) {
+    status = outputs.add(*keys_path, [&](OutputFile& file) {
       return file.write(keys::write(blended.keys, blended.clip.skeleton, blended.clip.duration()));
     });
   }
-  if (added) {
-    added = outputs.add(options.save_warp,
-                        [&](OutputFile& file) { return file.write(warp_table(motions, blended)); });
+  if (status) {
+    status = outputs.add(options.save_warp, [&](OutputFile& file) {
+      return file.write(warp_table(motions, blended));
+    });
   }
-  return added ? outputs.finish() : added;
+  return status ? outputs.finish() : status;
 }
 
 void warn_of_spread(const Blended& blended, ToolContext& context) {
-  constexpr double kMost = kPi / 2;
-  if (blended.widest_spread <= kMost) return;
+  constexpr double kMax = kPi / 2;
+  if (blended.widest_spread <= kMax) return;
   Diagnostic told;
   told.severity = Severity::warning;
   told.code = "blend-spread";
@@ -228,8 +229,8 @@ Status check(const Options& options) {
 }
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status kind = check_output_kind(context.output, "-o", registry::Kind::anim); !kind) {
-    return kind.error();
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
   }
   const auto find_roles = open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
@@ -261,8 +262,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   auto blended = blend::blend_clips(inputs, *roles, *moments, how);
   if (!blended) return blended.error();
   warn_of_spread(*blended, context);
-  if (Status written = write_results(options, *motions, *blended, context); !written) {
-    return written.error();
+  if (Status status = write_results(options, *motions, *blended, context); !status) {
+    return status.error();
   }
   report(*motions, *moments, *blended, context);
   context.say(fmt::format("{} -> {}: {} at {} /s ({} s), {} moments in common",

@@ -110,8 +110,8 @@ Result<int> run(const Options& options, ToolContext& context) {
 
   auto input = context.open_input(options.input);
   if (!input) return input.error();
-  if (Status fits = check_output_kind(context.output, "-o", registry::Kind::model); !fits) {
-    return fits.error();
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::model); !status) {
+    return status.error();
   }
   auto clip = read_skeleton(*input);
   if (!clip) return clip.error();
@@ -122,10 +122,10 @@ Result<int> run(const Options& options, ToolContext& context) {
   Model& model = body->model;
   model.provenance = context.provenance();
   model.provenance.conversions.push_back(fmt::format("body built in pose: {}", body->pose));
-  const Status written = write_output(context, context.output, [&](OutputFile& file) {
+  const Status status = write_output(context, context.output, [&](OutputFile& file) {
     return model::write(model, {.orientation = options.orientation}, file);
   });
-  if (!written) return written.error();
+  if (!status) return status.error();
 
   context.report.result = result_of(*body);
   context.say(fmt::format("body: {}, {}, {}, {} m3 -> {}",

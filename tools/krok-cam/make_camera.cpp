@@ -12,7 +12,7 @@
 #include "formats/camera_keys/camera_keys.h"
 #include "formats/gltf/add_camera.h"
 #include "formats/registry/registry.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
 #include "tools/common/output_set.h"
@@ -52,8 +52,8 @@ Status refuse_camera(const Options& options) {
 }
 
 Result<Shot> from_keys(const Options& options, const InputFile& file) {
-  if (Status fits = refuse_film(options, "keys"); !fits) return fits.error();
-  if (Status fits = refuse_camera(options); !fits) return fits.error();
+  if (Status status = refuse_film(options, "keys"); !status) return status.error();
+  if (Status status = refuse_camera(options); !status) return status.error();
   auto keys = camera_keys::read(file.text());
   if (!keys) return std::move(keys).error().in_file(file.path());
   auto track = make_track(keys->camera, options.rate.value_or(keys->rate));
@@ -67,8 +67,8 @@ Result<Shot> from_keys(const Options& options, const InputFile& file) {
 }
 
 Result<Shot> from_cam(const Options& options, const InputFile& file) {
-  if (Status fits = refuse_film(options, "a camera"); !fits) return fits.error();
-  if (Status fits = refuse_camera(options); !fits) return fits.error();
+  if (Status status = refuse_film(options, "a camera"); !status) return status.error();
+  if (Status status = refuse_camera(options); !status) return status.error();
   if (options.rate) return Error("usage", "--rate is for keys and scenes").in_file(options.input);
   auto track = cam::read(file.bytes());
   if (!track) return std::move(track).error().in_file(file.path());
@@ -79,7 +79,7 @@ Result<Shot> from_cam(const Options& options, const InputFile& file) {
 }
 
 Result<Shot> from_scene(const Options& options, const InputFile& file, ToolContext& context) {
-  if (Status fits = refuse_film(options, "a scene"); !fits) return fits.error();
+  if (Status status = refuse_film(options, "a scene"); !status) return status.error();
   auto track = read_scene_camera(file, options.camera, options.rate, context);
   if (!track) return std::move(track).error();
   Shot shot;
@@ -111,7 +111,7 @@ void warn(ToolContext& context, const std::string& path, const char* code, std::
   context.tell(std::move(told));
 }
 
-void tell_faults(const FigureShot& shot, const std::string& path, ToolContext& context) {
+void report_faults(const ActorShot& shot, const std::string& path, ToolContext& context) {
   const int frames = shot.track.frame_count();
   if (shot.frames_shown < frames) {
     warn(
@@ -157,7 +157,7 @@ Result<Shot> from_motion(const Options& options, const InputFile& file, ToolCont
   if (clip->skeleton.empty()) {
     return Error("camera-empty", "the motion has no joints").in_file(file.path());
   }
-  FigureCamera camera = options.film->camera;
+  ActorCamera camera = options.film->camera;
   if (options.film->moving_centre) {
     const auto joint = options.film->follow.empty()
                            ? Result<int>(carrying_joint(*roles))
@@ -171,7 +171,7 @@ Result<Shot> from_motion(const Options& options, const InputFile& file, ToolCont
   }
   auto filmed = film(*clip, *roles, camera);
   if (!filmed) return std::move(filmed).error().in_file(file.path());
-  tell_faults(*filmed, file.path(), context);
+  report_faults(*filmed, file.path(), context);
   Shot shot;
   shot.conversions = clip->provenance.conversions;
   shot.facts["framed"] = part_name(camera.framing);
@@ -224,10 +224,10 @@ Result<Format> format_of(const Options& options, const std::string& path) {
   const std::string end = extension(path);
   if (!options.into.empty() || options.format == Format::glb || end == ".glb") {
     if (options.format == Format::cam) return Format::cam;
-    if (Status fits = check_output_kind(path, "-o", Kind::glb); !fits) return fits.error();
+    if (Status status = check_output_kind(path, "-o", Kind::glb); !status) return status.error();
     return Format::glb;
   }
-  if (Status fits = check_output_kind(path, "-o", Kind::cam); !fits) return fits.error();
+  if (Status status = check_output_kind(path, "-o", Kind::cam); !status) return status.error();
   return Format::cam;
 }
 
@@ -307,8 +307,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!shot) return shot.error();
   shot->track.provenance = context.provenance();
   shot->track.provenance.conversions = shot->conversions;
-  if (Status written = write(options, *format, shot->track, context); !written) {
-    return written.error();
+  if (Status status = write(options, *format, shot->track, context); !status) {
+    return status.error();
   }
   report(*shot, context);
   return kExitDone;

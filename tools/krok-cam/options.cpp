@@ -60,7 +60,7 @@ void declare_place(CommandOptions& command, Arguments& a) {
       .group(group);
   add_choice<AzimuthFrom>(command, "--facing", a.facing,
                           {{"start", AzimuthFrom::start},
-                           {"figure", AzimuthFrom::figure},
+                           {"figure", AzimuthFrom::actor},
                            {"world", AzimuthFrom::world}},
                           "What counts as the front: where the figure faces at the start, where it "
                           "faces at each moment (figure), or +Z (world)",
@@ -75,7 +75,7 @@ void declare_place(CommandOptions& command, Arguments& a) {
       .group(group);
 }
 
-void declare_picture(CommandOptions& command, Arguments& a) {
+void declare_image(CommandOptions& command, Arguments& a) {
   const char* group = "Picture";
   add_choice<Framing>(
       command, "--frame", a.frame,
@@ -203,7 +203,7 @@ Result<double> parse_aspect(const std::string& text) {
   return usage(fmt::format("--aspect {}: no shape of a picture", text), "write 16:9 or 1.78");
 }
 
-Status understand_view(const Arguments& a, FigureCamera& camera) {
+Status understand_view(const Arguments& a, ActorCamera& camera) {
   // From the top the figure faces up in the picture.
   constexpr std::array kAzimuths = {0.0, 45.0, 90.0, -90.0, 180.0, 180.0};
   camera.azimuth = kAzimuths[static_cast<std::size_t>(a.view)] * kRadiansPerDegree;
@@ -229,7 +229,7 @@ Status understand_view(const Arguments& a, FigureCamera& camera) {
   return {};
 }
 
-Status understand_picture(const Arguments& a, FigureCamera& camera) {
+Status understand_image(const Arguments& a, ActorCamera& camera) {
   camera.framing = a.frame;
   if (!(a.margin >= 0 && a.margin <= 0.45)) {
     return usage(fmt::format("--margin {} is not from 0 to 0.45", readable(a.margin)));
@@ -286,7 +286,7 @@ Status understand_orbit(const Arguments& a, FilmOptions& film) {
 
 Status understand_movement(const Arguments& a, FilmOptions& film) {
   if (!a.orbit.empty()) {
-    if (Status done = understand_orbit(a, film); !done) return done;
+    if (Status status = understand_orbit(a, film); !status) return status;
     film.camera.smoothing = 1;
   }
   film.moving_centre = !a.still && !a.fixed_centre;
@@ -325,7 +325,7 @@ Status check_needs(const Arguments& a, bool films) {
       return usage(fmt::format("{} is for a camera that moves", option));
     }
   }
-  if (a.still && a.facing == AzimuthFrom::figure) {
+  if (a.still && a.facing == AzimuthFrom::actor) {
     return usage("--facing figure is for a camera that moves");
   }
   if (a.into.empty() && a.given("--clip")) return usage("--clip is for --into");
@@ -352,7 +352,7 @@ void declare(CommandOptions& command, Arguments& arguments) {
       .required();
   declare_subject(command, arguments);
   declare_place(command, arguments);
-  declare_picture(command, arguments);
+  declare_image(command, arguments);
   declare_movement(command, arguments);
   declare_output(command, arguments);
   arguments.given = [&command](const char* option) { return command.count(option) > 0; };
@@ -361,7 +361,7 @@ void declare(CommandOptions& command, Arguments& arguments) {
 Result<Options> understand(const Arguments& a) {
   const int ways = (a.follow.empty() ? 0 : 1) + (a.orbit.empty() ? 0 : 1) + (a.still ? 1 : 0);
   if (ways > 1) return usage("--follow, --orbit and --still are three ways to film; choose one");
-  if (Status fits = check_needs(a, ways == 1); !fits) return fits.error();
+  if (Status status = check_needs(a, ways == 1); !status) return status.error();
   Options options;
   options.input = a.input;
   options.map = a.map;
@@ -379,9 +379,9 @@ Result<Options> understand(const Arguments& a) {
   if (ways == 0) return options;
   FilmOptions& film = options.film.emplace();
   film.camera.aspect = *aspect;
-  if (Status done = understand_view(a, film.camera); !done) return done.error();
-  if (Status done = understand_picture(a, film.camera); !done) return done.error();
-  if (Status done = understand_movement(a, film); !done) return done.error();
+  if (Status status = understand_view(a, film.camera); !status) return status.error();
+  if (Status status = understand_image(a, film.camera); !status) return status.error();
+  if (Status status = understand_movement(a, film); !status) return status.error();
   return options;
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "camera/figure_camera.h"
+#include "camera/actor_camera.h"
 #include "core/result.h"
 #include "formats/cam/cam.h"
 #include "tools/common/command_options.h"
@@ -51,7 +51,7 @@ struct Arguments {
 // What is made of a motion.
 struct FilmOptions {
   std::string follow;         // a joint or a role; empty: the joint that carries the figure
-  FigureCamera camera;        // without its joint
+  ActorCamera camera;         // without its joint
   bool moving_centre = true;  // otherwise the middle of the whole motion
   double turns = 0;           // an orbit's, over the whole motion, where its turning is not given
 };

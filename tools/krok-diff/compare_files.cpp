@@ -62,7 +62,8 @@ Result<Outcome> compare_files(const Options& options, ToolContext& context) {
                              options.second, description(*second_kind)),
                  "compare two files of one kind, or glTF with a motion, a model or a point cache");
   }
-  if (Status fits = check_drawings(options, *first_kind, *second_kind); !fits) return fits.error();
+  if (Status status = check_drawings(options, *first_kind, *second_kind); !status)
+    return status.error();
   if (*first_kind == *second_kind) {
     switch (*first_kind) {
       case InputKind::motion:

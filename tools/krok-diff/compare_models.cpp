@@ -19,14 +19,14 @@ Result<Outcome> compare_models(const InputFile& first, const InputFile& second,
   const auto found =
       compare::difference(models->first, models->second, options.tolerance, options.matching);
   if (!found) return found.error();
-  const Status drawn = draw_sheet(
+  const Status status = draw_sheet(
       options, context, [&] { return sheet_of(models->first, models->second, found->positions); });
-  if (!drawn) return drawn.error();
+  if (!status) return status.error();
   if (!options.heatmap.empty()) {
     const compare::SceneOptions how{options.tolerance, options.matching};
-    const Status coloured =
+    const Status status =
         write_heatmap(models->first, models->second, how, options.heatmap, context);
-    if (!coloured) return coloured.error();
+    if (!status) return status.error();
   }
   Outcome outcome;
   outcome.kind = word_of(InputKind::model);

@@ -19,15 +19,15 @@ Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
   const auto found =
       compare::difference(clips->first, clips->second, options.tolerance, options.matching);
   if (!found) return found.error();
-  const Status drawn = draw_sheet(
+  const Status status = draw_sheet(
       options, context, [&] { return sheet_of(clips->first, clips->second, found->positions); });
-  if (!drawn) return drawn.error();
+  if (!status) return status.error();
   if (!options.plot.empty()) {
-    const auto [first_name, second_name] = picture_names(options);
+    const auto [first_name, second_name] = image_names(options);
     const PlottedClip a{first_name, &clips->first};
     const PlottedClip b{second_name, &clips->second};
-    if (Status plotted = write_plot(a, b, *found, options.plot, context); !plotted) {
-      return plotted.error();
+    if (Status status = write_plot(a, b, *found, options.plot, context); !status) {
+      return status.error();
     }
   }
   Outcome outcome;

@@ -52,13 +52,13 @@ Status Opened::read(const InputFile& file, ToolContext& context) {
     auto read = model::read(file.bytes());
     if (!read) return std::move(read).error();
     model = std::move(*read);
-    if (Status good = check(*model); !good) return good;
+    if (Status status = check(*model); !status) return status;
     scene = scene_of(*model);
   } else if (kind == InputKind::motion) {
     auto read = read_motion(file, context);
     if (!read) return std::move(read).error();
     clip = std::move(*read);
-    if (Status good = check(*clip); !good) return good;
+    if (Status status = check(*clip); !status) return status;
     scene = scene_of(*clip);
   } else {
     auto read = pc2::PointCache::read(file.bytes());
@@ -138,12 +138,13 @@ Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
                                const Options& options, ToolContext& context) {
   Opened a{first_kind, {}, {}, {}, {}, {}};
   Opened b{second_kind, {}, {}, {}, {}, {}};
-  if (Status read = a.read(first, context); !read) return Error(read.error()).in_file(first.path());
-  if (Status read = b.read(second, context); !read) {
-    return Error(read.error()).in_file(second.path());
+  if (Status status = a.read(first, context); !status)
+    return Error(status.error()).in_file(first.path());
+  if (Status status = b.read(second, context); !status) {
+    return Error(status.error()).in_file(second.path());
   }
-  if (Status done = a.finish(b); !done) return Error(done.error()).in_file(first.path());
-  if (Status done = b.finish(a); !done) return Error(done.error()).in_file(second.path());
+  if (Status status = a.finish(b); !status) return Error(status.error()).in_file(first.path());
+  if (Status status = b.finish(a); !status) return Error(status.error()).in_file(second.path());
   compare::SceneOptions how;
   how.tolerance = options.tolerance;
   how.matching = options.matching;
@@ -152,21 +153,21 @@ Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
   const auto found = compare::difference(a.scene, b.scene, how, context.jobs, *context.progress);
   if (!found) return found.error();
   const bool bare = a.scene.meshes.empty() || b.scene.meshes.empty();
-  const Status drawn = draw_sheet(options, context, [&] {
+  const Status status = draw_sheet(options, context, [&] {
     return sheet_of(a.scene, b.scene, bare ? found->joint_positions : found->positions,
                     options.matching);
   });
-  if (!drawn) return drawn.error();
+  if (!status) return status.error();
   if (!options.plot.empty()) {
-    const auto [first_name, second_name] = picture_names(options);
+    const auto [first_name, second_name] = image_names(options);
     const PlottedScenes scenes{first_name, second_name, &a.scene, &*found};
-    if (Status plotted = write_plot(scenes, options.plot, context); !plotted) {
-      return plotted.error();
+    if (Status status = write_plot(scenes, options.plot, context); !status) {
+      return status.error();
     }
   }
   if (!options.heatmap.empty()) {
-    const Status coloured = write_heatmap(a.scene, *found, options.heatmap, context);
-    if (!coloured) return coloured.error();
+    const Status status = write_heatmap(a.scene, *found, options.heatmap, context);
+    if (!status) return status.error();
   }
   return outcome_of(a, b, *found);
 }

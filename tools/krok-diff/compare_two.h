@@ -26,7 +26,7 @@ Result<std::pair<T, T>> read_both(const InputFile& first, const InputFile& secon
 
 // What the files are called in pictures: their base names or, where these are the same, with the
 // folder that each is in.
-inline std::pair<std::string, std::string> picture_names(const Options& options) {
+inline std::pair<std::string, std::string> image_names(const Options& options) {
   const auto name = [](const std::string& path) {
     const std::string folder = std::filesystem::path(path).parent_path().filename().string();
     return (folder.empty() ? "" : folder + "/") + base_name(path);
@@ -41,7 +41,7 @@ inline Status draw_sheet(const Options& options, ToolContext& context,
                          const std::function<DifferenceSheet()>& make) {
   if (options.sheet.path.empty()) return {};
   DifferenceSheet sheet = make();
-  std::tie(sheet.first_name, sheet.second_name) = picture_names(options);
+  std::tie(sheet.first_name, sheet.second_name) = image_names(options);
   return write_sheet(sheet, options.sheet, context);
 }
 

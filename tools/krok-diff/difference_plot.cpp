@@ -18,15 +18,15 @@ namespace {
 using draw::ChartedDifference;
 using draw::Scale;
 
-constexpr std::size_t kMostAnimations = 8;
+constexpr std::size_t kMaxAnimations = 8;
 
 Status not_drawn(const std::string& path, const std::string& why, ToolContext& context) {
   context.warn("diff-plot", fmt::format("{} is not drawn: {}", path, why));
   return {};
 }
 
-Status write_figure(const draw::Figure& figure, const std::string& path, ToolContext& context) {
-  const auto svg = draw::to_svg(figure);
+Status write_actor(const draw::Actor& actor, const std::string& path, ToolContext& context) {
+  const auto svg = draw::to_svg(actor);
   if (!svg) return svg.error();
   return write_output(context, path, [&](OutputFile& file) { return file.write(*svg); });
 }
@@ -112,15 +112,15 @@ Status write_plot(const PlottedClip& first, const PlottedClip& second,
   b.frames = {0, second.clip->frame_count() - 1};
   const auto difference = draw::difference_over_time(a, b, {});
   if (!difference) return not_drawn(path, difference.error().message, context);
-  draw::Figure figure;
-  figure.title = fmt::format("{} and {}", first.name, second.name);
+  draw::Actor actor;
+  actor.title = fmt::format("{} and {}", first.name, second.name);
   auto [distances, angles] = draw::difference_charts(*difference);
   add_measure(found.positions, distances);
   add_measure(found.orientations, angles);
   for (const ChartedDifference* chart : {&distances, &angles}) {
-    figure.panels.push_back(draw::difference_panel(*chart, Scale::linear));
+    actor.panels.push_back(draw::difference_panel(*chart, Scale::linear));
   }
-  return write_figure(figure, path, context);
+  return write_actor(actor, path, context);
 }
 
 Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolContext& context) {
@@ -133,12 +133,12 @@ Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolCont
   const bool any = std::any_of(animations.begin(), animations.end(),
                                [&](const auto& one) { return differs(one.second, found); });
   const bool several = animations.size() > 1;
-  draw::Figure figure;
-  figure.title = fmt::format("{} and {}", scenes.first_name, scenes.second_name);
+  draw::Actor actor;
+  actor.title = fmt::format("{} and {}", scenes.first_name, scenes.second_name);
   std::size_t drawn = 0, left = 0;
   for (const auto& [animation, moments] : animations) {
     if (several && any && !differs(moments, found)) continue;
-    if (drawn == kMostAnimations) {
+    if (drawn == kMaxAnimations) {
       ++left;
       continue;
     }
@@ -151,16 +151,16 @@ Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolCont
       if ((found.*quantity.measure).count == 0) continue;
       ChartedDifference chart = chart_of(quantity, moments, found);
       if (several) chart.title = name + ": " + chart.title;
-      figure.panels.push_back(draw::difference_panel(chart, Scale::linear));
+      actor.panels.push_back(draw::difference_panel(chart, Scale::linear));
     }
   }
   if (left > 0) {
     context.warn("diff-plot", fmt::format("{} more animations that differ are not drawn", left));
   }
-  if (figure.panels.empty()) {
+  if (actor.panels.empty()) {
     return not_drawn(path, "the two have neither meshes nor joints in common", context);
   }
-  return write_figure(figure, path, context);
+  return write_actor(actor, path, context);
 }
 
 }  // namespace krok::diff

@@ -25,22 +25,22 @@ LengthUnit unit_for(double metres) {
   return {"m", 1};
 }
 
-Result<std::vector<PictureMoment>> moments_of(const DifferenceSheet& sheet,
-                                              const SheetOptions& options) {
-  auto moments = choose_moments(options.picture.moments, kDifferenceMoments, sheet.span);
+Result<std::vector<ImageMoment>> moments_of(const DifferenceSheet& sheet,
+                                            const SheetOptions& options) {
+  auto moments = choose_moments(options.image.moments, kDifferenceMoments, sheet.span);
   if (!moments || !sheet.worst) return moments;
-  const auto at = std::lower_bound(
-      moments->begin(), moments->end(), *sheet.worst,
-      [](const PictureMoment& a, const PictureMoment& b) { return a.time < b.time; });
+  const auto at =
+      std::lower_bound(moments->begin(), moments->end(), *sheet.worst,
+                       [](const ImageMoment& a, const ImageMoment& b) { return a.time < b.time; });
   if (at == moments->end() || at->time != sheet.worst->time) moments->insert(at, *sheet.worst);
   return moments;
 }
 
 // The figure without its own colours.
-render::Figure in_grey(render::Figure figure) {
-  for (render::Surface& surface : figure.surfaces) surface.colours = {kPaleColour};
-  for (render::Bone& bone : figure.bones) bone.from_colour = bone.to_colour = kPaleColour;
-  return figure;
+render::Actor in_grey(render::Actor actor) {
+  for (render::Surface& surface : actor.surfaces) surface.colours = {kPaleColour};
+  for (render::Bone& bone : actor.bones) bone.from_colour = bone.to_colour = kPaleColour;
+  return actor;
 }
 
 // What is said of one moment's distances.
@@ -53,9 +53,9 @@ std::string note_of(const DifferenceSheet& sheet, const Compared& one, bool wors
 }
 
 // The three rows that one side has.
-void add_rows(const DifferenceSheet& sheet, const PictureSide& side,
-              const std::vector<PictureMoment>& moments, const std::vector<Compared>& compared,
-              const std::vector<render::Figure>& pale, const LengthUnit& unit,
+void add_rows(const DifferenceSheet& sheet, const ImageSide& side,
+              const std::vector<ImageMoment>& moments, const std::vector<Compared>& compared,
+              const std::vector<render::Actor>& pale, const LengthUnit& unit,
               render::Sheet& result) {
   render::SheetRow first, second, both;
   first.title = sheet.first_name;
@@ -106,7 +106,7 @@ DistanceColours distance_colours(double tolerance, double largest) {
 
 Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
                    ToolContext& context) {
-  const auto sides = parse_sides(options.picture);
+  const auto sides = parse_sides(options.image);
   if (!sides) return sides.error();
   const auto moments = moments_of(sheet, options);
   if (!moments) return moments.error();
@@ -114,23 +114,23 @@ Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
   const render::ColourKey key = distance_colours(sheet.tolerance, sheet.largest).key;
   std::vector<Compared> compared;
   compared.reserve(moments->size());
-  for (const PictureMoment& moment : *moments) compared.push_back(sheet.at(moment, key));
+  for (const ImageMoment& moment : *moments) compared.push_back(sheet.at(moment, key));
 
-  std::vector<render::Figure> pale;
+  std::vector<render::Actor> pale;
   pale.reserve(compared.size());
   for (const Compared& one : compared) pale.push_back(in_grey(one.first));
-  render::Sheet picture;
-  if (sheet.measured) picture.key = key;
-  for (const PictureSide& side : *sides) {
-    add_rows(sheet, side, *moments, compared, pale, unit, picture);
+  render::Sheet image;
+  if (sheet.measured) image.key = key;
+  for (const ImageSide& side : *sides) {
+    add_rows(sheet, side, *moments, compared, pale, unit, image);
   }
   render::SheetOptions how;
-  how.row_height = options.picture.size;
-  how.cell_width = 2 * options.picture.size;
+  how.row_height = options.image.size;
+  how.cell_width = 2 * options.image.size;
   how.jobs = context.jobs;
-  const auto made = render::make_sheet(picture, how);
+  const auto made = render::make_sheet(image, how);
   if (!made) return made.error();
-  return write_picture(made->image, options.path, context);
+  return write_image(made->image, options.path, context);
 }
 
 }  // namespace krok::diff

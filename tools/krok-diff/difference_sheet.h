@@ -7,11 +7,11 @@
 #include "compare/measure.h"
 #include "compare/scene_difference.h"
 #include "core/result.h"
-#include "render/figure.h"
+#include "render/actor.h"
 #include "render/sheet.h"
 #include "scene/clip.h"
 #include "scene/model.h"
-#include "tools/common/figures/picture.h"
+#include "tools/common/actors/image.h"
 #include "tools/common/tool.h"
 
 // A picture of two figures and of where they differ.
@@ -22,25 +22,25 @@ inline constexpr int kDifferenceMoments = 6;
 
 struct SheetOptions {
   std::string path;  // empty for none
-  PictureOptions picture;
+  ImageOptions image;
 };
 
 // Both figures at one moment. In `coloured`, the second figure, each point has the colour of its
 // distance to the first one's; without a key, or where points do not correspond, its own.
 struct Compared {
-  render::Figure first, second, coloured;
+  render::Actor first, second, coloured;
   std::optional<double> largest;  // metres, where distances were measured
 };
 
 struct DifferenceSheet {
   std::string first_name, second_name;
-  PictureSpan span;
-  std::optional<PictureMoment> worst;  // where the difference is largest: shown in any case
-  double largest = 0;                  // metres
-  double tolerance = 0;                // metres
-  double heading = 0;                  // where the first faces, radians about +Y
-  bool measured = true;                // whether distances can be told
-  std::function<Compared(const PictureMoment& moment, const render::ColourKey& key)> at;
+  ImageSpan span;
+  std::optional<ImageMoment> worst;  // where the difference is largest: shown in any case
+  double largest = 0;                // metres
+  double tolerance = 0;              // metres
+  double heading = 0;                // where the first faces, radians about +Y
+  bool measured = true;              // whether distances can be told
+  std::function<Compared(const ImageMoment& moment, const render::ColourKey& key)> at;
 };
 
 // What to draw of two clips, models or scenes, which must outlive it. `found` is the measured

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 Status make_folder(const fs::path& folder, const fs::path& root, NewFolders& folders) {
   std::error_code unknown;
   if (folder != root) {
-    if (Status above = make_folder(folder.parent_path(), root, folders); !above) return above;
+    if (Status status = make_folder(folder.parent_path(), root, folders); !status) return status;
     if (fs::is_symlink(fs::symlink_status(folder, unknown))) {
       return Error("file-unwritable", "is a link, which is not followed here",
                    "put a folder in its place")
@@ -36,8 +36,8 @@ Result<OutputFile> copy_of(const std::string& source, const std::string& target)
   if (!from) return from.error();
   auto to = OutputFile::create(target);
   if (!to) return to.error();
-  if (Status written = to->write(from->bytes()); !written) return written.error();
-  if (Status sealed = to->seal(); !sealed) return sealed.error();
+  if (Status status = to->write(from->bytes()); !status) return status.error();
+  if (Status status = to->seal(); !status) return status.error();
   return to;
 }
 
@@ -66,8 +66,8 @@ Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& o
     if (!differs && file.status != FileStatus::only_in_second) continue;
     (differs ? update.replaced : update.added).push_back(file.path);
     const fs::path target = root / file.path;
-    if (Status made = make_folder(target.parent_path(), root, folders); !made) {
-      return made.error();
+    if (Status status = make_folder(target.parent_path(), root, folders); !status) {
+      return status.error();
     }
     // Two links to one file.
     if (!places.insert(place_of(target.string())).second) return twice_error(target.string());
@@ -75,7 +75,7 @@ Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& o
     if (!copy) return std::move(copy.error()).in_file(target.string());
     copies.push_back(std::move(*copy));
   }
-  if (Status placed = OutputFile::place_all(copies); !placed) return placed.error();
+  if (Status status = OutputFile::place_all(copies); !status) return status.error();
   folders.keep();
   for (const auto* paths : {&update.replaced, &update.added}) {
     for (const std::string& path : *paths) context.wrote(below(options.first, path));

@@ -58,7 +58,7 @@ class Comparison {
   Comparison(const Options& options, ToolContext& context) : options_(options), context_(context) {}
 
   Result<FolderOutcome> run() {
-    if (Status listed = list(); !listed) return listed.error();
+    if (Status status = list(); !status) return status.error();
     // Files that a glTF refers to are compared with it; so those come first.
     std::vector<std::size_t> gltf, others;
     for (std::size_t i = 0; i < outcome_.files.size(); ++i) {
@@ -387,8 +387,8 @@ Result<int> run_folders(const Options& options, ToolContext& context) {
     context.report.result["update"] = {
         {"replaced", update.replaced}, {"added", update.added}, {"removed", update.removed}};
   }
-  if (Status written = write_summary(*outcome, update, options, context); !written) {
-    return written.error();
+  if (Status status = write_summary(*outcome, update, options, context); !status) {
+    return status.error();
   }
   if (failed) {
     context.tell(unreadable_error(*outcome, folders));

@@ -34,7 +34,7 @@ compare::SceneState pose_of(const compare::Scene& first, const compare::SceneDif
   int animation = -1;
   double time = 0;
   if (!first.animations.empty()) {
-    const compare::Place& worst = found.positions.where;
+    const compare::ValueLocation& worst = found.positions.where;
     const bool known = found.positions.largest > 0 && worst.frame >= 0;
     animation = known ? std::max(0, worst.animation) : 0;
     const auto& keys = first.animations[static_cast<std::size_t>(animation)].key_times;
@@ -124,11 +124,11 @@ Status write_heatmap(const compare::Scene& first, const compare::SceneDifference
   gltf::WriteOptions options;
   options.binary = extension(path) != ".gltf";
   options.provenance = context.provenance();
-  const Status written = write_output(context, path, [&](OutputFile& file) {
+  const Status status = write_output(context, path, [&](OutputFile& file) {
     return gltf::write_coloured(meshes, legend, options, file);
   });
-  if (written) context.say(fmt::format("{}: {}", path, legend));
-  return written;
+  if (status) context.say(fmt::format("{}: {}", path, legend));
+  return status;
 }
 
 Status write_heatmap(const Model& first, const Model& second, const compare::SceneOptions& options,

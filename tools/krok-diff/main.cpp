@@ -33,10 +33,11 @@ Result<Options> parse(const Arguments& arguments) {
   options.plot = arguments.plot;
   options.heatmap = arguments.heatmap;
   options.folders = arguments.folders;
-  if (Status fits = check_picture_name(options.sheet.path, "--sheet"); !fits) return fits.error();
-  if (Status fits = check_plot_name(options.plot); !fits) return fits.error();
-  if (Status fits = check_heatmap_name(options.heatmap); !fits) return fits.error();
-  if (Status fits = check_summary_name(options.folders.summary); !fits) return fits.error();
+  if (Status status = check_image_name(options.sheet.path, "--sheet"); !status)
+    return status.error();
+  if (Status status = check_plot_name(options.plot); !status) return status.error();
+  if (Status status = check_heatmap_name(options.heatmap); !status) return status.error();
+  if (Status status = check_summary_name(options.folders.summary); !status) return status.error();
   return options;
 }
 
@@ -60,7 +61,7 @@ void declare(CommandOptions& command, Arguments& arguments) {
                   "A picture of both figures and of where they differ, as PNG; of motions, models "
                   "and glTF")
       .type_name("OUT.png");
-  declare_picture_options(command, arguments.sheet.picture, kDifferenceMoments);
+  declare_image_options(command, arguments.sheet.image, kDifferenceMoments);
   for (const char* name : {"--moments", "--sides", "--elevation", "--size"}) {
     command.get_option(name).needs("--sheet");
   }

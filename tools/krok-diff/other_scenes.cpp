@@ -14,12 +14,12 @@ namespace {
 constexpr double kSamplesPerSecond = 30;
 
 // A place between two keys: `share` of the way from `key` to the next.
-struct KeyPlace {
+struct KeyInterval {
   std::size_t key = 0;
   double share = 0;
 };
 
-KeyPlace place_of(double time, const std::vector<double>& times) {
+KeyInterval place_of(double time, const std::vector<double>& times) {
   const auto after = std::upper_bound(times.begin(), times.end(), time);
   if (after == times.begin()) return {};
   const auto key = static_cast<std::size_t>(after - times.begin()) - 1;
@@ -81,7 +81,7 @@ compare::Scene scene_of(const Clip& clip) {
     state.normals.clear();
     state.joints = clip.skeleton.reference;
     if (animation < 0 || times.empty()) return;
-    const KeyPlace place = place_of(time, times);
+    const KeyInterval place = place_of(time, times);
     clip.get_pose(static_cast<int>(place.key), state.joints);
     if (place.share == 0) return;
     std::vector<Transform> next(state.joints.size());
@@ -121,7 +121,7 @@ Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Sc
   if (points.samples() == 0) return Error("pc2-value", "it holds no samples");
   std::vector<Vec3f> sample(count);
   for (std::int64_t i = 0; i < points.samples(); ++i) {
-    if (Status good = points.get(i, sample); !good) return good.error();
+    if (Status status = points.get(i, sample); !status) return status.error();
   }
   compare::Scene scene;
   const std::vector<Run> runs = runs_of(count, partner);
@@ -144,12 +144,12 @@ Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Sc
   }
   scene.evaluate = [&points, runs, times, count](int, double time, compare::SceneState& state) {
     std::vector<Vec3f> one, next;
-    const KeyPlace place = place_of(time, times);
+    const KeyInterval place = place_of(time, times);
     // Never fails: all samples were looked at before.
     const auto get = [&](std::size_t key, std::vector<Vec3f>& values) {
       values.resize(count);
-      const Status got = points.get(static_cast<std::int64_t>(key), values);
-      if (!got) values.assign(count, Vec3f::Zero());
+      const Status status = points.get(static_cast<std::int64_t>(key), values);
+      if (!status) values.assign(count, Vec3f::Zero());
     };
     get(place.key, one);
     if (place.share > 0) get(place.key + 1, next);

@@ -59,7 +59,8 @@ std::string named(const char* kind, const std::vector<std::string>& names, int i
   return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {}", kind, name);
 }
 
-const std::vector<std::string>& mesh_names(const compare::Place& place, const PlaceNames& names) {
+const std::vector<std::string>& mesh_names(const compare::ValueLocation& place,
+                                           const PlaceNames& names) {
   return place.in_second ? names.second_meshes : names.meshes;
 }
 
@@ -68,7 +69,7 @@ std::vector<std::string> target_names(const PlaceNames& names, int mesh) {
   return i < names.targets.size() ? names.targets[i] : std::vector<std::string>();
 }
 
-std::string to_text(const compare::Place& place, const PlaceNames& names) {
+std::string to_text(const compare::ValueLocation& place, const PlaceNames& names) {
   std::vector<std::string> parts;
   if (place.vertex >= 0) {
     parts.push_back(fmt::format("vertex {}", place.vertex));
@@ -90,7 +91,7 @@ std::string to_text(const compare::Place& place, const PlaceNames& names) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-Json to_json(const compare::Place& place, const PlaceNames& names) {
+Json to_json(const compare::ValueLocation& place, const PlaceNames& names) {
   Json json = Json::object();
   const auto add = [&](const char* key, int index, const std::string& name) {
     if (index < 0) return;

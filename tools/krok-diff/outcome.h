@@ -35,7 +35,7 @@ struct PlaceNames {
 
 // One mesh or joint over all moments.
 struct Item {
-  compare::Place place;  // with the mesh or the joint
+  compare::ValueLocation place;  // with the mesh or the joint
   std::vector<Row> rows;
 };
 

@@ -142,7 +142,7 @@ Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments)
     tolerance.normals = *normals;
   }
   if (!arguments.joints.empty()) {
-    if (Status joints = parse_joints(arguments.joints, tolerance); !joints) return joints.error();
+    if (Status status = parse_joints(arguments.joints, tolerance); !status) return status.error();
   }
   return tolerance;
 }

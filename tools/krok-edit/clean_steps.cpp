@@ -4,7 +4,7 @@
 #include "core/parallel.h"
 #include "filter/spikes.h"
 #include "motion/displacement.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "tools/krok-edit/steps.h"
 
 namespace krok::edit {
@@ -77,11 +77,11 @@ Status remove_spikes(const Options& options, ToolContext& context,
           : fmt::format("{} removed, {} replaced",
                         counted(static_cast<long long>(removal->spikes.size()), "spike"),
                         counted(frames, "joint's frame", "joints' frames"));
-  Json figures;
-  figures["threshold"] = finding.threshold;
-  figures["spikes"] = std::move(list);
-  if (!removal->spikes.empty()) figures["feet_moved"] = foot_change(removal->clip, edit, line);
-  edit.note("spikes", std::move(figures), std::move(line));
+  Json metrics;
+  metrics["threshold"] = finding.threshold;
+  metrics["spikes"] = std::move(list);
+  if (!removal->spikes.empty()) metrics["feet_moved"] = foot_change(removal->clip, edit, line);
+  edit.note("spikes", std::move(metrics), std::move(line));
   return {};
 }
 
@@ -93,19 +93,19 @@ Status filter_jitter(const Options& options, ToolContext& context,
   std::swap(edit.clip, *smoothed);
   long long count = 0;
   for (const std::uint8_t selected : joints) count += selected;
-  Json figures;
+  Json metrics;
   std::string line;
   if (const auto* low_pass = std::get_if<filter::Butterworth>(&*options.smoothing)) {
-    figures["kind"] = "butterworth";
-    figures["cutoff"] = low_pass->cutoff;
-    figures["order"] = low_pass->order;
+    metrics["kind"] = "butterworth";
+    metrics["cutoff"] = low_pass->cutoff;
+    metrics["order"] = low_pass->order;
     line = fmt::format("filtered: Butterworth, {} Hz, order {} without shift",
                        readable(low_pass->cutoff), low_pass->order);
   } else {
     const auto& polynomial = std::get<filter::SavitzkyGolay>(*options.smoothing);
-    figures["kind"] = "savgol";
-    figures["window"] = polynomial.window;
-    figures["degree"] = polynomial.degree;
+    metrics["kind"] = "savgol";
+    metrics["window"] = polynomial.window;
+    metrics["degree"] = polynomial.degree;
     line = fmt::format("filtered: Savitzky-Golay, {} frames, degree {}", polynomial.window,
                        polynomial.degree);
     if (edit.clip.frame_count() < polynomial.window) {
@@ -116,10 +116,10 @@ Status filter_jitter(const Options& options, ToolContext& context,
       line += " (too short: unchanged)";
     }
   }
-  figures["joints"] = count;
+  metrics["joints"] = count;
   line += fmt::format(", {}", counted(count, "joint"));
-  figures["feet_moved"] = foot_change(*smoothed, edit, line);
-  edit.note("filter", std::move(figures), std::move(line));
+  metrics["feet_moved"] = foot_change(*smoothed, edit, line);
+  edit.note("filter", std::move(metrics), std::move(line));
   return {};
 }
 
@@ -128,7 +128,7 @@ Status filter_jitter(const Options& options, ToolContext& context,
 Status clean(const Options& options, ToolContext& context, Edit& edit) {
   const auto joints = select_joints(edit.clip.skeleton, options.joints);
   if (!joints) return joints.error();
-  if (Status done = remove_spikes(options, context, *joints, edit); !done) return done;
+  if (Status status = remove_spikes(options, context, *joints, edit); !status) return status;
   return filter_jitter(options, context, *joints, edit);
 }
 

@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "formats/anim/anim.h"
 #include "formats/sequences/sequences.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "tools/common/file_name.h"
 #include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
@@ -136,17 +136,17 @@ Result<Edited> edit_one(const Options& options, Edit edit, const std::string& ou
   // The order that the help promises.
   for (const auto step : {clean, cut_out, mirror_sides, change_timing, append_motions, make_loop,
                           take_out_travel, change_size, change_place}) {
-    if (Status done = step(options, context, edit); !done) {
-      return std::move(done.error()).in_file(options.input);
+    if (Status status = step(options, context, edit); !status) {
+      return std::move(status.error()).in_file(options.input);
     }
   }
   edit.clip.provenance = extended(edit.clip.provenance, context.provenance(), edit.lines);
   anim::WriteOptions writing;
   writing.orientation = options.orientation;
   writing.jobs = thread_count(context.jobs);
-  const Status added =
+  const Status status =
       outputs.add(output, [&](OutputFile& file) { return anim::write(edit.clip, writing, file); });
-  if (!added) return added.error();
+  if (!status) return status.error();
   Edited edited;
   edited.lines.push_back(fmt::format("{}: {} -> {}: {}", name_of_input(options.input), before,
                                      output, summary_text(edit.clip)));
@@ -166,9 +166,9 @@ Result<Edited> edit_all_sequences(const Options& options, Edit source, ToolConte
                  "choose one with --sequence NAME, or put {sequence} where their names go: -o "
                  "'take_{sequence}.anim'");
   }
-  if (Status fit = check_sequences(options, source); !fit) return fit.error();
-  if (Status cleaned = clean(options, context, source); !cleaned) {
-    return std::move(cleaned.error()).in_file(options.input);
+  if (Status status = check_sequences(options, source); !status) return status.error();
+  if (Status status = clean(options, context, source); !status) {
+    return std::move(status.error()).in_file(options.input);
   }
   Options cleaned_already = options;
   cleaned_already.spike_threshold.reset();
@@ -201,11 +201,11 @@ Result<int> run_typed(const Arguments& arguments, ToolContext& context) {
 
 }  // namespace
 
-void Edit::note(const char* step, Json figures, std::string line) {
+void Edit::note(const char* step, Json metrics, std::string line) {
   Json entry;
   entry["step"] = step;
   entry["did"] = line;
-  for (auto& [key, value] : figures.items()) entry[key] = std::move(value);
+  for (auto& [key, value] : metrics.items()) entry[key] = std::move(value);
   steps.push_back(std::move(entry));
   lines.push_back(std::move(line));
 }
@@ -213,8 +213,8 @@ void Edit::note(const char* step, Json figures, std::string line) {
 Result<int> run(const Options& options, ToolContext& context) {
   if (options.list_sequences) return list_sequences(options, context);
   if (context.output.empty()) return Error("usage", "-o is missing: where shall the result go?");
-  if (Status fits = check_output_kind(context.output, "-o", registry::Kind::anim); !fits) {
-    return fits.error();
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
   }
   auto source = read_inputs(options, context);
   if (!source) return source.error();
@@ -225,7 +225,7 @@ Result<int> run(const Options& options, ToolContext& context) {
                     ? edit_all_sequences(options, std::move(*source), context, outputs)
                     : edit_one(options, std::move(*source), context.output, context, outputs);
   if (!edited) return edited.error();
-  if (Status done = outputs.finish(); !done) return done.error();
+  if (Status status = outputs.finish(); !status) return status.error();
   for (const std::string& line : edited->lines) context.say(line);
   context.report.result = std::move(edited->result);
   context.report.result["input"] = input_summary;

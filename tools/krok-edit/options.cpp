@@ -246,20 +246,20 @@ Result<Vec3> parse_move(const std::string& text) {
 Status understand_cleaning(const Arguments& a, Options& options) {
   using Filter = Arguments::Filter;
   if (a.spikes) {
-    if (Status fits = over_nought(a.spike_threshold, "--spike-threshold"); !fits) return fits;
+    if (Status status = over_nought(a.spike_threshold, "--spike-threshold"); !status) return status;
     options.spike_threshold = a.spike_threshold;
   }
   if (a.filter == Filter::butterworth) {
     auto cutoff = parse_frequency(a.cutoff);
     if (!cutoff) return named(std::move(cutoff).error(), "--cutoff");
-    if (Status fits = over_nought(*cutoff, "--cutoff"); !fits) return fits;
+    if (Status status = over_nought(*cutoff, "--cutoff"); !status) return status;
     const filter::Butterworth butterworth{*cutoff, a.order.value_or(4)};
     // At this rate the cutoff fits; whether it fits a file's rate, the file shows.
     if (const auto known = filter::design(butterworth, 4 * *cutoff); !known) return known.error();
     options.smoothing = butterworth;
   } else if (a.filter == Filter::savgol) {
     const filter::SavitzkyGolay polynomials{a.window, a.order.value_or(3)};
-    if (Status fits = filter::check(polynomials); !fits) return fits;
+    if (Status status = filter::check(polynomials); !status) return status;
     options.smoothing = polynomials;
   }
   options.joints = {a.joints, a.below};
@@ -313,13 +313,13 @@ Status understand_place(const Arguments& a, Options& options) {
     return usage("--scale and --height both give the size; choose one");
   }
   if (a.scale) {
-    if (Status fits = over_nought(*a.scale, "--scale"); !fits) return fits;
+    if (Status status = over_nought(*a.scale, "--scale"); !status) return status;
   }
   options.scale = a.scale;
   if (!a.height.empty()) {
     auto height = parse_length(a.height);
     if (!height) return named(std::move(height).error(), "--height");
-    if (Status fits = over_nought(*height, "--height"); !fits) return fits;
+    if (Status status = over_nought(*height, "--height"); !status) return status;
     options.height = *height;
   }
   if (a.re_orient && !a.heading.empty()) {
@@ -366,7 +366,7 @@ void declare(CommandOptions& command, Arguments& arguments) {
 }
 
 Result<Options> understand(const Arguments& arguments) {
-  if (Status used = check_needs(arguments); !used) return used.error();
+  if (Status status = check_needs(arguments); !status) return status.error();
   Options options;
   options.input = arguments.input;
   options.map = arguments.map;
@@ -376,14 +376,14 @@ Result<Options> understand(const Arguments& arguments) {
   options.resample = arguments.resample;
   options.append = arguments.append;
   options.match_height = arguments.match_height;
-  if (Status fits = over_nought(arguments.speed, "--speed"); !fits) return fits.error();
+  if (Status status = over_nought(arguments.speed, "--speed"); !status) return status.error();
   const auto blend = time_of(arguments.blend, "--blend");
   if (!blend) return blend.error();
   options.append_blend = *blend;
   for (const auto understand_some :
        {understand_cleaning, understand_cut, understand_loop, understand_place}) {
-    if (Status understood = understand_some(arguments, options); !understood) {
-      return understood.error();
+    if (Status status = understand_some(arguments, options); !status) {
+      return status.error();
     }
   }
   return options;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/numbers.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/place.h"
 #include "tools/krok-edit/steps.h"
 
@@ -14,16 +14,16 @@ Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
   const int last = edit.clip.frame_count() - 1;
   double way = 0;
   if (last > 0) {
-    const GroundPlace from = ground_place(edit.clip, edit.carrier, 0);
-    const GroundPlace to = ground_place(edit.clip, edit.carrier, last);
+    const GroundFrame from = ground_frame(edit.clip, edit.carrier, 0);
+    const GroundFrame to = ground_frame(edit.clip, edit.carrier, last);
     way = Vec2(to.x - from.x, to.z - from.z).norm();
   }
   edit.clip = in_place(edit.clip, edit.carrier, *options.removed_travel);
   const bool all = *options.removed_travel == Travel::all;
-  Json figures;
-  figures["removed"] = all ? "all" : "trend";
-  figures["way"] = way;
-  edit.note("travel", std::move(figures),
+  Json metrics;
+  metrics["removed"] = all ? "all" : "trend";
+  metrics["way"] = way;
+  edit.note("travel", std::move(metrics),
             fmt::format("{} of {} m from first to last frame taken out",
                         all ? "all travel" : "the even part of a travel", readable(way, 3)));
   return {};
@@ -38,12 +38,12 @@ Status change_size(const Options& options, ToolContext&, Edit& edit) {
         .in_file(options.input);
   }
   const double factor = options.scale ? *options.scale : *options.height / height;
-  if (Status scaled = scale_clip(factor, edit.clip); !scaled) return scaled;
-  Json figures;
-  figures["factor"] = factor;
-  figures["height_before"] = height;
-  figures["height"] = reference_height(edit.clip.skeleton);
-  edit.note("scale", std::move(figures),
+  if (Status status = scale_clip(factor, edit.clip); !status) return status;
+  Json metrics;
+  metrics["factor"] = factor;
+  metrics["height_before"] = height;
+  metrics["height"] = reference_height(edit.clip.skeleton);
+  edit.note("scale", std::move(metrics),
             fmt::format("scaled by {}: height {} m instead of {} m", readable(factor),
                         readable(reference_height(edit.clip.skeleton), 4), readable(height, 4)));
   return {};
@@ -78,10 +78,10 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
     apply(lift, fmt::format("lifted by {} m onto the ground", readable(lift.position.y(), 4)));
   }
   if (line.empty()) return {};
-  Json figures;
-  figures["moved"] = {move.position.x(), move.position.y(), move.position.z()};
-  figures["turned"] = 2 * std::atan2(move.orientation.y(), move.orientation.w());
-  edit.note("place", std::move(figures), std::move(line));
+  Json metrics;
+  metrics["moved"] = {move.position.x(), move.position.y(), move.position.z()};
+  metrics["turned"] = 2 * std::atan2(move.orientation.y(), move.orientation.w());
+  edit.note("place", std::move(metrics), std::move(line));
   return {};
 }
 

@@ -31,7 +31,7 @@ struct Edit {
   std::vector<std::string> lines;  // what was done, for people and for provenance
 
   // `figures` are put under the step's name into the report.
-  void note(const char* step, Json figures, std::string line);
+  void note(const char* step, Json metrics, std::string line);
 };
 
 // "12.5 deg"; "0 deg" below 1e-4 degrees.

@@ -5,7 +5,7 @@
 
 #include "core/numbers.h"
 #include "motion/cut.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/join.h"
 #include "motion/loop.h"
 #include "motion/mirror.h"
@@ -172,12 +172,12 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
         .in_file(options.input);
   }
   edit.clip = cut(edit.clip, first, last);
-  Json figures;
-  if (named) figures["sequence"] = edit.sequence;
-  figures["first_frame"] = first;
-  figures["last_frame"] = last;
-  figures["frames_cut"] = end + 1 - edit.clip.frame_count();
-  edit.note("cut", std::move(figures),
+  Json metrics;
+  if (named) metrics["sequence"] = edit.sequence;
+  metrics["first_frame"] = first;
+  metrics["last_frame"] = last;
+  metrics["frames_cut"] = end + 1 - edit.clip.frame_count();
+  edit.note("cut", std::move(metrics),
             fmt::format("cut: {}frames {} to {}, {} left out",
                         named ? fmt::format("sequence '{}', ", edit.sequence) : "", first, last,
                         end + 1 - edit.clip.frame_count()));
@@ -215,11 +215,11 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
   std::string line = fmt::format("mirrored: {}, {} of the middle",
                                  counted(static_cast<long long>(pair_list.size()), "pair"),
                                  counted(static_cast<long long>(middle.size()), "joint"));
-  Json figures;
-  figures["pairs"] = std::move(pair_list);
-  figures["middle"] = std::move(middle);
-  figures["unpaired"] = std::move(unpaired);
-  edit.note("mirror", std::move(figures), std::move(line));
+  Json metrics;
+  metrics["pairs"] = std::move(pair_list);
+  metrics["middle"] = std::move(middle);
+  metrics["unpaired"] = std::move(unpaired);
+  edit.note("mirror", std::move(metrics), std::move(line));
   return {};
 }
 
@@ -232,12 +232,12 @@ Status change_timing(const Options& options, ToolContext&, Edit& edit) {
       retime(edit.clip, rate, edit.speed, edit.loop ? LastFrame::kept : LastFrame::within);
   if (!retimed) return retimed.error();
   edit.clip = std::move(*retimed);
-  Json figures;
-  figures["speed"] = edit.speed;
-  figures["rate_before"] = old_rate;
-  figures["rate"] = rate;
-  figures["frames_before"] = frames;
-  figures["frames"] = edit.clip.frame_count();
+  Json metrics;
+  metrics["speed"] = edit.speed;
+  metrics["rate_before"] = old_rate;
+  metrics["rate"] = rate;
+  metrics["frames_before"] = frames;
+  metrics["frames"] = edit.clip.frame_count();
   std::string line;
   if (edit.speed != 1) {
     line = fmt::format("speed {}: {} become {}", readable(edit.speed), seconds(old_duration),
@@ -247,7 +247,7 @@ Status change_timing(const Options& options, ToolContext&, Edit& edit) {
     line += fmt::format("{}resampled from {} to {} frames a second", line.empty() ? "" : ", ",
                         readable(old_rate), readable(rate));
   }
-  edit.note("timing", std::move(figures), std::move(line));
+  edit.note("timing", std::move(metrics), std::move(line));
   return {};
 }
 
@@ -260,14 +260,14 @@ Status append_motions(const Options& options, ToolContext&, Edit& edit) {
     if (!joined) return std::move(joined.error()).in_file(path);
     const int frames = edit.clip.frame_count();
     edit.clip = std::move(joined->clip);
-    Json figures;
-    figures["file"] = base_name(path);
-    figures["frames_before"] = frames;
-    figures["frames"] = edit.clip.frame_count();
-    figures["joint_frame"] = joined->joint_frame;
-    figures["shared_frames"] = joined->shared_frames;
-    figures["largest_angle"] = joined->largest_angle;
-    figures["largest_angle_joint"] = joint_name(edit, joined->largest_joint);
+    Json metrics;
+    metrics["file"] = base_name(path);
+    metrics["frames_before"] = frames;
+    metrics["frames"] = edit.clip.frame_count();
+    metrics["joint_frame"] = joined->joint_frame;
+    metrics["shared_frames"] = joined->shared_frames;
+    metrics["largest_angle"] = joined->largest_angle;
+    metrics["largest_angle_joint"] = joint_name(edit, joined->largest_joint);
     std::string line = fmt::format("appended {}: {} shared about frame {}", base_name(path),
                                    counted(joined->shared_frames, "frame"), joined->joint_frame);
     if (joined->largest_angle > 0) {
@@ -278,7 +278,7 @@ Status append_motions(const Options& options, ToolContext&, Edit& edit) {
     if (next.rate != edit.clip.rate) {
       line += fmt::format(", resampled from {} frames a second", readable(next.rate));
     }
-    edit.note("append", std::move(figures), std::move(line));
+    edit.note("append", std::move(metrics), std::move(line));
   }
   return {};
 }
@@ -292,17 +292,17 @@ Status make_loop(const Options& options, ToolContext&, Edit& edit) {
   looping.blend = options.loop_blend.seconds(edit.clip.rate);
   auto looped = loop(edit.clip, edit.carrier, looping);
   if (!looped) return std::move(looped.error()).in_file(options.input);
-  Json figures = loop_json(*looped, edit);
+  Json metrics = loop_json(*looped, edit);
   std::string line = loop_text(*looped, edit);
   edit.clip = std::move(looped->clip);
   if (options.rounds) {
     auto all = repeated(edit.clip, looped->displacement, *options.rounds);
     if (!all) return all.error();
     edit.clip = std::move(*all);
-    figures["rounds"] = *options.rounds;
+    metrics["rounds"] = *options.rounds;
     line += fmt::format("; {}", counted(*options.rounds, "round"));
   }
-  edit.note("loop", std::move(figures), std::move(line));
+  edit.note("loop", std::move(metrics), std::move(line));
   return {};
 }
 

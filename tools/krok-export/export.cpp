@@ -135,11 +135,11 @@ Result<MotionFacts> export_gltf(bool binary, const ExportOptions& options, ToolC
   writing.provenance.conversions = facts->conversions;
   const bool bones = options.bones.value_or(true);
   writing.name = bones ? "bones" : "skeleton";
-  const Status written = write_output(context, context.output, [&](OutputFile& file) {
+  const Status status = write_output(context, context.output, [&](OutputFile& file) {
     return bones ? gltf::write_rig(bone_mesh(facts->skeleton), *tracks, writing, file)
                  : gltf::write_skeleton(facts->skeleton, *tracks, writing, file);
   });
-  if (!written) return written.error();
+  if (!status) return status.error();
   return facts;
 }
 
@@ -148,10 +148,10 @@ Result<MotionFacts> export_others(ExportFormat format, const ExportOptions& opti
   const auto clip = read_motion(options.input, context);
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);
-  const Status written = write_output(context, context.output, [&](OutputFile& file) {
+  const Status status = write_output(context, context.output, [&](OutputFile& file) {
     return write_as(format, *clip, options, unit_metres, file);
   });
-  if (!written) return written.error();
+  if (!status) return status.error();
   return facts_of(*clip);
 }
 
@@ -203,7 +203,7 @@ Status check_export(const ExportOptions& options) {
 Result<int> run_export(const ExportOptions& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
   if (!format) return format.error();
-  if (Status fits = check_for(*format, options); !fits) return fits.error();
+  if (Status status = check_for(*format, options); !status) return status.error();
   const auto unit_metres = unit_of(options, *format);
   if (!unit_metres) return unit_metres.error();
   const bool is_glb = *format == ExportFormat::glb;

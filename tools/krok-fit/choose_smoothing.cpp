@@ -12,7 +12,7 @@ constexpr double kSeries[] = {1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1, 3, 10};
 }  // namespace
 
 bool contradict_each_other(const parametric::LeftOutMeans& exact) {
-  return exact.examples >= kLeastInside && exact.weighted > exact.linear;
+  return exact.examples >= kMinInside && exact.weighted > exact.linear;
 }
 
 Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& options,
@@ -23,7 +23,7 @@ Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& opt
     if (choice.smoothing > 0) take_all_steps(input);
     return choice;
   }
-  if (input.all_steps.empty() || input.all_steps.size() > kMostLeftOut) return choice;
+  if (input.all_steps.empty() || input.all_steps.size() > kMaxLeftOut) return choice;
   // What cannot be fitted at all is told when it is fitted.
   const auto exact = parametric::leave_one_out(input.library, options.kernel, 0, context.jobs);
   if (!exact) return choice;
@@ -36,7 +36,7 @@ Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& opt
   choice.tried = *std::move(tried);
   const auto best =
       std::ranges::min_element(choice.tried, {}, &parametric::SmoothingTrial::weighted);
-  if (best->examples < kLeastInside || best->weighted > kGain * choice.exact->weighted) {
+  if (best->examples < kMinInside || best->weighted > kGain * choice.exact->weighted) {
     return choice;
   }
   choice.smoothing = best->smoothing;

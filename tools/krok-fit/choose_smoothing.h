@@ -24,7 +24,7 @@ struct SmoothingChoice {
 // weights that meet the others: the steps contradict each other. The best of a series is taken if
 // it brings the distance to kGain of what it was. With smoothing the library gets all steps that
 // were found.
-inline constexpr int kLeastInside = 5;
+inline constexpr int kMinInside = 5;
 inline constexpr double kGain = 0.8;
 bool contradict_each_other(const parametric::LeftOutMeans& exact);
 Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& options,

@@ -31,10 +31,10 @@ class MotionReader {
       : description_(description), path_(path), keep_going_(keep_going), context_(context) {}
 
   Result<ExampleMotions> read() {
-    Status done = read_motions();
-    if (done) done = keep_one_skeleton();
-    if (done) done = find_all_keys();
-    if (!done) return done.error();
+    Status status = read_motions();
+    if (status) status = keep_one_skeleton();
+    if (status) status = find_all_keys();
+    if (!status) return status.error();
     return std::move(made_);
   }
 
@@ -78,8 +78,8 @@ class MotionReader {
         motion.entry = &entry;
         motion.path = path;
         motion.name = entry.name.empty() ? base_name(path) : entry.name;
-        if (Status read = read_clip(motion); !read) {
-          if (Status gone_on = refuse(motion, read.error()); !gone_on) return gone_on;
+        if (Status status = read_clip(motion); !status) {
+          if (Status gone_on = refuse(motion, status.error()); !gone_on) return gone_on;
           continue;
         }
         made_.motions.push_back(std::move(motion));
@@ -131,14 +131,14 @@ class MotionReader {
     }
     std::vector<ExampleMotion> kept;
     for (ExampleMotion& motion : made_.motions) {
-      Status same = parametric::same_skeleton(made_.skeleton, motion.clip.skeleton);
-      if (same) {
+      Status status = parametric::same_skeleton(made_.skeleton, motion.clip.skeleton);
+      if (status) {
         kept.push_back(std::move(motion));
         continue;
       }
-      Error error = std::move(same).error();
+      Error error = std::move(status).error();
       error.hint = "krok-retarget brings the motion on the library's skeleton";
-      if (Status gone_on = refuse(motion, std::move(error)); !gone_on) return gone_on;
+      if (Status status = refuse(motion, std::move(error)); !status) return status;
     }
     made_.motions = std::move(kept);
     if (made_.motions.empty()) {
@@ -170,7 +170,7 @@ class MotionReader {
   Status find_all_keys() {
     for (ExampleMotion& motion : made_.motions) {
       if (!motion.entry->keytimes.empty()) continue;
-      if (Status found = find_keys_of(motion); !found) return found;
+      if (Status status = find_keys_of(motion); !status) return status;
     }
     return {};
   }

@@ -48,9 +48,9 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
   file.report = json_text(saved_json(input, fitted));
   file.provenance = context.provenance();
   OutputSet outputs(context);
-  Status added = outputs.add(context.output,
-                             [&](OutputFile& output) { return steps::write(file, {}, output); });
-  if (!added || options.plots.empty()) return added ? outputs.finish() : added;
+  Status status = outputs.add(context.output,
+                              [&](OutputFile& output) { return steps::write(file, {}, output); });
+  if (!status || options.plots.empty()) return status ? outputs.finish() : status;
   const auto charts = make_charts(input, fitted);
   if (!charts) return charts.error();
   std::error_code failed;
@@ -60,9 +60,9 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
         .in_file(options.plots);
   }
   for (const auto& [name, svg] : *charts) {
-    added = outputs.add((std::filesystem::path(options.plots) / name).string(),
-                        [&text = svg](OutputFile& output) { return output.write(text); });
-    if (!added) return added;
+    status = outputs.add((std::filesystem::path(options.plots) / name).string(),
+                         [&text = svg](OutputFile& output) { return output.write(text); });
+    if (!status) return status;
   }
   return outputs.finish();
 }
@@ -70,8 +70,8 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status kind = check_output_kind(context.output, "-o", registry::Kind::steps); !kind) {
-    return kind.error();
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::steps); !status) {
+    return status.error();
   }
   auto input = read_library(options.library, options.keep_going, context);
   if (!input) return input.error();
@@ -92,8 +92,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto fitted =
       fit_library(*input, options, std::move(smoothing), start ? &*start : nullptr, context);
   if (!fitted) return fitted.error();
-  if (Status written = write_results(options, *input, *fitted, context); !written) {
-    return written.error();
+  if (Status status = write_results(options, *input, *fitted, context); !status) {
+    return status.error();
   }
   context.report.result = report_json(*input, *fitted);
   say_report(*input, *fitted, context);

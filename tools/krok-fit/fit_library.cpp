@@ -179,7 +179,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
     fitted.example_distance = std::accumulate(distances->begin(), distances->end(), 0.0) /
                               static_cast<double>(distances->size());
   }
-  if (library.examples.size() <= kMostLeftOut) {
+  if (library.examples.size() <= kMaxLeftOut) {
     // Without one of them some libraries cannot be fitted; that is no fault of this one.
     const rbf::WeightFunction& function = fitted.refined.function;
     if (auto left_out =

@@ -18,7 +18,7 @@ namespace krok::fit_tool {
 namespace {
 
 using draw::Axis;
-using draw::Figure;
+using draw::Chart;
 using draw::Panel;
 using draw::Scale;
 using draw::Series;
@@ -53,24 +53,24 @@ class Charts {
         bounds_(parametric::bounds_of(input.library)),
         dimensions_(input.lower.size()) {}
 
-  Figure errors() const {
-    Figure figure;
-    figure.title = "Error at points held out";
+  Chart errors() const {
+    Chart chart;
+    chart.title = "Error at points held out";
     const auto& rounds = fitted_.refined.rounds;
     const auto rounds_before = fitted_.start.rounds.size();
     int sum = fitted_.start.function.inserted();
     std::vector<double> inserted = {static_cast<double>(sum)};
-    std::vector<const fit::RefineFigures*> figures = {
+    std::vector<const fit::RefineMetrics*> charts = {
         rounds_before == 0 ? &fitted_.refined.before : &rounds[rounds_before - 1].after};
     for (std::size_t r = rounds_before; r < rounds.size(); ++r) {
       sum += rounds[r].inserted;
       inserted.push_back(sum);
-      figures.push_back(&rounds[r].after);
+      charts.push_back(&rounds[r].after);
     }
     // A drop at the end.
     if (fitted_.refined.polished) {
       inserted.push_back(sum);
-      figures.push_back(&fitted_.refined.polished->after);
+      charts.push_back(&fitted_.refined.polished->after);
     }
     // A logarithmic axis has no 0: the examples themselves count as points.
     const auto examples = static_cast<double>(input_.library.examples.size());
@@ -85,50 +85,50 @@ class Charts {
       Series most = series_of("95 % of points", SeriesStyle::line_and_points);
       Series mean = series_of("mean", SeriesStyle::line_and_points);
       for (Series* series : {&largest, &most, &mean}) series->x = inserted;
-      for (const fit::RefineFigures* at : figures) {
+      for (const fit::RefineMetrics* at : charts) {
         largest.y.push_back(at->within[d].largest * unit.factor);
         most.y.push_back(at->within[d].most * unit.factor);
         mean.y.push_back(at->within[d].mean * unit.factor);
       }
       panel.series = {std::move(largest), std::move(most), std::move(mean)};
-      figure.panels.push_back(std::move(panel));
+      chart.panels.push_back(std::move(panel));
     }
-    return figure;
+    return chart;
   }
 
-  Result<Figure> weights() const {
+  Result<Chart> weights() const {
     const auto evaluator = rbf::WeightEvaluator::create(fitted_.refined.function);
     if (!evaluator) return evaluator.error();
-    Figure figure;
-    figure.title = "Weights of examples";
-    figure.columns = 3;
-    figure.panel_width = 300;
-    figure.panel_height = dimensions_ > 1 ? 260 : 180;
+    Chart chart;
+    chart.title = "Weights of examples";
+    chart.columns = 3;
+    chart.panel_width = 300;
+    chart.panel_height = dimensions_ > 1 ? 260 : 180;
     const auto count = static_cast<int>(input_.library.examples.size());
     const int shown = std::min(count, kSurfaces);
     for (int k = 0; k < shown; ++k) {
       // Evenly through the list.
       const int example = shown < 2 ? 0 : k * (count - 1) / (shown - 1);
-      figure.panels.push_back(dimensions_ > 1 ? surface(*evaluator, example)
-                                              : curve(*evaluator, example));
+      chart.panels.push_back(dimensions_ > 1 ? surface(*evaluator, example)
+                                             : curve(*evaluator, example));
     }
-    return figure;
+    return chart;
   }
 
-  Figure parameters() const {
-    Figure figure;
-    figure.title = "Examples and inserted points";
-    figure.columns = 2;
-    figure.panel_width = 420;
-    figure.panel_height = 320;
+  Chart parameters() const {
+    Chart chart;
+    chart.title = "Examples and inserted points";
+    chart.columns = 2;
+    chart.panel_width = 420;
+    chart.panel_height = 320;
     for (std::size_t a = 0; a < dimensions_; ++a) {
-      for (std::size_t b = a + 1; b < dimensions_; ++b) figure.panels.push_back(places(a, b));
+      for (std::size_t b = a + 1; b < dimensions_; ++b) chart.panels.push_back(places(a, b));
     }
-    if (dimensions_ == 1) figure.panels.push_back(places(0, 0));
-    return figure;
+    if (dimensions_ == 1) chart.panels.push_back(places(0, 0));
+    return chart;
   }
 
-  Result<Figure> measured() const {
+  Result<Chart> measured() const {
     const auto before = rbf::WeightEvaluator::create(fitted_.start.function);
     if (!before) return before.error();
     const auto after = rbf::WeightEvaluator::create(fitted_.refined.function);
@@ -137,8 +137,8 @@ class Charts {
         rbf::points_inside(fitted_.refined.function, kMeasuredPoints, 7, inside());
     const std::vector<double> errors_before = errors_at(points, *before);
     const std::vector<double> errors_after = errors_at(points, *after);
-    Figure figure;
-    figure.title = "Measured less asked for";
+    Chart chart;
+    chart.title = "Measured less asked for";
     for (std::size_t d = 0; d < dimensions_; ++d) {
       const ShownUnit unit = unit_for_values(input_.library.parameters[d]);
       const ShownUnit error_unit = unit_for_errors(input_.library.parameters[d]);
@@ -154,9 +154,9 @@ class Charts {
         second.y.push_back(errors_after[p] * error_unit.factor);
       }
       panel.series = {std::move(first), std::move(second)};
-      figure.panels.push_back(std::move(panel));
+      chart.panels.push_back(std::move(panel));
     }
-    return figure;
+    return chart;
   }
 
  private:
@@ -289,14 +289,14 @@ Result<std::vector<Chart>> make_charts(const LibraryInput& input, const FittedLi
   if (!weights) return weights.error();
   const auto measured = charts.measured();
   if (!measured) return measured.error();
-  std::vector<std::pair<std::string, Figure>> figures;
-  figures.emplace_back("errors.svg", charts.errors());
-  figures.emplace_back("weights.svg", *weights);
-  figures.emplace_back("parameters.svg", charts.parameters());
-  figures.emplace_back("measured.svg", *measured);
+  std::vector<std::pair<std::string, Chart>> charts;
+  charts.emplace_back("errors.svg", charts.errors());
+  charts.emplace_back("weights.svg", *weights);
+  charts.emplace_back("parameters.svg", charts.parameters());
+  charts.emplace_back("measured.svg", *measured);
   std::vector<Chart> files;
-  for (const auto& [name, figure] : figures) {
-    auto svg = draw::to_svg(figure);
+  for (const auto& [name, chart] : charts) {
+    auto svg = draw::to_svg(chart);
     if (!svg) return svg.error();
     files.emplace_back(name, *std::move(svg));
   }

@@ -13,7 +13,7 @@ namespace krok::fit_tool {
 namespace {
 
 using fit::ParameterError;
-using fit::RefineFigures;
+using fit::RefineMetrics;
 
 Json errors_json(const std::vector<ParameterError>& errors, const LibraryInput& input) {
   Json result = Json::object();
@@ -27,17 +27,17 @@ Json errors_json(const std::vector<ParameterError>& errors, const LibraryInput& 
   return result;
 }
 
-Json figures_json(const RefineFigures& figures, const LibraryInput& input) {
+Json metrics_json(const RefineMetrics& metrics, const LibraryInput& input) {
   Json result;
-  result["within"] = errors_json(figures.within, input);
-  result["extrapolated"] = errors_json(figures.outside, input);
-  result["largest_of_range"] = figures.largest;
-  result["mean_square_of_range"] = figures.mean_square;
-  result["not_measured"] = figures.failed;
-  result["least_weight"] = figures.least_weight;
-  result["largest_weight"] = figures.largest_weight;
-  result["roughness"] = figures.roughness;
-  result["condition"] = figures.condition;
+  result["within"] = errors_json(metrics.within, input);
+  result["extrapolated"] = errors_json(metrics.outside, input);
+  result["largest_of_range"] = metrics.largest;
+  result["mean_square_of_range"] = metrics.mean_square;
+  result["not_measured"] = metrics.failed;
+  result["least_weight"] = metrics.least_weight;
+  result["largest_weight"] = metrics.largest_weight;
+  result["roughness"] = metrics.roughness;
+  result["condition"] = metrics.condition;
   return result;
 }
 
@@ -65,7 +65,7 @@ Json rounds_json(const LibraryInput& input, const FittedLibrary& fitted) {
     entry["refused"] = round.refused;
     entry["by_other_parameters"] = round.by_point;
     entry["sought_of_range"] = round.sought;
-    entry["after"] = figures_json(round.after, input);
+    entry["after"] = metrics_json(round.after, input);
     list.push_back(std::move(entry));
   }
   return list;
@@ -113,12 +113,12 @@ Json left_out_json(const std::vector<parametric::HeldOut>& left_out) {
   return result;
 }
 
-const RefineFigures& last_found_figures(const FittedLibrary& fitted) {
+const RefineMetrics& last_found_metrics(const FittedLibrary& fitted) {
   return fitted.refined.rounds.empty() ? fitted.refined.before : fitted.refined.rounds.back().after;
 }
 
-const RefineFigures& last_figures(const FittedLibrary& fitted) {
-  return fitted.refined.polished ? fitted.refined.polished->after : last_found_figures(fitted);
+const RefineMetrics& last_metrics(const FittedLibrary& fitted) {
+  return fitted.refined.polished ? fitted.refined.polished->after : last_found_metrics(fitted);
 }
 
 std::string with_unit(double value, const ShownUnit& unit) {
@@ -150,8 +150,8 @@ void say_polish(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   for (std::size_t d = 0; d < input.library.parameters.size(); ++d) {
     const ShownUnit unit = unit_for_errors(input.library.parameters[d]);
     text += fmt::format("{}{} (mean {})", d == 0 ? "" : ", ",
-                        with_unit(last_found_figures(fitted).within[d].largest, unit),
-                        with_unit(last_found_figures(fitted).within[d].mean, unit));
+                        with_unit(last_found_metrics(fitted).within[d].largest, unit),
+                        with_unit(last_found_metrics(fitted).within[d].mean, unit));
   }
   context.say(
       fmt::format("  inserted weights polished together; before that, errors were {}", text));
@@ -213,11 +213,11 @@ Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
   }
   result["inserted"] = fitted.refined.function.inserted();
   result["example_error_of_range"] = fitted.refined.example_error;
-  result["before"] = figures_json(fitted.refined.before, input);
+  result["before"] = metrics_json(fitted.refined.before, input);
   result["rounds"] = rounds_json(input, fitted);
   result["refused_points"] = refused_json(fitted);
   if (fitted.refined.polished) {
-    result["polished"] = {{"after", figures_json(fitted.refined.polished->after, input)}};
+    result["polished"] = {{"after", metrics_json(fitted.refined.polished->after, input)}};
   }
   result["leave_one_out"] = left_out_json(fitted.left_out);
   result["stop"] = std::string(fit::stop_name(fitted.refined.stop));
@@ -242,8 +242,8 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   }
   if (dropped > 0) steps += fmt::format(", {} dropped", dropped);
   context.say(fmt::format("{}: {}", context.output, steps));
-  const RefineFigures& before = fitted.refined.before;
-  const RefineFigures& after = last_figures(fitted);
+  const RefineMetrics& before = fitted.refined.before;
+  const RefineMetrics& after = last_metrics(fitted);
   for (std::size_t d = 0; d < library.parameters.size(); ++d) {
     const ShownUnit unit = unit_for_errors(library.parameters[d]);
     context.say(fmt::format("  {}, {}: error {} before, {} after (mean {}; held out)",

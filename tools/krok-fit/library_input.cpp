@@ -69,12 +69,12 @@ class Reader {
       : path_(std::move(path)), keep_going_(keep_going), context_(context) {}
 
   Result<LibraryInput> read() {
-    Status done = read_description();
-    if (done) done = read_motions();
-    if (done) done = make_library();
-    if (done) done = choose();
-    if (done) done = find_range(input_);
-    if (!done) return done.error();
+    Status status = read_description();
+    if (status) status = read_motions();
+    if (status) status = make_library();
+    if (status) status = choose();
+    if (status) status = find_range(input_);
+    if (!status) return status.error();
     return std::move(input_);
   }
 
@@ -120,15 +120,15 @@ class Reader {
                      "leave \"keytimes\" out, or \"steps\": \"auto\"")
             .in_file(path_);
       }
-      if (Status cut = cut_walks(); !cut) return cut;
-    } else if (Status begun = begin_library(); !begun) {
-      return begun;
+      if (Status status = cut_walks(); !status) return status;
+    } else if (Status status = begin_library(); !status) {
+      return status;
     }
-    if (Status named = take_parameters(); !named) return named;
+    if (Status status = take_parameters(); !status) return status;
     if (description().rate) library.rate = *description().rate;
     for (const ExampleMotion& motion : motions_) {
       if (motion.entry->automatic) continue;
-      if (Status added = add_example(motion); !added) return added;
+      if (Status status = add_example(motion); !status) return status;
     }
     if (library.examples.empty()) {
       return Error("library-examples", "the library has no examples").in_file(path_);

@@ -45,8 +45,7 @@ void declare(CommandOptions& command, Options& options) {
       })
       .group("Fit");
   add_whole(command, "--refine", options.refine,
-            "Points to insert at most, 0 for none; otherwise 40 for each parameter", 0,
-            kMostRefined)
+            "Points to insert at most, 0 for none; otherwise 40 for each parameter", 0, kMaxRefined)
       .group("Fit");
   command
       .add_option("--until", options.until,

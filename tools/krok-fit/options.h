@@ -26,10 +26,10 @@ struct Options {
 
 // Each example is made by the others alone for at most so many of them: it takes time with the
 // fourth power of their number.
-inline constexpr std::size_t kMostLeftOut = 128;
+inline constexpr std::size_t kMaxLeftOut = 128;
 
 // Points that --refine may ask for.
-inline constexpr int kMostRefined = 4000;
+inline constexpr int kMaxRefined = 4000;
 
 void declare(CommandOptions& command, Options& options);
 Status check(const Options& options);

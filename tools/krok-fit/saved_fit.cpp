@@ -12,7 +12,7 @@ namespace krok::fit_tool {
 namespace {
 
 using fit::ParameterError;
-using fit::RefineFigures;
+using fit::RefineMetrics;
 
 // Members are taken by name; one that is missing or of another kind throws, which is caught once.
 std::vector<ParameterError> errors_of(const Json& json, const LibraryInput& input) {
@@ -25,18 +25,18 @@ std::vector<ParameterError> errors_of(const Json& json, const LibraryInput& inpu
   return errors;
 }
 
-RefineFigures figures_of(const Json& json, const LibraryInput& input) {
-  RefineFigures figures;
-  figures.within = errors_of(json.at("within"), input);
-  figures.outside = errors_of(json.at("extrapolated"), input);
-  figures.largest = json.at("largest_of_range").get<double>();
-  figures.mean_square = json.at("mean_square_of_range").get<double>();
-  figures.failed = json.at("not_measured").get<int>();
-  figures.least_weight = json.at("least_weight").get<double>();
-  figures.largest_weight = json.at("largest_weight").get<double>();
-  figures.roughness = json.at("roughness").get<double>();
-  figures.condition = json.at("condition").get<double>();
-  return figures;
+RefineMetrics metrics_of(const Json& json, const LibraryInput& input) {
+  RefineMetrics metrics;
+  metrics.within = errors_of(json.at("within"), input);
+  metrics.outside = errors_of(json.at("extrapolated"), input);
+  metrics.largest = json.at("largest_of_range").get<double>();
+  metrics.mean_square = json.at("mean_square_of_range").get<double>();
+  metrics.failed = json.at("not_measured").get<int>();
+  metrics.least_weight = json.at("least_weight").get<double>();
+  metrics.largest_weight = json.at("largest_weight").get<double>();
+  metrics.roughness = json.at("roughness").get<double>();
+  metrics.condition = json.at("condition").get<double>();
+  return metrics;
 }
 
 fit::Refusal refusal_named(const std::string& name) {
@@ -64,7 +64,7 @@ bool adds_up(const fit::Refined& refined) {
     refused += round.refused;
   }
   const auto rounds = static_cast<int>(refined.rounds.size());
-  return inserted == refined.function.inserted() && inserted <= kMostRefined &&
+  return inserted == refined.function.inserted() && inserted <= kMaxRefined &&
          refused == static_cast<std::int64_t>(refined.refused.size()) &&
          std::ranges::all_of(refined.refused,
                              [&](const auto& point) { return point.round < rounds; });
@@ -75,14 +75,14 @@ fit::Refined refinement_of(const Json& json, const LibraryInput& input,
   fit::Refined refined;
   refined.function = function;
   refined.example_error = json.at("example_error_of_range").get<double>();
-  refined.before = figures_of(json.at("before"), input);
+  refined.before = metrics_of(json.at("before"), input);
   for (const Json& entry : json.at("rounds")) {
     fit::RefineRound round;
     round.inserted = count_of(entry.at("inserted"));
     round.refused = count_of(entry.at("refused"));
     round.by_point = count_of(entry.at("by_other_parameters"));
     round.sought = entry.at("sought_of_range").get<double>();
-    round.after = figures_of(entry.at("after"), input);
+    round.after = metrics_of(entry.at("after"), input);
     refined.rounds.push_back(std::move(round));
   }
   for (const Json& entry : json.at("refused_points")) {
@@ -95,7 +95,7 @@ fit::Refined refinement_of(const Json& json, const LibraryInput& input,
   }
   if (const auto polished = json.find("polished"); polished != json.end()) {
     refined.polished = {polished->at("found_rows").get<std::vector<double>>(),
-                        figures_of(polished->at("after"), input)};
+                        metrics_of(polished->at("after"), input)};
     if (refined.polished->found_rows.size() != function.inserted_rows.size()) {
       throw std::out_of_range("rows of other points");
     }

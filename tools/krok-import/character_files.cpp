@@ -12,7 +12,7 @@
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "roles/eyes.h"
-#include "tools/krok-import/picture_names.h"
+#include "tools/krok-import/image_names.h"
 
 namespace krok::import {
 
@@ -31,9 +31,9 @@ std::string usable_name(const std::string& name, const std::string& fallback) {
 
 class Adder {
  public:
-  Adder(const CharacterFiles& files, const nodes::Scene& scene, character::Figure& figure,
+  Adder(const CharacterFiles& files, const nodes::Scene& scene, character::Actor& actor,
         OutputSet& outputs, NewFolders& folder)
-      : files_(files), scene_(scene), figure_(figure), outputs_(outputs), new_folders_(folder) {
+      : files_(files), scene_(scene), actor_(actor), outputs_(outputs), new_folders_(folder) {
     const std::string end = extension(files.path);
     stem_ = files.path.substr(0, files.path.size() - end.size());
     name_ = base_name(stem_);
@@ -44,7 +44,7 @@ class Adder {
     // The model first: where its folder is missing, none is made for the pictures.
     for (const auto step :
          {&Adder::add_model, &Adder::add_materials, &Adder::add_morphs, &Adder::add_character}) {
-      if (Status done = (this->*step)(); !done) return done.error();
+      if (Status status = (this->*step)(); !status) return status.error();
     }
     return std::move(added_);
   }
@@ -52,11 +52,11 @@ class Adder {
  private:
   // Each part a name of its own, so that the character can give each a material.
   void name_parts() {
-    std::vector<Model::Part>& parts = figure_.model.parts;
+    std::vector<Model::Part>& parts = actor_.model.parts;
     UniqueNames names;
     for (std::size_t p = 0; p < parts.size(); ++p) {
       parts[p].name = names.make(usable_name(parts[p].name, "part"));
-      const int material = figure_.part_materials[p];
+      const int material = actor_.part_materials[p];
       parts[p].material =
           material < 0 ? "" : scene_.materials[static_cast<std::size_t>(material)].name;
       added_.character.parts.push_back({parts[p].name, parts[p].material});
@@ -72,59 +72,60 @@ class Adder {
     std::vector<Material> used;
     for (const Material& material : scene_.materials) {
       const auto has = [&](const Model::Part& part) { return part.material == material.name; };
-      if (std::ranges::any_of(figure_.model.parts, has)) used.push_back(material);
+      if (std::ranges::any_of(actor_.model.parts, has)) used.push_back(material);
     }
     if (used.empty()) return {};
     for (Material& material : used) {
       const auto textures = textures_of(material);
       for (std::size_t t = 0; t < textures.size(); ++t) {
         if (!*textures[t]) continue;
-        if (Status done = add_picture(material.name + "_" + kTextureNames[t], *textures[t]);
-            !done) {
-          return done;
+        if (Status status = add_image(material.name + "_" + kTextureNames[t], *textures[t]);
+            !status) {
+          return status;
         }
       }
     }
     added_.materials = used.size();
-    added_.pictures = pictures_.size();
+    added_.images = images_.size();
     added_.character.materials = {name_ + ".material"};
     return add_text(stem_ + ".material", material::write(used));
   }
 
-  Status add_picture(const std::string& fallback, Texture& texture) {
-    const auto [place, added] = pictures_.try_emplace(texture.picture.get());
+  Status add_image(const std::string& fallback, Texture& texture) {
+    const auto [place, added] = images_.try_emplace(texture.image.get());
     if (added) {
-      const Picture& picture = *texture.picture;
-      const auto facts = picture_facts(picture.bytes);
+      const EncodedImage& image = *texture.image;
+      const auto facts = image_info(image.bytes);
       if (!facts) return facts.error();
-      const std::string file = picture_names_.make(picture, facts->kind, fallback);
-      if (Status made = new_folders_.make(stem_ + "_textures"); !made) return made;
-      const Status done = outputs_.add(stem_ + "_textures/" + file, [&](OutputFile& output) {
-        return output.write(picture.bytes);
+      const std::string file = image_names_.make(image, facts->kind, fallback);
+      if (Status status = new_folders_.make(stem_ + "_textures"); !status) return status;
+      const Status status = outputs_.add(stem_ + "_textures/" + file, [&](OutputFile& output) {
+        return output.write(image.bytes);
       });
-      if (!done) return done;
-      place->second = std::make_shared<const Picture>(Picture{{}, name_ + "_textures/" + file, {}});
+      if (!status) return status;
+      place->second =
+          std::make_shared<const EncodedImage>(EncodedImage{{}, name_ + "_textures/" + file, {}});
     }
-    texture.picture = place->second;
+    texture.image = place->second;
     return {};
   }
 
   Status add_model() {
     added_.character.model = name_ + ".model";
-    figure_.model.provenance = files_.provenance;
+    actor_.model.provenance = files_.provenance;
     return outputs_.add(stem_ + ".model", [&](OutputFile& file) {
-      return model::write(figure_.model, {.orientation = files_.orientation}, file);
+      return model::write(actor_.model, {.orientation = files_.orientation}, file);
     });
   }
 
   Status add_morphs() {
-    MorphSet& morphs = figure_.morphs;
+    MorphSet& morphs = actor_.morphs;
     if (morphs.names.empty()) return {};
     added_.character.morphs = name_ + "_morphs.exr";
     morphs.provenance = files_.provenance;
     for (std::size_t t = 0; t < morphs.names.size(); ++t) {
       const float weight = t < files_.weights.size() ? files_.weights[t] : 0.0f;
-      const float most = Character::kMostWeight;
+      const float most = Character::kMaxWeight;
       added_.character.expressions.push_back(
           {morphs.names[t], {}, std::clamp(weight, -most, most)});
     }
@@ -134,7 +135,7 @@ class Adder {
 
   Status add_character() {
     added_.character.name = usable_name(to_utf8(name_), "");
-    const Skeleton& skeleton = figure_.model.skeleton;
+    const Skeleton& skeleton = actor_.model.skeleton;
     const EyeJoints eyes = find_eyes(skeleton);
     for (const auto& [name, joint] : {std::pair{"left", eyes.left}, {"right", eyes.right}}) {
       if (joint < 0) continue;
@@ -147,21 +148,22 @@ class Adder {
 
   const CharacterFiles& files_;
   const nodes::Scene& scene_;
-  character::Figure& figure_;
+  character::Actor& actor_;
   OutputSet& outputs_;
   NewFolders& new_folders_;
   std::string stem_, name_;  // of all files, with and without their folder
-  PictureNames picture_names_;
-  std::map<const Picture*, std::shared_ptr<const Picture>> pictures_;  // to those with paths
+  ImageNames image_names_;
+  std::map<const EncodedImage*, std::shared_ptr<const EncodedImage>>
+      images_;  // to those with paths
   AddedCharacter added_;
 };
 
 }  // namespace
 
 Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
-                                     character::Figure& figure, OutputSet& outputs,
+                                     character::Actor& actor, OutputSet& outputs,
                                      NewFolders& folder) {
-  return Adder(files, scene, figure, outputs, folder).add();
+  return Adder(files, scene, actor, outputs, folder).add();
 }
 
 }  // namespace krok::import

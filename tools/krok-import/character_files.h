@@ -25,13 +25,13 @@ struct CharacterFiles {
 // What was added, for the report.
 struct AddedCharacter {
   Character character;
-  std::size_t materials = 0, pictures = 0;
+  std::size_t materials = 0, images = 0;
 };
 
 // Adds the files to `outputs`; `folder` is that of the pictures. The figure's parts get names of
 // their own, and the names of the scene's materials. Codes: those of the writers.
 Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
-                                     character::Figure& figure, OutputSet& outputs,
+                                     character::Actor& actor, OutputSet& outputs,
                                      NewFolders& folder);
 
 }  // namespace krok::import

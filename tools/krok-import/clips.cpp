@@ -14,7 +14,7 @@ namespace krok::import {
 namespace {
 
 constexpr std::string_view kPlace = "{clip}";
-constexpr std::size_t kMostListed = 20;
+constexpr std::size_t kMaxListed = 20;
 
 std::string name_of(const nodes::Scene& scene, std::size_t index) {
   const std::string& name = scene.animations[index].name;
@@ -33,10 +33,10 @@ std::vector<ChosenClip> all_clips(const nodes::Scene& scene) {
 
 std::string list_of(const std::vector<ChosenClip>& clips) {
   std::string list;
-  for (std::size_t i = 0; i < clips.size() && i < kMostListed; ++i) {
+  for (std::size_t i = 0; i < clips.size() && i < kMaxListed; ++i) {
     list += fmt::format("{}{} ({})", i == 0 ? "" : ", ", i, shown(clips[i].name));
   }
-  return list + (clips.size() > kMostListed ? ", ..." : "");
+  return list + (clips.size() > kMaxListed ? ", ..." : "");
 }
 
 }  // namespace

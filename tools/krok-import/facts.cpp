@@ -44,9 +44,9 @@ FrameSource HeightWatch::watched(const FrameSource& motion) {
   FrameSource watching = motion;
   watching.read = [this, read = motion.read](int first, int count, std::span<Vec3f> positions,
                                              std::span<Quatf> orientations) {
-    Status done = read(first, count, positions, orientations);
-    if (done) see(static_cast<std::size_t>(first), positions);
-    return done;
+    Status status = read(first, count, positions, orientations);
+    if (status) see(static_cast<std::size_t>(first), positions);
+    return status;
   };
   return watching;
 }

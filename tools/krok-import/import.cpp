@@ -23,16 +23,16 @@ namespace {
 Status write_outputs(const Options& options, ToolContext& context, const Clip& clip) {
   OutputSet outputs(context);
   const anim::WriteOptions anim_options{.orientation = options.orientation, .jobs = context.jobs};
-  Status added = outputs.add(
+  Status status = outputs.add(
       context.output, [&](OutputFile& file) { return anim::write(clip, anim_options, file); });
-  if (!added) return added;
-  added = outputs.add(options.model, [&](OutputFile& file) {
+  if (!status) return status;
+  status = outputs.add(options.model, [&](OutputFile& file) {
     Model model;
     model.skeleton = clip.skeleton;
     model.provenance = clip.provenance;
     return model::write(model, {.orientation = options.orientation}, file);
   });
-  return added ? outputs.finish() : added;
+  return status ? outputs.finish() : status;
 }
 
 // What only characters have.
@@ -54,12 +54,12 @@ Status check_capture_options(const Options& options, const std::string& path) {
 
 Result<int> import_capture(const InputFile& input, registry::Kind kind, const Options& options,
                            ToolContext& context) {
-  if (Status fits = check_capture_options(options, input.path()); !fits) return fits.error();
+  if (Status status = check_capture_options(options, input.path()); !status) return status.error();
   if (auto streamed = stream_capture(input, kind, options, context)) return *std::move(streamed);
   auto source = read_source(input, kind, options, context);
   if (!source) return source.error();
-  if (Status fits = check_output_kind(context.output, "-o", registry::Kind::anim); !fits) {
-    return fits.error();
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
   }
   context.tell(source->capture.diagnostics);
 
@@ -76,7 +76,7 @@ Result<int> import_capture(const InputFile& input, registry::Kind kind, const Op
   clip.provenance = context.provenance();
   clip.provenance.conversions = std::move(conversions);
 
-  if (Status written = write_outputs(options, context, clip); !written) return written.error();
+  if (Status status = write_outputs(options, context, clip); !status) return status.error();
   const FrameSource frames = frames_of(clip);
   const double height = height_of(clip);
   context.report.result = result_of(source->capture, frames, height, source->details);
@@ -95,9 +95,10 @@ Status check(const Options& options) {
     return Error("usage", "--character writes model and morph targets itself, beside the character",
                  "leave --model and --morphs out");
   }
-  if (Status fits = check_output_kind(options.character, "--character", registry::Kind::character);
-      !fits) {
-    return fits;
+  if (Status status =
+          check_output_kind(options.character, "--character", registry::Kind::character);
+      !status) {
+    return status;
   }
   if (options.character == "-") {
     return Error("usage", "--character -: several files do not go to standard output");

@@ -40,13 +40,13 @@ Status check_strict(const Options& options, const nodes::Scene& scene) {
 
 Result<int> import_scene(const InputFile& input, registry::Kind kind, const Options& options,
                          ToolContext& context) {
-  if (Status fits = check_options(options); !fits) return fits.error();
+  if (Status status = check_options(options); !status) return status.error();
   auto how = read_options(options);
   if (!how) return how.error();
   auto scene = read_scene(input, kind, context, !options.character.empty());
   if (!scene) return scene.error();
-  if (Status fits = check_strict(options, *scene); !fits) {
-    return std::move(fits.error()).in_file(input.path());
+  if (Status status = check_strict(options, *scene); !status) {
+    return std::move(status.error()).in_file(input.path());
   }
   context.tell(scene->diagnostics);
   // Axes that the user names take the place of an odd rotation that the file names.

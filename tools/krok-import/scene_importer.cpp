@@ -14,12 +14,12 @@ namespace krok::import {
 
 Result<int> SceneImporter::run() {
   for (auto step : {&SceneImporter::choose, &SceneImporter::find_rig, &SceneImporter::find_space,
-                    &SceneImporter::add_figure, &SceneImporter::add_clips}) {
-    if (Status done = (this->*step)(); !done) return std::move(done.error()).in_file(path_);
+                    &SceneImporter::add_actor, &SceneImporter::add_clips}) {
+    if (Status status = (this->*step)(); !status) return std::move(status.error()).in_file(path_);
   }
-  tell_what_else_is_there();
+  report_what_else_is_there();
   const std::string written = outputs_.names();
-  if (Status done = outputs_.finish(); !done) return done.error();
+  if (Status status = outputs_.finish(); !status) return status.error();
   textures_.keep();
   report();
   context_.say(fmt::format("{} -> {}", line_, written));
@@ -64,7 +64,7 @@ Status SceneImporter::choose_camera() {
 Status SceneImporter::choose() {
   cameras_ = character::camera_nodes(scene_, evaluator_);
   if (wants_camera()) {
-    if (Status chosen = choose_camera(); !chosen) return chosen;
+    if (Status status = choose_camera(); !status) return status;
   }
   auto clips = choose_clips(scene_, options_.clip, path_, context_);
   if (!clips) return clips.error();
@@ -119,13 +119,13 @@ Status SceneImporter::find_space() {
   auto skeleton = character::skeleton_in_krok(*rig_, conversion_);
   if (!skeleton) return skeleton.error();
   if (said.unit) character::check_size(*skeleton, roles_, found);
-  if (said.complete()) character::check_figure(*skeleton, roles_, found);
+  if (said.complete()) character::check_actor(*skeleton, roles_, found);
   tell(found);
   return {};
 }
 
 // What the file holds beyond what was asked for, so that nobody looks for it elsewhere.
-void SceneImporter::tell_what_else_is_there() {
+void SceneImporter::report_what_else_is_there() {
   if (still_) warn("import-missing", "no animation is in it: no motion is written");
   std::vector<std::string> more;
   const auto has = [&](std::size_t count, const char* one, const char* option) {

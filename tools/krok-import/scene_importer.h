@@ -53,9 +53,9 @@ class SceneImporter {
   Status find_space();
 
   // What is written (scene_outputs.cpp).
-  Status add_figure();
+  Status add_actor();
   Status add_model();
-  void tell_of_model();
+  void report_model();
   Status add_whole_character();
   Status add_morphs();
   Status add_weights(const ChosenClip& clip, const character::ChosenSampling& sampling);
@@ -63,7 +63,7 @@ class SceneImporter {
   Status add_clip(const ChosenClip& clip);
   Status add_camera(const ChosenClip& clip, const character::ChosenSampling& sampling);
 
-  void tell_what_else_is_there();
+  void report_what_else_is_there();
   void report();
 
   const std::string path_;
@@ -81,7 +81,7 @@ class SceneImporter {
   int camera_ = -1;           // the node that is written
   std::optional<character::Rig> rig_;
   RoleMap roles_;  // of the rig's joints
-  character::Figure figure_;
+  character::Actor actor_;
   Conventions conventions_;
   Conversion conversion_;
   std::vector<std::string> conversions_;

@@ -19,34 +19,34 @@ namespace krok::import {
 
 using registry::Kind;
 
-Status SceneImporter::add_figure() {
+Status SceneImporter::add_actor() {
   if (!wants_model() && !wants_character() && !wants_morphs()) return {};
   Diagnostics found;
-  auto figure = character::make_figure(scene_, evaluator_, *rig_, conversion_,
-                                       {.with_morphs = wants_morphs() || wants_character()}, found);
-  if (!figure) return figure.error();
+  auto actor = character::make_actor(scene_, evaluator_, *rig_, conversion_,
+                                     {.with_morphs = wants_morphs() || wants_character()}, found);
+  if (!actor) return actor.error();
   tell(found);
-  figure_ = std::move(*figure);
-  if (Status added = add_model(); !added) return added;
+  actor_ = std::move(*actor);
+  if (Status status = add_model(); !status) return status;
   if (wants_character()) {
-    if (Status added = add_whole_character(); !added) return added;
+    if (Status status = add_whole_character(); !status) return status;
   }
   return wants_morphs() ? add_morphs() : Status();
 }
 
 Status SceneImporter::add_model() {
   if (!wants_model()) return {};
-  Model& model = figure_.model;
+  Model& model = actor_.model;
   model.provenance = context_.provenance();
   model.provenance.conversions = conversions_;
-  tell_of_model();
+  report_model();
   return outputs_.add(options_.model, [&](OutputFile& file) {
     return model::write(model, {.orientation = options_.orientation}, file);
   });
 }
 
-void SceneImporter::tell_of_model() {
-  const Model& model = figure_.model;
+void SceneImporter::report_model() {
+  const Model& model = actor_.model;
   result_["model"] = {{"vertices", model.vertex_count()},
                       {"triangles", model.triangles.size()},
                       {"parts", model.parts.size()},
@@ -60,25 +60,25 @@ void SceneImporter::tell_of_model() {
 Status SceneImporter::add_whole_character() {
   CharacterFiles files{options_.character, options_.orientation, {}, context_.provenance()};
   files.provenance.conversions = conversions_;
-  if (!figure_.morphs.names.empty()) {
-    auto weights = character::make_weights(figure_, evaluator_, -1, {});
+  if (!actor_.morphs.names.empty()) {
+    auto weights = character::make_weights(actor_, evaluator_, -1, {});
     if (!weights) return weights.error();
     files.weights = std::move(weights->values);
   }
-  const auto added = add_character(files, scene_, figure_, outputs_, textures_);
+  const auto added = add_character(files, scene_, actor_, outputs_, textures_);
   if (!added) return added.error();
-  tell_of_model();
+  report_model();
   result_["character"] = {{"materials", added->materials},
-                          {"textures", added->pictures},
+                          {"textures", added->images},
                           {"expressions", added->character.expressions.size()},
                           {"eyes", added->character.eyes.size()}};
   line_ += fmt::format(", {}, {}", counted(static_cast<long long>(added->materials), "material"),
-                       counted(static_cast<long long>(added->pictures), "texture"));
+                       counted(static_cast<long long>(added->images), "texture"));
   return {};
 }
 
 Status SceneImporter::add_morphs() {
-  MorphSet& morphs = figure_.morphs;
+  MorphSet& morphs = actor_.morphs;
   const char* option = options_.morphs.empty() ? "--morph-weights" : "--morphs";
   if (morphs.names.empty()) return missing("morph target", option, "");
   result_["morph_targets"] = morphs.names;
@@ -97,7 +97,7 @@ Status SceneImporter::add_weights(const ChosenClip& clip,
                                   const character::ChosenSampling& sampling) {
   if (options_.weights.empty()) return {};
   const auto weights =
-      character::make_weights(figure_, evaluator_, clip.animation, sampling.sampling);
+      character::make_weights(actor_, evaluator_, clip.animation, sampling.sampling);
   if (!weights) return weights.error();
   const auto path = clip_path(options_.weights, "--morph-weights", clip, clips_.size() > 1, ".csv");
   if (!path) return path.error();
@@ -107,12 +107,12 @@ Status SceneImporter::add_weights(const ChosenClip& clip,
 Status SceneImporter::add_clips() {
   if (clips_.empty()) {  // a camera that stands still
     const character::ChosenSampling still;
-    if (Status added = add_weights({}, still); !added) return added;
+    if (Status status = add_weights({}, still); !status) return status;
     return wants_camera() ? add_camera({}, still) : Status();
   }
   if (!wants_motion() && !wants_camera() && options_.weights.empty()) return {};
   for (const ChosenClip& clip : clips_) {
-    if (Status added = add_clip(clip); !added) return added;
+    if (Status status = add_clip(clip); !status) return status;
   }
   return {};
 }
@@ -145,11 +145,11 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
                     readable(1 / sampling->sampling.step), readable(sampling->keys_from)));
     const auto path = clip_path(context_.output, "-o", chosen, clips_.size() > 1, ".anim");
     if (!path) return path.error();
-    if (Status fits = check_output_kind(*path, "-o", Kind::anim); !fits) return fits;
-    const Status added = outputs_.add(*path, [&](OutputFile& file) {
+    if (Status status = check_output_kind(*path, "-o", Kind::anim); !status) return status;
+    const Status status = outputs_.add(*path, [&](OutputFile& file) {
       return anim::write(*clip, {.orientation = options_.orientation, .jobs = context_.jobs}, file);
     });
-    if (!added) return added;
+    if (!status) return status;
     const FrameSource frames = frames_of(*clip);
     const double height = height_of(*clip);
     facts.update(facts_of(frames, height));
@@ -160,7 +160,7 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
   facts["source_rate"] = to_json(sampling->rate);
   facts["keys"] = {{"from", sampling->keys_from}, {"to", sampling->keys_to}};
   clip_facts_.push_back(std::move(facts));
-  if (Status added = add_weights(chosen, *sampling); !added) return added;
+  if (Status status = add_weights(chosen, *sampling); !status) return status;
   return wants_camera() ? add_camera(chosen, *sampling) : Status();
 }
 
@@ -176,7 +176,7 @@ Status SceneImporter::add_camera(const ChosenClip& clip,
   track->provenance.conversions = conversions_;
   const auto path = clip_path(options_.cam, "--cam", clip, clips_.size() > 1, ".cam");
   if (!path) return path.error();
-  if (Status fits = check_output_kind(*path, "--cam", Kind::cam); !fits) return fits;
+  if (Status status = check_output_kind(*path, "--cam", Kind::cam); !status) return status;
   result_["camera"] = {
       {"name", scene_.nodes[static_cast<std::size_t>(camera_)].name},
       {"frames", track->frame_count()},

@@ -111,7 +111,7 @@ Result<Source> read_source(const InputFile& input, Kind kind, const Options& opt
   how->progress = context.progress;
   const bool is_motion = kind == Kind::amc;
   const bool is_bvh = !is_motion && kind != Kind::asf;  // what is neither, the BVH reader refuses
-  if (Status fits = check_options(options, is_bvh, is_motion); !fits) return fits.error();
+  if (Status status = check_options(options, is_bvh, is_motion); !status) return status.error();
   if (is_bvh) return read_bvh(input, options, *how);
   if (!is_motion) return read_acclaim(input, nullptr, options, *how);
   const auto path = skeleton_for(input.path(), options, context);

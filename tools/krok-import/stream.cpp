@@ -44,20 +44,20 @@ std::optional<Result<int>> stream_capture(const InputFile& input, registry::Kind
   };
   const anim::WriteOptions writing{.orientation = options.orientation, .jobs = context.jobs};
   OutputSet outputs(context);
-  Status added = outputs.add(context.output, [&](OutputFile& file) {
+  Status status = outputs.add(context.output, [&](OutputFile& file) {
     return anim::write(frames, last_words, writing, file);
   });
   if (faulty) return std::nullopt;
-  if (added) {
-    added = outputs.add(options.model, [&](OutputFile& file) {
+  if (status) {
+    status = outputs.add(options.model, [&](OutputFile& file) {
       Model model;
       model.skeleton = capture->clip.skeleton;
       model.provenance = provenance;
       return model::write(model, {.orientation = options.orientation}, file);
     });
   }
-  if (added) added = outputs.finish();
-  if (!added) return Result<int>(added.error());
+  if (status) status = outputs.finish();
+  if (!status) return Result<int>(status.error());
 
   context.report.result = result_of(*capture, frames, height.height(), details_of(*capture));
   context.say(

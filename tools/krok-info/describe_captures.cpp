@@ -15,7 +15,7 @@ namespace {
 Status add_capture(const Capture& capture, const std::string& measured, const SkeletonOptions& how,
                    Description& out) {
   const Clip& clip = capture.clip;
-  if (Status added = add_skeleton(clip.skeleton, how, out); !added) return added.error();
+  if (Status status = add_skeleton(clip.skeleton, how, out); !status) return status.error();
   std::vector<Vec3> positions;
   for (const Transform& joint : clip.skeleton.reference) positions.push_back(joint.position);
   add_size<Vec3>(positions, measured, out);
@@ -39,8 +39,8 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
   add_timing(capture->clip.frame_count(), capture->clip.rate, out);
   out.json["frames_announced"] = capture->frames_announced;
   out.json["frame_time"] = capture->frame_time;
-  if (Status added = add_capture(*capture, "joints with all rotations 0", how, out); !added)
-    return added.error();
+  if (Status status = add_capture(*capture, "joints with all rotations 0", how, out); !status)
+    return status.error();
   add_choice("positions", capture->positions, out);
   out.json["rest_frame"] = capture->rest_frame_found;
   if (capture->rest_frame_found) out.add("rest pose", "frame 0, no part of the motion");
@@ -77,8 +77,8 @@ Result<Description> describe_acclaim(const InputFile& file, const SkeletonOption
   if (!capture) return capture.error();
   context.tell(capture->diagnostics);
   if (is_motion) add_timing(capture->clip.frame_count(), capture->clip.rate, out);
-  if (Status added = add_capture(*capture, "joints in the reference pose", how, out); !added)
-    return added.error();
+  if (Status status = add_capture(*capture, "joints in the reference pose", how, out); !status)
+    return status.error();
   return out;
 }
 

@@ -16,15 +16,14 @@ namespace krok::info {
 namespace {
 
 // The pictures of a file that can be used; the others are warned of.
-class PictureSizes {
+class ImageSizes {
  public:
-  PictureSizes(std::string path, ToolContext& context)
-      : path_(std::move(path)), context_(context) {}
+  ImageSizes(std::string path, ToolContext& context) : path_(std::move(path)), context_(context) {}
 
   // "1024 x 512 PNG", or why it cannot be used.
-  const std::string& of(const Picture& picture) {
-    const auto [place, added] = known_.try_emplace(picture.path);
-    if (added) place->second = look_at(picture.path);
+  const std::string& of(const EncodedImage& image) {
+    const auto [place, added] = known_.try_emplace(image.path);
+    if (added) place->second = look_at(image.path);
     return place->second;
   }
 
@@ -32,7 +31,7 @@ class PictureSizes {
   std::string look_at(const std::string& name) {
     const auto facts = facts_of(name);
     if (facts) {
-      const std::string_view kind = facts->kind == PictureKind::png ? "PNG" : "JPEG";
+      const std::string_view kind = facts->kind == ImageKind::png ? "PNG" : "JPEG";
       return fmt::format("{} x {} {}", facts->width, facts->height, kind);
     }
     Diagnostic warning = facts.error();
@@ -42,12 +41,12 @@ class PictureSizes {
     return why;
   }
 
-  Result<PictureFacts> facts_of(const std::string& name) {
+  Result<ImageInfo> facts_of(const std::string& name) {
     auto place = path_inside(folder_of(path_), name);
     if (!place) return std::move(place.error()).in_file(path_);
     const auto file = context_.open_input(*place);
     if (!file) return file.error();
-    auto facts = picture_facts(file->bytes());
+    auto facts = image_info(file->bytes());
     if (!facts) return std::move(facts.error()).in_file(*place);
     return facts;
   }
@@ -105,10 +104,10 @@ void add_material(const Material& material, SizeOf size_of, Description& out, Js
   const auto all = textures_of(material);
   for (std::size_t t = 0; t < all.size(); ++t) {
     if (!*all[t]) continue;
-    const Picture& picture = *all[t]->picture;
-    const std::string size = size_of(picture);
-    lines.push_back(fmt::format("{}: {} ({})", kTextureNames[t], shown(picture.path), size));
-    textures.push_back({{"of", kTextureNames[t]}, {"file", picture.path}, {"picture", size}});
+    const EncodedImage& image = *all[t]->image;
+    const std::string size = size_of(image);
+    lines.push_back(fmt::format("{}: {} ({})", kTextureNames[t], shown(image.path), size));
+    textures.push_back({{"of", kTextureNames[t]}, {"file", image.path}, {"picture", size}});
   }
   out.add("material", std::move(lines));
   list.push_back({{"name", material.name},
@@ -124,8 +123,8 @@ void add_material(const Material& material, SizeOf size_of, Description& out, Js
 // Of a character, with the sizes of pictures that were read.
 void add_materials(std::span<const Material> materials, Description& out) {
   Json list = Json::array();
-  const auto size_of = [](const Picture& picture) {
-    const auto facts = picture_facts(picture.bytes);
+  const auto size_of = [](const EncodedImage& image) {
+    const auto facts = image_info(image.bytes);
     return facts ? fmt::format("{} x {}", facts->width, facts->height) : std::string();
   };
   for (const Material& material : materials) add_material(material, size_of, out, list);
@@ -171,11 +170,11 @@ Result<Description> describe_material(const InputFile& file, ToolContext& contex
   Description out;
   out.what = "materials (.material)";
   out.json["kind"] = "material";
-  PictureSizes sizes(file.path(), context);
+  ImageSizes sizes(file.path(), context);
   Json list = Json::array();
   for (const Material& material : *materials) {
     add_material(
-        material, [&](const Picture& picture) { return sizes.of(picture); }, out, list);
+        material, [&](const EncodedImage& image) { return sizes.of(image); }, out, list);
   }
   out.json["materials"] = std::move(list);
   return out;
@@ -200,7 +199,7 @@ Result<Description> describe_character(const InputFile& file, const SkeletonOpti
   out.json["triangles"] = model.triangles.size();
   add_parts(model, out);
   if (how.mapped) {
-    if (Status added = add_skeleton(model.skeleton, how, out); !added) return added.error();
+    if (Status status = add_skeleton(model.skeleton, how, out); !status) return status.error();
   } else {
     add_skeleton(model.skeleton, loaded->roles, how.verbose, out);
   }

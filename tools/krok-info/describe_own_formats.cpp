@@ -63,7 +63,7 @@ Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& 
   out.what = "a motion (.anim)";
   out.json["kind"] = "anim";
   add_timing(clip->frame_count(), clip->rate, out);
-  if (Status added = add_skeleton(clip->skeleton, how, out); !added) return added.error();
+  if (Status status = add_skeleton(clip->skeleton, how, out); !status) return status.error();
   add_reference_size(clip->skeleton, out);
   add_orientations(file, out);
   add_provenance(clip->provenance, out);
@@ -95,7 +95,7 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
   out.json["attributes"] = with;
   out.json["influences_per_vertex"] = model->influences_per_vertex;
   add_parts(*model, out);
-  if (Status added = add_skeleton(model->skeleton, how, out); !added) return added.error();
+  if (Status status = add_skeleton(model->skeleton, how, out); !status) return status.error();
   add_mesh_size(*model, out);
   add_orientations(file, out);
   add_provenance(model->provenance, out);

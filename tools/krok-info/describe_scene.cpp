@@ -17,7 +17,7 @@ namespace krok::info {
 
 namespace {
 
-constexpr std::size_t kMostNames = 12;
+constexpr std::size_t kMaxNames = 12;
 
 std::string named(const std::string& name, std::size_t index) {
   return name.empty() ? fmt::format("number {}", index) : name;
@@ -42,10 +42,10 @@ void add_meshes(const nodes::Scene& scene, Description& out) {
       line += ", " + count_of(mesh.target_count(), "morph target");
       for (const nodes::MorphTarget& target : mesh.primitives[0].targets) {
         targets.push_back(target.name);
-        if (targets.size() <= kMostNames) names += (names.empty() ? "" : ", ") + target.name;
+        if (targets.size() <= kMaxNames) names += (names.empty() ? "" : ", ") + target.name;
       }
       const bool named = names.find_first_not_of(", ") != std::string::npos;
-      if (named) line += ": " + names + (targets.size() > kMostNames ? ", ..." : "");
+      if (named) line += ": " + names + (targets.size() > kMaxNames ? ", ..." : "");
     }
     lines.push_back(std::move(line));
     out.json["meshes"].push_back({{"name", mesh.name},
@@ -194,8 +194,8 @@ Status add_shown_size(const nodes::Scene& scene, const nodes::Evaluator& evaluat
 }
 
 // The skeleton with its roles, unit and axes, and the size.
-Status add_figure(const nodes::Scene& scene, const std::string& path, const SkeletonOptions& how,
-                  ToolContext& context, Description& out) {
+Status add_actor(const nodes::Scene& scene, const std::string& path, const SkeletonOptions& how,
+                 ToolContext& context, Description& out) {
   const auto evaluator = nodes::Evaluator::create(scene);
   if (!evaluator) return evaluator.error();
   Diagnostics found;
@@ -245,8 +245,8 @@ Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
   add_skins(*scene, out);
   add_animations(*scene, out);
   add_cameras(*scene, out);
-  if (Status added = add_figure(*scene, file.path(), how, context, out); !added) {
-    return added.error();
+  if (Status status = add_actor(*scene, file.path(), how, context, out); !status) {
+    return status.error();
   }
   if (!scene->generator.empty()) out.add("made by", scene->generator);
   out.json["generator"] = scene->generator;

@@ -213,7 +213,7 @@ keys::Sidecar with_edits(MotionKeys found, const keys::Sidecar& before) {
 }
 
 Status change(const Changes& changes, const Clip& clip, keys::Sidecar& sidecar) {
-  if (Status done = set_keytimes(changes, clip, sidecar); !done) return done.error();
+  if (Status status = set_keytimes(changes, clip, sidecar); !status) return status.error();
   return set_contacts(changes, clip, sidecar);
 }
 

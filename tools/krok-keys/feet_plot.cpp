@@ -62,16 +62,16 @@ draw::Panel panel_of(const Clip& clip, const FoundContacts& found, const MotionK
 
 Result<std::string> feet_plot(const std::string& title, const Clip& clip,
                               const FoundContacts& found, const MotionKeys& keys) {
-  draw::Figure figure;
-  figure.title = title;
-  figure.panel_width = std::clamp(150 * clip.duration(), 640.0, 6000.0);
-  figure.panel_height = 150;
+  draw::Chart chart;
+  chart.title = title;
+  chart.panel_width = std::clamp(150 * clip.duration(), 640.0, 6000.0);
+  chart.panel_height = 150;
   for (const FootSide side : {FootSide::left, FootSide::right}) {
     for (const bool heights : {true, false}) {
-      figure.panels.push_back(panel_of(clip, found, keys, side, heights));
+      chart.panels.push_back(panel_of(clip, found, keys, side, heights));
     }
   }
-  return draw::to_svg(figure);
+  return draw::to_svg(chart);
 }
 
 }  // namespace krok::keys_tool

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "contacts/gait_figures.h"
 #include "contacts/gait_keytimes.h"
+#include "contacts/gait_metrics.h"
 #include "contacts/slide_speed.h"
 #include "core/numbers.h"
 #include "formats/keys/keys.h"
@@ -97,7 +97,7 @@ std::string as_table(const keys::Sidecar& sidecar, const Skeleton& skeleton) {
   return text;
 }
 
-Json as_json(const keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitFigures& gait,
+Json as_json(const keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitMetrics& gait,
              double slide) {
   const auto hand = [](const std::vector<std::uint8_t>& marks, std::size_t i) {
     return i < marks.size() && marks[i] != 0;
@@ -128,7 +128,7 @@ Json as_json(const keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitF
   return json;
 }
 
-std::string gait_text(const GaitFigures& gait, double slide) {
+std::string gait_text(const GaitMetrics& gait, double slide) {
   if (gait.cycles == 0) return {};
   std::string text =
       fmt::format("; {:.0f} steps a minute, feet down {:.0f} % and {:.0f} % of a cycle",
@@ -144,9 +144,9 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
   OutputSet outputs(context);
   if (!context.output.empty()) {
     const std::string text = keys::write_sidecar(sidecar, clip.skeleton);
-    const Status added =
+    const Status status =
         outputs.add(context.output, [&](OutputFile& file) { return file.write(text); });
-    if (!added) return added;
+    if (!status) return status;
   }
   if (!options.plot.empty()) {
     if (!found) {
@@ -156,9 +156,9 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
     }
     const auto svg = feet_plot(name_of_input(options.input), clip, *found, sidecar.keys);
     if (!svg) return svg.error();
-    const Status added =
+    const Status status =
         outputs.add(options.plot, [&](OutputFile& file) { return file.write(*svg); });
-    if (!added) return added;
+    if (!status) return status;
   }
   return outputs.finish();
 }
@@ -196,15 +196,15 @@ Result<int> run(const Options& options, ToolContext& context) {
     context.say("the keys were edited by hand and are kept; --find steps finds the rest anew");
   }
   sidecar.duration = clip->duration();
-  if (Status changed = change(*changes, *clip, sidecar); !changed) return changed.error();
-  if (Status sound = krok::check(sidecar.keys, clip->skeleton, clip->duration()); !sound) {
-    return sound.error();
+  if (Status status = change(*changes, *clip, sidecar); !status) return status.error();
+  if (Status status = krok::check(sidecar.keys, clip->skeleton, clip->duration()); !status) {
+    return status.error();
   }
-  const Status written =
+  const Status status =
       write_results(options, *clip, *roles, std::move(contacts), sidecar, context);
-  if (!written) return written.error();
+  if (!status) return status.error();
 
-  const GaitFigures gait = gait_figures(sidecar.keys.keytimes);
+  const GaitMetrics gait = gait_metrics(sidecar.keys.keytimes);
   const double slide = slide_speed(*clip, *roles);
   context.report.result = as_json(sidecar, clip->skeleton, gait, slide);
   context.report.result["found"] = *finding;

@@ -68,16 +68,16 @@ Status write_results(const Options& options, const TimelineSources& motions, Mix
     }
   }
   OutputSet outputs(context);
-  Status added = outputs.add(context.output, [&](OutputFile& file) {
+  Status status = outputs.add(context.output, [&](OutputFile& file) {
     return anim::write(
         mixed.clip, {.orientation = options.orientation, .jobs = thread_count(context.jobs)}, file);
   });
-  if (added && !keys_path->empty()) {
-    added = outputs.add(*keys_path, [&](OutputFile& file) {
+  if (status && !keys_path->empty()) {
+    status = outputs.add(*keys_path, [&](OutputFile& file) {
       return file.write(keys::write(mixed.keys, mixed.clip.skeleton, mixed.clip.duration()));
     });
   }
-  return added ? outputs.finish() : added;
+  return status ? outputs.finish() : status;
 }
 
 Json layer_name(const timeline::Timeline& timeline, int layer) {
@@ -160,8 +160,8 @@ void declare(CommandOptions& command, Options& options) {
 }
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status kind = check_output_kind(context.output, "-o", registry::Kind::anim); !kind) {
-    return kind.error();
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
   }
   const auto find_roles = open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
@@ -179,8 +179,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!mixed) return Error(mixed.error()).in_file(options.input);
   context.tell(mixed->warnings);
   warn_of_pops(timeline, *mixed, context);
-  if (Status written = write_results(options, *motions, *mixed, context); !written) {
-    return written.error();
+  if (Status status = write_results(options, *motions, *mixed, context); !status) {
+    return status.error();
   }
   report(timeline, *mixed, context);
   context.say(fmt::format("{} -> {}: {} and {} on {}, {} at {} /s ({} s)", options.input,

@@ -18,7 +18,7 @@ MeshMotion motion_of(const Model& model, const MorphSet& morphs, const MorphWeig
   MeshMotion motion;
   motion.frames = weights.frame_count();
   motion.rate = weights.rate;
-  motion.source = copies_of([&model, &morphs, &weights](int frame, const ShapePlace& to) {
+  motion.source = copies_of([&model, &morphs, &weights](int frame, const ShapeOutput& to) {
     const std::size_t targets = morphs.names.size();
     const auto at =
         std::span(weights.values).subspan(static_cast<std::size_t>(frame) * targets, targets);
@@ -60,13 +60,14 @@ void report(const MorphWeights& weights, ToolContext& context) {
 Result<int> bake(const Options& options, ToolContext& context) {
   const auto format = motion_format(context.output, false);
   if (!format) return format.error();
-  if (Status fits = check_as(options, *format); !fits) return fits.error();
+  if (Status status = check_as(options, *format); !status) return status.error();
   const auto targets = read_targets(options.files[0], context);
   if (!targets) return targets.error();
   const MorphSet& morphs = targets->morphs;
   const auto base = read_shape(options.files[1], options, context);
   if (!base) return base.error();
-  if (Status fits = check_vertices(*base, morphs, options.files[0]); !fits) return fits.error();
+  if (Status status = check_vertices(*base, morphs, options.files[0]); !status)
+    return status.error();
   const auto weights_file = context.open_input(options.weights);
   if (!weights_file) return weights_file.error();
   const auto weights =
@@ -74,12 +75,12 @@ Result<int> bake(const Options& options, ToolContext& context) {
   if (!weights) return weights.error();
 
   OutputSet outputs(context);
-  const Status added = options.as == As::targets
-                           ? add_targets(base->model, morphs, *weights, *format, outputs, context)
-                           : add_baked(base->model, motion_of(base->model, morphs, *weights),
-                                       *format, outputs, context);
-  if (!added) return added.error();
-  if (Status done = outputs.finish(); !done) return done.error();
+  const Status status = options.as == As::targets
+                            ? add_targets(base->model, morphs, *weights, *format, outputs, context)
+                            : add_baked(base->model, motion_of(base->model, morphs, *weights),
+                                        *format, outputs, context);
+  if (!status) return status.error();
+  if (Status status = outputs.finish(); !status) return status.error();
   report(*weights, context);
   context.say(fmt::format("{}: {} at {} /s, {}", context.output,
                           counted(weights->frame_count(), "frame"), readable(weights->rate),

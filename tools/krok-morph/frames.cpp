@@ -16,13 +16,13 @@ namespace krok::morph {
 
 namespace {
 
-constexpr double kMostFrames = 10e6;
-constexpr double kMostWeights = 100e6;
+constexpr double kMaxFrames = 10e6;
+constexpr double kMaxWeights = 100e6;
 
 Result<int> frame_count(const KeyShapes& keys) {
   const double frames = std::ceil(keys.times.back() * keys.rate - 1e-6) + 1;
-  if (frames <= kMostFrames &&
-      frames * static_cast<double>(keys.shapes.names.size()) <= kMostWeights) {
+  if (frames <= kMaxFrames &&
+      frames * static_cast<double>(keys.shapes.names.size()) <= kMaxWeights) {
     return static_cast<int>(frames);
   }
   return Error("morph-too-large", fmt::format("{} s at {} frames a second are too many frames",
@@ -89,11 +89,11 @@ Status add_motion(KeyShapes& keys, int frames, MotionFormat format, As as, Outpu
     return add_targets(keys.base.model, keys.shapes, weights, format, outputs, context);
   }
   const KeyFrameMesh mesh = mesh_of(keys);
-  if (Status sound = check(mesh); !sound) return sound;
+  if (Status status = check(mesh); !status) return status;
   MeshMotion motion;
   motion.frames = frames;
   motion.rate = keys.rate;
-  motion.source = copies_of([&](int frame, const ShapePlace& to) {
+  motion.source = copies_of([&](int frame, const ShapeOutput& to) {
     shape_at(mesh, keys.join, keys.tension, frame / keys.rate, {to.positions, to.normals}, 1);
   });
   return add_baked(keys.base.model, motion, format, outputs, context);
@@ -131,13 +131,13 @@ Result<int> frames(const Options& options, ToolContext& context) {
   OutputSet outputs(context);
   if (!options.save_weights.empty()) {
     const MorphWeights weights = shares_of(*keys, *count);
-    const Status added = outputs.add(options.save_weights,
-                                     [&](OutputFile& file) { return csv::write(weights, file); });
-    if (!added) return added.error();
+    const Status status = outputs.add(options.save_weights,
+                                      [&](OutputFile& file) { return csv::write(weights, file); });
+    if (!status) return status.error();
   }
-  const Status added = add_motion(*keys, *count, *format, options.as, outputs, context);
-  if (!added) return added.error();
-  if (Status done = outputs.finish(); !done) return done.error();
+  const Status status = add_motion(*keys, *count, *format, options.as, outputs, context);
+  if (!status) return status.error();
+  if (Status status = outputs.finish(); !status) return status.error();
   report(*keys, *count, context);
   return kExitDone;
 }

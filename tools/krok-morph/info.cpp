@@ -26,13 +26,14 @@ Result<int> info(const Options& options, ToolContext& context) {
   const auto targets = read_targets(options.files[0], context);
   if (!targets) return targets.error();
   const MorphSet& morphs = targets->morphs;
-  const auto size = morph_exr::picture_size(targets->file.bytes());
+  const auto size = morph_exr::image_size(targets->file.bytes());
   if (!size) return Error(size.error()).in_file(options.files[0]);
   std::optional<ShapeFile> base;
   if (options.files.size() > 1) {
     auto read = read_shape(options.files[1], options, context);
     if (!read) return read.error();
-    if (Status fits = check_vertices(*read, morphs, options.files[0]); !fits) return fits.error();
+    if (Status status = check_vertices(*read, morphs, options.files[0]); !status)
+      return status.error();
     base = *std::move(read);
   }
 

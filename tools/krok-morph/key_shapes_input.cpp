@@ -116,7 +116,7 @@ Status add_shape(ShapeFile shape, const Options& options, KeyShapes& keys) {
   }
   const bool first = shapes.positions.empty();
   if (!first) {
-    if (Status same = check_same_mesh(keys.base, shape, options); !same) return same;
+    if (Status status = check_same_mesh(keys.base, shape, options); !status) return status;
   }
   shapes.positions.insert(shapes.positions.end(), positions.begin(), positions.end());
   const std::vector<Vec3f> normals = first ? shape.model.normals : normals_for(keys.base, shape);
@@ -161,7 +161,7 @@ Result<KeyShapes> read_key_shapes(const Options& options, ToolContext& context) 
     if (!where) return std::move(where).error().in_file(path);
     auto shape = read_shape(*where, options, context);
     if (!shape) return shape.error();
-    if (Status added = add_shape(*std::move(shape), options, keys); !added) return added.error();
+    if (Status status = add_shape(*std::move(shape), options, keys); !status) return status.error();
     const std::string whole = base_name(name);
     const std::string stem = to_utf8(whole.substr(0, whole.size() - extension(whole).size()));
     keys.shapes.names.push_back(names.make(stem.empty() ? "shape" : stem));

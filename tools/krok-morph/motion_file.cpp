@@ -57,7 +57,7 @@ Status add_baked(const Model& model, const MeshMotion& motion, MotionFormat form
       return pc2::write(model, motion, {}, file, context.progress, context.jobs);
     });
   }
-  if (Status fits = check_bakeable(model, motion.frames, context.output); !fits) return fits;
+  if (Status status = check_bakeable(model, motion.frames, context.output); !status) return status;
   return outputs.add(context.output, [&](OutputFile& file) {
     return gltf::write_baked(model, motion, gltf_options(format, context), file, context.progress,
                              context.jobs);

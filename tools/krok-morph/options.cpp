@@ -203,8 +203,8 @@ Status check_needs(const Options& options) {
     case Action::unpack:
       return needs("--out-dir", "the folder that the shapes go to");
     case Action::bake:
-      if (Status given = needs("--weights", "how much of each target shows over time"); !given) {
-        return given;
+      if (Status status = needs("--weights", "how much of each target shows over time"); !status) {
+        return status;
       }
       return needs("--output", "such as -o face.glb");
     case Action::frames:
@@ -244,7 +244,7 @@ void declare(CommandOptions& command, Options& options) {
 
 Status check(const Options& options) {
   for (const auto step : {check_uses, check_files, check_needs}) {
-    if (Status fits = step(options); !fits) return fits;
+    if (Status status = step(options); !status) return status;
   }
   if (options.action == Action::pack && !options.names.empty() &&
       options.names.size() != options.files.size() - 1) {

@@ -37,8 +37,8 @@ Status add_target(const ShapeFile& base, const std::string& path, const std::str
                   const Options& options, ToolContext& context, MorphSet& morphs) {
   const auto shape = read_shape(path, options, context);
   if (!shape) return shape.error();
-  if (Status same = check_same_mesh(base, *shape, options); !same) return same;
-  if (Status fits = check_name(name, morphs, path); !fits) return fits;
+  if (Status status = check_same_mesh(base, *shape, options); !status) return status;
+  if (Status status = check_name(name, morphs, path); !status) return status;
   const std::vector<Vec3f>& positions = shape->model.positions;
   if (morphs.positions.size() + positions.size() > kMaxTargetVertices) {
     return Error("morph-too-large", fmt::format("the targets have more than {} vertices together",
@@ -90,14 +90,14 @@ Result<int> pack(const Options& options, ToolContext& context) {
   for (std::size_t i = 1; i < options.files.size(); ++i) {
     const std::string& path = options.files[i];
     const std::string name = options.names.empty() ? name_of(path) : options.names[i - 1];
-    if (Status added = add_target(*base, path, name, options, context, morphs); !added) {
-      return added.error();
+    if (Status status = add_target(*base, path, name, options, context, morphs); !status) {
+      return status.error();
     }
   }
   morphs.provenance = context.provenance();
-  const Status written = write_output(
+  const Status status = write_output(
       context, context.output, [&](OutputFile& file) { return morph_exr::write(morphs, file); });
-  if (!written) return written.error();
+  if (!status) return status.error();
   context.say(fmt::format("{}: {} of {}", context.output, counted(morphs.target_count(), "target"),
                           counted(morphs.vertex_count, "vertex", "vertices")));
   Json result;

@@ -58,14 +58,14 @@ Result<ShapeFile> read_scene(const InputFile& file, ToolContext& context, bool w
   const auto rig = character::make_rig(*scene, *evaluator, std::move(*joints), found);
   if (!rig) return rig.error();
   // glTF's metres and axes are Krok's.
-  auto figure = character::make_figure(*scene, *evaluator, *rig, Conversion(),
-                                       {.with_morphs = with_morphs}, found);
-  if (!figure) return figure.error();
+  auto actor = character::make_actor(*scene, *evaluator, *rig, Conversion(),
+                                     {.with_morphs = with_morphs}, found);
+  if (!actor) return actor.error();
   tell(std::move(found), file.path(), context);
   ShapeFile shape;
   shape.source = Source::gltf;
-  shape.model = std::move(figure->model);
-  shape.morphs = std::move(figure->morphs);
+  shape.model = std::move(actor->model);
+  shape.morphs = std::move(actor->morphs);
   return shape;
 }
 

@@ -118,7 +118,8 @@ Result<int> unpack(const Options& options, ToolContext& context) {
   const MorphSet& morphs = targets->morphs;
   const auto base = read_shape(options.files[1], options, context);
   if (!base) return base.error();
-  if (Status fits = check_vertices(*base, morphs, options.files[0]); !fits) return fits.error();
+  if (Status status = check_vertices(*base, morphs, options.files[0]); !status)
+    return status.error();
   const auto chosen = chosen_targets(options, morphs);
   if (!chosen) return chosen.error();
 
@@ -143,8 +144,8 @@ Result<int> unpack(const Options& options, ToolContext& context) {
                        morphs.names[static_cast<std::size_t>(target)], format, options, context,
                        file);
   };
-  if (Status added = outputs.add_all(paths, context.jobs, write); !added) return added.error();
-  if (Status done = outputs.finish(); !done) return done.error();
+  if (Status status = outputs.add_all(paths, context.jobs, write); !status) return status.error();
+  if (Status status = outputs.finish(); !status) return status.error();
   Json list = Json::array();
   for (std::size_t i = 0; i < paths.size(); ++i) {
     list.push_back(

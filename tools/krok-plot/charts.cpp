@@ -8,7 +8,7 @@
 
 #include "core/numbers.h"
 #include "draw/difference_chart.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/joint_selection.h"
 
 namespace krok::plot {
@@ -51,87 +51,87 @@ Result<std::vector<std::string>> chosen_joints(const Motions& motions,
 }
 
 // Charts on their way into a figure.
-class MotionFigure {
+class MotionChart {
  public:
-  MotionFigure(const Motions& motions, const Options& options, ToolContext& context)
+  MotionChart(const Motions& motions, const Options& options, ToolContext& context)
       : motions_(motions), options_(options), context_(context) {}
 
-  Result<draw::Figure> make() {
+  Result<draw::Chart> make() {
     auto joints = chosen_joints(motions_, options_.motion.joints);
     if (!joints) return joints.error();
     joints_ = std::move(*joints);
-    const std::vector<Chart> charts =
+    const std::vector<ChartKind> charts =
         options_.motion.charts.empty() ? usual_charts() : options_.motion.charts;
-    for (const Chart chart : charts) {
-      if (Status added = add(chart); !added) return added.error();
+    for (const ChartKind chart : charts) {
+      if (Status status = add(chart); !status) return status.error();
     }
-    if (figure_.panels.empty()) return nothing_to_show();
-    figure_.legend = draw::motion_legend(motions_.charted, sides_);
-    return std::move(figure_);
+    if (chart_.panels.empty()) return nothing_to_show();
+    chart_.legend = draw::motion_legend(motions_.charted, sides_);
+    return std::move(chart_);
   }
 
  private:
-  std::vector<Chart> usual_charts() const {
-    if (!joints_.empty()) return {Chart::positions, Chart::angles};
-    return {Chart::path, Chart::feet, Chart::angles};
+  std::vector<ChartKind> usual_charts() const {
+    if (!joints_.empty()) return {ChartKind::positions, ChartKind::angles};
+    return {ChartKind::path, ChartKind::feet, ChartKind::angles};
   }
 
-  bool asked_for(Chart chart) const {
+  bool asked_for(ChartKind chart) const {
     const auto& charts = options_.motion.charts;
     return std::find(charts.begin(), charts.end(), chart) != charts.end();
   }
 
-  Status add(Chart chart) {
+  Status add(ChartKind chart) {
     const auto& motions = motions_.charted;
     switch (chart) {
-      case Chart::path:
-        append(figure_.panels, draw::path_panels(motions));
+      case ChartKind::path:
+        append(chart_.panels, draw::path_panels(motions));
         return {};
-      case Chart::feet:
+      case ChartKind::feet:
         add_sided(draw::foot_panels(motions, options_.magnitude_scale), chart, "feet");
         return {};
-      case Chart::angles:
+      case ChartKind::angles:
         add_angles();
         return {};
-      case Chart::positions:
-        append(figure_.panels, draw::position_panels(motions, joints_or_carriers()));
+      case ChartKind::positions:
+        append(chart_.panels, draw::position_panels(motions, joints_or_carriers()));
         return {};
-      case Chart::difference:
+      case ChartKind::difference:
         return add_difference();
     }
     return {};
   }
 
-  void add_sided(std::vector<Panel> panels, Chart chart, const char* what) {
+  void add_sided(std::vector<Panel> panels, ChartKind chart, const char* what) {
     if (panels.empty() && asked_for(chart)) {
       context_.warn("plot-roles", fmt::format("no joint is known for {}", what),
                     "--map says what joints are; --joint NAME shows any joint");
     }
     sides_ = sides_ || !panels.empty();
-    append(figure_.panels, std::move(panels));
+    append(chart_.panels, std::move(panels));
   }
 
   void add_angles() {
     const auto& motions = motions_.charted;
     if (joints_.empty()) {
       auto panels = draw::body_angle_panels(motions);
-      if (!panels.empty() || asked_for(Chart::angles)) {
-        add_sided(std::move(panels), Chart::angles, "angles of a body");
+      if (!panels.empty() || asked_for(ChartKind::angles)) {
+        add_sided(std::move(panels), ChartKind::angles, "angles of a body");
       } else {
         add_most_turning();
       }
       return;
     }
-    append(figure_.panels, options_.motion.euler
-                               ? draw::euler_panels(motions, joints_, *options_.motion.euler)
-                               : draw::turn_panels(motions, joints_));
+    append(chart_.panels, options_.motion.euler
+                              ? draw::euler_panels(motions, joints_, *options_.motion.euler)
+                              : draw::turn_panels(motions, joints_));
   }
 
   // For figures that are no people.
   void add_most_turning() {
     const auto joints = draw::most_turning_joints(motions_.charted.front(), kTurningJoints);
-    append(figure_.panels, draw::position_panels(motions_.charted, joints_or_carriers()));
-    append(figure_.panels, draw::turn_panels(motions_.charted, joints));
+    append(chart_.panels, draw::position_panels(motions_.charted, joints_or_carriers()));
+    append(chart_.panels, draw::turn_panels(motions_.charted, joints));
   }
 
   std::vector<std::string> joints_or_carriers() const {
@@ -158,7 +158,7 @@ class MotionFigure {
       context_.warn("plot-difference", sentence);
     }
     report(*difference, first.clip->skeleton);
-    append(figure_.panels, draw::difference_panels(*difference, options_.magnitude_scale));
+    append(chart_.panels, draw::difference_panels(*difference, options_.magnitude_scale));
     return {};
   }
 
@@ -201,15 +201,15 @@ class MotionFigure {
   const Options& options_;
   ToolContext& context_;
   std::vector<std::string> joints_;
-  draw::Figure figure_;
+  draw::Chart chart_;
   bool sides_ = false;
 };
 
 }  // namespace
 
-Result<draw::Figure> chart_motions(const Motions& motions, const Options& options,
-                                   ToolContext& context) {
-  return MotionFigure(motions, options, context).make();
+Result<draw::Chart> chart_motions(const Motions& motions, const Options& options,
+                                  ToolContext& context) {
+  return MotionChart(motions, options, context).make();
 }
 
 }  // namespace krok::plot

@@ -13,7 +13,7 @@ namespace krok::plot {
 // The charts that the options ask for, or that fit the motions where they ask for none. What a
 // motion has not is told, and an Error where nothing is left. Puts figures of a difference into the
 // report.
-Result<draw::Figure> chart_motions(const Motions& motions, const Options& options,
-                                   ToolContext& context);
+Result<draw::Chart> chart_motions(const Motions& motions, const Options& options,
+                                  ToolContext& context);
 
 }  // namespace krok::plot

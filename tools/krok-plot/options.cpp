@@ -19,12 +19,12 @@ namespace {
 
 struct ChartName {
   std::string_view name;
-  Chart chart;
+  ChartKind chart;
 };
-constexpr std::array kCharts = {ChartName{"path", Chart::path}, ChartName{"feet", Chart::feet},
-                                ChartName{"angles", Chart::angles},
-                                ChartName{"positions", Chart::positions},
-                                ChartName{"difference", Chart::difference}};
+constexpr std::array kCharts = {
+    ChartName{"path", ChartKind::path}, ChartName{"feet", ChartKind::feet},
+    ChartName{"angles", ChartKind::angles}, ChartName{"positions", ChartKind::positions},
+    ChartName{"difference", ChartKind::difference}};
 
 Error usage(std::string message, std::string hint = {}) {
   return Error("usage", std::move(message), std::move(hint));
@@ -113,8 +113,8 @@ void declare_tables(CommandOptions& command, Arguments& a) {
   command.add_flag("--log-x", a.log_x, "A logarithmic x axis").group(group);
 }
 
-Result<std::vector<Chart>> parse_charts(const std::vector<std::string>& lists) {
-  std::vector<Chart> charts;
+Result<std::vector<ChartKind>> parse_charts(const std::vector<std::string>& lists) {
+  std::vector<ChartKind> charts;
   for (const std::string& list : lists) {
     for (std::size_t begin = 0; begin <= list.size();) {
       const std::size_t end = std::min(list.find(',', begin), list.size());
@@ -166,8 +166,9 @@ Result<MotionOptions> understand_motions(const Arguments& a) {
   auto charts = parse_charts(a.show);
   if (!charts) return charts.error();
   options.charts = std::move(*charts);
-  const auto found = std::find(options.charts.begin(), options.charts.end(), Chart::difference);
-  if (a.difference && found == options.charts.end()) options.charts.push_back(Chart::difference);
+  const auto found = std::find(options.charts.begin(), options.charts.end(), ChartKind::difference);
+  if (a.difference && found == options.charts.end())
+    options.charts.push_back(ChartKind::difference);
   options.joints = a.joints;
   if (!a.euler.empty()) {
     if (a.joints.empty()) return usage("--euler shows turns of joints; name them with --joint");
@@ -263,18 +264,17 @@ Status check_fit(const Arguments& a, bool table) {
                table ? "see krok-plot --help" : "--table says that the input is a table");
 }
 
-void declare_pictures(CommandOptions& command, Arguments& a) {
+void declare_images(CommandOptions& command, Arguments& a) {
   declare_sheet(command, a.sheet);
   command.group_remaining("Pictures");
 }
 
 // Whether something was asked for that only pictures have.
-bool has_picture_options(const SheetOptions& options) {
+bool has_image_options(const SheetOptions& options) {
   const SheetOptions usual;
-  return options.picture.moments != usual.picture.moments ||
-         options.picture.sides != usual.picture.sides ||
-         options.picture.elevation != usual.picture.elevation ||
-         options.picture.size != usual.picture.size || options.front != usual.front ||
+  return options.image.moments != usual.image.moments || options.image.sides != usual.image.sides ||
+         options.image.elevation != usual.image.elevation ||
+         options.image.size != usual.image.size || options.front != usual.front ||
          options.body != usual.body || options.method != usual.method;
 }
 
@@ -305,7 +305,7 @@ void declare(CommandOptions& command, Arguments& arguments) {
                   "The size of each panel in pixels, 96 to the inch [340x170, one alone 640x260]")
       .type_name("WIDTHxHEIGHT")
       .group(group);
-  declare_pictures(command, arguments);
+  declare_images(command, arguments);
 }
 
 Status check(const Arguments& arguments) {
@@ -322,7 +322,7 @@ Result<Options> understand(const Arguments& arguments) {
   const auto table = are_tables(arguments);
   if (!table) return table.error();
   options.table = *table;
-  if (Status fits = check_fit(arguments, *table); !fits) return fits.error();
+  if (Status status = check_fit(arguments, *table); !status) return status.error();
   auto motion = understand_motions(arguments);
   if (!motion) return motion.error();
   options.motion = std::move(*motion);
@@ -340,7 +340,7 @@ Result<Options> understand(const Arguments& arguments) {
   options.sheet = arguments.sheet;
   options.sheet.from = arguments.from;
   options.sheet.to = arguments.to;
-  if (!options.sheet.wanted() && has_picture_options(options.sheet)) {
+  if (!options.sheet.wanted() && has_image_options(options.sheet)) {
     return usage(
         "--moments, --sides, --elevation, --size, --front, --body and --method are for --sheet and "
         "--strip");

@@ -14,7 +14,7 @@
 
 namespace krok::plot {
 
-enum class Chart : unsigned char { path, feet, angles, positions, difference };
+enum class ChartKind : unsigned char { path, feet, angles, positions, difference };
 
 // The options as they were typed.
 struct Arguments {
@@ -46,7 +46,7 @@ struct Arguments {
 
 // What is asked of motions.
 struct MotionOptions {
-  std::vector<Chart> charts;        // in order, each once; empty for those that fit the motion
+  std::vector<ChartKind> charts;    // in order, each once; empty for those that fit the motion
   std::vector<std::string> joints;  // patterns
   std::optional<EulerOrder> euler;
   std::optional<ClipTime> from, to;

@@ -33,14 +33,14 @@ Status check_output(const std::string& path) {
                "call it .svg");
 }
 
-void lay_out(const Options& options, draw::Figure& figure) {
-  const bool single = figure.panels.size() == 1;
-  figure.columns = options.columns.value_or(single ? 1 : 2);
-  figure.panel_width = single ? kSingleWidth : kPanelWidth;
-  figure.panel_height = single ? kSingleHeight : kPanelHeight;
+void lay_out(const Options& options, draw::Actor& actor) {
+  const bool single = actor.panels.size() == 1;
+  actor.columns = options.columns.value_or(single ? 1 : 2);
+  actor.panel_width = single ? kSingleWidth : kPanelWidth;
+  actor.panel_height = single ? kSingleHeight : kPanelHeight;
   if (options.panel) {
-    figure.panel_width = options.panel->first;
-    figure.panel_height = options.panel->second;
+    actor.panel_width = options.panel->first;
+    actor.panel_height = options.panel->second;
   }
 }
 
@@ -59,9 +59,9 @@ Json axis_json(const draw::Axis& axis) {
 }
 
 // What can be read from the figure: for each line how many values it has and between which limits.
-Json summary_of(const draw::Figure& figure) {
+Json summary_of(const draw::Actor& actor) {
   Json panels = Json::array();
-  for (const draw::Panel& panel : figure.panels) {
+  for (const draw::Panel& panel : actor.panels) {
     Json lines = Json::array();
     for (const draw::Series& series : panel.series) {
       if (series.name.empty()) continue;
@@ -90,7 +90,7 @@ Json summary_of(const draw::Figure& figure) {
   return panels;
 }
 
-Result<draw::Figure> make_figure(const Options& options, ToolContext& context) {
+Result<draw::Actor> make_actor(const Options& options, ToolContext& context) {
   if (options.table) return chart_tables(options, context);
   const auto motions = read_motions(options.inputs, options.motion, context);
   if (!motions) return motions.error();
@@ -98,19 +98,19 @@ Result<draw::Figure> make_figure(const Options& options, ToolContext& context) {
 }
 
 Status write_charts(const Options& options, ToolContext& context) {
-  if (Status fits = check_output(context.output); !fits) return fits;
-  auto figure = make_figure(options, context);
-  if (!figure) return figure.error();
-  figure->title = options.title.empty() ? usual_title(options.inputs) : options.title;
-  lay_out(options, *figure);
-  const auto svg = draw::to_svg(*figure);
+  if (Status status = check_output(context.output); !status) return status;
+  auto actor = make_actor(options, context);
+  if (!actor) return actor.error();
+  actor->title = options.title.empty() ? usual_title(options.inputs) : options.title;
+  lay_out(options, *actor);
+  const auto svg = draw::to_svg(*actor);
   if (!svg) return svg.error();
-  const Status written =
+  const Status status =
       write_output(context, context.output, [&](OutputFile& file) { return file.write(*svg); });
-  if (!written) return written;
-  context.report.result["panels"] = summary_of(*figure);
+  if (!status) return status;
+  context.report.result["panels"] = summary_of(*actor);
   context.say(fmt::format("{}: {}", context.output == "-" ? "standard output" : context.output,
-                          counted(static_cast<long long>(figure->panels.size()), "panel")));
+                          counted(static_cast<long long>(actor->panels.size()), "panel")));
   return {};
 }
 
@@ -123,20 +123,20 @@ Result<int> run_typed(const Arguments& arguments, ToolContext& context) {
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  const bool pictures = options.sheet.wanted();
-  if (context.output.empty() && !pictures) {
+  const bool images = options.sheet.wanted();
+  if (context.output.empty() && !images) {
     return Error("usage", "-o is missing: where shall the charts go?", "see krok-plot --help");
   }
-  if (pictures && context.kept_messages != nullptr) {
+  if (images && context.kept_messages != nullptr) {
     return Error("usage", "--sheet and --strip make one picture, not one of each of many files");
   }
-  if (pictures) {
-    if (Status made = make_sheets(options.inputs, options.sheet, context); !made) {
-      return made.error();
+  if (images) {
+    if (Status status = make_sheets(options.inputs, options.sheet, context); !status) {
+      return status.error();
     }
   }
   if (context.output.empty()) return kExitDone;
-  if (Status written = write_charts(options, context); !written) return written.error();
+  if (Status status = write_charts(options, context); !status) return status.error();
   return kExitDone;
 }
 

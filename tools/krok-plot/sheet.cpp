@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "core/quantity.h"
 #include "render/strip.h"
-#include "tools/common/figures/skin_method_option.h"
+#include "tools/common/actors/skin_method_option.h"
 #include "tools/common/one_of.h"
 
 namespace krok::plot {
@@ -24,72 +24,72 @@ constexpr int kPathPoints = 400;
 
 // A figure at the moments that are shown of it.
 struct Shown {
-  const MovingFigure* source = nullptr;
-  PictureSpan span;
-  std::vector<PictureMoment> moments;
-  std::vector<render::Figure> figures;  // [moments]
+  const MovingActor* source = nullptr;
+  ImageSpan span;
+  std::vector<ImageMoment> moments;
+  std::vector<render::Actor> actors;  // [moments]
 };
 
-Result<double> time_of(const std::string& text, const char* option, const MovingFigure& figure,
+Result<double> time_of(const std::string& text, const char* option, const MovingActor& actor,
                        double otherwise) {
   if (text.empty()) return otherwise;
   const auto time = parse_clip_time(text);
   if (!time) return Error("usage", fmt::format("{} {}: {}", option, text, time.error().message));
-  if (time->in_frames && figure.frame_count == 0) {
+  if (time->in_frames && actor.frame_count == 0) {
     return Error("usage", fmt::format("{} {}: the file has no frames, only seconds", option, text))
-        .in_file(figure.path);
+        .in_file(actor.path);
   }
-  const double seconds = time->seconds(figure.rate);
-  if (!(seconds >= 0 && seconds <= figure.duration + 1e-6)) {
+  const double seconds = time->seconds(actor.rate);
+  if (!(seconds >= 0 && seconds <= actor.duration + 1e-6)) {
     return Error("usage", fmt::format("{} {}: the motion lasts {} s", option, text,
-                                      readable(figure.duration)))
-        .in_file(figure.path);
+                                      readable(actor.duration)))
+        .in_file(actor.path);
   }
   return seconds;
 }
 
-Result<PictureSpan> span_of(const MovingFigure& figure, const SheetOptions& options) {
-  const auto from = time_of(options.from, "--from", figure, 0.0);
+Result<ImageSpan> span_of(const MovingActor& actor, const SheetOptions& options) {
+  const auto from = time_of(options.from, "--from", actor, 0.0);
   if (!from) return from.error();
-  const auto to = time_of(options.to, "--to", figure, figure.duration);
+  const auto to = time_of(options.to, "--to", actor, actor.duration);
   if (!to) return to.error();
   if (*from > *to) return Error("usage", "--from is after --to");
-  PictureSpan span;
+  ImageSpan span;
   span.start = *from;
   span.end = *to;
-  if (figure.frame_count > 0) {
-    span.rate = figure.rate;
-    span.first = static_cast<int>(std::lround(*from * figure.rate));
-    span.last = std::min(static_cast<int>(std::lround(*to * figure.rate)), figure.frame_count - 1);
+  if (actor.frame_count > 0) {
+    span.rate = actor.rate;
+    span.first = static_cast<int>(std::lround(*from * actor.rate));
+    span.last = std::min(static_cast<int>(std::lround(*to * actor.rate)), actor.frame_count - 1);
   }
   return span;
 }
 
-Result<Shown> show(const MovingFigure& source, const SheetOptions& options, int moments, int jobs) {
+Result<Shown> show(const MovingActor& source, const SheetOptions& options, int moments, int jobs) {
   Shown shown;
   shown.source = &source;
   const auto span = span_of(source, options);
   if (!span) return span.error();
   shown.span = *span;
-  auto chosen = choose_moments(options.picture.moments, moments, *span);
+  auto chosen = choose_moments(options.image.moments, moments, *span);
   if (!chosen) return std::move(chosen).error().in_file(source.path);
   shown.moments = std::move(*chosen);
-  shown.figures.resize(shown.moments.size());
+  shown.actors.resize(shown.moments.size());
   parallel_for(shown.moments.size(), 1, jobs, [&shown](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      shown.figures[i] = shown.source->at(shown.moments[i].time);
+      shown.actors[i] = shown.source->at(shown.moments[i].time);
     }
   });
   return shown;
 }
 
-using ShownFigures = std::vector<Shown>;
+using ShownActors = std::vector<Shown>;
 
-Result<ShownFigures> show_all(const std::vector<MovingFigure>& figures, const SheetOptions& options,
-                              int moments, int jobs) {
-  ShownFigures all;
-  for (const MovingFigure& figure : figures) {
-    auto shown = show(figure, options, moments, jobs);
+Result<ShownActors> show_all(const std::vector<MovingActor>& actors, const SheetOptions& options,
+                             int moments, int jobs) {
+  ShownActors all;
+  for (const MovingActor& actor : actors) {
+    auto shown = show(actor, options, moments, jobs);
     if (!shown) return shown.error();
     all.push_back(std::move(*shown));
   }
@@ -100,11 +100,11 @@ double front_of(const Shown& shown, const SheetOptions& options) {
   return options.front == Front::world ? 0.0 : shown.source->heading(shown.moments[0].time);
 }
 
-render::Sheet contact_sheet(const ShownFigures& all, const std::vector<PictureSide>& sides,
+render::Sheet contact_sheet(const ShownActors& all, const std::vector<ImageSide>& sides,
                             const SheetOptions& options) {
   render::Sheet sheet;
   for (const Shown& shown : all) {
-    for (const PictureSide& side : sides) {
+    for (const ImageSide& side : sides) {
       render::SheetRow row;
       row.title = shown.source->name;
       row.note = fmt::format("{}   {}", side.name, shown.source->facts);
@@ -112,8 +112,8 @@ render::Sheet contact_sheet(const ShownFigures& all, const std::vector<PictureSi
       row.elevation = side.elevation;
       for (std::size_t i = 0; i < shown.moments.size(); ++i) {
         render::SheetCell cell;
-        cell.layers = {{&shown.figures[i]}};
-        cell.centre = shown.figures[i].centre;
+        cell.layers = {{&shown.actors[i]}};
+        cell.centre = shown.actors[i].centre;
         if (shown.source->duration > 0) {
           cell.label = shown.moments[i].label();
           cell.note = shown.moments[i].note();
@@ -128,13 +128,13 @@ render::Sheet contact_sheet(const ShownFigures& all, const std::vector<PictureSi
 
 // From where a strip is looked at: if the figure moves on, so that it goes from left to right;
 // otherwise from its front. A side that was asked for goes before.
-PictureSide strip_side(const Shown& shown, const std::vector<PictureSide>& sides,
-                       const SheetOptions& options) {
-  PictureSide side = sides[0];
+ImageSide strip_side(const Shown& shown, const std::vector<ImageSide>& sides,
+                     const SheetOptions& options) {
+  ImageSide side = sides[0];
   side.yaw += front_of(shown, options);
-  if (options.picture.sides != PictureOptions().sides) return side;
-  const Vec3 way = shown.figures.back().centre - shown.figures.front().centre;
-  const render::Bounds box = render::bounds(shown.figures.front());
+  if (options.image.sides != ImageOptions().sides) return side;
+  const Vec3 way = shown.actors.back().centre - shown.actors.front().centre;
+  const render::Bounds box = render::bounds(shown.actors.front());
   if (way.norm() > 0.3 * box.extent()) {
     side.yaw = std::atan2(-way.z(), way.x());
     side.name = "going to the right";
@@ -153,26 +153,25 @@ std::vector<Vec3> path_of(const Shown& shown) {
   return path;
 }
 
-Json report_of(const render::SheetPicture& picture, const ShownFigures& all,
-               std::size_t rows_of_each) {
+Json report_of(const render::SheetImage& image, const ShownActors& all, std::size_t rows_of_each) {
   Json json;
-  json["width"] = picture.image.width;
-  json["height"] = picture.image.height;
-  json["pixels_per_metre"] = picture.pixels_per_metre;
-  json["height_step"] = picture.height_step;
+  json["width"] = image.image.width;
+  json["height"] = image.image.height;
+  json["pixels_per_metre"] = image.pixels_per_metre;
+  json["height_step"] = image.height_step;
   json["cells"] = Json::array();
-  for (const render::CellPlace& place : picture.cells) {
+  for (const render::CellLayout& place : image.cells) {
     const Shown& shown = all[static_cast<std::size_t>(place.row) / rows_of_each];
     Json cell = to_json(place);
     cell["name"] = shown.source->name;
     Json moments = Json::array();
-    const auto add = [&moments](const PictureMoment& moment) {
+    const auto add = [&moments](const ImageMoment& moment) {
       Json one = {{"time", moment.time}};
       if (moment.frame >= 0) one["frame"] = moment.frame;
       moments.push_back(std::move(one));
     };
-    if (rows_of_each == 0 || picture.cells.size() == all.size()) {
-      for (const PictureMoment& moment : shown.moments) add(moment);
+    if (rows_of_each == 0 || image.cells.size() == all.size()) {
+      for (const ImageMoment& moment : shown.moments) add(moment);
     } else {
       add(shown.moments[static_cast<std::size_t>(place.column)]);
     }
@@ -183,43 +182,43 @@ Json report_of(const render::SheetPicture& picture, const ShownFigures& all,
 }
 
 Status write(const render::Sheet& sheet, const render::SheetOptions& options,
-             const std::string& path, const ShownFigures& all, ToolContext& context,
+             const std::string& path, const ShownActors& all, ToolContext& context,
              const char* name) {
-  const auto picture = render::make_sheet(sheet, options);
-  if (!picture) return picture.error();
-  if (Status written = write_picture(picture->image, path, context); !written) return written;
-  context.report.result[name] = report_of(*picture, all, sheet.rows.size() / all.size());
-  context.say(fmt::format("{}: {} x {} pixels, {} in a metre", path, picture->image.width,
-                          picture->image.height, readable(picture->pixels_per_metre, 3)));
+  const auto image = render::make_sheet(sheet, options);
+  if (!image) return image.error();
+  if (Status status = write_image(image->image, path, context); !status) return status;
+  context.report.result[name] = report_of(*image, all, sheet.rows.size() / all.size());
+  context.say(fmt::format("{}: {} x {} pixels, {} in a metre", path, image->image.width,
+                          image->image.height, readable(image->pixels_per_metre, 3)));
   return {};
 }
 
-Status make_sheet(const std::vector<MovingFigure>& figures, const std::vector<PictureSide>& sides,
+Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
                   const SheetOptions& options, ToolContext& context) {
-  const auto all = show_all(figures, options, kSheetMoments, context.jobs);
+  const auto all = show_all(actors, options, kSheetMoments, context.jobs);
   if (!all) return all.error();
   render::SheetOptions how;
-  how.row_height = options.picture.size;
-  how.cell_width = 2 * options.picture.size;
+  how.row_height = options.image.size;
+  how.cell_width = 2 * options.image.size;
   how.jobs = context.jobs;
   return write(contact_sheet(*all, sides, options), how, options.sheet, *all, context, "sheet");
 }
 
-Status make_strip(const std::vector<MovingFigure>& figures, const std::vector<PictureSide>& sides,
+Status make_strip(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
                   const SheetOptions& options, ToolContext& context) {
-  const auto all = show_all(figures, options, kStripMoments, context.jobs);
+  const auto all = show_all(actors, options, kStripMoments, context.jobs);
   if (!all) return all.error();
   std::deque<render::StripCells> cells;
   render::Sheet sheet;
   for (const Shown& shown : *all) {
-    const PictureSide side = strip_side(shown, sides, options);
+    const ImageSide side = strip_side(shown, sides, options);
     render::Strip strip;
     strip.title = shown.source->name;
     strip.yaw = side.yaw;
     strip.elevation = side.elevation;
     strip.path = path_of(shown);
     for (std::size_t i = 0; i < shown.moments.size(); ++i) {
-      strip.moments.push_back({&shown.figures[i], fmt::format("{:.2f} s", shown.moments[i].time)});
+      strip.moments.push_back({&shown.actors[i], fmt::format("{:.2f} s", shown.moments[i].time)});
     }
     cells.push_back(render::strip_row(strip, render::Spread::automatic));
     render::SheetRow row = cells.back().row;
@@ -228,8 +227,8 @@ Status make_strip(const std::vector<MovingFigure>& figures, const std::vector<Pi
     sheet.rows.push_back(std::move(row));
   }
   render::SheetOptions how;
-  how.row_height = options.picture.size;
-  how.cell_width = std::max(kStripWidth, 2 * options.picture.size);
+  how.row_height = options.image.size;
+  how.cell_width = std::max(kStripWidth, 2 * options.image.size);
   how.jobs = context.jobs;
   return write(sheet, how, options.strip, *all, context, "strip");
 }
@@ -250,13 +249,13 @@ void declare_sheet(CommandOptions& command, SheetOptions& options) {
           "A motion strip as PNG: each figure at several moments in one picture, the earlier "
           "ones paler")
       .type_name("OUT.png");
-  declare_picture_options(command, options.picture, kSheetMoments);
+  declare_image_options(command, options.image, kSheetMoments);
   command
       .add_option("--front", options.front,
                   "What the front is: where the figure faces at the first moment (figure), or +Z, "
                   "where figures face in their reference pose (world)")
       .type_name("WHAT")
-      .transform(one_of<Front>({{"figure", Front::figure}, {"world", Front::world}}))
+      .transform(one_of<Front>({{"figure", Front::actor}, {"world", Front::world}}))
       .default_str("figure");
   add_body_option(command, options.body,
                   "A body for motions without a model: low (2,500 vertices), medium (10,000), high "
@@ -268,18 +267,18 @@ void declare_sheet(CommandOptions& command, SheetOptions& options) {
 
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
                    ToolContext& context) {
-  const auto sides = parse_sides(options.picture);
+  const auto sides = parse_sides(options.image);
   if (!sides) return sides.error();
   for (const auto& [option, path] :
        {std::pair("--sheet", options.sheet), std::pair("--strip", options.strip)}) {
-    if (Status fits = check_picture_name(path, option); !fits) return fits;
+    if (Status status = check_image_name(path, option); !status) return status;
   }
-  const auto figures = read_figures(inputs, options.body, options.method, context);
-  if (!figures) return figures.error();
+  const auto actors = read_metrics(inputs, options.body, options.method, context);
+  if (!actors) return actors.error();
   if (!options.sheet.empty()) {
-    if (Status made = make_sheet(*figures, *sides, options, context); !made) return made;
+    if (Status status = make_sheet(*actors, *sides, options, context); !status) return status;
   }
-  if (!options.strip.empty()) return make_strip(*figures, *sides, options, context);
+  if (!options.strip.empty()) return make_strip(*actors, *sides, options, context);
   return {};
 }
 

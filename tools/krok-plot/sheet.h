@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/result.h"
-#include "tools/common/figures/moving_figure.h"
-#include "tools/common/figures/picture.h"
+#include "tools/common/actors/image.h"
+#include "tools/common/actors/moving_actor.h"
 #include "tools/common/tool.h"
 
 // Pictures of the figures themselves: contact sheets and motion strips.
@@ -14,15 +14,15 @@ namespace krok::plot {
 
 // What "front" is.
 enum class Front : unsigned char {
-  figure,  // where the figure faces at the first moment shown
-  world    // +Z, where figures face in their reference pose
+  actor,  // where the figure faces at the first moment shown
+  world   // +Z, where figures face in their reference pose
 };
 
 struct SheetOptions {
   std::string sheet, strip;  // paths; empty for none
-  PictureOptions picture;
+  ImageOptions image;
   std::string from, to;
-  Front front = Front::figure;
+  Front front = Front::actor;
   BodyChoice body = BodyChoice::automatic;
   SkinMethod method = SkinMethod::linear;
 

@@ -18,7 +18,7 @@ namespace {
 using csv::ColumnName;
 using csv::Table;
 
-constexpr std::size_t kMostLines = 60;  // in a panel: more cannot be told apart
+constexpr std::size_t kMaxLines = 60;  // in a panel: more cannot be told apart
 
 // What of a table is drawn.
 struct Choice {
@@ -155,11 +155,11 @@ Result<std::vector<Group>> group(const Table& table, const std::vector<std::size
     const auto [found, is_new] = places.emplace(cells[row], groups.size());
     if (is_new) groups.push_back({cells[row], {}});
     groups[found->second].rows.push_back(row);
-    if (groups.size() > kMostLines) {
+    if (groups.size() > kMaxLines) {
       return Error("plot-lines",
                    fmt::format("the column '{}' has more than {} values, each of which would be a "
                                "line",
-                               shown(table.columns()[*by].header), kMostLines),
+                               shown(table.columns()[*by].header), kMaxLines),
                    "--where COLUMN=VALUE chooses some, --by another column");
     }
   }
@@ -199,7 +199,7 @@ class TableLines {
     std::vector<std::size_t> columns;
     if (choice_.x) columns.push_back(*choice_.x);
     for (const auto& panel : choice_.panels) {
-      if (panel.size() * groups->size() > kMostLines) return too_many(panel.size(), groups->size());
+      if (panel.size() * groups->size() > kMaxLines) return too_many(panel.size(), groups->size());
       columns.insert(columns.end(), panel.begin(), panel.end());
     }
     const auto numbers = table_.numbers(columns);
@@ -242,7 +242,7 @@ class TableLines {
   static Error too_many(std::size_t columns, std::size_t groups) {
     return Error("plot-lines",
                  fmt::format("a panel would have {} lines, {} at most can be told apart",
-                             grouped(static_cast<long long>(columns * groups)), kMostLines),
+                             grouped(static_cast<long long>(columns * groups)), kMaxLines),
                  "--y chooses columns, --where COLUMN=VALUE rows");
   }
 
@@ -251,8 +251,8 @@ class TableLines {
   const TableOptions& options_;
 };
 
-void tell_choice(const Table& table, const Choice& choice, const TableOptions& options,
-                 const std::string& path, ToolContext& context) {
+void report_choice(const Table& table, const Choice& choice, const TableOptions& options,
+                   const std::string& path, ToolContext& context) {
   std::string chosen;
   const auto add = [&](std::string words) { chosen += (chosen.empty() ? "" : ", ") + words; };
   if (options.x.empty()) {
@@ -274,7 +274,7 @@ void tell_choice(const Table& table, const Choice& choice, const TableOptions& o
 }
 
 Status add_table(const std::string& path, const Options& options, ToolContext& context,
-                 draw::Figure& figure) {
+                 draw::Chart& chart) {
   const auto input = context.open_input(path);
   if (!input) return input.error();
   const auto table = Table::read(input->text(), path);
@@ -285,39 +285,39 @@ Status add_table(const std::string& path, const Options& options, ToolContext& c
   if (choice->panels.empty()) {
     return Error("plot-columns", "the table has no column of numbers to draw");
   }
-  tell_choice(*table, *choice, wanted, path, context);
-  if (figure.panels.empty()) {
+  report_choice(*table, *choice, wanted, path, context);
+  if (chart.panels.empty()) {
     for (const auto& columns : choice->panels) {
       draw::Panel panel;
       panel.x = x_axis(*table, choice->x);
       panel.y = y_axis(*table, columns);
       panel.x.scale = wanted.x_scale;
       panel.y.scale = wanted.y_scale;
-      figure.panels.push_back(std::move(panel));
+      chart.panels.push_back(std::move(panel));
     }
   }
-  if (figure.panels.size() != choice->panels.size()) {
+  if (chart.panels.size() != choice->panels.size()) {
     return Error("plot-columns", "the tables do not have the same columns",
                  "choose with --x and --y");
   }
   const bool several = options.inputs.size() > 1;
-  Status added = TableLines(*table, *choice, wanted)
-                     .add_to(figure.panels, several ? name_of_input(path) : std::string());
+  Status status = TableLines(*table, *choice, wanted)
+                      .add_to(chart.panels, several ? name_of_input(path) : std::string());
   // What one line is stands beside its axis.
-  for (draw::Panel& panel : figure.panels) panel.legend = panel.series.size() > 1;
-  return added;
+  for (draw::Panel& panel : chart.panels) panel.legend = panel.series.size() > 1;
+  return status;
 }
 
 }  // namespace
 
-Result<draw::Figure> chart_tables(const Options& options, ToolContext& context) {
-  draw::Figure figure;
+Result<draw::Chart> chart_tables(const Options& options, ToolContext& context) {
+  draw::Chart chart;
   for (const std::string& path : options.inputs) {
-    if (Status added = add_table(path, options, context, figure); !added) {
-      return std::move(added.error()).in_file(path);
+    if (Status status = add_table(path, options, context, chart); !status) {
+      return std::move(status.error()).in_file(path);
     }
   }
-  return figure;
+  return chart;
 }
 
 }  // namespace krok::plot

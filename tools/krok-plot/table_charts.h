@@ -8,6 +8,6 @@
 namespace krok::plot {
 
 // A figure of the tables in the input files. What was chosen for want of options is told.
-Result<draw::Figure> chart_tables(const Options& options, ToolContext& context);
+Result<draw::Chart> chart_tables(const Options& options, ToolContext& context);
 
 }  // namespace krok::plot

@@ -97,7 +97,7 @@ std::optional<double> believable_floor(const Target& target, const RoleMap& role
   return near ? target.floor : std::nullopt;
 }
 
-void tell_choices(const Outcome& outcome, ToolContext& context) {
+void report_choices(const Outcome& outcome, ToolContext& context) {
   const retarget::Report& report = outcome.report;
   const auto note = [&](std::string code, std::string message) {
     Diagnostic diagnostic;
@@ -179,8 +179,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!how) return how.error();
   how->jobs = context.jobs;
   how->progress = context.progress;
-  if (Status fits = check_output_kind(context.output, "-o", registry::Kind::anim); !fits) {
-    return fits.error();
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
   }
   const auto source = read_motion(options.input, context);
   if (!source) return source.error();
@@ -196,7 +196,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!result) return std::move(result).error().in_file(options.input);
   const Outcome outcome{source->skeleton, *source_roles, target->clip.skeleton, *target_roles,
                         result->report};
-  tell_choices(outcome, context);
+  report_choices(outcome, context);
 
   Clip& clip = result->clip;
   clip.provenance = context.provenance();
@@ -205,9 +205,9 @@ Result<int> run(const Options& options, ToolContext& context) {
   anim::WriteOptions writing;
   writing.orientation = options.orientation;
   writing.jobs = context.jobs;
-  const Status written = write_output(
+  const Status status = write_output(
       context, context.output, [&](OutputFile& file) { return anim::write(clip, writing, file); });
-  if (!written) return written.error();
+  if (!status) return status.error();
 
   context.report.result = to_json(outcome);
   context.say(fmt::format("{}: {}", context.output, summary(outcome)));

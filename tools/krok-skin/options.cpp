@@ -6,7 +6,7 @@
 
 #include "core/numbers.h"
 #include "core/quantity.h"
-#include "tools/common/figures/skin_method_option.h"
+#include "tools/common/actors/skin_method_option.h"
 #include "tools/common/option_kinds.h"
 
 namespace krok::skinning {
@@ -99,7 +99,7 @@ void declare_options(CommandOptions& command, Options& options) {
 Status check(const Options& options) {
   for (const auto& [option, text] :
        {std::pair{"--time", &options.time}, {"--from", &options.from}, {"--to", &options.to}}) {
-    if (Status fits = check_time(option, *text); !fits) return fits;
+    if (Status status = check_time(option, *text); !status) return status;
   }
   const bool pose = options.as == As::pose;
   if (!pose && !options.time.empty()) {

@@ -154,17 +154,17 @@ Status write_clip(const Subject& subject, const SkinBinding& binding, pc2::Up up
                   ToolContext& context) {
   const bool cache = extension(context.output) == ".pc2";
   if (!cache) {
-    if (Status fits = check_bakeable(subject, context); !fits) return fits;
+    if (Status status = check_bakeable(subject, context); !status) return status;
   }
   MeshMotion motion;
   motion.frames = subject.clip.frame_count();
   motion.rate = subject.clip.rate;
   motion.tangents = !subject.model.tangents.empty();
   motion.source = [&]() -> ShapeSource {
-    return
-        [mesh = std::make_shared<PosedMesh>(subject, binding, 1)](int frame, const ShapePlace& to) {
-          mesh->at_frame(frame, {to.positions, to.normals, to.tangents});
-        };
+    return [mesh = std::make_shared<PosedMesh>(subject, binding, 1)](int frame,
+                                                                     const ShapeOutput& to) {
+      mesh->at_frame(frame, {to.positions, to.normals, to.tangents});
+    };
   };
   return write_output(context, context.output, [&](OutputFile& file) {
     if (cache) {
@@ -204,8 +204,8 @@ Result<std::string> write_frames(const Subject& subject, const SkinBinding& bind
     context.progress->advance(1);
     return (*write_mesh)(vertices.shape(), file);
   };
-  if (Status added = outputs.add_all(paths, context.jobs, write); !added) return added.error();
-  if (Status done = outputs.finish(); !done) return done.error();
+  if (Status status = outputs.add_all(paths, context.jobs, write); !status) return status.error();
+  if (Status status = outputs.finish(); !status) return status.error();
   return fmt::format("{} to {}", paths.front(), paths.back());
 }
 

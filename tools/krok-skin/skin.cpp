@@ -27,27 +27,28 @@ Result<std::string> write(const Options& options, const Subject& subject, ToolCo
     if (subject.clip.frame_count() == 0) {
       context.warn("skin-no-frames", "the motion has no frames, so the rig does not move");
     }
-    if (Status done = write_rig(subject, context); !done) return done.error();
+    if (Status status = write_rig(subject, context); !status) return status.error();
     return context.output;
   }
   const SkinBinding binding(subject.model, options.method);
   if (options.as == As::frames) return write_frames(subject, binding, context);
   if (options.as == As::clip) {
-    Status done = write_clip(subject, binding, options.up, context);
-    if (!done) return std::move(done.error()).in_file(options.motion);
+    Status status = write_clip(subject, binding, options.up, context);
+    if (!status) return std::move(status.error()).in_file(options.motion);
     return context.output;
   }
   const auto seconds = pose_time(options, subject.clip);
   if (!seconds) return seconds.error();
-  if (Status done = write_pose(subject, binding, *seconds, context); !done) return done.error();
+  if (Status status = write_pose(subject, binding, *seconds, context); !status)
+    return status.error();
   return context.output;
 }
 
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status fits = check(options); !fits) return fits.error();
-  if (Status fits = check_output(options.as, context.output); !fits) return fits.error();
+  if (Status status = check(options); !status) return status.error();
+  if (Status status = check_output(options.as, context.output); !status) return status.error();
   const auto subject = load(options, context);
   if (!subject) return subject.error();
   const bool every_frame = options.as == As::clip || options.as == As::frames;

@@ -28,15 +28,15 @@ class Loader {
   Result<Subject> load() {
     for (const auto step : {&Loader::read_subject, &Loader::read_morphs, &Loader::read_weights,
                             &Loader::read_clip, &Loader::take_weights, &Loader::take_part}) {
-      if (Status done = (this->*step)(); !done) return done.error();
+      if (Status status = (this->*step)(); !status) return status.error();
     }
     return std::move(subject_);
   }
 
  private:
   Status read_subject() {
-    if (Status done = is_character(options_.subject) ? read_character() : read_model(); !done) {
-      return done;
+    if (Status status = is_character(options_.subject) ? read_character() : read_model(); !status) {
+      return status;
     }
     if (!subject_.model.triangles.empty()) return {};
     return Error("skin-empty-model", "the model has no triangles",

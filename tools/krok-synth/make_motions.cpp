@@ -103,18 +103,18 @@ Status write_all(const Options& options, std::vector<Motion>& motions, ToolConte
   for (Motion& motion : motions) {
     Clip& clip = motion.made.clip;
     clip.provenance = context.provenance();
-    Status added = outputs.add(motion.path, [&](OutputFile& file) {
+    Status status = outputs.add(motion.path, [&](OutputFile& file) {
       return anim::write(
           clip, {.orientation = options.orientation, .jobs = thread_count(context.jobs)}, file);
     });
-    if (!added) return added;
+    if (!status) return status;
     const auto keys_path = place_for_keys(motion.made.keys, clip.skeleton, motion.path);
     if (!keys_path) return keys_path.error();
     if (keys_path->empty()) continue;
-    added = outputs.add(*keys_path, [&](OutputFile& file) {
+    status = outputs.add(*keys_path, [&](OutputFile& file) {
       return file.write(keys::write(motion.made.keys, clip.skeleton, clip.duration()));
     });
-    if (!added) return added;
+    if (!status) return status;
   }
   return outputs.finish();
 }
@@ -198,8 +198,8 @@ Status check(const Options& options) {
 }
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status kind = check_output_kind(context.output, "-o", registry::Kind::anim); !kind) {
-    return kind.error();
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
   }
   const auto steps = read_steps(options, context);
   if (!steps) return steps.error();
@@ -219,8 +219,9 @@ Result<int> run(const Options& options, ToolContext& context) {
   }
   const auto synthesiser = parametric::Synthesiser::create(steps->library, *steps->weights);
   if (!synthesiser) return Error(synthesiser.error()).in_file(options.library);
-  if (Status made = make_all(*synthesiser, options, motions, context); !made) return made.error();
-  if (Status written = write_all(options, motions, context); !written) return written.error();
+  if (Status status = make_all(*synthesiser, options, motions, context); !status)
+    return status.error();
+  if (Status status = write_all(options, motions, context); !status) return status.error();
   report(parameters, motions, context);
   return kExitDone;
 }

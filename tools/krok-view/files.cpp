@@ -165,11 +165,12 @@ Result<Files> read_files(const Options& options, ToolContext& context) {
       paths = std::move(*found);
     }
     for (const std::string& each : paths) {
-      if (Status added = add_file(each, options.keys, context, files); !added) return added.error();
+      if (Status status = add_file(each, options.keys, context, files); !status)
+        return status.error();
     }
   }
   share_models(files);
-  if (Status built = build_bodies(options, context, files); !built) return built.error();
+  if (Status status = build_bodies(options, context, files); !status) return status.error();
   return files;
 }
 

@@ -107,20 +107,20 @@ void declare(CommandOptions& command, Options& options) {
 Result<int> run(const Options& options, ToolContext& context) {
   const auto files = read_files(options, context);
   if (!files) return files.error();
-  const std::size_t figures = files->motions.size() + files->glbs.size();
+  const std::size_t actors = files->motions.size() + files->glbs.size();
   if (options.difference && files->motions.size() < 2) {
     return Error("usage", "--difference needs two motions");
   }
   Layout layout = options.layout;
   if (options.difference && layout == Layout::automatic) layout = Layout::together;
-  if (layout == Layout::automatic) layout = figures > 4 ? Layout::list : Layout::apart;
-  if (figures < 2) layout = Layout::together;
+  if (layout == Layout::automatic) layout = actors > 4 ? Layout::list : Layout::apart;
+  if (actors < 2) layout = Layout::together;
 
   auto html = draw::write_viewer_page(page_of(*files, options, layout));
   if (!html) return html.error();
-  const Status written =
+  const Status status =
       write_output(context, context.output, [&](OutputFile& file) { return file.write(*html); });
-  if (!written) return written.error();
+  if (!status) return status.error();
 
   Json shown = Json::array();
   for (const Files::Motion& motion : files->motions) {
@@ -138,7 +138,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   context.report.result["cameras"] = files->cameras.size();
   context.report.result["bytes"] = html->size();
   context.say(fmt::format("{}: {}, {:.1f} MB; open it in a browser", context.output,
-                          figures == 1 ? "1 figure" : fmt::format("{} figures", figures),
+                          actors == 1 ? "1 figure" : fmt::format("{} figures", actors),
                           static_cast<double>(html->size()) / 1e6));
   return kExitDone;
 }

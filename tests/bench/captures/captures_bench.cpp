@@ -127,8 +127,8 @@ int run(const std::string& capture, int rounds) {
   const std::string parts = KROK_BENCH_PARTS_DIR;
   for (const auto& [frames, name] :
        {std::pair(kLongFrames, "long.bvh"), std::pair(kShortFrames, "short.bvh")}) {
-    if (Status made = bench::write_long_capture(capture, frames, in(name)); !made) {
-      fmt::print("{}: {}\n", made.error().where.file, made.error().message);
+    if (Status status = bench::write_long_capture(capture, frames, in(name)); !status) {
+      fmt::print("{}: {}\n", status.error().where.file, status.error().message);
       return 1;
     }
   }

@@ -46,10 +46,10 @@ Status write_long_capture(const std::string& from, int frames, const std::string
   auto file = OutputFile::create(to);
   if (!file) return file.error();
   const std::string head = fmt::format("{}{}{}", parts->before_count, frames, parts->after_count);
-  if (Status done = file->write(head); !done) return done;
+  if (Status status = file->write(head); !status) return status;
   for (int frame = 0; frame < frames; ++frame) {
     const std::string_view row = parts->rows[static_cast<std::size_t>(frame) % parts->rows.size()];
-    if (Status done = file->write(row); !done) return done;
+    if (Status status = file->write(row); !status) return status;
   }
   return file->commit();
 }

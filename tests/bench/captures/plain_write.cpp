@@ -17,9 +17,9 @@ int main(int argc, char** argv) {
   const std::vector<std::byte> block(std::size_t{1} << 18, std::byte{1});
   while (left > 0) {
     const std::size_t count = std::min(left, block.size());
-    if (const krok::Status done = file->write(std::span(block).first(count)); !done) return 1;
+    if (const krok::Status status = file->write(std::span(block).first(count)); !status) return 1;
     left -= count;
   }
-  const krok::Status done = file->commit();
-  return done ? 0 : 1;
+  const krok::Status status = file->commit();
+  return status ? 0 : 1;
 }

@@ -145,7 +145,7 @@ TEST_F(KrokBody, BytesDoNotDependOnThreadsOrFolders) {
   EXPECT_TRUE(get(path("body.model")) == one);
 }
 
-TEST_F(KrokBody, JsonHoldsTheFigures) {
+TEST_F(KrokBody, JsonHoldsTheMetrics) {
   const ToolRun run = build({kMotion, "--json"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");

@@ -92,7 +92,7 @@ TEST_F(KrokCam, AMistakeInTheKeysIsToldWithItsPlace) {
   EXPECT_FALSE(std::filesystem::exists(path("shot.cam")));
 }
 
-TEST_F(KrokCam, FollowsWithTheFigureInThePicture) {
+TEST_F(KrokCam, FollowsWithTheActorInTheImage) {
   const json result = result_of({walk_, "--follow", "hips", "-o", path("a.cam")});
   EXPECT_EQ(result["frames_shown"], result["frames"]);
   EXPECT_EQ(result["frames_inside"], 0);

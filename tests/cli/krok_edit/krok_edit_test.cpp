@@ -10,7 +10,7 @@
 #include "formats/anim/anim.h"
 #include "math/quaternion.h"
 #include "motion/cut.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
 #include "samples/generator/walk.h"
@@ -207,7 +207,7 @@ TEST_F(KrokEdit, LoopsAndRepeats) {
   EXPECT_LT(step["seam_after"]["angle"].get<double>(), 1e-9);
   EXPECT_EQ(report["result"]["frames"], 3 * 64 + 1);
   const Clip still = edited({"--from", "20f", "--to", "80f", "--loop", "--treadmill"});
-  const GroundPlace first = ground_place(still, 0, 0), last = ground_place(still, 0, 60);
+  const GroundFrame first = ground_frame(still, 0, 0), last = ground_frame(still, 0, 60);
   EXPECT_NEAR(first.z, last.z, 1e-5);
   EXPECT_LT((still.frame_positions(0)[9] - still.frame_positions(60)[9]).norm(), 1e-5f);
   const auto lonely = edit({"walk.anim", "-o", "x.anim", "--rounds", "3"});
@@ -276,13 +276,13 @@ TEST_F(KrokEdit, PlacesScalesAndGrounds) {
   const Clip clip = edited({"--height", "1m", "--at-origin", "--heading", "90deg", "--turn", "-30",
                             "--move", "1m, 0,-20cm", "--ground"});
   EXPECT_NEAR(reference_height(clip.skeleton), 1, 1e-6);
-  const GroundPlace start = ground_place(clip, 0, 0);
+  const GroundFrame start = ground_frame(clip, 0, 0);
   EXPECT_NEAR(start.x, 1, 1e-5);
   EXPECT_NEAR(start.z, -0.2, 1e-5);
   EXPECT_NEAR(start.heading, 60 * kRadiansPerDegree, 1e-5);
   EXPECT_EQ(edited({"--scale", "2"}).frame_count(), 241);
   const Clip still = edited({"--in-place"});
-  EXPECT_NEAR(ground_place(still, 0, 200).z, ground_place(still, 0, 0).z, 1e-5);
+  EXPECT_NEAR(ground_frame(still, 0, 200).z, ground_frame(still, 0, 0).z, 1e-5);
 }
 
 TEST_F(KrokEdit, TimingAndTheOrderOfSteps) {

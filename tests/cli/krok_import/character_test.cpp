@@ -102,7 +102,7 @@ TEST_F(CharacterImportTest, WritesAllThatBelongsTogether) {
   const auto materials = material::read(get(path("hero.material")));
   ASSERT_TRUE(materials.ok()) << materials.error().message;
   ASSERT_EQ(materials->size(), 2u);
-  EXPECT_EQ((*materials)[0].base_color_texture.picture->path, "hero_textures/Skin.png");
+  EXPECT_EQ((*materials)[0].base_color_texture.image->path, "hero_textures/Skin.png");
   EXPECT_EQ((*materials)[0].roughness, 0.5f);
   EXPECT_EQ((*materials)[0].metallic, 1);  // glTF's where the file has none
 
@@ -182,7 +182,7 @@ TEST_F(CharacterImportTest, OptionsThatContradictItAreErrors) {
   EXPECT_EQ(listing(), (std::vector<std::string>{"in.bvh", "in.glb"}));
 }
 
-TEST_F(CharacterImportTest, AFigureWithoutMaterialsHasNone) {
+TEST_F(CharacterImportTest, AActorWithoutMaterialsHasNone) {
   put("in.glb", text_of(rig().glb()));
   const ToolRun run = import({"--character", path("hero.character")});
   ASSERT_EQ(run.exit_code, 0) << run.err;

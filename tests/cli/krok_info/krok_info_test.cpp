@@ -97,7 +97,7 @@ TEST_F(KrokInfo, TellsWhatIsInAModel) {
   }
 }
 
-TEST_F(KrokInfo, JsonHoldsTheFigures) {
+TEST_F(KrokInfo, JsonHoldsTheMetrics) {
   const Outcome result =
       run("--json " + kFrozen + "motion.anim " + kFrozen + "full.model " + kFrozen + "camera.cam");
   EXPECT_EQ(result.exit_code, 0);

@@ -170,7 +170,7 @@ TEST_F(LookInfoTest, LinksOutOfTheFolderAreRefused) {
   }
 }
 
-TEST_F(LookInfoTest, MaterialsTellOfPicturesThatCannotBeUsed) {
+TEST_F(LookInfoTest, MaterialsTellOfImagesThatCannotBeUsed) {
   const ToolRun good = run_tool("krok-info", {path("a.material")});
   EXPECT_EQ(good.exit_code, 0);
   EXPECT_NE(good.out.find("base colour: skin.png (2 x 2 PNG)"), std::string::npos) << good.out;

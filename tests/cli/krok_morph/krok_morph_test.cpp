@@ -201,7 +201,7 @@ TEST_F(KrokMorph, InfoTellsLayoutAndMovement) {
 }
 
 // Other programs read the picture: three.js the texels, OpenEXR's own tool the header.
-TEST_F(KrokMorph, OtherProgramsFindTheTargetsInThePicture) {
+TEST_F(KrokMorph, OtherProgramsFindTheTargetsInTheImage) {
   const std::string exr = packed();
   judge({"three_morphs.mjs", "face.exr", "bump.obj", "wave.obj"});
   if (!std::filesystem::exists("/usr/bin/exrheader")) {

@@ -17,13 +17,13 @@ class PlotCharacter : public HeroCharacter {
   struct Shot {
     render::Image image;
     json cell;
-    Silhouette figure() const { return silhouette(image, cell, 16); }
+    Silhouette actor() const { return silhouette(image, cell, 16); }
   };
   Shot sheet(std::vector<std::string> arguments, const std::string& moment = "0s") {
     arguments.insert(arguments.end(), {"--sheet", "s.png", "--moments", moment, "--sides", "front",
                                        "--json=report.json"});
     tool("krok-plot", arguments);
-    auto image = picture_of(get(path("s.png")));
+    auto image = image_of(get(path("s.png")));
     EXPECT_TRUE(image.ok());
     const json shown = json::parse(get(path("report.json")))["result"]["sheet"];
     EXPECT_EQ(shown["cells"].size(), 1u);
@@ -44,20 +44,20 @@ class PlotCharacter : public HeroCharacter {
 
 TEST_F(PlotCharacter, HasTheColourOfItsMaterial) {
   put_material(R"("base_color": [0.02, 0.05, 0.6, 1])");
-  const Silhouette blue = sheet({"hero.character"}).figure();
+  const Silhouette blue = sheet({"hero.character"}).actor();
   EXPECT_GT(blue.pixels, 1000);
   EXPECT_EQ(blue.orange_x, 0) << "nothing is more red than blue";
   put_material(R"("base_color": [0.6, 0.05, 0.02, 1])");
-  const Silhouette red = sheet({"hero.character"}).figure();
+  const Silhouette red = sheet({"hero.character"}).actor();
   EXPECT_EQ(red.blue_x, 0);
   EXPECT_NEAR(red.pixels, blue.pixels, 0.02 * blue.pixels);
 }
 
 TEST_F(PlotCharacter, StandsWithTheFaceThatItHasAtRest) {
   put_material(R"("base_color": [0.02, 0.05, 0.6, 1])");
-  const Silhouette bowing = sheet({"hero.character"}).figure();
+  const Silhouette bowing = sheet({"hero.character"}).actor();
   put_character(kUpright);
-  const Silhouette upright = sheet({"hero.character"}).figure();
+  const Silhouette upright = sheet({"hero.character"}).actor();
   // Frame 15 leans by 15 degrees at the hips and 15 more above: wider, and less high.
   EXPECT_GT(bowing.right - bowing.left, upright.right - upright.left + 10);
 }
@@ -69,15 +69,15 @@ TEST_F(PlotCharacter, AMotionMovesItAsAModelOfTheSameShape) {
     const Shot model = sheet({"in.model", "in.anim"}, moment);
     EXPECT_EQ(different(model, sheet({"hero.character", "in.anim"}, moment)), 0) << moment;
   }
-  const Silhouette first = sheet({"hero.character", "in.anim"}, "0f").figure();
-  const Silhouette later = sheet({"hero.character", "in.anim"}, "15f").figure();
+  const Silhouette first = sheet({"hero.character", "in.anim"}, "0f").actor();
+  const Silhouette later = sheet({"hero.character", "in.anim"}, "15f").actor();
   EXPECT_GT(later.right - later.left, first.right - first.left + 10);
 }
 
 TEST_F(PlotCharacter, WhatLetsLightThroughIsLeftOutUnlessItIsAll) {
   // All of the body is one part, so that it is drawn still.
   put_material(R"("base_color": [0, 0, 1, 0.1], "alpha": "blend")");
-  EXPECT_GT(sheet({"hero.character"}).figure().pixels, 1000);
+  EXPECT_GT(sheet({"hero.character"}).actor().pixels, 1000);
 }
 
 TEST_F(PlotCharacter, ChartsNeedAMotion) {

@@ -149,7 +149,7 @@ TEST_F(KrokPlot, DrawsContactsThatStandBesideTheMotion) {
   expect_trouble({path("walk.bvh")}, "keys-value", "walk.keys.json:1:12");
 }
 
-TEST_F(KrokPlot, ShowsAFigureThatIsNoPerson) {
+TEST_F(KrokPlot, ShowsAActorThatIsNoPerson) {
   const std::string chain = put("chain.bvh", capture(30));
   ASSERT_EQ(plot({chain}).exit_code, 0);
   EXPECT_THAT(titles(), ElementsAre("Path from above, a dot every 0.1 s", "Hips",

@@ -33,8 +33,8 @@ class KrokPlotSheet : public CliTest {
     for (const json& cell : cells) frames.push_back(cell["moments"][0]["frame"]);
     return frames;
   }
-  render::Image picture(const std::string& name) const {
-    auto image = picture_of(get(path(name)));
+  render::Image image(const std::string& name) const {
+    auto image = image_of(get(path(name)));
     EXPECT_TRUE(image.ok()) << (image ? "" : image.error().message);
     return image ? std::move(*image) : render::Image();
   }
@@ -68,7 +68,7 @@ TEST_F(KrokPlotSheet, EveryJointsPixelIsWhereTheJointIs) {
                 .exit_code,
             0);
   const auto frames = exported(kWalk);
-  const auto image = picture("s.png");
+  const auto image = image("s.png");
   const json sheet = report()["sheet"];
   ASSERT_EQ(sheet["width"], image.width);
   ASSERT_EQ(sheet["cells"].size(), 16U);
@@ -87,21 +87,21 @@ TEST_F(KrokPlotSheet, EveryJointsPixelIsWhereTheJointIs) {
   EXPECT_EQ(joints, 16 * 29);
 }
 
-TEST_F(KrokPlotSheet, TheBodyStandsOnTheGroundAndIsAsTallAsTheFigure) {
+TEST_F(KrokPlotSheet, TheBodyStandsOnTheGroundAndIsAsTallAsTheActor) {
   ASSERT_EQ(plot({kWalk, "--sheet", path("s.png"), "--moments", "3"}).exit_code, 0);
   const auto frames = exported(kWalk);
-  const auto image = picture("s.png");
+  const auto image = image("s.png");
   const json sheet = report()["sheet"];
   ASSERT_EQ(sheet["cells"].size(), 6U);
   const double per_metre = sheet["pixels_per_metre"];
   for (const json& cell : sheet["cells"]) {
-    const Silhouette figure = silhouette(image, cell, 16);
+    const Silhouette actor = silhouette(image, cell, 16);
     const double ground = cell["target_pixel"][1];
-    EXPECT_NEAR((ground - figure.bottom) / per_metre, 0.0, 0.03);
+    EXPECT_NEAR((ground - actor.bottom) / per_metre, 0.0, 0.03);
     double top = 0;
     for (const Vec3& joint : frames.at(cell["moments"][0]["frame"])) top = std::max(top, joint.y());
-    EXPECT_NEAR((ground - figure.top) / per_metre, top, 0.06);
-    EXPECT_GT(figure.bottom - figure.top, 200) << "not tiny";
+    EXPECT_NEAR((ground - actor.top) / per_metre, top, 0.06);
+    EXPECT_GT(actor.bottom - actor.top, 200) << "not tiny";
   }
 }
 
@@ -109,15 +109,15 @@ TEST_F(KrokPlotSheet, TheLeftIsBlueAndToTheRightOfWhoeverLooksAtTheFront) {
   ASSERT_EQ(
       plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides", "front,back"}).exit_code,
       0);
-  const auto image = picture("s.png");
+  const auto image = image("s.png");
   const json cells = report()["sheet"]["cells"];
   ASSERT_EQ(cells.size(), 16U);
   for (const json& cell : cells) {
-    const Silhouette figure = silhouette(image, cell);
+    const Silhouette actor = silhouette(image, cell);
     if (cell["row"] == 0) {
-      EXPECT_GT(figure.blue_x, figure.orange_x + 10);
+      EXPECT_GT(actor.blue_x, actor.orange_x + 10);
     } else {
-      EXPECT_LT(figure.blue_x, figure.orange_x - 10);
+      EXPECT_LT(actor.blue_x, actor.orange_x - 10);
     }
   }
 }
@@ -156,7 +156,7 @@ TEST_F(KrokPlotSheet, AStripGoesFromLeftToRight) {
   const json cell = strip["cells"][0];
   ASSERT_EQ(cell["moments"].size(), 5U);
   const auto frames = exported(kWalk);
-  const auto image = picture("s.png");
+  const auto image = image("s.png");
   double before = -1;
   for (const json& moment : cell["moments"]) {
     const Vec3 hips = frames.at(moment["frame"])[0];
@@ -184,8 +184,8 @@ TEST_F(KrokPlotSheet, DrawsModelsAndGlbFiles) {
   ASSERT_EQ(plot({glb, "--sheet", path("b.png"), "--sides", "left", "--moments", "2"}).exit_code,
             0);
   const json by_glb = report()["sheet"];
-  const auto a = picture("a.png");
-  const auto b = picture("b.png");
+  const auto a = image("a.png");
+  const auto b = image("b.png");
   for (std::size_t i = 0; i < 2; ++i) {
     const double first = silhouette(a, by_model["cells"][i], 16).pixels;
     const double second = silhouette(b, by_glb["cells"][i], 16).pixels;

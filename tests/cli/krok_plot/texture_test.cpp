@@ -18,15 +18,14 @@ class PlotTexture : public CliTest {
   // A square metre of two joints, standing in x and y from 0 to 1, that shows a picture as it is:
   // four squares, red and green above blue and white. With another material than the usual one, its
   // members.
-  static GlbBuilder painted(std::vector<std::byte> picture, const json& members = json::object()) {
+  static GlbBuilder painted(std::vector<std::byte> image, const json& members = json::object()) {
     GlbBuilder builder = rig();
     builder.json.erase("animations");
     auto& primitive = builder.json["meshes"][0]["primitives"][0];
     primitive["attributes"]["TEXCOORD_0"] =
         builder.add(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, "VEC2");
     primitive["material"] = 0;
-    builder.json["images"] = {
-        {{"bufferView", builder.add_view(picture)}, {"mimeType", "image/png"}}};
+    builder.json["images"] = {{{"bufferView", builder.add_view(image)}, {"mimeType", "image/png"}}};
     builder.json["samplers"] = {{{"magFilter", 9728}}};  // nearest
     builder.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
     builder.json["materials"] = {
@@ -56,7 +55,7 @@ class PlotTexture : public CliTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ToolRun run = run_tool("krok-plot", arguments);
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    auto image = picture_of(get(path("s.png")));
+    auto image = image_of(get(path("s.png")));
     EXPECT_TRUE(image.ok());
     return {image ? std::move(*image) : render::Image(),
             json::parse(get(path("report.json")))["result"]["sheet"], run.err};
@@ -86,13 +85,13 @@ class PlotTexture : public CliTest {
   }
 };
 
-TEST_F(PlotTexture, AGlbShowsItsPicture) {
+TEST_F(PlotTexture, AGlbShowsItsImage) {
   const Shot found = shot(put_glb(painted(png())));
   expect_four_colours(found);
   EXPECT_EQ(found.told.find("warning"), std::string::npos) << found.told;
 }
 
-TEST_F(PlotTexture, ACharacterShowsThePictureOfItsMaterial) {
+TEST_F(PlotTexture, ACharacterShowsTheImageOfItsMaterial) {
   put_glb(painted(png()));
   ASSERT_EQ(
       run_tool("krok-import", {path("in.glb"), "--character", path("hero.character")}).exit_code,
@@ -108,7 +107,7 @@ TEST_F(PlotTexture, AnyNumberOfThreadsGivesTheSameBytes) {
   EXPECT_EQ(one, get(path("s.png")));
 }
 
-TEST_F(PlotTexture, AFactorDarkensThePicture) {
+TEST_F(PlotTexture, AFactorDarkensTheImage) {
   const json factor = {
       {"pbrMetallicRoughness",
        {{"baseColorTexture", {{"index", 0}}}, {"baseColorFactor", {0.25, 0.25, 0.25, 1}}}}};
@@ -118,13 +117,13 @@ TEST_F(PlotTexture, AFactorDarkensThePicture) {
   EXPECT_NEAR(dark.at(0.25, 0.75).red, 0.54 * whole.at(0.25, 0.75).red, 8);
 }
 
-TEST_F(PlotTexture, FilesWithoutPicturesHaveTheColourOfBodies) {
+TEST_F(PlotTexture, FilesWithoutImagesHaveTheColourOfBodies) {
   GlbBuilder builder = painted(png());
   builder.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 1, 0, 1}}};
   expect_plain(shot(put_glb(builder)));
 }
 
-TEST_F(PlotTexture, ADamagedPictureIsToldAndThePlainColourShows) {
+TEST_F(PlotTexture, ADamagedImageIsToldAndThePlainColourShows) {
   std::vector<std::byte> damaged = png();
   damaged[50] ^= std::byte{0xFF};  // within the pixels: found only where they are decoded
   const Shot found = shot(put_glb(painted(damaged)));
@@ -133,7 +132,7 @@ TEST_F(PlotTexture, ADamagedPictureIsToldAndThePlainColourShows) {
   expect_plain(found);
 }
 
-TEST_F(PlotTexture, APictureTooLargeIsToldAndTakesNoMemory) {
+TEST_F(PlotTexture, AImageTooLargeIsToldAndTakesNoMemory) {
   std::vector<std::byte> huge = png();
   huge[18] = huge[22] = std::byte{0x7F};  // 32514 a side
   const Shot found = shot(put_glb(painted(huge)));
@@ -141,7 +140,7 @@ TEST_F(PlotTexture, APictureTooLargeIsToldAndTakesNoMemory) {
   expect_plain(found);
 }
 
-TEST_F(PlotTexture, BonesNeedNoPictures) {
+TEST_F(PlotTexture, BonesNeedNoImages) {
   std::vector<std::byte> damaged = png();
   damaged[50] ^= std::byte{0xFF};
   const std::string told = shot(put_glb(painted(damaged)), {"--body", "none"}).told;

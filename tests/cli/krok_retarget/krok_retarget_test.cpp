@@ -231,7 +231,7 @@ TEST_F(KrokRetarget, CapturesAreTakenAsTheyAre) {
   EXPECT_THAT(read("out.anim").provenance.conversions.front(), HasSubstr("unit: "));
 }
 
-TEST_F(KrokRetarget, ManyMotionsGoOntoOneFigure) {
+TEST_F(KrokRetarget, ManyMotionsGoOntoOneActor) {
   write("hero.model", test::tube_model(test::human_skeleton(1.2)));
   write("second.anim", walk_);
   const auto run =

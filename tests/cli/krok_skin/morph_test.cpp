@@ -58,7 +58,7 @@ TEST_F(SkinMorphs, WeightsAreTakenAtTheMotionsMoments) {
   expect_same("part_0008.glb", "pose.glb");
 }
 
-TEST_F(SkinMorphs, AStillFigureIsHeldAsLongAsTheWeightsLast) {
+TEST_F(SkinMorphs, AStillActorIsHeldAsLongAsTheWeightsLast) {
   put("half_second.json", weights("[0, 0], [0.5, 1]"));
   const ToolRun run = tool("krok-skin", {"in.model", "--morph", "bent.exr", "--weights",
                                          "half_second.json", "-o", "still.glb", "--json"});

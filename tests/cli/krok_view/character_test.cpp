@@ -35,7 +35,7 @@ class ViewCharacter : public HeroCharacter {
   }
 };
 
-TEST_F(ViewCharacter, HasItsMaterialsAndPictures) {
+TEST_F(ViewCharacter, HasItsMaterialsAndImages) {
   const json items = shown({"hero.character", "--json=report.json"});
   ASSERT_EQ(items.size(), 1u);
   EXPECT_EQ(items[0]["name"], "hero.character");

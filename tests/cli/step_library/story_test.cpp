@@ -48,8 +48,8 @@ class StepLibraryStory : public CliTest {
   }
 };
 
-double largest(const json& figures, const char* name) {
-  return figures["within"][name]["largest"].get<double>();
+double largest(const json& actors, const char* name) {
+  return actors["within"][name]["largest"].get<double>();
 }
 
 TEST_F(StepLibraryStory, HoldsWhatItsReadmeTells) {

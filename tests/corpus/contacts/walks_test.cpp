@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "contacts/gait_figures.h"
 #include "contacts/gait_keytimes.h"
+#include "contacts/gait_metrics.h"
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
 
@@ -62,7 +62,7 @@ class Walks : public testing::TestWithParam<const char*> {};
 
 TEST_P(Walks, AreAsGaitAnalysisHasThem) {
   FIND_OR_SKIP(found, GetParam());
-  const GaitFigures gait = gait_figures(found.gait.keytimes);
+  const GaitMetrics gait = gait_metrics(found.gait.keytimes);
   EXPECT_GE(gait.cycles, 2);
   EXPECT_GT(gait.cadence, 80);
   EXPECT_LT(gait.cadence, 135);
@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Files, StraightWalks,
 // In a run no two feet are down at once.
 TEST(Run, HasFlight) {
   FIND_OR_SKIP(found, "iclone_cmu/002_03.bvh");
-  const GaitFigures gait = gait_figures(found.gait.keytimes);
+  const GaitMetrics gait = gait_metrics(found.gait.keytimes);
   EXPECT_GT(gait.cadence, 140);
   for (const double stance : gait.stance) {
     EXPECT_GT(stance, 0.25);

@@ -60,9 +60,9 @@ TEST_F(CharactersOfTheCorpus, KeepTheirMaterialsAndTextures) {
       for (std::size_t t = 0; t < textures.size(); ++t) {
         ASSERT_EQ(static_cast<bool>(*textures[t]), static_cast<bool>(*originals[t]));
         if (!*textures[t]) continue;
-        const std::string bytes = get(path(textures[t]->picture->path));
+        const std::string bytes = get(path(textures[t]->image->path));
         EXPECT_TRUE(
-            std::ranges::equal(std::as_bytes(std::span(bytes)), originals[t]->picture->bytes));
+            std::ranges::equal(std::as_bytes(std::span(bytes)), originals[t]->image->bytes));
         ++textures_compared;
       }
     }

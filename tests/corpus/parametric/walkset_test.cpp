@@ -237,7 +237,7 @@ TEST(Walkset, RefinedWeightsStayInTheirRange) {
         },
         options, progress);
     ASSERT_TRUE(refined.ok()) << refined.error().message;
-    const fit::RefineFigures& last = refined->rounds.back().after;
+    const fit::RefineMetrics& last = refined->rounds.back().after;
     double least = 0;
     EXPECT_LE(sum_error(library, refined->function, least), 1e-12);
     std::printf(

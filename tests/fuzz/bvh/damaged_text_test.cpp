@@ -33,8 +33,8 @@ void read_and_check(const std::string& text) {
       options.jobs = 1;
       const auto capture = read(view, "damaged.bvh", options);
       if (capture.ok()) {
-        const Status holds = check(capture->clip);
-        ASSERT_TRUE(holds.ok()) << holds.error().message << "\n" << text;
+        const Status status = check(capture->clip);
+        ASSERT_TRUE(status.ok()) << status.error().message << "\n" << text;
       } else {
         ASSERT_FALSE(capture.error().code.empty());
         ASSERT_FALSE(capture.error().message.empty());

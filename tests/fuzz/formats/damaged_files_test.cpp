@@ -26,8 +26,8 @@ Status read_and_check(const std::string& ending, const Bytes& bytes) {
   const std::span<const std::byte> file(copy.get(), bytes.size());
   const auto judge = [](const auto& value) -> Status {
     if (value.ok()) {
-      const Status holds = check(*value);
-      EXPECT_TRUE(holds.ok()) << "a value that does not hold was given";
+      const Status status = check(*value);
+      EXPECT_TRUE(status.ok()) << "a value that does not hold was given";
       return {};
     }
     EXPECT_FALSE(value.error().code.empty());
@@ -145,9 +145,9 @@ TEST(DamagedFiles, SomethingAppendedIsAnError) {
   for (const auto& sample : samples::all()) {
     Bytes bytes = samples::bytes_of(sample.write);
     bytes.push_back(std::byte{0});
-    const Status read = read_and_check(ending_of(sample), bytes);
-    ASSERT_FALSE(read.ok());
-    EXPECT_EQ(read.error().code, "container-size");
+    const Status status = read_and_check(ending_of(sample), bytes);
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().code, "container-size");
   }
 }
 

@@ -29,7 +29,7 @@ void expect_consistent(const nodes::Scene& asset) {
   ASSERT_TRUE(check(asset.materials).ok());
   for (const Material& material : asset.materials) {
     for (const Texture* texture : textures_of(material)) {
-      ASSERT_TRUE(!*texture || picture_facts(texture->picture->bytes).ok());
+      ASSERT_TRUE(!*texture || image_info(texture->image->bytes).ok());
     }
   }
   for (const nodes::Mesh& mesh : asset.meshes) {

@@ -44,9 +44,9 @@ bool read_and_check(const std::string& bytes) {
   if (samples == 0) return true;
   std::vector<Vec3f> positions(points);
   for (const std::uint64_t sample : {std::uint64_t{0}, samples / 2, samples - 1}) {
-    const Status got = cache->get(static_cast<std::int64_t>(sample), positions);
-    if (!got) {
-      EXPECT_EQ(got.error().code, "pc2-value");
+    const Status status = cache->get(static_cast<std::int64_t>(sample), positions);
+    if (!status) {
+      EXPECT_EQ(status.error().code, "pc2-value");
       continue;
     }
     for (const Vec3f& position : positions) EXPECT_TRUE(position.allFinite());

@@ -59,8 +59,8 @@ bool read_and_play(const std::string& text) {
     return false;
   }
   EXPECT_TRUE(check(mixed->clip).ok()) << text;
-  const Status keys = check(mixed->keys, mixed->clip.skeleton, mixed->clip.duration());
-  EXPECT_TRUE(keys.ok()) << text << keys.error().message;
+  const Status status = check(mixed->keys, mixed->clip.skeleton, mixed->clip.duration());
+  EXPECT_TRUE(status.ok()) << text << status.error().message;
   return true;
 }
 

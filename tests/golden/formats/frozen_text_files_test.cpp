@@ -20,7 +20,7 @@ std::string frozen(const std::string& name) {
 void expect_same(const Texture& found, const Texture& expected) {
   ASSERT_EQ(static_cast<bool>(found), static_cast<bool>(expected));
   if (!expected) return;
-  EXPECT_EQ(found.picture->path, expected.picture->path);
+  EXPECT_EQ(found.image->path, expected.image->path);
   EXPECT_EQ(found.wrap_u, expected.wrap_u);
   EXPECT_EQ(found.wrap_v, expected.wrap_v);
   EXPECT_EQ(found.smooth, expected.smooth);
@@ -50,7 +50,7 @@ TEST(FrozenFiles, MaterialsHoldEveryValue) {
     for (std::size_t t = 0; t < textures.size(); ++t) expect_same(*textures[t], *others[t]);
   }
   // One file, one picture.
-  EXPECT_EQ((*found)[0].base_color_texture.picture, (*found)[3].base_color_texture.picture);
+  EXPECT_EQ((*found)[0].base_color_texture.image, (*found)[3].base_color_texture.image);
   EXPECT_EQ(*material::write(*found), frozen("full.material"));
   EXPECT_EQ(*material::write(expected), frozen("full.material"));
 }

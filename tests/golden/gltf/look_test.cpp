@@ -19,7 +19,7 @@ class GltfLook : public GltfJudges {
     model_.texture_coordinates.assign(model_.positions.size(), Vec2f(0.25f, 0.75f));
     const auto count = static_cast<std::uint32_t>(model_.triangles.size());
     model_.parts = {{"a", "skin", 0, 10}, {"b", "glass", 10, 10}, {"c", "", 20, count - 20}};
-    const auto color = test::picture(test::png()), detail = test::picture(test::jpeg());
+    const auto color = test::image(test::png()), detail = test::image(test::jpeg());
     Material skin;
     skin.name = "skin";
     skin.base_color = {1, 0.5f, 0.25f, 1};
@@ -48,8 +48,8 @@ class GltfLook : public GltfJudges {
   void write(const std::string& name, const std::function<Status(OutputFile&)>& write) {
     auto file = OutputFile::create(path(name));
     ASSERT_TRUE(file.ok());
-    const Status done = write(*file);
-    ASSERT_TRUE(done.ok()) << done.error().message;
+    const Status status = write(*file);
+    ASSERT_TRUE(status.ok()) << status.error().message;
     ASSERT_TRUE(file->commit().ok());
   }
   nlohmann::json look_at(const std::string& name) {

@@ -150,9 +150,9 @@ steps::StepsFile unfitted_library() {
 }
 
 std::vector<Material> materials() {
-  const auto skin = std::make_shared<const Picture>(Picture{{}, "textures/skin.png", {}});
+  const auto skin = std::make_shared<const EncodedImage>(EncodedImage{{}, "textures/skin.png", {}});
   const auto detail =
-      std::make_shared<const Picture>(Picture{{}, "textures/d\xC3\xA9tail 1.jpg", {}});
+      std::make_shared<const EncodedImage>(EncodedImage{{}, "textures/d\xC3\xA9tail 1.jpg", {}});
   Material full;
   full.name = "kov \"1\"";
   full.base_color = {0.1f, 0.25f, 1.0f, 0.5f};
@@ -242,8 +242,8 @@ std::vector<std::byte> bytes_of(const std::function<Status(OutputFile&)>& write)
   const auto done = [&]() -> Status {
     auto file = OutputFile::create(path);
     if (!file) return file.error();
-    if (Status written = write(*file); !written) return written;
-    if (Status committed = file->commit(); !committed) return committed;
+    if (Status status = write(*file); !status) return status;
+    if (Status status = file->commit(); !status) return status;
     const auto back = InputFile::open(path);
     if (!back) return back.error();
     bytes.assign(back->bytes().begin(), back->bytes().end());

@@ -15,10 +15,10 @@ int main(int argc, char** argv) {
   for (const auto& sample : samples) {
     const std::string path = std::string(argv[1]) + "/" + sample.file_name;
     auto file = krok::OutputFile::create(path);
-    krok::Status done = file ? sample.write(*file) : krok::Status(file.error());
-    if (done) done = file->commit();
-    if (!done) {
-      std::fprintf(stderr, "%s: %s\n", path.c_str(), done.error().message.c_str());
+    krok::Status status = file ? sample.write(*file) : krok::Status(file.error());
+    if (status) status = file->commit();
+    if (!status) {
+      std::fprintf(stderr, "%s: %s\n", path.c_str(), status.error().message.c_str());
       return 2;
     }
     std::printf("%s\n", path.c_str());

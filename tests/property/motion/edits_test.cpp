@@ -10,7 +10,7 @@
 #include "filter/spikes.h"
 #include "math/quaternion.h"
 #include "motion/cut.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/join.h"
 #include "motion/local_motion.h"
 #include "motion/loop.h"

@@ -30,7 +30,7 @@ void PrintTo(const Faulty& faulty, std::ostream* out) {
 
 class AcclaimErrors : public testing::TestWithParam<Faulty> {};
 
-TEST_P(AcclaimErrors, tell_file_line_and_column) {
+TEST_P(AcclaimErrors, report_file_line_and_column) {
   const Faulty& faulty = GetParam();
   const auto capture = read(faulty.asf, faulty.amc);
   ASSERT_FALSE(capture.ok()) << all(*capture);

@@ -28,8 +28,8 @@ inline Result<Capture> read(const std::string& asf, const std::string& amc,
                             const ReadOptions& options = plain()) {
   auto capture = acclaim::read(asf, "s.asf", amc, "m.amc", options);
   if (capture.ok()) {
-    const Status whole = check(capture->clip);
-    EXPECT_TRUE(whole.ok()) << whole.error().message;
+    const Status status = check(capture->clip);
+    EXPECT_TRUE(status.ok()) << status.error().message;
   }
   return capture;
 }

@@ -106,8 +106,8 @@ TEST(Anim, WriterRefusesWhatIsNoMotion) {
   const auto code = [](const std::function<void(Clip&)>& change) {
     Clip clip = samples::clip();
     change(clip);
-    const Status written = write_to_nothing(clip);
-    return written ? std::string() : written.error().code;
+    const Status status = write_to_nothing(clip);
+    return status ? std::string() : status.error().code;
   };
   EXPECT_EQ(code([](Clip&) {}), "");
   EXPECT_EQ(code([&](Clip& c) { c.positions[4].y() = nan; }), "clip-value");
@@ -127,9 +127,9 @@ TEST(Anim, WriterRefusesWhatIsNoMotion) {
 TEST(Anim, WriterRefusesAReferencePoseTooLargeForFloats) {
   Clip clip = samples::clip();
   clip.skeleton.reference[1].position.x() = 1e300;
-  const Status written = write_to_nothing(clip);
-  ASSERT_FALSE(written.ok());
-  EXPECT_EQ(written.error().code, "skeleton-value");
+  const Status status = write_to_nothing(clip);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "skeleton-value");
 }
 
 std::uint64_t section_offset(const std::vector<std::byte>& file, int index) {
@@ -227,9 +227,9 @@ TEST(Anim, FramesMadeWhenAskedForGiveTheSameFile) {
         all_read = released == 700;
         return clip.provenance;
       };
-      const Status written =
+      const Status status =
           anim::write(source, provenance, {.orientation = encoding, .jobs = jobs}, *file);
-      ASSERT_TRUE(written) << written.error().message;
+      ASSERT_TRUE(status) << status.error().message;
       ASSERT_TRUE(file->commit());
       EXPECT_TRUE(all_read);
       const auto input = InputFile::open(path);
@@ -249,15 +249,15 @@ TEST(Anim, PassesOnWhatTheSourceOfFramesSays) {
   };
   auto file = OutputFile::create("/dev/null");
   bool asked = false;
-  const Status written = anim::write(
+  const Status status = anim::write(
       source,
       [&] {
         asked = true;
         return Provenance();
       },
       {.jobs = 2}, *file);
-  ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().code, "test");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "test");
   EXPECT_FALSE(asked);
 }
 

@@ -23,12 +23,12 @@ const Material& only_material(const nodes::Scene& scene) {
 }
 
 // A triangle whose diffuse colour is a picture.
-std::string textured_collada(const std::string& picture, const std::string& wrap = "") {
+std::string textured_collada(const std::string& image, const std::string& wrap = "") {
   return "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n"
          "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n"
          "<asset><unit name=\"meter\" meter=\"1\"/><up_axis>Y_UP</up_axis></asset>\n"
          "<library_images><image id=\"img\"><init_from>" +
-         picture +
+         image +
          "</init_from></image></library_images>\n"
          "<library_effects><effect id=\"fx\"><profile_COMMON>"
          "<newparam sid=\"surf\"><surface type=\"2D\"><init_from>img</init_from></surface>"
@@ -60,7 +60,7 @@ std::string textured_collada(const std::string& picture, const std::string& wrap
          "<scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>\n";
 }
 
-TEST(AssimpMaterials, ColladaHasColoursAndPicturesBeside) {
+TEST(AssimpMaterials, ColladaHasColoursAndImagesBeside) {
   const Folder folder;
   folder.add("tex/skin 1.png", text_of(png()));
   const auto scene =
@@ -70,7 +70,7 @@ TEST(AssimpMaterials, ColladaHasColoursAndPicturesBeside) {
   EXPECT_EQ(material.base_color, Vec4f::Ones());
   EXPECT_EQ(material.emissive, Vec3f(0.5f, 0.25f, 0));
   ASSERT_TRUE(static_cast<bool>(material.base_color_texture));
-  EXPECT_EQ(material.base_color_texture.picture->bytes, png());
+  EXPECT_EQ(material.base_color_texture.image->bytes, png());
   EXPECT_EQ(scene.meshes.at(0).primitives.at(0).material_index, 0);
   ASSERT_EQ(scene.files.size(), 1u);
   EXPECT_TRUE(scene.files[0].ends_with("tex/skin 1.png"));
@@ -100,17 +100,17 @@ TEST(AssimpMaterials, WithoutBeingAskedNothingIsRead) {
   EXPECT_FALSE(has_code(scene.diagnostics, "assimp-picture"));
 }
 
-TEST(AssimpMaterials, PicturesOutsideOrUnfitAreLeftOutWithAWarning) {
+TEST(AssimpMaterials, ImagesOutsideOrUnfitAreLeftOutWithAWarning) {
   const Folder folder;
   folder.add("secret.png", text_of(png()));
   folder.add("in/text.png", "no picture");
   const std::string outside = std::filesystem::path(folder.add("x", "")).parent_path().string();
-  for (const std::string& picture :
+  for (const std::string& image :
        {std::string("../secret.png"), outside + "/secret.png", "file://" + outside + "/secret.png",
         std::string("missing.png"), std::string("text.png"), std::string("*7"),
         std::string("*99999999999999999999")}) {
-    SCOPED_TRACE(picture);
-    const auto scene = read_with_materials(folder.add("in/in.dae", textured_collada(picture)));
+    SCOPED_TRACE(image);
+    const auto scene = read_with_materials(folder.add("in/in.dae", textured_collada(image)));
     EXPECT_FALSE(static_cast<bool>(only_material(scene).base_color_texture));
     EXPECT_TRUE(has_code(scene.diagnostics, "assimp-picture"));
     EXPECT_TRUE(scene.files.empty());
@@ -170,11 +170,11 @@ TEST(AssimpMaterials, AnotherMachinesPathIsLookedForByItsName) {
   const auto scene = read_with_materials(folder.add("in.fbx", dressed_fbx(kFbxTexture)));
   const Material& material = only_material(scene);
   ASSERT_TRUE(static_cast<bool>(material.base_color_texture));
-  EXPECT_EQ(material.base_color_texture.picture->bytes, png());
+  EXPECT_EQ(material.base_color_texture.image->bytes, png());
   EXPECT_EQ(material.base_color, Vec4f::Ones());
 }
 
-TEST(AssimpMaterials, WhereThePictureIsLostTheColourRemains) {
+TEST(AssimpMaterials, WhereTheImageIsLostTheColourRemains) {
   const Folder folder;
   const auto scene = read_with_materials(folder.add("in.fbx", dressed_fbx(kFbxTexture)));
   const Material& material = only_material(scene);
@@ -182,7 +182,7 @@ TEST(AssimpMaterials, WhereThePictureIsLostTheColourRemains) {
   EXPECT_EQ(material.base_color, Vec4f(0.5f, 0.25f, 0.125f, 1));
 }
 
-TEST(AssimpMaterials, FbxHoldsPicturesItself) {
+TEST(AssimpMaterials, FbxHoldsImagesItself) {
   const Folder folder;
   // The picture of small_pictures.h, in base64.
   const std::string video =
@@ -195,7 +195,7 @@ TEST(AssimpMaterials, FbxHoldsPicturesItself) {
   const auto scene = read_with_materials(folder.add("in.fbx", dressed_fbx(kFbxTexture, video)));
   const Material& material = only_material(scene);
   ASSERT_TRUE(static_cast<bool>(material.base_color_texture));
-  EXPECT_EQ(material.base_color_texture.picture->bytes, png());
+  EXPECT_EQ(material.base_color_texture.image->bytes, png());
   EXPECT_TRUE(scene.files.empty());
 }
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "math/quaternion.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "unit/blend/blended_walks.h"
 
 namespace krok::blend {
@@ -105,7 +105,7 @@ TEST(Blend, ChangingWeightsBeginAndEndOnTheOriginals) {
   // Orientations but for the heading: heights and shapes of the poses.
   const auto shape = [](const Clip& clip, int frame, std::size_t joint) {
     const int carrier = carrying_joint(find_roles(clip.skeleton));
-    const Transform place = ground_place(clip, carrier, frame).to_world().inverse();
+    const Transform place = ground_frame(clip, carrier, frame).to_world().inverse();
     return Vec3(place * clip.frame_positions(frame)[joint].cast<double>());
   };
   const int end = result.clip.frame_count() - 1;
@@ -132,8 +132,8 @@ TEST(Blend, TurnsBlend) {
   const auto turned = [&](const Clip& clip) {
     double sum = 0;
     for (int f = 1; f < clip.frame_count(); ++f) {
-      sum += wrapped(ground_place(clip, carrier, f).heading -
-                     ground_place(clip, carrier, f - 1).heading);
+      sum += wrapped(ground_frame(clip, carrier, f).heading -
+                     ground_frame(clip, carrier, f - 1).heading);
     }
     return sum;
   };
@@ -148,7 +148,7 @@ TEST(Blend, TurnsBlend) {
   const auto travelled = [&](const Clip& clip) {
     double way = 0;
     for (int f = 1; f < clip.frame_count(); ++f) {
-      const GroundPlace a = ground_place(clip, carrier, f - 1), b = ground_place(clip, carrier, f);
+      const GroundFrame a = ground_frame(clip, carrier, f - 1), b = ground_frame(clip, carrier, f);
       way += std::hypot(b.x - a.x, b.z - a.z);
     }
     return way;

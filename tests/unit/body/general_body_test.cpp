@@ -159,7 +159,7 @@ TEST(GeneralBody, OfVeryUnequalBones) {
   expect_valid_body(build_low(skeleton));
 }
 
-TEST(GeneralBody, FiguresOutOfBoundsAreRefused) {
+TEST(GeneralBody, NumbersOutOfBoundsAreRefused) {
   Skeleton skeleton;
   const int root = add(skeleton, "root", -1, Vec3::Zero());
   add(skeleton, "far", root, {1e15, 0, 0}, true);

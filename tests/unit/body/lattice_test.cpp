@@ -72,9 +72,9 @@ TEST(Lattice, PiecesApartBecomeOne) {
 
 TEST(Lattice, KnowsInsideFromOutsideWhereItSkips) {
   const Skeleton skeleton = test::human_skeleton();
-  const auto figure = find_human(skeleton, find_roles(skeleton));
-  ASSERT_TRUE(figure.has_value());
-  const Marched marched(human_shape(skeleton, *figure, skeleton.reference), 0.008);
+  const auto actor = find_human(skeleton, find_roles(skeleton));
+  ASSERT_TRUE(actor.has_value());
+  const Marched marched(human_shape(skeleton, *actor, skeleton.reference), 0.008);
   const Lattice lattice(marched.blocked, 0);
   Lattice::Cubes values;
   std::size_t wrong = 0, inexact = 0;

@@ -87,8 +87,8 @@ inline Body build(const Skeleton& skeleton, BodyOptions options = {}) {
 
 inline void expect_valid_body(const Body& body) {
   const Model& model = body.model;
-  const Status sound = check(model);
-  EXPECT_TRUE(sound.ok()) << (sound.ok() ? "" : sound.error().message);
+  const Status status = check(model);
+  EXPECT_TRUE(status.ok()) << (status.ok() ? "" : status.error().message);
   ASSERT_GT(model.vertex_count(), 100);
   const MeshFacts facts = mesh_facts(model);
   EXPECT_TRUE(facts.closed);

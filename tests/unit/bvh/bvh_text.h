@@ -77,8 +77,8 @@ inline std::string written(const Clip& clip, const WriteOptions& options = Write
       testing::TempDir() + "krok_unit_bvh_" + std::to_string(getpid()) + ".bvh";
   auto file = OutputFile::create(path);
   EXPECT_TRUE(file.ok());
-  const Status done = write(clip, options, *file);
-  EXPECT_TRUE(done.ok()) << done.error().message;
+  const Status status = write(clip, options, *file);
+  EXPECT_TRUE(status.ok()) << status.error().message;
   EXPECT_TRUE(file->commit().ok());
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;

@@ -239,7 +239,7 @@ TEST(Hierarchy, OddButHarmlessFilesAreTakenWithAWarningAndRefusedByStrict) {
   }
 }
 
-TEST(Hierarchy, AFigureWithoutAnyChannelThatIsUnderstoodIsRefused) {
+TEST(Hierarchy, AActorWithoutAnyChannelThatIsUnderstoodIsRefused) {
   const auto with = [](const std::string& channels) {
     return "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS " + channels + "\n}\n" +
            motion(1, "1 0 0 0\n");

@@ -77,7 +77,7 @@ TEST(Motion, EachJointKeepsItsOwnOrderAndNumberOfChannels) {
                   .isApprox((second * Vec3::UnitY()).cast<float>(), 1e-5f));
 }
 
-TEST(Motion, ConversionTurnsAndScalesWholeFigure) {
+TEST(Motion, ConversionTurnsAndScalesWholeActor) {
   const std::string text = kArm + motion(1, "100 200 300 20 30 40 50 60 70\n");
   ReadOptions options = plain_options();
   const Clip plain = read_ok(text, options).clip;

@@ -139,7 +139,7 @@ std::string stored_folded(double heading) {
   return text + "}\n" + motion(2, row + "\n" + row + "\n");
 }
 
-TEST(ReferenceAxes, TheHipsFaceWhereTheFigureDoesThoughTheReferencePoseFolds) {
+TEST(ReferenceAxes, TheHipsFaceWhereTheActorDoesThoughTheReferencePoseFolds) {
   for (const double heading : {0.0, 30.0, 90.0, 200.0}) {
     const Capture capture = read_ok(stored_folded(heading), ReadOptions());
     const Clip& clip = capture.clip;

@@ -53,8 +53,8 @@ TEST(Cam, WriterRefusesWhatIsNoCamera) {
     CameraTrack camera = samples::camera();
     change(camera);
     auto file = OutputFile::create("/dev/null");
-    const Status written = cam::write(camera, {}, *file);
-    return written ? std::string() : written.error().code;
+    const Status status = cam::write(camera, {}, *file);
+    return status ? std::string() : status.error().code;
   };
   EXPECT_EQ(code([](CameraTrack&) {}), "");
   EXPECT_EQ(code([&](CameraTrack& c) { c.positions[0].z() = nan; }), "camera-value");

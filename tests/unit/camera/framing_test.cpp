@@ -46,14 +46,14 @@ std::vector<Ball> some_balls(unsigned seed) {
 
 TEST(Framing, OneBallByHand) {
   // 90 degrees: a ball of radius r touches the edges at the distance r sqrt(2).
-  const PictureExtent picture = PictureExtent::of(kPi / 2, 1, 0);
+  const ImageExtent image = ImageExtent::of(kPi / 2, 1, 0);
   const std::vector<Ball> ball = {{Vec3::Zero(), 0.5}};
-  EXPECT_NEAR(distance_to_frame(picture, Quat::Identity(), Vec3::Zero(), ball),
-              0.5 * std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(distance_to_frame(image, Quat::Identity(), Vec3::Zero(), ball), 0.5 * std::sqrt(2.0),
+              1e-12);
   // Nearer than its own radius and the near plane it may never be, however wide the lens.
-  const PictureExtent wide = PictureExtent::of(3.1, 1, 0);
+  const ImageExtent wide = ImageExtent::of(3.1, 1, 0);
   EXPECT_NEAR(distance_to_frame(wide, Quat::Identity(), Vec3::Zero(), ball), 0.55, 1e-9);
-  EXPECT_EQ(distance_to_frame(picture, Quat::Identity(), Vec3::Zero(), {}), 0);
+  EXPECT_EQ(distance_to_frame(image, Quat::Identity(), Vec3::Zero(), {}), 0);
 }
 
 TEST(Framing, AtItsDistanceAllIsInsideAndNotAnyNearer) {
@@ -61,9 +61,9 @@ TEST(Framing, AtItsDistanceAllIsInsideAndNotAnyNearer) {
     const auto balls = some_balls(seed);
     const double fov = 0.3 + 0.05 * seed, aspect = 0.5 + 0.1 * seed;
     const Quat orientation = looking_from(0.7 * seed, 0.1 * (static_cast<double>(seed) - 10));
-    const PictureExtent picture = PictureExtent::of(fov, aspect, 0);
+    const ImageExtent image = ImageExtent::of(fov, aspect, 0);
     const Vec3 aim(0.1, 0.2, -0.1);
-    const double distance = distance_to_frame(picture, orientation, aim, balls);
+    const double distance = distance_to_frame(image, orientation, aim, balls);
     const Vec3 eye = aim + distance * (orientation * Vec3::UnitZ());
     bool all = true, all_nearer = true;
     const Vec3 nearer = aim + (distance - 0.05) * (orientation * Vec3::UnitZ());
@@ -73,16 +73,16 @@ TEST(Framing, AtItsDistanceAllIsInsideAndNotAnyNearer) {
     }
     EXPECT_TRUE(all) << seed;
     EXPECT_FALSE(all_nearer) << seed;
-    EXPECT_TRUE(shows_all(picture, eye, orientation, balls));
-    EXPECT_FALSE(shows_all(picture, nearer, orientation, balls));
+    EXPECT_TRUE(shows_all(image, eye, orientation, balls));
+    EXPECT_FALSE(shows_all(image, nearer, orientation, balls));
   }
 }
 
 TEST(Framing, TheMarginStaysFree) {
   const auto balls = some_balls(3);
-  const PictureExtent picture = PictureExtent::of(0.7, 1.5, 0.1);
+  const ImageExtent image = ImageExtent::of(0.7, 1.5, 0.1);
   const Quat orientation = looking_from(0.4, 0.2);
-  const double distance = distance_to_frame(picture, orientation, Vec3::Zero(), balls);
+  const double distance = distance_to_frame(image, orientation, Vec3::Zero(), balls);
   for (const Ball& ball : balls) {
     EXPECT_TRUE(points_inside(0.7, 1.5, distance * (orientation * Vec3::UnitZ()), orientation, ball,
                               0.8 + 1e-9));
@@ -94,23 +94,23 @@ TEST(Framing, TheTightPlaceTouchesOppositeEdges) {
     const auto balls = some_balls(seed);
     const double fov = 0.3 + 0.05 * seed, aspect = 0.5 + 0.1 * seed;
     const Quat orientation = looking_from(1.1 * seed, 0.05 * seed);
-    const PictureExtent picture = PictureExtent::of(fov, aspect, 0);
-    TightPlace tight(picture, orientation);
+    const ImageExtent image = ImageExtent::of(fov, aspect, 0);
+    CameraFit tight(image, orientation);
     for (const Ball& ball : balls) tight.add(ball);
     const Vec3 eye = tight.place();
-    EXPECT_TRUE(shows_all(picture, eye, orientation, balls)) << seed;
+    EXPECT_TRUE(shows_all(image, eye, orientation, balls)) << seed;
     for (const Ball& ball : balls) {
       EXPECT_TRUE(points_inside(fov, aspect, eye, orientation, ball, 1 + 1e-9)) << seed;
     }
     // No step forward, together with one to any side, keeps all of it in the picture.
     for (const Vec3& step : {Vec3(0, 0, -0.01), Vec3(0.01, 0, -0.01), Vec3(-0.01, 0, -0.01),
                              Vec3(0, 0.01, -0.01), Vec3(0, -0.01, -0.01)}) {
-      EXPECT_FALSE(shows_all(picture, eye + orientation * step, orientation, balls)) << seed;
+      EXPECT_FALSE(shows_all(image, eye + orientation * step, orientation, balls)) << seed;
     }
     EXPECT_GT(tight.nearest(), 0);
     EXPECT_GT(tight.farthest(), tight.nearest());
   }
-  EXPECT_EQ(TightPlace(PictureExtent::of(1, 1, 0), Quat::Identity()).place(), Vec3::Zero());
+  EXPECT_EQ(CameraFit(ImageExtent::of(1, 1, 0), Quat::Identity()).place(), Vec3::Zero());
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST(DetectConventions, FindsTheUnit) {
   }
 }
 
-TEST(DetectConventions, AFigureOfAnUnusualSizeIsAGuess) {
+TEST(DetectConventions, AActorOfAnUnusualSizeIsAGuess) {
   // Half a metre in metres could be anything.
   const Conventions found = detect(person(1 / 0.3, Direction::plus_y, Direction::plus_z));
   EXPECT_NE(found.unit_confidence, Confidence::certain);
@@ -171,7 +171,7 @@ std::vector<Vec3> lifted(const Skeleton& skeleton, const Quat& turn, const Vec3&
   return positions;
 }
 
-TEST(DetectConventions, AFigureThatLiesOnTheGroundIsToldWithAWarning) {
+TEST(DetectConventions, AActorThatLiesOnTheGroundIsToldWithAWarning) {
   const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
   // On its back and on its belly, hips above the ground.
   for (const double angle : {-80.0, 80.0}) {
@@ -183,7 +183,7 @@ TEST(DetectConventions, AFigureThatLiesOnTheGroundIsToldWithAWarning) {
   }
 }
 
-TEST(DetectConventions, AFigureThatFallsAndLiesDoesNotTurnTheWorld) {
+TEST(DetectConventions, AActorThatFallsAndLiesDoesNotTurnTheWorld) {
   const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
   // It stands in a third of the motion and lies on its back or its belly from then on.
   for (const double angle : {-90.0, 90.0}) {
@@ -252,7 +252,7 @@ TEST(DetectConventions, AMotionThatIsUpsideDownThroughoutIsAGuess) {
   EXPECT_NE(found.up_reason.find("upside down"), std::string::npos) << found.up_reason;
 }
 
-TEST(DetectConventions, AFigureThatLiesOnTheGroundAlongAnUnusualAxisIsNotUpright) {
+TEST(DetectConventions, AActorThatLiesOnTheGroundAlongAnUnusualAxisIsNotUpright) {
   const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
   // Up along -z, with the feet at z = 0 by chance.
   const Quat turn = axis_rotation(Axis::x, -80 * kRadiansPerDegree);
@@ -265,7 +265,7 @@ TEST(DetectConventions, AFigureThatLiesOnTheGroundAlongAnUnusualAxisIsNotUpright
   EXPECT_EQ(found.up_confidence, Confidence::guess);
 }
 
-TEST(DetectConventions, AFigureUprightAlongAnUnusualAxisAwayFromTheGroundIsAGuess) {
+TEST(DetectConventions, AActorUprightAlongAnUnusualAxisAwayFromTheGroundIsAGuess) {
   const Skeleton skeleton = person(0.01, Direction::plus_y, Direction::plus_z);
   const Quat turn = axis_rotation(Axis::x, -90 * kRadiansPerDegree);  // up along -z
   const Conventions found = detect(skeleton, lifted(skeleton, turn, Vec3::UnitY(), 700));
@@ -419,8 +419,8 @@ TEST(Conventions, SizesThatAreNoneAreNotCalledSensible) {
   }
   EXPECT_NE(reason(0).find("at one place"), std::string::npos);
   for (const double metres_per_unit : {1e-8, 1e8}) {
-    const Skeleton figure = person(metres_per_unit, Direction::plus_y, Direction::plus_z);
-    const Conventions found = detect_conventions(figure, find_roles(figure), {});
+    const Skeleton actor = person(metres_per_unit, Direction::plus_y, Direction::plus_z);
+    const Conventions found = detect_conventions(actor, find_roles(actor), {});
     EXPECT_EQ(found.unit_confidence, Confidence::guess);
     EXPECT_NE(found.unit_reason.find("no common unit"), std::string::npos) << found.unit_reason;
     EXPECT_EQ(found.unit_reason.find("about"), std::string::npos) << found.unit_reason;

@@ -54,19 +54,19 @@ TEST(SceneConventions, AnOddSizeOfAPersonIsTold) {
   }
 }
 
-TEST(SceneConventions, FiguresAreCheckedByTheRolesThatAreKnown) {
+TEST(SceneConventions, ActorsAreCheckedByTheRolesThatAreKnown) {
   const Skeleton skeleton = test::human_skeleton();
   const RoleMap roles = find_roles(skeleton);
   Diagnostics found;
-  check_figure(skeleton, roles, found);
+  check_actor(skeleton, roles, found);
   EXPECT_TRUE(found.empty());
   Skeleton turned = skeleton;  // by half a turn about +Y
   for (Transform& joint : turned.reference) joint.position.x() *= -1, joint.position.z() *= -1;
-  check_figure(turned, roles, found);
+  check_actor(turned, roles, found);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].code, "scene-forward");
   found.clear();
-  check_figure(turned, {}, found);
+  check_actor(turned, {}, found);
   EXPECT_TRUE(found.empty()) << "of what is no humanoid nothing is expected";
 }
 

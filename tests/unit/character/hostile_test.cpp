@@ -30,13 +30,12 @@ void survive(const nodes::Scene& scene) {
   const auto conventions = find_conventions(scene.space, &*rig, find_roles(rig->skeleton), {}, {});
   const auto conversion = Conversion::make(conventions);
   ASSERT_TRUE(conversion.ok());
-  const auto figure =
-      make_figure(scene, *evaluator, *rig, *conversion, {.with_morphs = true}, found);
-  if (figure) {
-    EXPECT_TRUE(check(figure->model).ok()) << check(figure->model).error().message;
-    EXPECT_TRUE(check(figure->morphs).ok());
+  const auto actor = make_actor(scene, *evaluator, *rig, *conversion, {.with_morphs = true}, found);
+  if (actor) {
+    EXPECT_TRUE(check(actor->model).ok()) << check(actor->model).error().message;
+    EXPECT_TRUE(check(actor->morphs).ok());
   } else {
-    EXPECT_EQ(figure.error().code.substr(0, 6), "scene-") << figure.error().code;
+    EXPECT_EQ(actor.error().code.substr(0, 6), "scene-") << actor.error().code;
   }
   for (std::size_t a = 0; a < scene.animations.size(); ++a) {
     SamplingOptions options;
@@ -143,10 +142,9 @@ TEST(HostileScenes, TargetsOutOfProportion) {
   const auto evaluator = *nodes::Evaluator::create(scene);
   Diagnostics found;
   auto rig = make_rig(scene, evaluator, *choose_joints(scene, evaluator, "", found), found);
-  const auto figure =
-      make_figure(scene, evaluator, *rig, Conversion(), {.with_morphs = true}, found);
-  ASSERT_FALSE(figure.ok());
-  EXPECT_EQ(figure.error().code, "scene-morphs");
+  const auto actor = make_actor(scene, evaluator, *rig, Conversion(), {.with_morphs = true}, found);
+  ASSERT_FALSE(actor.ok());
+  EXPECT_EQ(actor.error().code, "scene-morphs");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using namespace character;
 struct Imported {
   Rig rig;
   Conversion conversion;
-  Figure figure;
+  Actor actor;
   Clip clip;
   Sampling sampling;
   Diagnostics diagnostics;
@@ -37,10 +37,10 @@ Imported import(const nodes::Scene& scene, const nodes::Evaluator& evaluator, in
   const Conventions conventions =
       find_conventions(scene.space, &result.rig, find_roles(result.rig.skeleton), {}, given);
   result.conversion = *Conversion::make(conventions);
-  auto figure =
-      make_figure(scene, evaluator, result.rig, result.conversion, {.with_morphs = true}, found);
-  EXPECT_TRUE(figure.ok()) << (figure.ok() ? "" : figure.error().message);
-  result.figure = std::move(*figure);
+  auto actor =
+      make_actor(scene, evaluator, result.rig, result.conversion, {.with_morphs = true}, found);
+  EXPECT_TRUE(actor.ok()) << (actor.ok() ? "" : actor.error().message);
+  result.actor = std::move(*actor);
   const auto& keys = scene.animations[static_cast<std::size_t>(animation)];
   result.sampling = choose_sampling(keys, {}, found)->sampling;
   auto clip = make_clip(evaluator, result.rig, result.conversion, animation, result.sampling, 1,
@@ -48,7 +48,7 @@ Imported import(const nodes::Scene& scene, const nodes::Evaluator& evaluator, in
   EXPECT_TRUE(clip.ok());
   result.clip = std::move(*clip);
   EXPECT_TRUE(check(result.clip).ok()) << check(result.clip).error().message;
-  EXPECT_TRUE(check(result.figure.model).ok()) << check(result.figure.model).error().message;
+  EXPECT_TRUE(check(result.actor.model).ok()) << check(result.actor.model).error().message;
   return result;
 }
 
@@ -56,7 +56,7 @@ Imported import(const nodes::Scene& scene, const nodes::Evaluator& evaluator, in
 // to the latter.
 double farthest(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
                 const Imported& imported, const Mat4& to_krok = Mat4::Identity()) {
-  const Model& model = imported.figure.model;
+  const Model& model = imported.actor.model;
   const auto reference_to_joint = inverse_reference(model.skeleton);
   std::vector<SkinMatrix> palette(reference_to_joint.size());
   std::vector<Transform> pose(reference_to_joint.size());
@@ -161,7 +161,7 @@ TEST(ImportedShape, UnitAndAxesThatTheUserGives) {
 // numbers (morph targets, point caches) would fit no more if each part got vertices of its own.
 TEST(ImportedShape, PartsOfOneMeshShareTheirVertices) {
   nodes::Scene scene = armature_scene();
-  const auto whole = import(scene, *nodes::Evaluator::create(scene)).figure.model;
+  const auto whole = import(scene, *nodes::Evaluator::create(scene)).actor.model;
   for (nodes::Mesh& mesh : scene.meshes) {
     nodes::Primitive second = mesh.primitives[0];
     auto& triangles = mesh.primitives[0].triangles;
@@ -171,7 +171,7 @@ TEST(ImportedShape, PartsOfOneMeshShareTheirVertices) {
     mesh.primitives.push_back(second);
   }
   const auto evaluator = *nodes::Evaluator::create(scene);
-  const Model parted = import(scene, evaluator).figure.model;
+  const Model parted = import(scene, evaluator).actor.model;
   EXPECT_EQ(parted.positions, whole.positions);
   EXPECT_EQ(parted.normals, whole.normals);
   EXPECT_EQ(parted.influence_weights, whole.influence_weights);
@@ -181,7 +181,7 @@ TEST(ImportedShape, PartsOfOneMeshShareTheirVertices) {
   nodes::Primitive& second = scene.meshes[0].primitives[1];
   second.positions = shared(std::vector<Vec3f>(*second.positions));
   const auto again = *nodes::Evaluator::create(scene);
-  EXPECT_EQ(import(scene, again).figure.model.positions.size(),
+  EXPECT_EQ(import(scene, again).actor.model.positions.size(),
             whole.positions.size() + second.vertex_count());
 }
 
@@ -193,7 +193,7 @@ TEST(ImportedShape, MeshesHungOnJointsFollowThem) {
   const auto evaluator = *nodes::Evaluator::create(scene);
   const Imported imported = import(scene, evaluator);
   EXPECT_LT(farthest(scene, evaluator, imported), 2e-6);
-  ASSERT_EQ(imported.figure.model.parts.size(), 2u);
+  ASSERT_EQ(imported.actor.model.parts.size(), 2u);
   // Neither the holder nor the mesh is a joint.
   EXPECT_EQ(imported.clip.joint_count(), 4);
 }
@@ -204,7 +204,7 @@ TEST(ImportedShape, AMirroredMeshKeepsItsOutside) {
   const int mirrored = add_mesh(scene, "Mirrored", 2, -1, 5);
   scene.nodes[static_cast<std::size_t>(mirrored)].scale = Vec3(-1, 1, 1);
   const auto evaluator = *nodes::Evaluator::create(scene);
-  const Model model = import(scene, evaluator).figure.model;
+  const Model model = import(scene, evaluator).actor.model;
   // Volumes against a point outside have the sign of the winding.
   const auto signed_sum = [&](const Model::Part& part) {
     double sum = 0;
@@ -290,10 +290,10 @@ TEST(ImportedShape, TargetsStandInTheReferencePose) {
   give_targets(1, Vec3f(1, 0, 0));
   const auto evaluator = *nodes::Evaluator::create(scene);
   const Imported imported = import(scene, evaluator);
-  const MorphSet& morphs = imported.figure.morphs;
+  const MorphSet& morphs = imported.actor.morphs;
   ASSERT_EQ(morphs.names, (std::vector<std::string>{"Smile", "Teeth_1", "Body_1"}));
-  ASSERT_EQ(morphs.vertex_count, imported.figure.model.vertex_count());
-  const auto& base = imported.figure.model.positions;
+  ASSERT_EQ(morphs.vertex_count, imported.actor.model.vertex_count());
+  const auto& base = imported.actor.model.positions;
   for (int t = 0; t < 3; ++t) {
     for (std::size_t v = 0; v < base.size(); ++v) {
       const bool body = v >= 12;  // after the teeth in the outline
@@ -303,13 +303,13 @@ TEST(ImportedShape, TargetsStandInTheReferencePose) {
       EXPECT_NEAR(distance, !moved ? 0.0 : body ? 1.0 : 0.01, 1e-6) << t << " " << v;
     }
   }
-  const auto weights = make_weights(imported.figure, evaluator, 0, imported.sampling);
+  const auto weights = make_weights(imported.actor, evaluator, 0, imported.sampling);
   ASSERT_TRUE(weights.ok());
   EXPECT_EQ(weights->frame_count(), 13);
   EXPECT_EQ(weights->values[1], 0.25f);
   Sampling endless = imported.sampling;
   endless.frames = 2'000'000'000;
-  const auto too_long = make_weights(imported.figure, evaluator, 0, endless);
+  const auto too_long = make_weights(imported.actor, evaluator, 0, endless);
   ASSERT_FALSE(too_long.ok());
   EXPECT_EQ(too_long.error().code, "scene-too-long");
 }
@@ -322,7 +322,7 @@ TEST(ImportedShape, ATangentThatIsZeroTakesTheOthersWithIt) {
     nodes::Scene scene = armature_scene();
     scene.meshes[0].primitives[0].tangents = shared(std::vector<Vec4f>(tangents));
     const auto evaluator = *nodes::Evaluator::create(scene);
-    EXPECT_EQ(import(scene, evaluator).figure.model.tangents.size(), zero ? 0u : 12u);
+    EXPECT_EQ(import(scene, evaluator).actor.model.tangents.size(), zero ? 0u : 12u);
   }
 }
 

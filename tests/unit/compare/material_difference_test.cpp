@@ -21,8 +21,8 @@ Material dressed() {
   Material material;
   material.name = "skin";
   material.base_color = {1, 0.5f, 0.25f, 1};
-  material.base_color_texture = {test::picture(test::png(), "colour")};
-  material.normal_texture = {test::picture(test::jpeg(), "detail")};
+  material.base_color_texture = {test::image(test::png(), "colour")};
+  material.normal_texture = {test::image(test::jpeg(), "detail")};
   material.alpha = Material::Alpha::mask;
   return material;
 }
@@ -34,7 +34,7 @@ std::vector<std::string> between(const Material& first, const Material& second) 
 TEST(MaterialDifferences, NoneWhereOnlyNamesAndObjectsDiffer) {
   Material other = dressed();
   other.name = "another";
-  other.base_color_texture.picture = test::picture(test::png(), "other", "elsewhere/b.png");
+  other.base_color_texture.image = test::image(test::png(), "other", "elsewhere/b.png");
   other.base_color.x() -= 5e-5f;
   EXPECT_THAT(between(dressed(), other), IsEmpty());
 }
@@ -90,12 +90,12 @@ TEST(MaterialDifferences, WhatIsNoNumberDiffers) {
 }
 
 // A picture outside of the file may not be there.
-TEST(MaterialDifferences, PicturesWithoutBytesGoByTheirPaths) {
+TEST(MaterialDifferences, ImagesWithoutBytesGoByTheirPaths) {
   Material first, second;
-  first.base_color_texture = {test::picture({}, {}, "a.png")};
-  second.base_color_texture = {test::picture({}, {}, "a.png")};
+  first.base_color_texture = {test::image({}, {}, "a.png")};
+  second.base_color_texture = {test::image({}, {}, "a.png")};
   EXPECT_THAT(between(first, second), IsEmpty());
-  second.base_color_texture = {test::picture({}, {}, "b.png")};
+  second.base_color_texture = {test::image({}, {}, "b.png")};
   EXPECT_THAT(between(first, second), SizeIs(1));
 }
 

@@ -11,10 +11,10 @@ namespace {
 
 TEST(Measure, KeepsLargestItsPlaceRmsAndCountOver) {
   Measure measure(2.0);
-  measure.add(3, Place{.vertex = 7});
-  measure.add(0, Place{.vertex = 8});
-  measure.add(4, Place{.vertex = 9});
-  measure.add(4, Place{.vertex = 10});
+  measure.add(3, ValueLocation{.vertex = 7});
+  measure.add(0, ValueLocation{.vertex = 8});
+  measure.add(4, ValueLocation{.vertex = 9});
+  measure.add(4, ValueLocation{.vertex = 10});
   EXPECT_EQ(measure.largest, 4);
   EXPECT_EQ(measure.where.vertex, 9);
   EXPECT_EQ(measure.count, 4);
@@ -36,7 +36,7 @@ TEST(Measure, ADifferenceEqualToTheToleranceIsWithin) {
 
 TEST(Measure, WhatIsNotANumberIsBeyondEveryTolerance) {
   Measure measure(1e300);
-  measure.add(std::numeric_limits<double>::quiet_NaN(), Place{.joint = 3});
+  measure.add(std::numeric_limits<double>::quiet_NaN(), ValueLocation{.joint = 3});
   EXPECT_FALSE(measure.within());
   EXPECT_EQ(measure.where.joint, 3);
 }
@@ -45,8 +45,8 @@ TEST(Measure, MergingIsAddingInOrder) {
   Measure whole(1), first(1), second(1);
   for (int i = 0; i < 10; ++i) {
     const double value = (i * 7) % 5;
-    whole.add(value, Place{.vertex = i});
-    (i < 5 ? first : second).add(value, Place{.vertex = i});
+    whole.add(value, ValueLocation{.vertex = i});
+    (i < 5 ? first : second).add(value, ValueLocation{.vertex = i});
   }
   first.merge(second);
   EXPECT_EQ(first.largest, whole.largest);

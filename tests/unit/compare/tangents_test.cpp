@@ -164,7 +164,7 @@ TEST(Tangents, ThatOnlyOneHasThemIsADifferenceWhereANormalTextureShowsThem) {
     EXPECT_EQ(found.tangents.count, 0);
 
     Material bumpy;
-    bumpy.normal_texture.picture = std::make_shared<Picture>();
+    bumpy.normal_texture.image = std::make_shared<EncodedImage>();
     Scene first = without_tangents(), second = turning_square();
     first.meshes[0].material = second.meshes[0].material = &bumpy;
     found = compare_scenes(first, second, matching);

@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "contacts/gait_figures.h"
+#include "contacts/gait_metrics.h"
 #include "contacts/slide_speed.h"
 #include "events.h"
 
@@ -115,8 +115,8 @@ TEST(Cycloid, EventsAreWhereTheFormulaPutsThem) {
   }
 }
 
-TEST(Cycloid, FiguresOfTheGait) {
-  const GaitFigures gait = gait_figures(test::keytimes_of(cycloid_walk(120)));
+TEST(Cycloid, MetricsOfTheGait) {
+  const GaitMetrics gait = gait_metrics(test::keytimes_of(cycloid_walk(120)));
   EXPECT_GE(gait.cycles, 6);
   EXPECT_NEAR(gait.cadence, 120, 1);
   EXPECT_NEAR(gait.stance[0], 0.6, 0.02);

@@ -45,10 +45,10 @@ void set(Bytes& file, std::size_t offset, T value) {
 
 Status write_two_sections(OutputFile& file) {
   ContainerWriter writer(file, kFormat, 1, 2);
-  if (Status done = writer.section("FIRST", bytes_of("abc")); !done) return done;
-  if (Status done = writer.begin("SECONDLY"); !done) return done;
+  if (Status status = writer.section("FIRST", bytes_of("abc")); !status) return status;
+  if (Status status = writer.begin("SECONDLY"); !status) return status;
   for (const char* part : {"de", "", "fgh"}) {
-    if (Status done = writer.append(bytes_of(part)); !done) return done;
+    if (Status status = writer.append(bytes_of(part)); !status) return status;
   }
   return writer.finish();
 }
@@ -199,10 +199,10 @@ TEST(Container, WritesTheSameBytesToAPipe) {
 TEST(Container, AFullDiskIsAnError) {
   auto file = OutputFile::create("/dev/full");
   if (!file) GTEST_SKIP() << "skipped: no /dev/full";
-  Status done = write_two_sections(*file);
-  if (done) done = file->commit();
-  ASSERT_FALSE(done.ok());
-  EXPECT_EQ(done.error().code, "file-unwritable");
+  Status status = write_two_sections(*file);
+  if (status) status = file->commit();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "file-unwritable");
 }
 
 // --- sections ---
@@ -264,8 +264,8 @@ TEST(Sections, NamesThatAFileCannotHoldAreRefused) {
   const auto refused = [&](std::string name) {
     clip.skeleton.names[1] = std::move(name);
     auto file = OutputFile::create("/dev/null");
-    const Status written = anim::write(clip, {}, *file);
-    return written.ok() ? std::string() : written.error().code;
+    const Status status = anim::write(clip, {}, *file);
+    return status.ok() ? std::string() : status.error().code;
   };
   EXPECT_EQ(refused("Kn\xE4"), "skeleton-name");
   EXPECT_EQ(refused(std::string("a\0b", 3)), "skeleton-name");

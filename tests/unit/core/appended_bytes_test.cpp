@@ -96,9 +96,9 @@ TEST_F(AppendedBytesTest, AFullDeviceIsAnErrorInTheMiddleOfParts) {
   ASSERT_TRUE(file.ok());
   const std::string text(400000, 'x');
   const std::vector parts(3, std::as_bytes(std::span(text)));
-  const Status full = file->write(parts);
-  ASSERT_FALSE(full.ok());
-  EXPECT_EQ(full.error().code, "file-unwritable");
+  const Status status = file->write(parts);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "file-unwritable");
   EXPECT_FALSE(file->commit().ok());
 }
 

@@ -119,9 +119,9 @@ TEST_F(FileTest, WhatComesMeanwhileIsKeptIfAskedFor) {
   auto file = OutputFile::create(path("out"), {.no_clobber = true});
   ASSERT_TRUE(file.ok() && file->write("new").ok());
   put("out", "other");
-  const Status done = file->commit();
-  ASSERT_FALSE(done.ok());
-  EXPECT_EQ(done.error().code, "file-exists");
+  const Status status = file->commit();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "file-exists");
   EXPECT_EQ(get(path("out")), "other");
   EXPECT_EQ(listing(), Names{"out"});
 }
@@ -162,9 +162,9 @@ TEST_F(FileTest, NoClobberRefusesAFileThatAppearedMeanwhile) {
   ASSERT_TRUE(file.ok());
   ASSERT_TRUE(file->write("new").ok());
   put("out", "other");
-  const Status done = file->commit();
-  ASSERT_FALSE(done.ok());
-  EXPECT_EQ(done.error().code, "file-exists");
+  const Status status = file->commit();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "file-exists");
   EXPECT_EQ(get(path("out")), "other");
   EXPECT_EQ(listing(), Names{"out"});
 }
@@ -240,10 +240,10 @@ TEST_F(FileTest, ThreadsLeaveTheModeMaskAlone) {
 }
 
 TEST_F(FileTest, AFullDeviceIsAnErrorAndStaysADevice) {
-  const Status written = write_file("/dev/full", "text");
-  ASSERT_FALSE(written.ok());
-  EXPECT_EQ(written.error().code, "file-unwritable");
-  EXPECT_NE(written.error().message.find("No space left"), std::string::npos);
+  const Status status = write_file("/dev/full", "text");
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "file-unwritable");
+  EXPECT_NE(status.error().message.find("No space left"), std::string::npos);
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }
 

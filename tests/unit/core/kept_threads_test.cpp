@@ -159,13 +159,13 @@ TEST(KeptThreads, ServeCallersOnSeveralThreads) {
     callers.emplace_back([&] {
       for (int round = 0; round < 200; ++round) {
         parallel_for(64, 1, 3, [&](std::size_t i, std::size_t) { sum += static_cast<long>(i); });
-        const Status made = make_in_order(
+        const Status status = make_in_order(
             20, 3, [](std::size_t, std::size_t) { return Status(); },
             [&](std::size_t, std::size_t) {
               ++sum;
               return Status();
             });
-        EXPECT_TRUE(made);
+        EXPECT_TRUE(status);
       }
     });
   }

@@ -22,7 +22,7 @@ TEST(MakeInOrder, HandsOverEachItemInOrder) {
       std::vector<std::size_t> made(slots_for(jobs));
       std::vector<std::size_t> taken;
       std::atomic<int> takers{0};
-      const Status done = make_in_order(
+      const Status status = make_in_order(
           count, jobs,
           [&](std::size_t item, std::size_t slot) {
             if (item % 7 == 0) std::this_thread::sleep_for(std::chrono::microseconds(50));
@@ -36,7 +36,7 @@ TEST(MakeInOrder, HandsOverEachItemInOrder) {
             --takers;
             return Status();
           });
-      EXPECT_TRUE(done);
+      EXPECT_TRUE(status);
       ASSERT_EQ(taken.size(), count);
       for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(taken[i], i);
     }
@@ -47,7 +47,7 @@ TEST(MakeInOrder, KeepsNoMoreItemsThanSlots) {
   std::mutex mutex;
   std::set<std::size_t> in_work;
   const std::size_t slots = slots_for(3);
-  const Status done = make_in_order(
+  const Status status = make_in_order(
       200, 3,
       [&](std::size_t, std::size_t slot) {
         const std::lock_guard lock(mutex);
@@ -60,14 +60,14 @@ TEST(MakeInOrder, KeepsNoMoreItemsThanSlots) {
         in_work.erase(slot);
         return Status();
       });
-  EXPECT_TRUE(done);
+  EXPECT_TRUE(status);
 }
 
 TEST(MakeInOrder, StopsAtTheFirstErrorInOrder) {
   for (int round = 0; round < 20; ++round) {
     for (const int jobs : {1, 2, 4}) {
       std::size_t taken = 0;
-      const Status done = make_in_order(
+      const Status status = make_in_order(
           100, jobs,
           [](std::size_t item, std::size_t) -> Status {
             if (item == 5) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -78,8 +78,8 @@ TEST(MakeInOrder, StopsAtTheFirstErrorInOrder) {
             ++taken;
             return Status();
           });
-      ASSERT_FALSE(done);
-      EXPECT_EQ(done.error().message, "5");
+      ASSERT_FALSE(status);
+      EXPECT_EQ(status.error().message, "5");
       EXPECT_EQ(taken, 5u);
     }
   }
@@ -88,11 +88,11 @@ TEST(MakeInOrder, StopsAtTheFirstErrorInOrder) {
 TEST(MakeInOrder, PassesOnWhatTakingSaysOrThrows) {
   const auto nothing = [](std::size_t, std::size_t) { return Status(); };
   for (const int jobs : {1, 3}) {
-    const Status done = make_in_order(50, jobs, nothing, [](std::size_t item, std::size_t) {
+    const Status status = make_in_order(50, jobs, nothing, [](std::size_t item, std::size_t) {
       return item == 9 ? Status(Error("full", "the disk is full")) : Status();
     });
-    ASSERT_FALSE(done);
-    EXPECT_EQ(done.error().code, "full");
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().code, "full");
     EXPECT_THROW((void)make_in_order(50, jobs, nothing,
                                      [](std::size_t item, std::size_t) -> Status {
                                        if (item == 9) throw std::runtime_error("stop");

@@ -139,13 +139,13 @@ TEST(OnThreads, GoesOnWithTheThreadsThatThereAre) {
     std::atomic<std::size_t> calls{0}, items{0};
     on_threads(1000, [&] { ++calls; });
     parallel_for(2000, 1, 1000, [&](std::size_t, std::size_t) { ++items; });
-    const Status made = make_in_order(
+    const Status status = make_in_order(
         2000, 1000, [](std::size_t, std::size_t) { return Status(); },
         [&](std::size_t, std::size_t) {
           ++items;
           return Status();
         });
-    _exit(calls >= 1 && calls < 1000 && items == 4000 && made ? 7 : 2);
+    _exit(calls >= 1 && calls < 1000 && items == 4000 && status ? 7 : 2);
   }
   int status = 0;
   waitpid(child, &status, 0);

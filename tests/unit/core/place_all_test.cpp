@@ -49,9 +49,9 @@ TEST_F(PlaceAllTest, AFailureTakesBackTheOthers) {
   put("b", "old b");
   auto made = files({"a", "b", "c", "d"});
   fs::create_directories(path("c/inside"));
-  const Status placed = OutputFile::place_all(made);
-  ASSERT_FALSE(placed);
-  EXPECT_EQ(placed.error().where.file, path("c"));
+  const Status status = OutputFile::place_all(made);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().where.file, path("c"));
   EXPECT_EQ(listing(), (Names{"b", "c"}));
   EXPECT_EQ(get(path("b")), "old b");
 }
@@ -59,9 +59,9 @@ TEST_F(PlaceAllTest, AFailureTakesBackTheOthers) {
 TEST_F(PlaceAllTest, NoClobberTakesBackTheOthersToo) {
   auto made = files({"a", "b"}, {.no_clobber = true});
   put("b", "other");
-  const Status placed = OutputFile::place_all(made);
-  ASSERT_FALSE(placed);
-  EXPECT_EQ(placed.error().code, "file-exists");
+  const Status status = OutputFile::place_all(made);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "file-exists");
   EXPECT_EQ(listing(), Names{"b"});
   EXPECT_EQ(get(path("b")), "other");
 }

@@ -39,9 +39,9 @@ TEST(Result, MovesAValueThatCannotBeCopied) {
 
 TEST(Result, StatusIsSuccessByDefault) {
   EXPECT_TRUE(Status().ok());
-  const Status failed = Error("code", "text");
-  ASSERT_FALSE(failed.ok());
-  EXPECT_EQ(failed.error().code, "code");
+  const Status status = Error("code", "text");
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "code");
 }
 
 TEST(Error, TakesAPlaceAndKeepsTheFirstFile) {

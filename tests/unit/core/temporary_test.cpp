@@ -116,8 +116,8 @@ TEST_F(TemporaryTest, AFileThatGrowsTooLargeIsAnError) {
     remove_temporaries_on_signals();
     rlimit limit{1000, 1000};
     setrlimit(RLIMIT_FSIZE, &limit);
-    const Status written = write_file(path("out"), std::string(1 << 20, 'n'));
-    _exit(!written && written.error().code == "file-unwritable" ? 7 : 1);
+    const Status status = write_file(path("out"), std::string(1 << 20, 'n'));
+    _exit(!status && status.error().code == "file-unwritable" ? 7 : 1);
   }
   int status = 0;
   waitpid(child, &status, 0);

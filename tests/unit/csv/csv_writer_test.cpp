@@ -88,9 +88,9 @@ TEST(CsvWriter, RefusesWhatIsNotFinite) {
   clip.positions[2].x() = std::numeric_limits<float>::quiet_NaN();
   auto file = OutputFile::create(testing::TempDir() + "krok_csv_nan_" + std::to_string(getpid()));
   ASSERT_TRUE(file.ok());
-  const Status refused = csv::write(clip, *file);
-  ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().code, "clip-value");
+  const Status status = csv::write(clip, *file);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "clip-value");
 }
 
 }  // namespace

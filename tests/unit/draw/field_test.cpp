@@ -23,9 +23,9 @@ Panel field_panel(std::vector<double> values, int columns, int rows) {
 }
 
 Result<std::string> drawn(const Panel& panel) {
-  Figure figure;
-  figure.panels.push_back(panel);
-  return to_svg(figure);
+  Chart chart;
+  chart.panels.push_back(panel);
+  return to_svg(chart);
 }
 
 struct Cell {

@@ -77,9 +77,9 @@ TEST(BodyAngle, OfABoneWithoutLengthIsNoNumberAndLeavesAGap) {
       body_angle(shown.clip, shown.roles, BodyAngle::knee, Side::left, shown.charted.frames);
   ASSERT_THAT(values, SizeIs(3));
   EXPECT_TRUE(std::isnan(values[1]));
-  Figure figure;
-  figure.panels = body_angle_panels({&shown.charted, 1});
-  const auto svg = to_svg(figure);
+  Actor actor;
+  actor.panels = body_angle_panels({&shown.charted, 1});
+  const auto svg = to_svg(actor);
   ASSERT_TRUE(svg.ok());
   EXPECT_THAT(*svg, Not(HasSubstr("nan")));
 }

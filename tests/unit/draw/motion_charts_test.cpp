@@ -22,14 +22,14 @@ using testing::Not;
 using testing::SizeIs;
 
 std::string svg_of(std::vector<Panel> panels) {
-  Figure figure;
-  figure.panels = std::move(panels);
-  const auto svg = to_svg(figure);
+  Actor actor;
+  actor.panels = std::move(panels);
+  const auto svg = to_svg(actor);
   EXPECT_TRUE(svg.ok());
   return svg.ok() ? *svg : std::string();
 }
 
-TEST(MotionCharts, OfAFigureWithoutLimbsShowOnlyItsPath) {
+TEST(MotionCharts, OfAActorWithoutLimbsShowOnlyItsPath) {
   Clip chain;
   chain.skeleton.add("a", -1, {});
   chain.skeleton.add("b", 0, {Vec3(0, 1, 0), Quat::Identity()});

@@ -68,22 +68,22 @@ TEST(PackedMotion, LeavesOutWhatDoesNotMove) {
   EXPECT_LT(still_blob.base64().size(), 3000U);
 }
 
-Material textured(const std::string& name, const std::shared_ptr<const Picture>& picture) {
+Material textured(const std::string& name, const std::shared_ptr<const EncodedImage>& image) {
   Material material;
   material.name = name;
-  material.base_color_texture.picture = picture;
+  material.base_color_texture.image = image;
   material.base_color_texture.wrap_v = Texture::Wrap::mirror;
   return material;
 }
 
-TEST(PackedLook, PartsNameTheirMaterialsAndPicturesStandOnce) {
+TEST(PackedLook, PartsNameTheirMaterialsAndImagesStandOnce) {
   Model body = test::tube_model(test::human_skeleton());
   body.texture_coordinates.assign(body.positions.size(), Vec2f(0.25f, 0.75f));
   const auto half = static_cast<std::uint32_t>(body.triangles.size() / 2);
   const auto rest = static_cast<std::uint32_t>(body.triangles.size()) - half;
   body.parts = {{"a", "Two", 0, half}, {"b", "None", half, 1}, {"c", "One", half + 1, rest - 1}};
-  const auto picture = test::picture(test::png());
-  const std::vector<Material> materials = {textured("One", picture), textured("Two", picture)};
+  const auto image = test::image(test::png());
+  const std::vector<Material> materials = {textured("One", image), textured("Two", image)};
   Blob blob;
   const auto look = pack_look(body, materials, blob);
   ASSERT_TRUE(look.ok());
@@ -100,24 +100,24 @@ TEST(PackedLook, PartsNameTheirMaterialsAndPicturesStandOnce) {
   EXPECT_EQ((*look)["coordinates"]["count"], body.positions.size() * 2);
 }
 
-TEST(PackedLook, AMeshWithoutCoordinatesHasNoPictures) {
+TEST(PackedLook, AMeshWithoutCoordinatesHasNoImages) {
   Model body = test::tube_model(test::human_skeleton());
   body.texture_coordinates.clear();
   body.parts[0].material = "One";
   Blob blob;
-  const auto look = pack_look(body, std::vector{textured("One", test::picture(test::png()))}, blob);
+  const auto look = pack_look(body, std::vector{textured("One", test::image(test::png()))}, blob);
   ASSERT_TRUE(look.ok());
   EXPECT_TRUE((*look)["materials"][0]["textures"].empty());
   EXPECT_TRUE((*look)["pictures"].empty());
 }
 
-TEST(PackedLook, APictureThatIsNoneIsAnError) {
+TEST(PackedLook, AImageThatIsNoneIsAnError) {
   Model body = test::tube_model(test::human_skeleton());
   body.texture_coordinates.assign(body.positions.size(), Vec2f::Zero());
   body.parts[0].material = "One";
   Blob blob;
   const auto look =
-      pack_look(body, std::vector{textured("One", test::picture({std::byte{7}}))}, blob);
+      pack_look(body, std::vector{textured("One", test::image({std::byte{7}}))}, blob);
   ASSERT_FALSE(look.ok());
   EXPECT_EQ(look.error().code, "picture-kind");
 }

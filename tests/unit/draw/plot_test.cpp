@@ -20,9 +20,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string svg_of(const Panel& panel) {
-  Figure figure;
-  figure.panels.push_back(panel);
-  auto svg = to_svg(figure);
+  Chart chart;
+  chart.panels.push_back(panel);
+  auto svg = to_svg(chart);
   EXPECT_TRUE(svg.ok()) << svg.error().message;
   return svg.ok() ? *svg : std::string();
 }
@@ -123,7 +123,7 @@ TEST(Plot, TextIsTextAndSafe) {
   EXPECT_THAT(svg, HasSubstr(">knee<"));
 }
 
-TEST(Plot, TheSameFigureGivesTheSameBytes) {
+TEST(Plot, TheSameChartGivesTheSameBytes) {
   EXPECT_EQ(svg_of(line_panel()), svg_of(line_panel()));
 }
 
@@ -148,11 +148,11 @@ TEST(Plot, OneValueStandsInTheMiddle) {
 
 TEST(Plot, OneTickWithinTheValuesMakesNoOddAxis) {
   // Of the multiples of 50 only 50 lies within; the axis is to end at multiples all the same.
-  Figure figure;
-  figure.panel_height = 100;
-  figure.panels = {line_panel()};
-  figure.panels[0].series[0].y = {4, 50, 70, 20};
-  const auto svg = to_svg(figure);
+  Chart chart;
+  chart.panel_height = 100;
+  chart.panels = {line_panel()};
+  chart.panels[0].series[0].y = {4, 50, 70, 20};
+  const auto svg = to_svg(chart);
   ASSERT_TRUE(svg.ok());
   const Ruler y = y_ruler(*svg);
   EXPECT_NEAR(y.value_at(28), 100, 0.01);  // the upper edge of the plotted area
@@ -196,12 +196,12 @@ TEST(Plot, BarsOfLanesStandBelowTheData) {
   EXPECT_THAT(svg, HasSubstr(palette()[4]));
 }
 
-TEST(Plot, ALegendOfTheFigureStandsForAllPanels) {
-  Figure figure;
-  figure.panels = {line_panel(), line_panel()};
-  for (Panel& panel : figure.panels) panel.legend = false;
-  figure.legend = {{"left", 0, 0}, {"right", 4, 1}};
-  const auto svg = to_svg(figure);
+TEST(Plot, ALegendOfTheChartStandsForAllPanels) {
+  Chart chart;
+  chart.panels = {line_panel(), line_panel()};
+  for (Panel& panel : chart.panels) panel.legend = false;
+  chart.legend = {{"left", 0, 0}, {"right", 4, 1}};
+  const auto svg = to_svg(chart);
   ASSERT_TRUE(svg.ok());
   EXPECT_EQ(count_of(*svg, ">left<"), 1);
   EXPECT_EQ(count_of(*svg, ">right<"), 1);
@@ -310,17 +310,17 @@ TEST(Plot, NamesOfMomentsDoNotCoverEachOther) {
 }
 
 TEST(Plot, RefusesWhatMakesNoPlot) {
-  EXPECT_EQ(to_svg(Figure()).error().code, "plot-empty");
-  Figure uneven;
+  EXPECT_EQ(to_svg(Chart()).error().code, "plot-empty");
+  Chart uneven;
   uneven.panels.push_back(line_panel());
   uneven.panels[0].series[0].y.pop_back();
   EXPECT_EQ(to_svg(uneven).error().code, "plot-shape");
-  Figure falling;
+  Chart falling;
   falling.panels.push_back(line_panel());
   falling.panels[0].x.low = 2;
   falling.panels[0].x.high = 1;
   EXPECT_EQ(to_svg(falling).error().code, "plot-axis");
-  Figure flat;
+  Chart flat;
   flat.panels.push_back(line_panel());
   flat.panel_height = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(to_svg(flat).error().code, "plot-size");

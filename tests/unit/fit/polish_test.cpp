@@ -65,7 +65,7 @@ TEST(Polish, BringsDownTheErrorBetweenPoints) {
     const LatticeErrors after = lattice_errors(better, arm.measure());
     EXPECT_LT(after.mean, 0.8 * before.mean) << dimensions << " " << points;
     EXPECT_LT(after.largest, 1.05 * before.largest) << dimensions << " " << points;
-    const RefineFigures &was = found.rounds.back().after, &now = better.polished->after;
+    const RefineMetrics &was = found.rounds.back().after, &now = better.polished->after;
     EXPECT_LT(now.mean_square, 0.7 * was.mean_square);
     EXPECT_LE(now.largest, was.largest);
     EXPECT_GE(now.least_weight, -0.15);
@@ -162,9 +162,9 @@ TEST(Polish, LeavesAloneWhatItCannotMakeBetter) {
   const Refined found = refined(start_of(arm), arm.measure(), options);
   const rbf::Measure misleading = [&arm](std::span<const double> w, std::span<double> out,
                                          std::span<double> jacobian) -> Status {
-    Status measured = arm.measure()(w, out, jacobian);
+    Status status = arm.measure()(w, out, jacobian);
     for (double& slope : jacobian) slope = -slope;
-    return measured;
+    return status;
   };
   EXPECT_EQ(polished(found, misleading, options), found);
   const rbf::Measure nowhere = [](std::span<const double>, std::span<double>,
@@ -179,7 +179,7 @@ TEST(Polish, MissesNoToleranceThatWasMet) {
   const Arm arm = make_arm(2, 3);
   const rbf::Measure half_straight = [&arm](std::span<const double> w, std::span<double> out,
                                             std::span<double> jacobian) -> Status {
-    if (Status measured = arm.measure()(w, out, jacobian); !measured) return measured;
+    if (Status status = arm.measure()(w, out, jacobian); !status) return status;
     out[1] = 0;
     for (std::size_t i = 0; i < w.size(); ++i) {
       out[1] += w[i] * arm.parameters[2 * i + 1];
@@ -219,8 +219,8 @@ TEST(Polish, TooManyPointsAreLeftAsFound) {
   const Arm arm = make_arm(1, 4);
   Refined many = start_of(arm);
   rbf::WeightFunction& f = many.function;
-  for (int k = 0; k <= kMostPolished; ++k) {
-    f.centres.push_back(f.lower[0] + (f.upper[0] - f.lower[0]) * (k + 0.5) / kMostPolished);
+  for (int k = 0; k <= kMaxPolished; ++k) {
+    f.centres.push_back(f.lower[0] + (f.upper[0] - f.lower[0]) * (k + 0.5) / kMaxPolished);
     f.inserted_rows.insert(f.inserted_rows.end(), {1, 0, 0, 0});
     f.coefficients.insert(f.coefficients.end(), 4, 0.0);
   }

@@ -58,7 +58,7 @@ inline double error_at(const Refined& refined, int points) {
 }
 
 inline void expect_good_weights(const Refined& refined) {
-  const RefineFigures& last = refined.rounds.back().after;
+  const RefineMetrics& last = refined.rounds.back().after;
   EXPECT_GE(last.least_weight, -0.15);
   EXPECT_LE(last.roughness, 1.1 * refined.before.roughness);
   EXPECT_LT(refined.example_error, 1e-9);

@@ -66,7 +66,7 @@ TEST(BakedWriter, EachTargetHasItsOwnBounds) {
 TEST(BakedWriter, BoundsOfAnyLengthFit) {
   const Model model = odd_model();
   const float longest = -1.17549435e-38f;
-  const ShapeSource source = [&](int frame, const ShapePlace& to) {
+  const ShapeSource source = [&](int frame, const ShapeOutput& to) {
     std::ranges::copy(model.normals, to.normals.begin());
     std::ranges::fill(to.positions, Vec3f::Zero());
     if (frame == 1) to.positions[1] = Vec3f(longest, -1.23456789e-30f, 3e38f);
@@ -88,7 +88,7 @@ TEST(BakedWriter, WritesAFrameBeforeItAsksForTheOneAfterTheNext) {
   const ShapeSource wobble = motion.source();
   std::vector<int> asked;
   (void)test::bytes_of([&](OutputFile& file) {
-    motion.source = copies_of([&](int frame, const ShapePlace& to) {
+    motion.source = copies_of([&](int frame, const ShapeOutput& to) {
       const auto before = static_cast<std::uint64_t>(frame);
       // Frame 0 is in the file's head.
       if (frame > 1) {
@@ -161,7 +161,7 @@ TEST(BakedWriter, AVertexThatIsNotFiniteIsToldByItsFrame) {
     for (const bool in_normals : {false, true}) {
       MeshMotion motion = test::wobble(model, 5);
       const auto wobble = motion.source();
-      motion.source = copies_of([&](int frame, const ShapePlace& to) {
+      motion.source = copies_of([&](int frame, const ShapeOutput& to) {
         wobble(frame, to);
         auto& vector = in_normals ? to.normals[2] : to.positions.back();
         if (frame == bad) vector.y() = std::numeric_limits<float>::quiet_NaN();
@@ -179,7 +179,7 @@ TEST(BakedWriter, AVertexThatIsNotFiniteIsToldByItsFrame) {
 TEST(BakedWriter, MoreThanGltfCanTellIsRefusedBeforeItIsMade) {
   const Model model = odd_model();
   // Weights for each pair of frames: 40,000 of them take 6.4 GB.
-  const ShapeSource source = [&](int frame, const ShapePlace& to) {
+  const ShapeSource source = [&](int frame, const ShapeOutput& to) {
     EXPECT_EQ(frame, 0);
     std::ranges::fill(to.positions, Vec3f::Zero());
   };

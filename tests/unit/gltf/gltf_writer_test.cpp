@@ -271,8 +271,8 @@ TEST(GltfWriter, RefusesWhatGltfCannotHold) {
 TEST(GltfWriter, AFullDiskIsAnError) {
   auto file = OutputFile::create("/dev/full");
   ASSERT_TRUE(file.ok());
-  const Status written = gltf::write_skeleton(motion(), {}, *file);
-  EXPECT_FALSE(written.ok() && file->commit().ok());
+  const Status status = gltf::write_skeleton(motion(), {}, *file);
+  EXPECT_FALSE(status.ok() && file->commit().ok());
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ TEST(JointTracks, SuccessiveRotationsLieInOneHemisphere) {
   }
 }
 
-TEST(JointTracks, AFigureAtRestHasNone) {
+TEST(JointTracks, AActorAtRestHasNone) {
   Clip clip;
   clip.skeleton = turned_human();
   clip.resize(5);

@@ -24,8 +24,8 @@ Model dressed_model() {
 }
 
 std::vector<Material> look() {
-  const auto color = test::picture(test::png(), "color");
-  const auto detail = test::picture(test::jpeg(), "detail");
+  const auto color = test::image(test::png(), "color");
+  const auto detail = test::image(test::jpeg(), "detail");
   std::vector<Material> materials(3);
   Material& skin = materials[0];
   skin.name = "skin";
@@ -44,7 +44,7 @@ std::vector<Material> look() {
   skin.alpha_cutoff = 0.25f;
   skin.double_sided = true;
   materials[1].name = "never used";
-  materials[1].base_color_texture = {test::picture(test::png(), "never used")};
+  materials[1].base_color_texture = {test::image(test::png(), "never used")};
   materials[2].name = "cloth";
   materials[2].alpha = Material::Alpha::blend;
   materials[2].unlit = true;
@@ -98,7 +98,7 @@ TEST(GltfMaterials, HoldEveryValue) {
   EXPECT_FALSE(glb.json.contains("extensionsRequired"));
 }
 
-TEST(GltfMaterials, PicturesStandThereOnceAndByteForByte) {
+TEST(GltfMaterials, ImagesStandThereOnceAndByteForByte) {
   const auto materials = look();
   gltf::WriteOptions options;
   options.materials = materials;
@@ -127,7 +127,7 @@ TEST(GltfMaterials, PicturesStandThereOnceAndByteForByte) {
   EXPECT_EQ(glb.json["samplers"][shine["sampler"].get<std::size_t>()]["magFilter"], 9728);
 }
 
-TEST(GltfMaterials, WithoutTextureCoordinatesThereAreNoPictures) {
+TEST(GltfMaterials, WithoutTextureCoordinatesThereAreNoImages) {
   const auto materials = look();
   gltf::WriteOptions options;
   options.materials = materials;
@@ -223,7 +223,7 @@ TEST(GltfMaterials, MeshesBakesAndTextsHaveThemToo) {
   const auto scene = read_with_materials(text);
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   ASSERT_EQ(scene->materials.size(), 2u);
-  EXPECT_EQ(scene->materials[0].base_color_texture.picture->bytes, test::png());
+  EXPECT_EQ(scene->materials[0].base_color_texture.image->bytes, test::png());
 }
 
 TEST(GltfMaterials, ComeBackAsTheyWere) {
@@ -252,8 +252,8 @@ TEST(GltfMaterials, ComeBackAsTheyWere) {
     for (std::size_t t = 0; t < textures.size(); ++t) {
       ASSERT_EQ(static_cast<bool>(*textures[t]), static_cast<bool>(*others[t])) << t;
       if (!*others[t]) continue;
-      EXPECT_EQ(textures[t]->picture->bytes, others[t]->picture->bytes);
-      EXPECT_EQ(textures[t]->picture->name, others[t]->picture->name);
+      EXPECT_EQ(textures[t]->image->bytes, others[t]->image->bytes);
+      EXPECT_EQ(textures[t]->image->name, others[t]->image->name);
       EXPECT_EQ(textures[t]->wrap_u, others[t]->wrap_u);
       EXPECT_EQ(textures[t]->wrap_v, others[t]->wrap_v);
       EXPECT_EQ(textures[t]->smooth, others[t]->smooth);
@@ -273,7 +273,7 @@ TEST(GltfMaterials, FaultsAreToldBeforeAnythingIsWritten) {
       return gltf::write_mesh(model, {model.positions, {}, {}}, options, file);
     });
   };
-  materials[0].base_color_texture.picture = test::picture({});
+  materials[0].base_color_texture.image = test::image({});
   EXPECT_EQ(code(), "picture-kind");
   materials[0].base_color_texture = {};
   materials[0].roughness = 2;

@@ -98,7 +98,7 @@ TEST_F(ReduceTracks, NeverMakesAFileMuchLarger) {
   }
 }
 
-TEST_F(ReduceTracks, AFigureThatStandsStillLastsAsLong) {
+TEST_F(ReduceTracks, AActorThatStandsStillLastsAsLong) {
   Clip clip;
   clip.skeleton = test::human_skeleton();
   clip.rate = 10;

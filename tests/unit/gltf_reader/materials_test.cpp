@@ -98,28 +98,28 @@ TEST_F(GltfMaterialReader, NamesBecomeUnique) {
   EXPECT_EQ(names, (std::vector<std::string>{"A", "A_2", "A_3", "material_3"}));
 }
 
-TEST_F(GltfMaterialReader, PicturesComeFromBuffersUrisAndFiles) {
+TEST_F(GltfMaterialReader, ImagesComeFromBuffersUrisAndFiles) {
   EXPECT_EQ(read_image({{"bufferView", builder_.add_view(test::png())},
                         {"mimeType", "image/png"},
                         {"name", "n"}})
-                .picture->bytes,
+                .image->bytes,
             test::png());
-  EXPECT_EQ(scene_.materials[0].base_color_texture.picture->name, "n");
+  EXPECT_EQ(scene_.materials[0].base_color_texture.image->name, "n");
   // The media type may lie; the bytes count.
   const Texture inside = read_image({{"uri", "data:image/png;base64," + base64(test::jpeg())}});
   ASSERT_TRUE(static_cast<bool>(inside));
-  EXPECT_EQ(inside.picture->bytes, test::jpeg());
+  EXPECT_EQ(inside.image->bytes, test::jpeg());
   EXPECT_TRUE(scene_.files.empty());
   fs::create_directory(path("tex"));
   put("tex/a b.png", test::text_of(test::png()));
   const Texture beside = read_image({{"uri", "tex/a%20b.png"}});
   ASSERT_TRUE(static_cast<bool>(beside));
-  EXPECT_EQ(beside.picture->bytes, test::png());
+  EXPECT_EQ(beside.image->bytes, test::png());
   EXPECT_EQ(scene_.files, std::vector<std::string>{path("tex/a b.png")});
   EXPECT_TRUE(scene_.diagnostics.empty());
 }
 
-TEST_F(GltfMaterialReader, WhatLeadsOutOrIsNoPictureIsLeftOutWithAWarning) {
+TEST_F(GltfMaterialReader, WhatLeadsOutOrIsNoImageIsLeftOutWithAWarning) {
   fs::create_directory(path("in"));
   put("secret.png", test::text_of(test::png()));
   fs::create_symlink("../secret.png", path("in/link.png"));
@@ -161,7 +161,7 @@ TEST_F(GltfMaterialReader, ManyImagesOfTheSameBytesTakeNoMoreThanTheFile) {
   scene_ = read();
   std::size_t bytes = 0;
   for (const Material& material : scene_.materials) {
-    if (material.emissive_texture) bytes += material.emissive_texture.picture->bytes.size();
+    if (material.emissive_texture) bytes += material.emissive_texture.image->bytes.size();
   }
   EXPECT_GE(bytes, large.size());
   EXPECT_LE(bytes, builder_.bin.size());
@@ -177,8 +177,7 @@ TEST_F(GltfMaterialReader, OneFileIsReadOnceHoweverItIsNamed) {
   }
   scene_ = read();
   EXPECT_EQ(scene_.files.size(), 1u);
-  EXPECT_EQ(scene_.materials[0].emissive_texture.picture,
-            scene_.materials[2].emissive_texture.picture);
+  EXPECT_EQ(scene_.materials[0].emissive_texture.image, scene_.materials[2].emissive_texture.image);
 }
 
 TEST_F(GltfMaterialReader, WhatIsNotKnownIsSaid) {

@@ -37,13 +37,13 @@ TEST(MaterialFile, ReadsWhatTheSpecSays) {
   EXPECT_EQ(skin.roughness, 0.5f);
   EXPECT_EQ(skin.alpha, Material::Alpha::mask);
   EXPECT_EQ(skin.alpha_cutoff, 0.5f);
-  EXPECT_EQ(skin.normal_texture.picture->path, "tex/n.png");
+  EXPECT_EQ(skin.normal_texture.image->path, "tex/n.png");
   EXPECT_TRUE(skin.normal_texture.smooth);
   EXPECT_EQ(glass.base_color, Vec4f(0.1f, 0.2f, 0.3f, 0.4f));
   EXPECT_EQ(glass.occlusion_texture.wrap_u, Texture::Wrap::clamp);
   EXPECT_EQ(glass.occlusion_texture.wrap_v, Texture::Wrap::repeat);
   EXPECT_FALSE(glass.occlusion_texture.smooth);
-  EXPECT_EQ(glass.occlusion_texture.picture, skin.normal_texture.picture);
+  EXPECT_EQ(glass.occlusion_texture.image, skin.normal_texture.image);
   EXPECT_EQ(glass.shaders, std::vector<std::string>{"glass.frag"});
 }
 
@@ -98,9 +98,9 @@ TEST(MaterialFile, FaultsAreToldWithTheirPlace) {
 TEST(MaterialFile, WritingRefusesWhatReadingWould) {
   Material material;
   material.name = "a";
-  material.base_color_texture.picture = test::picture({}, "", "../a.png");
+  material.base_color_texture.image = test::image({}, "", "../a.png");
   EXPECT_EQ(write(std::vector{material}).error().code, "material-path");
-  material.base_color_texture.picture = test::picture(test::png());  // without a path
+  material.base_color_texture.image = test::image(test::png());  // without a path
   EXPECT_EQ(write(std::vector{material}).error().code, "material-path");
   material.base_color_texture = {};
   material.metallic = 3;
@@ -108,10 +108,10 @@ TEST(MaterialFile, WritingRefusesWhatReadingWould) {
   EXPECT_EQ(read(*write({}))->size(), 0u);
 }
 
-class LoadPictures : public test::FolderTest {
+class LoadImages : public test::FolderTest {
  protected:
   Status load(std::vector<Material>& materials) {
-    return load_pictures(materials, [&](const std::string& name) {
+    return load_images(materials, [&](const std::string& name) {
       ++opened_;
       return InputFile::open(path(name));
     });
@@ -119,26 +119,26 @@ class LoadPictures : public test::FolderTest {
   int opened_ = 0;
 };
 
-TEST_F(LoadPictures, EachFileIsReadOnce) {
+TEST_F(LoadImages, EachFileIsReadOnce) {
   std::filesystem::create_directory(path("tex"));
   put("tex/n.png", test::text_of(test::png()));
   auto materials = read(kGood);
   ASSERT_TRUE(materials.ok());
-  const Status done = load(*materials);
-  ASSERT_TRUE(done.ok()) << done.error().message;
+  const Status status = load(*materials);
+  ASSERT_TRUE(status.ok()) << status.error().message;
   EXPECT_EQ(opened_, 1);
-  EXPECT_EQ((*materials)[0].normal_texture.picture->bytes, test::png());
-  EXPECT_EQ((*materials)[0].normal_texture.picture, (*materials)[1].occlusion_texture.picture);
+  EXPECT_EQ((*materials)[0].normal_texture.image->bytes, test::png());
+  EXPECT_EQ((*materials)[0].normal_texture.image, (*materials)[1].occlusion_texture.image);
 }
 
-TEST_F(LoadPictures, TellsWhichIsMissingOrNoPicture) {
+TEST_F(LoadImages, TellsWhichIsMissingOrNoImage) {
   auto materials = read(kGood);
   EXPECT_EQ(load(*materials).error().code, "file-missing");
   std::filesystem::create_directory(path("tex"));
   put("tex/n.png", "GIF89a");
-  const Status done = load(*materials);
-  EXPECT_EQ(done.error().code, "picture-kind");
-  EXPECT_EQ(done.error().where.file, path("tex/n.png"));
+  const Status status = load(*materials);
+  EXPECT_EQ(status.error().code, "picture-kind");
+  EXPECT_EQ(status.error().where.file, path("tex/n.png"));
 }
 
 }  // namespace

@@ -74,8 +74,8 @@ TEST(ModelFormat, WriterRefusesWhatIsNoModel) {
     Model model = samples::model();
     change(model);
     auto file = OutputFile::create("/dev/null");
-    const Status written = model::write(model, {}, *file);
-    return written ? std::string() : written.error().code;
+    const Status status = model::write(model, {}, *file);
+    return status ? std::string() : status.error().code;
   };
   EXPECT_EQ(code([](Model&) {}), "");
   EXPECT_EQ(code([&](Model& m) { m.positions[1].x() = nan; }), "model-value");

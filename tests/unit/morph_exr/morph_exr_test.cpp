@@ -37,8 +37,8 @@ std::string written(const MorphSet& set) {
       std::filesystem::temp_directory_path() / ("krok-morph-" + std::to_string(getpid()) + ".exr");
   auto file = OutputFile::create(path.string());
   EXPECT_TRUE(file.ok());
-  const Status done = morph_exr::write(set, *file);
-  EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.error().message);
+  const Status status = morph_exr::write(set, *file);
+  EXPECT_TRUE(status.ok()) << (status.ok() ? "" : status.error().message);
   EXPECT_TRUE(file->commit().ok());
   std::ifstream in(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(in), {}};

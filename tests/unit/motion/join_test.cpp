@@ -9,7 +9,7 @@
 
 #include "math/quaternion.h"
 #include "motion/cut.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
 #include "motion/retime.h"
@@ -48,8 +48,8 @@ TEST(Join, GoesOnWhereTheFirstStandsAndFaces) {
   ASSERT_TRUE(joined.ok());
   EXPECT_EQ(joined->clip.frame_count(), 61);
   EXPECT_EQ(joined->joint_frame, 30);
-  const GroundPlace end = ground_place(swinging_human(31), 0, 30);
-  const GroundPlace at = ground_place(joined->clip, 0, 30);
+  const GroundFrame end = ground_frame(swinging_human(31), 0, 30);
+  const GroundFrame at = ground_frame(joined->clip, 0, 30);
   EXPECT_NEAR(at.x, end.x, 1e-5);
   EXPECT_NEAR(at.z, end.z, 1e-5);
   // Its next step leads on from there as the second's first did.

@@ -10,7 +10,7 @@
 #include "math/quaternion.h"
 #include "motion/cut.h"
 #include "motion/displacement.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
 #include "samples/generator/walk.h"
@@ -205,7 +205,7 @@ TEST(Loop, AStillRootTravelsAlongAfterwards) {
   }
 }
 
-TEST(Loop, WhereTheFigureStandsAndFacesDoesNotMatter) {
+TEST(Loop, WhereTheActorStandsAndFacesDoesNotMatter) {
   const Clip clip = cut(walk(3 * kRadiansPerDegree), 10, 72);
   const Transform move{Vec3(3, 0, -7), from_rotation_vector(Vec3(0, 2.2, 0))};
   Clip moved = clip;
@@ -242,7 +242,7 @@ TEST(Repeated, GoesOnRoundAfterRound) {
   ASSERT_TRUE(played.ok());
   EXPECT_EQ(played->frame_count(), 12 * 60 + 1);
   // Twelve times thirty degrees is a whole circle.
-  EXPECT_NEAR(wrapped(ground_place(*played, 0, 720).heading - ground_place(*played, 0, 0).heading),
+  EXPECT_NEAR(wrapped(ground_frame(*played, 0, 720).heading - ground_frame(*played, 0, 0).heading),
               0, 15 * kRadiansPerDegree);
   EXPECT_EQ(repeated(result.clip, result.displacement, 1)->frame_count(), 61);
   EXPECT_EQ(repeated(result.clip, result.displacement, 2'000'000'000).error().code,

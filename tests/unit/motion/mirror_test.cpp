@@ -126,7 +126,7 @@ TEST(MirrorPairs, AHeadHeldAslantIsStillOfTheMiddle) {
                   mirror(test::swinging_clip(skeleton, 3, 30), pairs), pairs, 0.13);
 }
 
-TEST(Mirror, IsTheImageOfASymmetricFigure) {
+TEST(Mirror, IsTheImageOfASymmetricActor) {
   const Clip clip = test::swinging_clip(test::human_skeleton(), 12, 30);
   const MirrorPairs pairs = pairs_of(clip.skeleton);
   const Clip mirrored = mirror(clip, pairs);
@@ -174,7 +174,7 @@ TEST(Mirror, ALopsidedReferencePoseDoesNotMatter) {
   expect_twice_is_nothing(clip, pairs);
 }
 
-TEST(Mirror, AFigureThatStandsBesideTheOriginInItsReferencePose) {
+TEST(Mirror, AActorThatStandsBesideTheOriginInItsReferencePose) {
   Skeleton skeleton = test::human_skeleton();
   const Clip centred = test::swinging_clip(skeleton, 6, 30);
   for (Transform& joint : skeleton.reference) joint.position.x() += 0.8;

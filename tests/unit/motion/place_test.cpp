@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "math/quaternion.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/joint_selection.h"
 #include "motion/retime.h"
 #include "motion/travel.h"
@@ -34,32 +34,32 @@ double distance(const Clip& a, const Clip& b) {
   return most;
 }
 
-TEST(GroundPlace, TellsHeadingsLeaningOrNot) {
+TEST(GroundFrame, TellsHeadingsLeaningOrNot) {
   const Skeleton skeleton = test::with_turned_joints(test::human_skeleton());
   for (const double heading : {0.0, 0.5, -2.0, 3.1}) {
     for (const Vec3& lean : {Vec3(0, 0, 0), Vec3(1.2, 0, 0), Vec3(-1.5, 0, 0)}) {
       Transform hips = skeleton.reference[0];
       hips.orientation =
           from_rotation_vector(Vec3(0, heading, 0)) * from_rotation_vector(lean) * hips.orientation;
-      EXPECT_NEAR(ground_place(skeleton, 0, hips).heading, heading, 1e-12);
+      EXPECT_NEAR(ground_frame(skeleton, 0, hips).heading, heading, 1e-12);
     }
   }
   Transform upside_down = skeleton.reference[0];
   upside_down.orientation = Quat(0, 1, 0, 0) * upside_down.orientation;
-  EXPECT_TRUE(std::isfinite(ground_place(skeleton, 0, upside_down).heading));
+  EXPECT_TRUE(std::isfinite(ground_frame(skeleton, 0, upside_down).heading));
 }
 
 TEST(Place, AtTheOriginFacingAsAsked) {
   Clip clip = astray();
   move_clip(to_origin(clip, 0), clip);
   move_clip(facing_at_start(clip, 0, 0.7), clip);
-  const GroundPlace start = ground_place(clip, 0, 0);
+  const GroundFrame start = ground_frame(clip, 0, 0);
   EXPECT_NEAR(start.x, 0, 1e-6);
   EXPECT_NEAR(start.z, 0, 1e-6);
   EXPECT_NEAR(start.heading, 0.7, 1e-6);
   move_clip(turned_about_start(clip, 0, 0.4), clip);
-  EXPECT_NEAR(ground_place(clip, 0, 0).heading, 1.1, 1e-6);
-  EXPECT_NEAR(ground_place(clip, 0, 0).x, 0, 1e-6);
+  EXPECT_NEAR(ground_frame(clip, 0, 0).heading, 1.1, 1e-6);
+  EXPECT_NEAR(ground_frame(clip, 0, 0).x, 0, 1e-6);
   // Height is another matter, and the motion is the same but for where it happens.
   EXPECT_NEAR(clip.frame_positions(0)[0].y(), astray().frame_positions(0)[0].y(), 1e-6);
   Clip back = swinging_human(31);
@@ -94,7 +94,7 @@ TEST(Place, NoFramesAreNoTrouble) {
   EXPECT_EQ(clip.frame_count(), 0);
 }
 
-TEST(Scale, FigureAndMotionTogether) {
+TEST(Scale, ActorAndMotionTogether) {
   Clip clip = swinging_human(31);
   EXPECT_NEAR(reference_height(clip.skeleton), 1.75 * (1 - 0.008), 1e-9);
   ASSERT_TRUE(scale_clip(2, clip).ok());
@@ -117,17 +117,17 @@ TEST(InPlace, AllOrOnlyTheEvenPart) {
   const Clip clip = astray();
   const Clip still = in_place(clip, 0, Travel::all);
   const Clip even = in_place(clip, 0, Travel::trend);
-  const GroundPlace first = ground_place(clip, 0, 0);
+  const GroundFrame first = ground_frame(clip, 0, 0);
   double sway = 0;
   for (int f = 0; f < clip.frame_count(); ++f) {
-    EXPECT_NEAR(ground_place(still, 0, f).x, first.x, 1e-5);
-    EXPECT_NEAR(ground_place(still, 0, f).z, first.z, 1e-5);
+    EXPECT_NEAR(ground_frame(still, 0, f).x, first.x, 1e-5);
+    EXPECT_NEAR(ground_frame(still, 0, f).z, first.z, 1e-5);
     EXPECT_NEAR(still.frame_positions(f)[0].y(), clip.frame_positions(f)[0].y(), 1e-6);
-    sway = std::max(sway, std::abs(ground_place(even, 0, f).x - first.x));
+    sway = std::max(sway, std::abs(ground_frame(even, 0, f).x - first.x));
   }
   EXPECT_GT(sway, 0.02);
-  EXPECT_NEAR(ground_place(even, 0, 30).x, first.x, 1e-5);
-  EXPECT_NEAR(ground_place(even, 0, 30).z, first.z, 1e-5);
+  EXPECT_NEAR(ground_frame(even, 0, 30).x, first.x, 1e-5);
+  EXPECT_NEAR(ground_frame(even, 0, 30).z, first.z, 1e-5);
   EXPECT_EQ(in_place(swinging_human(0), 0, Travel::all).frame_count(), 0);
   EXPECT_EQ(in_place(swinging_human(1), 0, Travel::trend).positions, swinging_human(1).positions);
 }

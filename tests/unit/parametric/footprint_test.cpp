@@ -60,7 +60,7 @@ TEST(Footprint, FrameTakesTheToesToTheHeading) {
 }
 
 // The generator knows its soles: straight below and before the ankle.
-TEST(FootShapes, AreThoseOfTheGeneratedFigure) {
+TEST(FootShapes, AreThoseOfTheGeneratedActor) {
   const auto walk = test::keyed_walk({});
   const RoleMap roles = find_roles(walk.walk.clip.skeleton);
   const ClipContacts clips[] = {{&walk.walk.clip, &walk.found}};
@@ -68,12 +68,12 @@ TEST(FootShapes, AreThoseOfTheGeneratedFigure) {
   ASSERT_TRUE(shapes.ok());
   for (const FootSide side : {FootSide::left, FootSide::right}) {
     const FootShape& foot = (*shapes)[static_cast<std::size_t>(side)];
-    const auto& legs = walk.walk.figure.legs[static_cast<std::size_t>(side)];
+    const auto& legs = walk.walk.actor.legs[static_cast<std::size_t>(side)];
     EXPECT_EQ(foot.joint, legs.foot);
-    EXPECT_LT((foot.heel - walk.walk.figure.heel).norm(), 0.012);
+    EXPECT_LT((foot.heel - walk.walk.actor.heel).norm(), 0.012);
     EXPECT_NEAR(foot.forward.z(), 1, 1e-3);
     EXPECT_NEAR(foot.forward.x(), 0, 1e-3);
-    EXPECT_NEAR(foot.length, walk.walk.figure.ball.z() - walk.walk.figure.heel.z(), 0.012);
+    EXPECT_NEAR(foot.length, walk.walk.actor.ball.z() - walk.walk.actor.heel.z(), 0.012);
   }
   // Without contacts the reference pose tells which way is up.
   const ClipContacts bare[] = {{&walk.walk.clip, nullptr}};

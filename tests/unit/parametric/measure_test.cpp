@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/parallel.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "motion/sample.h"
 #include "parametric/blended_motion.h"
 #include "walks.h"
@@ -204,9 +204,9 @@ TEST(Measure, SaysWhenRotationsCancelAndWhenAFootStandsUpright) {
     auto scratch = measure.make_scratch();
     std::vector<double> values(library.parameters.size());
     const double weights[] = {1, -1};
-    const Status measured = measure(weights, values, {}, scratch);
-    ASSERT_FALSE(measured.ok());
-    EXPECT_EQ(measured.error().code, "parametric-sum");
+    const Status status = measure(weights, values, {}, scratch);
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().code, "parametric-sum");
   }
   const Example& example = library.examples[0];
   FootShape& foot = library.feet[0];
@@ -221,9 +221,9 @@ TEST(Measure, SaysWhenRotationsCancelAndWhenAFootStandsUpright) {
   auto scratch = measure.make_scratch();
   std::vector<double> values(library.parameters.size());
   const double weights[] = {1, 0};
-  const Status measured = measure(weights, values, {}, scratch);
-  ASSERT_FALSE(measured.ok());
-  EXPECT_EQ(measured.error().code, "parametric-foot");
+  const Status status = measure(weights, values, {}, scratch);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "parametric-foot");
 }
 
 }  // namespace

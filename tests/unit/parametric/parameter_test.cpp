@@ -74,11 +74,11 @@ TEST(Parameter, CheckFindsWhatMeasuresNothing) {
     std::vector<Parameter> all = {length,
                                   *parse_parameter("Hips.up@swing_off", skeleton(), kKeytimes)};
     change(all);
-    const Status sound = check(all, skeleton(), kKeytimes);
-    if (!sound) {
-      EXPECT_EQ(sound.error().code, "parametric-parameter");
+    const Status status = check(all, skeleton(), kKeytimes);
+    if (!status) {
+      EXPECT_EQ(status.error().code, "parametric-parameter");
     }
-    return sound.ok();
+    return status.ok();
   };
   using All = std::vector<Parameter>;
   EXPECT_TRUE(holds([](All&) {}));

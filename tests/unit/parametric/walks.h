@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "math/euler.h"
-#include "motion/ground_place.h"
+#include "motion/ground_frame.h"
 #include "parametric/cut_steps.h"
 #include "samples/generator/walk.h"
 

@@ -30,7 +30,7 @@ Model pair() {
   return model;
 }
 MeshMotion motion_of_pair(int frames) {
-  return {frames, 30, copies_of([](int frame, const ShapePlace& to) {
+  return {frames, 30, copies_of([](int frame, const ShapeOutput& to) {
             EXPECT_TRUE(to.normals.empty());
             to.positions[0] = Vec3f(1, 2, 3);
             to.positions[1] = Vec3f(0, 0, static_cast<float>(frame));
@@ -159,7 +159,7 @@ TEST(Pc2, RefusesOptionsThatTheFileCannotHold) {
 
 TEST(Pc2, WritesNoVertexThatIsNotFinite) {
   MeshMotion motion = motion_of_pair(4);
-  motion.source = copies_of([](int frame, const ShapePlace& to) {
+  motion.source = copies_of([](int frame, const ShapeOutput& to) {
     std::ranges::fill(to.positions, Vec3f::Zero());
     if (frame == 2) to.positions[1].z() = kNan;
   });
@@ -211,11 +211,11 @@ TEST(Pc2, AVertexThatIsNotFiniteIsToldByItsPlace) {
   ASSERT_TRUE(cache.ok());
   std::vector<Vec3f> positions(2);
   EXPECT_TRUE(cache->get(0, positions).ok());
-  const Status got = cache->get(1, positions);
-  ASSERT_FALSE(got.ok());
-  EXPECT_EQ(got.error().code, "pc2-value");
-  EXPECT_EQ(got.error().where.byte_offset, 32 + 24 + 12);
-  EXPECT_THAT(got.error().message, HasSubstr("vertex 1 of sample 1"));
+  const Status status = cache->get(1, positions);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "pc2-value");
+  EXPECT_EQ(status.error().where.byte_offset, 32 + 24 + 12);
+  EXPECT_THAT(status.error().message, HasSubstr("vertex 1 of sample 1"));
 }
 
 }  // namespace

@@ -33,11 +33,11 @@ class Odd {
   float last_ = 1;
 };
 
-Figure odd_figure(Odd& odd) {
-  Figure figure;
-  figure.centre = Vec3(odd.number(), 0, odd.number());
+Actor odd_actor(Odd& odd) {
+  Actor actor;
+  actor.centre = Vec3(odd.number(), 0, odd.number());
   for (int i = odd.pick(6); i > 0; --i) {
-    figure.bones.push_back(
+    actor.bones.push_back(
         {odd.point(), odd.point(), odd.radius(), odd.radius(), odd.colour(), odd.colour()});
   }
   for (int i = odd.pick(3); i > 0; --i) {
@@ -54,17 +54,17 @@ Figure odd_figure(Odd& odd) {
     }
     surface.triangles = std::make_shared<Triangles>(triangles);
     surface.colours = {odd.colour()};
-    figure.surfaces.push_back(surface);
+    actor.surfaces.push_back(surface);
   }
-  return figure;
+  return actor;
 }
 
-TEST(HostileFigures, AreDrawnOrRefusedAndDrawnAlikeByAnyNumberOfThreads) {
+TEST(HostileNumbers, AreDrawnOrRefusedAndDrawnAlikeByAnyNumberOfThreads) {
   int drawn = 0;
   for (unsigned seed = 0; seed < 150; ++seed) {
     Odd odd(seed);
-    const Figure first = odd_figure(odd);
-    const Figure second = odd_figure(odd);
+    const Actor first = odd_actor(odd);
+    const Actor second = odd_actor(odd);
     Sheet sheet = test::sheet_of(first, odd.number(), 0.5 * (odd.pick(5) - 2));
     sheet.rows[0].cells[0].layers.push_back({&second, 0.5});
     sheet.rows[0].cells[0].path = {odd.point().cast<double>(), odd.point().cast<double>()};

@@ -24,7 +24,7 @@ constexpr Colour kGreen = colour(0x20B020);
 
 // Where a camera puts a point, from rotation matrices alone: the world is turned so that the camera
 // looks along -Z, and what is left of x and y is the picture.
-Vec2 projected(const CellPlace& cell, const Vec3& point) {
+Vec2 projected(const CellLayout& cell, const Vec3& point) {
   const Camera& camera = cell.camera;
   const Mat3 turn = (Eigen::AngleAxisd(camera.elevation, Vec3::UnitX()) *
                      Eigen::AngleAxisd(-camera.yaw, Vec3::UnitY()))
@@ -33,29 +33,29 @@ Vec2 projected(const CellPlace& cell, const Vec3& point) {
   return camera.place_of_target + camera.pixels_per_metre * Vec2(seen.x(), -seen.y());
 }
 
-Colour pixel_at(const SheetPicture& picture, const Vec2& place) {
-  return picture.image.at(static_cast<int>(std::floor(place.x())),
-                          static_cast<int>(std::floor(place.y())));
+Colour pixel_at(const SheetImage& image, const Vec2& place) {
+  return image.image.at(static_cast<int>(std::floor(place.x())),
+                        static_cast<int>(std::floor(place.y())));
 }
 
 TEST(Sheet, APointsPixelIsWhereItProjectsFromEverySide) {
   const std::vector<Vec3> points = {
       {0.1, 0.1, 0.3}, {-0.4, 0.9, 0.2}, {0.5, 1.4, -0.4}, {0, 1.8, 0}, {0.3, 0.6, 0.7}};
-  Figure figure;
-  for (const Vec3& point : points) figure.bones.push_back(ball(point, 0.08, kRed));
-  figure.centre = Vec3(0.2, 0, 0.1);
+  Actor actor;
+  for (const Vec3& point : points) actor.bones.push_back(ball(point, 0.08, kRed));
+  actor.centre = Vec3(0.2, 0, 0.1);
   for (const double yaw : {0.0, 0.7, 0.5 * kPi, kPi, -2.0}) {
     for (const double elevation : {0.0, 0.3, -0.2, 0.5 * kPi}) {
-      const auto picture = make_sheet(sheet_of(figure, yaw, elevation), {.row_height = 150});
-      ASSERT_TRUE(picture.ok()) << picture.error().message;
-      const CellPlace& cell = picture->cells.at(0);
+      const auto image = make_sheet(sheet_of(actor, yaw, elevation), {.row_height = 150});
+      ASSERT_TRUE(image.ok()) << image.error().message;
+      const CellLayout& cell = image->cells.at(0);
       for (const Vec3& point : points) {
         const Vec2 place = projected(cell, point);
         ASSERT_GT(place.x(), cell.left);
         ASSERT_LT(place.x(), cell.right);
         ASSERT_GT(place.y(), cell.top);
         ASSERT_LT(place.y(), cell.bottom);
-        EXPECT_GT(colourfulness(pixel_at(*picture, place)), 60) << yaw << " " << elevation;
+        EXPECT_GT(colourfulness(pixel_at(*image, place)), 60) << yaw << " " << elevation;
       }
     }
   }
@@ -65,23 +65,23 @@ TEST(Sheet, APointsPixelIsWhereItProjectsFromEverySide) {
 // edges are where they belong.
 TEST(Sheet, ABallCoversTheAreaOfACircle) {
   for (const double radius : {1e-9, 0.3, 1e6}) {
-    Figure figure;
-    figure.bones = {ball({0, radius, 0}, radius, kRed)};
-    const auto picture = make_sheet(sheet_of(figure), {.row_height = 300});
-    ASSERT_TRUE(picture.ok());
-    const double pixels = radius * picture->pixels_per_metre;
+    Actor actor;
+    actor.bones = {ball({0, radius, 0}, radius, kRed)};
+    const auto image = make_sheet(sheet_of(actor), {.row_height = 300});
+    ASSERT_TRUE(image.ok());
+    const double pixels = radius * image->pixels_per_metre;
     EXPECT_NEAR(pixels, 142, 1);
     // Half covered pixels count from half of the colour on.
     const double circle = kPi * pixels * pixels;
-    EXPECT_NEAR(coloured_pixels(*picture, 60), circle, 0.01 * circle) << radius;
+    EXPECT_NEAR(coloured_pixels(*image, 60), circle, 0.01 * circle) << radius;
   }
 }
 
 TEST(Sheet, ABoxSeenAtAnAngleIsWiderByTheRootOfTwo) {
-  Figure figure;
-  figure.surfaces = {box({-0.5, 0, -0.5}, {0.5, 1, 0.5}, kRed)};
-  const auto straight = make_sheet(sheet_of(figure, 0), {.row_height = 300});
-  const auto turned = make_sheet(sheet_of(figure, 0.25 * kPi), {.row_height = 300});
+  Actor actor;
+  actor.surfaces = {box({-0.5, 0, -0.5}, {0.5, 1, 0.5}, kRed)};
+  const auto straight = make_sheet(sheet_of(actor, 0), {.row_height = 300});
+  const auto turned = make_sheet(sheet_of(actor, 0.25 * kPi), {.row_height = 300});
   ASSERT_TRUE(straight.ok() && turned.ok());
   ASSERT_EQ(straight->pixels_per_metre, turned->pixels_per_metre);
   EXPECT_NEAR(coloured_pixels(*turned) / static_cast<double>(coloured_pixels(*straight)),
@@ -89,31 +89,31 @@ TEST(Sheet, ABoxSeenAtAnAngleIsWiderByTheRootOfTwo) {
 }
 
 TEST(Sheet, ABarReachesFromEndToEnd) {
-  Figure figure;
-  figure.bones = {{Vec3f(-0.5F, 0.2F, 0), Vec3f(0.5F, 0.9F, 0), 0.03F, 0.03F, kRed, kGreen}};
-  const auto picture = make_sheet(sheet_of(figure), {.row_height = 300});
-  ASSERT_TRUE(picture.ok());
-  const CellPlace& cell = picture->cells[0];
+  Actor actor;
+  actor.bones = {{Vec3f(-0.5F, 0.2F, 0), Vec3f(0.5F, 0.9F, 0), 0.03F, 0.03F, kRed, kGreen}};
+  const auto image = make_sheet(sheet_of(actor), {.row_height = 300});
+  ASSERT_TRUE(image.ok());
+  const CellLayout& cell = image->cells[0];
   for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const Vec3 point = (1 - share) * Vec3(-0.5, 0.2, 0) + share * Vec3(0.5, 0.9, 0);
-    EXPECT_GT(colourfulness(pixel_at(*picture, projected(cell, point))), 40) << share;
+    EXPECT_GT(colourfulness(pixel_at(*image, projected(cell, point))), 40) << share;
   }
-  const Colour first = pixel_at(*picture, projected(cell, {-0.5, 0.2, 0}));
-  const Colour last = pixel_at(*picture, projected(cell, {0.5, 0.9, 0}));
+  const Colour first = pixel_at(*image, projected(cell, {-0.5, 0.2, 0}));
+  const Colour last = pixel_at(*image, projected(cell, {0.5, 0.9, 0}));
   EXPECT_GT(first.red, first.green);
   EXPECT_GT(last.green, last.red);
 }
 
 TEST(Sheet, TheNearerHidesTheFartherUnlessThatIsAskedFor) {
-  Figure near, far;
+  Actor near, far;
   near.bones = {ball({0, 0.5, 0.6}, 0.2, kRed)};
   far.bones = {ball({0, 0.5, -0.6}, 0.3, kGreen)};
   Sheet sheet = sheet_of(near);
   sheet.rows[0].cells[0].layers = {{&near}, {&far}};
   const auto middle = [&sheet] {
-    const auto picture = make_sheet(sheet, {.row_height = 200});
-    EXPECT_TRUE(picture.ok());
-    return pixel_at(*picture, projected(picture->cells[0], {0, 0.5, 0}));
+    const auto image = make_sheet(sheet, {.row_height = 200});
+    EXPECT_TRUE(image.ok());
+    return pixel_at(*image, projected(image->cells[0], {0, 0.5, 0}));
   };
   EXPECT_GT(middle().red, middle().green);
   sheet.rows[0].yaw = kPi;
@@ -126,7 +126,7 @@ TEST(Sheet, TheNearerHidesTheFartherUnlessThatIsAskedFor) {
 }
 
 TEST(Sheet, OneScaleForAllCellsWhereverTheyStand) {
-  Figure small, large;
+  Actor small, large;
   small.bones = {ball({100, 0.5, 0}, 0.5, kRed)};
   small.centre = {100, 0, 0};
   large.bones = {ball({-3, 1, 5}, 1, kRed)};
@@ -136,95 +136,95 @@ TEST(Sheet, OneScaleForAllCellsWhereverTheyStand) {
   cell.layers = {{&large}};
   cell.centre = large.centre;
   sheet.rows[0].cells.push_back(cell);
-  const auto picture = make_sheet(sheet, {.row_height = 300});
-  ASSERT_TRUE(picture.ok());
-  ASSERT_EQ(picture->cells.size(), 2U);
-  EXPECT_EQ(picture->cells[0].camera.pixels_per_metre, picture->cells[1].camera.pixels_per_metre);
-  SheetPicture one = *picture;
+  const auto image = make_sheet(sheet, {.row_height = 300});
+  ASSERT_TRUE(image.ok());
+  ASSERT_EQ(image->cells.size(), 2U);
+  EXPECT_EQ(image->cells[0].camera.pixels_per_metre, image->cells[1].camera.pixels_per_metre);
+  SheetImage one = *image;
   one.cells.resize(1);
-  const double both = coloured_pixels(*picture, 60);
+  const double both = coloured_pixels(*image, 60);
   EXPECT_NEAR(both / coloured_pixels(one, 60), 5, 0.1) << "areas of 1 and 4";
 }
 
 TEST(Sheet, LinesOfEqualHeightAreRoundNumbersApart) {
   for (const double size : {0.003, 0.2, 1.7, 40.0}) {
-    Figure figure;
-    figure.surfaces = {box({-0.1 * size, 0, -0.1 * size}, {0.1 * size, size, 0.1 * size}, kRed)};
-    const auto picture = make_sheet(sheet_of(figure), {.row_height = 280});
-    ASSERT_TRUE(picture.ok());
+    Actor actor;
+    actor.surfaces = {box({-0.1 * size, 0, -0.1 * size}, {0.1 * size, size, 0.1 * size}, kRed)};
+    const auto image = make_sheet(sheet_of(actor), {.row_height = 280});
+    ASSERT_TRUE(image.ok());
     const double digits =
-        picture->height_step / std::pow(10, std::floor(std::log10(picture->height_step) + 1e-9));
+        image->height_step / std::pow(10, std::floor(std::log10(image->height_step) + 1e-9));
     EXPECT_TRUE(std::abs(digits - 1) < 1e-6 || std::abs(digits - 2) < 1e-6 ||
                 std::abs(digits - 5) < 1e-6)
         << digits;
-    EXPECT_GE(picture->height_step * picture->pixels_per_metre, 40);
-    EXPECT_LE(picture->height_step * picture->pixels_per_metre, 120);
+    EXPECT_GE(image->height_step * image->pixels_per_metre, 40);
+    EXPECT_LE(image->height_step * image->pixels_per_metre, 120);
   }
 }
 
 TEST(Sheet, TheGroundIsLeftOutOnlyWhereItIsFarAway) {
-  Figure figure;
-  figure.bones = {ball({0, 50, 0}, 0.5, kRed)};
-  const auto high = make_sheet(sheet_of(figure), {.row_height = 280});
+  Actor actor;
+  actor.bones = {ball({0, 50, 0}, 0.5, kRed)};
+  const auto high = make_sheet(sheet_of(actor), {.row_height = 280});
   ASSERT_TRUE(high.ok());
   EXPECT_GT(high->pixels_per_metre, 200) << "the figure is not made tiny for the ground's sake";
-  figure.bones = {ball({0, 1.2, 0}, 0.5, kRed)};
-  const auto near = make_sheet(sheet_of(figure), {.row_height = 280});
+  actor.bones = {ball({0, 1.2, 0}, 0.5, kRed)};
+  const auto near = make_sheet(sheet_of(actor), {.row_height = 280});
   ASSERT_TRUE(near.ok());
-  const CellPlace& cell = near->cells[0];
+  const CellLayout& cell = near->cells[0];
   EXPECT_LT(cell.camera.place_of_target.y(), cell.bottom) << "the ground is in the picture";
 }
 
 TEST(Sheet, TheSamePixelsForAnyNumberOfThreads) {
-  Figure figure;
-  figure.surfaces = {box({-0.3, 0, -0.2}, {0.3, 1.5, 0.2}, kRed)};
-  figure.bones = {{Vec3f(0.4F, 1, 0.1F), Vec3f(-0.6F, 1.3F, 0.4F), 0.1F, 0.05F, kGreen, kRed}};
+  Actor actor;
+  actor.surfaces = {box({-0.3, 0, -0.2}, {0.3, 1.5, 0.2}, kRed)};
+  actor.bones = {{Vec3f(0.4F, 1, 0.1F), Vec3f(-0.6F, 1.3F, 0.4F), 0.1F, 0.05F, kGreen, kRed}};
   for (const double elevation : {0.0, 0.6}) {
-    const auto once = make_sheet(sheet_of(figure, 0.4, elevation), {.row_height = 200, .jobs = 1});
+    const auto once = make_sheet(sheet_of(actor, 0.4, elevation), {.row_height = 200, .jobs = 1});
     ASSERT_TRUE(once.ok());
     for (const int jobs : {2, 5}) {
       const auto again =
-          make_sheet(sheet_of(figure, 0.4, elevation), {.row_height = 200, .jobs = jobs});
+          make_sheet(sheet_of(actor, 0.4, elevation), {.row_height = 200, .jobs = jobs});
       ASSERT_TRUE(again.ok());
       EXPECT_EQ(once->image.rgb, again->image.rgb) << jobs;
     }
   }
 }
 
-TEST(Sheet, RaisedItShowsAShadowUnderTheFigure) {
-  Figure figure;
-  figure.surfaces = {box({-0.3, 0.05, -0.3}, {0.3, 1, 0.3}, kRed)};
-  const auto darkest = [&figure](double elevation) {
-    const auto picture = make_sheet(sheet_of(figure, 0, elevation), {.row_height = 300});
-    EXPECT_TRUE(picture.ok());
-    const CellPlace& cell = picture->cells[0];
+TEST(Sheet, RaisedItShowsAShadowUnderTheActor) {
+  Actor actor;
+  actor.surfaces = {box({-0.3, 0.05, -0.3}, {0.3, 1, 0.3}, kRed)};
+  const auto darkest = [&actor](double elevation) {
+    const auto image = make_sheet(sheet_of(actor, 0, elevation), {.row_height = 300});
+    EXPECT_TRUE(image.ok());
+    const CellLayout& cell = image->cells[0];
     // Just before the box, on the ground and half way to the grid's next line.
-    return static_cast<int>(pixel_at(*picture, projected(cell, {0.05, 0, 0.34})).red);
+    return static_cast<int>(pixel_at(*image, projected(cell, {0.05, 0, 0.34})).red);
   };
   EXPECT_LT(darkest(0.7), 225) << "the panel has 244";
 }
 
 TEST(Sheet, WhatHasNoSizeIsShownToo) {
-  Figure point;
+  Actor point;
   point.bones = {ball({0, 0, 0}, 0, kRed)};
-  Figure nothing;
-  Figure no_triangles;
+  Actor nothing;
+  Actor no_triangles;
   no_triangles.surfaces = {box({0, 0, 0}, {1, 1, 1}, kRed)};
   no_triangles.surfaces[0].triangles = std::make_shared<Triangles>();
-  for (const Figure* figure : {&point, &nothing, &no_triangles}) {
-    const auto picture = make_sheet(sheet_of(*figure), {.row_height = 100});
-    ASSERT_TRUE(picture.ok()) << picture.error().message;
-    EXPECT_EQ(coloured_pixels(*picture), 0);
+  for (const Actor* actor : {&point, &nothing, &no_triangles}) {
+    const auto image = make_sheet(sheet_of(*actor), {.row_height = 100});
+    ASSERT_TRUE(image.ok()) << image.error().message;
+    EXPECT_EQ(coloured_pixels(*image), 0);
   }
 }
 
 std::string code_of(const Sheet& sheet, const SheetOptions& options = {}) {
-  const auto picture = make_sheet(sheet, options);
-  return picture ? "" : picture.error().code;
+  const auto image = make_sheet(sheet, options);
+  return image ? "" : image.error().code;
 }
 
 TEST(Sheet, SaysWhatItCannotDraw) {
-  Figure good;
+  Actor good;
   good.bones = {ball({0, 1, 0}, 0.1, kRed)};
   EXPECT_EQ(code_of({}), "sheet-empty");
   EXPECT_EQ(code_of(sheet_of(good), {.row_height = 5}), "sheet-size");
@@ -235,7 +235,7 @@ TEST(Sheet, SaysWhatItCannotDraw) {
   EXPECT_EQ(code_of(huge), "sheet-size");
 
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  Figure bad = good;
+  Actor bad = good;
   bad.bones[0].from.x() = nan;
   EXPECT_EQ(code_of(sheet_of(bad)), "render-figure");
   bad = good;

@@ -45,9 +45,9 @@ std::shared_ptr<const Mipmap> four_fields(int side = 64) {
   });
 }
 
-Paint paint_of(std::shared_ptr<const Mipmap> picture) {
+Paint paint_of(std::shared_ptr<const Mipmap> image) {
   Paint paint;
-  paint.picture = std::move(picture);
+  paint.image = std::move(image);
   return paint;
 }
 
@@ -68,18 +68,18 @@ Surface square(Paint paint, const Vec2f& low = {0, 0}, const Vec2f& high = {1, 1
   return surface;
 }
 
-SheetPicture shot(const std::vector<Surface>& surfaces, int size = 200, double yaw = 0,
-                  int jobs = 1) {
-  Figure figure;
-  figure.surfaces = surfaces;
-  auto picture = make_sheet(test::sheet_of(figure, yaw), {.row_height = size, .jobs = jobs});
-  EXPECT_TRUE(picture.ok()) << picture.error().message;
-  return std::move(*picture);
+SheetImage shot(const std::vector<Surface>& surfaces, int size = 200, double yaw = 0,
+                int jobs = 1) {
+  Actor actor;
+  actor.surfaces = surfaces;
+  auto image = make_sheet(test::sheet_of(actor, yaw), {.row_height = size, .jobs = jobs});
+  EXPECT_TRUE(image.ok()) << image.error().message;
+  return std::move(*image);
 }
 
-Colour seen(const SheetPicture& picture, double x, double y) {
-  const Vec2 place = picture.cells.at(0).camera.project(Vec3(x, y, 0));
-  return picture.image.at(static_cast<int>(place.x()), static_cast<int>(place.y()));
+Colour seen(const SheetImage& image, double x, double y) {
+  const Vec2 place = image.cells.at(0).camera.project(Vec3(x, y, 0));
+  return image.image.at(static_cast<int>(place.x()), static_cast<int>(place.y()));
 }
 
 Colour colour_of(const Rgba& rgba) {
@@ -93,17 +93,17 @@ void expect_near(Colour a, Colour b, int tolerance, const std::string& what) {
 }
 
 // Light falls on a painted square as on one that has that colour all over.
-void expect_as_plain(const SheetPicture& picture, double x, double y, Colour plain,
+void expect_as_plain(const SheetImage& image, double x, double y, Colour plain,
                      const std::string& what, int tolerance = 1) {
-  expect_near(seen(picture, x, y), seen(shot({square(plain)}), x, y), tolerance, what);
+  expect_near(seen(image, x, y), seen(shot({square(plain)}), x, y), tolerance, what);
 }
 
-TEST(Texture, FieldsOfAPictureAreWhereTheCoordinatesPutThem) {
-  const SheetPicture picture = shot({square(paint_of(four_fields()))});
-  expect_as_plain(picture, -0.25, 0.75, colour_of(kRedTexel), "upper left");
-  expect_as_plain(picture, 0.25, 0.75, colour_of(kBlueTexel), "upper right");
-  expect_as_plain(picture, -0.25, 0.25, {100, 15, 10}, "lower left");
-  expect_as_plain(picture, 0.25, 0.25, {10, 20, 90}, "lower right");
+TEST(Texture, FieldsOfAImageAreWhereTheCoordinatesPutThem) {
+  const SheetImage image = shot({square(paint_of(four_fields()))});
+  expect_as_plain(image, -0.25, 0.75, colour_of(kRedTexel), "upper left");
+  expect_as_plain(image, 0.25, 0.75, colour_of(kBlueTexel), "upper right");
+  expect_as_plain(image, -0.25, 0.25, {100, 15, 10}, "lower left");
+  expect_as_plain(image, 0.25, 0.25, {10, 20, 90}, "lower right");
 }
 
 TEST(Texture, StandsInForTheSurfacesColours) {
@@ -113,14 +113,14 @@ TEST(Texture, StandsInForTheSurfacesColours) {
 }
 
 // Three copies from u = -1 to 2, as glTF 2.0, section 5.26 (sampler) has them.
-TEST(Texture, BeyondThePictureItRepeatsMirrorsOrEnds) {
+TEST(Texture, BeyondTheImageItRepeatsMirrorsOrEnds) {
   const auto line = [](Wrap wrap) {
     Paint paint = paint_of(four_fields());
     paint.wrap_u = wrap;
-    const SheetPicture picture = shot({square(paint, {-1, 0}, {2, 1})});
+    const SheetImage image = shot({square(paint, {-1, 0}, {2, 1})});
     std::string found;
     for (int i = 0; i < 6; ++i) {
-      const Colour colour = seen(picture, -0.5 + (i + 0.5) / 6, 0.75);
+      const Colour colour = seen(image, -0.5 + (i + 0.5) / 6, 0.75);
       found += colour.red > colour.blue ? 'r' : 'b';
     }
     return found;
@@ -133,12 +133,12 @@ TEST(Texture, BeyondThePictureItRepeatsMirrorsOrEnds) {
 TEST(Texture, UpAndDownWrapOnTheirOwn) {
   Paint paint = paint_of(four_fields());
   paint.wrap_v = Wrap::clamp;
-  const SheetPicture picture = shot({square(paint, {0, -1}, {1, 2})});
+  const SheetImage image = shot({square(paint, {0, -1}, {1, 2})});
   for (const double y : {0.95, 0.75, 0.6}) {
-    expect_as_plain(picture, -0.25, y, colour_of(kRedTexel), "the upper half and all above it");
+    expect_as_plain(image, -0.25, y, colour_of(kRedTexel), "the upper half and all above it");
   }
   for (const double y : {0.4, 0.2, 0.05}) {
-    expect_as_plain(picture, -0.25, y, {100, 15, 10}, "the lower half and all below it");
+    expect_as_plain(image, -0.25, y, {100, 15, 10}, "the lower half and all below it");
   }
 }
 
@@ -181,17 +181,17 @@ TEST(Texture, FromAfarACheckerboardIsEvenlyGrey) {
     return (x + y) % 2 == 0 ? Rgba{0, 0, 0, 255} : Rgba{255, 255, 255, 255};
   });
   // Half of the light is 188 on a screen; the mean of the numbers, 128, would be too dark.
-  const SheetPicture picture = shot({square(paint_of(board))}, 100);
-  const SheetPicture plain = shot({square(colour(0xBCBCBC))}, 100);
+  const SheetImage image = shot({square(paint_of(board))}, 100);
+  const SheetImage plain = shot({square(colour(0xBCBCBC))}, 100);
   for (double x = -0.4; x < 0.41; x += 0.05) {
     for (double y = 0.1; y < 0.91; y += 0.05) {
-      expect_near(seen(picture, x, y), seen(plain, x, y), 1, "from the front");
+      expect_near(seen(image, x, y), seen(plain, x, y), 1, "from the front");
     }
   }
   // Nearly edge on, where a pixel covers much more of the picture across than down.
   const double yaw = 80 * kRadiansPerDegree;
-  const SheetPicture aside = shot({square(paint_of(board))}, 100, yaw);
-  const SheetPicture plain_aside = shot({square(colour(0xBCBCBC))}, 100, yaw);
+  const SheetImage aside = shot({square(paint_of(board))}, 100, yaw);
+  const SheetImage plain_aside = shot({square(colour(0xBCBCBC))}, 100, yaw);
   for (double y = 0.1; y < 0.91; y += 0.05) {
     expect_near(seen(aside, 0, y), seen(plain_aside, 0, y), 1, "from the side");
   }
@@ -203,13 +203,13 @@ TEST(Texture, StripesStaySharpOnASurfaceThatLeansAway) {
   const auto stripes =
       mipmap(64, 64, [](int, int y) { return y / 16 % 2 == 0 ? kRedTexel : kBlueTexel; });
   const double yaw = 80 * kRadiansPerDegree;
-  const SheetPicture picture = shot({square(paint_of(stripes))}, 100, yaw);
-  const SheetPicture red = shot({square(colour_of(kRedTexel))}, 100, yaw);
-  expect_near(seen(picture, 0, 0.875), seen(red, 0, 0.875), 3, "the upper stripe");
-  expect_near(seen(picture, 0, 0.375), seen(red, 0, 0.375), 3, "the third stripe");
+  const SheetImage image = shot({square(paint_of(stripes))}, 100, yaw);
+  const SheetImage red = shot({square(colour_of(kRedTexel))}, 100, yaw);
+  expect_near(seen(image, 0, 0.875), seen(red, 0, 0.875), 3, "the upper stripe");
+  expect_near(seen(image, 0, 0.375), seen(red, 0, 0.375), 3, "the third stripe");
 }
 
-TEST(Texture, SmallerPicturesShareOddSidesOutEvenly) {
+TEST(Texture, SmallerImagesShareOddSidesOutEvenly) {
   // 255, 0, 0: a third of the light each time, whatever the place of the white pixel.
   for (int white = 0; white < 3; ++white) {
     const auto made = mipmap(3, 1, [white](int x, int) {
@@ -239,10 +239,10 @@ TEST(Texture, WhatIsCutOutShowsWhatIsBehind) {
   };
   Surface behind = square(colour(0x20B020));
   for (Vec3f& point : behind.positions) point.z() = -0.5F;
-  const SheetPicture both = shot({with_cutoff(0.5F), behind});
+  const SheetImage both = shot({with_cutoff(0.5F), behind});
   EXPECT_GT(seen(both, -0.25, 0.5).red, seen(both, -0.25, 0.5).green);
   EXPECT_GT(seen(both, 0.25, 0.5).green, 2 * seen(both, 0.25, 0.5).blue);
-  const SheetPicture alone = shot({with_cutoff(0.5F)});
+  const SheetImage alone = shot({with_cutoff(0.5F)});
   EXPECT_LT(test::colourfulness(seen(alone, 0.25, 0.5)), 10) << "the picture's ground";
   EXPECT_GT(test::colourfulness(seen(alone, -0.25, 0.5)), 60);
   // Without a cutoff alpha does not count.
@@ -270,12 +270,12 @@ TEST(Texture, HolesKeepTheirShareFromAfar) {
   }));
   paint.smooth = false;
   paint.cutoff = 0.5F;
-  const SheetPicture picture = shot({square(paint)}, 100);
-  const SheetPicture whole = shot({square(colour_of(kRedTexel))}, 100);
+  const SheetImage image = shot({square(paint)}, 100);
+  const SheetImage whole = shot({square(colour_of(kRedTexel))}, 100);
   double holes = 0, all = 0;
   for (double x = -0.4; x < 0.41; x += 0.02) {
     for (double y = 0.1; y < 0.91; y += 0.02) {
-      holes += test::colourfulness(seen(picture, x, y));
+      holes += test::colourfulness(seen(image, x, y));
       all += test::colourfulness(seen(whole, x, y));
     }
   }
@@ -292,9 +292,8 @@ TEST(Texture, AnyNumberOfThreadsPaintsAlike) {
 
 TEST(Texture, OddCoordinatesAreDrawn) {
   for (const float odd : {1e30F, -1e30F, 3.4e38F, 0.0F}) {
-    const SheetPicture picture =
-        shot({square(paint_of(four_fields()), {-odd, odd}, {odd, odd})}, 60);
-    EXPECT_GT(test::coloured_pixels(picture), 100) << odd;
+    const SheetImage image = shot({square(paint_of(four_fields()), {-odd, odd}, {odd, odd})}, 60);
+    EXPECT_GT(test::coloured_pixels(image), 100) << odd;
   }
 }
 
@@ -307,13 +306,13 @@ TEST(Texture, WhatDoesNotFitIsRefused) {
     Paint paint = *surface.paint;
     spoil(paint);
     surface.paint = std::make_shared<const Paint>(std::move(paint));
-    Figure figure;
-    figure.surfaces = {surface};
-    const Status checked = check(figure);
-    return !checked.ok() && checked.error().code == "render-figure";
+    Actor actor;
+    actor.surfaces = {surface};
+    const Status status = check(actor);
+    return !status.ok() && status.error().code == "render-figure";
   };
   EXPECT_FALSE(refused([](Paint&) {}));
-  EXPECT_TRUE(refused([](Paint& paint) { paint.picture = nullptr; }));
+  EXPECT_TRUE(refused([](Paint& paint) { paint.image = nullptr; }));
   EXPECT_TRUE(refused([](Paint& paint) { paint.coordinates = nullptr; }));
   EXPECT_TRUE(refused([](Paint& paint) {
     paint.coordinates = std::make_shared<const std::vector<Vec2f>>(3, Vec2f(0, 0));

@@ -8,7 +8,7 @@
 
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
-#include "tests/unit/retarget/figures.h"
+#include "tests/unit/retarget/actors.h"
 
 namespace krok {
 namespace {
@@ -142,7 +142,7 @@ TEST_P(RetargetCorpus, KneesBendForward) {
   EXPECT_LT(backward(result_.clip, target_roles_), backward(source_, source_roles_) + 2);
 }
 
-TEST_P(RetargetCorpus, TheFigureStandsOnTheFloor) {
+TEST_P(RetargetCorpus, TheActorStandsOnTheFloor) {
   // The lowest joint of the feet over the whole motion, against where it is in the target's stance.
   const auto lowest = [](const Clip& clip, const RoleMap& roles) {
     std::vector<double> heights;
@@ -165,15 +165,15 @@ TEST_P(RetargetCorpus, TheFigureStandsOnTheFloor) {
 TEST_P(RetargetCorpus, FingersBendAsTheSourcesAndPalmsFaceTheSameWay) {
   const retarget::Report& report = result_.report;
   if (report.left_fingers_at_rest || report.right_fingers_at_rest) return;
-  const auto line = [](const Clip& clip, const RoleMap& roles, int frame, FingerPlace from,
-                       FingerPlace to) {
+  const auto line = [](const Clip& clip, const RoleMap& roles, int frame, FingerJoint from,
+                       FingerJoint to) {
     const int a = roles.finger_joint(Role::left_fingers, from);
     const int b = roles.finger_joint(Role::left_fingers, to);
     if (a < 0 || b < 0) return Vec3(Vec3::Zero());
     const auto positions = clip.frame_positions(frame);
     return Vec3((positions[at(b)] - positions[at(a)]).cast<double>());
   };
-  const auto apart = [&](int frame, FingerPlace from, FingerPlace to) {
+  const auto apart = [&](int frame, FingerJoint from, FingerJoint to) {
     const Vec3 a = line(source_, source_roles_, frame, from, to);
     const Vec3 b = line(result_.clip, target_roles_, frame, from, to);
     return a.norm() > 0 && b.norm() > 0 ? degrees_between(a, b) : 0.0;

@@ -6,7 +6,7 @@
 
 #include "retarget/foot_placement.h"
 #include "samples/generator/walk.h"
-#include "tests/unit/retarget/figures.h"
+#include "tests/unit/retarget/actors.h"
 
 namespace krok {
 namespace {
@@ -33,7 +33,7 @@ TEST(Softening, ReachesAsFarAsTheRateAllows) {
 }
 
 // A figure of other proportions: `thigh`, `shank`, `foot` and `width` times those of a human.
-Skeleton figure_of(double stature, double thigh, double shank, double foot, double width) {
+Skeleton actor_of(double stature, double thigh, double shank, double foot, double width) {
   Skeleton skeleton = human_skeleton(stature);
   const auto place = [&](const std::string& name) -> Vec3& {
     return skeleton.reference[at(skeleton.find(name))].position;
@@ -107,7 +107,7 @@ class FeetOf : public testing::TestWithParam<Proportions> {};
 
 TEST_P(FeetOf, StandWhereTheSourceStands) {
   const Proportions& p = GetParam();
-  const Skeleton target = figure_of(p.stature, p.thigh, p.shank, p.foot, p.width);
+  const Skeleton target = actor_of(p.stature, p.thigh, p.shank, p.foot, p.width);
   samples::WalkOptions turning;
   turning.turn = 0.2;
   samples::WalkOptions stairs;
@@ -147,12 +147,12 @@ TEST_P(FeetOf, StandWhereTheSourceStands) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Figures, FeetOf, testing::ValuesIn(kFigures),
+INSTANTIATE_TEST_SUITE_P(Actors, FeetOf, testing::ValuesIn(kFigures),
                          [](const auto& test_case) { return std::string(test_case.param.name); });
 
 TEST(Feet, LeftFreeTheySlideWhichShowsThatTheTestCanFail) {
   const samples::Walk walk = walk_of({});
-  const Skeleton target = figure_of(1.75, 0.92, 1.1, 1.35, 1);
+  const Skeleton target = actor_of(1.75, 0.92, 1.1, 1.35, 1);
   const auto result = transfer(walk.clip, target, {.feet = retarget::Feet::free});
   ASSERT_TRUE(result.ok());
   EXPECT_FALSE(result->report.left_foot.has_value());
@@ -162,7 +162,7 @@ TEST(Feet, LeftFreeTheySlideWhichShowsThatTheTestCanFail) {
 
 TEST(Feet, TheMotionHasNoJumps) {
   const samples::Walk walk = walk_of({});
-  const auto result = transfer(walk.clip, figure_of(1.75, 0.92, 1.1, 1.35, 1));
+  const auto result = transfer(walk.clip, actor_of(1.75, 0.92, 1.1, 1.35, 1));
   ASSERT_TRUE(result.ok());
   // Accelerations of ankles and knees stay near those of the source.
   const auto largest_jerk = [](const Clip& clip, const std::string& joint) {
@@ -184,7 +184,7 @@ TEST(Feet, TheMotionHasNoJumps) {
 
 TEST(Feet, AMeshThatReachesBelowTheJointsOfTheFeetStandsOnTheFloor) {
   const samples::Walk walk = walk_of({});
-  Skeleton target = figure_of(1.75, 1, 1, 1, 1);
+  Skeleton target = actor_of(1.75, 1, 1, 1, 1);
   const double lowest = target.reference[at(target.find("rig:LeftToeBase_end"))].position.y();
   retarget::Options options;
   options.target_floor = lowest - 0.05;  // thick soles

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "support/skeleton_text.h"
-#include "tests/unit/retarget/figures.h"
+#include "tests/unit/retarget/actors.h"
 
 namespace krok {
 namespace {

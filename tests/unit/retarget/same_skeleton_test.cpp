@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "tests/unit/retarget/figures.h"
+#include "tests/unit/retarget/actors.h"
 
 namespace krok {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "support/skeleton_text.h"
-#include "tests/unit/retarget/figures.h"
+#include "tests/unit/retarget/actors.h"
 
 namespace krok {
 namespace {
@@ -44,7 +44,7 @@ TEST(Retarget, TheAxesOfJointsDoNotMatter) {
   }
 }
 
-TEST(Retarget, AScaledFigureMovesScaled) {
+TEST(Retarget, AScaledActorMovesScaled) {
   const Clip clip = lively_clip(human_skeleton());
   const auto result = transfer(clip, scaled(with_other_axes(clip.skeleton, 5), 0.5));
   ASSERT_TRUE(result.ok());

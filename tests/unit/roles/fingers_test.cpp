@@ -141,16 +141,16 @@ INSTANTIATE_TEST_SUITE_P(Exporters, FingerNames, testing::ValuesIn(kHands),
 
 TEST(Fingers, PlacesHaveNames) {
   EXPECT_EQ(finger_place_name({Finger::index, 2}), "index_2");
-  EXPECT_EQ(finger_place_name({Finger::thumb, FingerPlace::kTip}), "thumb_tip");
+  EXPECT_EQ(finger_place_name({Finger::thumb, FingerJoint::kTip}), "thumb_tip");
   EXPECT_EQ(finger_place_name({}), "");
   for (int f = 1; f <= static_cast<int>(Finger::all); ++f) {
-    for (int phalanx = 0; phalanx <= FingerPlace::kTip; ++phalanx) {
-      const FingerPlace place{static_cast<Finger>(f), phalanx};
-      EXPECT_EQ(parse_finger_place(finger_place_name(place)), place);
+    for (int phalanx = 0; phalanx <= FingerJoint::kTip; ++phalanx) {
+      const FingerJoint place{static_cast<Finger>(f), phalanx};
+      EXPECT_EQ(parse_finger_joint(finger_place_name(place)), place);
     }
   }
   for (const char* text : {"", "index", "index_5", "index_01", "Index_1", "toe_1"}) {
-    EXPECT_FALSE(parse_finger_place(text).has_value()) << text;
+    EXPECT_FALSE(parse_finger_joint(text).has_value()) << text;
   }
 }
 

@@ -128,7 +128,7 @@ TEST(GivenRoles, LabelsAreReadBack) {
     EXPECT_EQ(parse_role_label(role_name(role))->role, role);
   }
   EXPECT_EQ(parse_role_label("right_thumb_3")->role, Role::right_fingers);
-  EXPECT_EQ(parse_role_label("right_thumb_3")->finger, (FingerPlace{Finger::thumb, 3}));
+  EXPECT_EQ(parse_role_label("right_thumb_3")->finger, (FingerJoint{Finger::thumb, 3}));
   for (const char* text : {"", "hand", "left_", "LEFT_HAND", "left_index", "middle_index_1"}) {
     EXPECT_FALSE(parse_role_label(text).has_value()) << text;
   }

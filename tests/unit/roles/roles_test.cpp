@@ -127,7 +127,7 @@ TEST(Roles, AVeryLongChainIsNoTrouble) {
 }
 
 // A person whose joints have no names that tell anything, y-up, facing +z, left at +x.
-Skeleton unnamed_figure(double hands_height) {
+Skeleton unnamed_actor(double hands_height) {
   Skeleton s;
   int next = 0;
   const auto add = [&](int parent, double x, double y, double z) {
@@ -147,7 +147,7 @@ Skeleton unnamed_figure(double hands_height) {
 }
 
 TEST(Roles, AnUnnamedPersonIsKnownByShape) {
-  const Skeleton skeleton = unnamed_figure(1.4);
+  const Skeleton skeleton = unnamed_actor(1.4);
   const RoleMap map = find_roles(skeleton);
   ASSERT_TRUE(map.humanoid) << table(skeleton, map);
   const auto place = [&](Role role) {
@@ -162,8 +162,8 @@ TEST(Roles, AnUnnamedPersonIsKnownByShape) {
 }
 
 // An animal on four legs has its "hands" on the ground: sides are not guessed there.
-TEST(Roles, AnUnnamedFigureWithItsHandsOnTheGroundIsLeftAlone) {
-  EXPECT_FALSE(find_roles(unnamed_figure(0.1)).humanoid);
+TEST(Roles, AnUnnamedActorWithItsHandsOnTheGroundIsLeftAlone) {
+  EXPECT_FALSE(find_roles(unnamed_actor(0.1)).humanoid);
 }
 
 TEST(Roles, EveryRoleHasItsName) {

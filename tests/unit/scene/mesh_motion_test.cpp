@@ -17,7 +17,7 @@ namespace {
 using testing::ElementsAre;
 
 // Vertex v of frame f is at (f, v, 0), with a normal of (0, f, v).
-void number(int frame, const ShapePlace& to) {
+void number(int frame, const ShapeOutput& to) {
   const auto f = static_cast<float>(frame);
   for (std::size_t v = 0; v < to.positions.size(); ++v) {
     to.positions[v] = Vec3f(f, static_cast<float>(v), 0);
@@ -43,7 +43,7 @@ TEST(MakeShapes, HandsOverEachFrameOnceAndInOrder) {
   for (const int jobs : {1, 2, 3, 16}) {
     std::vector<int> taken;
     std::atomic<int> prepared = 0;
-    const Status done = make_shapes(
+    const Status status = make_shapes(
         numbered(50), {3, 45, 7, true}, jobs,
         [&](int frame, ShapeRoom& shape) -> Status {
           ++prepared;
@@ -61,7 +61,7 @@ TEST(MakeShapes, HandsOverEachFrameOnceAndInOrder) {
           }
           return {};
         });
-    EXPECT_TRUE(done.ok());
+    EXPECT_TRUE(status.ok());
     EXPECT_EQ(prepared, 42);
     ASSERT_EQ(taken.size(), 42u);
     for (int i = 0; i < 42; ++i) EXPECT_EQ(taken[static_cast<std::size_t>(i)], 3 + i);
@@ -72,12 +72,12 @@ TEST(MakeShapes, HandsOverEachFrameOnceAndInOrder) {
 TEST(MakeShapes, HandsOverAsManyFramesAtOnceWhateverTheThreads) {
   for (const int jobs : {1, 2, 8}) {
     std::vector<std::size_t> counts;
-    const Status done =
+    const Status status =
         make_shapes(numbered(40), {0, 40, 2, false}, jobs, nothing, [&](int, auto shapes) {
           counts.push_back(shapes.size());
           return Status();
         });
-    EXPECT_TRUE(done.ok());
+    EXPECT_TRUE(status.ok());
     EXPECT_EQ(counts, (std::vector<std::size_t>{16, 16, 8}));
   }
 }
@@ -92,7 +92,7 @@ TEST(MakeShapes, AsksASourceOnOneThreadAtATimeForFramesThatRise) {
         std::atomic<int> inside = 0;
         int last = -1;
       };
-      return [&asked, use = std::make_shared<Use>()](int frame, const ShapePlace& to) {
+      return [&asked, use = std::make_shared<Use>()](int frame, const ShapeOutput& to) {
         EXPECT_EQ(++use->inside, 1);
         EXPECT_GT(frame, use->last);
         EXPECT_TRUE(to.normals.empty());
@@ -102,8 +102,8 @@ TEST(MakeShapes, AsksASourceOnOneThreadAtATimeForFramesThatRise) {
         --use->inside;
       };
     };
-    const Status done = make_shapes(motion, {0, 200, 3, false}, jobs, nothing, take_all);
-    EXPECT_TRUE(done.ok());
+    const Status status = make_shapes(motion, {0, 200, 3, false}, jobs, nothing, take_all);
+    EXPECT_TRUE(status.ok());
     for (const auto& times : asked) EXPECT_EQ(times, 1);
   }
 }
@@ -114,7 +114,7 @@ TEST(MakeShapes, MakesShapesOnSeveralThreadsAtOnce) {
   constexpr std::size_t kVertices = 100'000;
   std::latch both(2);
   MeshMotion motion = numbered(2);
-  motion.source = copies_of([&both](int, const ShapePlace&) { both.arrive_and_wait(); });
+  motion.source = copies_of([&both](int, const ShapeOutput&) { both.arrive_and_wait(); });
   EXPECT_TRUE(make_shapes(motion, {0, 2, kVertices, false}, 2, nothing, take_all).ok());
 }
 
@@ -123,27 +123,27 @@ TEST(MakeShapes, HoldsFewFramesOfManyVertices) {
   MeshMotion motion = numbered(100);
   motion.source = [&]() -> ShapeSource {
     ++sources;
-    return [](int, const ShapePlace&) {};
+    return [](int, const ShapeOutput&) {};
   };
   constexpr std::size_t kVertices = 4'000'000;  // 48 MB a frame
-  const Status done = make_shapes(motion, {0, 8, kVertices, false}, 64, nothing, take_all);
-  EXPECT_TRUE(done.ok());
+  const Status status = make_shapes(motion, {0, 8, kVertices, false}, 64, nothing, take_all);
+  EXPECT_TRUE(status.ok());
   EXPECT_EQ(sources, 4);
 }
 
 TEST(MakeShapes, GivesTheFirstErrorWhateverTheThreads) {
   for (const int jobs : {1, 2, 8}) {
     const auto refuse = [](int frame) { return Status(Error("no", std::to_string(frame))); };
-    const Status prepared = make_shapes(
+    const Status status = make_shapes(
         numbered(30), {0, 30, 2, false}, jobs,
         [&](int frame, ShapeRoom&) { return frame < 9 ? Status() : refuse(frame); }, take_all);
-    ASSERT_FALSE(prepared.ok());
-    EXPECT_EQ(prepared.error().message, "9");
-    const Status taken =
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().message, "9");
+    const Status status =
         make_shapes(numbered(30), {0, 30, 2, false}, jobs, nothing,
                     [&](int first, auto) { return first < 16 ? Status() : refuse(first); });
-    ASSERT_FALSE(taken.ok());
-    EXPECT_EQ(taken.error().message, "16");
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().message, "16");
   }
 }
 
@@ -151,7 +151,7 @@ TEST(MakeShapes, GivesTheFirstErrorWhateverTheThreads) {
 TEST(MakeShapes, PassesOnWhatIsThrown) {
   for (const int jobs : {1, 3}) {
     MeshMotion motion = numbered(30);
-    motion.source = copies_of([](int frame, const ShapePlace&) {
+    motion.source = copies_of([](int frame, const ShapeOutput&) {
       if (frame == 5) throw std::runtime_error("five");
     });
     EXPECT_THROW((void)make_shapes(motion, {0, 30, 2, false}, jobs, nothing, take_all).ok(),

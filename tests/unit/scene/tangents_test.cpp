@@ -17,7 +17,7 @@ const std::vector<Vec3f> kNormals(4, Vec3f(0, 0, 1));
 const std::vector<Vec2f> kHanging = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
 const Triangles kFaces = {{0, 1, 2}, {0, 2, 3}};
 
-TEST(MakeTangents, APictureOnAWallHasItsRightAndItsTop) {
+TEST(MakeTangents, AImageOnAWallHasItsRightAndItsTop) {
   for (const Vec4f& tangent : make_tangents(kPlaces, kNormals, kHanging, kFaces)) {
     EXPECT_LT((tangent.head<3>() - Vec3f(1, 0, 0)).norm(), 1e-6f);
     // normal x tangent is +Y, which is where the picture's top is.
@@ -25,7 +25,7 @@ TEST(MakeTangents, APictureOnAWallHasItsRightAndItsTop) {
   }
 }
 
-TEST(MakeTangents, AMirroredPictureIsOnTheOtherSide) {
+TEST(MakeTangents, AMirroredImageIsOnTheOtherSide) {
   std::vector<Vec2f> mirrored = kHanging;
   for (Vec2f& coordinate : mirrored) coordinate.x() = 1 - coordinate.x();
   for (const Vec4f& tangent : make_tangents(kPlaces, kNormals, mirrored, kFaces)) {

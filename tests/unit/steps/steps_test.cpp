@@ -91,8 +91,8 @@ TEST(Steps, WriterRefusesWhatIsNoLibrary) {
     StepsFile file = samples::step_library();
     change(file);
     auto out = OutputFile::create("/dev/null");
-    const Status written = write(file, {}, *out);
-    return written ? std::string() : written.error().code;
+    const Status status = write(file, {}, *out);
+    return status ? std::string() : status.error().code;
   };
   const double nan = std::nan("");
   EXPECT_EQ(code([](StepsFile&) {}), "");

@@ -47,7 +47,7 @@ TEST(Base, CutInTwoAndPutTogetherItIsItself) {
   }
 }
 
-TEST(Base, GoesOnWhereTheItemBeforeLeftTheFigure) {
+TEST(Base, GoesOnWhereTheItemBeforeLeftTheActor) {
   samples::WalkOptions options = slow_walk();
   options.turn = 0.3;
   const KeyedWalk walk = keyed_walk(options);
@@ -58,15 +58,15 @@ TEST(Base, GoesOnWhereTheItemBeforeLeftTheFigure) {
   const Mixed result = mixed(timeline, {source_of(walk)});
   const int carrier = carrying_joint(find_roles(walk.clip.skeleton));
   const int join = static_cast<int>(std::lround(1.5 * walk.clip.rate));
-  const GroundPlace left = ground_place(walk.clip, carrier, join);
-  const GroundPlace entered = ground_place(result.clip, carrier, join);
+  const GroundFrame left = ground_frame(walk.clip, carrier, join);
+  const GroundFrame entered = ground_frame(result.clip, carrier, join);
   EXPECT_NEAR(entered.x, left.x, 1e-5);
   EXPECT_NEAR(entered.z, left.z, 1e-5);
   EXPECT_NEAR(wrapped(entered.heading - left.heading), 0, 1e-5);
   // What follows is the second item's, moved as a whole.
   const Transform moved =
       left.to_world() *
-      ground_place(walk.clip, carrier, static_cast<int>(std::lround(0.5 * walk.clip.rate)))
+      ground_frame(walk.clip, carrier, static_cast<int>(std::lround(0.5 * walk.clip.rate)))
           .to_world()
           .inverse();
   for (int k = 0; k < 60; ++k) {
@@ -159,13 +159,13 @@ TEST(Base, RoundsThatJumpAreTold) {
 TEST(Base, ItsOwnRateAndPlace) {
   const KeyedWalk walk = keyed_walk(slow_walk());
   Timeline timeline{30, {played(0)}, {}};
-  timeline.base[0].place = GroundPlace{2, -3, 1};
+  timeline.base[0].place = GroundFrame{2, -3, 1};
   const Mixed result = mixed(timeline, {source_of(walk)});
   EXPECT_EQ(result.clip.rate, 30);
   EXPECT_EQ(result.clip.frame_count(),
             static_cast<int>(std::floor(walk.clip.duration() * 30 + 1e-3)) + 1);
-  const GroundPlace place =
-      ground_place(result.clip, carrying_joint(find_roles(walk.clip.skeleton)), 0);
+  const GroundFrame place =
+      ground_frame(result.clip, carrying_joint(find_roles(walk.clip.skeleton)), 0);
   EXPECT_NEAR(place.x, 2, 1e-5);
   EXPECT_NEAR(place.z, -3, 1e-5);
   EXPECT_NEAR(place.heading, 1, 1e-5);

@@ -253,7 +253,7 @@ TEST(Changes, ToAPlaceThatIsTold) {
   for (const ChangeKind kind : kGentle) {
     Timeline timeline{0, {played(0), changed(0, kind, 0.4)}, {}};
     timeline.base[0].play.to = seconds(2);
-    timeline.base[1].place = GroundPlace{0.3, 2, 0.7};
+    timeline.base[1].place = GroundFrame{0.3, 2, 0.7};
     timeline.base[1].change.sync = Sync::clock;
     const Mixed result = mixed(timeline, {source_of(walk)});
     // When the change is over the figure is where a motion that begins at that place has it.
@@ -261,7 +261,7 @@ TEST(Changes, ToAPlaceThatIsTold) {
     const int f = static_cast<int>(std::lround(result.changes[0].end * walk.clip.rate));
     const int g = static_cast<int>(std::lround(play * walk.clip.rate));
     const Transform moved = timeline.base[1].place->to_world() *
-                            ground_place(walk.clip, carrier, 0).to_world().inverse();
+                            ground_frame(walk.clip, carrier, 0).to_world().inverse();
     const auto c = static_cast<std::size_t>(carrier);
     const Vec3 expected = moved * walk.clip.frame_positions(g)[c].cast<double>();
     EXPECT_LT((result.clip.frame_positions(f)[c].cast<double>() - expected).norm(), 0.02)

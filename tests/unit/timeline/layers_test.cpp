@@ -198,10 +198,10 @@ TEST_F(Layers, InModelSpaceJointsKeepTheirDirection) {
     const Mixed result = mixed(timeline, sources());
     double most = 0;
     for (int f = frame(1); f <= frame(2.4); ++f) {
-      const GroundPlace place = ground_place(result.clip, carrier, f);
+      const GroundFrame place = ground_frame(result.clip, carrier, f);
       const Quat head = axis_rotation(Axis::y, -place.heading) *
                         result.clip.frame_orientations(f)[joint("Head")].cast<double>();
-      const GroundPlace own = ground_place(wave_, carrier, 0);
+      const GroundFrame own = ground_frame(wave_, carrier, 0);
       const Quat wanted = axis_rotation(Axis::y, -own.heading) *
                           wave_.frame_orientations(0)[joint("Head")].cast<double>();
       most = std::max(most, angle_between(head, wanted));

@@ -54,8 +54,8 @@ inline Mixed mixed(const Timeline& timeline, const std::vector<Source>& sources)
   EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
   if (!result) return {};
   EXPECT_TRUE(check(result->clip).ok());
-  const Status sound = check(result->keys, result->clip.skeleton, result->clip.duration());
-  EXPECT_TRUE(sound.ok()) << (sound.ok() ? "" : sound.error().message);
+  const Status status = check(result->keys, result->clip.skeleton, result->clip.duration());
+  EXPECT_TRUE(status.ok()) << (status.ok() ? "" : status.error().message);
   return std::move(*result);
 }
 

@@ -1,12 +1,12 @@
 // If these fail, pictures of characters have parts in the wrong colour or place, or show what is
 // behind glass as if the glass were a wall.
 
-#include "tools/common/figures/drawn_body.h"
+#include "tools/common/actors/drawn_body.h"
 
 #include <gtest/gtest.h>
 
 #include "golden/samples/samples.h"
-#include "tools/common/figures/bone_figure.h"
+#include "tools/common/actors/bone_actor.h"
 
 namespace krok {
 namespace {

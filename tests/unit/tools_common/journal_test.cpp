@@ -56,8 +56,8 @@ TEST_F(JournalTest, WhereTheNewOneCannotTakeItsPlaceThatIsToldAndNothingIsLeft) 
   ASSERT_TRUE(journal.add({{"output", "a.anim"}, {"made_with", "1"}}));
   std::filesystem::remove(path(name_));
   std::filesystem::create_directories(path(name_ + "/in the way"));
-  const Status tidied = journal.tidy();
-  ASSERT_FALSE(tidied);
+  const Status status = journal.tidy();
+  ASSERT_FALSE(status);
   EXPECT_EQ(listing(), std::vector<std::string>{name_});
 }
 

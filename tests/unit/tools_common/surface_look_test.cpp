@@ -1,12 +1,12 @@
 // If these fail, pictures of figures show materials in another colour, without their texture, or
 // with holes where there are none.
 
-#include "tools/common/figures/surface_look.h"
+#include "tools/common/actors/surface_look.h"
 
 #include <gtest/gtest.h>
 
 #include "support/small_pictures.h"
-#include "tools/common/figures/drawn_body.h"
+#include "tools/common/actors/drawn_body.h"
 
 namespace krok {
 namespace {
@@ -14,18 +14,18 @@ namespace {
 // A material with a picture and the picture decoded, one grey pixel.
 struct Painted {
   Material material;
-  DecodedPictures pictures;
+  DecodedImages images;
   SharedCoordinates coordinates =
       std::make_shared<const std::vector<Vec2f>>(std::vector<Vec2f>{{0, 0}, {1, 0}, {0, 1}});
 
   Painted() {
     material.name = "Skin";
     material.base_color = {1, 0.5F, 0, 0.4F};
-    material.base_color_texture.picture = test::picture(test::png());
-    pictures[material.base_color_texture.picture.get()] =
+    material.base_color_texture.image = test::image(test::png());
+    images[material.base_color_texture.image.get()] =
         std::make_shared<const render::Mipmap>(*render::Mipmap::create(1, 1, {128, 128, 128, 255}));
   }
-  std::optional<SurfaceLook> look() const { return look_of(material, coordinates, pictures); }
+  std::optional<SurfaceLook> look() const { return look_of(material, coordinates, images); }
 };
 
 TEST(SurfaceLook, HasTheTextureAsTheMaterialSays) {
@@ -41,16 +41,16 @@ TEST(SurfaceLook, HasTheTextureAsTheMaterialSays) {
   EXPECT_EQ(look->paint->factor, painted.material.base_color);
   EXPECT_EQ(look->paint->cutoff, 0) << "opaque: alpha does not count";
   EXPECT_EQ(look->paint->coordinates, painted.coordinates);
-  EXPECT_EQ(look->paint->picture, painted.pictures.begin()->second) << "shared, not copied";
+  EXPECT_EQ(look->paint->image, painted.images.begin()->second) << "shared, not copied";
 }
 
-TEST(SurfaceLook, WithoutAPictureOrCoordinatesItIsThePlainColour) {
+TEST(SurfaceLook, WithoutAImageOrCoordinatesItIsThePlainColour) {
   Painted painted;
   painted.coordinates = nullptr;
   EXPECT_EQ(painted.look()->paint, nullptr);
   EXPECT_EQ(painted.look()->colour, render::colour(0xFFBC00));
   painted = Painted();
-  painted.pictures.begin()->second = nullptr;  // could not be decoded
+  painted.images.begin()->second = nullptr;  // could not be decoded
   EXPECT_EQ(painted.look()->paint, nullptr);
   painted = Painted();
   painted.material.base_color_texture = {};
@@ -86,7 +86,7 @@ TEST(SurfaceLook, ABodysPartsHaveTheCoordinatesOfTheirVertices) {
   model.parts = {{"a", "Other", 0, 1}, {"b", "Skin", 1, 1}};
   ASSERT_TRUE(check(model).ok());
   const auto shared = std::make_shared<const Model>(model);
-  const DrawnBody body(shared, std::vector{painted.material}, SkinMethod::linear, painted.pictures);
+  const DrawnBody body(shared, std::vector{painted.material}, SkinMethod::linear, painted.images);
   const auto surfaces = body.at(model.skeleton.reference);
   ASSERT_EQ(surfaces.size(), 2u);
   EXPECT_EQ(surfaces[0].paint, nullptr);

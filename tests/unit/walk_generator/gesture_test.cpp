@@ -44,8 +44,8 @@ TEST_P(EachGesture, IsSoundAndBeginsAndEndsAtRest) {
 TEST_P(EachGesture, LeavesHipsAndLegsAlone) {
   const auto [kind, side] = GetParam();
   const Clip clip = made(kind, side);
-  const Figure figure = make_figure(1.75);
-  for (const int joint : {figure.hips, figure.legs[0].foot, figure.legs[1].toes}) {
+  const Actor actor = make_actor(1.75);
+  for (const int joint : {actor.hips, actor.legs[0].foot, actor.legs[1].toes}) {
     for (int f = 1; f < clip.frame_count(); ++f) {
       ASSERT_LT((joint_at(clip, f, joint).position - joint_at(clip, 0, joint).position).norm(),
                 1e-6);
@@ -70,9 +70,9 @@ TEST_P(EachGesture, MovesWithoutJumps) {
 TEST(Wave, LiftsTheHandOfItsSideAboveTheShoulderPalmForward) {
   for (const Side side : {Side::left, Side::right}) {
     const Clip clip = made(Gesture::wave, side);
-    const Figure figure = make_figure(1.75);
-    const ArmJoints& arm = figure.arms[size_t(side)];
-    const ArmJoints& still = figure.arms[size_t(other(side))];
+    const Actor actor = make_actor(1.75);
+    const ArmJoints& arm = actor.arms[size_t(side)];
+    const ArmJoints& still = actor.arms[size_t(other(side))];
     double least = 10, most = -10;
     for (int f = 75; f <= 105; ++f) {
       const Transform hand = joint_at(clip, f, arm.hand);
@@ -92,11 +92,11 @@ TEST(Wave, LiftsTheHandOfItsSideAboveTheShoulderPalmForward) {
 TEST(Limp, LeansOverTheLegWhileItStandsAlone) {
   for (const Side side : {Side::left, Side::right}) {
     const Clip clip = made(Gesture::limp, side, 1.2);
-    const Figure figure = make_figure(1.75);
-    const double rest = joint_at(clip, 0, figure.head).position.x();
+    const Actor actor = make_actor(1.75);
+    const double rest = joint_at(clip, 0, actor.head).position.x();
     const auto lean = [&](double phase) {
       const int frame = static_cast<int>(phase * (clip.frame_count() - 1));
-      return side_sign(side) * (joint_at(clip, frame, figure.head).position.x() - rest);
+      return side_sign(side) * (joint_at(clip, frame, actor.head).position.x() - rest);
     };
     EXPECT_GT(lean(0.31), 0.05);
     EXPECT_NEAR(lean(0.8), 0, 1e-6);
@@ -105,8 +105,8 @@ TEST(Limp, LeansOverTheLegWhileItStandsAlone) {
 
 TEST(Look, TurnsTheHeadToItsSide) {
   const Clip clip = made(Gesture::look, Side::left);
-  const Figure figure = make_figure(1.75);
-  const Vec3 ahead = joint_at(clip, 90, figure.head).orientation * Vec3(0, 0, 1);
+  const Actor actor = make_actor(1.75);
+  const Vec3 ahead = joint_at(clip, 90, actor.head).orientation * Vec3(0, 0, 1);
   EXPECT_GT(ahead.x(), 0.7);
 }
 

@@ -106,22 +106,22 @@ TEST_P(AnyWalk, ContactPointsStayPut) {
         }
       }
     };
-    expect_still(foot.heel, test::track(walk_.clip, name + "Foot", walk_.figure.heel));
+    expect_still(foot.heel, test::track(walk_.clip, name + "Foot", walk_.actor.heel));
     expect_still(foot.toe, test::track(walk_.clip, name + "ToeBase",
-                                       walk_.figure.toe_tip - walk_.figure.toe_joint));
+                                       walk_.actor.toe_tip - walk_.actor.toe_joint));
   }
   EXPECT_GT(checked, walk_.clip.frame_count());
 }
 
 TEST_P(AnyWalk, FeetNeverSinkIntoTheGround) {
-  const FootPlan plan = plan_feet(walk_.options, walk_.figure);
+  const FootPlan plan = plan_feet(walk_.options, walk_.actor);
   for (const Side side : {Side::left, Side::right}) {
     const std::string name = test::joint_side(side);
-    const Vec3 toe = walk_.figure.toe_joint;
+    const Vec3 toe = walk_.actor.toe_joint;
     for (const auto& points :
-         {test::track(walk_.clip, name + "Foot", walk_.figure.heel),
-          test::track(walk_.clip, name + "ToeBase", walk_.figure.ball - toe),
-          test::track(walk_.clip, name + "ToeBase", walk_.figure.toe_tip - toe)}) {
+         {test::track(walk_.clip, name + "Foot", walk_.actor.heel),
+          test::track(walk_.clip, name + "ToeBase", walk_.actor.ball - toe),
+          test::track(walk_.clip, name + "ToeBase", walk_.actor.toe_tip - toe)}) {
       for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_GT(points[i].y() - plan.ground_height(points[i]), -5e-4) << name << " frame " << i;
       }
@@ -131,11 +131,11 @@ TEST_P(AnyWalk, FeetNeverSinkIntoTheGround) {
 
 // No one lifts a foot to the height of the hips to walk.
 TEST_P(AnyWalk, FeetAreLiftedNoHigherThanTheyNeed) {
-  const FootPlan plan = plan_feet(walk_.options, walk_.figure);
-  const double most = 0.2 * walk_.figure.stature + std::abs(walk_.options.rise);
+  const FootPlan plan = plan_feet(walk_.options, walk_.actor);
+  const double most = 0.2 * walk_.actor.stature + std::abs(walk_.options.rise);
   for (const Side side : {Side::left, Side::right}) {
     const auto heels =
-        test::track(walk_.clip, std::string(test::joint_side(side)) + "Foot", walk_.figure.heel);
+        test::track(walk_.clip, std::string(test::joint_side(side)) + "Foot", walk_.actor.heel);
     for (std::size_t i = 0; i < heels.size(); ++i) {
       EXPECT_LT(heels[i].y() - plan.ground_height(heels[i]), most) << "frame " << i;
     }

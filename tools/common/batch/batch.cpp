@@ -86,8 +86,8 @@ class Batch {
     list_ = list_files(line_, make_spec_, errors);
     tally_ = BatchTally(list_.files.size());
     if (!errors.empty()) return stop(errors);
-    if (Status made = prepare(); !made) return stop({made.error()});
-    if (Status begun = begin_report(); !begun) return stop({begun.error()});
+    if (Status status = prepare(); !status) return stop({status.error()});
+    if (Status status = begin_report(); !status) return stop({status.error()});
     do_files();
     return finish();
   }
@@ -216,8 +216,8 @@ class Batch {
 
   // In the order of the list: the results that have waited for it get their place.
   Status place(const BatchFile& file, Outcome& outcome) {
-    if (Status claimed = names_.claim(outcome.unforeseen, file.input); !claimed) return claimed;
-    if (Status placed = OutputFile::place_all(outcome.held_files); !placed) return placed;
+    if (Status status = names_.claim(outcome.unforeseen, file.input); !status) return status;
+    if (Status status = OutputFile::place_all(outcome.held_files); !status) return status;
     if (outcome.record) outcome.journal = journal_->add(*outcome.record);
     return {};
   }
@@ -272,7 +272,7 @@ class Batch {
   // Tells what became of a file; whether to go on.
   bool take(const BatchFile& file, Outcome outcome) {
     if (outcome.state != FileState::failed) {
-      if (const Status placed = place(file, outcome); !placed) fail(file, placed.error(), outcome);
+      if (const Status status = place(file, outcome); !status) fail(file, status.error(), outcome);
     }
     if (!outcome.messages.empty()) write_message(console_.get(), outcome.messages);
     if (report_.is_wanted()) report_.add(outcome.report);
@@ -298,7 +298,7 @@ class Batch {
       const std::string path = folder.empty() ? "." : folder;
       struct stat status {};
       if (stat(path.c_str(), &status) != 0 || !stored.insert(status.st_dev).second) continue;
-      if (Status done = store_files(path); !done) return done;
+      if (Status status = store_files(path); !status) return status;
     }
     return {};
   }
@@ -306,12 +306,12 @@ class Batch {
   int finish() {
     // The journal first, so that the disk is waited for once. What it tells may get there before
     // what it tells of, for it is not believed.
-    Status kept = journal_->tidy();
+    Status status = journal_->tidy();
     const Status stored = store();
     if (!stored) context_.tell(stored.error());
-    if (!journal_trouble_) kept = journal_trouble_;
-    if (!kept) {
-      Diagnostic warning = kept.error();
+    if (!journal_trouble_) status = journal_trouble_;
+    if (!status) {
+      Diagnostic warning = status.error();
       warning.severity = Severity::warning;
       context_.tell(std::move(warning));
     }
@@ -319,9 +319,9 @@ class Batch {
     const std::string part =
         line_.shard.empty() ? "" : fmt::format(" of {} (part {})", list_.total, line_.shard);
     context_.say(fmt::format("{}: {}", context_.report.tool, tally_.summary(part)));
-    const Status written = report_.end(context_.report.issues, tally_.result());
-    if (!written) {
-      context_.tell(written.error());
+    const Status status = report_.end(context_.report.issues, tally_.result());
+    if (!status) {
+      context_.tell(status.error());
       return kExitTrouble;
     }
     if (!stored) return kExitTrouble;

@@ -27,12 +27,12 @@ void BatchReport::add(const Json& file) {
 
 Status BatchReport::end(const Diagnostics& issues, const Json& result) {
   if (!file_) return {};
-  const Status written = file_->write(fmt::format("{}],\n  \"issues\": {},\n  \"result\": {}\n}}\n",
-                                                  first_ ? "" : "\n  ", json_line(to_json(issues)),
-                                                  json_line(result)));
+  const Status status = file_->write(fmt::format("{}],\n  \"issues\": {},\n  \"result\": {}\n}}\n",
+                                                 first_ ? "" : "\n  ", json_line(to_json(issues)),
+                                                 json_line(result)));
   const Status done = file_->commit();
   file_.reset();
-  return written ? done : written;
+  return status ? done : status;
 }
 
 }  // namespace krok

@@ -137,7 +137,7 @@ std::string Journal::output_of(std::string_view line) const {
   return record.is_object() ? text_of(record, "output") : std::string();
 }
 
-std::string_view Journal::line(const Place& place) const {
+std::string_view Journal::line(const LineRange& place) const {
   return files_[place.file].text().substr(place.begin, place.size);
 }
 
@@ -243,10 +243,10 @@ Status Journal::tidy() {
   auto file = OutputFile::create(anew, {.stored_later = true});
   if (!file) return file.error();
   for (const std::string& output : outputs) {
-    if (Status written = file->write(line(index_[output].back())); !written) return written;
-    if (Status written = file->write("\n"); !written) return written;
+    if (Status status = file->write(line(index_[output].back())); !status) return status;
+    if (Status status = file->write("\n"); !status) return status;
   }
-  if (Status placed = file->commit(); !placed) return placed;
+  if (Status status = file->commit(); !status) return status;
   fs::rename(anew, path_, trouble);
   // What it was before goes, before the system has brought that to the disk too.
   files_.clear();

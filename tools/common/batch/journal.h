@@ -56,15 +56,15 @@ class Journal {
   const std::string& path() const { return path_; }
 
  private:
-  struct Place {
+  struct LineRange {
     std::size_t file;
     std::size_t begin, size;
   };
-  using Index = std::unordered_map<std::string, std::vector<Place>>;
+  using Index = std::unordered_map<std::string, std::vector<LineRange>>;
 
   void read(const std::string& path);
   std::string output_of(std::string_view line) const;
-  std::string_view line(const Place& place) const;
+  std::string_view line(const LineRange& place) const;
   Result<std::string> checksum_of_input(const std::string& path) const;
   std::string checksum_of_choice(const std::string& folder, const std::string& ending) const;
 

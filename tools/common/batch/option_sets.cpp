@@ -41,7 +41,7 @@ Result<OptionSet> OptionSets::parse(const std::vector<std::string>& words) const
       file.parse(arguments_for_file(set.options, fixed_positionals_, "input", "output", false));
   if (!parsed) return parsed.error();
   if (spec.check) {
-    if (Status fits = spec.check(); !fits) return fits.error();
+    if (Status status = spec.check(); !status) return status.error();
   }
   set.ending = spec.batch->ending();
   return set;

@@ -30,7 +30,7 @@ class Loader {
     loaded_.character = *std::move(character);
     for (const auto part : {&Loader::load_model, &Loader::load_materials, &Loader::dress_parts,
                             &Loader::load_morphs, &Loader::check_eyes, &Loader::load_roles}) {
-      if (Status done = (this->*part)(); !done) return std::move(done.error()).in_file(path_);
+      if (Status status = (this->*part)(); !status) return std::move(status.error()).in_file(path_);
     }
     return std::move(loaded_);
   }
@@ -94,12 +94,12 @@ class Loader {
         if (part.name == given.name) part.material = given.material;
       }
     }
-    tell_of_missing_materials();
-    return load_pictures();
+    report_missing_materials();
+    return load_images();
   }
 
   // Of the model's own; a character without materials is no fault.
-  void tell_of_missing_materials() {
+  void report_missing_materials() {
     std::set<std::string> told;
     for (const Model::Part& part : loaded_.model.parts) {
       if (loaded_.materials.empty() || part.material.empty()) continue;
@@ -116,7 +116,7 @@ class Loader {
     }
   }
 
-  Status load_pictures() {
+  Status load_images() {
     std::vector<Material> used;
     for (std::size_t m = 0; m < loaded_.materials.size();) {
       // Materials of one file share their pictures.
@@ -130,10 +130,10 @@ class Loader {
           used.push_back(std::move(loaded_.materials[m]));
         }
       }
-      const Status done =
-          material::load_pictures(std::span(used).subspan(begin),
-                                  [&](const std::string& path) { return open(from, path); });
-      if (!done) return done;
+      const Status status =
+          material::load_images(std::span(used).subspan(begin),
+                                [&](const std::string& path) { return open(from, path); });
+      if (!status) return status;
     }
     loaded_.materials = std::move(used);
     return {};

@@ -11,7 +11,7 @@ namespace krok {
 
 namespace {
 
-constexpr std::size_t kMostListed = 20;
+constexpr std::size_t kMaxListed = 20;
 
 const nodes::Node& node_of(const nodes::Scene& scene, int node) {
   return scene.nodes[static_cast<std::size_t>(node)];
@@ -23,7 +23,7 @@ const std::string& lens_name(const nodes::Scene& scene, const nodes::Node& node)
 
 std::string list_of(const nodes::Scene& scene, std::span<const int> cameras) {
   std::string list;
-  for (std::size_t i = 0; i < std::min(cameras.size(), kMostListed); ++i) {
+  for (std::size_t i = 0; i < std::min(cameras.size(), kMaxListed); ++i) {
     const nodes::Node& node = node_of(scene, cameras[i]);
     list += fmt::format("{}{} ({})", i == 0 ? "" : ", ", i,
                         shown(node.name.empty() ? lens_name(scene, node) : node.name));

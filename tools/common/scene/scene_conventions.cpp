@@ -9,15 +9,15 @@ namespace krok {
 Result<Conventions> scene_conventions(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
                                       const character::Rig* rig, const RoleMap& roles,
                                       int animation, const GivenConventions& given) {
-  constexpr int kMostSamples = 200;
+  constexpr int kMaxSamples = 200;
   std::vector<Vec3> samples;
   if (rig != nullptr && animation >= 0) {
-    Diagnostics told_elsewhere;
+    Diagnostics reported_elsewhere;
     const auto& keys = scene.animations[static_cast<std::size_t>(animation)];
-    const auto sampling = character::choose_sampling(keys, {}, told_elsewhere);
+    const auto sampling = character::choose_sampling(keys, {}, reported_elsewhere);
     if (!sampling) return sampling.error();
     samples =
-        character::sample_positions(evaluator, *rig, animation, sampling->sampling, kMostSamples);
+        character::sample_positions(evaluator, *rig, animation, sampling->sampling, kMaxSamples);
   }
   return character::find_conventions(scene.space, rig, roles, samples, given);
 }

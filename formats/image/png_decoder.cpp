@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstring>
+
+#include "formats/image/decoders_internal.h"
+
+namespace krok::image {
+
+namespace {
+
+class PngDecoder {
+ public:
+  explicit PngDecoder(std::span<const std::byte> file) : left_(file) {
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, &fail, &ignore);
+    if (png_ != nullptr) info_ = png_create_info_struct(png_);
+  }
+  PngDecoder(const PngDecoder&) = delete;
+  PngDecoder& operator=(const PngDecoder&) = delete;
+  ~PngDecoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+  const char* message() const { return message_; }
+
+  // False where libpng fails, or where it sees another size.
+  bool decode(Pixels& pixels) {
+    if (info_ == nullptr) return false;
+    std::uint8_t* const first = pixels.rgba.data();
+    const auto width = static_cast<png_uint_32>(pixels.width);
+    const auto height = static_cast<png_uint_32>(pixels.height);
+    return decode(first, width, height);
+  }
+
+ private:
+  bool decode(std::uint8_t* first, png_uint_32 width, png_uint_32 height) {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    png_set_read_fn(png_, this, &read);
+    png_read_info(png_, info_);
+    png_set_expand(png_);  // palettes, few bits, one transparent colour
+    png_set_scale_16(png_);
+    png_set_gray_to_rgb(png_);
+    png_set_add_alpha(png_, 0xFF, PNG_FILLER_AFTER);
+    const int passes = png_set_interlace_handling(png_);
+    png_read_update_info(png_, info_);
+    const std::size_t row = std::size_t{width} * 4;
+    if (png_get_image_width(png_, info_) != width || png_get_image_height(png_, info_) != height ||
+        png_get_rowbytes(png_, info_) != row) {
+      png_error(png_, "the header is not what it was");
+    }
+    for (int pass = 0; pass < passes; ++pass) {
+      for (png_uint_32 y = 0; y < height; ++y) png_read_row(png_, first + y * row, nullptr);
+    }
+    png_read_end(png_, nullptr);
+    return true;
+  }
+
+  static void read(png_structp png, png_bytep to, std::size_t size) {
+    auto& self = *static_cast<PngDecoder*>(png_get_io_ptr(png));
+    if (size > self.left_.size()) png_error(png, "it ends too early");
+    std::memcpy(to, self.left_.data(), size);
+    self.left_ = self.left_.subspan(size);
+  }
+
+  [[noreturn]] static void fail(png_structp png, png_const_charp message) {
+    auto& self = *static_cast<PngDecoder*>(png_get_error_ptr(png));
+    std::strncpy(self.message_, message, sizeof(self.message_) - 1);
+    png_longjmp(png, 1);
+  }
+
+  static void ignore(png_structp, png_const_charp) {}  // what it says may be odd, and still decodes
+
+  std::span<const std::byte> left_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+  char message_[160] = "no memory";
+};
+
+}  // namespace
+
+Status decode_png(std::span<const std::byte> file, Pixels& pixels) {
+  PngDecoder decoder(file);
+  if (decoder.decode(pixels)) return {};
+  return Error("picture-damaged",
+               fmt::format("the PNG picture cannot be decoded: {}", decoder.message()),
+               "save it again");
+}
+
+}  // namespace krok::image

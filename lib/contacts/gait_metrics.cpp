@@ -1,0 +1,58 @@
+#include "contacts/gait_metrics.h"
+
+#include <algorithm>
+#include <string>
+
+namespace krok {
+
+namespace {
+
+constexpr double kLongest = 3;  // seconds
+
+struct Cycle {
+  double strike = 0, off = 0, next = 0;
+};
+
+std::vector<Cycle> cycles_of(const std::vector<Keytime>& keytimes, const std::string& side) {
+  std::vector<Cycle> cycles;
+  double strike = -1, off = -1;
+  for (const Keytime& key : keytimes) {
+    if (key.name == side + "_off") {
+      off = key.time;
+    } else if (key.name == side + "_strike") {
+      if (strike >= 0 && off > strike && key.time - strike < kLongest) {
+        cycles.push_back({strike, off, key.time});
+      }
+      strike = key.time;
+    }
+  }
+  return cycles;
+}
+
+}  // namespace
+
+GaitMetrics gait_metrics(const std::vector<Keytime>& keytimes) {
+  GaitMetrics metrics;
+  const std::array<std::vector<Cycle>, 2> cycles = {cycles_of(keytimes, "left"),
+                                                    cycles_of(keytimes, "right")};
+  double length = 0;
+  for (std::size_t s = 0; s < 2; ++s) {
+    for (const Cycle& cycle : cycles[s]) {
+      ++metrics.cycles;
+      length += cycle.next - cycle.strike;
+      metrics.stance[s] += (cycle.off - cycle.strike) / (cycle.next - cycle.strike);
+    }
+    if (!cycles[s].empty()) metrics.stance[s] /= static_cast<double>(cycles[s].size());
+  }
+  if (metrics.cycles == 0) return metrics;
+  metrics.cycle = length / metrics.cycles;
+  metrics.cadence = 120 / metrics.cycle;
+  // A foot's cycle has two times of double support; by the stances alone they are what exceeds the
+  // whole, which needs no pairing of cycles at the clip's ends.
+  if (!cycles[0].empty() && !cycles[1].empty()) {
+    metrics.double_support = std::max(0.0, metrics.stance[0] + metrics.stance[1] - 1);
+  }
+  return metrics;
+}
+
+}  // namespace krok
