@@ -1,15 +1,14 @@
-# What the scripts of the stories share. Sourced by samples/*/run.sh, which begin with a comment that
-# says what they do.
+# Sourced by samples/*/run.sh. The leading comment of each of these is its --help text.
 #
-#   bin        where the tools are: $KROK_BIN, or build/bin
-#   generators where make-walk and make-gesture are: $SAMPLES_BIN, or build/samples
+#   bin        folder of the tools: $KROK_BIN, or build/bin
+#   generators folder of make-walk and make-gesture: $SAMPLES_BIN, or build/samples
 set -euo pipefail
 
 story=$(cd "$(dirname "${BASH_SOURCE[1]}")" && pwd)
 bin=${KROK_BIN:-$story/../../build/bin}
 generators=${SAMPLES_BIN:-$story/../../build/samples}
 
-# The comment that the script begins with.
+# Prints the leading comment of the script.
 usage() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$story/run.sh"; }
 
 fail() {
@@ -20,7 +19,7 @@ fail() {
 
 say() { printf '\n%s\n' "$1"; }
 
-# need_tools VERB...: krok-VERB must be there.
+# need_tools VERB...: fails unless each krok-VERB exists.
 need_tools() {
   local tool
   for tool in "$@"; do
@@ -37,18 +36,18 @@ need_generators() {
   done
 }
 
-# check_arguments MOST ARGUMENTS...: help where it is asked for, at most MOST arguments.
+# check_arguments MAX ARGUMENTS...: prints the help if requested; fails on more than MAX arguments.
 check_arguments() {
   local most=$1
   shift
   case "${1:-}" in -h | --help) usage && exit 0 ;; esac
   [ $# -le "$most" ] ||
-    fail "$# arguments, at most $most $([ "$most" = 1 ] && echo is || echo are) taken" \
+    fail "$# arguments, expected at most $most" \
       "put names with spaces in quotes"
 }
 
-# enter_folder FOLDER: makes it and goes there; relative names are then those in it.
+# enter_folder FOLDER: creates it and changes to it.
 enter_folder() {
-  mkdir -p -- "$1" || fail "cannot make the folder $1"
+  mkdir -p -- "$1" || fail "cannot create the folder $1"
   cd -- "$1"
 }

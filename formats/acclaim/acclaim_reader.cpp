@@ -22,8 +22,7 @@ namespace krok::acclaim {
 namespace {
 
 constexpr double kInch = 0.0254;
-// CMU's skeletons say "length 0.45"; their lengths are inches divided by it (mocap.cs.cmu.edu,
-// frequently asked questions).
+// CMU skeletons have "length 0.45"; their lengths are inches divided by it (mocap.cs.cmu.edu, FAQ).
 constexpr double kCmuLengthUnit = 0.45;
 constexpr double kUsualRate = 120.0;
 constexpr std::size_t kMaxSamples = 200;
@@ -109,8 +108,8 @@ class Reader {
     return {};
   }
 
-  // The format's "length" is a factor without a unit. Vicon's files have inches divided by it; that
-  // is believed where it makes a figure of a person's size.
+  // The format's "length" is a factor without a unit. Vicon files use inches divided by it; this is
+  // accepted if it gives a human-sized character.
   void take_unit_of_file(const Skeleton& in_file) {
     if (!file_.length_unit || *file_.length_unit == 1.0) return;
     const double metres = kInch / *file_.length_unit;
@@ -124,12 +123,11 @@ class Reader {
     conventions.unit = {metres, cmu ? "cmu" : fmt::format("inches / {}", unit)};
     conventions.unit_confidence = cmu && person ? Confidence::certain : Confidence::likely;
     conventions.unit_reason = fmt::format(
-        ":units says length {}, which stands for inches divided by it; the figure "
-        "then measures {} m",
+        ":units has length {}, taken as inches divided by it; the character is then {} m in size",
         unit, readable(size, 3));
   }
 
-  // What the numbers of the frames say of their times.
+  // Infers the frame times from the frame numbers.
   Status place_frames() {
     const std::vector<long long>& numbers = motion_.frame_numbers;
     const std::size_t count = numbers.size();
@@ -139,11 +137,11 @@ class Reader {
     capture_.first_frame_number = numbers[0];
     if (numbers[0] != 0 && numbers[0] != 1) {
       tell(Severity::note, amc_, "acclaim-frame",
-           fmt::format("the first frame has the number {}; times count from it", numbers[0]));
+           fmt::format("the first frame has number {}; times start from it", numbers[0]));
     }
     if (std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>()) !=
         numbers.end()) {
-      return {};  // no times can be made of these; the parser has told
+      return {};  // not increasing, already reported by the parser
     }
     // Differences without overflow: numbers are increasing.
     const auto step = [&](std::size_t i) {
@@ -167,13 +165,13 @@ class Reader {
   Status close_or_fill(std::size_t gaps, std::size_t first_gap) {
     const std::vector<long long>& numbers = motion_.frame_numbers;
     const std::string where =
-        fmt::format("{} gap{} in the numbers of the frames (the first: {} is followed by {})", gaps,
+        fmt::format("{} gap{} in the frame numbers (the first: {} is followed by {})", gaps,
                     gaps == 1 ? "" : "s", numbers[first_gap - 1], numbers[first_gap]);
     if (options_.strictness != Strictness::repair) {
       if (options_.strictness == Strictness::strict) {
         return Error("acclaim-frame", where, "").in_file(amc_.file_name());
       }
-      tell(Severity::warning, amc_, "acclaim-frame", where + "; later frames move to the front",
+      tell(Severity::warning, amc_, "acclaim-frame", where + "; later frames move up",
            "--repair fills the gaps");
       return {};
     }
@@ -185,7 +183,7 @@ class Reader {
     if (last >= most_frames(amc_.text().size(), 0, joint_count_with_ends(file_), options_)) {
       return Error("acclaim-limit",
                    where + "; filling them is out of proportion to the size of the file",
-                   "read it without --repair")
+                   "import it without --repair")
           .in_file(amc_.file_name());
     }
     for (std::size_t i = 0; i < places_.size(); ++i) places_[i] = after_first(i);
@@ -208,24 +206,23 @@ class Reader {
       capture_.rate = {readable(rate), "as given", Confidence::certain};
       return;
     }
-    std::string reason = "the motion says so";
+    std::string reason = "stated in the motion";
     if (motion_.rate) {
       rate = *motion_.rate;
     } else {
-      reason = "an AMC does not say its rate; most of the CMU collection has this";
+      reason = "an AMC does not store its rate; most of the CMU database has this one";
     }
     if (frame_step_ > 1) {
       rate /= frame_step_;
-      reason =
-          fmt::format("the numbers of the frames go up by {}, so it is {} / {}; for the {}, {}",
-                      readable(frame_step_), readable(rate * frame_step_), readable(frame_step_),
-                      readable(rate * frame_step_), reason);
+      reason = fmt::format("the frame numbers increase by {}, so it is {} / {}; for the {}, {}",
+                           readable(frame_step_), readable(rate * frame_step_),
+                           readable(frame_step_), readable(rate * frame_step_), reason);
     }
     const bool guess = !motion_.rate || frame_step_ > 1;
     capture_.rate = {readable(rate), reason, guess ? Confidence::guess : Confidence::certain};
     tell(guess ? Severity::warning : Severity::note, amc_, "acclaim-rate",
-         fmt::format("{} frames a second: {}", readable(rate), reason),
-         guess ? "say the rate with --fps N if it is another" : "");
+         fmt::format("{} frames per second: {}", readable(rate), reason),
+         guess ? "set the rate with --fps N if this is wrong" : "");
   }
 
   Error overflow(const SourceText& source) const {
@@ -296,7 +293,7 @@ class Reader {
     capture_.rest_frame_dropped =
         settle_rest_frame(rest, options_.rest_frame, "acclaim", amc_.file_name(), capture_);
     if (!capture_.rest_frame_dropped || capture_.clip.frame_count() == 0) return;
-    // A frame that was filled in has the number between.
+    // The second frame may have been filled in.
     capture_.first_frame_number =
         places_[1] == 1 ? motion_.frame_numbers[1] : motion_.frame_numbers[0] + 1;
   }

@@ -40,7 +40,7 @@ class BoneParser {
       if (!same_word(token.text, "begin")) {
         return source_.error(
             token.offset, "acclaim-syntax",
-            fmt::format("'{}' where the begin of a bone is expected", shown(token.text)));
+            fmt::format("'{}' where 'begin' of a bone is expected", shown(token.text)));
       }
       if (static_cast<int>(bones_.size()) + 1 >= options_.max_joints) {
         return source_.error(token.offset, "acclaim-limit",
@@ -65,8 +65,8 @@ class BoneParser {
       const Token token = cursor_.next();
       if (token.end() || is_section(token) || same_word(token.text, "begin")) {
         return source_.error(token.offset, "acclaim-syntax",
-                             fmt::format("the end of {} is missing", called(bone)),
-                             token.end() ? "the file is cut short; export or copy it again" : "");
+                             fmt::format("'end' of {} is missing", called(bone)),
+                             token.end() ? "the file is truncated; export or copy it again" : "");
       }
       if (same_word(token.text, "end")) break;
       if (Status status = parse_bone_item(token, bone, axes, seen); !status) return status;
@@ -90,7 +90,7 @@ class BoneParser {
     }
     if (key == "name") {
       const Token name = cursor_.peek();
-      if (name.end() || name.starts_line) return {};  // nameless: check_bone() tells
+      if (name.end() || name.starts_line) return {};  // nameless: check_bone() reports it
       cursor_.next();
       bone.name = name.text;
       bone.offset = name.offset;
@@ -132,7 +132,7 @@ class BoneParser {
     if (values.size() != expected) {
       return source_.fault(offset, "acclaim-limits",
                            fmt::format("{} numbers for the limits of {}, expected {}; they are "
-                                       "left out",
+                                       "ignored",
                                        values.size(), called(bone), expected),
                            {}, to_utf8(bone.name));
     }
@@ -150,19 +150,19 @@ class BoneParser {
     };
     if (bone.name.empty()) {
       return source_.error(bone.offset, "acclaim-bone", "a bone has no name",
-                           ":hierarchy and the motion know bones by their names");
+                           ":hierarchy and the motion refer to bones by name");
     }
     if (!seen.direction) return refuse("direction");
     if (!seen.length) return refuse("length");
-    if (!seen.axis && !bone.joint.channels.empty()) return refuse("axis, but degrees of freedom");
+    if (!seen.axis && !bone.joint.channels.empty()) return refuse("axis, but has a dof");
     if (bone.joint.limits.size() != bone.joint.channels.size()) bone.joint.limits.clear();
     const std::string joint = to_utf8(bone.name);
-    // Printed with six digits as a rule.
+    // Usually printed with six digits.
     constexpr double kRounding = 1e-3;
     Vec3& direction = bone.joint.direction;
     const double norm = direction.stableNorm();
     if (std::abs(norm - 1.0) > kRounding && bone.joint.length != 0) {
-      const char* taken = norm > 0 ? "only its direction counts" : "the bone has no length then";
+      const char* taken = norm > 0 ? "it is normalised" : "the bone gets no length";
       if (Status status =
               source_.fault(bone.offset, "acclaim-bone",
                             fmt::format("the direction of {} has length {}, expected 1; {}",
@@ -175,7 +175,7 @@ class BoneParser {
     direction = norm > 0 && std::isfinite(norm) ? Vec3(direction / norm) : Vec3::Zero();
     if (bone.joint.length >= 0) return {};
     return source_.fault(bone.offset, "acclaim-bone",
-                         fmt::format("the length of {} is negative: the bone points the other way",
+                         fmt::format("the length of {} is negative: the bone direction is reversed",
                                      shown(bone.name)),
                          {}, joint);
   }

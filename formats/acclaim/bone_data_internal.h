@@ -9,12 +9,12 @@
 
 namespace krok::acclaim {
 
-// A bone as printed: its axes and limits in the file's unit of angles, which may come later.
+// A bone with axes and limits in the file's angle unit, which may be defined later in the file.
 struct PrintedBone : LooseBone {
   PrintedAxes axes;
 };
 
-// Reads the section :bonedata from after its keyword and adds its bones to `bones`.
+// Parses the section :bonedata after its keyword and appends its bones to `bones`.
 Status parse_bones(SourceText& source, TokenCursor& cursor, const ReadOptions& options,
                    std::vector<PrintedBone>& bones);
 

@@ -30,8 +30,8 @@ class BoneTree {
   }
 
  private:
-  // Bone i is number i + 1 here, the root 0. The maps are made to number loose bones first and
-  // joints in the end.
+  // Bone i has number i + 1 here, the root 0. The maps first refer to these numbers, and to joints
+  // in the end.
   Status collect_names() {
     skeleton_.by_name.emplace(kRootName, kRoot);
     skeleton_.by_lower_name.emplace(kRootName, kRoot);
@@ -40,12 +40,12 @@ class BoneTree {
       const int number = static_cast<int>(i) + 1;
       if (same_word(bone.name, kRootName)) {
         return source_.error(bone.offset, "acclaim-bone", "a bone is named root",
-                             "root is the place where the bones begin; rename the bone");
+                             "the name root is reserved for the root joint; rename the bone");
       }
       if (!skeleton_.by_name.emplace(bone.name, number).second) {
         return source_.error(bone.offset, "acclaim-bone",
                              fmt::format("a second bone is named {}", shown(bone.name)),
-                             ":hierarchy and the motion know bones by their names");
+                             ":hierarchy and the motion refer to bones by name");
       }
       const auto [place, is_new] = skeleton_.by_lower_name.emplace(ascii_lower(bone.name), number);
       if (!is_new) place->second = SkeletonFile::kUnknown;
@@ -63,11 +63,11 @@ class BoneTree {
                                        shown(no_parent ? link.parent : link.child)));
     }
     if (child == kRoot) {
-      return source_.error(link.child_offset, "acclaim-hierarchy", "root hangs on a bone");
+      return source_.error(link.child_offset, "acclaim-hierarchy", "root is the child of a bone");
     }
     if (hangs_[static_cast<std::size_t>(child)]) {
       return source_.error(link.child_offset, "acclaim-hierarchy",
-                           fmt::format("{} hangs on a second parent", shown(link.child)));
+                           fmt::format("{} has a second parent", shown(link.child)));
     }
     hangs_[static_cast<std::size_t>(child)] = true;
     children_[static_cast<std::size_t>(parent)].push_back(child);
@@ -109,13 +109,13 @@ class BoneTree {
     }
   }
 
-  // Names differ as bytes; read as Latin-1, or without control characters, two may be the same.
+  // Names are unique as bytes, but may be the same as Latin-1 or without control characters.
   std::string unique_name(const LooseBone& bone) {
     std::string candidate = names_.make(readable_joint_name(bone.name));
     if (candidate != bone.name) {
       source_.warn(
           bone.offset, "acclaim-name",
-          fmt::format("the name of a bone {}; it is called {}",
+          fmt::format("a bone name {}; renamed to {}",
                       is_utf8(bone.name) ? "has control characters" : "is not UTF-8", candidate),
           {}, candidate);
     }
@@ -132,8 +132,8 @@ class BoneTree {
     if (count == 0) return {};
     return source_.fault(
         first->offset, "acclaim-hierarchy",
-        fmt::format("{} bone{} not hang on the root and {} left out (the first: {})", count,
-                    count == 1 ? " does" : "s do", count == 1 ? "is" : "are", shown(first->name)));
+        fmt::format("{} bone{} not connected to the root and {} dropped (the first: {})", count,
+                    count == 1 ? " is" : "s are", count == 1 ? "is" : "are", shown(first->name)));
   }
 
   std::vector<LooseBone>& bones_;

@@ -10,7 +10,7 @@
 
 namespace krok::acclaim {
 
-// A bone of :bonedata, before it is known where it hangs.
+// A bone of :bonedata, before its parent is known.
 struct LooseBone {
   std::string_view name;  // as in the file
   std::size_t offset = 0;
@@ -23,9 +23,9 @@ struct HierarchyLink {
   std::size_t parent_offset = 0, child_offset = 0;
 };
 
-// Hangs the bones on the root that stands in `skeleton` already: fills its joints (depth first,
-// names made unique and UTF-8) and its maps of names. Bones that no chain of links joins to the
-// root are left out with a warning.
+// Attaches the bones to the root, which is already in `skeleton`: fills its joints (depth first,
+// with unique UTF-8 names) and its name maps. Bones not connected to the root are dropped with a
+// warning.
 Status hang_bones(std::vector<LooseBone>& bones, const std::vector<HierarchyLink>& links,
                   SourceText& source, SkeletonFile& skeleton);
 

@@ -11,7 +11,7 @@ namespace krok::acclaim {
 
 namespace {
 
-// The line of a frame's number, from 1; 0 if no line has it alone.
+// The one-based line that has only the frame number; 0 if there is none.
 std::int64_t line_of_frame(std::string_view text, long long number) {
   std::int64_t line = 0;
   while (!text.empty()) {

@@ -11,9 +11,9 @@
 
 namespace krok::acclaim {
 
-// What to tell of frames with values beyond sense: the first rotation and the first position of
-// `far`, whose frames are the file's, each with joint, frame and line. `places` are the frames of
-// the clip. Codes acclaim-far-rotation, acclaim-far-position.
+// Diagnostics for implausibly large values: the first rotation and the first position of `far`,
+// each with joint, frame and line. Frames in `far` are indices in the file; `places` maps them to
+// frames of the clip. Codes acclaim-far-rotation, acclaim-far-position.
 std::vector<Error> far_frame_faults(std::string_view amc_text, const MotionFile& motion,
                                     const Kinematics& kinematics, const FarValues& far,
                                     const Clip& clip, const std::vector<std::size_t>& places);

@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether the motion's name begins with the skeleton's as a whole: not 1.asf for 11_01.amc.
+// Whether the motion's name begins with the skeleton's name as a complete word: not 1.asf for
+// 11_01.amc.
 bool begins_name(const std::string& skeleton, const std::string& motion) {
   if (skeleton.empty() || !same_word(motion.substr(0, skeleton.size()), skeleton)) return false;
   if (motion.size() == skeleton.size()) return true;
@@ -23,7 +24,7 @@ bool begins_name(const std::string& skeleton, const std::string& motion) {
   return next == '_' || next == '-' || next == '.' || next == ' ';
 }
 
-// Sorted, so that the order of the folder does not matter.
+// Sorted, independent of the directory order.
 std::vector<fs::path> skeletons_in(const fs::path& folder) {
   std::vector<fs::path> found;
   std::error_code ignored;
@@ -51,20 +52,21 @@ Result<FoundSkeleton> find_skeleton(const std::string& amc_path) {
     longest = stem.size();
     named.push_back(skeleton);
   }
-  // As it was written on the command line: without "./".
+  // As on the command line: without "./".
   const auto beside = [&](const fs::path& skeleton) {
     return (motion.parent_path() / skeleton.filename()).string();
   };
-  if (named.size() == 1) return FoundSkeleton{beside(named[0]), "its name begins the motion's"};
+  if (named.size() == 1)
+    return FoundSkeleton{beside(named[0]), "the motion's name begins with its name"};
   if (skeletons.size() == 1) {
-    return FoundSkeleton{beside(skeletons[0]), "it is the only one beside the motion"};
+    return FoundSkeleton{beside(skeletons[0]), "it is the only one in the motion's folder"};
   }
   return Error("acclaim-skeleton",
                skeletons.empty()
-                   ? std::string("a motion in Acclaim's format needs its skeleton, and there is no "
-                                 ".asf file beside it")
-                   : fmt::format("a motion in Acclaim's format needs its skeleton, and it is not "
-                                 "clear which of the {} .asf files beside it that is",
+                   ? std::string("an AMC motion needs its skeleton, and there is no .asf file in "
+                                 "its folder")
+                   : fmt::format("an AMC motion needs its skeleton, and it is not clear which of "
+                                 "the {} .asf files in its folder it is",
                                  skeletons.size()))
       .in_file(amc_path);
 }

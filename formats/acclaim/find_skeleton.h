@@ -6,16 +6,16 @@
 
 namespace krok::acclaim {
 
-// Where the skeleton of a motion was found, and why it is that one.
+// The skeleton file of a motion, and why it was chosen.
 struct FoundSkeleton {
   std::string path;
-  std::string reason;  // "its name begins the motion's"
+  std::string reason;  // "the motion's name begins with its name"
 };
 
-// Looks beside the motion `amc_path` for its skeleton, a file that ends in .asf in any case: the
-// one with the same name, or whose name the motion's begins with (01.asf for 01_01.amc, as the CMU
-// collection has them; the longest such), or the only one in the folder. An Error (code
-// acclaim-skeleton) where there is none or several are left.
+// Searches the folder of the motion `amc_path` for its skeleton, a file with extension .asf
+// (case-insensitive): the longest name that equals or begins the motion's name (01.asf for
+// 01_01.amc, as in the CMU database), or else the only one in the folder. An Error (code
+// acclaim-skeleton) if there is none or the choice is ambiguous.
 Result<FoundSkeleton> find_skeleton(const std::string& amc_path);
 
 }  // namespace krok::acclaim

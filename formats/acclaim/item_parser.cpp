@@ -23,7 +23,7 @@ std::optional<Channel> parse_channel(std::string_view word) {
   return std::nullopt;
 }
 
-// "XYZ": three different axes, the first turned about first.
+// "XYZ": three different axes, in the order of application.
 std::optional<EulerOrder> parse_order(std::string_view word) {
   EulerOrder order{};
   if (word.size() != order.size()) return std::nullopt;
@@ -59,7 +59,7 @@ Result<double> ItemParser::number(const std::string& what) {
       token.offset, "acclaim-number",
       token.end() ? fmt::format("the file ends in the {}", what)
                   : fmt::format("'{}' in the {} is not a finite number", shown(token.text), what),
-      token.end() ? "the file is cut short; export or copy it again" : "");
+      token.end() ? "the file is truncated; export or copy it again" : "");
 }
 
 Status ItemParser::vector(const std::string& what, Vec3& vector) {
@@ -78,8 +78,8 @@ Status ItemParser::channels(std::vector<Channel>& channels, const std::string& w
     if (!channel) {
       return source_.error(
           token.offset, "acclaim-dof",
-          fmt::format("'{}' is no degree of freedom (of {})", shown(token.text), whose),
-          "they are tx ty tz rx ry rz l");
+          fmt::format("'{}' is not a degree of freedom (of {})", shown(token.text), whose),
+          "use tx ty tz rx ry rz l");
     }
     if (std::find(channels.begin(), channels.end(), *channel) != channels.end()) {
       return source_.error(token.offset, "acclaim-dof",
@@ -94,14 +94,14 @@ Status ItemParser::axis_order(const std::string& whose, EulerOrder& order) {
   const Token token = cursor_.peek();
   if (token.end() || token.starts_line) {
     return source_.fault(token.offset, "acclaim-syntax",
-                         fmt::format("the axis of {} has no order, taken as XYZ", whose));
+                         fmt::format("the axis of {} has no order, assumed to be XYZ", whose));
   }
   cursor_.next();
   const auto parsed = parse_order(token.text);
   if (!parsed) {
     return source_.error(token.offset, "acclaim-syntax",
-                         fmt::format("'{}' is no order of axes (of {})", shown(token.text), whose),
-                         "write XYZ or another order of the three letters");
+                         fmt::format("'{}' is not an axis order (of {})", shown(token.text), whose),
+                         "write XYZ or another permutation");
   }
   order = *parsed;
   return {};
@@ -110,7 +110,7 @@ Status ItemParser::axis_order(const std::string& whose, EulerOrder& order) {
 Status ItemParser::skip_unknown(const Token& token) {
   cursor_.skip_line();
   return source_.fault(token.offset, "acclaim-keyword",
-                       fmt::format("'{}' is unknown, its line is left out", shown(token.text)));
+                       fmt::format("'{}' is unknown, the line is ignored", shown(token.text)));
 }
 
 }  // namespace krok::acclaim

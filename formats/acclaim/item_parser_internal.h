@@ -10,13 +10,13 @@
 
 namespace krok::acclaim {
 
-// Whether a word is a section's keyword, which ends the section before it.
+// Whether a token is a section keyword, which ends the previous section.
 inline bool is_section(const Token& token) {
   return token.starts_line && token.text.starts_with(':');
 }
 
-// An orientation as `axis` and `orientation` have it: angles about x, y and z, whatever the order
-// in which they are turned about.
+// The orientation of `axis` and `orientation`: angles about x, y and z, always stored in that
+// order, and the order in which they are applied.
 struct PrintedAxes {
   Vec3 angles = Vec3::Zero();
   EulerOrder order = {Axis::x, Axis::y, Axis::z};
@@ -24,8 +24,8 @@ struct PrintedAxes {
   Quat rotation(double radians) const;
 };
 
-// Reads what the sections of an ASF are made of from where `cursor` stands. `what` and `whose` are
-// for messages. Both arguments must outlive this.
+// Parses the elements of ASF sections at `cursor`. `what` and `whose` are for messages. Both
+// constructor arguments must outlive this.
 class ItemParser {
  public:
   ItemParser(SourceText& source, TokenCursor& cursor) : source_(source), cursor_(cursor) {}
@@ -33,13 +33,13 @@ class ItemParser {
   Result<double> number(const std::string& what);
   Status vector(const std::string& what, Vec3& vector);
 
-  // The words of `dof` or `order`, to the end of the line.
+  // The channels of `dof` or `order`, to the end of the line.
   Status channels(std::vector<Channel>& channels, const std::string& whose);
 
-  // The word after the three angles of an axis, which some exporters leave out.
+  // The word after the three angles of an axis, which some exporters omit.
   Status axis_order(const std::string& whose, EulerOrder& order);
 
-  // Lines that a section does not know may be a vendor's own.
+  // Skips an unknown line with a warning; it may be a vendor extension.
   Status skip_unknown(const Token& token);
 
  private:

@@ -54,10 +54,10 @@ Kinematics::Kinematics(const SkeletonFile& skeleton, double radians)
   }
 }
 
-// From the beginning of a bone to its end, in the reference pose.
+// From the start of a bone to its end, in the reference pose.
 Vec3 Kinematics::bone_end(int file_joint, double length) const {
   const SkeletonFile::Joint& joint = file_.joints[static_cast<std::size_t>(file_joint)];
-  // The root is a place without length.
+  // The root is a point without length.
   return joint.parent < 0 ? Vec3(Vec3::Zero()) : Vec3(joint.direction * length);
 }
 
@@ -115,7 +115,7 @@ void Kinematics::pose(std::span<const double> values, std::span<Transform> joint
       local.position += bone_end(bone, length);
       joint_to_world[j] = joint_to_world[static_cast<std::size_t>(joint.parent)] * local;
     }
-    // Products of many unit quaternions drift by rounding; deep chains would notice.
+    // Products of many unit quaternions drift due to rounding, which matters in deep chains.
     joint_to_world[j].orientation.normalize();
   }
 }

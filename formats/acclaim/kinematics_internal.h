@@ -10,11 +10,11 @@
 
 namespace krok::acclaim {
 
-// The joints of a clip made from an ASF: the file's joints in their order, each leaf followed by
-// its end. In the file's unit and axes.
+// Forward kinematics for the joints of a clip made from an ASF: the file's joints in order, each
+// leaf followed by its end joint. In the file's unit and axes.
 class Kinematics {
  public:
-  // `radians` is the size of an angle's unit in the motion. The skeleton must outlive this.
+  // `radians` is the angle unit of the motion in radians. The skeleton must outlive this.
   Kinematics(const SkeletonFile& skeleton, double radians);
 
   std::size_t joint_count() const { return joints_.size(); }
@@ -22,15 +22,15 @@ class Kinematics {
   // Names, parents and end sites, with the reference pose.
   Skeleton skeleton() const;
 
-  // For each joint of the clip the file's, or -1 for an end.
+  // The file joint of a clip joint, or -1 for an end joint.
   int file_joint(std::size_t joint) const {
     return joints_[joint].is_end ? -1 : joints_[joint].source;
   }
 
-  // joint_to_world, shape [joints], from a frame's values, shape [channels], in doubles.
+  // joint_to_world, shape [joints], from the values of a frame, shape [channels], in doubles.
   void pose(std::span<const double> values, std::span<Transform> joint_to_world) const;
 
-  // The first rotation beyond kFarthestRotation in a frame's values (capture/far_values.h).
+  // The first rotation beyond kFarthestRotation in the values of a frame (capture/far_values.h).
   struct Rotation {
     std::size_t joint = 0;  // of the clip
     Channel channel = Channel::rx;
@@ -41,10 +41,10 @@ class Kinematics {
  private:
   struct Joint {
     int parent = -1;
-    int source = 0;  // of the file; the leaf's own for an end
+    int source = 0;  // joint of the file; the leaf for an end joint
     bool is_end = false;
     std::size_t first_channel = 0;
-    // Where the parent bone's length stands in a frame's values, if it can stretch.
+    // Channel of the parent bone's length, if it can stretch.
     std::size_t parent_length = kFixed;
   };
   static constexpr std::size_t kFixed = static_cast<std::size_t>(-1);
@@ -56,7 +56,7 @@ class Kinematics {
   std::vector<Joint> joints_;
 };
 
-// How many joints the clip has.
+// Number of joints of the clip.
 std::size_t joint_count_with_ends(const SkeletonFile& skeleton);
 
 }  // namespace krok::acclaim

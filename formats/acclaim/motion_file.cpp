@@ -14,10 +14,10 @@ namespace krok::acclaim {
 
 namespace {
 
-constexpr const char* kRepairHint = "--repair leaves the line out";
-constexpr const char* kCutHint = "the file is cut short; export or copy it again";
+constexpr const char* kRepairHint = "--repair skips the line";
+constexpr const char* kCutHint = "the file is truncated; export or copy it again";
 
-// Steps through one line by words; ends at a comment.
+// Splits one line into words; ends at a comment.
 class LineCursor {
  public:
   LineCursor(const char* position, const char* end) : position_(position), end_(end) {}
@@ -32,7 +32,7 @@ class LineCursor {
     while (position_ < end_ && !is_separator(*position_)) ++position_;
     return {begin, static_cast<std::size_t>(position_ - begin)};
   }
-  // The next word if it is a finite number; otherwise nothing is stepped over.
+  // Consumes the next word if it is a finite number.
   bool number(double& value) {
     if (at_end()) return false;
     const auto parsed = fast_float::from_chars(position_, end_, value);
@@ -41,7 +41,7 @@ class LineCursor {
       position_ = parsed.ptr;
       return true;
     }
-    LineCursor ahead = *this;  // a plus sign, or no number
+    LineCursor ahead = *this;  // has a plus sign, or is not a number
     const auto whole = parse_finite(ahead.word());
     if (!whole) return false;
     value = *whole;
@@ -65,7 +65,7 @@ class MotionParser {
       first_channel_.push_back(motion_.channel_count);
       motion_.channel_count += joint.channels.size();
       moving_ += joint.channels.empty() ? 0 : 1;
-      // What a bone is like before its first value.
+      // Default values, used before the first values of a bone.
       for (const Channel channel : joint.channels) {
         current_.push_back(channel == Channel::length ? joint.length : 0.0);
       }
@@ -93,36 +93,36 @@ class MotionParser {
     if (Status status = finish_last_frame(); !status) return status.error();
     if (lines_left_out_ > kMaxRepairs) {
       motion_.repairs.push_back(
-          fmt::format("{} more lines left out", lines_left_out_ - kMaxRepairs));
+          fmt::format("{} more lines skipped", lines_left_out_ - kMaxRepairs));
     }
     if (Status status = report_oddities(); !status) return status.error();
     return std::move(motion_);
   }
 
  private:
-  // A place in the line being read.
-  SourceText::OrderedJoint place_of(const char* position) const {
+  // A location in the current line.
+  SourceText::TextLocation place_of(const char* position) const {
     return {line_number_, position - text_.data() - static_cast<std::ptrdiff_t>(line_begin_) + 1};
   }
 
-  // An error inside of the last line of a file that ends without a line end is the file's end.
+  // An error in a last line without a line end means that the file is truncated.
   Status handle_fault(Error error, bool unfinished) {
     if (error.code == "acclaim-limit" || source_.strictness() == Strictness::strict) return error;
     if (unfinished && in_frame_) {
       cut_ = true;
       return {};
     }
-    // What stands before the first frame, or between frames, is not a value to be left out.
+    // Only lines with values inside a frame can be skipped.
     if (source_.strictness() != Strictness::repair || !in_frame_ ||
         error.code == "acclaim-syntax") {
       return error;
     }
     if (++lines_left_out_ <= kMaxRepairs) {
       motion_.repairs.push_back(
-          fmt::format("line {} left out: {}", error.where.line, error.message));
+          fmt::format("line {} skipped: {}", error.where.line, error.message));
     }
     source_.warn({error.where.line, error.where.column}, "acclaim-repair",
-                 "left out: " + error.message);
+                 "line skipped: " + error.message);
     return {};
   }
 
@@ -146,12 +146,12 @@ class MotionParser {
   }
 
   Status parse_keyword(LineCursor& line) {
-    const SourceText::OrderedJoint place = place_of(line.position());
+    const SourceText::TextLocation place = place_of(line.position());
     const std::string_view word = line.word();
     const std::string keyword = ascii_lower(word);
     if (in_frame_) {
       return source_.error(place, "acclaim-syntax",
-                           fmt::format("{} in the middle of the frames", shown(word)));
+                           fmt::format("{} between the frames", shown(word)));
     }
     if (keyword == ":fully-specified") {
       specified_ = true;
@@ -166,12 +166,12 @@ class MotionParser {
       motion_.rate = rate;
     } else if (keyword != ":frame-range" && keyword != ":asf-file" && keyword != ":asf-path") {
       return source_.fault(place, "acclaim-keyword",
-                           fmt::format("'{}' is unknown and left out", shown(word)));
+                           fmt::format("'{}' is unknown and ignored", shown(word)));
     }
     return {};
   }
 
-  Status begin_frame(long long number, const SourceText::OrderedJoint& place) {
+  Status begin_frame(long long number, const SourceText::TextLocation& place) {
     if (in_frame_) {
       if (Status status = finish_frame(); !status) return status;
     }
@@ -190,8 +190,8 @@ class MotionParser {
     return {};
   }
 
-  // Bones stand in the same order in every frame, so the next one is nearly always the one that
-  // followed last time.
+  // Bones are in the same order in every frame, so the next one is nearly always the same as in the
+  // previous frame.
   int joint_of(std::string_view name) {
     if (place_ < order_.size() && order_[place_].name == name) return order_[place_++].joint;
     const int joint = skeleton_.find(name);
@@ -201,7 +201,7 @@ class MotionParser {
       place_ = order_.size();
       return joint;
     }
-    // Where bones are left out, the order goes on somewhere near.
+    // If bones are missing, the order continues nearby.
     for (std::size_t i = place_; i < std::min(order_.size(), place_ + kSearch); ++i) {
       if (order_[i].joint != joint) continue;
       place_ = i + 1;
@@ -210,27 +210,27 @@ class MotionParser {
     return joint;
   }
 
-  Status parse_values(std::string_view name, const SourceText::OrderedJoint& place,
+  Status parse_values(std::string_view name, const SourceText::TextLocation& place,
                       LineCursor& line) {
     const int joint = joint_of(name);
     if (joint == SkeletonFile::kLeftOut) return {};
     if (joint == SkeletonFile::kUnknown) {
       return source_.error(place, "acclaim-unknown-bone",
                            fmt::format("the skeleton has no bone {}", shown(name)),
-                           "the motion was made for another skeleton; give that one's ASF");
+                           "the motion belongs to another skeleton; give its ASF");
     }
     const auto j = static_cast<std::size_t>(joint);
     if (last_seen_[j] == stamp_) {
       return source_.error(place, "acclaim-frame",
                            fmt::format("frame {} has {} twice", number_, shown(name)),
-                           "perhaps the number of a frame is missing between the two");
+                           "perhaps a frame number is missing between the two");
     }
     const std::vector<Channel>& channels = skeleton_.joints[j].channels;
     values_.clear();
     double value = 0;
     while (line.number(value)) values_.push_back(value);
     if (!line.at_end()) {
-      const SourceText::OrderedJoint place_of_value = place_of(line.position());
+      const SourceText::TextLocation place_of_value = place_of(line.position());
       return source_.error(place_of_value, "acclaim-number",
                            fmt::format("'{}' in the values of {} is not a finite number",
                                        shown(line.word()), shown(name)),
@@ -290,34 +290,33 @@ class MotionParser {
     return 0;
   }
 
-  // The last frame is whole if it has what the frames before it have.
+  // The last frame is complete if it has as many bones as the frames before it.
   Status finish_last_frame() {
     if (!in_frame_) return {};
     const bool lacks = motion_.frame_count() > 0 && seen_ < seen_before_;
     if (!cut_ && !lacks) return finish_frame();
-    motion_.repairs.push_back(fmt::format("frame {}, cut short, left out", number_));
-    return source_.fault(
-        frame_place_, "acclaim-cut",
-        fmt::format("the file ends in the middle of frame {}, which is left out", number_),
-        kCutHint);
+    motion_.repairs.push_back(fmt::format("truncated frame {} dropped", number_));
+    return source_.fault(frame_place_, "acclaim-cut",
+                         fmt::format("the file ends inside frame {}, which is dropped", number_),
+                         kCutHint);
   }
 
   Status report_oddities() {
     if (!specified_) {
       if (Status status = source_.fault(0, "acclaim-keyword",
-                                        "the motion does not say :FULLY-SPECIFIED; read as such");
+                                        "the motion has no :FULLY-SPECIFIED, which is assumed");
           !status) {
         return status;
       }
     }
     if (motion_.frame_count() == 0) {
-      return source_.fault(text_.size(), "acclaim-frame", "the motion has no whole frame",
+      return source_.fault(text_.size(), "acclaim-frame", "the motion has no complete frame",
                            kCutHint);
     }
     if (odd_number_place_) {
       if (Status status = source_.fault(*odd_number_place_, "acclaim-frame",
                                         "the number of this frame is not greater than the one "
-                                        "before; frames are taken in the file's order");
+                                        "before; frames are read in file order");
           !status) {
         return status;
       }
@@ -340,8 +339,8 @@ class MotionParser {
       const std::string& name = skeleton_.joints[first_never].name;
       if (Status status = source_.fault(
               0, "acclaim-missing",
-              fmt::format("the motion has no values for {} bone{} that can move (the first: {}); "
-                          "they stay as in the reference pose",
+              fmt::format("the motion has no values for {} bone{} with a dof (the first: {}); "
+                          "they stay in the reference pose",
                           never, never == 1 ? "" : "s", name),
               "perhaps it was made for another skeleton", name);
           !status) {
@@ -352,8 +351,8 @@ class MotionParser {
     const std::string& name = skeleton_.joints[first_short].name;
     return source_.fault(
         short_place_.value_or(first_place_), "acclaim-missing",
-        fmt::format("some frames have no values for {} bone{} that others have values for (the "
-                    "first: {}); there they stay as they were",
+        fmt::format("some frames have no values for {} bone{} that other frames have (the first: "
+                    "{}); the last values are kept",
                     now_and_then, now_and_then == 1 ? "" : "s", name),
         {}, name);
   }
@@ -381,7 +380,7 @@ class MotionParser {
   // The frame being read.
   bool in_frame_ = false, cut_ = false, specified_ = false;
   long long number_ = 0;
-  SourceText::OrderedJoint frame_place_ = 0;
+  SourceText::TextLocation frame_place_ = 0;
   std::size_t stamp_ = 0;  // counts begun frames
   std::size_t seen_ = 0;   // moving joints
   std::vector<double> current_, values_;
@@ -390,15 +389,15 @@ class MotionParser {
 
   std::size_t seen_before_ = 0;
   std::size_t lines_left_out_ = 0;
-  SourceText::OrderedJoint first_place_ = 0;
-  std::optional<SourceText::OrderedJoint> short_place_, odd_number_place_;
+  SourceText::TextLocation first_place_ = 0;
+  std::optional<SourceText::TextLocation> short_place_, odd_number_place_;
 };
 
 }  // namespace
 
 std::size_t most_frames(std::size_t text_size, std::size_t channels, std::size_t joints,
                         const ReadOptions& options) {
-  constexpr double kAlways = 1 << 26;  // bytes that a small file may take
+  constexpr double kAlways = 1 << 26;  // bytes allowed for any file
   const double bytes =
       static_cast<double>(channels * sizeof(double) + joints * (sizeof(Vec3f) + sizeof(Quatf)));
   const double frames =

@@ -13,14 +13,14 @@
 
 namespace krok::acclaim {
 
-// An AMC: the values of all channels in all frames, in the file's units, joint by joint in the
-// order of the skeleton's joints and their channels.
+// An AMC: the values of all channels in all frames, in the file's units, in the order of the
+// skeleton's joints and their channels.
 struct MotionFile {
   std::size_t channel_count = 0;
   std::vector<double> values;            // [frames x channels]
   std::vector<long long> frame_numbers;  // [frames], as printed
-  std::optional<double> rate;            // what the file says
-  std::optional<bool> degrees;           // what the file says
+  std::optional<double> rate;            // from the file
+  std::optional<bool> degrees;           // from the file
   std::vector<std::string> repairs;
 
   std::size_t frame_count() const { return frame_numbers.size(); }
@@ -29,12 +29,12 @@ struct MotionFile {
   }
 };
 
-// The most frames that the memory for `channels` and `joints` may be taken for, from the size of
-// the text.
+// Max number of frames with `channels` and `joints` for which memory may be allocated, from the
+// size of the text.
 std::size_t most_frames(std::size_t text_size, std::size_t channels, std::size_t joints,
                         const ReadOptions& options);
 
-// Parses a whole AMC in one pass. `joint_count` is that of the clip, for the limit on memory.
+// Parses an AMC in one pass. `joint_count` is that of the clip, for the memory limit.
 Result<MotionFile> parse_motion(SourceText& source, const SkeletonFile& skeleton,
                                 std::size_t joint_count, const ReadOptions& options);
 

@@ -44,7 +44,7 @@ class SkeletonParser {
  private:
   Status check_whole() {
     const std::size_t end = source_.text().size();
-    constexpr const char* kCut = "the file is cut short, or is no ASF; export or copy it again";
+    constexpr const char* kCut = "the file is truncated or not an ASF; export or copy it again";
     if (printed_.empty()) return source_.error(end, "acclaim-syntax", "there are no bones", kCut);
     if (!has_hierarchy_) {
       return source_.error(end, "acclaim-syntax", "there is no :hierarchy", kCut);
@@ -54,8 +54,9 @@ class SkeletonParser {
     using enum Channel;
     order = {tx, ty, tz, rx, ry, rz};
     return source_.fault(has_root_ ? root_offset_ : end, "acclaim-root",
-                         has_root_ ? ":root has no order, taken as TX TY TZ RX RY RZ"
-                                   : "there is no :root; its order is taken as TX TY TZ RX RY RZ");
+                         has_root_
+                             ? ":root has no order, assumed to be TX TY TZ RX RY RZ"
+                             : "there is no :root; its order is assumed to be TX TY TZ RX RY RZ");
   }
 
   Status parse_section(const Token& token) {
@@ -78,7 +79,7 @@ class SkeletonParser {
     if (keyword != ":skin") {
       if (Status status = source_.fault(
               token.offset, "acclaim-keyword",
-              fmt::format("the section {} is unknown and left out", shown(token.text)));
+              fmt::format("the section {} is unknown and ignored", shown(token.text)));
           !status) {
         return status;
       }
@@ -116,7 +117,7 @@ class SkeletonParser {
         result_.degrees = angle.starts_with("deg");
         if (!result_.degrees && !angle.starts_with("rad")) {
           return source_.error(value.offset, "acclaim-syntax",
-                               fmt::format("'{}' is no unit of angles", shown(value.text)),
+                               fmt::format("'{}' is not an angle unit", shown(value.text)),
                                "write deg or rad");
         }
       } else if (unit == "length" || unit == "mass") {
@@ -138,7 +139,7 @@ class SkeletonParser {
   Status parse_documentation() {
     cursor_.skip_line();
     std::string& text = result_.documentation;
-    // Free text: a word at the beginning of a line that begins with ':' ends it.
+    // Free text, ended by a line that begins with ':'.
     for (Token token = cursor_.peek(); !token.end() && !is_section(token); token = cursor_.peek()) {
       cursor_.next();
       if (!text.empty()) text += '\n';
@@ -173,8 +174,8 @@ class SkeletonParser {
     const bool moved = !result_.root_position.isZero(0) || !root_axes_.angles.isZero(0);
     if (!moved) return {};
     return source_.fault(offset, "acclaim-root",
-                         "the root has a position or orientation of its own, which is put before "
-                         "the whole motion; programs differ in this");
+                         "the root has a position or orientation, which is applied before the "
+                         "motion; programs differ in this");
   }
 
   Status parse_hierarchy(std::size_t offset) {
@@ -182,7 +183,7 @@ class SkeletonParser {
     has_hierarchy_ = true;
     Token token = cursor_.next();
     if (!same_word(token.text, "begin")) {
-      return source_.error(token.offset, "acclaim-syntax", "a begin is expected after :hierarchy");
+      return source_.error(token.offset, "acclaim-syntax", "'begin' is expected after :hierarchy");
     }
     Token parent;
     for (token = cursor_.next(); !token.end() && !is_section(token); token = cursor_.next()) {
@@ -193,8 +194,8 @@ class SkeletonParser {
         links_.push_back({parent.text, token.text, parent.offset, token.offset});
       }
     }
-    return source_.error(token.offset, "acclaim-syntax", "the end of :hierarchy is missing",
-                         token.end() ? "the file is cut short; export or copy it again" : "");
+    return source_.error(token.offset, "acclaim-syntax", "'end' of :hierarchy is missing",
+                         token.end() ? "the file is truncated; export or copy it again" : "");
   }
 
   SourceText& source_;

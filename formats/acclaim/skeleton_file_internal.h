@@ -34,8 +34,8 @@ inline int axis_index(Channel c) {
 // "rx".
 std::string_view channel_name(Channel channel);
 
-// An ASF, lengths in the file's unit, angles in radians. Joint 0 is the root; the bones that hang
-// on it follow depth first, parents before children.
+// An ASF, lengths in the file's unit, angles in radians. Joint 0 is the root; its descendants
+// follow depth first, parents before children.
 struct SkeletonFile {
   struct Limit {
     double lower = -std::numeric_limits<double>::infinity();
@@ -44,11 +44,11 @@ struct SkeletonFile {
   struct Joint {
     std::string name;  // unique, UTF-8
     int parent = -1;
-    Vec3 direction = Vec3::Zero();  // unit, or zero for the root and where the file has zero
+    Vec3 direction = Vec3::Zero();  // unit, or zero for the root and if zero in the file
     double length = 0;
     Quat axes = Quat::Identity();
     std::vector<Channel> channels;
-    std::vector<Limit> limits;  // empty or one a channel; rotations in radians
+    std::vector<Limit> limits;  // empty or one per channel; rotations in radians
     bool has_children = false;
   };
   std::vector<Joint> joints;
@@ -57,20 +57,20 @@ struct SkeletonFile {
   Quat root_orientation = Quat::Identity();
 
   std::string name, documentation;
-  std::optional<double> length_unit;  // what :units says of lengths
+  std::optional<double> length_unit;  // the length of :units
   bool degrees = true;
 
-  // The bone of a name in an AMC, in the case of the ASF or, where that is no bone, in any.
+  // Finds a bone by its name in an AMC: an exact match, or else a case-insensitive one.
   static constexpr int kUnknown = -1;
-  static constexpr int kLeftOut = -2;  // a bone that does not hang on the root
+  static constexpr int kLeftOut = -2;  // a bone that is not connected to the root
   int find(std::string_view name) const;
 
   std::unordered_map<std::string, int> by_name;        // as in the file, bytes
-  std::unordered_map<std::string, int> by_lower_name;  // ambiguous ones are kUnknown
+  std::unordered_map<std::string, int> by_lower_name;  // ambiguous names are kUnknown
 };
 
-// Parses a whole ASF. Sections may stand in any order, hierarchies may be as deep as the limit on
-// joints allows.
+// Parses an ASF. Sections may be in any order; hierarchy depth is limited only by the number of
+// joints.
 Result<SkeletonFile> parse_skeleton(SourceText& source, const ReadOptions& options);
 
 }  // namespace krok::acclaim

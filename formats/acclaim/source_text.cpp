@@ -101,17 +101,16 @@ Status check_kind(std::string_view text, const std::string& file_name, bool is_a
   const Kind kind = registry::kind_of_content(content);
   if (kind == (is_asf ? Kind::asf : Kind::amc)) return {};
   if (kind == Kind::asf || kind == Kind::amc) {
-    return refuse(
-        fmt::format("is {}, where {} is expected", registry::describe_content(content), wanted),
-        "perhaps the two files are in the wrong order");
+    return refuse(fmt::format("is {}, expected {}", registry::describe_content(content), wanted),
+                  "perhaps the two files are in the wrong order");
   }
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
     return refuse("is UTF-16 text", "save it as UTF-8");
   }
   if (TokenCursor(text).next().end()) {
-    return refuse("the file holds nothing but white space and comments", "export or copy it again");
+    return refuse("the file has only white space and comments", "export or copy it again");
   }
-  // A section that is not known yet may still be Acclaim's.
+  // A text that begins with an unknown section may still be an Acclaim file.
   const std::string_view what = registry::describe_content(content);
   if (kind == Kind::unknown && what == registry::kUnknownText) return {};
   return refuse(fmt::format("is {}, not {}", what, wanted), fmt::format("give {}", wanted));

@@ -12,7 +12,7 @@
 
 namespace krok::acclaim {
 
-// White space; the format counts commas and parentheses as such.
+// White space; in this format it includes commas and parentheses.
 inline constexpr std::array<bool, 256> kIsSeparator = [] {
   std::array<bool, 256> table = kIsSpace;
   for (const unsigned char c : {',', '(', ')'}) table[c] = true;
@@ -22,7 +22,7 @@ inline bool is_separator(char c) {
   return kIsSeparator[static_cast<unsigned char>(c)];
 }
 
-// A file's text and what is told about it.
+// The text of a file and its diagnostics.
 class SourceText {
  public:
   SourceText(std::string_view text, const std::string& file_name, Strictness strictness,
@@ -33,8 +33,8 @@ class SourceText {
   const std::string& file_name() const { return file_name_; }
   Strictness strictness() const { return strictness_; }
 
-  // A place in the text, by its byte or where the line is known. Finding the line of a byte takes
-  // time with the byte's offset.
+  // A location in the text, by offset or by line if known. Finding the line of an offset takes time
+  // linear in the offset.
   struct TextLocation {
     TextLocation(std::size_t byte) : offset(byte) {}  // NOLINT: implicit
     TextLocation(std::int64_t line_number, std::int64_t column_number)
@@ -47,10 +47,10 @@ class SourceText {
   Error error(const TextLocation& place, std::string code, std::string message,
               std::string hint = {}) const;
 
-  // After kMostWarnings of them only their number is told, by finish().
+  // Warnings beyond kMaxWarnings are only counted; finish() reports their number.
   void warn(const TextLocation& place, std::string code, std::string message, std::string hint = {},
             std::string joint = {});
-  // A warning that is an error where reading is strict.
+  // A warning that is an error if strict.
   Status fault(const TextLocation& place, std::string code, std::string message,
                std::string hint = {}, std::string joint = {});
   void finish();
@@ -72,15 +72,15 @@ struct Token {
   bool end() const { return text.empty(); }
 };
 
-// Steps through an ASF by words; comments (a word that begins with '#', to the end of its line) are
-// passed over.
+// Splits an ASF into words, skipping comments (from a word that begins with '#' to the end of the
+// line).
 class TokenCursor {
  public:
   explicit TokenCursor(std::string_view text) : text_(text) {}
 
   Token next();
   Token peek() const;
-  // What is left of the line up to a comment, trimmed.
+  // The rest of the line up to a comment, trimmed.
   std::string_view rest_of_line();
   void skip_line();
 
@@ -90,8 +90,8 @@ class TokenCursor {
   bool at_start_ = true;
 };
 
-// Whether the two texts can be Acclaim files at all: not empty, not binary, not another kind of
-// file, not each other. `is_asf` says which of the two it should be. Code acclaim-kind.
+// Checks that a text can be an ASF (`is_asf`) or AMC file: not empty, not binary, not another kind
+// of file, not the other of the two. Code acclaim-kind.
 Status check_kind(std::string_view text, const std::string& file_name, bool is_asf);
 
 }  // namespace krok::acclaim

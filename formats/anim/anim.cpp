@@ -24,8 +24,8 @@ struct Info {
 };
 static_assert(sizeof(Info) == 24);
 
-// Frames are encoded a block at a time. As many as keep a block with what it is made from in a
-// core's cache, but whole groups of those that sources make together.
+// Frames are encoded in blocks. A block and its input fit in the cache of a core; its size is a
+// multiple of the group of frames that sources generate at once.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 17;
 constexpr std::size_t kGroup = 16;
 
@@ -33,7 +33,7 @@ std::size_t frames_a_block(std::size_t frame_size) {
   return std::max<std::size_t>(kBlockBytes / frame_size / kGroup, 1) * kGroup;
 }
 
-// What one block takes while it is made.
+// Buffers for one block.
 struct Block {
   std::vector<Vec3f> positions;
   std::vector<Quatf> orientations;
@@ -72,7 +72,7 @@ Status write_frames(const FrameSource& source, const WriteOptions& options,
   return make_in_order((frames + at_once - 1) / at_once, options.jobs, make, take);
 }
 
-// The place of what check(Clip) found wrong.
+// Adds the location to an error of check(Clip).
 Error with_place(Error error, const Clip& clip, const ContainerReader& container) {
   if (error.frame >= 0) {
     const auto frames = container.find("FRAMES");
@@ -125,11 +125,11 @@ Result<Clip> read(std::span<const std::byte> file) {
       info.frame_count > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) {
     return at_section(
         Error("anim-shape",
-              fmt::format("says it has {} joints and {} frames; 1 to {} joints and up "
-                          "to {} frames are possible",
+              fmt::format("has {} joints and {} frames, expected 1 to {} joints and up to {} "
+                          "frames",
                           info.joint_count, info.frame_count, kMaxFileJoints,
                           std::numeric_limits<int>::max()),
-              "make the file anew"),
+              "create the file again"),
         *container, "INFO");
   }
   const OrientationEncoding encoding = orientation_encoding(*container);

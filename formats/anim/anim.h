@@ -10,29 +10,29 @@
 #include "scene/clip.h"
 #include "scene/frame_source.h"
 
-// Krok's own motion format, .anim; formats/anim/SPEC.md describes its bytes.
+// Krok's motion format, .anim; formats/anim/SPEC.md describes the bytes.
 
 namespace krok::anim {
 
-// A clip for which check() holds. Orientations stored as x, y, z come back with w <= 0. Trusts
-// nothing in `file`: memory is taken only for what the file has bytes for. Codes: those of
+// Reads a clip; it passes check(). Orientations stored as x, y, z are read with w <= 0. Safe for
+// untrusted input: memory use is bounded by the file size. Codes: those of
 // formats/container/container.h, anim-shape, those of check(Clip), with byte offsets.
 Result<Clip> read(std::span<const std::byte> file);
 
 struct WriteOptions {
   OrientationEncoding orientation = OrientationEncoding::xyz;
-  int jobs = 1;  // threads; the bytes do not depend on them
+  int jobs = 1;  // threads; the output does not depend on it
 };
 
-// Appends the whole file to `file`, to which nothing was written before; the caller commits. The
-// same clip gives the same bytes, and a clip that was read from a file gives that file's. An Error
-// for what check() refuses (NaN, for one), before anything is written.
+// Writes to `file`, which must be empty; the caller commits. Deterministic; a clip that was read
+// from a file gives the bytes of that file. An Error if check() fails (such as for NaN), before
+// anything is written.
 Status write(const Clip& clip, const WriteOptions& options, OutputFile& file);
 
-// The same for frames that are made when they are asked for, block by block, so that memory does
-// not grow with their number (but where the output cannot be rewritten, see ContainerWriter). The
-// bytes are those of the loaded clip. `provenance` is asked for once all frames are written. After
-// an Error, of the source or of the output, `file` holds a part and must not be committed.
+// The same for frames generated on demand, block by block, so that memory does not grow with their
+// number (unless the output cannot be rewritten, see ContainerWriter). The output is the same as
+// for the loaded clip. `provenance` is called after all frames are written. After an Error of the
+// source or the output, `file` is incomplete and must not be committed.
 Status write(const FrameSource& source, const std::function<Provenance()>& provenance,
              const WriteOptions& options, OutputFile& file);
 

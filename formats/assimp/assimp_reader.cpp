@@ -21,8 +21,8 @@ using registry::Kind;
 namespace {
 
 constexpr std::string_view kHint =
-    "the file is probably damaged; try to open it in another program and to save it again, best as "
-    "glTF (.glb)";
+    "the file is probably damaged; try to open and save it in another program, preferably as glTF "
+    "(.glb)";
 
 // The child's answer: an error, or a scene.
 std::vector<std::byte> pack_result(const Result<nodes::Scene>& result) {
@@ -54,32 +54,31 @@ Error error_of(const ChildReport& report, const ChildLimits& limits) {
     case ChildEnd::out_of_time:
       return Error(
           "assimp-time",
-          fmt::format("Assimp was stopped after {:.4g} seconds without having read the file",
-                      limits.seconds),
+          fmt::format("Assimp was stopped after {:.4g} seconds, the time limit", limits.seconds),
           hint);
     case ChildEnd::out_of_memory:
-      return Error("assimp-memory",
-                   fmt::format("Assimp wanted more than {} MB of memory for the file",
-                               limits.memory_bytes >> 20),
-                   hint);
+      return Error(
+          "assimp-memory",
+          fmt::format("Assimp exceeded the memory limit of {} MB", limits.memory_bytes >> 20),
+          hint);
     case ChildEnd::result_too_large:
       return Error("assimp-memory",
-                   fmt::format("what is in the file takes more than {} MB of memory",
+                   fmt::format("the file's content exceeds the memory limit of {} MB",
                                limits.result_bytes >> 20),
                    hint);
     case ChildEnd::not_started:
       return Error("assimp-start",
-                   fmt::format("no process could be started to read the file in: {}", report.what),
-                   "end some programs and try again");
+                   fmt::format("cannot start a process to read the file: {}", report.what),
+                   "close some programs and try again");
     case ChildEnd::threw:
       return Error("assimp-refused",
-                   fmt::format("the file cannot be read: Assimp says: {}", report.what), hint);
+                   fmt::format("cannot read the file; Assimp reports: {}", report.what), hint);
     case ChildEnd::crashed:
     case ChildEnd::returned:
       break;
   }
   return Error("assimp-crash",
-               fmt::format("Assimp, which reads such files, crashed on it: {}", report.what), hint);
+               fmt::format("Assimp crashed while reading the file: {}", report.what), hint);
 }
 
 Result<nodes::Scene> read_in_child(const std::vector<MemoryFile>& files, Kind kind,
@@ -102,17 +101,17 @@ Result<nodes::Scene> read_in_child(const std::vector<MemoryFile>& files, Kind ki
 
 Result<nodes::Scene> read_file(const std::string& path, const ReadOptions& options) {
   if (!(options.frames_per_second > 0) || !std::isfinite(options.frames_per_second)) {
-    return Error("assimp-rate", "the frame rate is not a positive number").in_file(path);
+    return Error("assimp-rate", "the frame rate must be positive").in_file(path);
   }
   const auto file = InputFile::open(path, options.most_file_bytes);
   if (!file) return file.error();
   const Kind kind = registry::identify(path, file->bytes());
   if (!registry::is_read_through_assimp(kind)) {
-    return Error("assimp-kind", fmt::format("is {}, which is not read through Assimp",
+    return Error("assimp-kind", fmt::format("is {}, which is not read with Assimp",
                                             registry::describe_content(file->bytes())))
         .in_file(path);
   }
-  // Assimp goes by the name's ending too; the content has decided.
+  // Assimp also uses the extension; here it follows from the content.
   std::vector<MemoryFile> files{{fmt::format("file.{}", registry::kind_name(kind)), file->bytes()}};
   const std::uint64_t size = file->bytes().size();
   Companions companions = find_companions(
@@ -131,8 +130,8 @@ Result<nodes::Scene> read_file(const std::string& path, const ReadOptions& optio
   }
   if (scene->meshes.empty() && scene->animations.empty() && scene->cameras.empty() &&
       scene->nodes.size() < 2) {
-    return Error("assimp-empty", "the file holds no mesh, no skeleton, no animation and no camera",
-                 "check what was exported")
+    return Error("assimp-empty", "the file has no mesh, skeleton, animation or camera",
+                 "check the export settings")
         .in_file(path);
   }
   return scene;

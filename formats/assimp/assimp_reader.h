@@ -6,47 +6,45 @@
 #include "core/result.h"
 #include "nodes/scene.h"
 
-// Characters, motions and cameras from other programs' files, read by the Assimp library: FBX,
-// COLLADA (.dae), Valve SMD, MilkShape MS3D, 3DS, ASE, Doom 3's MD5mesh and MD5anim.
+// Imports characters, motions and cameras with the Assimp library: FBX, COLLADA (.dae), Valve SMD,
+// MilkShape MS3D, 3DS, ASE, Doom 3's MD5mesh and MD5anim.
 //
-// Assimp is not made for strangers' files: it runs in a child process with limits (see
-// core/child_process.h) that can open nothing and sees no other bytes than those of the file and
-// its companions. What comes back is checked as if it were a stranger's too.
+// Assimp is not safe for untrusted files. It runs in a sandboxed child process with limits (see
+// core/child_process.h), which cannot open files and sees only the bytes of the file and its
+// companions. Its result is not trusted either.
 //
-// Codes of errors: those of InputFile; assimp-refused (Assimp says what is wrong with the file),
-// assimp-crash, assimp-time, assimp-memory (it died of the file, or was stopped at a limit),
-// assimp-result (it came back with nonsense), assimp-start (no child process could be started),
-// assimp-kind (not one of these formats), assimp-empty (nothing that Krok uses is in it).
-// Of notes and warnings: assimp-*, each with what to know about the file.
+// Error codes: those of InputFile; assimp-refused (Assimp rejects the file), assimp-crash,
+// assimp-time, assimp-memory (Assimp crashed or was stopped at a limit), assimp-result (invalid
+// result), assimp-start (the child process could not be started), assimp-kind (not one of these
+// formats), assimp-empty (nothing that Krok uses). Notes and warnings have codes assimp-*.
 
 namespace krok::assimp {
 
 struct ReadOptions {
-  // Of formats that count frames without saying how fast they are (SMD); 30 is studiomdl's own.
+  // For formats that do not store the frame rate (SMD); 30 is the default of studiomdl.
   double frames_per_second = 30;
   double most_seconds = 120;
-  // Memory that Assimp may take: this, and this many times the size of the file.
+  // Assimp's memory limit: most_bytes + most_expansion * size of the file.
   std::uint64_t most_bytes = std::uint64_t{512} << 20;
   double most_expansion = 64;
   std::uint64_t most_file_bytes = std::uint64_t{1} << 31;  // Assimp counts bytes in 32 bits
-  // Scene::materials too, as far as Assimp tells of them: colours, alpha, textures. Pictures are
-  // those in the file (FBX) or files in its folder tree, looked for under the path that the file
-  // names and under the base name alone. One that is not found, or is neither PNG nor JPEG, is left
-  // out with a warning (assimp-picture).
+  // Also read Scene::materials, as far as Assimp provides them: colours, alpha, textures. Images
+  // are embedded (FBX) or in the file's folder tree, found by the path in the file or by base name.
+  // One that is not found, or is neither PNG nor JPEG, is left out with a warning (assimp-picture).
   bool with_materials = false;
 };
 
-// What a scene is: nodes with the file's names, each of Assimp's meshes a primitive at its node
-// with up to 8 influences a vertex (more: the largest are kept and it is said), bones as skins,
-// animations with their keys at the file's own times (seconds). FBX's pivots are folded into their
-// node. Texture coordinates are glTF's, v down. Tangents where the file has them (FBX, COLLADA),
-// with glTF's side. Scene::space has what the file says, Scene::files the companions that were
-// read.
+// The scene has nodes with the file's names; each of Assimp's meshes as a primitive at its node,
+// with up to 8 influences per vertex (if there are more, the largest are kept, with a warning);
+// bones as skins; animations with keys at the file's times (seconds). FBX pivots are baked into
+// their node. Texture coordinates follow glTF (v down), as does the sign of tangents, which are
+// present if the file has them (FBX, COLLADA). Scene::space is what the file specifies,
+// Scene::files lists the companions that were read.
 //
-// MD5: `x.md5mesh` comes with the motion `x.md5anim` beside it; a given `x.md5anim` with the mesh
-// `x.md5mesh`, or with the only one in its folder whose joints are the same; without one it is a
-// skeleton that moves. SMD: an SMD without triangles is a skeleton that moves; the motions that
-// `x_animation.txt` names for `x.smd` come with it.
+// MD5: `x.md5mesh` is read with the motion `x.md5anim` from the same folder; `x.md5anim` with the
+// mesh `x.md5mesh`, or with the only mesh in its folder that has the same joints, otherwise as an
+// animated skeleton. SMD: without triangles it is an animated skeleton; `x.smd` is read with the
+// motions listed in `x_animation.txt`.
 Result<nodes::Scene> read_file(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace krok::assimp

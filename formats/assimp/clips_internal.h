@@ -5,7 +5,8 @@
 
 namespace krok::assimp {
 
-// Gives the animation the clip's name, and where the clip says its time only that part, from 0 on.
+// Sets the animation's name to the clip's and, if the clip has a time range, trims the animation to
+// it, starting at 0.
 void shape_clip(const ColladaClip& clip, nodes::Animation& animation);
 
 }  // namespace krok::assimp

@@ -30,7 +30,7 @@ std::string unescaped(std::string_view text) {
   return to_utf8(plain);
 }
 
-// The value of an attribute in a tag, empty if it has none.
+// The value of an attribute of a tag; empty if there is none.
 std::string attribute(std::string_view tag, std::string_view name) {
   for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
     std::string_view rest = tag.substr(at + name.size());
@@ -45,7 +45,7 @@ std::string attribute(std::string_view tag, std::string_view name) {
   return {};
 }
 
-// Calls `use` with each tag of this name, and with what follows it.
+// Calls `use` with each tag of this name, and with the text after it.
 template <typename Use>
 void for_each_tag(std::string_view text, std::string_view opening, Use use) {
   for (std::size_t at = text.find(opening); at != std::string_view::npos;
@@ -116,10 +116,10 @@ bool is_tag(std::string_view text, std::string_view tag) {
          (is_space(text[tag.size()]) || text[tag.size()] == '>' || text[tag.size()] == '/');
 }
 
-// What is in the <animation>s that are wanted, without their own tags.
+// The content of the wanted <animation> elements, without their tags.
 std::string contents_of(std::string_view library, const ColladaClip* clip) {
   std::string contents;
-  std::vector<bool> wanted = {clip == nullptr};  // of the elements that are open
+  std::vector<bool> wanted = {clip == nullptr};  // by open element
   while (!library.empty()) {
     const std::size_t tag = std::min(library.find('<'), library.size());
     if (wanted.back()) contents += library.substr(0, tag);

@@ -5,36 +5,36 @@
 #include <string_view>
 #include <vector>
 
-// What Assimp 5.2 leaves out of COLLADA files, found in their text.
+// Finds COLLADA data that Assimp 5.2 ignores, in the file's text.
 
 namespace krok::assimp {
 
-// The name of each <node> that has both an id, by which Assimp calls it, and a name.
+// Maps ids of <node> elements, which Assimp uses as names, to their names; nodes with both only.
 std::map<std::string, std::string> collada_node_names(std::string_view text);
 
-// The numbers in all <yfov> elements, degrees.
+// The values of all <yfov> elements, degrees.
 std::vector<double> collada_vertical_fields_of_view(std::string_view text);
 
-// An <animation_clip>: a part of the file's animations, over a part of their time.
+// An <animation_clip>: some of the file's animations, over a time range.
 struct ColladaClip {
   std::string name;
   std::vector<std::string> animations;  // ids
   double start = 0;                     // seconds
-  double end = 0;                       // not after the start: the file does not say
+  double end = 0;                       // not specified if not after the start
 };
 
 std::vector<ColladaClip> collada_clips(std::string_view text);
 
-// The file with one <animation> instead of all those of the clip, or of all where it is null, and
-// without clips. Exporters give each curve, or each joint, an <animation> of its own. Assimp 5.2
-// joins those that are equally long and each move another node: curves of one node in several would
-// each put the others' parts back to rest, and clips of one length become one. An empty string
-// where nothing can be done: there are no animations, or samplers have the same id.
+// The file with all <animation> elements of the clip (of the file, if null) merged into one, and
+// without clips. Exporters write one <animation> per curve or joint. Assimp 5.2 merges those of
+// equal duration that animate different nodes: a node's curves in several elements would each reset
+// the others' components to rest, and clips of equal duration would become one. Empty if this is
+// not possible: there are no animations, or samplers share an id.
 std::string collada_with_one_animation(std::string_view text, const ColladaClip* clip);
 
 bool collada_has_unit(std::string_view text);
 
-// Whether keys are joined by curves rather than straight lines.
+// Whether any keys have BEZIER or HERMITE interpolation.
 bool collada_has_curves(std::string_view text);
 
 }  // namespace krok::assimp

@@ -33,7 +33,7 @@ class CompanionFinder {
     found.diagnostics.push_back(std::move(diagnostic));
   }
 
-  // Files of the folder with this ending, in the order of their names.
+  // Files in the folder with this extension, sorted by name.
   std::vector<fs::path> with_ending(const std::string& ending) const {
     std::vector<fs::path> paths;
     std::error_code trouble;
@@ -45,7 +45,7 @@ class CompanionFinder {
     return paths;
   }
 
-  // The file whose name differs from the given one's in the ending alone; empty if there is none.
+  // The file with the same stem and another extension; empty if there is none.
   fs::path same_stem(const std::string& ending) const {
     const std::string stem = ascii_lower(fs::path(path_).stem().string());
     for (const fs::path& path : with_ending(ending)) {
@@ -54,7 +54,7 @@ class CompanionFinder {
     return {};
   }
 
-  // Where a file of the folder's tree really is; nothing for other files.
+  // Whether a path is inside the folder tree, with links resolved.
   bool inside_folder(const fs::path& path) const {
     std::error_code trouble;
     const fs::path root = fs::canonical(folder_, trouble);
@@ -65,19 +65,19 @@ class CompanionFinder {
     return end == root.end();
   }
 
-  // Opens a regular file of the tree.
+  // Opens a regular file in the folder tree.
   std::optional<InputFile> open(const fs::path& path) {
     std::error_code trouble;
     if (!inside_folder(path)) {
       tell(Severity::warning,
-           fmt::format("'{}' is outside of the file's folder and left out", shown(path.string())));
+           fmt::format("'{}' is outside the file's folder and is ignored", shown(path.string())));
       return std::nullopt;
     }
     if (!fs::is_regular_file(path, trouble)) return std::nullopt;
     auto file = InputFile::open(path.lexically_normal().string(), most_bytes_);
     if (!file) {
-      tell(Severity::warning, fmt::format("'{}' {}; it is left out",
-                                          shown(path.filename().string()), file.error().message));
+      tell(Severity::warning, fmt::format("'{}' {}; it is ignored", shown(path.filename().string()),
+                                          file.error().message));
       return std::nullopt;
     }
     return std::move(*file);
@@ -97,14 +97,14 @@ void find_md5_motion(CompanionFinder& finder, std::string_view mesh) {
     auto file = finder.open(path);
     if (!file) return;
     if (md5_joints(file->text()) == md5_joints(mesh)) {
-      finder.tell(Severity::note,
-                  fmt::format("the motion is that of '{}' beside it", path.filename().string()));
+      finder.tell(Severity::note, fmt::format("the motion is read from '{}' in the same folder",
+                                              path.filename().string()));
       finder.found.files.push_back({"file.md5anim", std::move(*file), {}});
     } else {
       finder.tell(Severity::warning,
-                  fmt::format("the motion '{}' beside it is for other joints and left out",
+                  fmt::format("the motion '{}' in the same folder has other joints and is ignored",
                               path.filename().string()),
-                  "import it for itself");
+                  "import it separately");
     }
     return;
   }
@@ -112,8 +112,8 @@ void find_md5_motion(CompanionFinder& finder, std::string_view mesh) {
   if (others > 0) {
     finder.tell(
         Severity::note,
-        fmt::format("none of the {} motions (.md5anim) beside it has the mesh's name", others),
-        "import a motion for itself; its mesh is found beside it");
+        fmt::format("none of the {} motions (.md5anim) in the folder has the mesh's name", others),
+        "import a motion; the mesh is then found automatically");
   }
 }
 
@@ -133,29 +133,29 @@ void find_md5_mesh(CompanionFinder& finder, std::string_view motion) {
     if (file && md5_joints(file->text()) == joints) fitting.emplace_back(path, std::move(*file));
   }
   if (fitting.size() == 1) {
-    finder.tell(Severity::note, fmt::format("the mesh is that of '{}' beside it",
+    finder.tell(Severity::note, fmt::format("the mesh is read from '{}' in the same folder",
                                             fitting[0].first.filename().string()));
     finder.found.files.push_back({"file.md5mesh", std::move(fitting[0].second), {}});
   } else if (candidates.empty()) {
-    finder.tell(Severity::note, "there is no mesh (.md5mesh) beside the motion");
+    finder.tell(Severity::note, "there is no mesh (.md5mesh) in the motion's folder");
   } else if (fitting.empty()) {
     finder.tell(Severity::warning,
-                fmt::format("no mesh beside the motion has its joints ('{}' for one); it is read "
-                            "without a mesh",
+                fmt::format("no mesh in the motion's folder has its joints (such as '{}'); it is "
+                            "read without a mesh",
                             candidates[0].filename().string()));
   } else {
     finder.tell(
         Severity::warning,
-        fmt::format("{} meshes beside the motion have its joints; it is read without a mesh",
+        fmt::format("{} meshes in the folder have the motion's joints; it is read without a mesh",
                     fitting.size()),
         "give the mesh the motion's name");
   }
 }
 
-// A list has a line a motion: its name and its file, or its file alone.
+// A list has one line per motion: name and file, or only the file.
 struct ListedMotion {
   std::string name;
-  fs::path file;  // in the list's folder
+  fs::path file;  // relative to the list's folder
 };
 
 std::vector<ListedMotion> listed_motions(std::string_view text) {
@@ -177,8 +177,8 @@ std::vector<ListedMotion> listed_motions(std::string_view text) {
   return motions;
 }
 
-// Assimp goes by base names here, which two of the files may share, and refuses all motions for
-// the want of one. So it is given another list, with a name of its own for each that is there.
+// Assimp finds motions by base name, which two files may share, and rejects all motions if one is
+// missing. It therefore gets a new list of the existing motions, with unique names.
 void find_smd_motions(CompanionFinder& finder, const std::string& path) {
   const fs::path list_path = finder.folder() / (fs::path(path).stem().string() + "_animation.txt");
   std::error_code trouble;
@@ -190,9 +190,9 @@ void find_smd_motions(CompanionFinder& finder, const std::string& path) {
   const std::string list_name = shown(list_path.filename().string());
   if (motions.size() > kMaxMotions) {
     finder.tell(Severity::warning,
-                fmt::format("of the {} motions of '{}' the first {} are taken", motions.size(),
+                fmt::format("of the {} motions of '{}', only the first {} are read", motions.size(),
                             list_name, kMaxMotions),
-                "import the others for themselves");
+                "import the others separately");
     motions.resize(kMaxMotions);
   }
   std::string text;

@@ -12,12 +12,12 @@
 
 namespace krok::assimp {
 
-// The other files of a folder that belong to a given one, opened; and what to say about them.
+// Opened companion files of a given file, with diagnostics.
 struct Companions {
   struct Entry {
-    std::string name;  // as Assimp will ask for it, without a folder
+    std::string name;  // as Assimp will request it, without a folder
     InputFile file;
-    std::string text;  // what Assimp is given in place of the file's own, where not empty
+    std::string text;  // replaces the file's content for Assimp, unless empty
 
     std::span<const std::byte> bytes() const {
       return text.empty() ? file.bytes() : std::as_bytes(std::span(text));
@@ -27,9 +27,9 @@ struct Companions {
   Diagnostics diagnostics;
 };
 
-// MD5: the mesh of a motion and the motion of a mesh. SMD: the list of motions and what it names.
-// Assimp will know the given file as `file.<kind>`. Files lie in the folder of `path` or under it;
-// others are left out with a warning, as are those of more than `most_bytes`.
+// MD5: the mesh of a motion, or the motion of a mesh. SMD: the list of motions and the motions.
+// Assimp sees the given file as `file.<kind>`. Files outside the folder tree of `path` are left out
+// with a warning, as are those larger than `most_bytes`.
 Companions find_companions(const std::string& path, registry::Kind kind, std::string_view text,
                            std::uint64_t most_bytes);
 

@@ -22,10 +22,10 @@ struct NodeTracks {
   VectorTrack scale;
 };
 
-// What one animation does to one of our nodes, as Assimp has it.
+// Assimp's channels that animate one of our nodes.
 struct NodeSource {
   const aiNodeAnim* whole = nullptr;
-  std::map<std::string, const aiNodeAnim*> of_part;  // by the helper's name
+  std::map<std::string, const aiNodeAnim*> of_part;  // by the helper node's name
 };
 
 class AnimationBuilder {
@@ -49,7 +49,7 @@ class AnimationBuilder {
 
   Conversion& to_;
   const aiAnimation& source_;
-  double seconds_ = 1.0;  // that a tick lasts
+  double seconds_ = 1.0;  // per tick
   Animation animation_;
   KeyFaults faults_;
   std::size_t unknown_nodes_ = 0;
@@ -84,8 +84,8 @@ NodeTracks AnimationBuilder::whole_tracks(const aiNodeAnim& source) {
   return tracks;
 }
 
-// MilkShape: a joint's transform is its rest times its key's, so that a key's displacement is in
-// the joint's own axes; Assimp 5.2 adds it in its parent's.
+// MilkShape: a joint's transform is rest * key, so a key's translation is in the joint's axes;
+// Assimp 5.2 adds it in the parent's axes.
 void AnimationBuilder::turn_displacements(int node, VectorTrack& translation) {
   const Node& rest = to_.scene.nodes[static_cast<std::size_t>(node)];
   for (Vec3& value : translation.values) {
@@ -93,8 +93,8 @@ void AnimationBuilder::turn_displacements(int node, VectorTrack& translation) {
   }
 }
 
-// A node whose transform is a product of which parts move: at every time at which a part has a key,
-// the product is taken apart.
+// A node whose transform is a product of animated parts: evaluated and decomposed at each time at
+// which any part has a key.
 NodeTracks AnimationBuilder::chain_tracks(const std::vector<ChainPart>& parts,
                                           const NodeSource& source) {
   struct Moving {
@@ -154,8 +154,8 @@ NodeTracks AnimationBuilder::chain_tracks(const std::vector<ChainPart>& parts,
   return tracks;
 }
 
-// Where a node has a PostRotation Q and no pivots, Assimp 5.2 gives P R Q as its moving rotation;
-// FBX means P R Q^-1, as Assimp's helper node has it.
+// For a node with a PostRotation Q and no pivots, Assimp 5.2 computes the animated rotation as
+// P R Q; FBX defines P R Q^-1, which Assimp's helper node has.
 void AnimationBuilder::undo_wrong_post_rotation(int node, RotationTrack& rotation) {
   const auto chain = to_.chain_of.find(node);
   if (chain == to_.chain_of.end()) return;
@@ -166,7 +166,7 @@ void AnimationBuilder::undo_wrong_post_rotation(int node, RotationTrack& rotatio
   }
 }
 
-// Shared<float> values of a key.
+// Appends the values of a key.
 void append(std::vector<float>& values, const Vec3& value) {
   for (int k = 0; k < 3; ++k) values.push_back(static_cast<float>(value[k]));
 }
@@ -187,7 +187,7 @@ bool nearly(const Quat& a, const Quat& b) {
 template <typename Value>
 void AnimationBuilder::add_channel(int node, Path path, const Track<Value>& track,
                                    const Value& at_rest) {
-  // Importers fill in what does not move.
+  // Importers add constant tracks.
   const bool moves = std::any_of(track.values.begin(), track.values.end(),
                                  [&](const Value& value) { return !nearly(value, at_rest); });
   if (!moves && track.times.size() < 2) return;
@@ -213,7 +213,7 @@ void AnimationBuilder::add_channels(int node, NodeTracks tracks) {
   add_channel(node, Path::scale, tracks.scale, rest.scale);
 }
 
-// A key lists only the targets that have one at its time.
+// A key lists only the targets that have a key at its time.
 void AnimationBuilder::add_weights(const aiMeshMorphAnim& source) {
   std::string name = to_text(source.mName);
   auto found = to_.node_by_name.find(name);
@@ -285,8 +285,8 @@ Animation AnimationBuilder::build() {
   if (!(rate > 0) || !std::isfinite(rate)) {
     rate = 25.0;
     to_.warn("assimp-ticks",
-             fmt::format("the file does not say how long a step of time of animation '{}' is; 25 "
-                         "a second is assumed",
+             fmt::format("the file does not specify the tick rate of animation '{}'; 25 ticks "
+                         "per second are assumed",
                          animation_.name));
   }
   seconds_ = 1.0 / rate;
@@ -309,23 +309,22 @@ Animation AnimationBuilder::build() {
 
 void report(Conversion& to, const std::string& name, const AnimationBuilder& builder) {
   if (builder.unknown_nodes() > 0) {
-    to.warn(
-        "assimp-animation-node",
-        fmt::format("animation '{}' moves {} nodes that the file does not have; they are left out",
-                    name, builder.unknown_nodes()));
+    to.warn("assimp-animation-node",
+            fmt::format("animation '{}' animates {} nodes that do not exist; they are ignored",
+                        name, builder.unknown_nodes()));
   }
   if (builder.faults().not_finite > 0) {
-    to.warn("assimp-keys", fmt::format("{} keys of animation '{}' are no numbers and left out",
+    to.warn("assimp-keys", fmt::format("{} keys of animation '{}' are not finite and are left out",
                                        builder.faults().not_finite, name));
   }
   if (builder.faults().out_of_order > 0) {
-    to.warn("assimp-keys", fmt::format("keys of animation '{}' are not in the order of time; they "
-                                       "were sorted",
+    to.warn("assimp-keys", fmt::format("keys of animation '{}' are not in time order; they were "
+                                       "sorted",
                                        name));
   }
   if (builder.faults().same_time > 0) {
-    to.note("assimp-keys", fmt::format("of {} keys of animation '{}' at the time of another only "
-                                       "the last is kept",
+    to.note("assimp-keys", fmt::format("{} keys of animation '{}' are at the same time as another; "
+                                       "the last one is kept",
                                        builder.faults().same_time, name));
   }
 }
@@ -343,7 +342,7 @@ void convert_animations(Conversion& to, const aiScene& source) {
     AnimationBuilder builder(to, *source.mAnimations[a]);
     Animation animation = builder.build();
     report(to, animation.name, builder);
-    // Of an SMD with a mesh the skeleton is a pose, not a motion.
+    // In an SMD with a mesh, the skeleton is a pose, not a motion.
     const bool pose =
         to.kind == Kind::smd && a == 0 && !to.scene.meshes.empty() && longest(animation) < 2;
     if (!animation.channels.empty() && !pose) to.scene.animations.push_back(std::move(animation));

@@ -18,7 +18,7 @@ using registry::Kind;
 
 namespace {
 
-// The rotation that takes -Z to `forward` and +Y as near to `up` as can be.
+// The rotation that takes -Z to `forward` and +Y as close to `up` as possible.
 Quat look_rotation(const Vec3& forward, const Vec3& up) {
   const Vec3 back = -forward.normalized();
   Vec3 right = up.cross(back);
@@ -29,14 +29,14 @@ Quat look_rotation(const Vec3& forward, const Vec3& up) {
   return normalized_or_identity(Quat(axes));
 }
 
-// Where the camera is and looks in its node's space.
+// The camera's position and orientation in its node's space.
 struct View {
   Vec3 position = Vec3::Zero();
   Vec3 forward = -Vec3::UnitZ();
   Vec3 up = Vec3::UnitY();
 };
 
-// A 3DS camera stands in the world, Z-up, and rolls about where it looks.
+// A 3DS camera is in world space, Z-up, and rolls about its view direction.
 View view_of(const Max3dsCamera& camera) {
   View view;
   view.position = camera.position;
@@ -51,7 +51,7 @@ View view_of(const Max3dsCamera& camera) {
 
 View view_of(const aiCamera& camera, Kind kind) {
   View view;
-  // 3ds Max's look along -Z; Assimp leaves its own default, +Z, in ASE's.
+  // 3ds Max cameras look along -Z; for ASE, Assimp leaves its default, +Z.
   if (kind == Kind::ase) return view;
   view.position = to_vector(camera.mPosition);
   view.forward = to_vector(camera.mLookAt);
@@ -62,14 +62,14 @@ View view_of(const aiCamera& camera, Kind kind) {
   return view;
 }
 
-// An angle, nothing where the file has none that makes sense.
+// An angle; nullopt if it is not valid.
 std::optional<double> sensible(double angle) {
   if (angle > 1e-3 && angle < kPi - 1e-3) return angle;
   return std::nullopt;
 }
 
-// COLLADA cameras that give their vertical field of view alone come out of Assimp 5.2 with a wrong
-// one, a quarter of pi taken for degrees.
+// For COLLADA cameras with only a vertical field of view, Assimp 5.2 gives a wrong value, pi / 4
+// interpreted as degrees.
 bool is_collada_default(const Conversion& to, const aiCamera& camera) {
   const double wrong = kPi / 4 * kRadiansPerDegree;
   return to.kind == Kind::collada &&
@@ -95,8 +95,8 @@ std::optional<double> vertical_field_of_view(Conversion& to, const aiCamera& cam
   if (!(aspect > 1e-3 && aspect < 1e3)) {
     aspect = kUsualAspect;
     to.note("assimp-camera-aspect",
-            fmt::format("the file does not say how wide the picture of camera '{}' is; 4:3 is "
-                        "assumed, its horizontal field of view is {:.4g} degrees",
+            fmt::format("the file has no aspect ratio for camera '{}'; 4:3 is assumed, its "
+                        "horizontal field of view is {:.4g} degrees",
                         name, *across / kRadiansPerDegree));
   }
   return 2 * std::atan(std::tan(*across / 2) / aspect);
@@ -114,7 +114,7 @@ bool is_moved(const aiScene& scene, const aiString& node) {
 }  // namespace
 
 void convert_cameras(Conversion& to) {
-  // Assimp 5.2 takes the lens of 3DS cameras for an angle and rolls them from the wrong up.
+  // Assimp 5.2 interprets the lens of 3DS cameras as an angle and uses a wrong up vector for roll.
   std::map<std::string, Max3dsCamera> of_3ds;
   if (to.kind == Kind::max_3ds) of_3ds = read_3ds_cameras(std::as_bytes(std::span(to.text)));
   for (unsigned c = 0; c < to.source.mNumCameras; ++c) {
@@ -123,16 +123,15 @@ void convert_cameras(Conversion& to) {
     camera.name = to_text(source.mName);
     const auto found = to.node_by_name.find(camera.name);
     const auto own = of_3ds.find(camera.name);
-    const bool in_world = own != of_3ds.end();  // whatever its node
+    const bool in_world = own != of_3ds.end();  // regardless of its node
     if (!in_world && found == to.node_by_name.end()) {
-      to.warn("assimp-camera",
-              fmt::format("camera '{}' is at no node of the file and left out", camera.name));
+      to.warn("assimp-camera", fmt::format("camera '{}' has no node and is left out", camera.name));
       continue;
     }
     if (to.kind == Kind::max_3ds && is_moved(to.source, source.mName)) {
       to.warn("assimp-camera",
-              fmt::format("camera '{}' moves; Assimp does not read where such a 3DS camera looks, "
-                          "and it is left out",
+              fmt::format("camera '{}' is animated and is left out: Assimp does not read the "
+                          "orientation of such 3DS cameras",
                           camera.name));
       continue;
     }
@@ -140,8 +139,7 @@ void convert_cameras(Conversion& to) {
         vertical_field_of_view(to, source, in_world ? &own->second : nullptr, camera.name);
     if (!angle) {
       to.warn("assimp-camera",
-              fmt::format("camera '{}' has no field of view that makes sense and is left out",
-                          camera.name));
+              fmt::format("camera '{}' has an invalid field of view and is left out", camera.name));
       continue;
     }
     camera.field_of_view = *angle;

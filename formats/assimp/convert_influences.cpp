@@ -41,11 +41,11 @@ Mat4 rest_to_world(const Scene& scene, int node) {
   return matrix;
 }
 
-// MilkShape's weights, which Assimp has not.
+// MilkShape's weights, which Assimp does not read.
 std::vector<std::vector<Influence>> ms3d_influences(
     const Ms3dFile& file, const std::vector<std::vector<Ms3dInfluence>>& corners, Conversion& to,
     SkinBuilder& skin) {
-  std::vector<int> place(file.joints.size(), -1);  // in the skin, of the joints met so far
+  std::vector<int> place(file.joints.size(), -1);  // index in the skin, -1 if not added yet
   std::vector<std::vector<Influence>> influences(corners.size());
   for (std::size_t v = 0; v < corners.size(); ++v) {
     for (const auto& [joint, weight] : corners[v]) {
@@ -61,7 +61,7 @@ std::vector<std::vector<Influence>> ms3d_influences(
   return influences;
 }
 
-// [vertices] lists of influences, as the file has them.
+// Influences of each vertex, as in the file.
 std::vector<std::vector<Influence>> influences_of(const aiMesh& mesh, Conversion& to,
                                                   SkinBuilder& skin, MeshTotals& totals) {
   std::vector<std::vector<Influence>> influences(mesh.mNumVertices);
@@ -83,7 +83,7 @@ std::vector<std::vector<Influence>> influences_of(const aiMesh& mesh, Conversion
   return influences;
 }
 
-// Vertices without influences stay where their node is.
+// Binds vertices without influences to their node.
 void hang_the_rest(std::vector<std::vector<Influence>>& influences, int mesh_node,
                    SkinBuilder& skin, MeshTotals& totals) {
   for (auto& list : influences) {
@@ -93,7 +93,7 @@ void hang_the_rest(std::vector<std::vector<Influence>>& influences, int mesh_nod
   }
 }
 
-// The largest first, no joint twice, at most kMostInfluences, a sum of 1.
+// Sorts by decreasing weight, merges repeated joints, limits to kMaxInfluences, normalises.
 void tidy(std::vector<Influence>& list, MeshTotals& totals) {
   std::sort(list.begin(), list.end(),
             [](const Influence& a, const Influence& b) { return a.joint < b.joint; });

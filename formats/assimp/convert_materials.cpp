@@ -25,9 +25,8 @@ Texture::Wrap wrap_of(int mode) {
   return mode == aiTextureMapMode_Mirror ? Texture::Wrap::mirror : Texture::Wrap::repeat;
 }
 
-// The roughness of a surface whose highlight has this Phong exponent. Source: Walter et al.,
-// Microfacet Models for Refraction through Rough Surfaces (2007), section 5.2; glTF squares its
-// roughness.
+// Roughness from a Phong exponent. Source: Walter et al., Microfacet Models for Refraction through
+// Rough Surfaces (2007), section 5.2; glTF squares its roughness.
 float roughness_of(float exponent) {
   return std::pow(2.0f / (exponent + 2.0f), 0.25f);
 }
@@ -53,7 +52,7 @@ int MaterialBuilder::index_of(unsigned material) {
   if (material >= to_.source.mNumMaterials) return -1;
   aiString name;
   const bool named = to_.source.mMaterials[material]->Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS;
-  if (named && to_text(name) == AI_DEFAULT_MATERIAL_NAME) return -1;  // Assimp's, not the file's
+  if (named && to_text(name) == AI_DEFAULT_MATERIAL_NAME) return -1;  // added by Assimp
   const auto [place, added] =
       places_.try_emplace(material, static_cast<int>(to_.scene.materials.size()));
   if (added) {
@@ -85,7 +84,7 @@ Material MaterialBuilder::convert(const aiMaterial& source) {
   if (source.Get(AI_MATKEY_COLOR_EMISSIVE, color) == aiReturn_SUCCESS) {
     material.emissive = unit_color(color);
   }
-  // Exporters that mean "not at all transparent" by 0 are many, and nobody draws what is invisible.
+  // Many exporters write 0 for opaque, and invisible materials are not useful.
   float number = 1;
   if (source.Get(AI_MATKEY_OPACITY, number) == aiReturn_SUCCESS && number > 0 && number < 0.999f) {
     material.base_color.w() = number;
@@ -137,7 +136,7 @@ std::shared_ptr<const EncodedImage> MaterialBuilder::image(const std::string& pa
   if (!added) return place->second;
   EncodedImage image{{}, path, {}};
   if (const aiTexture* inside = to_.source.GetEmbeddedTexture(path.c_str())) {
-    // Decoded pixels, of which it has as many as width and height say, are another thing.
+    // A height other than 0 means raw pixels, which are not supported.
     if (inside->mHeight != 0 || inside->pcData == nullptr) {
       ++undecoded_;
       return nullptr;
@@ -157,11 +156,10 @@ void MaterialBuilder::report() {
              fmt::format("{} {}: left out", counted(static_cast<long long>(count), one), what),
              hint);
   };
-  left_out(other_coordinates_, "texture", "laid out by other texture coordinates than the first",
-           "");
-  left_out(undecoded_, "picture", "in the file given as plain pixels", "");
-  left_out(separate_, "texture", "of metal or roughness alone",
-           "glTF has both in one picture: roughness in green, metal in blue");
+  left_out(other_coordinates_, "texture", "with a texture coordinate set other than 0", "");
+  left_out(undecoded_, "image", "embedded as raw pixels", "");
+  left_out(separate_, "texture", "with only metallic or only roughness",
+           "glTF combines both in one image: roughness in green, metallic in blue");
 }
 
 }  // namespace krok::assimp

@@ -20,7 +20,7 @@ using namespace nodes;
 
 namespace {
 
-// A mesh that can be shown: with vertices that are numbers.
+// Whether a mesh has faces and finite positions.
 bool usable(const aiMesh& mesh) {
   if (mesh.mNumVertices == 0 || mesh.mVertices == nullptr || mesh.mNumFaces == 0) return false;
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
@@ -44,7 +44,7 @@ void convert_node_meshes(Conversion& to, const std::vector<const aiMesh*>& meshe
   }
   const aiMesh& first = *meshes[0];
   for (unsigned t = 0; t < first.mNumAnimMeshes; ++t) {
-    // Assimp 5.2 says 1 of FBX's targets whatever the file says; fix_fbx_target_weights knows.
+    // Assimp 5.2 gives FBX targets weight 1 whatever the file has; see fix_fbx_target_weights.
     const bool known = to.kind != registry::Kind::fbx;
     const auto weight = known ? static_cast<double>(first.mAnimMeshes[t]->mWeight) : 0.0;
     mesh.weights.push_back(std::isfinite(weight) ? weight : 0.0);
@@ -71,33 +71,32 @@ void fix_fbx_target_weights(Conversion& to) {
     only->weights = weights;
   } else if (meshes > 0) {
     to.warn("assimp-targets",
-            "morph targets are not all at rest in the file, and Assimp does not say which; all "
-            "begin at rest");
+            "default weights of morph targets in the file cannot be assigned, as Assimp does not "
+            "identify the targets; all are 0");
   }
 }
 
 void report(Conversion& to, const MeshTotals& totals) {
   if (totals.vertices_with_too_many > 0) {
     to.warn("assimp-influences",
-            fmt::format("{} vertices hang on more than 8 joints; the smallest weights were left "
-                        "out, up to {:.3g} % of a vertex",
+            fmt::format("{} vertices have more than 8 influences; the smallest weights were "
+                        "left out, up to {:.3g} % of a vertex",
                         totals.vertices_with_too_many, 100 * totals.largest_dropped));
   }
   if (totals.vertices_without > 0) {
     to.warn("assimp-weights",
-            fmt::format("{} of {} vertices of skinned meshes have no weights and stay with their "
-                        "mesh's node",
+            fmt::format("{} of {} vertices of skinned meshes have no weights and are bound to "
+                        "their mesh's node",
                         totals.vertices_without, totals.skinned_vertices));
   }
   if (totals.bones_without_node > 0) {
     to.warn("assimp-bone",
-            fmt::format("{} bones are no nodes of the file, {} for one; their weights are left out",
+            fmt::format("{} bones have no node in the file, such as {}; their weights are left out",
                         totals.bones_without_node, totals.bone_without_node));
   }
   if (totals.meshes_without_tangents > 0) {
-    to.warn("assimp-tangents",
-            fmt::format("{} meshes have tangents that are no directions; they are left out",
-                        totals.meshes_without_tangents));
+    to.warn("assimp-tangents", fmt::format("{} meshes have invalid tangents, which are left out",
+                                           totals.meshes_without_tangents));
   }
   if (totals.lone_faces > 0) {
     to.note("assimp-lines", fmt::format("{} points and lines are left out", totals.lone_faces));
@@ -112,11 +111,11 @@ void convert_meshes(Conversion& to) {
   std::optional<Ms3dFile> ms3d;
   if (to.kind == registry::Kind::ms3d) ms3d = read_ms3d(std::as_bytes(std::span(to.text)));
   std::size_t unusable = 0;
-  // In the order of our nodes, so that the result does not depend on that of a hash table.
+  // In node order, so that the result does not depend on the hash table's order.
   std::map<int, const aiNode*> in_order;
   for (const auto& [source, node] : to.node_of) in_order.emplace(node, source);
   for (const auto& [node, source] : in_order) {
-    // Those with the same number of morph targets make one mesh; others get nodes of their own.
+    // Meshes with the same number of morph targets are merged; others get separate nodes.
     std::map<unsigned, std::vector<const aiMesh*>> by_targets;
     for (unsigned k = 0; k < source->mNumMeshes; ++k) {
       if (source->mMeshes[k] >= to.source.mNumMeshes) continue;
@@ -143,8 +142,7 @@ void convert_meshes(Conversion& to) {
   if (unusable > 0) {
     to.warn(
         "assimp-mesh",
-        fmt::format("{} meshes without faces or with positions that are no numbers are left out",
-                    unusable));
+        fmt::format("{} meshes without faces or with non-finite positions are left out", unusable));
   }
   if (to.kind == registry::Kind::fbx) fix_fbx_target_weights(to);
   report(to, totals);

@@ -35,9 +35,9 @@ int add_node(Conversion& to, const std::string& name, int parent, const Mat4& ma
   return index;
 }
 
-// FBX: T Roff Rp Rpre R Rpost Rp^-1 Soff Sp S Sp^-1 [geometry's own] node [its inverse] children.
-// All of it up to the geometry's own is the node's transform; the geometry's own moves the node's
-// meshes but not its children.
+// FBX: T Roff Rp Rpre R Rpost Rp^-1 Soff Sp S Sp^-1 [geometric] node [geometric^-1] children.
+// Everything before the geometric transform is the node's transform; the geometric transform
+// applies to the node's meshes but not to its children.
 struct Chain {
   std::vector<ChainPart> parts;
   Mat4 node_to_parent = Mat4::Identity();
@@ -66,7 +66,7 @@ Chain follow_chain(const aiNode* node) {
   return chain;
 }
 
-// The nodes below, past the helpers that undo a geometry's own transform.
+// The parent of the children, below the helpers that undo the geometric transform.
 const aiNode* holder_of_children(const aiNode* node) {
   while (node->mNumChildren == 1 && is_helper(node->mChildren[0]->mName.C_Str()) &&
          component_of(node->mChildren[0]->mName.C_Str()).starts_with("Geometric") &&
@@ -83,7 +83,7 @@ Mat4 to_matrix(const aiMatrix4x4& m) {
   for (unsigned r = 0; r < 4; ++r) {
     for (unsigned c = 0; c < 4; ++c) matrix(r, c) = static_cast<double>(m[r][c]);
   }
-  if (!matrix.allFinite()) throw ConversionError("a joint's transform has numbers that are none");
+  if (!matrix.allFinite()) throw ConversionError("a joint's transform is not finite");
   return matrix;
 }
 
@@ -109,7 +109,7 @@ bool take_apart(const Mat4& matrix, Vec3& translation, Quat& rotation, Vec3& sca
   const Mat3 stretch = rotation.toRotationMatrix().transpose() * matrix.topLeftCorner<3, 3>();
   scale = stretch.diagonal();
   if (matrix.topLeftCorner<3, 3>().determinant() < 0) {
-    // rigid_part mirrors back through the origin; one axis is what people expect to see.
+    // rigid_part negates all axes; mirroring along one axis is what users expect.
     rotation = rotation * Quat(Eigen::AngleAxisd(kPi, Vec3::UnitX()));
     const Mat3 again = rotation.toRotationMatrix().transpose() * matrix.topLeftCorner<3, 3>();
     scale = again.diagonal();

@@ -16,11 +16,11 @@ Vec3f to_float(const aiVector3D& v) {
 
 namespace {
 
-// Vertices that are the same in everything become one: most importers give three to a triangle.
-// Normals may differ by what exporters' rounding does to those of one smooth vertex.
+// Merges vertices with identical attributes: most importers give three per triangle. Normals may
+// differ by the rounding of exporters.
 class VertexJoiner {
  public:
-  // The vertex's place among the different ones so far.
+  // The index of the merged vertex.
   std::uint32_t add(std::span<const char> key) {
     const auto [entry, added] = places_.try_emplace(std::string(key.data(), key.size()),
                                                     static_cast<std::uint32_t>(places_.size()));
@@ -60,8 +60,8 @@ class PrimitiveBuilder {
   }
 
  private:
-  // The third axis stands on the side that the file's bitangent is on, which like glTF's points to
-  // the top of the texture. All or none: one that is no direction takes the others with it.
+  // The sign follows the file's bitangent, which points to the top of the texture, as in glTF. All
+  // or none: an invalid tangent drops all others.
   void find_tangents(MeshTotals& totals) {
     if (!mesh_.HasTangentsAndBitangents() || mesh_.mNormals == nullptr) return;
     for (unsigned v = 0; v < mesh_.mNumVertices; ++v) {
@@ -89,7 +89,7 @@ class PrimitiveBuilder {
       std::memcpy(key.data() + at, &value, sizeof(value));
     };
     const auto append_exact = [&](const aiVector3D& v) {
-      for (const float x : {v.x, v.y, v.z}) append(x + 0.0f);  // -0 is 0
+      for (const float x : {v.x, v.y, v.z}) append(x + 0.0f);  // turns -0 into 0
     };
     const auto append_normal = [&](const aiVector3D& v) {
       constexpr float kSteps = 1e4f;
@@ -138,7 +138,7 @@ class PrimitiveBuilder {
       }
       if (mesh_.mTextureCoords[0] != nullptr) {
         const aiVector3D& at = mesh_.mTextureCoords[0][v];
-        Vec2f coordinate(at.x, 1.0f - at.y);  // Assimp's run up
+        Vec2f coordinate(at.x, 1.0f - at.y);  // Assimp's v is up
         if (!coordinate.allFinite()) coordinate.setZero();
         coordinates->push_back(coordinate);
       }
@@ -167,7 +167,7 @@ class PrimitiveBuilder {
     }
   }
 
-  // Assimp's targets are whole vertices, ours are displacements.
+  // Assimp's targets are absolute, ours are displacements.
   void fill_targets() {
     for (unsigned t = 0; t < mesh_.mNumAnimMeshes; ++t) {
       const aiAnimMesh& source = *mesh_.mAnimMeshes[t];
@@ -193,7 +193,7 @@ class PrimitiveBuilder {
 
   const aiMesh& mesh_;
   std::vector<std::vector<Influence>> influences_;
-  std::vector<Vec4f> tangents_;  // [mesh's vertices] or none
+  std::vector<Vec4f> tangents_;  // [mesh's vertices] or empty
   std::vector<std::uint32_t> new_place_;
   std::vector<unsigned> kept_;
   Primitive primitive_;

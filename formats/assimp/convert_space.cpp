@@ -24,7 +24,7 @@ std::optional<Vec3> axis_of(const aiMetadata& data, const char* axis_key, const 
   return direction;
 }
 
-// FBX says up, front (what faces the viewer, which is where a figure looks) and unit.
+// FBX has the up axis, the front axis (towards the viewer, where a character faces) and the unit.
 void convert_fbx_space(Conversion& to, const aiMetadata& data) {
   const auto up = axis_of(data, "UpAxis", "UpAxisSign");
   const auto front = axis_of(data, "FrontAxis", "FrontAxisSign");
@@ -35,21 +35,21 @@ void convert_fbx_space(Conversion& to, const aiMetadata& data) {
     to.scene.space.file_to_krok = normalized_or_identity(Quat(axes).conjugate());
     if (side && side->dot(axes.col(0)) < 0) {
       to.warn("assimp-handedness",
-              "the file says that its axes are left-handed; it is read as if they were not, and "
-              "may come out mirrored");
+              "the file has left-handed axes; they are read as right-handed, and the result may be "
+              "mirrored");
     }
   } else {
-    to.warn("assimp-axes", "the file does not say which of its axes point up and to the front");
+    to.warn("assimp-axes", "the file does not specify its up and front axes");
   }
   float centimetres = 0;
   double precise = 0;
   if (data.Get("UnitScaleFactor", centimetres)) precise = static_cast<double>(centimetres);
   if (precise <= 0) data.Get("UnitScaleFactor", precise);
   if (precise > 0 && std::isfinite(precise)) {
-    // A float of 2.54 is meant as 2.54.
+    // Round the float to the decimal that was meant, such as 2.54.
     to.scene.space.metres = std::strtod(fmt::format("{:.7g}", precise).c_str(), nullptr) / 100;
   } else {
-    to.warn("assimp-unit", "the file does not say what its unit of length is");
+    to.warn("assimp-unit", "the file does not specify its unit of length");
   }
 }
 
@@ -62,8 +62,9 @@ void convert_space(Conversion& to) {
     to.scene.generator = to_text(generator);
   }
   if (to.kind == Kind::fbx && data != nullptr) convert_fbx_space(to, *data);
-  // Assimp puts <unit> and <up_axis> into the root node. A figure faces +Z in a Y-up file, -Y in a
-  // Z-up one, which then is +Z too, by custom and not by the format: that is left to be found.
+  // Assimp applies <unit> and <up_axis> to the root node. By convention a character faces +Z in
+  // Y-up files and -Y in Z-up files, which becomes +Z. The format does not specify it; the facing
+  // is detected later.
   if (to.kind == Kind::collada && collada_has_unit(to.text)) to.scene.space.metres = 1.0;
 }
 

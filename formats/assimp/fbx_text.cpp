@@ -18,7 +18,7 @@ std::vector<double> fbx_target_weights(std::string_view text) {
       const auto value = parse_finite(after.substr(0, after.find_first_of(" \t\r\n,}")));
       if (value) weights.push_back(*value / 100);
     } else if (after.size() > sizeof(double) && after[0] == 'D') {
-      // A node's name is followed by its properties, each a letter and a value.
+      // A node's name is followed by its properties: a type letter and a value each.
       double value = 0;
       std::memcpy(&value, after.data() + 1, sizeof(value));
       if (value > -1e6 && value < 1e6) weights.push_back(value / 100);
@@ -32,8 +32,7 @@ std::size_t fbx_object_count(std::string_view text, std::string_view kind) {
   for (std::size_t at = text.find(kind); at != std::string_view::npos;
        at = text.find(kind, at + kind.size())) {
     const std::string_view after = text.substr(at + kind.size());
-    // ASCII: its name, a colon and its number; binary: its name's length, its name and its
-    // properties, the first of which is its number.
+    // ASCII: name, colon, id; binary: length of the name, name, properties with the id first.
     const bool ascii =
         after.size() > 2 && after.starts_with(": ") && after[2] >= '0' && after[2] <= '9';
     const bool binary =

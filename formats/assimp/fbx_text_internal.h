@@ -5,11 +5,10 @@
 
 namespace krok::assimp {
 
-// The resting weights of all morph targets (DeformPercent / 100) in the order of the file, ASCII or
-// binary.
+// Default weights of all morph targets (DeformPercent / 100), in file order; ASCII or binary FBX.
 std::vector<double> fbx_target_weights(std::string_view text);
 
-// How many objects of a kind ("AnimationLayer") the file has, ASCII or binary.
+// Number of objects of a kind ("AnimationLayer"); ASCII or binary FBX.
 std::size_t fbx_object_count(std::string_view text, std::string_view kind);
 
 }  // namespace krok::assimp

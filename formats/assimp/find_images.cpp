@@ -41,7 +41,7 @@ class ImageFinder {
     EncodedImage image = named;
     if (image.bytes.empty()) {
       auto file = open(image.path);
-      if (!file) return warn(named, "is not in the file's folder", "put it beside the file");
+      if (!file) return warn(named, "is not in the file's folder", "copy it there");
       image.path = file->path();
       image.bytes.assign(file->bytes().begin(), file->bytes().end());
       bytes_left_ -= std::min<std::uint64_t>(bytes_left_, image.bytes.size());
@@ -60,8 +60,7 @@ class ImageFinder {
     warning.code = "assimp-picture";
     std::string path = image.path;
     std::replace(path.begin(), path.end(), '\\', '/');
-    warning.message =
-        fmt::format("the picture '{}' {}; it is left out", shown(base_name(path)), why);
+    warning.message = fmt::format("the image '{}' {}; it is left out", shown(base_name(path)), why);
     warning.hint = hint;
     scene_.diagnostics.push_back(std::move(warning));
     return nullptr;
@@ -85,7 +84,7 @@ class ImageFinder {
     return std::nullopt;
   }
 
-  // Most of these formats come from systems where it does not matter.
+  // Most of these formats come from systems with case-insensitive file names.
   std::vector<std::string> same_but_for_case(const std::string& below,
                                              const std::string& base) const {
     std::vector<std::string> found;
@@ -111,7 +110,7 @@ void find_images(const std::string& path, std::uint64_t most_bytes, nodes::Scene
   ImageFinder finder(path, most_bytes, scene);
   for (Material& material : scene.materials) {
     for (Texture* texture : textures_of(material)) finder.fill_in(*texture);
-    // In these formats a picture stands in the place of the colour.
+    // In these formats an image replaces the colour.
     if (material.base_color_texture) material.base_color.head<3>().setOnes();
     if (material.emissive_texture) material.emissive.setOnes();
   }

@@ -29,7 +29,7 @@ std::string list_of(const std::vector<std::string>& things) {
   return list;
 }
 
-// Keys so far apart that what is between them matters.
+// Whether keys are so far apart that the interpolation matters.
 bool has_sparse_keys(const Scene& scene) {
   constexpr float kLongGap = 1.0f / 14;  // seconds
   constexpr float kChange = 1e-3f;
@@ -52,8 +52,7 @@ bool has_sparse_keys(const Scene& scene) {
 
 }  // namespace
 
-// Assimp tells nodes by their names: of several with one name only the first is meant by a bone or
-// a curve.
+// Assimp identifies nodes by name: bones and curves refer to the first node of a name.
 void report_same_names(Conversion& to) {
   std::map<std::string, int> uses;
   for (const Node& node : to.scene.nodes) ++uses[node.name];
@@ -72,13 +71,13 @@ void report_same_names(Conversion& to) {
   }
   if (doubtful.empty()) return;
   to.warn("assimp-same-name",
-          fmt::format("{} names belong to several nodes, '{}' for one; Assimp takes the first for "
-                      "all, so that weights and motion may be at the wrong one",
+          fmt::format("{} names are used by several nodes, such as '{}'; Assimp assigns weights "
+                      "and animation to the first, which may be the wrong one",
                       doubtful.size(), *doubtful.begin()),
-          "give the joints different names and export again");
+          "give the joints unique names and export again");
 }
 
-// Assimp calls nodes by their ids, as "Armature_Hips"; people and the tables of joints know names.
+// Assimp names nodes by their ids, such as "Armature_Hips"; users and role tables use the names.
 void rename_collada_nodes(Conversion& to) {
   if (to.kind != Kind::collada) return;
   const auto names = collada_node_names(to.text);
@@ -100,10 +99,10 @@ void report_layers(Conversion& to) {
   const std::size_t takes = fbx_object_count(to.text, "AnimationStack");
   if (layers <= takes) return;
   to.warn("assimp-layers",
-          fmt::format("{} animation layers for {} takes; Assimp mixes their curves without the way "
-                      "in which they are blended",
+          fmt::format("{} animation layers for {} takes; Assimp merges their curves and ignores "
+                      "their blend modes",
                       layers, takes),
-          "merge the layers before exporting if the motion looks wrong");
+          "if the motion looks wrong, merge the layers before exporting");
 }
 
 void report_what_is_missing(Conversion& to) {
@@ -114,16 +113,16 @@ void report_what_is_missing(Conversion& to) {
   if (scene.animations.empty()) missing.emplace_back("no animation");
   if (scene.cameras.empty()) missing.emplace_back("no camera");
   if (!missing.empty()) {
-    to.note("assimp-missing", fmt::format("the file holds {}", list_of(missing)));
+    to.note("assimp-missing", fmt::format("the file has {}", list_of(missing)));
   }
   if (to.kind == Kind::max_3ds || (to.kind == Kind::ase && !has_skin(scene))) {
     to.note("assimp-no-skeleton",
-            fmt::format("the {} format has no skeletons: its nodes are whole objects",
+            fmt::format("the {} format has no skeletons; its nodes are objects",
                         to.kind == Kind::ase ? "ASE" : "3DS"));
   }
   if (to.kind == Kind::smd && !scene.animations.empty()) {
-    to.note("assimp-rate", fmt::format("an SMD file does not say its frame rate; {:g} frames a "
-                                       "second are taken",
+    to.note("assimp-rate", fmt::format("SMD files do not store their frame rate; {:g} frames per "
+                                       "second are assumed",
                                        to.frames_per_second));
   }
   const bool curves =
@@ -132,9 +131,9 @@ void report_what_is_missing(Conversion& to) {
                                 to.text.find("_TCB_") != std::string_view::npos));
   if (curves && has_sparse_keys(scene)) {
     to.warn("assimp-curves",
-            "keys are far apart, and Assimp reads the keys without the curves between them: "
-            "motion between keys is made straight",
-            "export with the motion baked to every frame if it looks stiff");
+            "keys are far apart, and Assimp does not read the curves between them; motion is "
+            "interpolated linearly",
+            "if it looks stiff, export with the animation baked to every frame");
   }
 }
 

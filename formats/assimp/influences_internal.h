@@ -6,7 +6,7 @@
 #include "formats/assimp/conversion_internal.h"
 #include "formats/assimp/ms3d_file_internal.h"
 
-// Which joints the vertices of a mesh hang on, and the skins that these make.
+// Influences of mesh vertices, and the skins that they use.
 
 namespace krok::assimp {
 
@@ -15,7 +15,7 @@ struct Influence {
   float weight = 0;
 };
 
-// What is said once for the whole file, of influences and of faces.
+// Counts for diagnostics reported once per file.
 struct MeshTotals {
   std::size_t vertices_with_too_many = 0;
   double largest_dropped = 0;
@@ -27,15 +27,15 @@ struct MeshTotals {
   std::string bone_without_node;
 };
 
-// The skin of one node, joined from the bones of all its meshes.
+// The skin of one node, merged from the bones of all its meshes.
 class SkinBuilder {
  public:
   explicit SkinBuilder(Conversion& to) : to_(to) {}
 
-  // The place of a joint with this bind in the skin's list.
+  // Index of the joint with this bind in the skin; added if new.
   std::uint16_t add(int node, const Mat4& inverse_bind);
 
-  // The skin's place in the scene; one with the same joints and binds is used again.
+  // Index of the skin in the scene; an identical skin is reused.
   int finish();
 
   bool empty() const { return skin_.joints.empty(); }
@@ -45,9 +45,9 @@ class SkinBuilder {
   nodes::Skin skin_;
 };
 
-// [vertices] lists of influences of a mesh at a node: the largest first, no joint twice, at most
-// Primitive::kMostInfluences, a sum of 1. Vertices without any stay where the node is. `ms3d` has
-// MilkShape's weights, which Assimp has not. None for a mesh without bones.
+// Influences of each vertex of a mesh at a node: by decreasing weight, no joint twice, at most
+// kMaxInfluences, sum 1. Vertices without influences follow the node. `ms3d` has MilkShape's
+// weights, which Assimp does not read. Empty for a mesh without bones.
 std::vector<std::vector<Influence>> convert_influences(Conversion& to, const aiMesh& mesh, int node,
                                                        const std::optional<Ms3dFile>& ms3d,
                                                        SkinBuilder& skin, MeshTotals& totals);

@@ -7,11 +7,11 @@
 
 #include "math/quaternion.h"
 
-// Keys as Assimp has them, sorted and freed of what cannot be used.
+// Assimp's keys, sorted and cleaned.
 
 namespace krok::assimp {
 
-// Keys of one property in doubles; times in seconds, rising once tidied.
+// Keys of one property; times in seconds, increasing after tidy().
 template <typename Value>
 struct Track {
   std::vector<double> times;
@@ -38,7 +38,7 @@ inline double between(double a, double b, double t) {
   return a + t * (b - a);
 }
 
-// The value at a time; that of the first or last key outside of them. Not for an empty track.
+// The value at a time, clamped to the first and last key. The track must not be empty.
 template <typename Value>
 Value sample_track(const Track<Value>& track, double time) {
   const auto after = std::upper_bound(track.times.begin(), track.times.end(), time);
@@ -49,7 +49,7 @@ Value sample_track(const Track<Value>& track, double time) {
   return between(track.values[k - 1], track.values[k], t);
 }
 
-// Sorts keys by time and keeps the last of those at one time, as floats tell times apart.
+// Sorts keys by time and keeps the last of those at the same time, compared as floats.
 template <typename Value>
 void tidy(Track<Value>& track, KeyFaults& faults) {
   std::vector<std::size_t> order(track.times.size());
@@ -74,7 +74,7 @@ void tidy(Track<Value>& track, KeyFaults& faults) {
   track = std::move(tidied);
 }
 
-// Takes begin later than 0 to 0: what is before it is cut off.
+// Removes what is before time 0 and adds a key at 0.
 template <typename Value>
 void begin_at_zero(Track<Value>& track) {
   if (track.empty() || track.times.front() >= 0) return;
@@ -90,7 +90,7 @@ void begin_at_zero(Track<Value>& track) {
   track = std::move(cut);
 }
 
-// Keys whose time or value is not finite, or of a size that no file means, are left out.
+// Keys with a time or value that is not finite, or absurdly large, are left out.
 VectorTrack vector_track(const aiVectorKey* keys, unsigned count, double seconds_per_tick,
                          KeyFaults& faults);
 RotationTrack rotation_track(const aiQuatKey* keys, unsigned count, double seconds_per_tick,

@@ -27,7 +27,7 @@ void put_texture(ByteWriter& out, const Texture& texture,
 template <typename T>
 T take_kind(Parser& in, T last) {
   const auto number = in.number<std::uint8_t>();
-  in.require(number <= static_cast<std::uint8_t>(last), "a material is of no known kind");
+  in.require(number <= static_cast<std::uint8_t>(last), "a material has an unknown kind");
   return static_cast<T>(number);
 }
 
@@ -35,7 +35,7 @@ Texture take_texture(Parser& in, std::vector<std::shared_ptr<const EncodedImage>
   Texture texture;
   const auto number = in.number<std::int32_t>();
   const auto known = static_cast<std::int32_t>(images.size());
-  in.require(number >= -1 && number <= known, "a texture has a picture that does not exist");
+  in.require(number >= -1 && number <= known, "a texture has an image that does not exist");
   if (in.ok() && number == known) {
     EncodedImage image;
     image.name = in.text();
@@ -51,7 +51,7 @@ Texture take_texture(Parser& in, std::vector<std::shared_ptr<const EncodedImage>
 
 }  // namespace
 
-// What convert_materials fills in.
+// Writes the members that convert_materials fills in.
 void put_material(ByteWriter& out, const Material& material,
                   std::map<const EncodedImage*, std::int32_t>& number_of) {
   put_text(out, material.name);

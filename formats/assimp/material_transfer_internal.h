@@ -11,7 +11,7 @@
 #include "formats/assimp/parser_internal.h"
 #include "scene/material.h"
 
-// Private to this folder: materials between the child and its caller.
+// Private to this folder: transfers materials from the child process.
 
 namespace krok::assimp {
 
@@ -26,11 +26,11 @@ void put_array(ByteWriter& out, const std::vector<T>& values) {
   out.append(std::as_bytes(std::span(values)));
 }
 
-// Pictures that several textures share are put once: `number_of` has those before.
+// Shared images are written once: `number_of` has those already written.
 void put_material(ByteWriter& out, const Material& material,
                   std::map<const EncodedImage*, std::int32_t>& number_of);
 
-// `pictures` are those that were taken before.
+// `images` has those already read.
 Material take_material(Parser& in, std::vector<std::shared_ptr<const EncodedImage>>& images);
 
 }  // namespace krok::assimp

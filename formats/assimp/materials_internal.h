@@ -9,20 +9,19 @@
 
 namespace krok::assimp {
 
-// A material's name; of those that Assimp named itself the picture's.
+// A material's name; its image's name if Assimp made the name up.
 std::string material_name(const aiScene& source, unsigned index);
 
-// Assimp's materials as ours, as far as it tells of them. Pictures that are in the file come with
-// their bytes, others with the path that the file names. Run in the child.
+// Converts Assimp's materials. Embedded images have their bytes, others the path in the file. Runs
+// in the child process.
 class MaterialBuilder {
  public:
   explicit MaterialBuilder(Conversion& to) : to_(to) {}
 
-  // The place in the scene's list of Assimp's material, which is added where it is new; -1 where
-  // there is none.
+  // Index in the scene of one of Assimp's materials, added if new; -1 for none.
   int index_of(unsigned material);
 
-  // Warns of what was left out.
+  // Warns about what was left out.
   void report();
 
  private:

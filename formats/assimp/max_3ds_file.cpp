@@ -20,7 +20,7 @@ struct Chunk {
   std::span<const std::byte> content;
 };
 
-// The next chunk, as far as the bytes go; `in` not ok() where there is none.
+// The next chunk, truncated to the available bytes; `in` is not ok() if there is none.
 Chunk take_chunk(ByteReader& in) {
   constexpr std::uint32_t kHeader = 6;
   Chunk chunk;

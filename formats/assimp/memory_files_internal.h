@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-// All that Assimp sees of the file system: a few named pieces of memory.
+// Assimp's view of the file system: a few named blocks of memory.
 
 namespace krok::assimp {
 
@@ -16,8 +16,7 @@ struct MemoryFile {
   std::span<const std::byte> bytes;
 };
 
-// Files are found by their base name in any case of letters, whatever folder Assimp looks in.
-// Nothing can be written, created or deleted.
+// Files are found by base name, ignoring case and folder. Read-only.
 class MemoryFiles : public Assimp::IOSystem {
  public:
   explicit MemoryFiles(std::vector<MemoryFile> files) : files_(std::move(files)) {}

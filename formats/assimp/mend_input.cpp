@@ -46,13 +46,13 @@ std::size_t count_words(std::string_view text) {
 
 // ---- SMD ----
 
-// Assimp takes a material's name up to the first space, and what follows for a vertex. It takes
-// comments for data. Where a part has no end it searches for one for ever.
+// Assimp ends a material's name at the first space and parses the rest as a vertex. It parses
+// comments as data. It loops forever if a section has no end.
 Result<std::string> mend_smd(std::string_view text) {
   std::string mended;
   mended.reserve(text.size() + 1);
   bool in_triangles = false;
-  std::string_view part;  // that has begun and not ended
+  std::string_view part;  // the open section
   int vertices_left = 0;
   while (!text.empty()) {
     const std::string_view line = trimmed(take_line(text));
@@ -74,17 +74,17 @@ Result<std::string> mend_smd(std::string_view text) {
     mended += '\n';
   }
   if (!part.empty()) {
-    return Error("assimp-refused", fmt::format("the part '{}' has no end", part),
-                 "the file is cut short; export or copy it again");
+    return Error("assimp-refused", fmt::format("section '{}' has no end", part),
+                 "the file is truncated; export or copy it again");
   }
   return mended;
 }
 
 // ---- MD5 ----
 
-// Assimp gives no keys to joints that do not move if no numbers of moving ones follow theirs, and
-// they then fall back to the mesh's pose: one number more at the end of each frame, which nobody
-// reads, cures that. It also reads frames with too few numbers.
+// Assimp creates no keys for static joints if no values of animated joints follow, and they fall
+// back to the mesh's pose; an additional unused number at the end of each frame avoids this. It
+// also accepts frames with too few numbers.
 Result<std::string> mend_md5anim(std::string_view text) {
   std::string mended;
   mended.reserve(text.size() + 1024);
@@ -107,7 +107,7 @@ Result<std::string> mend_md5anim(std::string_view text) {
     if (end == std::string_view::npos) {
       return Error("assimp-refused",
                    fmt::format("frame {} of the motion has no end", shown(number)),
-                   "the file is cut short; export or copy it again");
+                   "the file is truncated; export or copy it again");
     }
     const std::string_view numbers = rest.substr(0, end);
     const std::size_t found = count_words(numbers);
@@ -127,8 +127,8 @@ Result<std::string> mend_md5anim(std::string_view text) {
 
 // ---- MS3D ----
 
-// Assimp reads what follows the joints wrongly; it is read by read_ms3d. Keys are in seconds, and
-// are lost where the frame rate is nought.
+// Assimp misreads the data after the joints, which read_ms3d reads instead. Keys are in seconds,
+// and are lost if the frame rate is 0.
 std::string mend_ms3d(std::string_view text) {
   const auto file = read_ms3d(std::as_bytes(std::span(text)));
   if (!file) return {};
@@ -142,7 +142,7 @@ std::string mend_ms3d(std::string_view text) {
 
 // ---- COLLADA ----
 
-// Assimp refuses a colour before whose first number there is a blank.
+// Assimp rejects a colour with a space before the first number.
 std::string mend_collada(std::string_view text) {
   constexpr std::string_view kColour = "<color";
   std::string mended;

@@ -6,17 +6,16 @@
 #include "core/result.h"
 #include "formats/registry/registry.h"
 
-// What must be changed in a file before Assimp 5.2 reads it right. Each is a fault of Assimp's that
-// would go unnoticed.
+// Modifies files to work around bugs of Assimp 5.2 that would otherwise go unnoticed.
 
 namespace krok::assimp {
 
-// The text that Assimp is to read instead, or an empty string where the file is fine as it is. An
-// Error (code assimp-refused) where the file has a fault that Assimp would read over.
+// The text that Assimp reads instead, or an empty string if no change is needed. Code:
+// assimp-refused for a faulty file that Assimp would accept.
 Result<std::string> mend_input(registry::Kind kind, std::string_view text);
 
-// The joints of an .md5mesh or .md5anim, a line each: name and parent. For telling whether two
-// belong together.
+// The joints of an .md5mesh or .md5anim, one line each with name and parent; to check whether two
+// files match.
 std::string md5_joints(std::string_view text);
 
 }  // namespace krok::assimp

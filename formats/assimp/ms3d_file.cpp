@@ -15,7 +15,7 @@ constexpr int kNoJoint = -1;
 
 struct Vertex {
   std::array<int, 4> joints = {kNoJoint, kNoJoint, kNoJoint, kNoJoint};
-  std::array<int, 3> weights = {0, 0, 0};  // of the first three; the last has the rest
+  std::array<int, 3> weights = {0, 0, 0};  // of the first three; the fourth has the rest
 };
 
 struct Parts {
@@ -74,8 +74,8 @@ void read_joints(ByteReader& in, Ms3dFile& file) {
   }
 }
 
-// The part that later versions added: three lists of comments, one comment, then further joints and
-// weights for each vertex. Files without it, or with one that breaks off, have single joints.
+// The section added by later versions: three lists of comments, one comment, then more joints and
+// weights per vertex. If it is missing or truncated, each vertex has a single joint.
 void read_extra_joints(ByteReader in, std::vector<Vertex>& vertices) {
   if (in.read<std::uint32_t>() != 1) return;
   for (int list = 0; list < 3; ++list) {
@@ -97,7 +97,7 @@ void read_extra_joints(ByteReader in, std::vector<Vertex>& vertices) {
   }
 }
 
-// Weights are parts of 100, in some exporters' files of 255.
+// Weights are from 0 to 100; some exporters use 0 to 255.
 int scale_of(const std::vector<Vertex>& vertices) {
   int largest = 0;
   for (const Vertex& vertex : vertices) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-// What Assimp 5.2 reads wrong in MilkShape files, read from the bytes themselves. The format:
-// M. Ciragan, "MilkShape 3D 1.8.5 File Format Specification".
+// Reads what Assimp 5.2 reads incorrectly from MilkShape files. Source: M. Ciragan, "MilkShape 3D
+// 1.8.5 File Format Specification".
 
 namespace krok::assimp {
 
@@ -19,14 +19,14 @@ struct Ms3dInfluence {
 
 struct Ms3dFile {
   std::vector<std::string> joints;
-  // [groups][corners of its triangles]: that is how Assimp has meshes and vertices.
+  // [groups][triangle corners][influences], matching Assimp's meshes and vertices.
   std::vector<std::vector<std::vector<Ms3dInfluence>>> influences;
-  std::size_t end_of_joints = 0;  // byte; what follows are comments and the vertices' weights
-  std::size_t place_of_rate = 0;  // byte of the float that says the frames a second
-  float rate = 0;
+  std::size_t end_of_joints = 0;  // byte offset; comments and vertex weights follow
+  std::size_t place_of_rate = 0;  // byte offset of the frame rate
+  float rate = 0;                 // frames per second
 };
 
-// Nothing where the file is not as the format has it; Assimp will say what is wrong.
+// nullopt if the file is invalid; Assimp then reports the error.
 std::optional<Ms3dFile> read_ms3d(std::span<const std::byte> bytes);
 
 }  // namespace krok::assimp

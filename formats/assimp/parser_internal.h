@@ -13,13 +13,13 @@
 #include "core/text.h"
 #include "nodes/scene.h"
 
-// Private to this folder: takes what the child has packed apart, and trusts nothing of it.
+// Private to this folder: parses the child's untrusted output.
 
 namespace krok::assimp {
 
 using nodes::Shared;
 
-// Reads on after a failure, but gives nothing more: one check at the end is enough.
+// After a failure, reads return empty values, so that one check at the end is enough.
 class Parser {
  public:
   explicit Parser(std::span<const std::byte> bytes) : in_(bytes) {}
@@ -43,7 +43,7 @@ class Parser {
     return value;
   }
 
-  // How many things of at least `bytes_each` follow.
+  // The number of elements that follow, each at least `bytes_each` long.
   std::size_t count(std::size_t bytes_each) {
     const auto count = number<std::uint64_t>();
     require(count <= in_.remaining() / bytes_each, "a count is larger than the data");

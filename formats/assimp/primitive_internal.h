@@ -8,8 +8,8 @@ namespace krok::assimp {
 
 Vec3f to_float(const aiVector3D& vector);
 
-// One of Assimp's meshes as a primitive, without its material's name. Vertices that are the same in
-// everything become one. `influences` as convert_influences has them.
+// Converts one of Assimp's meshes, without its material's name. Vertices with identical attributes
+// are merged. `influences` are from convert_influences().
 nodes::Primitive convert_primitive(const aiMesh& mesh,
                                    std::vector<std::vector<Influence>> influences,
                                    MeshTotals& totals);

@@ -29,15 +29,15 @@ Diagnostic diagnostic(Severity severity, std::string code, std::string message, 
 }
 
 void configure(Assimp::Importer& importer) {
-  // No meshes for show around bare skeletons.
+  // No dummy meshes for skeletons without a mesh.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  // Without the helper nodes Assimp 5.2 loses the motion of FBX nodes with pivots; convert_nodes
-  // folds them.
+  // Without the helper nodes Assimp 5.2 loses the animation of FBX nodes with pivots; convert_nodes
+  // merges them.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_OPTIMIZE_EMPTY_ANIMATION_CURVES, false);
-  // Joints without weights are joints too.
+  // Keep joints without weights.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_REMOVE_EMPTY_BONES, false);
 }
 
@@ -47,7 +47,7 @@ std::size_t meshes_without_normals(const aiScene& scene) {
   return count;
 }
 
-// Assimp's words, without its habit of a full stop and line ends.
+// Assimp's message, without line ends and the final full stop.
 std::string reason(const Assimp::Importer& importer) {
   std::string text = to_utf8(importer.GetErrorString());
   for (char& c : text) {
@@ -59,7 +59,7 @@ std::string reason(const Assimp::Importer& importer) {
   return text.empty() ? "no reason given" : text;
 }
 
-// Whether Assimp swallowed the want of memory.
+// Throws if Assimp swallowed a bad_alloc.
 void throw_on_bad_alloc(const Assimp::Importer& importer) {
   const std::exception_ptr& exception = importer.GetException();
   if (!exception) return;
@@ -85,7 +85,7 @@ void Conversion::warn(std::string code, std::string message, std::string hint) {
 
 namespace {
 
-// The animation of the first of COLLADA's clips is there; those of the others are read by turns.
+// Reads the animations of all COLLADA clips after the first, one import each.
 void convert_further_clips(Conversion& to, const std::vector<ColladaClip>& clips) {
   constexpr std::size_t kMaxClips = 100;
   if (clips.empty()) return;
@@ -93,7 +93,8 @@ void convert_further_clips(Conversion& to, const std::vector<ColladaClip>& clips
   if (animations.size() == 1) shape_clip(clips[0], animations[0]);
   const std::size_t count = std::min(clips.size(), kMaxClips);
   if (count < clips.size()) {
-    to.warn("assimp-clips", fmt::format("of {} clips the first {} are read", clips.size(), count));
+    to.warn("assimp-clips",
+            fmt::format("of {} clips, only the first {} are read", clips.size(), count));
   }
   for (std::size_t c = 1; c < count; ++c) {
     const std::string text = collada_with_one_animation(to.text, &clips[c]);
@@ -110,10 +111,10 @@ void convert_further_clips(Conversion& to, const std::vector<ColladaClip>& clips
   }
 }
 
-// What Assimp is given to read.
+// Input for Assimp.
 struct Input {
   std::vector<MemoryFile> files;
-  std::vector<std::string> mended;  // what some of the files are replaced by
+  std::vector<std::string> mended;  // replacements of some files
   std::string name;                 // of the file to open
   std::string_view text;            // the file to open, mended
   bool bare_motion = false;         // an MD5 motion without its mesh
@@ -149,7 +150,7 @@ Result<Input> prepare(std::vector<MemoryFile> files, Kind kind) {
     }
     if (!mended.empty()) files[f].bytes = std::as_bytes(std::span(mended));
   }
-  // With its mesh, an MD5 motion is read as the mesh's.
+  // An MD5 motion is read through its mesh, if there is one.
   const auto mesh = std::find_if(files.begin(), files.end(), [](const MemoryFile& file) {
     return registry::kind_of_name(file.name) == Kind::md5mesh;
   });
@@ -162,7 +163,7 @@ Result<Input> prepare(std::vector<MemoryFile> files, Kind kind) {
 Status convert(Conversion& to, const Input& input) {
   try {
     convert_nodes(to);
-    if (!input.bare_motion) convert_meshes(to);  // Assimp draws one around bare bones
+    if (!input.bare_motion) convert_meshes(to);  // Assimp adds a dummy mesh to bare bones
     convert_cameras(to);
     convert_animations(to, to.source);
     convert_further_clips(to, input.clips);
@@ -170,8 +171,8 @@ Status convert(Conversion& to, const Input& input) {
     report_same_names(to);
     rename_collada_nodes(to);
   } catch (const ConversionError& error) {
-    return Error("assimp-refused", fmt::format("the file cannot be read: {}", error.what()),
-                 "the file is damaged, or its exporter has a fault");
+    return Error("assimp-refused", fmt::format("cannot read the file: {}", error.what()),
+                 "the file is damaged, or its exporter has a bug");
   }
   return {};
 }
@@ -196,8 +197,8 @@ Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, Kind kind,
   }
   if (source == nullptr || source->mRootNode == nullptr) {
     return Error("assimp-refused",
-                 fmt::format("the file cannot be read: Assimp says: {}", reason(importer)),
-                 "try to open it in another program and to save it again, best as glTF (.glb)");
+                 fmt::format("cannot read the file; Assimp reports: {}", reason(importer)),
+                 "try to open and save it in another program, preferably as glTF (.glb)");
   }
   Conversion to{
       *source, kind, input->text, options.frames_per_second, options.with_materials, {}, {},

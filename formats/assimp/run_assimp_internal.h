@@ -11,9 +11,9 @@
 
 namespace krok::assimp {
 
-// Assimp and the conversion, in this process and without any limit: what read_file() runs in its
-// child. The first file is the one to read, the others its companions; their names end in their
-// kind's extension.
+// Runs Assimp and the conversion in this process, without limits; read_file() calls it in the child
+// process. The first file is the one to read, the others its companions; names have the extension
+// of their kind.
 Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, registry::Kind kind,
                                 const ReadOptions& options);
 

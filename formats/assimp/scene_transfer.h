@@ -7,16 +7,16 @@
 #include "core/result.h"
 #include "nodes/scene.h"
 
-// A nodes::Scene as bytes, to bring it from one process to another of the same program. Not a file
-// format: it has no version and may change at any time.
+// Serialises a nodes::Scene, to transfer it between processes of the same program. Not a file
+// format: unversioned, and may change at any time.
 
 namespace krok::assimp {
 
 std::vector<std::byte> pack(const nodes::Scene& scene);
 
-// Trusts nothing: counts are held against the bytes that are there, and everything that
-// nodes/scene.h promises of indices, sizes, times and finite values is checked, so that a scene
-// from a process that went astray is an Error (code assimp-result) and not a crash later.
+// For untrusted input: counts are checked against the available bytes, and indices, sizes, times
+// and finite values against the requirements of nodes/scene.h, so that a corrupted process gives an
+// Error (code assimp-result) and not a crash later.
 Result<nodes::Scene> unpack(std::span<const std::byte> bytes);
 
 }  // namespace krok::assimp

@@ -27,7 +27,8 @@ Node take_node(Parser& in) {
   node.skin = in.number<std::int32_t>();
   node.camera = in.number<std::int32_t>();
   node.weights = in.array<double>();
-  for (const double weight : node.weights) in.require(std::isfinite(weight), "a weight is not");
+  for (const double weight : node.weights)
+    in.require(std::isfinite(weight), "a weight is not finite");
   return node;
 }
 
@@ -37,7 +38,8 @@ MorphTarget take_target(Parser& in, std::size_t vertices) {
   target.positions = in.shared<Vec3f>();
   target.normals = in.shared<Vec3f>();
   for (const auto& values : {target.positions, target.normals}) {
-    in.require(!values || values->size() == vertices, "a morph target has other vertices");
+    in.require(!values || values->size() == vertices,
+               "a morph target has another number of vertices");
   }
   return target;
 }
@@ -61,13 +63,13 @@ Primitive take_primitive(Parser& in) {
   in.require(!primitive.normals || primitive.normals->size() == vertices, "normals are missing");
   primitive.tangents = in.shared<Vec4f>();
   in.require(!primitive.tangents || are_tangents(*primitive.tangents, vertices),
-             "tangents are missing, or no directions");
+             "tangents are missing or invalid");
   primitive.texture_coordinates = in.shared<Vec2f>();
   in.require(!primitive.texture_coordinates || primitive.texture_coordinates->size() == vertices,
              "texture coordinates are missing");
   primitive.influences_per_vertex = in.number<std::int32_t>();
   const int each = primitive.influences_per_vertex;
-  in.require(each == 0 || each == 4 || each == 8, "a vertex has an odd number of influences");
+  in.require(each == 0 || each == 4 || each == 8, "an unsupported number of influences per vertex");
   primitive.influence_joints = in.array<std::uint16_t>();
   primitive.influence_weights = in.array<float>();
   if (!in.ok()) return primitive;
@@ -100,8 +102,9 @@ Mesh take_mesh(Parser& in) {
                "parts of a mesh have different morph targets");
   }
   mesh.weights = in.array<double>();
-  in.require(mesh.weights.size() == mesh.target_count(), "a mesh lacks weights of morph targets");
-  for (const double weight : mesh.weights) in.require(std::isfinite(weight), "a weight is not");
+  in.require(mesh.weights.size() == mesh.target_count(), "weights of morph targets are missing");
+  for (const double weight : mesh.weights)
+    in.require(std::isfinite(weight), "a weight is not finite");
   return mesh;
 }
 
@@ -111,7 +114,7 @@ Skin take_skin(Parser& in) {
   const std::vector<std::int32_t> joints = in.array<std::int32_t>();
   skin.joints.assign(joints.begin(), joints.end());
   const std::size_t matrices = in.count(sizeof(double) * 16);
-  in.require(!joints.empty() && matrices == joints.size(), "a skin lacks joints");
+  in.require(!joints.empty() && matrices == joints.size(), "joints of a skin are missing");
   for (std::size_t k = 0; k < matrices && in.ok(); ++k) skin.inverse_binds.push_back(in.matrix());
   return skin;
 }
@@ -133,7 +136,7 @@ Channel take_channel(Parser& in) {
   const auto interpolation = in.number<std::uint8_t>();
   in.require(path <= static_cast<std::uint8_t>(Path::weights) &&
                  interpolation <= static_cast<std::uint8_t>(Interpolation::step),
-             "a channel is of no known kind");
+             "a channel has an unknown kind");
   channel.path = static_cast<Path>(path);
   channel.interpolation = static_cast<Interpolation>(interpolation);
   channel.width = in.number<std::int32_t>();
@@ -143,19 +146,20 @@ Channel take_channel(Parser& in) {
   if (!in.ok()) return channel;
   const std::vector<float>& times = *channel.times;
   for (std::size_t k = 1; k < times.size(); ++k) {
-    in.require(times[k] > times[k - 1], "key times do not rise");
+    in.require(times[k] > times[k - 1], "key times are not increasing");
   }
   in.require(channel.width > 0 &&
                  channel.values->size() / static_cast<std::size_t>(channel.width) == times.size() &&
                  channel.values->size() % static_cast<std::size_t>(channel.width) == 0,
-             "a channel lacks values");
+             "values of a channel are missing");
   return channel;
 }
 
 Diagnostic take_diagnostic(Parser& in) {
   Diagnostic diagnostic;
   const auto severity = in.number<std::uint8_t>();
-  in.require(severity <= static_cast<std::uint8_t>(Severity::error), "a message is of no kind");
+  in.require(severity <= static_cast<std::uint8_t>(Severity::error),
+             "a message has an unknown severity");
   diagnostic.severity = static_cast<Severity>(severity);
   diagnostic.code = in.text();
   diagnostic.message = in.text();
@@ -166,7 +170,7 @@ Diagnostic take_diagnostic(Parser& in) {
 
 template <typename T, typename Take>
 void take_list(Parser& in, std::vector<T>& list, Take take) {
-  const std::size_t count = in.count(8);  // each begins with a text or is larger
+  const std::size_t count = in.count(8);  // each has at least 8 bytes
   for (std::size_t i = 0; i < count && in.ok(); ++i) list.push_back(take(in));
 }
 
@@ -174,11 +178,11 @@ bool exists(int index, std::size_t count) {
   return index >= 0 && static_cast<std::size_t>(index) < count;
 }
 
-// Children, roots and what is in the scene follow from the parents, which must form trees.
+// Derives children, roots and in_scene from the parents, which must form trees.
 void link_nodes(Parser& in, Scene& scene) {
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     Node& node = scene.nodes[i];
-    in.require(node.parent == -1 || exists(node.parent, i), "a node stands before its parent");
+    in.require(node.parent == -1 || exists(node.parent, i), "a node precedes its parent");
     if (!in.ok()) return;
     node.in_scene = true;
     if (node.parent == -1) {
@@ -211,12 +215,12 @@ void check_references(Parser& in, const Scene& scene) {
     if (node.mesh == -1) continue;
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
     in.require(node.weights.empty() || node.weights.size() == mesh.target_count(),
-               "a node lacks weights");
+               "weights of a node are missing");
     for (const Primitive& primitive : mesh.primitives) {
       const std::size_t joints =
           node.skin == -1 ? 0 : scene.skins[static_cast<std::size_t>(node.skin)].joints.size();
       for (const std::uint16_t joint : primitive.influence_joints) {
-        in.require(joint < joints, "a vertex hangs on a joint that does not exist");
+        in.require(joint < joints, "a vertex has a joint that does not exist");
       }
     }
   }
@@ -225,7 +229,7 @@ void check_references(Parser& in, const Scene& scene) {
 void check_channels(Parser& in, const Scene& scene) {
   for (const Animation& animation : scene.animations) {
     for (const Channel& channel : animation.channels) {
-      in.require(exists(channel.node, scene.nodes.size()), "a moving node does not exist");
+      in.require(exists(channel.node, scene.nodes.size()), "an animated node does not exist");
       if (!in.ok()) return;
       std::size_t width = channel.path == Path::rotation ? 4 : 3;
       if (channel.path == Path::weights) {
@@ -233,7 +237,7 @@ void check_channels(Parser& in, const Scene& scene) {
         width = mesh < 0 ? 0 : scene.meshes[static_cast<std::size_t>(mesh)].target_count();
       }
       in.require(width > 0 && static_cast<std::size_t>(channel.width) == width,
-                 "a channel has values of another width");
+                 "a channel has the wrong number of values");
     }
   }
 }
@@ -256,7 +260,7 @@ Result<Scene> unpack(std::span<const std::byte> bytes) {
   });
   std::vector<std::shared_ptr<const EncodedImage>> images;
   take_list(in, scene.materials, [&](Parser& from) { return take_material(from, images); });
-  in.require(check(scene.materials).ok(), "a material has values that it cannot have");
+  in.require(check(scene.materials).ok(), "a material has invalid values");
   const bool has_metres = in.number<std::uint8_t>() != 0;
   const double metres = in.finite();
   const bool has_turn = in.number<std::uint8_t>() != 0;
@@ -265,13 +269,13 @@ Result<Scene> unpack(std::span<const std::byte> bytes) {
   if (has_metres) scene.space.metres = metres;
   if (has_turn) scene.space.file_to_krok = turn;
   take_list(in, scene.diagnostics, take_diagnostic);
-  in.require(in.at_end(), "something follows the end");
+  in.require(in.at_end(), "there is data after the end");
   link_nodes(in, scene);
   if (in.ok()) check_references(in, scene);
   if (in.ok()) check_channels(in, scene);
   if (in.ok()) return scene;
   return Error("assimp-result",
-               fmt::format("Assimp read the file into nonsense: {}",
+               fmt::format("Assimp returned invalid data: {}",
                            in.fault().empty() ? "the data ends early" : in.fault()),
                "the file is probably damaged; try to open and save it in another program");
 }

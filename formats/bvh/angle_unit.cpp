@@ -10,7 +10,7 @@
 namespace krok::bvh {
 
 std::optional<std::string> looks_like_radians(const Hierarchy& hierarchy, const SampleRows& rows) {
-  // A body that moves turns some joint by more than half a radian and many by more than a tenth.
+  // A moving character rotates some joint by more than 0.5 rad, and many by more than 0.1 rad.
   constexpr double kMoves = 0.5;
   constexpr double kTurns = 0.1;
   constexpr int kFewestChannels = 6;
@@ -28,7 +28,7 @@ std::optional<std::string> looks_like_radians(const Hierarchy& hierarchy, const 
     if (most > kTurns) ++turning;
   }
   if (largest < kMoves || turning < kFewestChannels) return std::nullopt;
-  return fmt::format("no rotation is beyond {}, which is less than a whole turn in radians",
+  return fmt::format("no rotation exceeds {}, which is less than a full turn in radians",
                      readable(largest, 3));
 }
 

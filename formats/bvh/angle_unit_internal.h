@@ -8,8 +8,8 @@
 
 namespace krok::bvh {
 
-// Why the angles of some rows look like radians, where they do: BVH has degrees, but where many
-// joints turn and no value is beyond a whole turn in radians, the figure would hardly move.
+// Returns the reason if rotation values look like radians: many joints rotate, yet no value exceeds
+// 2 pi, which in degrees (the unit of BVH) would be almost no motion.
 std::optional<std::string> looks_like_radians(const Hierarchy& hierarchy, const SampleRows& rows);
 
 }  // namespace krok::bvh

@@ -35,7 +35,7 @@ class Reader {
   Reader(std::string_view text, const std::string& file_name, const ReadOptions& options)
       : text_(text), file_name_(file_name), options_(options) {}
 
-  // The hierarchy, the header and where the lines are; false where those are not a row each.
+  // Reads the hierarchy and header and indexes the lines; false if the lines are not one row each.
   Result<bool> begin(const std::function<void(std::size_t)>& release = {}) {
     auto hierarchy = parse_hierarchy(text_, file_name_, options_, capture_.diagnostics);
     if (!hierarchy) return std::move(hierarchy).error();
@@ -47,8 +47,8 @@ class Reader {
     capture_.frames_announced = header_.frames;
     capture_.frame_time = header_.frame_time;
 
-    // Nearly every file has a row a line and nothing odd; the rows are taken as such, and only if
-    // one of them turns out otherwise does the careful search for the rows begin.
+    // Nearly every file has one valid row per line. That is assumed first; the careful search runs
+    // only if a row turns out to be faulty.
     rows_ = index_lines(text_, header_.end, options_.jobs, release);
     return !hierarchy_.channels.empty() && static_cast<long long>(rows_.size()) == header_.frames;
   }
@@ -84,7 +84,7 @@ class Reader {
     choose_rate();
     if (!choose_conventions() || !check_size()) return std::nullopt;
     make_frames();
-    // What tells a rest frame stands at the beginning.
+    // The first frames are enough to detect a rest frame.
     FrameSource head = source(0, nullptr, {});
     head.frame_count = std::min(head.frame_count, kFramesOfRestPose);
     auto clip = load(head, 1);
@@ -115,7 +115,7 @@ class Reader {
     capture_.diagnostics.push_back(std::move(told));
   }
 
-  // By the names of the joints, and how the file is written.
+  // Recognised by the joint names and how the file is written.
   void report_exporter(const SampleRows& samples) {
     Skeleton names;
     for (const auto& joint : hierarchy_.joints) {
@@ -146,11 +146,11 @@ class Reader {
     const auto reason = looks_like_radians(hierarchy_, samples);
     if (!reason) return;
     tell(Severity::warning, "bvh-angles",
-         fmt::format("the angles may be radians, though BVH has degrees: {}", *reason),
-         "--angles radians reads them as such");
+         fmt::format("the angles may be radians, though BVH uses degrees: {}", *reason),
+         "use --angles radians if they are");
   }
 
-  // From the places of the rows to the clip.
+  // Converts the indexed rows to the clip.
   Status convert() {
     choose_rate();
     if (Status status = choose_conventions(); !status) return status;
@@ -183,12 +183,12 @@ class Reader {
     capture_.rate = {readable(rate), printed.reason,
                      doubtful ? Confidence::guess : Confidence::certain};
     tell(doubtful ? Severity::warning : Severity::note, "bvh-rate",
-         fmt::format("{} frames a second: {}", readable(rate), printed.reason),
-         doubtful ? "say the rate with --fps N if it is another" : "",
+         fmt::format("{} frames per second: {}", readable(rate), printed.reason),
+         doubtful ? "set the rate with --fps N if this is wrong" : "",
          doubtful ? locate(text_, header_.frame_time_offset, file_name_) : Location());
   }
 
-  // Up to kMostSamples whole rows, evenly over the file.
+  // Up to kMaxSamples complete rows, evenly over the file.
   SampleRows sample_rows() const {
     SampleRows samples;
     samples.channels = hierarchy_.channels.size();
@@ -227,7 +227,7 @@ class Reader {
       tell(guess ? Severity::warning : Severity::note, "bvh-positions",
            fmt::format("position channels are {} ({}): {}", positions.choice.choice,
                        confidence_name(positions.choice.confidence), positions.choice.reason),
-           guess ? "say --positions absolute or additive if it is otherwise" : "");
+           guess ? "use --positions absolute or additive if this is wrong" : "");
     }
     return make_conversion();
   }
@@ -242,7 +242,7 @@ class Reader {
     return skeleton;
   }
 
-  // Unit and axes, from the options and, where they say nothing, from the data.
+  // Unit and axes, from the options or else detected from the data.
   Status detect(const SampleRows& samples, Positions positions) {
     Conventions& conventions = capture_.conventions;
     const Kinematics in_file(hierarchy_, positions, {});
@@ -289,7 +289,7 @@ class Reader {
     return {};
   }
 
-  // The rows as frames, and the skeleton that they move.
+  // Makes the skeleton and the converter from rows to frames.
   void make_frames() {
     Kinematics kinematics(hierarchy_, positions_, conversion_);
     capture_.clip.skeleton = skeleton_of(kinematics);
@@ -298,7 +298,7 @@ class Reader {
     rows_.clear();
   }
 
-  // The frames from row `skip` on. It keeps what it needs, but the text, alive.
+  // The frames from row `skip` on. Keeps everything it needs alive except the text.
   FrameSource source(int skip, Progress* progress, std::function<void(std::size_t)> release) const {
     FrameSource result;
     result.skeleton = capture_.clip.skeleton;
@@ -309,9 +309,9 @@ class Reader {
                                                      std::span<Quatf> orientations) -> Status {
       const auto outcome = frames->read(static_cast<std::size_t>(first + skip),
                                         static_cast<std::size_t>(count), positions, orientations);
-      // Of far values read() tells.
+      // read() reports far values.
       if (outcome.row_is_faulty || outcome.overflow || outcome.far.any()) {
-        return Error("bvh-channel-count", "a row is not whole, or its numbers are too large");
+        return Error("bvh-channel-count", "a row is incomplete, or its numbers are too large");
       }
       if (progress != nullptr) progress->advance(static_cast<std::uint64_t>(count));
       return {};
@@ -361,7 +361,7 @@ class Reader {
     if (row_is_faulty_) return {};
     if (first_overflow < count) {
       Error overflow("bvh-number", "the numbers are so large that positions overflow",
-                     "look at the frame's position channels, and at the unit if --unit was given");
+                     "check the frame's position channels, and the unit if --unit was given");
       overflow.where = locate(text_, frames_->rows()[first_overflow], file_name_);
       overflow.frame = static_cast<std::int64_t>(first_overflow);
       return overflow;
@@ -370,7 +370,7 @@ class Reader {
     return {};
   }
 
-  // Frames without a row stand between whole ones.
+  // Frames without a row are always between complete ones.
   void fill_faulty_frames() {
     const auto& rows = frames_->rows();
     for (std::size_t row = 0; row < rows.size(); ++row) {

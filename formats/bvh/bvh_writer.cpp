@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array kAxisLetters = {'X', 'Y', 'Z'};
 
-// What a joint becomes in the file.
+// A joint as written to the file.
 struct WrittenJoint {
   int index = 0;  // in the clip
   int depth = 0;
@@ -83,8 +83,8 @@ class Writer {
     }
   }
 
-  // joint_to_world of a frame with the reference orientations taken off, so that an unturned joint
-  // is what it is in the reference pose.
+  // joint_to_world of a frame relative to the reference orientations, so that zero rotations give
+  // the reference pose.
   void folded_pose(int frame, std::span<Transform> pose) const {
     clip_.get_pose(frame, pose);
     for (std::size_t j = 0; j < count_; ++j) {
@@ -99,7 +99,7 @@ class Writer {
     return parent.orientation.conjugate() * (pose[j].position - parent.position);
   }
 
-  // Stored positions are floats: what they cannot tell apart is no movement.
+  // Stored positions are floats: differences below float precision are not movement.
   double tolerance() const {
     float reach = 0;
     for (const Vec3f& position : clip_.positions) {
@@ -123,7 +123,7 @@ class Writer {
     }
   }
 
-  // A name on one line that no reader mistakes for a brace; unique still, after what it takes.
+  // A name on one line and without braces, unique after the replacements.
   std::string written_name(const std::string& name) {
     std::string result;
     for (const char c : trimmed(name)) {
@@ -188,7 +188,7 @@ class Writer {
     while (open > depth) text_ += indentation(--open) + "}\n";
   }
 
-  // No deeper than people can follow: a chain of thousands of joints would be mostly tabs.
+  // Limited: a chain of thousands of joints would be mostly tabs.
   static std::string indentation(int depth) {
     constexpr int kDeepest = 32;
     return std::string(static_cast<std::size_t>(std::min(depth, kDeepest)), '\t');
@@ -199,7 +199,7 @@ class Writer {
         fmt::format("MOTION\nFrames: {}\nFrame Time: {}\n", clip_.frame_count(), frame_time_text());
   }
 
-  // Enough digits that 1 / frame time is the rate again; ten at least, as readers snap them.
+  // Enough digits that 1 / frame time gives the same rate; at least ten, for readers that snap.
   std::string frame_time_text() const {
     const double frame_time = 1.0 / clip_.rate;
     return fmt::format("{:.{}g}", frame_time, 17);
@@ -268,7 +268,8 @@ Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
     return Error("bvh-options", fmt::format("{} decimals, expected 1 to 15", options.decimals));
   }
   if (!(options.unit_metres > 0) || !std::isfinite(options.unit_metres)) {
-    return Error("bvh-options", fmt::format("a unit of {} m is not a length", options.unit_metres));
+    return Error("bvh-options", fmt::format("invalid unit of {} m: must be positive and finite",
+                                            options.unit_metres));
   }
   std::array<int, 3> axes{};
   for (const Axis axis : options.order) ++axes[static_cast<std::size_t>(axis)];

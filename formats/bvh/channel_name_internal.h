@@ -12,10 +12,10 @@ struct ChannelMeaning {
   Axis axis = Axis::x;
 };
 
-// What the name of a channel means, in any case; nothing for one that is not of the format.
+// Parses a channel name, case-insensitive; nullopt if it is not a BVH channel.
 std::optional<ChannelMeaning> channel_meaning(std::string_view name);
 
-// "Xrotation"; "unknown" for what is ignored.
+// "Xrotation"; "unknown" for ignored channels.
 std::string_view channel_name(ChannelKind kind, Axis axis);
 
 }  // namespace krok::bvh

@@ -9,7 +9,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// Where the only comma or point of a number stands; npos for what is no such number.
+// Offset of the only comma or point of a number; npos for any other word.
 std::size_t mark_of(std::string_view word) {
   std::size_t mark = std::string_view::npos;
   bool digits = false;
@@ -27,7 +27,7 @@ std::size_t mark_of(std::string_view word) {
       return std::string_view::npos;
     }
   }
-  // "1," is a number and a comma that divides.
+  // "1," is a number and a separator.
   const bool fraction = mark + 1 < word.size() && is_digit(word[mark + 1]);
   return digits && mark != std::string_view::npos && fraction ? mark : std::string_view::npos;
 }

@@ -36,7 +36,7 @@ class FarRows {
     const Kinematics& kinematics = frames_.kinematics();
     std::vector<Transform> pose(kinematics.joint_count());
     kinematics.pose(values_, pose);
-    // The first that is far, and so the one that is moved there; by a rounding none may be.
+    // The first far joint is the one that was moved; due to rounding there may be none.
     std::size_t joint = 0;
     for (std::size_t j = 0; j < pose.size(); ++j) {
       if (pose[joint].position.norm() > kinematics.farthest()) break;
@@ -54,7 +54,7 @@ class FarRows {
  private:
   void take(std::size_t row) { parse_row(text_, frames_.rows()[row], values_); }
 
-  // The largest position channel of the joint, or of the nearest above it that has any.
+  // The largest position channel of the joint, or of its nearest ancestor that has any.
   std::size_t moving_channel(int joint) const {
     for (; joint >= 0; joint = hierarchy_.joints[static_cast<std::size_t>(joint)].parent) {
       const auto& own = hierarchy_.joints[static_cast<std::size_t>(joint)];

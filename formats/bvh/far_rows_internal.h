@@ -11,8 +11,8 @@
 
 namespace krok::bvh {
 
-// What to tell of rows with values beyond sense, `far` of `frames`: the first rotation and the
-// first position, each with joint, frame and place. Codes bvh-far-rotation, bvh-far-position.
+// Diagnostics for implausibly large values in rows, `far` of `frames`: the first rotation and the
+// first position, each with joint, frame and location. Codes bvh-far-rotation, bvh-far-position.
 std::vector<Error> far_row_faults(std::string_view text, const RowFrames& frames,
                                   const FarValues& far, const Hierarchy& hierarchy,
                                   const std::string& file_name);

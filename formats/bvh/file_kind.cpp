@@ -16,17 +16,17 @@ std::string hint_for(registry::Kind kind, std::string_view what) {
     case registry::Kind::anim:
     case registry::Kind::model:
     case registry::Kind::cam:
-      return "it is Krok's own already and needs no import";
+      return "this is a Krok file already; no import is needed";
     default:
       break;
   }
   if (what.find("archive") != std::string_view::npos) return "unpack it first";
   if (what.find("Git LFS") != std::string_view::npos) return "fetch the file with: git lfs pull";
   if (what.find("web page") != std::string_view::npos) return "download the file itself";
-  return "give a BVH capture, text that begins with HIERARCHY";
+  return "a BVH file is text that begins with HIERARCHY";
 }
 
-// UTF-16 without a byte-order mark: every other byte of what should be ASCII letters is 0.
+// UTF-16 with a byte-order mark, or without: every other byte of ASCII letters is 0.
 bool is_utf16(std::string_view text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
   const std::string_view head = text.substr(0, 8);
@@ -49,7 +49,7 @@ std::optional<HierarchyStart> find_start(std::string_view text) {
     cursor.skip_space();
     return HierarchyStart{cursor.position(), 0};
   }
-  if (cursor.peek().starts_with('<')) return std::nullopt;  // a page that shows the file
+  if (cursor.peek().starts_with('<')) return std::nullopt;  // a web page that shows the file
   HierarchyStart start;
   while (!cursor.at_end()) {
     cursor.skip_space();
@@ -72,10 +72,10 @@ Status check_file_kind(std::string_view text, const std::string& file_name) {
   if (text.empty()) return not_bvh("the file is empty", "export or copy it again");
   if (is_utf16(text)) return not_bvh("is UTF-16 text", "save it as UTF-8");
   if (text.find_first_not_of(" \t\r\n\v\f") == std::string_view::npos) {
-    return not_bvh("the file holds nothing but white space", "export or copy it again");
+    return not_bvh("the file has only white space", "export or copy it again");
   }
   const std::string_view what = registry::describe_content(content);
-  return not_bvh(fmt::format("is no BVH file but {}", what), hint_for(kind, what));
+  return not_bvh(fmt::format("not a BVH file: it is {}", what), hint_for(kind, what));
 }
 
 }  // namespace krok::bvh

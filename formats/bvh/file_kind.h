@@ -9,18 +9,17 @@
 
 namespace krok::bvh {
 
-// Where the hierarchy begins in a text that does not begin with it.
+// Start of the hierarchy in a text with other lines before it.
 struct HierarchyStart {
-  std::size_t offset = 0;  // of HIERARCHY, or of ROOT where the text begins with that
-  long long lines = 0;     // of text before it
+  std::size_t offset = 0;  // of HIERARCHY, or of ROOT if HIERARCHY is missing
+  long long lines = 0;     // lines of text before it
 };
 
-// Nothing where no line among the first ones begins with HIERARCHY, or what stands before is no
-// text.
+// nullopt if none of the first lines begins with HIERARCHY, or the bytes before it are not text.
 std::optional<HierarchyStart> find_start(std::string_view text);
 
-// Whether `text` can be a BVH file at all: it begins with HIERARCHY, in any case, after white space
-// or a byte-order mark. The error (bvh-kind) says what it looks like instead.
+// Checks that `text` can be a BVH file: it begins with HIERARCHY (case-insensitive) after optional
+// white space or a byte-order mark. The error (bvh-kind) says what the file looks like instead.
 Status check_file_kind(std::string_view text, const std::string& file_name);
 
 }  // namespace krok::bvh

@@ -17,8 +17,7 @@ namespace krok::bvh {
 
 namespace {
 
-constexpr const char* kChannelsHint =
-    "after CHANNELS write how many channel names follow, and these";
+constexpr const char* kChannelsHint = "after CHANNELS write the number of channels and their names";
 
 class HierarchyParser {
  public:
@@ -48,13 +47,13 @@ class HierarchyParser {
     }
     result_.end = cursor_.position();
     if (result_.joints.empty()) {
-      return fail("bvh-syntax", "the hierarchy has no ROOT", "the file holds no skeleton");
+      return fail("bvh-syntax", "the hierarchy has no ROOT", "the file has no skeleton");
     }
     if (Status status = check_channels(); !status) return status.error();
     if (Status status = join_roots(); !status) return status.error();
     if (warnings_ > kMaxWarnings) {
       report_in_file(Severity::warning, "bvh-syntax",
-                     fmt::format("{} more such oddities", warnings_ - kMaxWarnings));
+                     fmt::format("{} more such warnings", warnings_ - kMaxWarnings));
     }
     name_joints();
     count_zero_bones();
@@ -67,12 +66,12 @@ class HierarchyParser {
     error.where = locate_(offset);
     return error;
   }
-  // At the word read last.
+  // At the last word read.
   Error fail(std::string code, std::string message, std::string hint = {}) {
     return fail_at(cursor_.word_begin(), std::move(code), std::move(message), std::move(hint));
   }
 
-  // A fault that strict refuses.
+  // A fault that is an error only if strict.
   Status warn_at(std::size_t offset, std::string code, std::string message, std::string joint) {
     Error warning = fail_at(offset, std::move(code), std::move(message));
     warning.joint = std::move(joint);
@@ -88,8 +87,8 @@ class HierarchyParser {
     diagnostics_.push_back(std::move(told));
   }
 
-  // The text may begin with a byte-order mark. Lines before HIERARCHY, and a ROOT without it, are
-  // oddities.
+  // The text may begin with a byte-order mark. Lines before HIERARCHY and a missing HIERARCHY are
+  // warnings.
   Status parse_start() {
     const std::size_t begin = text_.size() - without_byte_order_mark(text_).size();
     cursor_.seek(begin);
@@ -98,14 +97,14 @@ class HierarchyParser {
     if (!start) {
       Status status = check_file_kind(text_, file_name_);
       if (!status) return status;
-      return fail("bvh-kind", "does not begin with HIERARCHY, as a BVH file does",
+      return fail("bvh-kind", "not a BVH file: it does not begin with HIERARCHY",
                   "give a BVH capture");
     }
     cursor_.seek(begin + start->offset);
     if (start->lines > 0) {
       Status status =
           warn_at(begin, "bvh-text-before",
-                  fmt::format("{} before the hierarchy {} left out", counted(start->lines, "line"),
+                  fmt::format("{} before the hierarchy {} ignored", counted(start->lines, "line"),
                               start->lines == 1 ? "is" : "are"),
                   {});
       if (!status) return status;
@@ -123,36 +122,35 @@ class HierarchyParser {
   Error end_of_file() {
     if (!open_.empty()) {
       return fail("bvh-syntax",
-                  fmt::format("the file ends in the middle of the hierarchy, {} is not closed",
-                              open_name()),
-                  "the file is cut short; export or copy it again");
+                  fmt::format("the file ends inside the hierarchy, {} is not closed", open_name()),
+                  "the file is truncated; export or copy it again");
     }
     return fail("bvh-no-motion", "the file ends without a MOTION section",
-                "the file is cut short; export or copy it again");
+                "the file is truncated; export or copy it again");
   }
 
   Status parse_item(std::string_view word) {
     if (same_word(word, "ROOT")) {
-      if (!open_.empty()) return fail("bvh-syntax", "ROOT inside of another joint");
+      if (!open_.empty()) return fail("bvh-syntax", "ROOT inside another joint");
       return open_joint(false);
     }
     if (same_word(word, "JOINT")) {
-      if (open_.empty()) return fail("bvh-syntax", "JOINT outside of any ROOT");
+      if (open_.empty()) return fail("bvh-syntax", "JOINT outside ROOT");
       return open_joint(false);
     }
     if (same_word(word, "End") || same_word(word, "EndSite") || same_word(word, "End_Site")) {
-      if (open_.empty()) return fail("bvh-syntax", "End Site outside of any ROOT");
+      if (open_.empty()) return fail("bvh-syntax", "End Site outside ROOT");
       return open_joint(true);
     }
     if (word.starts_with('#') || word.starts_with("//")) {
       const std::size_t place = cursor_.word_begin();
       cursor_.seek(place);
       return warn_at(place, "bvh-syntax",
-                     fmt::format("the comment '{}' is left out", shown(cursor_.line())), {});
+                     fmt::format("the comment '{}' is ignored", shown(cursor_.line())), {});
     }
     if (open_.empty()) {
       return fail("bvh-syntax", fmt::format("'{}' where ROOT or MOTION is expected", shown(word)),
-                  word == "}" ? "there is one '}' more than there are '{'" : "");
+                  word == "}" ? "there is one '}' too many" : "");
     }
     if (same_word(word, "OFFSET")) return parse_offset();
     if (same_word(word, "CHANNELS")) return parse_channels();
@@ -167,14 +165,14 @@ class HierarchyParser {
 
   Status open_joint(bool end_site) {
     if (!open_.empty() && result_.joints[static_cast<std::size_t>(open_.back())].end_site) {
-      return fail("bvh-syntax", "a joint inside of an End Site");
+      return fail("bvh-syntax", "a joint inside an End Site");
     }
     if (static_cast<int>(result_.joints.size()) >= options_.max_joints) {
       return fail("bvh-limit", fmt::format("more than {} joints", options_.max_joints),
-                  "no figure has so many; look whether the file is what it should be");
+                  "no character has that many; check the file");
     }
     const std::size_t keyword = cursor_.word_begin();
-    // What follows "End" is "Site", and with some exporters a name that is no joint's.
+    // "End" is followed by "Site" and, with some exporters, a name that is not used.
     const std::string_view name = end_site ? cursor_.to_brace() : cursor_.name();
     Hierarchy::Joint joint;
     joint.parent = open_.empty() ? -1 : open_.back();
@@ -185,7 +183,7 @@ class HierarchyParser {
       if (name.empty()) {
         if (options_.strictness == Strictness::strict) {
           return fail_at(keyword, "bvh-name", "a joint without a name",
-                         "without --strict it is given one");
+                         "without --strict a name is generated");
         }
         name_places_.back() = keyword;  // the warning comes with the name that it gets
       }
@@ -210,7 +208,7 @@ class HierarchyParser {
     open_.pop_back();
     if (has_offset) return {};
     return warn_at(cursor_.word_begin(), "bvh-offset",
-                   fmt::format("{} has no OFFSET, taken as 0 0 0", name), name);
+                   fmt::format("{} has no OFFSET, assumed to be 0 0 0", name), name);
   }
 
   Status parse_offset() {
@@ -225,13 +223,13 @@ class HierarchyParser {
                     fmt::format("'{}' in the OFFSET of {} is not a finite number", shown(word),
                                 open_name()),
                     word.find(',') == std::string_view::npos
-                        ? "OFFSET takes three numbers"
-                        : "numbers are written with a decimal point and without commas between");
+                        ? "OFFSET needs three numbers"
+                        : "write numbers with a decimal point and without commas between them");
       }
       if (std::abs(*value) > std::numeric_limits<float>::max()) {
         return fail("bvh-number",
                     fmt::format("'{}' in the OFFSET of {} is too large", shown(word), open_name()),
-                    "no bone is so long; look whether the file is what it should be");
+                    "no bone is that long; check the file");
       }
       result_.joints[index].offset[axis] = *value;
     }
@@ -255,7 +253,7 @@ class HierarchyParser {
     seen_rotations_.fill(false);
     if (*count > 0 && result_.joints[index].end_site) {
       Status status = warn_at(count_place, "bvh-channels",
-                              "an End Site has channels, so that it moves as a joint does", {});
+                              "an End Site has channels; it is animated like a joint", {});
       if (!status) return status;
     }
     for (long long i = 0; i < *count; ++i) {
@@ -263,7 +261,7 @@ class HierarchyParser {
       if (word.empty() || word == "{" || word == "}" || same_word(word, "JOINT") ||
           same_word(word, "End") || same_word(word, "OFFSET")) {
         return fail_at(count_place, "bvh-channels",
-                       fmt::format("{} announces {} channels and names {}", open_name(), *count, i),
+                       fmt::format("{} declares {} channels and names {}", open_name(), *count, i),
                        kChannelsHint);
       }
       cursor_.word();
@@ -279,9 +277,8 @@ class HierarchyParser {
     while (!name.empty() && (name.back() == ',' || name.back() == ';')) name.remove_suffix(1);
     if (name.size() != word.size() && !commas_reported_) {
       commas_reported_ = true;
-      Status status =
-          warn_at(cursor_.word_begin(), "bvh-channels",
-                  "the names of channels are divided by commas, which are left out", {});
+      Status status = warn_at(cursor_.word_begin(), "bvh-channels",
+                              "channel names are separated by commas, which are ignored", {});
       if (!status) return status;
     }
     Channel channel;
@@ -300,8 +297,8 @@ class HierarchyParser {
     } else {
       status =
           warn_at(cursor_.word_begin(), "bvh-channels",
-                  fmt::format("the channel '{}' of {} is neither a position nor a rotation, its "
-                              "values are left out",
+                  fmt::format("the channel '{}' of {} is neither a position nor a rotation; its "
+                              "values are ignored",
                               shown(word), open_name()),
                   open_name());
     }
@@ -309,7 +306,7 @@ class HierarchyParser {
     return status;
   }
 
-  // A joint may turn about one axis twice, though hardly any exporter means it.
+  // A joint may rotate about one axis twice, though it is rarely intended.
   Status check_repeated(const Channel& channel, std::string_view name) {
     auto& seen_kind = channel.kind == ChannelKind::position ? seen_positions_ : seen_rotations_;
     bool& seen = seen_kind[static_cast<std::size_t>(channel.axis)];
@@ -320,10 +317,10 @@ class HierarchyParser {
     std::string twice = fmt::format("{} has {} twice", open_name(), shown(name));
     if (channel.kind == ChannelKind::position) return fail("bvh-channels", std::move(twice));
     return warn_at(cursor_.word_begin(), "bvh-channels",
-                   twice + "; both turns are made, in the order of the channels", open_name());
+                   twice + "; both rotations are applied, in channel order", open_name());
   }
 
-  // A figure without any channel that is understood would stand still without a word.
+  // Without any known channel the character would not move, with no message.
   Status check_channels() {
     bool any = false;
     bool positions = false;
@@ -339,12 +336,12 @@ class HierarchyParser {
     }
     if (any && !positions) {
       report_in_file(Severity::note, "bvh-channels",
-                     "no joint has position channels: the figure turns and bends in place");
+                     "no joint has position channels: the motion is in place");
     }
     return {};
   }
 
-  // A skeleton has one root: several get a parent at the origin that does not move.
+  // A skeleton has one root: several roots get a static parent at the origin.
   Status join_roots() {
     std::size_t roots = 0;
     for (const auto& joint : result_.joints) roots += joint.parent < 0 ? 1 : 0;
@@ -357,7 +354,7 @@ class HierarchyParser {
     for (Channel& channel : result_.channels) ++channel.joint;
     report_in_file(
         Severity::warning, "bvh-roots",
-        fmt::format("the file has {} ROOTs; a joint at the origin was put above them", roots));
+        fmt::format("the file has {} ROOTs; a common parent joint is added at the origin", roots));
     return {};
   }
 
@@ -379,13 +376,12 @@ class HierarchyParser {
       if (zero++ == 0) first = joint.name;
     }
     if (zero == 0) return;
-    report_in_file(
-        Severity::note, "bvh-zero-bones",
-        fmt::format("{} joint{} at the place of {} parent (the first: {})", zero,
-                    zero == 1 ? " stands" : "s stand", zero == 1 ? "its" : "their", first));
+    report_in_file(Severity::note, "bvh-zero-bones",
+                   fmt::format("{} joint{} at the position of {} parent (the first: {})", zero,
+                               zero == 1 ? " is" : "s are", zero == 1 ? "its" : "their", first));
   }
 
-  // More than these would drown what else there is to say.
+  // Limits the number of messages.
   static constexpr int kMaxWarnings = 20;
 
   std::string_view text_;

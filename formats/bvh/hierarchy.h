@@ -14,15 +14,15 @@ namespace krok::bvh {
 
 enum class ChannelKind : std::uint8_t { position, rotation, ignored };
 
-// One number of a row: which part of which joint it moves.
+// The meaning of one number of a row.
 struct Channel {
   ChannelKind kind = ChannelKind::ignored;
   Axis axis = Axis::x;
   int joint = 0;
 };
 
-// What stands between HIERARCHY and MOTION, in the file's unit and axes. Joints in the file's
-// order, End Sites among them, parents first; exactly one root (several get a common parent).
+// The HIERARCHY section in the file's unit and axes. Joints are in file order, including End Sites,
+// parents first; exactly one root (several roots get a common parent).
 struct Hierarchy {
   struct Joint {
     std::string name;  // unique, UTF-8
@@ -33,16 +33,16 @@ struct Hierarchy {
     std::size_t channel_count = 0;
   };
   std::vector<Joint> joints;
-  std::vector<Channel> channels;   // in the order of a row's values
+  std::vector<Channel> channels;   // in the order of the values of a row
   std::size_t end = 0;             // the byte after the word MOTION
-  double degrees_per_angle = 1.0;  // the unit of the rotation channels' values
+  double degrees_per_angle = 1.0;  // unit of the rotation channels
 
   // "LeftToe.Yrotation".
   std::string channel_name(std::size_t channel) const;
 };
 
-// Parses the beginning of `text`; what is odd goes to `diagnostics`. Nesting may be as deep as the
-// limit on joints allows.
+// Parses the beginning of `text`; warnings are added to `diagnostics`. Nesting depth is limited
+// only by the number of joints.
 Result<Hierarchy> parse_hierarchy(std::string_view text, const std::string& file_name,
                                   const ReadOptions& options, Diagnostics& diagnostics);
 

@@ -16,7 +16,7 @@ struct SignedAxis {
   double sign;
 };
 
-// Where the file's axis points in Krok's frame.
+// The file's axis in Krok's frame.
 SignedAxis converted(Axis axis, const Mat3& to_krok) {
   const Vec3 direction = to_krok.col(static_cast<int>(axis));
   int index = 0;
@@ -75,7 +75,7 @@ kinematics_detail::Job Kinematics::job(double* scratch) const {
 
 std::optional<Kinematics::Rotation> Kinematics::far_rotation(const double* values,
                                                              std::size_t stride) const {
-  // What poses() tells of must be all that is looked for here.
+  // poses() must flag every rotation that this function looks for.
   static_assert(half_angle_detail::kFarthestAngle <= kFarthestRotation);
   std::optional<Rotation> found;
   for (const kinematics_detail::Step& step : steps_) {

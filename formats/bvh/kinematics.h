@@ -11,9 +11,9 @@
 
 namespace krok::bvh {
 
-// The joints of a file with their offsets and channels converted once, so that a row of numbers
-// becomes a pose without further conversion. All of a joint turns with the axes of the reference
-// pose; where the motion's are others, the root carries the whole figure over.
+// The joints of a file with offsets and channels converted to Krok's axes and units once, so that a
+// row becomes a pose without further conversion. Joint frames use the axes of the reference pose;
+// if the motion has different axes, the root carries the rotation between the two.
 class Kinematics {
  public:
   static constexpr std::size_t kFramesAtOnce = kinematics_detail::kFramesAtOnce;
@@ -24,23 +24,22 @@ class Kinematics {
   std::size_t joint_count() const { return parents_.size(); }
   std::span<const int> parents() const { return parents_; }
 
-  // joint_to_world, shape [joints], from a row's values, shape [channels], in doubles.
+  // joint_to_world, shape [joints], from the values of a row, shape [channels], in doubles.
   void pose(std::span<const double> values, std::span<Transform> joint_to_world) const;
 
-  // The same for up to kFramesAtOnce frames at a time as floats, vectorised over the frames: the
-  // bits are those of pose(), rounded. `values` has [channels x kFramesAtOnce] doubles on a 64-byte
-  // boundary (what stands in the places of frames that are not asked for must be finite), the
-  // results shape [frames x joints]; `scratch` is resized as needed, and may serve again. False if
-  // some position may be farther than farthest(), infinite perhaps, or some rotation than
-  // kFarthestRotation.
+  // The same for up to kFramesAtOnce frames, vectorised over frames; bit-identical to pose()
+  // rounded to floats. `values` has shape [channels x kFramesAtOnce], 64-byte aligned (values of
+  // unused frames must be finite); the results have shape [frames x joints]. `scratch` is resized
+  // as needed and can be reused. Returns false if a position may exceed farthest() (or is infinite)
+  // or a rotation exceeds kFarthestRotation.
   bool poses(std::span<const double> values, std::size_t frames, std::vector<double>& scratch,
              std::span<Vec3f> positions, std::span<Quatf> orientations) const;
 
-  // Beyond which positions are told of, in metres.
+  // Limit beyond which positions are reported, in metres.
   double farthest() const { return farthest_; }
 
-  // The first channel with a rotation beyond kFarthestRotation in a row whose values stand `stride`
-  // apart, and its size in degrees.
+  // The first channel with a rotation beyond kFarthestRotation in a row, whose values are `stride`
+  // apart, and its absolute value in degrees.
   struct Rotation {
     std::size_t channel = 0;
     double degrees = 0;
@@ -53,12 +52,12 @@ class Kinematics {
  private:
   kinematics_detail::Job job(double* scratch) const;
 
-  // Files in radians are rare; their values are converted here, `stride` frames a channel.
+  // Converts the values of a file in radians, `stride` frames per channel.
   void put_in_degrees(std::span<double> values, std::size_t stride) const;
 
   std::vector<int> parents_;
   std::vector<Vec3> offsets_;  // metres, Krok's axes
-  std::vector<Vec3> base_;     // the offset's part that position channels leave
+  std::vector<Vec3> base_;     // the part of the offset not replaced by position channels
   Transform reference_to_motion_;
   double degrees_per_angle_ = 1.0;
   double farthest_ = 0;

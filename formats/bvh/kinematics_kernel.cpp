@@ -1,6 +1,6 @@
 #include "formats/bvh/kinematics_kernel.h"
 
-// Widths below that of AVX2 gain little; such a machine takes the scalar reference.
+// Vectors narrower than AVX2 gain little; such CPUs use the scalar reference.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "formats/bvh/kinematics_kernel.cpp"
 #include <hwy/foreach_target.h>
-// The order matters: foreach_target.h sets up what highway.h reads.
+// Order matters: foreach_target.h sets macros that highway.h uses.
 #include <hwy/highway.h>
 
 #include <cstring>
@@ -31,10 +31,10 @@ using Floats = hn::Rebind<float, Doubles>;
 using V = hn::Vec<Doubles>;
 constexpr std::size_t kLanes = hn::MaxLanes(Doubles());
 
-// Everything here does what the scalar reference does, operation by operation and without fused
-// arithmetic, so that both give the same bits.
+// Performs the same operations as the scalar reference, in the same order and without FMA, so that
+// results are bit-identical.
 
-// `near` becomes false where an angle is far.
+// Sets `near` to false if an angle is out of range.
 HWY_INLINE V near_enough(V degrees, bool& near) {
   const Doubles d;
   const auto far = hn::Gt(hn::Abs(degrees), hn::Set(d, kFarthestAngle));
@@ -68,7 +68,7 @@ HWY_INLINE void half_angles(V degrees, V& sine, V& cosine, bool& near) {
                                                hn::Mul(hn::Mul(square, square), q)));
   const auto one = hn::Set(u, 1);
   const auto odd = hn::RebindMask(d, hn::Eq(hn::And(quarter, one), one));
-  // Bits 0 and 1 brought to where the sign stands.
+  // Moves bits 0 and 1 to the sign bit.
   const auto sign = hn::Set(u, std::uint64_t{1} << 63);
   const V odd_sign = hn::BitCast(d, hn::ShiftLeft<63>(quarter));
   const V all_sign = hn::BitCast(d, hn::And(hn::ShiftLeft<62>(quarter), sign));
@@ -102,7 +102,7 @@ HWY_INLINE void store_frame(const Frame& frame, double* at) {
   hn::Store(frame.w, d, at + 6 * kLanes);
 }
 
-// (a c + sign b s) and (a c - b s) for the turns below.
+// (a c + sign b s) and (a c - b s) for the rotations below.
 HWY_INLINE V sum(V a, V c, V b, V s) {
   return hn::Add(hn::Mul(a, c), hn::Mul(b, s));
 }
@@ -110,7 +110,7 @@ HWY_INLINE V difference(V a, V c, V b, V s) {
   return hn::Sub(hn::Mul(a, c), hn::Mul(b, s));
 }
 
-// The orientation times the rotation about an axis, which has two components only.
+// The orientation times a rotation about a coordinate axis, which has two nonzero components.
 HWY_INLINE void turn(Frame& frame, int axis, V s, V c) {
   const V x = frame.x, y = frame.y, z = frame.z, w = frame.w;
   if (axis == 0) {
@@ -142,7 +142,7 @@ HWY_INLINE void normalize(Frame& frame) {
   frame.w = hn::Mul(frame.w, scale);
 }
 
-// parent * (x, y, z): turned and moved.
+// parent * (x, y, z).
 HWY_INLINE void place(const Frame& parent, V x, V y, V z, Frame& frame) {
   V ux = difference(parent.y, z, parent.z, y);
   V uy = difference(parent.z, x, parent.x, z);
@@ -176,7 +176,7 @@ HWY_INLINE Frame joint_frame(const Job& job, std::size_t j, const Frame& parent,
       offset[step.axis] = hn::Add(offset[step.axis], hn::Mul(value, factor));
       continue;
     }
-    // Many channels are never used.
+    // Many channels are always zero.
     const auto zero = hn::Eq(value, hn::Zero(d));
     if (hn::AllTrue(d, zero)) continue;
     V sine, cosine;
@@ -201,8 +201,8 @@ HWY_INLINE Frame joint_frame(const Job& job, std::size_t j, const Frame& parent,
   return frame;
 }
 
-// Stores a joint in each of `frames` frames, `joints` apart. Returns the sum of the sizes of all
-// components: where it is not over a limit, no position is.
+// Stores a joint for `frames` frames, `joints` apart. Returns the sum of the absolute values of all
+// components: if it is within a limit, so is every position.
 HWY_INLINE V emit(const Frame& frame, std::size_t frames, std::size_t joints, float* positions,
                   float* orientations) {
   const Floats f;

@@ -11,7 +11,8 @@ struct Frame {
   double px, py, pz, x, y, z, w;
 };
 
-// The orientation times the rotation by a half angle about an axis, which has two components only.
+// The orientation times a rotation about a coordinate axis, which has two nonzero components, given
+// by its half angle.
 void turn(Frame& frame, int axis, double s, double c) {
   const double x = frame.x, y = frame.y, z = frame.z, w = frame.w;
   if (axis == 0) {
@@ -32,7 +33,7 @@ void turn(Frame& frame, int axis, double s, double c) {
   }
 }
 
-// Products of many unit quaternions drift by rounding; deep chains would notice.
+// Products of many unit quaternions drift due to rounding, which matters in deep chains.
 void normalize(Frame& frame) {
   const double square =
       (frame.x * frame.x + frame.y * frame.y) + (frame.z * frame.z + frame.w * frame.w);
@@ -43,7 +44,7 @@ void normalize(Frame& frame) {
   frame.w *= scale;
 }
 
-// parent * (x, y, z): turned and moved.
+// parent * (x, y, z).
 void place(const Frame& parent, double x, double y, double z, Frame& frame) {
   double ux = parent.y * z - parent.z * y;
   double uy = parent.z * x - parent.x * z;
@@ -66,7 +67,7 @@ Frame joint_frame(const Job& job, std::size_t j, const Frame& parent, const doub
     const double value = values[step.channel * stride];
     if (step.is_position) {
       offset[step.axis] += value * step.factor;
-    } else if (value != 0) {  // many channels are never used
+    } else if (value != 0) {  // many channels are always zero
       const HalfAngle half = half_angle(value * step.factor);
       turn(frame, step.axis, half.sine, half.cosine);
       turned = true;

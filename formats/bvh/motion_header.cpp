@@ -12,12 +12,12 @@ namespace krok::bvh {
 
 namespace {
 
-constexpr const char* kRateHint = "say the rate with --fps N, frames a second";
+constexpr const char* kRateHint = "set the rate with --fps N (frames per second)";
 constexpr const char* kFramesHint =
-    "write the number of rows that follow, such as Frames: 120; --repair counts them";
+    "write the number of rows, such as Frames: 120; --repair counts them";
 
-// A word of letters, which no row of values begins with; nan and inf are values that are no
-// numbers.
+// True if the word begins with a letter, which a row of values never does; nan and inf count as
+// values.
 bool is_word(std::string_view word) {
   if (word.empty() || (ascii_lower(word.front()) < 'a' || ascii_lower(word.front()) > 'z')) {
     return false;
@@ -60,7 +60,7 @@ class HeaderParser {
     return error;
   }
 
-  // A fault that only strict refuses.
+  // A fault that is an error only if strict.
   Status warn(Error told) {
     if (options_.strictness == Strictness::strict) return told;
     told.severity = Severity::warning;
@@ -69,8 +69,8 @@ class HeaderParser {
     return {};
   }
 
-  // The word after a keyword and its colon, which may stand apart from both; empty where the line
-  // ends.
+  // The word after a keyword and its colon, with optional blanks around the colon; empty at the end
+  // of the line.
   std::string_view value_after_colon() {
     cursor_.skip_blanks();
     if (cursor_.on_line(":")) cursor_.accept(":");
@@ -78,7 +78,7 @@ class HeaderParser {
     return cursor_.word_on_line();
   }
 
-  // Words after a value, such as its unit; the other of the two may stand there too.
+  // Skips words after a value, such as its unit; the other keyword may also follow on the line.
   Status skip_rest(const char* after) {
     cursor_.skip_blanks();
     const TextCursor before = cursor_;
@@ -89,7 +89,7 @@ class HeaderParser {
     const std::size_t place = cursor_.position();
     const std::string_view rest = cursor_.line();
     return warn(error_at(place, "bvh-syntax",
-                         fmt::format("'{}' after the {} is left out", shown(rest), after)));
+                         fmt::format("'{}' after the {} is ignored", shown(rest), after)));
   }
 
   Status parse_frames() {
@@ -126,7 +126,7 @@ class HeaderParser {
     cursor_.skip_blanks();
     if (!cursor_.accept("Time")) {
       return error_at(cursor_.position(), "bvh-syntax", "'Frame Time:' is expected",
-                      "write Frame Time: and the seconds from frame to frame, such as 0.0333333");
+                      "write Frame Time: and the seconds per frame, such as 0.0333333");
     }
     header_.frame_time_text = value_after_colon();
     header_.frame_time_offset = cursor_.word_begin();
@@ -146,7 +146,7 @@ class HeaderParser {
     return skip_rest("Frame Time");
   }
 
-  // A comma alone in the number is a decimal comma.
+  // A single comma in a number without a point is a decimal comma.
   Status read_frame_time() {
     const std::string_view word = header_.frame_time_text;
     if (const auto value = parse_finite(word)) {
@@ -165,16 +165,15 @@ class HeaderParser {
                                      shown(word), with_point)));
   }
 
-  // Neither of the two where one of them should stand.
+  // Neither keyword where one of them is expected.
   Status something_else() {
     cursor_.skip_space();
     const std::string_view next = cursor_.peek();
     if (has_frames_ && !next.empty()) {
       has_time_ = true;
-      Error missing =
-          error_at(cursor_.position(), "bvh-frame-time",
-                   fmt::format("the Frame Time is missing; '{}' stands in its place", shown(next)),
-                   kRateHint);
+      Error missing = error_at(
+          cursor_.position(), "bvh-frame-time",
+          fmt::format("the Frame Time is missing; found '{}' instead", shown(next)), kRateHint);
       if (!options_.rate) return missing;
       return warn(std::move(missing));
     }
@@ -182,7 +181,7 @@ class HeaderParser {
                     fmt::format("{} where '{}' is expected",
                                 next.empty() ? "the file ends" : fmt::format("'{}'", shown(next)),
                                 has_frames_ ? "Frame Time:" : "Frames:"),
-                    next.empty() ? "the file is cut short; export or copy it again"
+                    next.empty() ? "the file is truncated; export or copy it again"
                                  : "write Frames: and the number of rows, such as Frames: 120");
   }
 
@@ -201,10 +200,8 @@ class HeaderParser {
         cursor_.line();
         continue;
       }
-      Status status =
-          warn(error_at(place, "bvh-syntax",
-                        fmt::format("the line '{}' is no part of the format and is left out",
-                                    shown(cursor_.line()))));
+      Status status = warn(error_at(
+          place, "bvh-syntax", fmt::format("unknown line '{}' is ignored", shown(cursor_.line()))));
       if (!status) return status;
     }
   }
@@ -221,10 +218,10 @@ class HeaderParser {
   MotionHeader header_;
   bool has_frames_ = false;
   bool has_time_ = false;
-  // Finding a line takes time with its place, and more would drown what else there is to say.
+  // Limits the number of messages, and the time to find their line numbers.
   static constexpr int kMaxTold = 20;
   int lines_left_out_ = 0;
-  bool count_rows_ = false;  // what Frames: says is no number
+  bool count_rows_ = false;  // the value of Frames: is not a number
 };
 
 }  // namespace

@@ -20,16 +20,16 @@ constexpr int kMaxDigits = 15;
 constexpr std::array<double, kMaxDigits + 1> kPowersOfTen = {
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
-// Reads a number as nearly all are printed, [-]digits[.digits] with up to 15 of them, before white
-// space; false for any other, which may be a number still. White space must stand somewhere after
-// `at`, so that no digit is looked for beyond the text. All digits as one integer and the power of
-// ten are exact in a double, so that their quotient is the number rounded once, as it should be
-// (W. Clinger, "How to read floating point numbers accurately", 1990).
+// Fast path for the common form [-]digits[.digits] with up to 15 digits, followed by white space;
+// false for any other form, which may still be a valid number. There must be white space somewhere
+// after `at`, as sentinel. The digits as one integer and the power of ten are both exact in a
+// double, so that their quotient is correctly rounded (W. Clinger, "How to read floating point
+// numbers accurately", 1990).
 inline bool parse_plain_number(const char*& at, double& value) {
   const char* p = at;
   const bool negative = *p == '-';
   if (negative) ++p;
-  std::uint64_t integer = 0;  // wraps where there are too many digits, which are counted
+  std::uint64_t integer = 0;  // wraps if there are too many digits, which is detected by counting
   const auto take_digits = [&] {
     const char* first = p;
     for (;; ++p) {
@@ -52,7 +52,7 @@ inline bool parse_plain_number(const char*& at, double& value) {
   return true;
 }
 
-// Reads one number and steps over it; false if it is not whole, or beyond what a float holds.
+// Reads one number and advances past it; false if it is incomplete or out of float range.
 inline bool parse_number(const char*& at, const char* end, double& value) {
   const char* begin = at;
   if (begin != end && *begin == '+' && end - begin > 1 && begin[1] != '-' && begin[1] != '+') {
@@ -67,8 +67,8 @@ inline bool parse_number(const char*& at, const char* end, double& value) {
   return true;
 }
 
-// Adds the first character that is no white space of each line that begins in [first, last). Lines
-// begin at `begin` and after line ends.
+// Adds the offset of the first character that is not white space of each line that begins in
+// [first, last). Lines begin at `begin` and after line ends.
 void add_lines(std::string_view text, std::size_t begin, std::size_t first, std::size_t last,
                std::vector<std::size_t>& begins) {
   const auto line_end = [&](std::size_t from) {
@@ -98,7 +98,7 @@ std::size_t parse_row(std::string_view text, std::size_t begin, double* values, 
                       std::size_t stride) {
   const char* at = text.data() + begin;
   const char* const end = text.data() + text.size();
-  // White space near the end of the text; what begins before it ends before it.
+  // The last white space of the text; a number that begins before it ends before it.
   const char* last_space = at == end ? at : end - 1;
   for (int i = 0; i < kFarthest && last_space > at && !is_space(*last_space); ++i) --last_space;
   if (last_space != at && !is_space(*last_space)) last_space = at;
@@ -128,7 +128,7 @@ std::vector<std::size_t> index_lines(std::string_view text, std::size_t begin, i
     if (release) release(begin + stretch * kStretch);
     return Status();
   };
-  // Neither gives an Error.
+  // Neither function returns an Error.
   (void)make_in_order((size + kStretch - 1) / kStretch, jobs, find, take).ok();
   return begins;
 }

@@ -14,14 +14,14 @@
 
 namespace krok::bvh {
 
-// What stands between MOTION and the first row.
+// The lines between MOTION and the first row.
 struct MotionHeader {
   long long frames = 0;           // as announced
-  std::size_t frames_offset = 0;  // where the number stands
+  std::size_t frames_offset = 0;  // of the number
   std::string_view frame_time_text;
   double frame_time = 0;
   std::size_t frame_time_offset = 0;
-  std::size_t end = 0;  // where the rows begin
+  std::size_t end = 0;  // offset of the rows
 };
 
 // Parses "Frames:" and "Frame Time:" from byte `begin` on, in either order, any case and spacing.
@@ -29,29 +29,29 @@ Result<MotionHeader> parse_motion_header(std::string_view text, std::size_t begi
                                          const std::string& file_name, const ReadOptions& options,
                                          Diagnostics& diagnostics);
 
-// Where rows begin. A faulty row that --repair fills has no place.
+// Offsets of the rows. A faulty row that --repair fills has none.
 struct RowIndex {
   static constexpr std::size_t kFaulty = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> begins;   // [frames] byte offsets, or kFaulty
-  std::vector<std::string> repairs;  // what was left out or is to be filled
+  std::vector<std::string> repairs;  // frames dropped or to be filled, as text
 };
 
 // Parses `values.size()` numbers from byte `begin` on. Returns the offset after the last one, or
-// kFaulty if they are not all there, whole and within what a float holds.
+// kFaulty if one is missing, incomplete or out of float range.
 std::size_t parse_row(std::string_view text, std::size_t begin, std::span<double> values);
-// The same for `count` numbers, each stored `stride` places behind the one before.
+// The same for `count` numbers, stored `stride` elements apart.
 std::size_t parse_row(std::string_view text, std::size_t begin, double* values, std::size_t count,
                       std::size_t stride);
 
-// Where rows begin if each line that is not empty is a row: a search for line ends alone, so rows
-// may prove faulty when they are parsed; index_rows_with_care() then says what is wrong.
-// On `jobs` threads, as in parallel_for. `release`, which may be empty, is told which text is done
-// with, as in open().
+// Offsets of the rows if each non-empty line is a row. Only searches for line ends, so a row may
+// still be invalid when parsed; index_rows_with_care() then finds the fault. Uses `jobs` threads,
+// as in parallel_for. `release` may be empty; it is called as in open().
 std::vector<std::size_t> index_lines(std::string_view text, std::size_t begin, int jobs = 1,
                                      const std::function<void(std::size_t offset)>& release = {});
 
-// Finds the rows of any file, and tells all faults: rows over several lines, rows too short or too
-// long, numbers that are none, text after the data, a count that disagrees. Goes by strictness.
+// Finds the rows of any file and reports all faults according to the strictness: rows over several
+// lines, rows with too few or too many values, invalid numbers, text after the data, a wrong frame
+// count.
 Result<RowIndex> index_rows_with_care(std::string_view text, const MotionHeader& header,
                                       const Hierarchy& hierarchy, const std::string& file_name,
                                       const ReadOptions& options, Diagnostics& diagnostics);

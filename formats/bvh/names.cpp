@@ -11,7 +11,7 @@ namespace krok::bvh {
 
 namespace {
 
-// More than these would drown what else there is to say.
+// Limits the number of messages.
 constexpr int kMaxWarnings = 20;
 
 }  // namespace
@@ -35,7 +35,7 @@ void make_names_unique(std::vector<JointName>& places, std::string_view text,
 
   UniqueNames names;
   std::vector<std::size_t> renamed;
-  // Names that the file gives come first, so that a made-up one never takes a given one's place.
+  // Claims names from the file first, so that a generated name never displaces one of them.
   for (std::size_t i = 0; i < places.size(); ++i) {
     JointName& place = places[i];
     if (place.end_site) continue;
@@ -51,7 +51,7 @@ void make_names_unique(std::vector<JointName>& places, std::string_view text,
       *place.name = std::move(cleaned_name);
       if (++cleaned <= kMaxWarnings) {
         warn(place, "bvh-name",
-             fmt::format("a joint's name has control characters; it is called {}", *place.name));
+             fmt::format("a joint name has control characters; renamed to {}", *place.name));
       }
     }
     if (place.name->empty() || !names.claim(*place.name)) renamed.push_back(i);
@@ -61,19 +61,18 @@ void make_names_unique(std::vector<JointName>& places, std::string_view text,
     const std::string given = *place.name;
     *place.name = names.make(given.empty() ? "joint" : given);
     if (given.empty() && ++nameless <= kMaxWarnings) {
-      warn(place, "bvh-name", fmt::format("a joint without a name is called {}", *place.name));
+      warn(place, "bvh-name", fmt::format("a joint without a name is named {}", *place.name));
     }
     if (!given.empty() && ++duplicates <= kMaxWarnings) {
       warn(place, "bvh-name-duplicate",
-           fmt::format("another joint is named {} already; this one is called {}", given,
-                       *place.name));
+           fmt::format("duplicate joint name {}; renamed to {}", given, *place.name));
     }
   }
   if (duplicates > kMaxWarnings) {
     Diagnostic more;
     more.severity = Severity::warning;
     more.code = "bvh-name-duplicate";
-    more.message = fmt::format("{} with a name that was given before",
+    more.message = fmt::format("{} with a duplicate name",
                                counted(duplicates - kMaxWarnings, "more joint", "more joints"));
     more.where.file = file_name;
     diagnostics.push_back(std::move(more));

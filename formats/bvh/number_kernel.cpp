@@ -1,6 +1,6 @@
 #include "formats/bvh/number_kernel.h"
 
-// Machines with narrower vectors take the scalar parser.
+// CPUs with narrower vectors use the scalar parser.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "formats/bvh/number_kernel.cpp"
 #include <hwy/foreach_target.h>
-// The order matters: foreach_target.h sets up what highway.h reads.
+// Order matters: foreach_target.h sets macros that highway.h uses.
 #include <hwy/highway.h>
 
 #include <cstring>
@@ -30,12 +30,12 @@ using Doubles = hn::ScalableTag<double>;
 using ByteVector = hn::Vec<Bytes>;
 using Sums = hn::Vec<Halves>;
 
-// A word takes a block of 16 bytes; two vectors of them give one of doubles.
+// Each word is loaded into a 16-byte block; two vectors of blocks give one vector of doubles.
 constexpr std::size_t kBlock = 16;
 constexpr std::size_t kBlocks = hn::MaxLanes(Bytes()) / kBlock;
 constexpr std::size_t kGroup = 2 * kBlocks;
 
-// What stands alike in each block.
+// A constant repeated in each block.
 struct alignas(64) Pattern {
   std::uint8_t bytes[64];
 };
@@ -49,12 +49,12 @@ constexpr Pattern pattern(Value value) {
 }
 constexpr Pattern kPlace = pattern([](std::size_t, std::size_t i) { return i; });
 constexpr Pattern kPlaceFromOne = pattern([](std::size_t, std::size_t i) { return i + 1; });
-// '-' and '.', the latter as digits are compared; but where a word must end in a digit, what is in
-// no word.
+// '-' and '.', the latter after the subtraction that makes digits 0 to 9. The last byte, which must
+// be a digit, has a value that does not occur in words.
 constexpr Pattern kMinus = pattern([](std::size_t, std::size_t i) { return i < 15 ? '-' : ' '; });
 constexpr Pattern kDot =
     pattern([](std::size_t, std::size_t i) { return (i < 15 ? '.' : ' ') ^ '0'; });
-// Digits, of which there may be fifteen.
+// Limit of digits, of which there can be fifteen.
 constexpr Pattern kLimit = pattern([](std::size_t, std::size_t i) { return i == 0 ? 0 : 9; });
 constexpr Pattern kTens = pattern([](std::size_t, std::size_t i) { return i % 2 == 0 ? 10 : 1; });
 constexpr Pattern kHundreds = pattern([](std::size_t, std::size_t i) {
@@ -67,7 +67,7 @@ constexpr Pattern kFirstOfPair = pattern([](std::size_t block, std::size_t) { re
 constexpr Pattern kSecondOfPair =
     pattern([](std::size_t block, std::size_t) { return 2 * block + 1; });
 
-// By the place of the dot, counted from one, 10 to the power of the digits after it; 0 for no dot.
+// Indexed by the one-based position of the dot, 0 for none: 10 to the number of digits after it.
 alignas(64) constexpr double kPowers[16] = {1e0, 1e15, 1e14, 1e13, 1e12, 1e11, 1e10, 1e9,
                                             1e8, 1e7,  1e6,  1e5,  1e4,  1e3,  1e2,  1e1};
 
@@ -75,7 +75,7 @@ HWY_INLINE ByteVector all(const Pattern& pattern) {
   return hn::Load(Bytes(), pattern.bytes);
 }
 
-// One bit for each of 64 characters: whether it is no white space.
+// One bit for each of 64 characters: set if it is not white space.
 HWY_INLINE std::uint64_t word_bits(const char* text) {
   const Bytes d;
   std::uint64_t bits = 0;
@@ -91,10 +91,11 @@ HWY_INLINE std::uint64_t word_bits(const char* text) {
   return ~bits;
 }
 
-// Where words begin and end, in turn, from `row` on. False if they are not `count`.
+// Offsets of word begins and ends, alternating, from `row` on. False if there are not `count`
+// words.
 HWY_INLINE bool find_edges(const char* row, std::size_t size, std::size_t count,
                            std::uint32_t* edges) {
-  std::uint64_t inside = 0;  // whether the character before is part of a word
+  std::uint64_t inside = 0;  // whether the previous character is part of a word
   std::size_t found = 0;
   for (std::size_t at = 0; at < size; at += 64) {
     std::uint64_t bits = word_bits(row + at);
@@ -105,7 +106,7 @@ HWY_INLINE bool find_edges(const char* row, std::size_t size, std::size_t count,
     if (found + changed > 2 * count) return false;
     std::uint32_t* out = edges + found;
     found += changed;
-    // More are written than there are; what comes next is written over them.
+    // Writes more entries than there are; later writes overwrite the excess.
     const auto put = [&](int n) {
       for (int i = 0; i < n; ++i) {
         *out++ = static_cast<std::uint32_t>(at + _tzcnt_u64(changes));
@@ -118,7 +119,7 @@ HWY_INLINE bool find_edges(const char* row, std::size_t size, std::size_t count,
   return found == 2 * count && inside == 0;
 }
 
-// The 16 characters up to the end of every second word.
+// The last 16 characters of every second word.
 HWY_INLINE ByteVector load_words(const char* row, const std::uint32_t* edges) {
   const auto word = [&](std::size_t i) {
     return _mm_loadu_si128(
@@ -134,7 +135,7 @@ HWY_INLINE ByteVector load_words(const char* row, const std::uint32_t* edges) {
 #endif
 }
 
-// Sums of products of neighbours: bytes to 16 bits, 16 to 32; 32 to 16 bits of two vectors' blocks.
+// Sums of products of adjacent lanes: 8 to 16 bits, 16 to 32; packing 32 to 16 bits of two vectors.
 HWY_INLINE ByteVector join_bytes(ByteVector digits, ByteVector weights) {
 #if HWY_TARGET == HWY_AVX2
   return ByteVector{_mm256_maddubs_epi16(digits.raw, weights.raw)};
@@ -166,8 +167,9 @@ HWY_INLINE hn::Vec<Doubles> powers_at(Sums places) {
 #endif
 }
 
-// A word in each block: its digits as four numbers of four, and `facts`, in both halves of a block
-// the place of the dot from one, 0 for none, and 128 for a minus. False for what is not plain.
+// One word per block: its digits as four numbers of four digits, and `facts`, in both halves of a
+// block: one-based position of the dot, 0 for none, plus 128 for a minus. False if a word is not
+// plain.
 HWY_INLINE bool read_digits(ByteVector words, ByteVector unused, ByteVector& digits, Sums& facts) {
   const Bytes d;
   const ByteVector place = all(kPlace);
@@ -183,7 +185,7 @@ HWY_INLINE bool read_digits(ByteVector words, ByteVector unused, ByteVector& dig
   facts = hn::Add(sums, hn::Shuffle01(sums));
   const ByteVector dot_place = hn::And(hn::TableLookupBytes(hn::BitCast(d, facts), hn::Zero(d)),
                                        hn::Set(d, std::uint8_t{31}));
-  // What stands before the dot moves into its place.
+  // Shifts the digits before the dot by one, over the dot.
   const ByteVector number =
       hn::IfThenElse(hn::Gt(from_one, dot_place), plain, hn::ShiftLeftBytes<1>(plain));
   digits = join_pairs(join_bytes(number, all(kTens)), all(kHundreds));
@@ -202,7 +204,7 @@ bool parse_plain_row(const char* row, const char* end, std::size_t count, double
   }
   for (std::size_t first = 0; first < count; first += kGroup) {
     const std::uint32_t* at = edges + 2 * first;
-    std::uint64_t unused = 0;  // a byte a word
+    std::uint64_t unused = 0;  // one byte per word
     std::uint32_t too_long = 0;
     for (std::size_t i = 0; i < kGroup; ++i) {
       const std::uint32_t length = at[2 * i + 1] - at[2 * i];
@@ -219,7 +221,7 @@ bool parse_plain_row(const char* row, const char* end, std::size_t count, double
                     digits[1], facts[1]);
     if (HWY_UNLIKELY(!even || !odd || too_long != 0)) return false;
 
-    // Eight digits in each half of a word, then all; exact, for there are fifteen at most.
+    // Eight digits in each half of a word, then all; exact, since there are at most fifteen.
     const ByteVector eights = join_pairs(pack_blocks(digits[0], digits[1]), all(kTenThousands));
     const Sums integers =
         hn::Add(hn::MulEven(hn::BitCast(Quarters(), eights), hn::Set(Quarters(), 100000000u)),

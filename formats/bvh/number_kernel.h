@@ -3,25 +3,24 @@
 #include <cstddef>
 #include <cstdint>
 
-// Rows of numbers as nearly all captures have them, parsed many at a time.
+// SIMD parser for rows of plain decimal numbers, which nearly all captures use.
 
 namespace krok::bvh::number_kernel {
 
-// How many bytes around a row are looked at, and must be there.
+// Number of bytes read before and after a row; they must be readable.
 inline constexpr std::size_t kBefore = 16;
 inline constexpr std::size_t kAfter = 64;
 
-// Elements that `edges` must have for `count` numbers.
+// Required size of `edges` for `count` numbers.
 constexpr std::size_t edges_for(std::size_t count) {
   return 2 * count + 256;
 }
 
-// Parses the row that begins at `row` and ends before `end`, with white space before each of them,
-// if it has exactly `count` words, and each is [-][digits][.digits] of up to 16 characters with up
-// to 15 digits behind leading zeros. Stores the values `stride` places apart, each the double
-// nearest to what is printed, bit by bit what fast_float gives. False where that does not hold,
-// though the row may still be one: parse_row() then tells. Also where the machine has no vectors of
-// 32 bytes.
+// Parses the row from `row` to before `end`, with white space before both, if it has exactly
+// `count` words, each [-][digits][.digits] of up to 16 characters with up to 15 digits after
+// leading zeros. Stores the values `stride` elements apart, each the nearest double, bit-identical
+// to fast_float. Returns false otherwise, though the row may still be valid (use parse_row()), and
+// on machines without 32-byte vectors.
 bool parse_plain_row(const char* row, const char* end, std::size_t count, double* values,
                      std::size_t stride, std::uint32_t* edges);
 

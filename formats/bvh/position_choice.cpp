@@ -18,7 +18,7 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-// The part of a joint's OFFSET that its position channels could replace.
+// The components of a joint's OFFSET that its position channels could replace.
 Vec3 replaced_offset(const Hierarchy& hierarchy, const Hierarchy::Joint& joint) {
   Vec3 offset = Vec3::Zero();
   for (std::size_t i = 0; i < joint.channel_count; ++i) {
@@ -29,8 +29,8 @@ Vec3 replaced_offset(const Hierarchy& hierarchy, const Hierarchy::Joint& joint) 
   return offset;
 }
 
-// Where a joint's values lie along its OFFSET in the median row: 0 at zero, 1 at the OFFSET.
-// Nothing where the joint cannot tell.
+// Position of a joint's values along its OFFSET in the median row: 0 at zero, 1 at the OFFSET.
+// nullopt if the joint has no position channels, no OFFSET, or there are no rows.
 std::optional<double> place_along_offset(const Hierarchy& hierarchy, std::size_t index,
                                          const SampleRows& rows, std::optional<Direction> up) {
   const Hierarchy::Joint& joint = hierarchy.joints[index];
@@ -56,8 +56,8 @@ std::optional<double> place_along_offset(const Hierarchy& hierarchy, std::size_t
   return median(places);
 }
 
-// The joint that a figure hangs on by it alone, under a root that only places it (hips, mostly): it
-// carries the whole figure as the root does, and so travels. -1 where there is none.
+// The only child of the root, usually the hips, if it branches: it carries the whole skeleton as
+// the root does, and so travels. -1 if there is none.
 int carrier_below_root(const Hierarchy& hierarchy) {
   const auto children = [&](int parent) {
     std::vector<int> found;
@@ -71,20 +71,20 @@ int carrier_below_root(const Hierarchy& hierarchy) {
   return below.size() == 1 && children(below[0]).size() > 1 ? below[0] : -1;
 }
 
-// The lowest joint's height in the median row as a share of the figure's, with the positions in the
-// place of OFFSETs and added to them.
+// Median height of the lowest joint relative to the character's height, with positions replacing
+// OFFSETs and added to them.
 struct HeightsOverGround {
   double absolute = 0;
   double additive = 0;
 };
 
-// The medians of the lowest joint's height and of the figure's.
+// Medians of the lowest joint's height and of the character's height.
 struct Stance {
   double low = 0;
   double size = 0;
 };
 
-// Of the joints from the one that carries the figure on; a root above it may lie on the ground.
+// Uses the joints from the carrier on; a root above it may be on the ground.
 std::optional<Stance> median_stance(const Hierarchy& hierarchy, const SampleRows& rows,
                                     Positions positions, const Vec3& vertical) {
   const auto first = static_cast<std::size_t>(std::max(0, carrier_below_root(hierarchy)));
@@ -110,7 +110,7 @@ std::optional<Stance> median_stance(const Hierarchy& hierarchy, const SampleRows
   return Stance{median(lows), median(sizes)};
 }
 
-// Nothing where both readings are equally high, or the figure has no height.
+// nullopt if both modes give the same height, or the character has no height.
 std::optional<HeightsOverGround> heights_over_ground(const Hierarchy& hierarchy,
                                                      const SampleRows& rows, Direction up) {
   const Vec3 vertical = direction_vector(up);
@@ -122,15 +122,15 @@ std::optional<HeightsOverGround> heights_over_ground(const Hierarchy& hierarchy,
   return HeightsOverGround{absolute->low / absolute->size, additive->low / absolute->size};
 }
 
-// The root's positions are neither near its OFFSET nor near zero, as the figure's size goes.
+// The root's positions are neither near its OFFSET nor near zero, relative to the character's size.
 bool lies_far_from_both(double root_place, const HeightsOverGround& heights) {
   constexpr double kNearZero = 0.25;
   const double height = root_place * (heights.additive - heights.absolute);
   return (root_place < -0.5 || root_place > 1.5) && std::abs(height) > kNearZero;
 }
 
-// The ground of a world is at 0. Where the figure stands on it in one reading and clearly above or
-// below it in the other, that tells.
+// The ground is at 0. Decides if the character is on it in one mode and clearly above or below it
+// in the other.
 std::optional<PositionChoice> choose_by_ground(const HeightsOverGround& heights) {
   constexpr double kNear = 0.08;
   const auto clearly_nearer = [](double a, double b) {
@@ -144,8 +144,8 @@ std::optional<PositionChoice> choose_by_ground(const HeightsOverGround& heights)
   result.has_evidence = true;
   result.choice.choice = absolute ? "absolute" : "additive";
   result.choice.reason = fmt::format(
-      "the lowest joint is {}% of the figure's height from the ground if the root's positions {} "
-      "its OFFSET, {}% if they {} it",
+      "the lowest joint is {}% of the character's height from the ground if the root's positions "
+      "{} its OFFSET, {}% if they {} it",
       percent(absolute ? heights.absolute : heights.additive), absolute ? "replace" : "add to",
       percent(absolute ? heights.additive : heights.absolute), absolute ? "add to" : "replace");
   result.choice.confidence = Confidence::likely;
@@ -180,7 +180,7 @@ PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& ro
     is_additive = additive > absolute;
     const int agree = std::max(absolute, additive);
     result.choice.reason =
-        fmt::format("the position channels of {} of {} joints with an OFFSET stay near {}", agree,
+        fmt::format("the position channels of {} of {} joints with an OFFSET are near {}", agree,
                     asked, is_additive ? "zero" : "it");
     result.choice.confidence = agree == asked && doubtful == 0 ? Confidence::certain
                                : 4 * agree >= 3 * asked        ? Confidence::likely
@@ -194,13 +194,13 @@ PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& ro
     is_additive = *root_place <= 0.5 && !usual;
     const double distance = std::abs(*root_place - (is_additive ? 0.0 : 1.0));
     result.choice.reason =
-        fmt::format("the root's positions lie at {} of its OFFSET, {}", readable(*root_place, 2),
-                    usual         ? "which tells nothing; in most files they replace it"
+        fmt::format("the root's positions are at {} of its OFFSET, {}", readable(*root_place, 2),
+                    usual         ? "which is inconclusive; in most files they replace it"
                     : is_additive ? "so they are added to it"
                                   : "so they replace it");
     result.choice.confidence = distance < 0.35 ? Confidence::likely : Confidence::guess;
   } else {
-    result.choice.reason = rows.count() == 0 ? "there are no frames to tell by"
+    result.choice.reason = rows.count() == 0 ? "there are no frames to decide from"
                                              : "no joint has both position channels and an OFFSET";
     result.choice.confidence = Confidence::certain;
   }

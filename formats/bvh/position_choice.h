@@ -21,15 +21,15 @@ struct SampleRows {
 struct PositionChoice {
   Positions positions = Positions::absolute;
   Choice choice;
-  bool has_evidence = false;  // a joint could be asked; otherwise both readings are the same
+  bool has_evidence = false;  // false: no joint decides, and both modes give the same result
 };
 
-// Whether position channels replace OFFSETs or are added to them. Each joint with a non-zero OFFSET
-// beside position channels is asked where its values lie along the OFFSET: near it (absolute) or
-// near zero (additive), in the median row. Joints below the root decide, if there are any. A root
-// travels, and so does a joint that carries the whole figure under it: where `up` is known, the
-// reading that has the figure on the ground is taken, and where that does not tell, only the root's
-// height is asked if the OFFSET has one.
+// Whether position channels replace OFFSETs or are added to them. Each joint with position channels
+// and a non-zero OFFSET votes: in the median row, are its values near the OFFSET (absolute) or near
+// zero (additive)? Joints below the root decide, if there are any. A root travels, and so does a
+// joint that carries the whole skeleton: if `up` is known, the mode that puts the character on the
+// ground is chosen; if that is inconclusive, only the root's height is compared, if its OFFSET has
+// one.
 PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& rows,
                                 std::optional<Direction> up);
 

@@ -43,9 +43,9 @@ const char* RowFaults::hint_for(std::string_view word) {
            "number has a point";
   }
   if (comma != word.npos || has(";") || has("\xC2\xA0")) {
-    return "values are divided by blanks, tabs or line ends alone";
+    return "only blanks, tabs and line ends separate values";
   }
-  return "--repair fills the frame from its neighbours";
+  return "--repair interpolates the frame from its neighbours";
 }
 
 Error RowFaults::length_fault(const Line& line) {

@@ -11,7 +11,7 @@
 
 namespace krok::bvh {
 
-// The words for what is wrong with a row, with its place. All arguments must outlive this.
+// Builds error messages for invalid rows, with their location. All arguments must outlive this.
 class RowFaults {
  public:
   RowFaults(std::string_view text, const Hierarchy& hierarchy, const std::string& file_name)
@@ -22,18 +22,18 @@ class RowFaults {
 
   Error error_at(std::size_t offset, std::string code, std::string message);
 
-  // The first value that is no number of the row at `begin`, which has as many as there should be.
+  // The first invalid number in the row at `begin`, which has the expected number of values.
   Error number_fault(std::size_t begin);
-  // `word` at byte `at`, which stands for a channel.
+  // `word` at byte `at`, the value of `channel`.
   Error number_fault_at(std::string_view word, std::size_t at, std::size_t channel);
 
   // A line with too many or too few values.
   Error length_fault(const Line& line);
 
-  // `begin` .. `end` holds `values` values, too few; the place told is where the next should stand.
+  // `begin` .. `end` has `values` values, too few; the reported location is that of the next one.
   Error short_fault(std::size_t begin, std::size_t end, std::size_t values);
 
-  // What to do about a word that is no number.
+  // The hint for a word that is not a number.
   static const char* hint_for(std::string_view word);
 
  private:

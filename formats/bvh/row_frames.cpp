@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kAtOnce = Kinematics::kFramesAtOnce;
 
-// Doubles on a 64-byte boundary, all zero.
+// 64-byte aligned doubles, all zero.
 class AlignedDoubles {
  public:
   explicit AlignedDoubles(std::size_t count) : lines_((count + 7) / 8) {}
@@ -24,7 +24,7 @@ class AlignedDoubles {
   std::vector<Line> lines_;
 };
 
-// The first frame with a float that is not finite.
+// The first frame with a non-finite float.
 std::optional<std::size_t> first_overflow(std::size_t frames, std::size_t joints,
                                           std::span<const Vec3f> positions,
                                           std::span<const Quatf> orientations) {
@@ -83,7 +83,7 @@ void RowFrames::look_at_frames(std::size_t first, std::size_t frames, const doub
   }
 }
 
-// False if the row may still be whole.
+// False if the row needs the general parser.
 bool RowFrames::parse_plain_row(std::size_t row, double* values,
                                 std::vector<std::uint32_t>& edges) const {
   if (careful_ || row + 1 == rows_.size()) return false;
@@ -94,7 +94,7 @@ bool RowFrames::parse_plain_row(std::size_t row, double* values,
                                         kAtOnce, edges.data());
 }
 
-// False if the row is not all there, or if more than it stands before the next row.
+// False if the row is incomplete, or if there is more text before the next row.
 bool RowFrames::parse_whole_row(std::size_t row, double* values) const {
   std::size_t after = parse_row(text_, rows_[row], values, channels_, kAtOnce);
   if (after == RowIndex::kFaulty) return false;

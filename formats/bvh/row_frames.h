@@ -13,11 +13,11 @@
 
 namespace krok::bvh {
 
-// From the rows of a file to frames, a block of rows at a time; the text must outlive it.
+// Converts rows of a file to frames, a block of rows at a time. The text must outlive it.
 class RowFrames {
  public:
-  // `rows`: where they begin, RowIndex::kFaulty for those to pass over. `careful`: the rows are
-  // known to be whole; otherwise each must end where the next begins.
+  // `rows`: offsets, RowIndex::kFaulty for rows to skip. `careful`: the rows are known to be
+  // complete; otherwise each must end where the next begins.
   RowFrames(std::string_view text, std::vector<std::size_t> rows, std::size_t channels,
             Kinematics kinematics, bool careful)
       : text_(text),
@@ -30,18 +30,18 @@ class RowFrames {
   const Kinematics& kinematics() const { return kinematics_; }
 
   struct Outcome {
-    bool row_is_faulty = false;           // a row is not whole; nothing is sure then
-    std::optional<std::size_t> overflow;  // the first row with positions too large for floats
-    FarValues far;                        // rows with values beyond sense
+    bool row_is_faulty = false;           // a row is incomplete; the other results are undefined
+    std::optional<std::size_t> overflow;  // the first row with positions out of float range
+    FarValues far;                        // rows with implausibly large values
   };
 
-  // Fills in the frames of rows [first, first + count), shape [count x joints]; those of faulty
-  // rows get any values. Thread-safe.
+  // Computes the frames of rows [first, first + count), shape [count x joints]; frames of faulty
+  // rows are undefined. Thread-safe.
   Outcome read(std::size_t first, std::size_t count, std::span<Vec3f> positions,
                std::span<Quatf> orientations) const;
 
  private:
-  // Looks through frames of which poses() told; `values` as it takes them.
+  // Checks frames for which poses() returned false; `values` as passed to it.
   void look_at_frames(std::size_t first, std::size_t frames, const double* values,
                       std::span<const Vec3f> positions, Outcome& outcome) const;
   bool parse_plain_row(std::size_t row, double* values, std::vector<std::uint32_t>& edges) const;

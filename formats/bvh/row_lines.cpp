@@ -9,7 +9,7 @@ namespace krok::bvh {
 
 namespace {
 
-// Letters at the start, but not those of nan and inf, show that a line is no row of numbers.
+// A line that begins with neither a number nor nan or inf is not a row of numbers.
 bool begins_like_text(std::string_view word) {
   const auto c = static_cast<unsigned char>(word.front());
   if ((c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+') return false;

@@ -31,14 +31,14 @@ class CarefulIndexer {
                     : one_row_a_line() ? index_rows_as_lines()
                                        : index_rows_over_lines();
     if (!status) return status.error();
-    if (Status status = settle_faults(); !status) return status.error();
-    if (Status status = compare_count(); !status) return status.error();
+    if (Status step = settle_faults(); !step) return step.error();
+    if (Status step = compare_count(); !step) return step.error();
     return std::move(result_);
   }
 
  private:
   struct Fault {
-    std::size_t row;  // its place among the rows, faulty ones counted
+    std::size_t row;  // index among all rows, including faulty ones
     Error error;
   };
 
@@ -53,7 +53,7 @@ class CarefulIndexer {
     diagnostics_.push_back(std::move(told));
   }
 
-  // Where a line has exactly as many words as there are channels, lines are rows. A wrapped row
+  // If any line has exactly as many words as there are channels, each line is a row: a wrapped row
   // never has such a line.
   bool one_row_a_line() const {
     for (const Line& line : lines_) {
@@ -79,8 +79,8 @@ class CarefulIndexer {
         continue;
       }
       if (begins_another(line)) return another_begins(i);
-      // What follows all rows and is none is text; a tail of numbers in a file that has too few
-      // rows is a row cut short.
+      // A line after all rows that is not a row is text; trailing numbers in a file with too few
+      // rows are a truncated row.
       if (i > last_row && (enough_rows() || line.text)) return text_after(i);
       if (line.text && 2 * line.words < channels_) {
         if (Status status = text_between(line); !status) return status;
@@ -94,7 +94,7 @@ class CarefulIndexer {
     return {};
   }
 
-  // A second file behind the first, or a second motion.
+  // A second file appended to the first, or a second motion.
   bool begins_another(const Line& line) const {
     const std::string_view word = word_at(text_, line.begin);
     return line.text && (same_word(word, "HIERARCHY") || same_word(word, "MOTION"));
@@ -104,31 +104,29 @@ class CarefulIndexer {
     text_ended_early_ = true;
     Error another =
         words_for_.error_at(lines_[line].begin, "bvh-text-after",
-                            fmt::format("a second {} begins here; it is left out with all that "
-                                        "follows",
+                            fmt::format("a second {} begins here; the rest of the file is ignored",
                                         shown(word_at(text_, lines_[line].begin))));
     if (strict()) return another;
-    another.hint = "cut the file in two to read both";
+    another.hint = "split the file to read both";
     tell(Severity::warning, std::move(another));
     return {};
   }
 
-  // A comment, or a header line out of place.
+  // A comment, or a misplaced header line.
   Status text_between(const Line& line) {
     std::size_t end = line.begin;
     while (end < text_.size() && !is_line_end(text_[end])) ++end;
     Error told = words_for_.error_at(
         line.begin, "bvh-syntax",
-        fmt::format("the line '{}' stands between the rows and is left out",
+        fmt::format("the line '{}' between the rows is ignored",
                     shown(trimmed(text_.substr(line.begin, end - line.begin)))));
     if (strict()) return told;
     if (++texts_between_ <= kMaxTold) tell(Severity::warning, std::move(told));
     return {};
   }
 
-  // How many lines make a row where each row takes the same number of them, though some do not
-  // have the values that they should; nothing where the values all are there, or nothing can be
-  // said.
+  // Lines per row if all rows have the same number of lines but the total of values is wrong;
+  // nullopt if the total is right, or the number of lines does not fit the number of frames.
   std::optional<std::size_t> lines_of_a_row() const {
     std::size_t count = 0;
     std::size_t values = 0;
@@ -139,8 +137,7 @@ class CarefulIndexer {
     return count / frames;
   }
 
-  // Rows that take `height` lines each. Such a row that is not whole has no line of its own to tell
-  // the place by but its first.
+  // Rows of `height` lines each. The location of a faulty row is its first line.
   Status index_rows_of_lines(std::size_t height) {
     std::size_t whole = 0;
     std::size_t first_words = 0;
@@ -167,17 +164,16 @@ class CarefulIndexer {
     if (whole > 0) return {};
     Error none = words_for_.error_at(
         lines_.front().begin, "bvh-channel-count",
-        fmt::format("the first row has {}, but the joints have {}, and no row has as many",
+        fmt::format("the first row has {}, but the joints have {}, and no row matches",
                     counted(static_cast<long long>(first_words), "value"),
                     counted(static_cast<long long>(channels_), "channel")));
     const std::string_view word = word_at(text_, lines_.front().begin);
-    none.hint = is_number(word)
-                    ? "the hierarchy and the rows do not belong together; export the file again"
-                    : RowFaults::hint_for(word);
+    none.hint = is_number(word) ? "the hierarchy does not match the rows; export the file again"
+                                : RowFaults::hint_for(word);
     return none;
   }
 
-  // Rows that go over several lines, or several rows on a line: values are counted.
+  // Rows over several lines, or several rows on a line: counts values.
   Status index_rows_over_lines() {
     if (const auto height = lines_of_a_row()) return index_rows_of_lines(*height);
     std::size_t values = 0;
@@ -223,15 +219,14 @@ class CarefulIndexer {
     return {};
   }
 
-  // Marks the next row as faulty; an Error where the strictness does not allow it.
+  // Marks the next row as faulty; an Error if the strictness does not allow it.
   Status add_fault(Error error) {
     const std::size_t row = result_.begins.size();
     error.frame = static_cast<std::int64_t>(row);
     if (strict() || (error.code == "bvh-number" && !repair())) {
       if (error.hint.empty()) {
         error.hint = fmt::format(
-            "frame {} of {}; --repair fills it from its neighbours, or drops "
-            "it at the ends",
+            "frame {} of {}; --repair interpolates it from its neighbours, or drops it at the ends",
             row, header_.frames);
       }
       return error;
@@ -241,8 +236,8 @@ class CarefulIndexer {
     return {};
   }
 
-  // Keeps a file of faults alone from making more messages than text: beyond a number only the
-  // frame is marked. A number that is none must be listed where it is an error.
+  // Limits the messages for a file with many faults: beyond the limit a frame is only marked. An
+  // invalid number must still be listed if it is an error.
   bool too_many_faults(bool number) {
     if (faults_.size() < kMaxListed || (number && !repair())) return false;
     ++unlisted_;
@@ -253,8 +248,8 @@ class CarefulIndexer {
   Status text_after(std::size_t line) {
     Error note =
         words_for_.error_at(lines_[line].begin, "bvh-text-after",
-                            fmt::format("{} line{} after the data {} left out",
-                                        lines_.size() - line, lines_.size() - line == 1 ? "" : "s",
+                            fmt::format("{} line{} after the data {} ignored", lines_.size() - line,
+                                        lines_.size() - line == 1 ? "" : "s",
                                         lines_.size() - line == 1 ? "is" : "are"));
     const bool like_text = lines_[line].text;
     if (strict() && !like_text) return note;
@@ -263,21 +258,21 @@ class CarefulIndexer {
     return {};
   }
 
-  // A file that ends without a line end, in its last frame's last value, with frames missing: the
-  // value may have more digits than are left of it.
+  // If the file has too few frames and no line end after its last value, that value may be
+  // truncated.
   Status doubt_cut_value() {
     if (result_.begins.empty() || enough_rows() || is_space(text_.back())) return {};
     if (result_.begins.back() == RowIndex::kFaulty || text_ended_early_) return {};
     const std::size_t begin = result_.begins.back();
     result_.begins.pop_back();
     return add_fault(words_for_.error_at(
-        begin, "bvh-cut", "the file ends in the last value of this frame, which may be cut short"));
+        begin, "bvh-cut", "the file ends in the last value of this frame, which may be truncated"));
   }
 
   Status settle_faults() {
     if (Status status = doubt_cut_value(); !status) return status;
     std::vector<std::size_t> kept;
-    // Only rows between whole ones can be filled.
+    // Only rows between complete ones can be interpolated.
     std::size_t first = result_.begins.size();
     std::size_t last = 0;
     for (std::size_t i = 0; i < result_.begins.size(); ++i) {
@@ -287,14 +282,14 @@ class CarefulIndexer {
     }
     if (first == result_.begins.size() && !faults_.empty()) {
       Error none = std::move(faults_.front().error);
-      none.message += "; no row of the file is whole";
-      if (repair()) none.hint = "there is no whole row to repair by";
+      none.message += "; no row of the file is complete";
+      if (repair()) none.hint = "there is no complete row to interpolate from";
       return none;
     }
     for (Fault& fault : faults_) {
       const bool can_fill = fault.row > first && fault.row < last;
       const bool fill = repair() && can_fill;
-      const char* what = fill ? "was filled from its neighbours" : "was left out";
+      const char* what = fill ? "was interpolated from its neighbours" : "was dropped";
       if (repair()) {
         result_.repairs.push_back(fmt::format("line {}: frame {} {}: {}", fault.error.where.line,
                                               fault.row, what, fault.error.message));
@@ -303,8 +298,8 @@ class CarefulIndexer {
       fault.error.message += fmt::format("; frame {} {}", fault.row, what);
       fault.error.hint.clear();
       if (!repair() && can_fill) {
-        fault.error.message += ", so that later frames come earlier";
-        fault.error.hint = "--repair fills the frame from its neighbours instead";
+        fault.error.message += ", later frames move up";
+        fault.error.hint = "--repair interpolates the frame from its neighbours instead";
       }
       if (repair()) fault.error.code = "bvh-repair";
       tell(Severity::warning, std::move(fault.error));
@@ -328,7 +323,7 @@ class CarefulIndexer {
     if (channels_ == 0 && header_.frames > 0) {
       Error nothing = words_for_.error_at(
           header_.frames_offset, "bvh-frame-count",
-          fmt::format("{} frames are announced, but no joint has channels", header_.frames));
+          fmt::format("{} frames are declared, but no joint has channels", header_.frames));
       if (strict()) return nothing;
       tell(Severity::warning, std::move(nothing));
       return {};
@@ -336,24 +331,24 @@ class CarefulIndexer {
     if (static_cast<long long>(rows_found_) == header_.frames) return {};
     std::string found = fmt::format("the file has {}", rows_found_);
     if (rows_found_ != result_.begins.size()) {
-      found += fmt::format(", of which {} were taken", result_.begins.size());
+      found += fmt::format(", of which {} are used", result_.begins.size());
     }
     Error differs = words_for_.error_at(
         header_.frames_offset, "bvh-frame-count",
-        fmt::format("{} announced, {}", counted(header_.frames, "frame is", "frames are"), found));
+        fmt::format("{} declared, {}", counted(header_.frames, "frame is", "frames are"), found));
     if (result_.begins.empty() && header_.frames > 0 && !repair()) {
-      differs.message = fmt::format("{} announced, the file has none",
+      differs.message = fmt::format("{} declared, the file has none",
                                     counted(header_.frames, "frame is", "frames are"));
-      differs.hint = "the file is cut short; --repair takes the skeleton alone";
+      differs.hint = "the file is truncated; --repair reads the skeleton only";
       return differs;
     }
     if (strict()) {
-      differs.hint = "without --strict the frames that are there are taken";
+      differs.hint = "without --strict the existing frames are used";
       return differs;
     }
-    differs.hint = "the frames that are there were taken";
+    differs.hint = "the existing frames are used";
     if (repair()) {
-      result_.repairs.push_back(fmt::format("line {}: {} frames instead of the {} announced",
+      result_.repairs.push_back(fmt::format("line {}: {} frames instead of the {} declared",
                                             differs.where.line, result_.begins.size(),
                                             header_.frames));
     }
@@ -378,7 +373,7 @@ class CarefulIndexer {
   int reported_ = 0;
   int texts_between_ = 0;
   int unlisted_ = 0;
-  bool text_ended_early_ = false;  // something that is no data follows the data
+  bool text_ended_early_ = false;  // the data is followed by something else
   RowIndex result_;
 };
 

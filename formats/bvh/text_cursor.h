@@ -7,7 +7,7 @@
 
 namespace krok::bvh {
 
-// Steps through a text by words. Braces are words of their own wherever they stand.
+// Splits a text into words. A brace is always a separate word.
 class TextCursor {
  public:
   explicit TextCursor(std::string_view text, std::size_t position = 0)
@@ -18,29 +18,30 @@ class TextCursor {
   bool at_end() const { return position_ >= text_.size(); }
 
   void skip_space();
-  // Skips white space that stays on the line.
+  // Skips white space up to the end of the line.
   void skip_blanks();
 
-  // The next word, empty at the end. word_begin() is where it stands.
+  // The next word, empty at the end. word_begin() is its offset.
   std::string_view word();
-  // The next word without stepping over it.
+  // The next word, without consuming it.
   std::string_view peek();
   std::size_t word_begin() const { return word_begin_; }
 
-  // The next word if it stands on this line, empty otherwise; and whether that begins with `start`.
+  // The next word if it is on this line, else empty; and whether it begins with `start`.
   std::string_view word_on_line();
   bool on_line(std::string_view start);
 
-  // Steps over `expected` (any case) if it stands next, after white space.
+  // Consumes `expected` (case-insensitive) if it is the next token after white space.
   bool accept(std::string_view expected);
 
-  // The rest of the line as a name: trimmed, up to a '{' that ends the line or follows white space.
+  // The rest of the line as a name: trimmed, up to a '{' at the end of the line or after white
+  // space.
   std::string_view name();
 
-  // The rest of the line, without its end.
+  // The rest of the line, without the line end.
   std::string_view line();
 
-  // The rest of the line up to any '{'.
+  // The rest of the line, up to the first '{'.
   std::string_view to_brace();
 
  private:

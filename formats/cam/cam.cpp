@@ -54,9 +54,9 @@ Result<CameraTrack> read(std::span<const std::byte> file) {
   const auto info = ByteReader(info_section->bytes).read<Info>();
   if (info.frame_count > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) {
     return at_section(Error("camera-shape",
-                            fmt::format("says it has {} frames; up to {} are possible",
-                                        info.frame_count, std::numeric_limits<int>::max()),
-                            "make the file anew"),
+                            fmt::format("has {} frames, expected up to {}", info.frame_count,
+                                        std::numeric_limits<int>::max()),
+                            "create the file again"),
                       *container, "INFO");
   }
   const OrientationEncoding encoding = orientation_encoding(*container);

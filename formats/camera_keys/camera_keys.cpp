@@ -23,7 +23,7 @@ constexpr std::size_t kMaxKeys = 100'000;
 constexpr double kFurthest = 1e6;       // metres
 constexpr double kLatest = 1e6;         // seconds
 constexpr double kSensorHeight = 24.0;  // millimetres
-constexpr double kNearest = 1e-6;       // metres between a camera and what it looks at
+constexpr double kNearest = 1e-6;       // metres, min distance of camera and target
 
 class Reader {
  public:
@@ -58,8 +58,8 @@ class Reader {
           !name.empty() && std::ranges::all_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
       const auto unit = parse_length("1" + name);
       if (!letters || !unit) {
-        return in_.wrong(**length, fmt::format("'{}' is no unit of length", shown(name)),
-                         "known are m, cm, mm, in and ft");
+        return in_.wrong(**length, fmt::format("'{}' is not a length unit", shown(name)),
+                         "use m, cm, mm, in or ft");
       }
       metres_ = *unit;
     }
@@ -82,7 +82,7 @@ class Reader {
     return read_join(root, kWhole, usual_);
   }
 
-  // "between" and "tension", where they stand.
+  // Optional "between" and "tension".
   Status read_join(const Value& object, std::string_view what, CameraKey& key) const {
     static constexpr std::array kJoins = {Between::smooth, Between::linear, Between::ease,
                                           Between::step};
@@ -104,7 +104,7 @@ class Reader {
       if (item.kind == Kind::number && std::isfinite(item.number)) found.push_back(item.number);
     }
     if (found.size() == count && list.items.size() == count) return found;
-    return in_.wrong(list, fmt::format("\"{}\" of {} is not {} numbers", key, what, count));
+    return in_.wrong(list, fmt::format("\"{}\" of {} must be {} numbers", key, what, count));
   }
 
   Result<Vec3> place(const Value& list, std::string_view what, std::string_view key) const {
@@ -128,8 +128,9 @@ class Reader {
       const auto at = place(**target, what, "target");
       if (!at) return at.error();
       if ((*at - key.position).norm() < kNearest) {
-        return in_.wrong(**target, fmt::format("\"target\" of {} is where the camera is", what),
-                         "then there is no direction to look in");
+        return in_.wrong(**target,
+                         fmt::format("\"target\" of {} is at the camera's position", what),
+                         "the camera needs a direction to look in");
       }
       key.target = *at;
       return {};
@@ -137,10 +138,10 @@ class Reader {
     const auto values = numbers(**orientation, what, "orientation", 4);
     if (!values) return values.error();
     const Quat turn((*values)[3], (*values)[0], (*values)[1], (*values)[2]);
-    // People round to a few digits.
+    // Hand-written quaternions have few digits.
     if (!(std::abs(turn.norm() - 1) < 0.01)) {
       return in_.wrong(**orientation,
-                       fmt::format("\"orientation\" of {} has the length {}, expected 1", what,
+                       fmt::format("\"orientation\" of {} has length {}, expected 1", what,
                                    readable(turn.norm())),
                        "it is a unit quaternion: x, y, z, w");
     }
@@ -210,9 +211,10 @@ class Reader {
       auto key = read_key(item, i);
       if (!key) return key.error();
       if (i > 0 && !(key->time > keys.back().time)) {
-        return json::error_at(text_, item.find("time")->offset, "camera-keys-time",
-                              fmt::format("key {} is at {} s, not after the key before at {} s", i,
-                                          readable(key->time, 9), readable(keys.back().time, 9)));
+        return json::error_at(
+            text_, item.find("time")->offset, "camera-keys-time",
+            fmt::format("key {} is at {} s, not after the previous key at {} s", i,
+                        readable(key->time, 9), readable(keys.back().time, 9)));
       }
       keys.push_back(*key);
     }
@@ -225,19 +227,19 @@ class Reader {
     const Value& list = *root.find("keys");
     for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
       if (keys[i].between == Between::smooth) continue;
-      return in_.wrong(list.items[i], fmt::format("key {} of a closed movement is not smooth", i));
+      return in_.wrong(list.items[i], fmt::format("key {} of a closed path is not smooth", i));
     }
     if (keys.size() > 2 && (keys.back().position - keys.front().position).norm() < 1e-3) return {};
     return in_.wrong(list.items.back(),
-                     "the movement is closed, but its last key is not where the first is",
-                     "the last key is the first again, one round later");
+                     "the path is closed, but its last key is not at the position of the first",
+                     "the last key must repeat the first");
   }
 
   std::string_view text_;
   json::Members in_;
   CameraKeyFile file_;
   CameraKey usual_;
-  std::optional<double> rate_;  // where the file has one
+  std::optional<double> rate_;  // if the file has one
   double metres_ = 1, radians_ = kRadiansPerDegree;
 };
 

@@ -16,7 +16,7 @@ namespace {
 using json::Value;
 using Kind = Value::Kind;
 
-constexpr std::size_t kMaxItems = 100'000;  // of any list
+constexpr std::size_t kMaxItems = 100'000;  // per list
 
 class Reader {
  public:
@@ -103,7 +103,7 @@ class Reader {
       const auto joint = in_.get(item, what, "joint", Kind::string);
       if (!joint) return joint.error();
       if (!is_name((*joint)->text)) {
-        return in_.wrong(**joint, fmt::format("the joint of {} is no name", what));
+        return in_.wrong(**joint, fmt::format("the joint of {} is not a name", what));
       }
       eye.joint = (*joint)->text;
       const auto position = in_.get(item, what, "position", Kind::array);
@@ -133,7 +133,7 @@ class Reader {
     const Value* value = root.find("expressions");
     if (!list->empty() && character_.morphs.empty()) {
       return in_.wrong(*value, "the file has \"expressions\" but no \"morphs\"",
-                       "\"morphs\": \"hero.exr\" names the file with the morph targets");
+                       "name the file with the morph targets, such as \"morphs\": \"hero.exr\"");
     }
     std::set<std::string> names;
     for (const Value& item : *list) {
@@ -160,7 +160,7 @@ class Reader {
     return {};
   }
 
-  // A list that may be left out.
+  // An optional list.
   Result<std::vector<Value>> items_of(const Value& root, std::string_view key) {
     const auto list = in_.find(root, kWhole, key, Kind::array);
     if (!list) return list.error();
@@ -170,7 +170,7 @@ class Reader {
                                          (*list)->items.size(), kMaxItems));
   }
 
-  // The member "name", which no other of the list may have.
+  // The member "name", which must be unique in the list.
   Status read_name(const Value& item, std::string_view what, std::set<std::string>& names,
                    std::string& name) {
     const auto value = in_.get(item, what, "name", Kind::string);
@@ -182,7 +182,8 @@ class Reader {
                                             what, kLongestName));
     }
     if (names.insert(name).second) return {};
-    return in_.wrong(**value, fmt::format("{} is called '{}', as one before", what, shown(name)));
+    return in_.wrong(**value,
+                     fmt::format("{} has the name '{}', which is already used", what, shown(name)));
   }
 
   std::string_view text_;

@@ -28,10 +28,10 @@ Status check_paths(const Character& character) {
 }
 
 std::string number(float value) {
-  return shortest(value + 0.0f);  // -0 is 0
+  return shortest(value + 0.0f);  // turns -0 into 0
 }
 
-// Each item on a line of its own.
+// One item per line.
 std::string list_of(const std::vector<std::string>& items) {
   return fmt::format("[\n    {}\n  ]", fmt::join(items, ",\n    "));
 }

@@ -32,11 +32,11 @@ Error wrong_magic(std::span<const std::byte> file, const ContainerFormat& format
 
 Error truncated(std::string message) {
   return Error("container-truncated", std::move(message),
-               "the file is cut short; copy it again or make it anew");
+               "the file is truncated; copy or create it again");
 }
 
-// Over everything behind the section table, then over header and table with zeros in place of the
-// checksum, because a writer knows these last.
+// Hashes everything after the section table, then header and table (with zeros for the checksum),
+// which a writer knows last.
 std::uint64_t checksum_of(std::span<const std::byte> file, std::size_t head_size) {
   Xxh3Stream stream;
   stream.update(file.subspan(head_size));
@@ -60,7 +60,7 @@ Result<Header> read_header(std::span<const std::byte> file, const ContainerForma
   }
   if (file.size() < kHeaderSize) {
     return truncated(
-        fmt::format("has {} bytes, less than its header of {}", file.size(), kHeaderSize));
+        fmt::format("has {} bytes, less than the header of {}", file.size(), kHeaderSize));
   }
   const auto version = reader.read<std::uint32_t>();
   Header header;
@@ -69,39 +69,36 @@ Result<Header> read_header(std::span<const std::byte> file, const ContainerForma
   const auto stored_checksum = reader.read<std::uint64_t>();
   header.section_count = reader.read<std::uint32_t>();
   if (version > format.version) {
-    return Error(
-               "container-version",
-               fmt::format("is a {} file of version {}, newer than {}, the last this program reads",
-                           extension_of(format), version, format.version),
-               "use a newer Krok")
+    return Error("container-version",
+                 fmt::format("is a {} file of version {}; this program reads up to version {}",
+                             extension_of(format), version, format.version),
+                 "use a newer Krok")
         .at_byte(8);
   }
   if (version == 0) {
-    return Error("container-version", "has version 0, which does not exist", "make the file anew")
+    return Error("container-version", "has version 0, which does not exist",
+                 "create the file again")
         .at_byte(8);
   }
   if (file.size() < size) {
-    return truncated(fmt::format("has {} bytes, its header says {}", file.size(), size))
-        .at_byte(16);
+    return truncated(fmt::format("has {} bytes, expected {}", file.size(), size)).at_byte(16);
   }
   if (file.size() > size) {
-    return Error("container-size",
-                 fmt::format("has {} bytes, its header says {}", file.size(), size),
-                 "something was appended to the file; make it anew")
+    return Error("container-size", fmt::format("has {} bytes, expected {}", file.size(), size),
+                 "data was appended to the file; create it again")
         .at_byte(16);
   }
   if (header.section_count > kMaxSections || header.head_size() > file.size()) {
-    return Error("container-table",
-                 fmt::format("has {} sections, more than fit", header.section_count),
-                 "the file is damaged; copy it again or make it anew")
+    return Error("container-table", fmt::format("has too many sections ({})", header.section_count),
+                 "the file is damaged; copy or create it again")
         .at_byte(32);
   }
   const std::uint64_t checksum = checksum_of(file, header.head_size());
   if (checksum != stored_checksum) {
     return Error("container-checksum",
-                 fmt::format("is damaged: its checksum is {}, its header says {}", hex(checksum),
+                 fmt::format("is damaged: its checksum is {}, expected {}", hex(checksum),
                              hex(stored_checksum)),
-                 "copy it again or make it anew")
+                 "copy or create it again")
         .at_byte(kChecksumOffset);
   }
   if ((header.flags & ~format.known_flags) != 0) {
@@ -129,7 +126,7 @@ Result<ContainerReader> ContainerReader::open(std::span<const std::byte> file,
   for (std::uint32_t i = 0; i < header->section_count; ++i) {
     const auto place = static_cast<std::int64_t>(table.position());
     const auto fail = [place](std::string message) {
-      return Error("container-table", std::move(message), "make the file anew").at_byte(place);
+      return Error("container-table", std::move(message), "create the file again").at_byte(place);
     };
     const std::string_view padded = table.take_text(kNameSize);
     const std::string_view name = padded.substr(0, padded.find('\0'));
@@ -138,20 +135,20 @@ Result<ContainerReader> ContainerReader::open(std::span<const std::byte> file,
     table.read<std::uint64_t>();  // reserved
     if (name.empty() ||
         std::any_of(name.begin(), name.end(), [](char c) { return c <= ' ' || c >= 127; })) {
-      return fail(fmt::format("section {} has no name in ASCII", i));
+      return fail(fmt::format("the name of section {} is not ASCII", i));
     }
-    if (container.find(name)) return fail(fmt::format("there are two sections {}", name));
+    if (container.find(name)) return fail(fmt::format("section {} appears twice", name));
     if (offset % kSectionAlignment != 0) {
-      return fail(fmt::format("section {} begins at byte {}, no multiple of {}", name, offset,
-                              kSectionAlignment));
+      return fail(fmt::format("section {} begins at byte {}, which is not a multiple of {}", name,
+                              offset, kSectionAlignment));
     }
     if (offset < free_from) {
       return fail(
-          fmt::format("section {} begins at byte {}, inside what stands before it", name, offset));
+          fmt::format("section {} begins at byte {} and overlaps what is before it", name, offset));
     }
     if (offset > file.size() || size > file.size() - offset) {
       return fail(
-          fmt::format("section {} ({} bytes at byte {}) reaches past the end", name, size, offset));
+          fmt::format("section {} ({} bytes at byte {}) exceeds the file", name, size, offset));
     }
     free_from = offset + size;
     container.entries_.push_back({std::string(name), {file.subspan(offset, size), offset}});
@@ -168,7 +165,8 @@ std::optional<Section> ContainerReader::find(std::string_view name) const {
 
 Result<Section> ContainerReader::section(std::string_view name) const {
   if (const auto found = find(name)) return *found;
-  return Error("container-section", fmt::format("has no section {}", name), "make the file anew");
+  return Error("container-section", fmt::format("has no section {}", name),
+               "create the file again");
 }
 
 Result<Section> ContainerReader::section(std::string_view name, std::uint64_t count,
@@ -181,7 +179,7 @@ Result<Section> ContainerReader::section(std::string_view name, std::uint64_t co
     return Error("container-section",
                  fmt::format("section {} has {} bytes, expected {} elements of {} bytes", name,
                              size, count, element_size),
-                 "make the file anew")
+                 "create the file again")
         .at_byte(static_cast<std::int64_t>(found->offset));
   }
   return found;
@@ -216,7 +214,7 @@ Status ContainerWriter::pad() {
 Status ContainerWriter::begin(std::string_view name) {
   assert(!name.empty() && name.size() <= kNameSize && entries_.size() < section_count_);
   if (entries_.empty()) {
-    // Header and table stay out of the checksum until they are known.
+    // Header and table are added to the checksum in finish().
     if (Status status = put(head(0)); !status) return status;
   }
   if (Status status = pad(); !status) return status;

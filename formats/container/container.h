@@ -13,25 +13,25 @@
 #include "core/result.h"
 #include "formats/registry/registry.h"
 
-// The frame that Krok's own binary formats share: a header, a table of named sections, sections
-// aligned to 64 bytes, a checksum. formats/container/SPEC.md describes the bytes.
+// The container of Krok's binary formats: a header, a table of named sections, sections aligned to
+// 64 bytes, a checksum. formats/container/SPEC.md specifies the layout.
 //
-// Codes of errors: container-magic, container-version, container-truncated, container-size,
+// Error codes: container-magic, container-version, container-truncated, container-size,
 // container-checksum, container-flags, container-table, container-section, container-provenance.
 
 namespace krok {
 
 inline constexpr std::size_t kSectionAlignment = 64;
 
-// What tells one format from another.
+// Identifies a format.
 struct ContainerFormat {
   registry::Kind kind;
   registry::Magic magic;
-  std::uint32_t version;      // what is written, and the newest that is read
-  std::uint32_t known_flags;  // flags that a reader understands
+  std::uint32_t version;      // written, and the newest that is read
+  std::uint32_t known_flags;  // flags that the reader supports
 };
 
-// Bit 0 of the flags of all formats: orientations are stored as x, y, z, w.
+// Bit 0 of the flags in all formats: orientations are stored as x, y, z, w.
 inline constexpr std::uint32_t kFlagFourComponents = 1;
 
 struct Section {
@@ -39,7 +39,7 @@ struct Section {
   std::uint64_t offset = 0;  // in the file
 };
 
-// A container whose header, checksum and section table hold. Views the bytes it was given.
+// A container with a valid header, checksum and section table. Views the bytes it was given.
 class ContainerReader {
  public:
   static Result<ContainerReader> open(std::span<const std::byte> file,
@@ -47,12 +47,12 @@ class ContainerReader {
 
   std::uint32_t flags() const { return flags_; }
 
-  // A section by its name; nothing or an Error (code container-section) where there is none.
+  // A section by name; nullopt or an Error (code container-section) if there is none.
   std::optional<Section> find(std::string_view name) const;
   Result<Section> section(std::string_view name) const;
 
-  // A section that must hold exactly `count` elements of `element_size` bytes. An Error (code
-  // container-section) with the section's place where it does not, whatever the count.
+  // A section with exactly `count` elements of `element_size` bytes; otherwise an Error (code
+  // container-section) with the section's offset. Safe for any count.
   Result<Section> section(std::string_view name, std::uint64_t count,
                           std::uint64_t element_size) const;
 
@@ -65,19 +65,18 @@ class ContainerReader {
   std::vector<Entry> entries_;
 };
 
-// Writes a container from its first byte to its last. Sections are appended as they come, so that
-// their sizes need not be known beforehand; header and table are filled in by finish(). An output
-// that cannot be rewritten (standard output, a pipe) gets the whole file at once in finish().
-// Nothing may have been written to `file` before, and commit() is left to its owner.
+// Writes a container. Sections are streamed, so their sizes need not be known in advance; finish()
+// fills in header and table. An output that cannot be rewritten (standard output, a pipe) gets the
+// whole file in finish(). `file` must be empty; its owner calls commit().
 class ContainerWriter {
  public:
   // Exactly `section_count` sections follow.
   ContainerWriter(OutputFile& file, const ContainerFormat& format, std::uint32_t flags,
                   std::size_t section_count);
 
-  // Ends the section before and begins one of up to 8 ASCII characters.
+  // Ends the previous section and begins a new one; its name has up to 8 ASCII characters.
   Status begin(std::string_view name);
-  // Appends to the section begun last.
+  // Appends to the current section.
   Status append(std::span<const std::byte> bytes);
   // begin() and append().
   Status section(std::string_view name, std::span<const std::byte> bytes);

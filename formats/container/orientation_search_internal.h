@@ -3,12 +3,12 @@
 #include <array>
 #include <cstddef>
 
-// What pack_orientation and its vectorised form share. Constants only: an inline function that is
-// compiled for several instruction sets might be kept in a form that the machine cannot run.
+// Shared by pack_orientation and its SIMD version. Constants only: of an inline function compiled
+// for several instruction sets, the linker might keep a version that the CPU cannot run.
 
 namespace krok::orientation_search {
 
-// Steps (in units of the last place) by which the two largest components are moved, nearest first;
+// Steps (in units in the last place) by which the two largest components are moved, nearest first;
 // the third is solved for.
 inline constexpr int kReach = 6;
 inline constexpr int kSide = 2 * kReach + 1;
@@ -30,11 +30,11 @@ inline constexpr std::array<Step, kSide* kSide> kSteps = [] {
   return steps;
 }();
 
-// Good enough to stop searching: 6e-7 rad, some times what rounding four components costs anyway,
-// and 0.6 micrometres at a metre. Squared distance of quaternions; the angle is twice the distance.
+// Threshold to stop searching: 6e-7 rad, a few times the rounding error of four components, and 0.6
+// micrometres at a metre. Squared distance of quaternions; the angle is twice the distance.
 inline constexpr double kGoodEnough = 3e-7 * 3e-7;
 
-// Sizes of w above which one ring of steps is tried, and three; below, all.
+// |w| above which one ring of steps is tried, or three; below, all.
 inline constexpr double kOneRing = 0.02;
 inline constexpr double kThreeRings = 1e-4;
 

@@ -1,6 +1,6 @@
 #include "formats/container/sections.h"
 
-// Widths below that of AVX2 gain nothing; such a machine takes the scalar functions.
+// Vector widths below AVX2 gain nothing; such CPUs use the scalar functions.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "formats/container/pack_transforms.cpp"
 #include <hwy/foreach_target.h>
-// The order matters: foreach_target.h sets up what highway.h reads.
+// Order matters: foreach_target.h sets macros that highway.h reads.
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -39,11 +39,11 @@ using Bits = hn::Rebind<std::uint32_t, Doubles>;
 using V = hn::Vec<Doubles>;
 constexpr std::size_t kLanes = hn::MaxLanes(Doubles());
 static_assert(kLanes <= 8, "a mask fits a byte");
-constexpr std::size_t kOrientation = 3 * sizeof(float);  // its place in a record
+constexpr std::size_t kOrientation = 3 * sizeof(float);  // its offset in a record
 constexpr std::size_t kRecord = 6 * sizeof(float);
 
-// Each function below does what the one of the same name in packed_orientation.cpp does, operation
-// by operation and without fused arithmetic, so that both give the same bits.
+// Each function mirrors the one of the same name in packed_orientation.cpp, operation by operation
+// and without FMA, so that results are bit-identical.
 
 HWY_INLINE V rebuilt_w(V x, V y, V z) {
   const Doubles d;
@@ -52,13 +52,13 @@ HWY_INLINE V rebuilt_w(V x, V y, V z) {
   return hn::IfThenElseZero(hn::Gt(square, hn::Zero(d)), hn::Neg(hn::Sqrt(square)));
 }
 
-// To the nearest float, as a double, without -0.
+// Rounds to float; -0 becomes 0.
 HWY_INLINE V rounded(V value) {
   const Doubles d;
   return hn::Add(hn::PromoteTo(d, hn::DemoteTo(Floats(), value)), hn::Zero(d));
 }
 
-// `value` has floats.
+// `value` must be representable as float.
 HWY_INLINE V spacing(V value) {
   const Doubles d;
   const auto size = hn::Abs(hn::DemoteTo(Floats(), value));
@@ -77,7 +77,7 @@ HWY_INLINE V squared_distance(V dx, V dy, V dz, V dw) {
                  hn::Mul(dw, dw));
 }
 
-// The components by size, the earlier first where they are equal.
+// The components by magnitude; ties in index order.
 struct BySize {
   V a, b, c;
   V place_a, place_b, place_c;
@@ -100,17 +100,17 @@ HWY_INLINE BySize by_size(V x, V y, V z) {
   return sorted;
 }
 
-// What steps of the largest component leave for the others.
+// What remains for the other components after a step of the largest.
 struct AfterA {
   V try_a, left, nearest_b, spacing_b;
 };
 
-// The solution for some steps.
+// Candidate solutions, one per lane.
 struct Tries {
   V a, b, c, distance;
 };
 
-// What a search goes by, a lane a target.
+// Inputs of a search, one target per lane.
 struct Search {
   V a, b, c, w;
   V nearest_a, spacing_a, rest_of_a, rest_of_b;
@@ -151,7 +151,7 @@ struct Search {
   }
 };
 
-// How many steps are worth trying for a target.
+// Number of steps to try for a target.
 HWY_INLINE V steps_worth_trying(V w) {
   const Doubles d;
   const auto steps = [&](int reach) {
@@ -163,16 +163,16 @@ HWY_INLINE V steps_worth_trying(V w) {
       hn::IfThenElse(hn::Gt(size, hn::Set(d, kThreeRings)), steps(3), steps(kReach)));
 }
 
-// Most targets need only the first step, and few more than a ring. Those that do wait for others
-// like them, so that all lanes have work.
+// Most targets need only the first step, few more than one ring. Those that need more are queued
+// until all lanes are filled.
 constexpr std::array<std::size_t, 3> kStages = {1, 9, kSteps.size()};
 static_assert(kSteps[0].first == 0 && kSteps[0].second == 0);
 
-// Unit quaternions with w <= 0 to search for, a lane each.
+// Unit quaternions with w <= 0 to search for, one per lane.
 struct Targets {
   HWY_ALIGN double x[kLanes], y[kLanes], z[kLanes], w[kLanes];
   std::byte* out[kLanes];
-  std::size_t records[kLanes];  // one after the other that get the result
+  std::size_t records[kLanes];  // consecutive records that get the result
   std::size_t count = 0;
 
   HWY_INLINE void add(const Targets& from, std::size_t i) {
@@ -188,7 +188,7 @@ struct Targets {
 
 class Searches {
  public:
-  // The target whose components are in places `lane` of x, y, z and w.
+  // Adds the target in lane `lane` of x, y, z and w.
   HWY_INLINE void add(const double* const xyzw[4], std::size_t lane, std::byte* out) {
     Targets& targets = stages_[0];
     if (targets.count == kLanes) search(0);
@@ -218,7 +218,7 @@ class Searches {
 void Searches::search(std::size_t stage) {
   const Doubles d;
   Targets& targets = stages_[stage];
-  // Lanes that are not used take the first one's work and throw it away.
+  // Unused lanes repeat the first one; their results are discarded.
   for (std::size_t i = targets.count; i < kLanes; ++i) {
     targets.x[i] = targets.x[0];
     targets.y[i] = targets.y[0];
@@ -275,7 +275,7 @@ void Searches::search(std::size_t stage) {
   targets.count = 0;
 }
 
-// Which of kLanes orientations are those of the record before.
+// Bit mask of the orientations that equal the previous record's.
 HWY_INLINE unsigned repeated_bits(const float* orientations) {
   const Floats f;
   hn::Vec<Floats> x, y, z, w, x_before, y_before, z_before, w_before;
@@ -289,9 +289,8 @@ HWY_INLINE unsigned repeated_bits(const float* orientations) {
   return bits[0];
 }
 
-// A group of kLanes transforms, of which the first `used` are stored at `out`. Orientations that
-// need the search are added to `searches` and stored later. `follows`: a record stands before, in
-// all three places.
+// Packs kLanes transforms and stores the first `used` at `out`. Orientations that need the search
+// are added to `searches` and stored later. `follows`: inputs and output have a previous record.
 HWY_INLINE void pack_group(const float* positions, const float* orientations, std::size_t used,
                            bool follows, std::byte* out, Searches& searches) {
   const Doubles d;
@@ -340,7 +339,7 @@ HWY_INLINE void pack_group(const float* positions, const float* orientations, st
   hn::Store(tw, d, target[3]);
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(d, searched, bits);
-  // End sites turn as their joints do.
+  // End sites have the orientation of their parent joint.
   const unsigned repeated = follows ? repeated_bits(orientations) : 0;
   const double* const xyzw[4] = {target[0], target[1], target[2], target[3]};
   for (unsigned left = bits[0]; left != 0; left &= left - 1) {
@@ -360,7 +359,7 @@ void pack(const float* positions, const float* orientations, std::size_t count, 
     pack_group(positions + 3 * i, orientations + 4 * i, kLanes, i > 0, out + i * kRecord, searches);
   }
   if (i < count) {
-    // Filled up with identities, which need no search.
+    // Padded with identities, which need no search.
     HWY_ALIGN float tail[4 * kLanes] = {};
     for (std::size_t k = 0; k < kLanes; ++k) tail[4 * k + 3] = 1;
     std::copy_n(orientations + 4 * i, 4 * (count - i), tail);

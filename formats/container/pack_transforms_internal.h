@@ -4,8 +4,8 @@
 
 namespace krok::pack_transforms_detail {
 
-// The scalar reference of the vectorised write_transforms for encoding xyz: write_transform one by
-// one, over `count` positions (3 floats each) and orientations (x, y, z, w).
+// Scalar reference for the SIMD version of write_transforms with encoding xyz: write_transform for
+// each of `count` positions (3 floats each) and orientations (x, y, z, w).
 void pack_scalar(const float* positions, const float* orientations, std::size_t count,
                  std::byte* out);
 

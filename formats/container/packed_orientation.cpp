@@ -15,8 +15,7 @@ using namespace orientation_search;
 
 namespace {
 
-// The smaller w, the more there is to gain, and the finer the steps that it takes. Most
-// orientations of a motion need none or a few.
+// A smaller w needs more steps. Most orientations of a motion need none or a few.
 std::size_t steps_worth_trying(double w) {
   const int reach = std::abs(w) > kOneRing ? 1 : std::abs(w) > kThreeRings ? 3 : kReach;
   return static_cast<std::size_t>((2 * reach + 1) * (2 * reach + 1));
@@ -27,7 +26,7 @@ double rebuilt_w(double x, double y, double z) {
   return square > 0 ? -std::sqrt(square) : 0.0;
 }
 
-// From the size of `value`, finite, to the next larger float.
+// Distance from |value|, finite, to the next larger float.
 double spacing(float value) {
   const float size = std::abs(value);
   const float next = std::bit_cast<float>(std::bit_cast<std::uint32_t>(size) + 1);
@@ -38,8 +37,7 @@ float rounded(double value) {
   return static_cast<float>(value) + 0.0f;  // no -0
 }
 
-// The places of the largest, the second and the smallest component; the earlier first where they
-// are equal.
+// Indices of the largest, second and smallest component by magnitude; ties in index order.
 std::array<int, 3> by_size(const Vec4& target) {
   std::array<int, 3> order = {0, 1, 2};
   const auto settle = [&](std::size_t i, std::size_t j) {
@@ -59,7 +57,7 @@ std::array<float, 3> search(const Vec4& target) {
   const double spacing_a = spacing(nearest_a);
   const double rest_of_a = std::sqrt(b * b + c * c + w * w);
   const double rest_of_b = std::sqrt(c * c + w * w);
-  // By how much the other components grow to make up for what rounding took from one.
+  // Scale of the other components that compensates for the rounding of one.
   const auto scale = [](double square_left, double rest) {
     return square_left > 0 && rest > 0 ? std::sqrt(square_left) / rest : 0.0;
   };
@@ -78,8 +76,8 @@ std::array<float, 3> search(const Vec4& target) {
     best[static_cast<std::size_t>(order[2])] = try_c;
   };
 
-  // What is given to a leaves a sphere for b, c and w, then b a circle for c and w; the closest
-  // points on them. The first depends on the step of a alone.
+  // Fixing a leaves a sphere for b, c and w; fixing b leaves a circle for c and w. Takes the
+  // closest points on them. The sphere depends only on the step of a.
   struct AfterA {
     float try_a, nearest_b;
     double left, spacing_b;
@@ -112,7 +110,7 @@ std::array<float, 3> pack_orientation(const Quat& q) {
   if (target[3] > 0) target = -target;
   const std::array<float, 3> plain = {rounded(target[0]), rounded(target[1]), rounded(target[2])};
   const double w = rebuilt_w(double{plain[0]}, double{plain[1]}, double{plain[2]});
-  // Comes back as it is: what was unpacked before stays what it was.
+  // Already exact: keeps unpacked orientations unchanged.
   if (static_cast<float>(w) == static_cast<float>(target[3])) return plain;
   const double length = std::sqrt((target[0] * target[0] + target[1] * target[1]) +
                                   (target[2] * target[2] + target[3] * target[3]));

@@ -12,14 +12,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxProvenanceBytes = std::size_t{16} << 20;
 
-// Fetches texts from JSON objects; remembers the first value that is not what it should be.
+// Reads strings from JSON objects; records the first value of the wrong type.
 struct JsonTexts {
   std::string trouble;
 
   std::string text(const Json& object, const char* key) {
     const auto found = object.find(key);
     if (found == object.end()) return {};
-    if (!found->is_string()) return note(fmt::format("\"{}\" is no text", key)), std::string();
+    if (!found->is_string()) return note(fmt::format("\"{}\" is not a string", key)), std::string();
     return found->get<std::string>();
   }
 
@@ -27,14 +27,15 @@ struct JsonTexts {
     static const Json kNothing = Json::array();
     const auto found = object.find(key);
     if (found == object.end()) return kNothing;
-    if (!found->is_array()) return note(fmt::format("\"{}\" is no list", key)), kNothing;
+    if (!found->is_array()) return note(fmt::format("\"{}\" is not a list", key)), kNothing;
     return *found;
   }
 
   std::vector<std::string> texts(const Json& object, const char* key) {
     std::vector<std::string> all;
     for (const Json& item : list(object, key)) {
-      if (!item.is_string()) return note(fmt::format("\"{}\" holds more than texts", key)), all;
+      if (!item.is_string())
+        return note(fmt::format("\"{}\" has items that are not strings", key)), all;
       all.push_back(item.get<std::string>());
     }
     return all;
@@ -44,7 +45,8 @@ struct JsonTexts {
                                                          const char* first, const char* second) {
     std::vector<std::pair<std::string, std::string>> all;
     for (const Json& item : list(object, key)) {
-      if (!item.is_object()) return note(fmt::format("\"{}\" holds more than objects", key)), all;
+      if (!item.is_object())
+        return note(fmt::format("\"{}\" has items that are not objects", key)), all;
       all.emplace_back(text(item, first), text(item, second));
     }
     return all;
@@ -75,12 +77,11 @@ Result<std::string> provenance_to_text(const Provenance& provenance) {
   json["options"] = pairs_to_json(provenance.options);
   json["conversions"] = provenance.conversions;
   json["warnings"] = provenance.warnings;
-  // A file name may hold bytes that are no UTF-8; they become U+FFFD.
+  // File names may have bytes that are not UTF-8; they become U+FFFD.
   std::string text = json_text(json);
   if (text.size() > kMaxProvenanceBytes) {
-    return Error("container-provenance",
-                 fmt::format("the provenance takes {} bytes, a file holds up to {}", text.size(),
-                             kMaxProvenanceBytes));
+    return Error("container-provenance", fmt::format("the provenance has {} bytes, the limit is {}",
+                                                     text.size(), kMaxProvenanceBytes));
   }
   return text;
 }
@@ -89,13 +90,13 @@ Result<Provenance> provenance_from_text(std::string_view text) {
   Provenance provenance;
   const auto fail = [&](std::string message) {
     return Error("container-provenance", fmt::format("the provenance {}", message),
-                 "make the file anew");
+                 "create the file again");
   };
   if (text.size() > kMaxProvenanceBytes) {
     return fail(fmt::format("has {} bytes, the limit is {}", text.size(), kMaxProvenanceBytes));
   }
   const Json json = parse_ordered_json(text);
-  if (json.is_discarded() || !json.is_object()) return fail("is no JSON object");
+  if (json.is_discarded() || !json.is_object()) return fail("is not a JSON object");
   JsonTexts reader;
   provenance.tool = reader.text(json, "tool");
   provenance.version = reader.text(json, "version");
@@ -105,7 +106,7 @@ Result<Provenance> provenance_from_text(std::string_view text) {
   provenance.options = reader.pairs(json, "options", "name", "value");
   provenance.conversions = reader.texts(json, "conversions");
   provenance.warnings = reader.texts(json, "warnings");
-  if (!reader.trouble.empty()) return fail(fmt::format("is not as expected: {}", reader.trouble));
+  if (!reader.trouble.empty()) return fail(fmt::format("is invalid: {}", reader.trouble));
   return provenance;
 }
 

@@ -10,8 +10,8 @@ namespace krok {
 
 namespace {
 
-// How many bytes the UTF-8 character at the start of `text` has; 0 if it is none. Overlong forms,
-// surrogates and values past U+10FFFF are refused (RFC 3629).
+// Bytes of the UTF-8 character at the start of `text`; 0 if it is invalid. Rejects overlong forms,
+// surrogates and values above U+10FFFF (RFC 3629).
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(0);
@@ -85,14 +85,14 @@ Result<std::vector<std::string>> read_texts(const ContainerReader& container, st
   if (!section) return section.error();
   const auto fail = [&](std::size_t at, std::string message) {
     return Error("container-section", fmt::format("section {} {}", name, message),
-                 "make the file anew")
+                 "create the file again")
         .at_byte(static_cast<std::int64_t>(section->offset + at));
   };
   const auto& bytes = section->bytes;
   const auto ends =
       static_cast<std::uint64_t>(std::count(bytes.begin(), bytes.end(), std::byte{0}));
   if (ends != count || (!bytes.empty() && bytes.back() != std::byte{0})) {
-    return fail(0, fmt::format("holds {} texts, expected {}", ends, count));
+    return fail(0, fmt::format("has {} texts, expected {}", ends, count));
   }
   std::vector<std::string> texts;
   texts.reserve(count);
@@ -104,8 +104,7 @@ Result<std::vector<std::string>> read_texts(const ContainerReader& container, st
     const auto length = static_cast<std::size_t>(end - bytes.begin()) - start;
     const std::string_view text = reader.take_text(length);
     reader.take(1);
-    if (!is_storable_text(text))
-      return fail(start, fmt::format("has no valid UTF-8 in text {}", i));
+    if (!is_storable_text(text)) return fail(start, fmt::format("has invalid UTF-8 in text {}", i));
     texts.emplace_back(text);
   }
   return texts;
@@ -124,8 +123,8 @@ Status write_texts(std::string_view name, std::span<const std::string> texts,
 Status check_storable(const Skeleton& skeleton) {
   if (Status status = check(skeleton); !status) return status;
   if (skeleton.names.size() > kMaxFileJoints) {
-    return Error("skeleton-shape", fmt::format("{} joints, a file holds up to {}",
-                                               skeleton.names.size(), kMaxFileJoints));
+    return Error("skeleton-shape",
+                 fmt::format("{} joints, the limit is {}", skeleton.names.size(), kMaxFileJoints));
   }
   for (std::size_t i = 0; i < skeleton.names.size(); ++i) {
     if (!skeleton.reference[i].position.cast<float>().allFinite()) {
@@ -134,7 +133,7 @@ Status check_storable(const Skeleton& skeleton) {
     }
     if (is_storable_text(skeleton.names[i])) continue;
     return Error("skeleton-name",
-                 fmt::format("the name of joint {} is no valid UTF-8 or has a zero byte", i),
+                 fmt::format("the name of joint {} is not valid UTF-8 or has a zero byte", i),
                  "rename the joint");
   }
   return {};

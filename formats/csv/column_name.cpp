@@ -12,7 +12,7 @@ struct UnitSuffix {
   std::string_view suffix;
   std::string_view unit;
 };
-// Longer ones first: "speed_m_s" is no "speed_m" in seconds.
+// Longer ones first: "speed_m_s" is not "speed_m" in seconds.
 constexpr std::array kSuffixes = {UnitSuffix{"_deg_per_s", "\u00B0/s"},
                                   UnitSuffix{"_rad_per_s", "rad/s"},
                                   UnitSuffix{"_m_per_s2", "m/s\u00B2"},

@@ -24,7 +24,7 @@ bool is_gap(std::string_view text) {
                      [&](const char* gap) { return same_word(text, gap); });
 }
 
-// A number, or a gap; nothing for other texts.
+// A number, or a gap; nullopt for other text.
 std::optional<double> parse_cell(std::string_view text) {
   text = trimmed(text);
   if (const auto value = parse_finite(text)) return value;
@@ -32,8 +32,7 @@ std::optional<double> parse_cell(std::string_view text) {
   return std::nullopt;
 }
 
-// The one of comma, semicolon and tab that the line beginning at `at` has most of, the comma where
-// it has none.
+// The most frequent of comma, semicolon and tab in the line at `at`; comma if there is none.
 char delimiter_of(std::string_view text, std::size_t at) {
   std::array<std::size_t, 3> counts = {};
   constexpr std::array kDelimiters = {',', ';', '\t'};
@@ -65,7 +64,7 @@ Result<Table::Cell> Table::cell_at(std::size_t at) const {
     return i >= text_.size() || text_[i] == delimiter_ || is_line_end(text_[i]);
   };
   const auto fault = [&](std::size_t where, const char* message) {
-    Error error("csv-quote", message, "a quote within a quoted cell is written twice");
+    Error error("csv-quote", message, "double a quote inside a quoted cell");
     error.where = place_of(where);
     return error;
   };
@@ -76,11 +75,11 @@ Result<Table::Cell> Table::cell_at(std::size_t at) const {
     for (end = at + 1;; end += 2) {
       end = text_.find('"', end);
       if (end == std::string_view::npos)
-        return fault(at, "a quoted cell begins here and has no end");
+        return fault(at, "a quoted cell begins here and is not closed");
       if (end + 1 >= text_.size() || text_[end + 1] != '"') break;
     }
     cell.end = end++;
-    if (!ends(end)) return fault(end, "text behind the end of a quoted cell");
+    if (!ends(end)) return fault(end, "text after the end of a quoted cell");
   } else {
     cell.begin = at;
     while (!ends(end)) ++end;
@@ -114,7 +113,7 @@ Status Table::read_header(std::size_t& at) {
   while (at < text_.size() && is_space(text_[at])) ++at;
   if (at == text_.size()) return Error("csv-empty", "the table is empty").in_file(path_);
   const std::size_t begin = at;
-  // As numpy writes a header.
+  // numpy writes headers with a '#'.
   if (text_[at] == '#') {
     ++at;
     while (at < text_.size() && text_[at] == ' ') ++at;
@@ -182,7 +181,7 @@ Result<std::size_t> Table::find(std::string_view name) const {
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     if (columns_[c].label != name) continue;
     if (found) {
-      return Error("csv-column", fmt::format("several columns are called '{}'", shown(name)),
+      return Error("csv-column", fmt::format("several columns are named '{}'", shown(name)),
                    fmt::format("write '{}' or '{}'", shown(columns_[*found].header),
                                shown(columns_[c].header)))
           .in_file(path_);
@@ -197,8 +196,8 @@ Result<std::size_t> Table::find(std::string_view name) const {
   }
   if (columns_.size() > kMaxNames)
     names += fmt::format(" and {} more", columns_.size() - kMaxNames);
-  return Error("csv-column", fmt::format("no column is called '{}'", shown(name)),
-               "there are " + names)
+  return Error("csv-column", fmt::format("no column is named '{}'", shown(name)),
+               "columns are " + names)
       .in_file(path_);
 }
 
@@ -222,9 +221,9 @@ Result<std::vector<std::vector<double>>> Table::numbers(
       const auto value = parse_cell(text);
       if (!value) {
         Error error("csv-number",
-                    fmt::format("'{}' in the column '{}' is no number", shown(trimmed(text)),
+                    fmt::format("'{}' in the column '{}' is not a number", shown(trimmed(text)),
                                 shown(columns_[c].header)),
-                    text.find(',') != std::string_view::npos ? "numbers take a decimal point" : "");
+                    text.find(',') != std::string_view::npos ? "use a decimal point" : "");
         error.where = place_of(cell->begin);
         return error;
       }
@@ -237,7 +236,7 @@ Result<std::vector<std::vector<double>>> Table::numbers(
 Location Table::place_in(std::size_t row_begin, std::size_t column) const {
   for (std::size_t c = 0; c < column; ++c) {
     const auto cell = cell_at(row_begin);
-    if (!cell) break;  // read() has seen every cell
+    if (!cell) break;  // not reached: read() checked every cell
     row_begin = cell->next;
   }
   return place_of(row_begin);
@@ -257,7 +256,7 @@ std::vector<std::string> Table::texts(std::size_t column) const {
   for (std::size_t at : rows_) {
     for (std::size_t c = 0; c <= column; ++c) {
       const auto cell = cell_at(at);
-      if (!cell) return result;  // read() has seen every cell
+      if (!cell) return result;  // not reached: read() checked every cell
       at = cell->next;
       if (c == column) result.push_back(text_of(*cell));
     }

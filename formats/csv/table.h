@@ -10,58 +10,57 @@
 
 #include "core/result.h"
 
-// Numeric tables as text: what krok-export and scripts write, for plots.
+// Reads numeric CSV tables, such as those written by krok-export, for plots.
 
 namespace krok::csv {
 
-// A column's name, with the unit that stands in it: "time [s]", "time (s)" and "time_s" are time in
-// seconds, "knee_deg" is knee in degrees. Of the form with an underscore only common units of
-// motion are understood.
+// A column name with its unit: "time [s]", "time (s)" and "time_s" are time in seconds, "knee_deg"
+// is knee in degrees. After an underscore only common units of motion data are recognised.
 struct ColumnName {
-  std::string header;  // as it stands in the file
+  std::string header;  // as in the file
   std::string label;   // without the unit
-  std::string unit;    // empty where none stands there
+  std::string unit;    // empty if there is none
 };
 ColumnName parse_column_name(std::string_view header);
 
-// A table in a text that outlives it. Cells are told apart by commas, semicolons or tabs, whichever
-// the header has most of; quoted as RFC 4180 has it. The first row names the columns, unless all of
-// its cells are numbers: then columns are called "1", "2" and so on. Empty rows are passed over.
-// Takes memory for the names and 8 bytes a row; columns are read when they are asked for.
+// A table in a text, which must outlive it. Cells are separated by commas, semicolons or tabs,
+// whichever is most frequent in the header, and may be quoted (RFC 4180). The first row has the
+// column names, unless all of its cells are numbers: then columns are named "1", "2" and so on.
+// Empty rows are skipped. Memory: the names and 8 bytes per row; columns are parsed on demand.
 class Table {
  public:
-  // `path` is for messages. Codes, with line and column: csv-empty (no row, or a header and no
-  // row), csv-quote (a quote that does not end, or text after its end), csv-ragged (a row with
-  // another number of cells than the header).
+  // `path` is for messages. Codes, with line and column: csv-empty (no rows, or only a header),
+  // csv-quote (an unterminated quote, or text after the closing quote), csv-ragged (a row with a
+  // different number of cells than the header).
   static Result<Table> read(std::string_view text, const std::string& path);
 
   const std::vector<ColumnName>& columns() const { return columns_; }
   std::size_t row_count() const { return rows_.size(); }
 
-  // 1 for columns that hold numbers and gaps and nothing else, and at least one number.
+  // 1 for columns that have only numbers and gaps, and at least one number.
   const std::vector<std::uint8_t>& numeric() const { return numeric_; }
 
-  // The column whose header, or else whose label, is `name`; csv-column where none or several are.
+  // The column whose header, or else whose label, is `name`; csv-column if none or several match.
   Result<std::size_t> find(std::string_view name) const;
 
-  // The numbers of columns, shape [columns][rows]. Cells that are empty, NaN, NA or null, and
-  // infinities, are gaps: NaN. csv-number, with line and column, for a cell that is something else.
+  // The numbers of columns, shape [columns][rows]. Empty cells, NaN, NA, null and infinities are
+  // gaps, returned as NaN. csv-number, with line and column, for any other cell.
   Result<std::vector<std::vector<double>>> numbers(std::span<const std::size_t> columns) const;
 
-  // Where a cell begins, and a column's name; for messages. Takes time with the text before it.
+  // Location of a cell, and of a column name; for messages. Takes time linear in the offset.
   Location place(std::size_t row, std::size_t column) const;
   Location header_location(std::size_t column) const;
 
-  // A column's cells as they stand, quotes taken off. [rows]
+  // The cells of a column as text, without quotes. [rows]
   std::vector<std::string> texts(std::size_t column) const;
 
  private:
   Table(std::string_view text, std::string path) : text_(text), path_(std::move(path)) {}
 
   struct Cell {
-    std::size_t begin = 0, end = 0;  // within the quotes, if there are any
+    std::size_t begin = 0, end = 0;  // inside the quotes, if any
     bool quoted = false;
-    std::size_t next = 0;  // behind the delimiter or the line's end
+    std::size_t next = 0;  // after the delimiter or line end
     bool last = false;     // of its row
   };
   Result<Cell> cell_at(std::size_t at) const;
@@ -75,8 +74,8 @@ class Table {
   std::string path_;
   char delimiter_ = ',';
   std::vector<ColumnName> columns_;
-  std::size_t header_ = 0;         // where it begins; the first row's place where there is none
-  std::vector<std::size_t> rows_;  // where each begins
+  std::size_t header_ = 0;         // offset; that of the first row if there is no header
+  std::vector<std::size_t> rows_;  // offsets
   std::vector<std::uint8_t> numeric_;
 };
 

@@ -16,7 +16,7 @@ Error bad_accessor(int index, const std::string& what) {
   return Error("gltf-accessor", fmt::format("accessor {}: {}", index, what), kDamagedHint);
 }
 
-// Bytes of a component, 0 for a type that glTF does not have.
+// Bytes per component; 0 for an invalid type.
 std::uint64_t component_size(int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
@@ -46,7 +46,7 @@ int component_count(int type) {
     case TINYGLTF_TYPE_MAT4:
       return 16;
     default:
-      return 0;  // MAT2 and MAT3: nothing that is read here has them
+      return 0;  // MAT2 and MAT3 are not used
   }
 }
 
@@ -74,7 +74,7 @@ T load(const std::byte* bytes) {
   return value;
 }
 
-// Normalised integers as section 3.6.2.2 of the specification has them.
+// Normalised integers: section 3.6.2.2 of the specification.
 template <typename Integer, typename Number>
 Number convert(const std::byte* bytes, bool normalized) {
   const Integer value = load<Integer>(bytes);
@@ -114,7 +114,7 @@ bool is_finite(Number value) {
 
 }  // namespace
 
-// Where elements stand: element i at data[i * stride]. Without data all are zero.
+// Element i is at data[i * stride]. If data is empty, all elements are zero.
 struct Accessors::Layout {
   std::span<const std::byte> data;
   std::uint64_t stride = 0;
@@ -122,9 +122,8 @@ struct Accessors::Layout {
 
 Status Accessors::reserve(std::uint64_t bytes) {
   if (bytes > bytes_left_) {
-    return Error("gltf-too-large",
-                 "the file describes far more data than it holds, so it is not unpacked",
-                 "many accessors share the same bytes; export it without such sharing");
+    return Error("gltf-too-large", "the accessors describe far more data than the file contains",
+                 "many accessors share the same bytes; export without sharing");
   }
   bytes_left_ -= bytes;
   return {};
@@ -146,22 +145,20 @@ Result<Accessors::Layout> Accessors::view_layout(int view, std::uint64_t offset,
   const auto buffer = buffers_[static_cast<std::size_t>(buffer_view.buffer)];
   if (buffer_view.byteOffset > buffer.size() ||
       buffer_view.byteLength > buffer.size() - buffer_view.byteOffset) {
-    return fail(
-        fmt::format("buffer view {} reaches beyond its buffer of {} bytes", view, buffer.size()));
+    return fail(fmt::format("buffer view {} exceeds its buffer of {} bytes", view, buffer.size()));
   }
   Layout layout;
   layout.stride = strided && buffer_view.byteStride > 0 ? buffer_view.byteStride : element_size;
   if (layout.stride < element_size) {
     return fail(
-        fmt::format("elements of {} bytes stand {} bytes apart", element_size, layout.stride));
+        fmt::format("elements of {} bytes have a stride of {} bytes", element_size, layout.stride));
   }
   const std::uint64_t length = buffer_view.byteLength;
-  // With count <= length / stride + 1 nothing below overflows.
+  // Avoids overflow: bounds count by length / stride + 1.
   if (offset > length ||
       (count > 0 && (element_size > length - offset ||
                      (count - 1) > (length - offset - element_size) / layout.stride))) {
-    return fail(
-        fmt::format("{} elements reach beyond buffer view {} of {} bytes", count, view, length));
+    return fail(fmt::format("{} elements exceed buffer view {} of {} bytes", count, view, length));
   }
   layout.data = buffer.subspan(buffer_view.byteOffset + offset, length - offset);
   return layout;
@@ -183,15 +180,15 @@ Result<std::size_t> Accessors::check_type(int index, int type) const {
   const tinygltf::Accessor& accessor = model_.accessors[static_cast<std::size_t>(index)];
   if (component_size(accessor.componentType) == 0) {
     return bad_accessor(
-        index, fmt::format("component type {} is not one of glTF's", accessor.componentType));
+        index, fmt::format("component type {} is not a glTF type", accessor.componentType));
   }
   if (accessor.type != type) {
     return bad_accessor(
         index, fmt::format("is {}, expected {}", type_name(accessor.type), type_name(type)));
   }
-  // More could not be addressed by an index, nor stand in a file.
+  // Indices have 32 bits.
   if (accessor.count > 0xFFFFFFFFu) {
-    return bad_accessor(index, fmt::format("{} elements are too many", accessor.count));
+    return bad_accessor(index, fmt::format("too many elements ({})", accessor.count));
   }
   return accessor.count;
 }
@@ -221,7 +218,7 @@ Status Accessors::fill(int index, std::span<Number> numbers) const {
     return Error(
         "gltf-value",
         fmt::format("element {} of accessor {} is not a finite number", i / components, index),
-        "the data were damaged or computed wrongly where the file was made");
+        "the data is damaged, or the exporter computed it wrongly");
   }
   return {};
 }
@@ -234,14 +231,15 @@ Status Accessors::fill_sparse(int index, std::span<Number> numbers) const {
   const std::size_t size = component_size(accessor.componentType);
   if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > accessor.count ||
       sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
-    return bad_accessor(index, "its sparse counts or offsets make no sense");
+    return bad_accessor(index, "invalid sparse count or offset");
   }
   const auto count = static_cast<std::size_t>(sparse.count);
   const int index_type = sparse.indices.componentType;
   if (index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
       index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
       index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-    return bad_accessor(index, fmt::format("sparse indices of component type {}", index_type));
+    return bad_accessor(index,
+                        fmt::format("invalid component type {} of sparse indices", index_type));
   }
   const auto indices = view_layout(
       sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
@@ -256,7 +254,8 @@ Status Accessors::fill_sparse(int index, std::span<Number> numbers) const {
         component<std::uint32_t>(indices->data.data() + i * indices->stride, index_type, false);
     if (target >= accessor.count) {
       return bad_accessor(
-          index, fmt::format("sparse index {} is beyond its {} elements", target, accessor.count));
+          index, fmt::format("sparse index {} is out of range, there are {} elements", target,
+                             accessor.count));
     }
     const std::byte* element = values->data.data() + i * values->stride;
     for (std::size_t c = 0; c < components; ++c) {
@@ -272,7 +271,7 @@ Result<Shared<T>> Accessors::cached(int index, int type, std::map<int, Shared<T>
   if (const auto found = cache.find(index); found != cache.end()) return found->second;
   const auto count = check_type(index, type);
   if (!count) return count.error();
-  // A layout that fails must do so before memory is taken.
+  // Check the layout before allocating.
   if (const auto where = layout(index); !where) return where.error();
   if (auto taken = reserve(*count * sizeof(T)); !taken) return taken.error();
   std::vector<T> values(*count);
@@ -319,11 +318,11 @@ Result<std::vector<Mat4>> Accessors::matrices(int index) {
   if (!count) return count.error();
   if (model_.accessors[static_cast<std::size_t>(index)].componentType !=
       TINYGLTF_COMPONENT_TYPE_FLOAT) {
-    return bad_accessor(index, "matrices that are not floats");
+    return bad_accessor(index, "matrices must be floats");
   }
   if (const auto where = layout(index); !where) return where.error();
   if (auto taken = reserve(*count * sizeof(Mat4)); !taken) return taken.error();
-  std::vector<Mat4> values(*count, Mat4::Zero());  // Eigen's are column by column, as glTF's are
+  std::vector<Mat4> values(*count, Mat4::Zero());  // column-major, as in glTF
   const std::span<double> numbers(reinterpret_cast<double*>(values.data()), *count * 16);
   if (auto filled = fill(index, numbers); !filled) return filled.error();
   return values;

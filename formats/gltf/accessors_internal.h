@@ -19,33 +19,33 @@ namespace krok::gltf {
 
 using nodes::Shared;
 
-// Reads accessors of a parsed file out of its buffers. Nothing in `model` is trusted: every index,
-// offset, stride and count is checked against the bytes that are there; values must be finite.
-// Memory handed out in all is held under `most_bytes`, so that many accessors of one view cannot
-// multiply it. Codes gltf-accessor, gltf-value, gltf-too-large.
+// Reads the accessors of a parsed file. Nothing in `model` is trusted: every index, offset, stride
+// and count is checked against the size of the buffers; values must be finite. The total memory
+// handed out is limited to `most_bytes`, so many accessors of one view cannot multiply it. Codes:
+// gltf-accessor, gltf-value, gltf-too-large.
 class Accessors {
  public:
   Accessors(const tinygltf::Model& model, std::vector<std::span<const std::byte>> buffers,
             std::uint64_t most_bytes)
       : model_(model), buffers_(std::move(buffers)), bytes_left_(most_bytes) {}
 
-  // Floats, or normalised or plain integers turned into floats. `type` is a TINYGLTF_TYPE_*. The
-  // same accessor asked for twice gives the same memory.
+  // Floats, or integers (normalised or not) converted to floats. Repeated calls for an accessor
+  // share memory.
   Result<Shared<float>> scalars(int index);
   Result<Shared<Vec2f>> vectors2(int index);
   Result<Shared<Vec3f>> vectors3(int index);
   Result<std::vector<Mat4>> matrices(int index);
 
-  // A copy of its own. Values of animation samplers: scalars or vectors one after the other.
+  // A copy, for animation samplers: scalars or vectors of `components`, contiguous.
   Result<Shared<float>> flat(int index, int components);
 
-  // Unsigned integers: SCALAR for indices, VEC4 for joints; the latter one after the other.
+  // Unsigned integers, contiguous. `type`: TINYGLTF_TYPE_SCALAR (indices) or _VEC4 (joints).
   Result<std::vector<std::uint32_t>> integers(int index, int type);
 
-  // Numbers of VEC4, one after the other.
+  // VEC4 values, contiguous.
   Result<std::vector<float>> vectors4(int index);
 
-  // Takes from the memory that is left.
+  // Subtracts from the memory budget.
   Status reserve(std::uint64_t bytes);
 
  private:

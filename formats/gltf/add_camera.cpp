@@ -22,7 +22,7 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr int kFloat = 5126;  // glTF's number for the type of components
+constexpr int kFloat = 5126;  // component type FLOAT
 
 OrderedJson& list_in(OrderedJson& object, const char* name) {
   OrderedJson& list = object[name];
@@ -76,12 +76,12 @@ Status check_all(const CameraTrack& track, const CameraOptions& options) {
   const bool good_aspect =
       !options.aspect || (*options.aspect > 0 && std::isfinite(*options.aspect));
   if (!good_aspect || !(options.near_plane > 0) || !std::isfinite(options.near_plane)) {
-    return Error("gltf-value", "the near plane or the picture's width by height is not positive");
+    return Error("gltf-value", "near plane and aspect ratio must be positive and finite");
   }
   return {};
 }
 
-// Puts a camera into the JSON and the buffer of a file.
+// Adds a camera to the JSON and the buffer of a file.
 class CameraPutter {
  public:
   CameraPutter(const CameraTrack& track, const CameraOptions& options, OrderedJson& json,
@@ -89,7 +89,7 @@ class CameraPutter {
       : track_(track), options_(options), json_(json), data_(data) {}
 
   Status put(Diagnostics& diagnostics) {
-    // A list added later would move those that are referred to.
+    // Create all lists first: inserting a key later would move the others and break references.
     for (const char* name : {"cameras", "nodes", "scenes"}) list_in(json_, name);
     if (!json_.contains("scene")) json_["scene"] = 0;
     if (track_.frame_count() > 1) {
@@ -115,11 +115,11 @@ class CameraPutter {
                                           {"values", numbers(track_.fields_of_view)}};
       diagnostics.push_back(warning(
           "gltf-lens",
-          fmt::format("the field of view goes from {} to {} degrees, which glTF cannot animate: "
-                      "viewers show the first frame's",
+          fmt::format("the field of view varies from {} to {} degrees, which glTF cannot animate; "
+                      "viewers use the first frame's",
                       readable(static_cast<double>(least) / kRadiansPerDegree, 4),
                       readable(static_cast<double>(most) / kRadiansPerDegree, 4)),
-          "Krok's tools find all of it in the camera's extras"));
+          "Krok's tools read the animation from the camera's extras"));
     }
     OrderedJson& cameras = list_in(json_, "cameras");
     cameras.push_back(std::move(camera));
@@ -156,7 +156,7 @@ class CameraPutter {
     return roots;
   }
 
-  // Returns the accessor.
+  // Returns the accessor's index.
   std::size_t put_floats(std::span<const float> values, const char* type, std::size_t count) {
     const std::size_t begin = append_aligned(std::as_bytes(values), data_);
     OrderedJson& views = list_in(json_, "bufferViews");
@@ -181,17 +181,17 @@ class CameraPutter {
     const int chosen = options_.animation.value_or(0);
     const auto wanted = static_cast<std::size_t>(chosen);
     if (chosen < 0 || wanted >= animations.size()) {
-      return Error("gltf-animation", fmt::format("the file has no animation {}; it has {}", chosen,
-                                                 animations.size()));
+      return Error("gltf-animation", fmt::format("animation {} does not exist; the file has {}",
+                                                 chosen, animations.size()));
     }
     if (!options_.animation && animations.size() > 1) {
       diagnostics.push_back(
           warning("gltf-animations",
-                  fmt::format("of {} animations the camera moves in the first, {}",
+                  fmt::format("the file has {} animations; the camera is added to the first, {}",
                               animations.size(), shown(text_in(animations[0], "name"))),
-                  "--clip takes another by its number"));
+                  "choose another by number with --clip"));
     }
-    // Successive rotations lie in one hemisphere, so that viewers take the shorter way.
+    // Successive rotations in one hemisphere, so that viewers interpolate along the shorter arc.
     std::vector<Quatf> rotations = track_.orientations;
     for (std::size_t i = 1; i < rotations.size(); ++i) {
       if (rotations[i].dot(rotations[i - 1]) < 0) rotations[i].coeffs() *= -1;

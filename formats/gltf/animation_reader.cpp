@@ -30,14 +30,14 @@ Status Reader::read_channel(const tinygltf::Animation& source, std::size_t index
   const tinygltf::AnimationChannel& from = source.channels[channel_index];
   const std::string name =
       fmt::format("{}, channel {}", label("animation", index, source.name), channel_index);
-  if (from.target_node < 0) return {};  // to be ignored, says the specification
+  if (from.target_node < 0) return {};  // ignored, as the specification requires
   if (!exists(from.target_node, scene_.nodes.size())) {
     return Error("gltf-animation",
-                 fmt::format("{} moves node {}, which does not exist", name, from.target_node));
+                 fmt::format("{} targets node {}, which does not exist", name, from.target_node));
   }
   if (!exists(from.sampler, source.samplers.size())) {
     return Error("gltf-animation",
-                 fmt::format("{} has sampler {}, which does not exist", name, from.sampler));
+                 fmt::format("{} references sampler {}, which does not exist", name, from.sampler));
   }
   Channel channel;
   channel.node = from.target_node;
@@ -55,12 +55,13 @@ Status Reader::read_channel(const tinygltf::Animation& source, std::size_t index
         node.mesh < 0 ? 0 : scene_.meshes[static_cast<std::size_t>(node.mesh)].target_count();
     if (targets == 0) {
       return Error("gltf-animation",
-                   fmt::format("{} moves weights of a node without morph targets", name));
+                   fmt::format("{} animates weights of a node without morph targets", name));
     }
     channel.width = static_cast<int>(targets);
   } else {
     warn(scene_.diagnostics, "gltf-animation-path",
-         fmt::format("{} moves '{}', which is left aside", name, from.target_path.substr(0, 40)));
+         fmt::format("{} animates '{}', which is not supported and is ignored", name,
+                     from.target_path.substr(0, 40)));
     return {};
   }
   if (auto read = read_keys(source.samplers[static_cast<std::size_t>(from.sampler)], name, channel);
@@ -69,7 +70,7 @@ Status Reader::read_channel(const tinygltf::Animation& source, std::size_t index
   }
   if (node.has_matrix && channel.path != Path::weights) {
     warn(scene_.diagnostics, "gltf-animation-matrix",
-         fmt::format("{} moves a node that is given by a matrix; the matrix is taken apart", name));
+         fmt::format("{} animates a node with a matrix; the matrix is decomposed", name));
   }
   animation.channels.push_back(std::move(channel));
   return {};
@@ -82,7 +83,7 @@ Status Reader::read_keys(const tinygltf::AnimationSampler& sampler, const std::s
   } else if (sampler.interpolation == "CUBICSPLINE") {
     channel.interpolation = Interpolation::cubic_spline;
   } else if (!sampler.interpolation.empty() && sampler.interpolation != "LINEAR") {
-    return Error("gltf-animation", fmt::format("{} has interpolation '{}'", name,
+    return Error("gltf-animation", fmt::format("{} has unknown interpolation '{}'", name,
                                                sampler.interpolation.substr(0, 40)));
   }
   auto times = accessors_.scalars(sampler.input);
@@ -93,8 +94,8 @@ Status Reader::read_keys(const tinygltf::AnimationSampler& sampler, const std::s
   for (std::size_t k = 0; k < keys.size(); ++k) {
     if (keys[k] >= 0 && (k == 0 || keys[k] > keys[k - 1])) continue;
     return Error("gltf-animation",
-                 fmt::format("{}: key time {} is not later than the one before", name, k),
-                 "key times must be positive and rise");
+                 fmt::format("{}: the time of key {} is not after the previous one", name, k),
+                 "key times must be positive and increasing");
   }
   const int components = channel.path == Path::weights ? 1 : channel.width;
   auto values = accessors_.flat(sampler.output, components);

@@ -19,7 +19,7 @@ std::size_t append_aligned(std::span<const std::byte> bytes, std::vector<std::by
 Result<std::vector<std::byte>> assemble_glb(OrderedJson& json, std::span<const std::byte> data) {
   if (data.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
     return Error("gltf-too-large",
-                 fmt::format("{} bytes are too many for a GLB in a page", data.size()));
+                 fmt::format("{} bytes exceed the size limit of a GLB", data.size()));
   }
   if (!data.empty()) json["buffers"] = OrderedJson::array({{{"byteLength", data.size()}}});
   std::string text = json_text(json);

@@ -14,8 +14,7 @@ namespace krok::gltf {
 
 namespace {
 
-// Displacements of tangents have three numbers, for the fourth does not change. They take the place
-// of the tangents that they are made of, one behind the other.
+// Tangent displacements have three components, as w does not change. Packed in place.
 void subtract_and_pack(std::span<const Vec4f> base, std::span<Vec4f> tangents) {
   float* to = tangents.empty() ? nullptr : tangents.front().data();
   for (std::size_t v = 0; v < tangents.size(); ++v, to += 3) {
@@ -32,7 +31,7 @@ Error not_finite(int frame) {
   return Error("gltf-structure", fmt::format("a vertex of frame {} is not finite", frame));
 }
 
-// A clip on its way into a file.
+// Writes one baked clip.
 class BakedClip {
  public:
   BakedClip(const Model& model, const MeshMotion& motion, const WriteOptions& options,
@@ -71,7 +70,7 @@ class BakedClip {
       return document_.append(bytes);
     });
     if (!status) return status;
-    if (Status status = append_weights(); !status) return status;
+    if (Status step = append_weights(); !step) return step;
     return document_.end(bounds_);
   }
 
@@ -121,7 +120,7 @@ class BakedClip {
     document_.add_weight_channel(node_, input, weights, options_.name);
   }
 
-  // Makes all targets and their bounds.
+  // Computes all targets and their bounds.
   Status go_through(const std::function<Status(std::span<const ShapeRoom>)>& take) {
     const ShapeRange range{1, motion_.frames, base_.positions.size(), !base_.normals.empty(),
                            !base_.tangents.empty()};
@@ -143,7 +142,7 @@ class BakedClip {
     return {};
   }
 
-  // At the time of a frame its target alone.
+  // At each frame's time, only that frame's target has weight 1.
   Status append_weights() {
     std::vector<float> row(targets(), 0.0f);
     Status status = document_.append(std::as_bytes(std::span(row)));
@@ -179,7 +178,7 @@ std::uint64_t baked_bytes(const Model& model, std::int64_t frames,
 Status write_baked(const Model& model, const MeshMotion& motion, const WriteOptions& options,
                    OutputFile& file, Progress* progress, int jobs) {
   if (Status status = check_mesh(model); !status) return status;
-  if (motion.frames < 1) return Error("gltf-structure", "the motion has no frames to bake");
+  if (motion.frames < 1) return Error("gltf-structure", "the motion has no frames");
   const auto times = key_times(motion.frames, motion.rate);
   if (!times) return times.error();
   return BakedClip(model, motion, options, progress, jobs).write(*times, file);

@@ -10,13 +10,13 @@ namespace krok::gltf {
 
 namespace {
 
-// For messages: data URIs can be megabytes long.
+// For messages; data URIs can be megabytes long.
 std::string shortened(const std::string& uri) {
   constexpr std::size_t kLongest = 60;
   return uri.size() > kLongest ? uri.substr(0, kLongest) + "..." : uri;
 }
 
-// Percent-encoding of RFC 3986 undone; nothing if it is broken or hides a zero byte.
+// Decodes percent-encoding (RFC 3986); nullopt if it is invalid or contains a zero byte.
 std::optional<std::string> decode_percent(const std::string& text) {
   const auto digit = [](char c) {
     if (c >= '0' && c <= '9') return c - '0';
@@ -40,16 +40,16 @@ std::optional<std::string> decode_percent(const std::string& text) {
   return decoded;
 }
 
-// The path of a file, if the URI is a relative path that stays in the folder, links followed.
+// The file's path, if the URI is a relative path inside the folder, with links resolved.
 Result<std::string> path_of_uri(const std::string& uri, const std::string& what,
                                 const std::string& folder) {
   const auto refuse = [&](const char* why) {
     return Error("gltf-buffer", fmt::format("the {} '{}' {}", what, shortened(uri), why),
-                 "what belongs to a file must lie in its own folder or be embedded (.glb)");
+                 "external files must be inside the file's folder, or embedded (.glb)");
   };
-  if (folder.empty()) return refuse("is a file of its own, and no folder is known for it");
+  if (folder.empty()) return refuse("is an external file, but no folder is given");
   const auto decoded = decode_percent(uri);
-  if (!decoded) return refuse("is no valid path");
+  if (!decoded) return refuse("is not a valid path");
   auto path = path_inside(folder, *decoded);
   if (path) return path;
   return Error("gltf-buffer", fmt::format("the {}: {}", what, path.error().message),
@@ -62,15 +62,15 @@ bool is_data_uri(const std::string& uri) {
   return uri.starts_with("data:");
 }
 
-// Any media type: what matters is that it is base64.
+// Accepts any media type with base64 encoding.
 Result<std::vector<unsigned char>> decode_data_uri(const std::string& uri,
                                                    const std::string& what) {
   constexpr std::string_view kMarker = ";base64,";
   const std::size_t marker = uri.find(kMarker);
   if (marker == std::string::npos || marker > 200) {
-    return Error("gltf-buffer", fmt::format("{} is a data URI but not base64", what));
+    return Error("gltf-buffer", fmt::format("{} is a data URI that is not base64", what));
   }
-  // tinygltf counts in ints, and knows few media types.
+  // tinygltf uses int sizes, and supports few media types.
   if (uri.size() > 0x7FFFFFFFu) {
     return Error("gltf-too-large", fmt::format("{} is a data URI of {} bytes", what, uri.size()),
                  "save it as .glb");
@@ -98,8 +98,8 @@ Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Cont
     std::span<const std::byte> bytes;
     if (!entry.has_uri) {
       if (!container.binary || i != 0) {
-        return Error("gltf-buffer", fmt::format("buffer {} has no data: neither a URI nor a GLB's "
-                                                "binary chunk (which is buffer 0)",
+        return Error("gltf-buffer", fmt::format("buffer {} has no data: no URI, and not the GLB's "
+                                                "binary chunk (buffer 0)",
                                                 i));
       }
       bytes = container.bin;
@@ -118,11 +118,11 @@ Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Cont
       return Error("gltf-buffer",
                    fmt::format("buffer {} should have {} bytes but has {}", i, entry.byte_length,
                                bytes.size()),
-                   "the file is damaged or was cut short");
+                   "the file is damaged or truncated");
     }
     if (bytes.size() > bytes_left) {
       return Error("gltf-too-large",
-                   fmt::format("the buffers hold more than {} bytes", options.most_bytes));
+                   fmt::format("the buffers exceed the limit of {} bytes", options.most_bytes));
     }
     bytes_left -= bytes.size();
     buffers.views.push_back(bytes.first(entry.byte_length));

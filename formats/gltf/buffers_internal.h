@@ -10,29 +10,29 @@
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/json_text_internal.h"
 
-// Private to this folder: the bytes of a file's buffers.
+// Private to this folder: loads the buffers of a file.
 
 namespace krok::gltf {
 
-// The buffers of a file: a GLB's own chunk, data URIs, files beside it. Views live as long as this
-// object and the container's bytes.
+// The buffers of a file: the GLB's BIN chunk, data URIs, external files. Views are valid as long as
+// this object and the container's bytes.
 struct Buffers {
   std::vector<std::span<const std::byte>> views;
   std::vector<std::vector<unsigned char>> decoded;
   std::vector<InputFile> files;
 };
 
-// Code gltf-buffer; for files also those of InputFile.
+// Codes: gltf-buffer; for external files also those of InputFile.
 Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Container& container,
                              const ReadOptions& options);
 
 bool is_data_uri(const std::string& uri);
 
-// What a data URI holds; `what` is what it is, "buffer 2". Codes: gltf-buffer, gltf-too-large.
+// Decodes a data URI; `what` names it in messages ("buffer 2"). Codes: gltf-buffer, gltf-too-large.
 Result<std::vector<unsigned char>> decode_data_uri(const std::string& uri, const std::string& what);
 
-// Opens a file that a glTF in `folder` names by a relative URI; `what` is what it is to it,
-// "buffer". Codes: gltf-buffer for a URI that leads out of the folder, and those of InputFile.
+// Opens a file that a glTF in `folder` references by a relative URI; `what` names it in messages
+// ("buffer"). Codes: gltf-buffer for a URI that leaves the folder, and those of InputFile.
 Result<InputFile> open_beside(const std::string& uri, const std::string& what,
                               const std::string& folder, std::uint64_t most_bytes);
 

@@ -75,7 +75,7 @@ Status write_coloured(std::span<const ColouredMesh> meshes, const std::string& m
     document.add_mesh_node(static_cast<int>(document.gltf.meshes.size()) - 1, -1, coloured.name);
   }
   if (document.gltf.meshes.empty()) {
-    return Error("gltf-empty-mesh", "there is no mesh, and glTF knows no empty one");
+    return Error("gltf-empty-mesh", "there is no mesh to write; glTF does not allow empty meshes");
   }
   return document.write(file);
 }

@@ -12,19 +12,18 @@
 
 namespace krok::gltf {
 
-// A mesh whose vertices have colours, as it stands in the scene (metres).
+// A mesh with vertex colours, in scene coordinates (metres).
 struct ColouredMesh {
-  std::string name;  // of its node; made unique
+  std::string name;  // of the node; made unique
   std::span<const Vec3f> positions;
-  std::span<const Vec3f> normals;                           // [vertices] or none
+  std::span<const Vec3f> normals;                           // [vertices] or empty
   std::span<const Vec3f> colours;                           // [vertices], linear RGB, 0 .. 1
-  std::span<const std::array<std::uint32_t, 3>> triangles;  // none: the vertices show as points
+  std::span<const std::array<std::uint32_t, 3>> triangles;  // empty: drawn as points
 };
 
-// Writes meshes that do not move, each with its vertices' colours (COLOR_0) on a white, rough
-// material called `material`. Lights shade them, so that their shape can be seen. Meshes without a
-// vertex are left out. Codes: gltf-empty-mesh where none is left, gltf-too-large, gltf-name,
-// gltf-value for values that are not finite.
+// Writes static meshes with vertex colours (COLOR_0) and a white, rough, lit material called
+// `material`. Meshes without vertices are skipped. Codes: gltf-empty-mesh if none remains,
+// gltf-too-large, gltf-name, gltf-value for values that are not finite.
 Status write_coloured(std::span<const ColouredMesh> meshes, const std::string& material,
                       const WriteOptions& options, OutputFile& file);
 

@@ -136,8 +136,8 @@ int Document::add_vectors(std::span<const Vec3f> values, Use use) {
 
 int Document::add_integers(std::span<const std::uint32_t> values, int type, std::uint32_t largest,
                            Use use) {
-  // The narrowest type that holds the largest value: as an index, 255 and 65535 are reserved.
-  // Bytes serve joints only: four of them keep to the alignment that vertices need.
+  // The narrowest type for the largest value; as indices, 255 and 65535 are reserved (primitive
+  // restart). Bytes only for joints: four of them have the alignment that vertices need.
   if (use == Use::vertices && largest < 256) {
     std::vector<std::uint8_t> narrow(values.begin(), values.end());
     return add_accessor(std::as_bytes(std::span(narrow)), TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, 1,
@@ -201,7 +201,7 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
     tinygltf::Animation animation;
     animation.name = name;
     std::map<std::vector<int>, int> time_accessors;
-    // The times of some frames, or of all; tracks with keys at the same frames share them.
+    // The times of some frames, or of all; tracks with the same key frames share an accessor.
     const auto times = [&](const std::vector<int>& frames) {
       const auto [place, made] = time_accessors.emplace(frames, 0);
       if (made) {
@@ -227,7 +227,7 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
                     add_floats(values, TINYGLTF_TYPE_VEC4, Use::data, false, Keep::view));
       }
     }
-    // A figure that stands still in its reference pose is still a motion of some length.
+    // A character that stays in its reference pose still has an animation of some duration.
     if (animation.channels.empty()) {
       const std::vector<Vec3f> still(tracks.times.size(), tracks.joints[0].rest_translation);
       const int input = times({});
@@ -259,7 +259,7 @@ Result<int> Document::add_mesh(const Model& model, const std::map<std::string, i
     mesh.primitives.push_back(std::move(primitive));
   }
   if (mesh.primitives.empty()) {
-    return Error("gltf-empty-mesh", "the model has no triangles, and glTF knows no empty mesh");
+    return Error("gltf-empty-mesh", "the model has no triangles; glTF does not allow empty meshes");
   }
   gltf.meshes.push_back(std::move(mesh));
   return static_cast<int>(gltf.meshes.size()) - 1;

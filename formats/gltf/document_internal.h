@@ -16,7 +16,7 @@
 #include "scene/clip.h"
 #include "scene/model.h"
 
-// A glTF file while it is put together: one buffer, one scene. Only for the writer's own files.
+// A glTF file under construction: one buffer, one scene. Private to the writers.
 
 namespace krok::gltf {
 
@@ -26,65 +26,64 @@ class Document {
 
   enum class Use { vertices, indices, data };
 
-  // Whether values are copied, or must live and stay as they are until write().
+  // Copy values, or reference them; then they must stay valid and unchanged until write().
   enum class Keep { copy, view };
 
-  // Appends values in their own buffer view; returns the accessor. `Values` are floats, vectors of
-  // floats, or unsigned integers, contiguous, and not empty. `bounds` writes min and max.
+  // Appends values in a new buffer view and returns the accessor. Values must not be empty.
+  // `bounds` writes min and max.
   int add_floats(std::span<const float> values, int type, Use use, bool bounds,
                  Keep keep = Keep::copy);
   int add_positions(std::span<const Vec3f> values, Use use = Use::vertices);  // with bounds
   int add_vectors(std::span<const Vec3f> values, Use use = Use::vertices);
   int add_integers(std::span<const std::uint32_t> values, int type, std::uint32_t largest, Use use);
 
-  // `wanted`, or with a number appended what no other node has.
+  // `wanted`, with a number appended if another node has that name.
   std::string unique_node_name(const std::string& wanted);
 
-  // Nodes for all joints, the first a root of the scene; a skin of them with the inverse reference
-  // transforms; an animation, if there are times. The tracks must live until write(). Returns the
-  // skin.
+  // Adds nodes for all joints, the first as a scene root; a skin with the inverse bind matrices; an
+  // animation, if there are times. The tracks must outlive write(). Returns the skin.
   int add_skeleton(const Skeleton& skeleton, const JointTracks& tracks, const std::string& name);
 
-  // The material of this name out of WriteOptions::materials, otherwise the usual one under it;
-  // made once, as are its pictures. Those need texture coordinates, normal textures tangents too:
-  // they are left out for meshes without these attributes (which are the same for all calls).
-  // Codes: those of picture_facts(). (materials.cpp)
+  // The material of this name from WriteOptions::materials, or a default one; added once, as are
+  // its images. Textures are left out for meshes without texture coordinates, normal textures also
+  // without tangents (`attributes` are the same in all calls). Codes: those of image_info().
+  // (materials.cpp)
   Result<int> add_material(const std::string& name, const std::map<std::string, int>& attributes);
 
-  // Nodes for eyes under the joints that add_skeleton() made. Code: gltf-structure.
+  // Eye nodes as children of the joints from add_skeleton(). Code: gltf-structure.
   Status add_eyes(const Skeleton& skeleton, int skin, std::span<const Character::Eye> eyes);
 
-  // Primitives for the parts of a model, all with the same attributes.
+  // One primitive per part of the model, all with the same attributes.
   Result<int> add_mesh(const Model& model, const std::map<std::string, int>& attributes,
                        const std::string& name);
 
-  // A root of the scene with a mesh; skin -1 for none. Returns the node.
+  // A scene root with a mesh; skin -1 for none. Returns the node.
   int add_mesh_node(int mesh, int skin, const std::string& name);
 
-  // Morph targets for every primitive of a mesh, under names that viewers show.
+  // Morph targets for every primitive of a mesh, with names for viewers (extras.targetNames).
   void set_targets(int mesh, const std::vector<std::map<std::string, int>>& targets,
                    std::span<const std::string> names);
 
-  // Keys of the weights [times x targets] of a node's mesh, in the animation there is, or in one of
-  // this name.
+  // Keys for the morph weights [times x targets] of a node's mesh, in the existing animation, or in
+  // a new one called `name`.
   void add_weight_keys(int node, std::span<const float> times, std::span<const float> weights,
                        const std::string& name);
   void add_weight_channel(int node, int times, int weights, const std::string& name);
 
-  // The same as add_floats() for data that are told while the file is written, after all others:
-  // append() is given their bytes, in the order in which they were promised.
+  // As add_floats(), for data streamed while the file is written, after all other data: append()
+  // gets the bytes, in the order of these calls.
   int promise_floats(std::size_t count, int type, Use use);
   int promise_positions(std::size_t count);  // with bounds
 
   Status write(OutputFile& file);
 
-  // The bounds of what promise_positions() promised, in that order.
+  // The bounds for the promise_positions() calls, in their order.
   struct Bounds {
     Vec3f least, most;
   };
-  // The same in parts, for promised data: begin() writes what is known, append() what follows,
-  // end() fills in the bounds. A GLB that cannot be overwritten (see OutputFile) needs them in
-  // begin() already; the bytes are the same.
+  // write() in steps, for streamed data: begin() writes what is known, append() the streamed data,
+  // end() fills in the bounds. For a GLB to an output that cannot be rewritten (see OutputFile),
+  // begin() needs the bounds; the bytes are the same.
   Status begin(OutputFile& file, std::span<const Bounds> bounds = {});
   Status append(std::span<const std::span<const std::byte>> parts);
   Status append(std::span<const std::byte> bytes) { return append(std::span(&bytes, 1)); }
@@ -93,7 +92,7 @@ class Document {
   tinygltf::Model gltf;
 
  private:
-  // A stretch of the buffer: bytes of its own, or somebody else's.
+  // A range of the buffer: owned bytes or a view.
   struct Part {
     std::vector<std::byte> own;
     std::span<const std::byte> view;
@@ -119,16 +118,16 @@ class Document {
 
   const WriteOptions& options_;
   std::vector<Part> parts_;
-  std::uint64_t size_ = 0;      // of the parts and of what is promised together
-  std::uint64_t promised_ = 0;  // of these, what is promised
-  std::size_t bounds_ = 0;      // how many are not filled in yet
+  std::uint64_t size_ = 0;      // bytes of the parts and the streamed data
+  std::uint64_t promised_ = 0;  // bytes of the streamed data
+  std::size_t bounds_ = 0;      // bounds that are not filled in yet
   OutputFile* file_ = nullptr;
-  std::string json_;                  // with room for the bounds, until they are filled in
-  std::vector<std::byte> unencoded_;  // the last of a text's data
+  std::string json_;                  // with space reserved for the bounds
+  std::vector<std::byte> unencoded_;  // the last bytes, fewer than one Base64 group
   std::set<std::string> node_names_;
   std::map<std::string, int> materials_;
   std::map<const EncodedImage*, int> images_;
-  std::map<std::pair<int, int>, int> textures_;  // by picture and sampler
+  std::map<std::pair<int, int>, int> textures_;  // by image and sampler
 };
 
 }  // namespace krok::gltf

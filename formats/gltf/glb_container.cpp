@@ -12,7 +12,7 @@ constexpr std::uint32_t kMagic = 0x46546C67;  // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinChunk = 0x004E4942;
 constexpr const char* kContainerHint =
-    "the file is damaged or was cut short; fetch or export it again";
+    "the file is damaged or truncated; download or export it again";
 
 Error broken(std::size_t offset, std::string message) {
   return Error("gltf-container", std::move(message), kContainerHint)
@@ -30,10 +30,10 @@ Result<Chunk> read_chunk(ByteReader& reader) {
   const auto length = reader.read<std::uint32_t>();
   Chunk chunk;
   chunk.type = reader.read<std::uint32_t>();
-  if (!reader.ok()) return broken(start, "a chunk's header is cut short");
+  if (!reader.ok()) return broken(start, "truncated chunk header");
   chunk.offset = reader.position();
   if (length > reader.remaining()) {
-    return broken(start, fmt::format("a chunk of {} bytes begins where {} bytes are left", length,
+    return broken(start, fmt::format("a chunk of {} bytes where only {} bytes are left", length,
                                      reader.remaining()));
   }
   chunk.data = reader.take(length);
@@ -45,17 +45,17 @@ Result<Container> open_glb(std::span<const std::byte> bytes) {
   reader.take(4);
   const auto version = reader.read<std::uint32_t>();
   const auto length = reader.read<std::uint32_t>();
-  if (!reader.ok()) return broken(0, "the GLB header is cut short");
+  if (!reader.ok()) return broken(0, "truncated GLB header");
   if (version != 2) {
-    return Error("gltf-version", fmt::format("a GLB of version {}, expected 2", version),
+    return Error("gltf-version", fmt::format("GLB version {}, expected 2", version),
                  "convert it to glTF 2.0")
         .at_byte(4);
   }
   if (length > bytes.size()) {
-    return broken(8,
-                  fmt::format("the header says {} bytes, the file has {}", length, bytes.size()));
+    return broken(
+        8, fmt::format("the header specifies {} bytes, but the file has {}", length, bytes.size()));
   }
-  if (length < 12) return broken(8, fmt::format("the header says {} bytes", length));
+  if (length < 12) return broken(8, fmt::format("the header specifies {} bytes", length));
 
   ByteReader body(bytes.first(length));
   body.seek(12);
@@ -66,7 +66,7 @@ Result<Container> open_glb(std::span<const std::byte> bytes) {
   container.binary = true;
   container.json = {reinterpret_cast<const char*>(json->data.data()), json->data.size()};
   container.json_offset = json->offset;
-  // Chunks of unknown type are to be skipped.
+  // Chunks of unknown type must be skipped.
   while (body.remaining() > 0) {
     auto chunk = read_chunk(body);
     if (!chunk) return chunk.error();
@@ -92,7 +92,8 @@ Result<Container> open_container(std::span<const std::byte> bytes) {
   }
   const std::size_t first = container.json.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos || container.json[first] != '{') {
-    return Error("gltf-container", "neither a GLB nor a glTF in JSON: it begins with neither",
+    return Error("gltf-container",
+                 "not a glTF file: starts neither with a GLB header nor with JSON",
                  "give a .glb or .gltf file");
   }
   return container;

@@ -7,18 +7,18 @@
 
 #include "core/result.h"
 
-// The outermost frame of a glTF file. Source: glTF 2.0 Specification, section 4 (GLB).
+// The GLB container. Source: glTF 2.0 Specification, section 4 (GLB).
 
 namespace krok::gltf {
 
 struct Container {
   std::string_view json;
-  std::size_t json_offset = 0;     // of the JSON in the file
-  bool binary = false;             // a GLB
-  std::span<const std::byte> bin;  // its BIN chunk; empty if it has none
+  std::size_t json_offset = 0;     // in the file
+  bool binary = false;             // GLB, not .gltf
+  std::span<const std::byte> bin;  // the BIN chunk; empty if there is none
 };
 
-// The views point into `bytes`. Code gltf-container.
+// The views point into `bytes`. Code: gltf-container.
 Result<Container> open_container(std::span<const std::byte> bytes);
 
 }  // namespace krok::gltf

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kUsualFieldOfView = kPi / 4;
 
-// Fills in one asset from tinygltf's structures.
+// Builds a scene from tinygltf's structures.
 class Builder {
  public:
   Builder(const ParsedJson& parsed, Accessors& accessors)
@@ -33,7 +33,7 @@ class Builder {
 
   Result<Scene> build() {
     scene_.generator = model_.asset.generator;
-    scene_.space = {1.0, Quat::Identity()};  // section 3.4 prescribes both
+    scene_.space = {1.0, Quat::Identity()};  // section 3.4
     for (auto step : {&Builder::read_cameras, &Builder::read_nodes, &Builder::read_all_meshes,
                       &Builder::read_skins, &Builder::check_instances, &Builder::read_animations}) {
       if (auto done = (this->*step)(); !done) return done.error();
@@ -55,7 +55,7 @@ class Builder {
   Scene scene_;
 };
 
-// A lens over time that is not as Krok writes it is another program's and means something else.
+// An animated lens that is not in Krok's form is ignored: it was written by another program.
 void take_lens(const CameraEntry& entry, Camera& camera) {
   const bool good = std::isfinite(entry.lens_rate) && entry.lens_rate > 0 &&
                     std::ranges::all_of(entry.lens, [](float angle) {
@@ -80,7 +80,7 @@ Status Builder::read_cameras() {
     }
     camera.field_of_view = kUsualFieldOfView;
     warn(scene_.diagnostics, "gltf-camera",
-         fmt::format("{} has no field of view between 0 and 180 degrees; 45 degrees are taken",
+         fmt::format("{} has no field of view between 0 and 180 degrees; 45 degrees are used",
                      label("camera", i, entry.name)));
   }
   return {};
@@ -123,9 +123,9 @@ Status Builder::read_skins() {
   return {};
 }
 
-// What nodes, meshes and skins promise each other.
+// Checks that nodes, meshes and skins are consistent.
 Status Builder::check_instances() {
-  // The largest joint that a mesh's vertices refer to.
+  // The largest joint index in each mesh.
   std::vector<int> largest_joint(scene_.meshes.size(), -1);
   for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
     for (const Primitive& primitive : scene_.meshes[m].primitives) {
@@ -147,16 +147,15 @@ Status Builder::check_instances() {
     const Skin& skin = scene_.skins[static_cast<std::size_t>(node.skin)];
     const int largest = largest_joint[static_cast<std::size_t>(node.mesh)];
     if (largest >= static_cast<int>(skin.joints.size())) {
-      return Error("gltf-skin",
-                   fmt::format("{}: a vertex hangs on joint {}, but the skin has {} joints", name,
-                               largest, skin.joints.size()));
+      return Error("gltf-skin", fmt::format("{}: a vertex has joint {}, but the skin has {} joints",
+                                            name, largest, skin.joints.size()));
     }
   }
   return {};
 }
 
-// So much may be unpacked out of a file: the smallest encoding that glTF has grows by 16 at most,
-// plus a sum that any machine has for files that use sparse or empty accessors.
+// Limit on unpacked data: glTF's smallest encoding grows by at most a factor of 16; the constant
+// part allows for sparse and empty accessors.
 std::uint64_t unpacking_limit(std::uint64_t input_bytes) {
   return (std::uint64_t{64} << 20) + 16 * input_bytes;
 }

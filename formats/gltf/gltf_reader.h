@@ -8,31 +8,29 @@
 #include "core/result.h"
 #include "nodes/scene.h"
 
-// Reads glTF 2.0, as JSON (.gltf) or binary (.glb), from anyone: every offset, count and index is
-// checked before it is used, memory stays in proportion to the input, and no input crashes it.
+// Reads glTF 2.0, as JSON (.gltf) or binary (.glb). Safe for untrusted input: every offset, count
+// and index is checked before use, and memory is proportional to the input.
 //
-// Codes: gltf-container (the GLB's frame), gltf-json, gltf-version, gltf-extension (one that is
-// required and not known), gltf-buffer, gltf-accessor, gltf-value (not finite), gltf-node,
-// gltf-mesh, gltf-skin, gltf-animation, gltf-structure (wrong types or missing properties),
-// gltf-too-large.
+// Codes: gltf-container (GLB structure), gltf-json, gltf-version, gltf-extension (required but not
+// supported), gltf-buffer, gltf-accessor, gltf-value (not finite), gltf-node, gltf-mesh, gltf-skin,
+// gltf-animation, gltf-structure (wrong types or missing properties), gltf-too-large.
 
 namespace krok::gltf {
 
 struct ReadOptions {
-  // Where buffers beside a .gltf are looked for. Their paths must be relative and stay inside this
-  // folder. Empty: buffers in files are refused.
+  // Folder of external buffers. Their paths must be relative and stay inside it. Empty: external
+  // buffers are an error.
   std::string folder;
   std::uint64_t most_bytes = std::uint64_t{4} << 30;  // of the input and all its buffers together
-  // Scene::materials too, with pictures out of buffers, data URIs and files beside the file, under
-  // the same rules. A picture that cannot be used is left out with a warning (gltf-picture), as is
-  // what Material does not know (gltf-material).
+  // Also read Scene::materials, with images from buffers, data URIs and external files (same
+  // rules). An unusable image is left out with a warning (gltf-picture), as are properties that
+  // Material does not have (gltf-material).
   bool with_materials = false;
 };
 
 Result<nodes::Scene> read(std::span<const std::byte> bytes, const ReadOptions& options = {});
 
-// Opens `path` and reads it with its own folder as ReadOptions::folder. Also the codes of
-// InputFile.
+// Opens and reads `path`, with its folder as ReadOptions::folder. Also the codes of InputFile.
 Result<nodes::Scene> read_file(const std::string& path, ReadOptions options = {});
 
 }  // namespace krok::gltf

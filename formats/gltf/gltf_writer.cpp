@@ -47,7 +47,7 @@ void add_influences(Document& document, const Model& model,
   }
 }
 
-// Tangents that a normal texture needs and the mesh has not.
+// Tangents, if a normal texture needs them and the shape has none.
 std::vector<Vec4f> missing_tangents(const Model& model, const MeshShape& shape,
                                     const WriteOptions& options) {
   if (!shape.tangents.empty() || shape.normals.empty() ||

@@ -31,10 +31,10 @@ Images::Images(const ParsedJson& parsed, std::span<const std::span<const std::by
   for (const auto& buffer : buffers) in_buffers_left_ += buffer.size();
 }
 
-std::shared_ptr<const EncodedImage> Images::get(std::size_t image, Diagnostics& diagnostics) {
-  const auto [place, added] = known_.try_emplace(image);
+std::shared_ptr<const EncodedImage> Images::get(std::size_t index, Diagnostics& diagnostics) {
+  const auto [place, added] = known_.try_emplace(index);
   if (!added) return place->second;
-  auto image = read(image);
+  auto image = read(index);
   if (image) {
     const auto facts = image_info((*image)->bytes);
     if (facts) return place->second = *std::move(image);
@@ -43,7 +43,7 @@ std::shared_ptr<const EncodedImage> Images::get(std::size_t image, Diagnostics& 
   Diagnostic warning = image.error();
   warning.severity = Severity::warning;
   warning.code = "gltf-picture";
-  warning.message = fmt::format("image {} is left out: {}", image, warning.message);
+  warning.message = fmt::format("image {} is left out: {}", index, warning.message);
   diagnostics.push_back(std::move(warning));
   return nullptr;
 }
@@ -51,10 +51,10 @@ std::shared_ptr<const EncodedImage> Images::get(std::size_t image, Diagnostics& 
 Result<std::shared_ptr<const EncodedImage>> Images::read(std::size_t image) {
   const auto images = parsed_.look.find("images");
   if (images == parsed_.look.end() || !images->is_array() || image >= images->size()) {
-    return bad_image("there is no such image");
+    return bad_image("it does not exist");
   }
   const Json& entry = (*images)[image];
-  if (!entry.is_object()) return bad_image("it is no object");
+  if (!entry.is_object()) return bad_image("it is not an object");
   const std::string name = text_member(entry, "name");
   if (const auto view = entry.find("bufferView"); view != entry.end()) {
     auto bytes = bytes_of_view(*view);
@@ -63,7 +63,7 @@ Result<std::shared_ptr<const EncodedImage>> Images::read(std::size_t image) {
   }
   const std::string uri = text_member(entry, "uri");
   if (!is_data_uri(uri)) return beside(uri, name);
-  const auto decoded = decode_data_uri(uri, "the picture");
+  const auto decoded = decode_data_uri(uri, "the image");
   if (!decoded) return decoded.error();
   const auto bytes = std::as_bytes(std::span(*decoded));
   return made(name, {}, {bytes.begin(), bytes.end()});
@@ -79,9 +79,9 @@ Result<std::vector<std::byte>> Images::bytes_of_view(const Json& number) {
   }
   const auto buffer = buffers_[static_cast<std::size_t>(view.buffer)];
   if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) {
-    return bad_image("it lies outside of its buffer");
+    return bad_image("it is outside its buffer");
   }
-  if (view.byteLength > in_buffers_left_) return bad_image("pictures share their bytes");
+  if (view.byteLength > in_buffers_left_) return bad_image("images share bytes");
   in_buffers_left_ -= view.byteLength;
   const auto bytes = buffer.subspan(view.byteOffset, view.byteLength);
   return std::vector<std::byte>(bytes.begin(), bytes.end());
@@ -90,7 +90,7 @@ Result<std::vector<std::byte>> Images::bytes_of_view(const Json& number) {
 Result<std::shared_ptr<const EncodedImage>> Images::beside(const std::string& uri,
                                                            const std::string& name) {
   if (uri.empty()) return bad_image("it has neither data nor a URI");
-  const auto file = open_beside(uri, "picture", options_.folder, beside_left_);
+  const auto file = open_beside(uri, "image", options_.folder, beside_left_);
   if (!file) return file.error();
   std::error_code error;
   const auto real = std::filesystem::canonical(file->path(), error);

@@ -13,22 +13,22 @@
 #include "formats/gltf/json_text_internal.h"
 #include "scene/encoded_image.h"
 
-// Private to this folder: the pictures of a file, out of its buffers, data URIs and files beside.
+// Private to this folder: loads images from buffers, data URIs and external files.
 
 namespace krok::gltf {
 
-// Nothing in the file is trusted. Memory stays in proportion to the input: all pictures out of
-// buffers together take no more than the buffers.
+// Nothing in the file is trusted. Memory is proportional to the input: all images from buffers
+// together take at most the size of the buffers.
 class Images {
  public:
   Images(const ParsedJson& parsed, std::span<const std::span<const std::byte>> buffers,
          const ReadOptions& options);
 
-  // The picture of an image, the same for the same one; null where it cannot be used, with a
-  // warning (code gltf-picture) at the first call.
+  // The image with this index, loaded once; null if it is unusable, with a warning (code
+  // gltf-picture) on the first call.
   std::shared_ptr<const EncodedImage> get(std::size_t image, Diagnostics& diagnostics);
 
-  // Paths of the files that were read.
+  // Paths of the external files that were read.
   const std::vector<std::string>& files() const { return files_; }
 
  private:
@@ -41,7 +41,7 @@ class Images {
   std::span<const std::span<const std::byte>> buffers_;
   const ReadOptions& options_;
   std::uint64_t in_buffers_left_ = 0, beside_left_ = 0;               // bytes
-  std::map<std::size_t, std::shared_ptr<const EncodedImage>> known_;  // by image
+  std::map<std::size_t, std::shared_ptr<const EncodedImage>> known_;  // by index
   std::map<std::string, std::shared_ptr<const EncodedImage>> by_file_;
   std::vector<std::string> files_;
 };

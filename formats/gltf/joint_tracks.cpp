@@ -21,10 +21,10 @@ constexpr double kAngleTolerance = 1e-6;  // radians
 
 constexpr std::size_t kFramesAtOnce = 128;
 
-// Works the tracks of all joints out at once, a block of frames at a time. Which joints have tracks
-// can only be said when all frames are known, and matters for their descendants, which follow what
-// a viewer shows; so that is taken from a few frames at first. Where the rest proves it wrong, all
-// is done again with what they showed: then the decisions of one generation more are final.
+// Computes the tracks of all joints in blocks of frames. Which joints need tracks is known only
+// after all frames, yet affects their descendants, which are relative to what a viewer shows. It is
+// therefore estimated from a few frames. If other frames need more tracks, everything is computed
+// again with those; each pass settles the decisions of one more level of the hierarchy.
 class TrackBuilder {
  public:
   TrackBuilder(const Skeleton& rest, const FrameSource& source, double tolerance, int jobs,
@@ -63,7 +63,7 @@ class TrackBuilder {
  private:
   using Seen = std::vector<std::uint8_t>;
 
-  // What one block of frames takes while it is worked on.
+  // Working memory for a block of frames.
   struct Room {
     std::vector<Vec3f> positions;
     std::vector<Quatf> orientations;
@@ -78,7 +78,7 @@ class TrackBuilder {
             kAngleTolerance};
   }
 
-  // Adds what the frames of a block ask for to room.seen, and stores them if `keep`.
+  // Adds the tracks that the block's frames need to room.seen; stores the values if `keep`.
   Status do_block(std::size_t block, bool keep, Room& room) {
     constexpr std::size_t kAlignment = 64;
     const std::size_t first = block * kFramesAtOnce;
@@ -155,14 +155,15 @@ class TrackBuilder {
 
   static void turn_over(Quatf& q) { q.coeffs() = -q.coeffs(); }
 
-  // Brings each rotation into the hemisphere of the one before it.
+  // Brings each rotation into the hemisphere of the previous one.
   static void join_signs(std::span<Quatf> rotations) {
     for (std::size_t f = 1; f < rotations.size(); ++f) {
       if (rotations[f - 1].dot(rotations[f]) < 0) turn_over(rotations[f]);
     }
   }
 
-  // Turns whole blocks over where they do not follow from the one before, the first from the rest.
+  // Negates whole blocks that are not in the hemisphere of the previous one; the first block is
+  // compared with the rest rotation.
   void join_blocks(JointTrack& track) const {
     Quatf before = track.rest_rotation;
     for (std::size_t first = 0; first < track.rotations.size(); first += kFramesAtOnce) {
@@ -181,7 +182,7 @@ class TrackBuilder {
   const int jobs_;
   JointTracks& result_;
   const std::size_t joints_, frames_, blocks_;
-  Seen tracks_;  // [joints], which tracks each is taken to have
+  Seen tracks_;  // [joints], the tracks that each is assumed to have
   std::vector<float> rest_translations_, rest_rotations_;
 };
 
@@ -193,10 +194,10 @@ Result<std::vector<float>> key_times(int frames, double rate) {
     times[f] = static_cast<float>(f / rate);
     if (!std::isfinite(times[f]) || (f > 0 && !(times[f] > times[f - 1]))) {
       return Error("gltf-times",
-                   fmt::format("at {} frames a second, frames {} and {} fall on the same time in "
-                               "glTF, whose times are floats",
+                   fmt::format("at {} frames per second, frames {} and {} have the same time in "
+                               "glTF, which stores times as floats",
                                readable(rate), f - 1, f),
-                   "cut the motion into shorter ones, or lower the rate");
+                   "split the motion, or lower the frame rate");
     }
   }
   return times;

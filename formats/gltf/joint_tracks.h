@@ -6,24 +6,22 @@
 #include "scene/clip.h"
 #include "scene/frame_source.h"
 
-// From joint_to_world over time, as a clip has it, to what glTF animates: transforms relative to
-// the parent, as floats, such that a viewer that multiplies them up again puts the joints where the
-// clip has them.
+// Converts a clip's joint_to_world transforms to glTF animation tracks: float transforms relative
+// to the parent, from which a viewer rebuilds the clip's joint positions.
 
 namespace krok::gltf {
 
 struct JointTrack {
-  // The node's own transform: the reference pose, relative to the parent.
+  // The node's transform: the reference pose, relative to the parent.
   Vec3f rest_translation = Vec3f::Zero();
   Quatf rest_rotation = Quatf::Identity();
 
-  // [frames], or none where the rest value serves for all frames. Successive rotations lie in one
-  // hemisphere, so that a viewer's interpolation takes the shorter arc.
+  // [frames], or empty if the rest value holds for all frames. Successive rotations are in one
+  // hemisphere, so that interpolation takes the shorter arc.
   std::vector<Vec3f> translations;
   std::vector<Quatf> rotations;
 
-  // Where reduce_tracks() has left fewer values than frames: the frames that they belong to,
-  // rising.
+  // After reduce_tracks(), for tracks with fewer keys than frames: the keys' frames, increasing.
   std::vector<int> translation_frames, rotation_frames;
 };
 
@@ -32,28 +30,27 @@ struct JointTracks {
   std::vector<JointTrack> joints;  // [joints]
 };
 
-// The tracks of `clip` on a skeleton of the same structure, whose reference pose the nodes take.
+// The tracks of `clip` for a skeleton of the same structure, whose reference pose the nodes get.
 //
-// Worked out in doubles from the root down against the rounded transforms of the parents as a
-// viewer will rebuild them, so that rounding does not add up along a chain. A joint keeps its rest
-// translation unless some frame would leave its world position more than `tolerance` metres off (it
-// moves against its parent, or the clip's orientations are rounded); then it gets a track. The same
-// for rotations with 1e-6 rad.
+// Computed in double precision from the root down, relative to the parents' rounded transforms as a
+// viewer rebuilds them, so that rounding errors do not accumulate along a chain. A joint gets a
+// translation track only if in some frame its world position would be off by more than `tolerance`
+// metres without one (it moves relative to its parent, or the clip's orientations are rounded).
+// Rotations likewise, with 1e-6 rad.
 //
-// An Error (code gltf-times) if the rate is so high or the clip so long that two frames would fall
-// on the same time.
+// Code: gltf-times if the rate is so high or the clip so long that two frames have the same time.
 Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip, double tolerance = 1e-6);
 
-// The same of frames that are made when they are asked for, on `jobs` threads (as in parallel_for);
-// the result does not depend on them. The source's frames may be asked for more than once, from
-// the first on each time, and release() is called each time.
+// As above for frames computed on demand, on `jobs` threads (as in parallel_for), which do not
+// affect the result. The source may be traversed more than once, each time from the first frame and
+// with release().
 Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source, int jobs,
                                  double tolerance = 1e-6);
 
-// Only the nodes' own transforms and no times.
+// Only the rest transforms, no times.
 JointTracks rest_tracks(const Skeleton& rest);
 
-// i / rate of each frame as floats. An Error (code gltf-times) as above.
+// frame / rate for each frame, as floats. Code: gltf-times, as above.
 Result<std::vector<float>> key_times(int frames, double rate);
 
 }  // namespace krok::gltf

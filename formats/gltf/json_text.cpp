@@ -27,8 +27,8 @@ Error at_offset(Error error, const Container& container, std::size_t offset) {
   return std::move(error).at_line(line, static_cast<std::int64_t>(column) + 1);
 }
 
-// The place where the text nests too deep, or npos. Parsers and destructors may recurse, so this
-// comes before them.
+// The offset at which the text nests too deep, or npos. Checked before parsing, because parsers and
+// destructors may recurse.
 std::size_t too_deep_at(std::string_view text) {
   int depth = 0;
   bool in_string = false;
@@ -52,7 +52,7 @@ Result<Json> parse_text(const Container& container) {
   const std::string_view text = container.json;
   if (const std::size_t place = too_deep_at(text); place != std::string_view::npos) {
     return at_offset(Error("gltf-json", fmt::format("the JSON nests deeper than {}", kDeepest),
-                           "this is no file that an exporter writes"),
+                           "no exporter writes such files"),
                      container, place);
   }
   try {
@@ -60,25 +60,25 @@ Result<Json> parse_text(const Container& container) {
     if (json.is_object()) return json;
     return Error("gltf-json", "the JSON is not an object");
   } catch (const Json::parse_error& error) {
-    // Its message begins "[json.exception...] parse error at line 1, column 5: ".
+    // The message begins "[json.exception...] parse error at line 1, column 5: ".
     std::string what = error.what();
     const std::size_t colon = what.find(": ");
     if (colon != std::string::npos) what = what.substr(colon + 2);
     if (what.size() > kLongestMessage) what = what.substr(0, kLongestMessage) + "...";
     const std::size_t offset = error.byte > 0 ? std::min(error.byte - 1, text.size()) : 0;
-    return at_offset(Error("gltf-json", "the JSON does not parse: " + what,
-                           "the file is damaged or was cut short"),
-                     container, offset);
+    return at_offset(
+        Error("gltf-json", "invalid JSON: " + what, "the file is damaged or truncated"), container,
+        offset);
   } catch (const Json::exception& error) {
-    return Error("gltf-json", fmt::format("the JSON cannot be used: {}", error.what()));
+    return Error("gltf-json", fmt::format("unusable JSON: {}", error.what()));
   }
 }
 
 Status check_asset(const Json& json) {
   const auto asset = json.find("asset");
   if (asset == json.end()) {
-    return Error("gltf-version", "no 'asset' is given, so this is not glTF 2.0",
-                 "glTF 1.0 and other JSON cannot be read; convert to glTF 2.0");
+    return Error("gltf-version", "there is no 'asset', so this is not glTF 2.0",
+                 "glTF 1.0 and other JSON are not supported; convert to glTF 2.0");
   }
   const std::string version = text_member(*asset, "version");
   if (!version.starts_with("2.")) {
@@ -89,7 +89,7 @@ Status check_asset(const Json& json) {
   return {};
 }
 
-// Extensions that change how things look but not where they are.
+// Extensions that affect appearance but not geometry.
 bool is_harmless(std::string_view extension) {
   constexpr std::array kPrefixes = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                     "MSFT_texture_",  "KHR_lights_",  "EXT_lights_",
@@ -108,7 +108,7 @@ Status check_extensions(const Json& json) {
     return Error("gltf-extension",
                  fmt::format("the file requires the extension {}, which is not supported",
                              name.substr(0, 80)),
-                 "export it without that extension (compressed meshes: decompress it first)");
+                 "export it without that extension (decompress compressed meshes first)");
   }
   return {};
 }
@@ -131,7 +131,7 @@ Result<std::vector<BufferEntry>> read_buffers(const Json& json) {
   return buffers;
 }
 
-// Names of a list's entries.
+// Names of the entries of a list.
 std::vector<std::string> names_of(const Json& json, const char* list_name) {
   std::vector<std::string> names;
   const auto list = json.find(list_name);
@@ -158,7 +158,7 @@ std::vector<std::vector<std::string>> read_target_names(const Json& json) {
   return all;
 }
 
-// A lens that changes over time, where the file has one; numbers alone are looked at.
+// The animated lens, if there is one; only types are checked.
 void read_lens(const Json& entry, CameraEntry& camera) {
   const Json::json_pointer place("/extras/fieldsOfView");
   if (!entry.contains(place) || !entry.at(place).is_object()) return;
@@ -171,8 +171,7 @@ void read_lens(const Json& entry, CameraEntry& camera) {
   }
 }
 
-// Read here and not by tinygltf, which refuses a whole file for a camera without its clipping
-// planes.
+// Not read by tinygltf, which rejects a whole file if a camera has no clipping planes.
 std::vector<CameraEntry> read_cameras(const Json& json) {
   std::vector<CameraEntry> cameras;
   const auto list = json.find("cameras");
@@ -190,7 +189,7 @@ std::vector<CameraEntry> read_cameras(const Json& json) {
   return cameras;
 }
 
-// Removes what is not used. The depth was bounded before.
+// Removes what is not used. The depth is already bounded.
 void drop_extras(Json& json) {
   if (json.is_object()) {
     json.erase("extras");
@@ -216,9 +215,8 @@ Json used_parts(Json& json) {
   return used;
 }
 
-// tinygltf cuts integers to 32 bits, which could turn an index that does not exist into one that
-// does. Coordinates may be any number; sizes that it takes in 64 bits are checked where they are
-// used.
+// tinygltf truncates integers to 32 bits, which could turn an invalid index into a valid one.
+// Coordinates may be any number; sizes that it reads as 64 bits are checked where they are used.
 Status check_integers(const Json& json, bool in_sparse = false) {
   if (json.is_array()) {
     for (const Json& part : json) {

@@ -10,7 +10,7 @@
 #include "core/result.h"
 #include "formats/gltf/glb_container.h"
 
-// Private to this folder: from the JSON of a glTF file to tinygltf's structures.
+// Private to this folder: parses the JSON of a glTF file into tinygltf's structures.
 
 namespace krok::gltf {
 
@@ -23,8 +23,8 @@ struct BufferEntry {
 struct CameraEntry {
   std::string name;
   bool perspective = true;
-  double field_of_view = 0;  // vertical, radians; 0 where the file gives none that is a number
-  // From extras.fieldsOfView, which formats/gltf/add_camera.h writes; not checked.
+  double field_of_view = 0;  // vertical, radians; 0 if missing or not a number
+  // From extras.fieldsOfView (see add_camera.h); not checked.
   double lens_rate = 0;
   std::vector<float> lens;
 };
@@ -33,17 +33,17 @@ struct ParsedJson {
   tinygltf::Model model;  // without buffers, materials, images, cameras, extras and extensions
   std::vector<BufferEntry> buffers;
   std::vector<std::string> material_names;
-  nlohmann::json look;  // an object: materials, textures, images and samplers as the file has them
+  nlohmann::json look;  // an object: the file's materials, textures, images and samplers
   std::vector<CameraEntry> cameras;
-  std::vector<std::vector<std::string>> target_names;  // [meshes], each possibly empty
+  std::vector<std::vector<std::string>> target_names;  // [meshes], may be empty
 };
 
-// A text of an object; empty where it has none of that name.
+// A string member; empty if there is none.
 std::string text_member(const nlohmann::json& object, const char* name);
 
-// Refuses JSON that nests deeper than glTF ever needs, and versions and required extensions that
-// are not known. tinygltf gets only those parts of the file that are used, so that what it does
-// with others cannot matter. Codes gltf-json, gltf-version, gltf-extension, gltf-structure.
+// Rejects JSON nested deeper than glTF needs, and unsupported versions and required extensions.
+// Passes only the parts of the file that are used to tinygltf, to limit its exposure to malformed
+// input. Codes: gltf-json, gltf-version, gltf-extension, gltf-structure.
 Result<ParsedJson> parse_json(const Container& container);
 
 }  // namespace krok::gltf

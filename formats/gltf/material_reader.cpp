@@ -20,13 +20,13 @@ using Json = nlohmann::json;
 
 const Json kNothing = Json::object();
 
-// A member that is an object; an empty one where there is none.
+// A member that is an object; an empty object if there is none.
 const Json& object_in(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_object() ? *found : kNothing;
 }
 
-// A member of a list that a member numbers.
+// The list entry with an index given in the JSON; null if there is none.
 const Json* entry_of(const Json& root, const char* list, const Json& number) {
   const auto entries = root.find(list);
   if (entries == root.end() || !entries->is_array() || !number.is_number_unsigned()) return nullptr;
@@ -79,8 +79,8 @@ class MaterialReader {
     return material;
   }
 
-  // What says how the surface takes light: the metallic-roughness model, or as much of the older
-  // specular-glossiness one as that can tell.
+  // The metallic-roughness parameters, approximated if the file has only the older
+  // specular-glossiness ones.
   void read_surface(const Json& json, Material& material) {
     const Json& extensions = object_in(json, "extensions");
     material.unlit = extensions.contains("KHR_materials_unlit");
@@ -136,7 +136,7 @@ class MaterialReader {
                                                            : Texture::Wrap::repeat;
   }
 
-  // A number brought into its range.
+  // The number clamped to its range.
   float in_range(const Json& number, float usual, float least = 0, float most = 1) {
     const double value = number.is_number() ? number.get<double>() : usual;
     if (!number.is_number() || !(value >= least && value <= most)) ++out_of_range_;
@@ -169,24 +169,23 @@ class MaterialReader {
     gltf::warn(scene_.diagnostics, "gltf-material", std::move(message), std::move(hint));
   }
 
-  // What was left out, once for the whole file.
+  // Warns about what was left out, once per file.
   void tell() {
     if (!left_aside_.empty()) {
       std::vector<std::string> names;
       for (const std::string& name : left_aside_) names.push_back(shown(name));
       constexpr std::size_t kMaxNames = 10;
       if (names.size() > kMaxNames) names.resize(kMaxNames);
-      warn(fmt::format("materials use what is left aside: {}", fmt::join(names, ", ")),
-           "they may look otherwise than in other programs");
+      warn(fmt::format("the materials use extensions that are ignored: {}", fmt::join(names, ", ")),
+           "they may look different in other programs");
     }
     const auto left_out = [&](int count, const char* what) {
       if (count > 0) warn(fmt::format("{} {}: left out", counted(count, "texture"), what));
     };
-    left_out(of_other_coordinates_, "laid out by other texture coordinates than the first");
-    left_out(without_image_, "without an image that can be used");
+    left_out(of_other_coordinates_, "with a texture coordinate set other than 0");
+    left_out(without_image_, "without a usable image");
     if (out_of_range_ > 0) {
-      warn(fmt::format("{} of materials out of range: brought into it",
-                       counted(out_of_range_, "factor")));
+      warn(fmt::format("{} of materials out of range: clamped", counted(out_of_range_, "factor")));
     }
   }
 

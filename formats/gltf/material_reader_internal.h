@@ -8,12 +8,12 @@
 #include "formats/gltf/json_text_internal.h"
 #include "nodes/scene.h"
 
-// Private to this folder: what a file says of how its surfaces look.
+// Private to this folder: reads materials.
 
 namespace krok::gltf {
 
-// Fills in the scene's materials and which of them its primitives have. Never fails: what cannot be
-// used is left out, and said in the scene's diagnostics (codes gltf-material, gltf-picture).
+// Fills in the scene's materials and assigns them to primitives. Never fails: what cannot be used
+// is left out, with a warning in the scene's diagnostics (codes gltf-material, gltf-picture).
 void read_materials(const ParsedJson& parsed, std::span<const std::span<const std::byte>> buffers,
                     const ReadOptions& options, nodes::Scene& scene);
 

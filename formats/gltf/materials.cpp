@@ -6,13 +6,13 @@
 #include "core/text.h"
 #include "formats/gltf/document_internal.h"
 
-// What a file that is written says of how its surfaces look.
+// Writes materials, textures and eyes.
 
 namespace krok::gltf {
 
 namespace {
 
-// The double that people mean by a float: 0.8f as 0.8.
+// The shortest decimal that gives the float: 0.8f as 0.8.
 double as_meant(float value) {
   return parse_finite(shortest(value)).value_or(value);
 }
@@ -40,7 +40,7 @@ tinygltf::Sampler sampler_of(const Texture& texture) {
   return sampler;
 }
 
-// All but its textures.
+// The material without its textures.
 tinygltf::Material factors_of(const Material& from) {
   tinygltf::Material material;
   material.name = from.name;
@@ -61,23 +61,23 @@ constexpr const char* kUnlit = "KHR_materials_unlit";
 
 }  // namespace
 
-Result<int> Document::add_image(const EncodedImage& image) {
-  if (const auto known = images_.find(&image); known != images_.end()) return known->second;
-  auto facts = image_info(image.bytes);
-  if (!facts) return std::move(facts.error()).in_file(image.path);
+Result<int> Document::add_image(const EncodedImage& encoded) {
+  if (const auto known = images_.find(&encoded); known != images_.end()) return known->second;
+  auto facts = image_info(encoded.bytes);
+  if (!facts) return std::move(facts.error()).in_file(encoded.path);
   tinygltf::BufferView view;
   view.buffer = 0;
   view.byteOffset = size_;
-  view.byteLength = image.bytes.size();
-  put(image.bytes, Keep::view);
+  view.byteLength = encoded.bytes.size();
+  put(encoded.bytes, Keep::view);
   tinygltf::Image image;
-  image.name = image.name;
+  image.name = encoded.name;
   image.mimeType = media_type(facts->kind);
   image.bufferView = static_cast<int>(gltf.bufferViews.size());
   gltf.bufferViews.push_back(std::move(view));
   const int index = static_cast<int>(gltf.images.size());
   gltf.images.push_back(std::move(image));
-  images_.emplace(&image, index);
+  images_.emplace(&encoded, index);
   return index;
 }
 
@@ -94,7 +94,7 @@ Result<int> Document::add_texture(const Texture& texture) {
   if (!texture) return -1;
   const auto image = add_image(*texture.image);
   if (!image) return image;
-  // The usual needs no words.
+  // Defaults are not written.
   const Texture usual{texture.image};
   const int sampler = texture == usual ? -1 : add_sampler(texture);
   const auto [place, made] =

@@ -23,7 +23,7 @@ int attribute(const std::map<std::string, int>& attributes, const char* name) {
   return found == attributes.end() ? -1 : found->second;
 }
 
-// An attribute of a vector type, null if it is absent; as many as there are vertices.
+// An attribute of a vector type, null if it is absent; must have one element per vertex.
 Status read_vectors(const std::map<std::string, int>& attributes, const char* what,
                     std::size_t vertices, Accessors& accessors, const std::string& name,
                     Shared<Vec3f>& values) {
@@ -52,7 +52,7 @@ Status read_texture_coordinates(const tinygltf::Primitive& source, Accessors& ac
   return {};
 }
 
-// Tangents of length 1 as the specification asks, w the sign; one that is zero stays so.
+// Normalises tangents, as the specification requires; w is the sign. A zero tangent stays zero.
 Status read_tangents(const tinygltf::Primitive& source, Accessors& accessors,
                      const std::string& name, Primitive& primitive, Diagnostics& diagnostics) {
   const int accessor = attribute(source.attributes, "TANGENT");
@@ -79,16 +79,16 @@ Status read_tangents(const tinygltf::Primitive& source, Accessors& accessors,
   }
   if (zeros > 0) {
     warn(diagnostics, "gltf-mesh-tangents",
-         fmt::format("{}: {} of {} tangents are zero, the first that of vertex {}; a .model of it "
-                     "has none",
+         fmt::format("{}: {} of {} tangents are zero, the first at vertex {}; a .model of it has "
+                     "no tangents",
                      name, zeros, vertices, first_zero));
   }
   primitive.tangents = std::move(tangents);
   return {};
 }
 
-// Weights that sum to 1, as rounding to bytes would not leave them. A vertex without any hangs on
-// its first joint, as common viewers have it.
+// Normalises weights to sum to 1, which rounding to bytes may break. A vertex without weights is
+// bound to its first joint, as in common viewers.
 void normalize_weights(Primitive& primitive, const std::string& name, Diagnostics& diagnostics) {
   const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
   std::size_t without = 0;
@@ -108,7 +108,7 @@ void normalize_weights(Primitive& primitive, const std::string& name, Diagnostic
   }
   if (without > 0) {
     warn(diagnostics, "gltf-mesh-weights",
-         fmt::format("{}: {} vertices have no weights and hang on their first joint", name,
+         fmt::format("{}: {} vertices have no weights and are bound to their first joint", name,
                      without));
   }
 }
@@ -126,7 +126,8 @@ Status read_influences(const tinygltf::Primitive& source, Accessors& accessors,
     const int weight_accessor = attribute(source.attributes, kWeights[sets]);
     if (joint_accessor == -1 && weight_accessor == -1) break;
     if (joint_accessor == -1 || weight_accessor == -1) {
-      return bad_mesh(name, fmt::format("only one of {} and {}", kJoints[sets], kWeights[sets]));
+      return bad_mesh(name,
+                      fmt::format("has only one of {} and {}", kJoints[sets], kWeights[sets]));
     }
     auto set_joints = accessors.integers(joint_accessor, TINYGLTF_TYPE_VEC4);
     if (!set_joints) return set_joints.error();
@@ -141,7 +142,7 @@ Status read_influences(const tinygltf::Primitive& source, Accessors& accessors,
   }
   if (attribute(source.attributes, "JOINTS_2") != -1) {
     warn(diagnostics, "gltf-mesh-influences",
-         fmt::format("{}: more than 8 influences a vertex; the first 8 are used", name));
+         fmt::format("{}: more than 8 influences per vertex; the first 8 are used", name));
   }
   if (sets == 0 || vertices == 0) return {};
 
@@ -163,7 +164,7 @@ Status read_influences(const tinygltf::Primitive& source, Accessors& accessors,
   return {};
 }
 
-// Corners of triangles, strips and fans as triangles; section 3.7.2.1 of the specification.
+// Triangles from triangle lists, strips and fans; section 3.7.2.1 of the specification.
 std::vector<Triangle> triangles_of(int mode, std::span<const std::uint32_t> corners) {
   std::vector<Triangle> triangles;
   const std::size_t count = corners.size();
@@ -187,7 +188,7 @@ std::vector<Triangle> triangles_of(int mode, std::span<const std::uint32_t> corn
 Status read_triangles(const tinygltf::Primitive& source, Accessors& accessors,
                       const std::string& name, Primitive& primitive) {
   if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-    return bad_mesh(name, fmt::format("mode {} is not one of glTF's", source.mode));
+    return bad_mesh(name, fmt::format("mode {} is not a glTF mode", source.mode));
   }
   const std::size_t vertices = primitive.vertex_count();
   std::vector<std::uint32_t> corners;
@@ -206,7 +207,7 @@ Status read_triangles(const tinygltf::Primitive& source, Accessors& accessors,
     for (std::size_t i = 0; i < vertices; ++i) corners[i] = static_cast<std::uint32_t>(i);
   }
   if (source.mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3 != 0) {
-    return bad_mesh(name, fmt::format("{} corners do not make whole triangles", corners.size()));
+    return bad_mesh(name, fmt::format("{} indices do not form whole triangles", corners.size()));
   }
   const std::size_t each = source.mode == TINYGLTF_MODE_TRIANGLES ? 4 : sizeof(Triangle);
   if (auto taken = accessors.reserve(corners.size() * each); !taken) return taken;

@@ -9,7 +9,7 @@ namespace {
 
 using Use = Document::Use;
 
-// glTF wants normals of length 1 whatever the model has.
+// glTF requires unit normals; the model's may have any length.
 Vec3f unit_or_up(const Vec3f& vector) {
   const Vec3 direction = vector.cast<double>();
   const double length = direction.norm();
@@ -37,7 +37,7 @@ std::vector<Vec3f> unit_vectors(std::span<const Vec3f> vectors) {
 Status check_mesh(const Model& model) {
   if (Status status = check(model); !status) return status;
   if (model.positions.empty() || model.triangles.empty()) {
-    return Error("gltf-empty-mesh", "the model has no triangles, and glTF knows no empty mesh");
+    return Error("gltf-empty-mesh", "the model has no triangles; glTF does not allow empty meshes");
   }
   return {};
 }

@@ -12,7 +12,7 @@ namespace {
 
 Status check_weights(const MorphWeights& weights, const MorphSet* morphs) {
   if (morphs == nullptr || weights.names != morphs->names) {
-    return Error("gltf-morphs", "the weights are of other morph targets than the model's");
+    return Error("gltf-morphs", "the weights do not match the model's morph targets");
   }
   if (weights.names.empty()) return {};
   const auto finite = [](float weight) { return std::isfinite(weight); };
@@ -20,7 +20,7 @@ Status check_weights(const MorphWeights& weights, const MorphSet* morphs) {
       std::ranges::all_of(weights.values, finite)) {
     return {};
   }
-  return Error("gltf-morphs", "a weight of a morph target is missing or not finite");
+  return Error("gltf-morphs", "a morph weight is missing or not finite");
 }
 
 std::vector<Vec3f> displacements(std::span<const Vec3f> target, std::span<const Vec3f> base) {
@@ -53,7 +53,7 @@ Status add_morphs(Document& document, const Model& model,
     auto& target = targets[static_cast<std::size_t>(t)];
     target["POSITION"] =
         document.add_positions(displacements(morphs.target_positions(t), model.positions));
-    // glTF lets a target move only what the mesh has.
+    // In glTF a target may only have attributes that the mesh has.
     if (morphs.normals.empty() || model.normals.empty() || !attributes.contains("NORMAL")) continue;
     target["NORMAL"] = document.add_vectors(displacements(morphs.target_normals(t), model.normals));
   }

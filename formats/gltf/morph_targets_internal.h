@@ -7,15 +7,15 @@
 #include "formats/gltf/gltf_writer.h"
 #include "scene/model.h"
 
-// Private to this folder: morph targets and their weights beside whatever else moves a mesh.
+// Private to this folder: writes morph targets and their weights.
 
 namespace krok::gltf {
 
-// Whether the targets and weights of the options, if there are any, fit the model. Codes:
-// gltf-morphs and those of check(MorphSet).
+// Whether the options' targets and weights, if any, match the model. Codes: gltf-morphs and those
+// of check(MorphSet).
 Status check_morphs(const Model& model, const WriteOptions& options);
 
-// Adds them to a mesh of the model and to the animation of its node. `attributes` are the mesh's.
+// Adds them to the model's mesh, which has `attributes`, and to the animation of its node.
 Status add_morphs(Document& document, const Model& model,
                   const std::map<std::string, int>& attributes, int mesh, int node,
                   const WriteOptions& options);

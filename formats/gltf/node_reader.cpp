@@ -69,7 +69,7 @@ Status take_nodes(const tinygltf::Model& model, Scene& scene) {
   return {};
 }
 
-// Parents; nodes must form trees.
+// Sets parents and checks that the nodes form trees.
 Status link_nodes(std::vector<Node>& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (const int child : nodes[i].children) {
@@ -89,8 +89,8 @@ Status link_nodes(std::vector<Node>& nodes) {
       below.parent = static_cast<int>(i);
     }
   }
-  // Each node has one parent at most, so whatever cannot be reached from a root lies on a cycle or
-  // under one.
+  // Each node has at most one parent, so nodes that are not reachable from a root are on a cycle or
+  // below one.
   std::vector<int> reached;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (nodes[i].parent == -1) reached.push_back(static_cast<int>(i));
@@ -101,14 +101,13 @@ Status link_nodes(std::vector<Node>& nodes) {
   }
   if (reached.size() != nodes.size()) {
     return Error("gltf-node",
-                 fmt::format("{} nodes are their own ancestors or hang under such",
-                             nodes.size() - reached.size()),
+                 fmt::format("{} nodes are in a cycle or below one", nodes.size() - reached.size()),
                  "nodes must form trees");
   }
   return {};
 }
 
-// Which nodes are shown.
+// Sets which nodes are visible.
 Status read_scene(const tinygltf::Model& model, Scene& scene) {
   auto& nodes = scene.nodes;
   if (model.defaultScene != -1 && !exists(model.defaultScene, model.scenes.size())) {
@@ -128,7 +127,7 @@ Status read_scene(const tinygltf::Model& model, Scene& scene) {
       }
       if (nodes[static_cast<std::size_t>(root)].parent != -1) {
         return Error("gltf-node",
-                     fmt::format("the scene has node {}, which is another's child", root),
+                     fmt::format("the scene has node {}, which is a child of another node", root),
                      "a scene lists root nodes only");
       }
       if (std::find(scene.roots.begin(), scene.roots.end(), root) == scene.roots.end()) {

@@ -5,11 +5,11 @@
 #include "core/result.h"
 #include "nodes/scene.h"
 
-// Private to this folder: nodes, their trees, and which of them are shown.
+// Private to this folder: reads the node hierarchy and visibility.
 
 namespace krok::gltf {
 
-// `scene` has its cameras already. Code gltf-node.
+// Call after cameras were read. Code: gltf-node.
 Status read_nodes(const tinygltf::Model& model, nodes::Scene& scene);
 
 }  // namespace krok::gltf

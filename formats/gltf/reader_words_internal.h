@@ -5,16 +5,16 @@
 
 #include "core/result.h"
 
-// Private to this folder: what the readers of a file's parts say alike.
+// Private to this folder: shared wording of the readers' messages.
 
 namespace krok::gltf {
 
-inline constexpr const char* kDamagedHint = "the file is damaged or its exporter has a fault";
+inline constexpr const char* kDamagedHint = "the file is damaged, or its exporter has a bug";
 
-// "node 3 (LeftHand)", or "node 3" without a name.
+// "node 3 (LeftHand)", or "node 3" if there is no name.
 std::string label(const char* kind, std::size_t index, const std::string& name);
 
-// Whether a reference names one of `count` things.
+// Whether an index is valid for `count` elements.
 inline bool exists(int index, std::size_t count) {
   return index >= 0 && static_cast<std::size_t>(index) < count;
 }

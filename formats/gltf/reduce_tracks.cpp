@@ -9,7 +9,7 @@ namespace krok::gltf {
 
 namespace {
 
-// joint_to_parent of all frames as a viewer has it, [frames x joints].
+// joint_to_parent of all frames as a viewer computes it, [frames x joints].
 std::vector<Transform> local_transforms(const JointTracks& tracks) {
   const std::size_t joints = tracks.joints.size(), frames = tracks.times.size();
   std::vector<Transform> local(joints * frames);
@@ -37,7 +37,7 @@ void keep(const std::vector<int>& frames, std::vector<Value>& values, std::vecto
   kept = frames;
 }
 
-// Where no track has a key at the last frame, the motion would end early: the first gets one.
+// Without any key at the last frame the animation would end early: adds one to the first track.
 void lengthen(const JointTracks& tracks, int last, std::vector<KeptFrames>& joints) {
   std::vector<int>* first = nullptr;
   for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -57,8 +57,8 @@ void lengthen(const JointTracks& tracks, int last, std::vector<KeptFrames>& join
 Result<Reduction> reduce_tracks(const Skeleton& rest, const ReduceOptions& options, int jobs,
                                 JointTracks& tracks) {
   const std::vector<double> times(tracks.times.begin(), tracks.times.end());
-  // A key of a translation takes 12 bytes, of a rotation 16, its time 4 where the track does not
-  // share those of all frames, and what the file says of such times some 120.
+  // A translation key takes 12 bytes, a rotation key 16, its time 4 unless the track shares the
+  // times of all frames, and the JSON of a time accessor some 120.
   ReduceOptions smallest = options;
   smallest.most_kept =
       std::max(0.0, std::min(options.most_kept, 0.75 - 10.0 / static_cast<double>(times.size())));

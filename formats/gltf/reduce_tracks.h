@@ -7,11 +7,10 @@
 
 namespace krok::gltf {
 
-// Leaves those keys of `tracks` that choose_keys() chooses: what a viewer shows of them is within
-// the tolerance of what it showed of all, at every frame and all over the body. `rest` is the
-// skeleton that the tracks were made for. A track that times of its own would make larger keeps all
-// its keys. Works on up to `jobs` threads (as in parallel_for), which
-// do not change the result. Codes: reduce-tolerance.
+// Removes keys with choose_keys(): what a viewer shows stays within the tolerance of the full
+// tracks, at every frame and for all joints. `rest` is the skeleton that the tracks were made for.
+// A track keeps all its keys if a separate time accessor would make it larger. Uses up to `jobs`
+// threads (as in parallel_for), which do not affect the result. Code: reduce-tolerance.
 Result<Reduction> reduce_tracks(const Skeleton& rest, const ReduceOptions& options, int jobs,
                                 JointTracks& tracks);
 

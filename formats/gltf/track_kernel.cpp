@@ -1,6 +1,6 @@
 #include "formats/gltf/track_kernel_internal.h"
 
-// Widths below that of AVX2 gain little; such a machine takes what Highway has for any.
+// Vector widths below AVX2 gain little; such CPUs use Highway's baseline target.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "formats/gltf/track_kernel.cpp"
 #include <hwy/foreach_target.h>
-// The order matters: foreach_target.h sets up what highway.h reads.
+// Order matters: foreach_target.h sets macros that highway.h reads.
 #include <hwy/highway.h>
 
 #include <cstring>
@@ -27,8 +27,8 @@ using V = hn::Vec<Doubles>;
 constexpr std::size_t kLanes = hn::MaxLanes(Doubles());
 static_assert(7 * kLanes <= kScratch);
 
-// No fused arithmetic, and each operation in the same order for every width: the bits do not depend
-// on the machine.
+// No FMA, and the same order of operations for every vector width: results are bit-identical on all
+// CPUs.
 
 struct Vector {
   V x, y, z;
@@ -90,7 +90,7 @@ HWY_INLINE Vector turned(const Rotation& q, const Vector& v) {
   return sum(sum(v, scaled), cross(q, u));
 }
 
-// The floats that a component becomes, as doubles.
+// Rounds to float.
 HWY_INLINE V as_float(V value) {
   return hn::PromoteTo(Doubles(), hn::DemoteTo(Floats(), value));
 }
@@ -99,8 +99,7 @@ HWY_INLINE Rotation rotation_of(const float* q) {
   return {number(q[0]), number(q[1]), number(q[2]), number(q[3])};
 }
 
-// One joint in kLanes frames, which stand `stride` joints apart; the last one of `used` again and
-// again for the lanes that are left.
+// Loads one joint in kLanes frames, `stride` joints apart; lanes beyond `used` repeat the last one.
 HWY_INLINE Frame gather(const float* positions, const float* orientations, std::size_t stride,
                         std::size_t used) {
   HWY_ALIGN float parts[7][kLanes];
@@ -144,8 +143,8 @@ HWY_INLINE void put_translations(const Vector& v, std::size_t used, float* to) {
   std::memcpy(to, values, used * 3 * sizeof(float));
 }
 
-// Whether some angle between two rotations is larger than `tolerance`, a small one: its half has
-// the vector part as its sine and w as its cosine.
+// Whether any angle between two rotations exceeds `tolerance`, which is small: the vector part of
+// their quotient is the sine of half the angle, w the cosine.
 HWY_INLINE bool differ(const Rotation& a, const Rotation& b, double tolerance) {
   const Doubles d;
   const Rotation q = product(conjugate(a), b);
@@ -180,7 +179,7 @@ void joint_tracks(const Nodes& nodes, const float* positions, const float* orien
       if (differ(normalized(rest), local, nodes.angle_tolerance)) seen[j] |= kRotates;
       if (!hn::AllFalse(d, hn::Gt(off, limit))) seen[j] |= kMoves;
 
-      // What a viewer makes of the floats.
+      // What a viewer computes from the floats.
       Frame shown = {rest_translation, normalized(rest)};
       if ((nodes.tracks[j] & kRotates) != 0) {
         shown.rotation = normalized(

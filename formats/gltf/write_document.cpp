@@ -16,17 +16,17 @@ namespace krok::gltf {
 
 namespace {
 
-// Stands for a bound that is not known yet. No float has this value, and its text is as long as the
-// longest of a float. JSON allows white space after a number, so that shorter ones fit too.
+// Placeholder for a bound that is not known yet. No float has this value, and its text is as long
+// as that of the longest float; shorter ones are padded, as JSON allows white space after numbers.
 constexpr double kUnknown = -1.2345678e-300;
 constexpr std::string_view kRoom = "-1.2345678e-300";
 
 static_assert(std::endian::native == std::endian::little, "glTF's numbers are");
 
-// Where the JSON of a GLB begins.
+// Offset of the JSON in a GLB.
 constexpr std::size_t kJsonBegin = 20;
 
-// A multiple of three, which base64 turns into four characters.
+// A multiple of three: base64 encodes three bytes as four characters.
 constexpr std::size_t kEncodedAtOnce = std::size_t{48} << 10;
 
 void replace_room(std::string& text, std::size_t& at, float value) {
@@ -67,17 +67,16 @@ Status Document::write(OutputFile& file) {
 
 Status Document::begin(OutputFile& file, std::span<const Bounds> bounds) {
   if (size_ > kMaxDataBytes) {
-    return Error(
-        "gltf-too-large",
-        fmt::format("the file would hold {} MB, more than glTF's lengths can tell", size_ >> 20),
-        "write fewer frames");
+    return Error("gltf-too-large",
+                 fmt::format("the file would have {} MB, which exceeds glTF's limit", size_ >> 20),
+                 "write fewer frames");
   }
   file_ = &file;
   try {
     json_ = json_text();
   } catch (const nlohmann::json::exception&) {
-    // Its serializer throws for one thing alone.
-    return Error("gltf-name", "a name is not valid UTF-8, which glTF asks for",
+    // The serializer throws only for invalid UTF-8.
+    return Error("gltf-name", "a name is not valid UTF-8, which glTF requires",
                  "rename the joint or material");
   }
   fill_in(bounds);
@@ -88,15 +87,15 @@ Status Document::begin(OutputFile& file, std::span<const Bounds> bounds) {
   return {};
 }
 
-// tinygltf would copy the buffer twice more, so it is told of none.
+// Written without the buffer, which tinygltf would copy twice.
 std::string Document::json_text() const {
   std::ostringstream stream;
   tinygltf::TinyGLTF().WriteGltfSceneToStream(const_cast<tinygltf::Model*>(&gltf), stream,
                                               !options_.binary, false);
   std::string text = stream.str();
-  text.pop_back();  // the end of the line
+  text.pop_back();  // the newline
   if (size_ == 0 || !options_.binary) return text;
-  // Into the order of the alphabet, after the list of views, which holds no other list.
+  // Insert in alphabetical order, after the buffer views, which contain no other list.
   const std::size_t views = text.find("\"bufferViews\":[");
   assert(views != std::string::npos);
   text.insert(text.find(']', views) + 1,
@@ -104,7 +103,7 @@ std::string Document::json_text() const {
   return text;
 }
 
-// JSON lists keys in the order of the alphabet, so that `max` comes before `min`.
+// The JSON has its keys in alphabetical order: `max` comes before `min`.
 void Document::fill_in(std::span<const Bounds> bounds) {
   std::size_t at = 0;
   for (const Bounds& bound : bounds) {
@@ -130,7 +129,7 @@ Status Document::begin_binary() {
   return file_->write(std::as_bytes(std::span(data_head)));
 }
 
-// The buffer comes first, so that everything else may be told after it.
+// The buffer comes first, so that everything else can follow it.
 Status Document::begin_text() {
   if (size_ == 0) return {};
   return file_->write(
@@ -169,7 +168,7 @@ Status Document::end(std::span<const Bounds> bounds) {
   if (size_ == 0) return file_->write(json_);
   if (Status status = file_->write(to_base64(unencoded_)); !status) return status;
   if (Status status = file_->write("\"\n    }\n  ],\n"); !status) return status;
-  return file_->write(std::string_view(json_).substr(2));  // without the brace and its line's end
+  return file_->write(std::string_view(json_).substr(2));  // without "{\n"
 }
 
 }  // namespace krok::gltf

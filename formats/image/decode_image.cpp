@@ -14,9 +14,9 @@ Result<Pixels> decode(std::span<const std::byte> file, std::size_t most_pixels) 
   const auto height = static_cast<std::size_t>(facts->height);
   if (width * height > most_pixels) {
     return Error("picture-size",
-                 fmt::format("the picture has {} x {} pixels, more than {} in all", width, height,
-                             most_pixels),
-                 "save it smaller");
+                 fmt::format("the image has {} x {} pixels, the limit is {} in total", width,
+                             height, most_pixels),
+                 "reduce its size");
   }
   Pixels pixels;
   pixels.width = facts->width;

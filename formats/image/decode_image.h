@@ -8,26 +8,25 @@
 
 #include "core/result.h"
 
-// The pixels of pictures, by libpng and libjpeg-turbo.
+// Decodes images with libpng and libjpeg-turbo.
 
 namespace krok::image {
 
 struct Pixels {
   int width = 0, height = 0;       // >= 1
-  std::vector<std::uint8_t> rgba;  // [height x width x 4], from the upper left row by row
-  // What the decoder put up with, where a JPEG is damaged and the rest of it shows; may be empty.
+  std::vector<std::uint8_t> rgba;  // [height x width x 4], row by row from the upper left
+  // What is wrong with a damaged JPEG that could be decoded partially; empty if nothing.
   std::string damage;
 };
 
-// What nobody paints for a figure; four bytes of memory each.
+// Larger than any texture for a character; four bytes per pixel.
 inline constexpr std::size_t kMaxPixels = std::size_t{1} << 26;
 
-// A PNG or JPEG file as numbers from 0 to 255, as the file has them: profiles, gamma and turns that
-// the file asks for do not count, as glTF says (glTF 2.0 Specification, section 3.8.3). Grey
-// becomes three equal channels, of 16 bits the upper ones are kept, and alpha is 255 where there is
-// none. The same file gives the same pixels on every machine. Codes: those of picture_facts();
-// picture-size with more than `most_pixels`; picture-damaged for what does not decode; picture-kind
-// for a JPEG in printing inks.
+// The pixel values of a PNG or JPEG file, 0 to 255. Colour profiles, gamma and orientation tags are
+// ignored, as glTF requires (glTF 2.0 Specification, section 3.8.3). Grey is expanded to RGB,
+// 16-bit channels keep their upper 8 bits, and alpha is 255 if there is none. Results are the same
+// on every machine. Codes: those of image_info(); picture-size for more than `most_pixels`;
+// picture-damaged if decoding fails; picture-kind for a CMYK JPEG.
 Result<Pixels> decode(std::span<const std::byte> file, std::size_t most_pixels = kMaxPixels);
 
 }  // namespace krok::image

@@ -6,15 +6,15 @@
 #include "core/result.h"
 #include "formats/image/decode_image.h"
 
-// Private to this folder. Both libraries leave with longjmp where they fail, so that what they call
-// stands in functions without anything to destroy.
+// Private to this folder. Both libraries report errors with longjmp, so functions that it may skip
+// must not have objects with destructors.
 
 namespace krok::image {
 
-// Fills the pixels in, whose size is that of the file. Code picture-damaged.
+// Fills in the pixels, whose size is already set from the file. Code: picture-damaged.
 Status decode_png(std::span<const std::byte> file, Pixels& pixels);
 
-// The same; code picture-kind too.
+// As decode_png. Codes: picture-damaged, picture-kind.
 Status decode_jpeg(std::span<const std::byte> file, Pixels& pixels);
 
 }  // namespace krok::image

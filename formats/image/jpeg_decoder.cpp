@@ -11,10 +11,10 @@ namespace krok::image {
 
 namespace {
 
-// A progressive picture has about ten; each goes through all of it, however few its bytes are.
+// A progressive JPEG has about ten; each scan costs a pass over the image, however few its bytes.
 constexpr int kMaxScans = 100;
 
-// What the library calls finds its way back here: its structures come first in these.
+// libjpeg's structure is the first member, so that its callbacks can cast back.
 struct Errors {
   jpeg_error_mgr manager;
   std::jmp_buf back;
@@ -33,7 +33,7 @@ void note(j_common_ptr jpeg) {
 }
 
 void tell(j_common_ptr jpeg, int level) {
-  if (level < 0) note(jpeg);  // others trace what is read
+  if (level < 0) note(jpeg);  // other levels are traces
 }
 
 void limit_scans(j_common_ptr jpeg) {
@@ -69,7 +69,7 @@ class JpegDecoder {
     }
     if (jpeg_.image_width != width || jpeg_.image_height != height) return Outcome::damaged;
     jpeg_.out_color_space = JCS_EXT_RGBA;
-    jpeg_.dct_method = JDCT_ISLOW;  // the one that gives the same bits with and without SIMD
+    jpeg_.dct_method = JDCT_ISLOW;  // bit-identical with and without SIMD
     jpeg_start_decompress(&jpeg_);
     const std::size_t row = std::size_t{width} * 4;
     while (jpeg_.output_scanline < jpeg_.output_height) {
@@ -96,12 +96,11 @@ Status decode_jpeg(std::span<const std::byte> file, Pixels& pixels) {
       reinterpret_cast<const unsigned char*>(file.data()), file.size(), pixels.rgba.data(),
       static_cast<unsigned>(pixels.width), static_cast<unsigned>(pixels.height));
   if (outcome == JpegDecoder::Outcome::inks) {
-    return Error("picture-kind", "the JPEG picture is in printing inks (CMYK)", "save it as RGB");
+    return Error("picture-kind", "the JPEG image is CMYK", "save it as RGB");
   }
   pixels.damage = decoder.message();
   if (outcome == JpegDecoder::Outcome::decoded) return {};
-  return Error("picture-damaged",
-               fmt::format("the JPEG picture cannot be decoded: {}", pixels.damage),
+  return Error("picture-damaged", fmt::format("cannot decode the JPEG image: {}", pixels.damage),
                "save it again");
 }
 

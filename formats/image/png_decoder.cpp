@@ -23,7 +23,7 @@ class PngDecoder {
 
   const char* message() const { return message_; }
 
-  // False where libpng fails, or where it sees another size.
+  // False if libpng fails or reads another size.
   bool decode(Pixels& pixels) {
     if (info_ == nullptr) return false;
     std::uint8_t* const first = pixels.rgba.data();
@@ -46,7 +46,7 @@ class PngDecoder {
     const std::size_t row = std::size_t{width} * 4;
     if (png_get_image_width(png_, info_) != width || png_get_image_height(png_, info_) != height ||
         png_get_rowbytes(png_, info_) != row) {
-      png_error(png_, "the header is not what it was");
+      png_error(png_, "the header changed");
     }
     for (int pass = 0; pass < passes; ++pass) {
       for (png_uint_32 y = 0; y < height; ++y) png_read_row(png_, first + y * row, nullptr);
@@ -57,7 +57,7 @@ class PngDecoder {
 
   static void read(png_structp png, png_bytep to, std::size_t size) {
     auto& self = *static_cast<PngDecoder*>(png_get_io_ptr(png));
-    if (size > self.left_.size()) png_error(png, "it ends too early");
+    if (size > self.left_.size()) png_error(png, "unexpected end of file");
     std::memcpy(to, self.left_.data(), size);
     self.left_ = self.left_.subspan(size);
   }
@@ -68,12 +68,12 @@ class PngDecoder {
     png_longjmp(png, 1);
   }
 
-  static void ignore(png_structp, png_const_charp) {}  // what it says may be odd, and still decodes
+  static void ignore(png_structp, png_const_charp) {}  // warnings
 
   std::span<const std::byte> left_;
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
-  char message_[160] = "no memory";
+  char message_[160] = "out of memory";
 };
 
 }  // namespace
@@ -81,8 +81,7 @@ class PngDecoder {
 Status decode_png(std::span<const std::byte> file, Pixels& pixels) {
   PngDecoder decoder(file);
   if (decoder.decode(pixels)) return {};
-  return Error("picture-damaged",
-               fmt::format("the PNG picture cannot be decoded: {}", decoder.message()),
+  return Error("picture-damaged", fmt::format("cannot decode the PNG image: {}", decoder.message()),
                "save it again");
 }
 

@@ -13,10 +13,10 @@ namespace krok::json {
 namespace {
 
 constexpr std::size_t kDeepest = 32;
-constexpr std::size_t kMaxMembers = 1000;  // keys are held against each other one by one
+constexpr std::size_t kMaxMembers = 1000;  // keys are compared pairwise
 
-// Finds where tokens begin, in step with the parser's events. The text between two events holds
-// nothing but white space, commas and colons, for the parser has accepted it.
+// Finds the offsets of tokens, in sync with the parser's events. The text between two tokens has
+// only white space, commas and colons, because the parser has accepted it.
 class TokenPlaces {
  public:
   explicit TokenPlaces(std::string_view text) : text_(text) {}
@@ -82,8 +82,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     }
     for (const Value::Member& member : stack_.back().members) {
       if (member.key != name) continue;
-      error_ = error_at(text_, offset, "json-syntax",
-                        fmt::format("'{}' stands twice in one object", shown(name)));
+      error_ =
+          error_at(text_, offset, "json-syntax", fmt::format("duplicate key '{}'", shown(name)));
       return false;
     }
     stack_.back().members.push_back({std::move(name), offset, {}});
@@ -91,18 +91,17 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   }
   bool parse_error(std::size_t position, const std::string& token,
                    const nlohmann::detail::exception& error) override {
-    // "[json.exception.parse_error.101] parse error at line 1, column 2: what": the place is told
-    // apart.
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: what": the location is
+    // reported separately.
     std::string what = error.what();
     if (const auto place = what.find(": "); place != std::string::npos) what.erase(0, place + 2);
-    // The position is the number of bytes read. A text that is out of place is told by its
-    // beginning.
+    // The position is the number of bytes read. An unexpected string is reported at its beginning.
     std::size_t offset = position > 0 ? position - 1 : 0;
     if (is_one_string(token) && token.size() <= position &&
         text_.substr(0, position).ends_with(token)) {
       offset = position - token.size();
     }
-    error_ = error_at(text_, offset, "json-syntax", "this is not JSON: " + what.substr(0, 200));
+    error_ = error_at(text_, offset, "json-syntax", "not valid JSON: " + what.substr(0, 200));
     return false;
   }
 
@@ -110,7 +109,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   Value root_;
 
  private:
-  // The parser's token begins at the last string and may go on beyond it.
+  // The parser's token begins at the last string and may continue after it.
   static bool is_one_string(const std::string& token) {
     if (!token.starts_with('"')) return false;
     std::size_t at = 1;
@@ -135,7 +134,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     made.offset = places_.next();
     if (stack_.size() >= kDeepest) {
       error_ = error_at(text_, made.offset, "json-limit",
-                        fmt::format("values stand more than {} deep in each other", kDeepest));
+                        fmt::format("nested more than {} levels deep", kDeepest));
       return false;
     }
     stack_.push_back(std::move(made));
@@ -181,9 +180,9 @@ std::string_view kind_name(Value::Kind kind) {
     case Value::Kind::number:
       return "a number";
     case Value::Kind::string:
-      return "a text";
+      return "a string";
     case Value::Kind::array:
-      return "a list";
+      return "an array";
     case Value::Kind::object:
       return "an object";
   }
@@ -192,15 +191,15 @@ std::string_view kind_name(Value::Kind kind) {
 
 Result<Value> parse(std::string_view text, std::size_t largest) {
   if (text.size() > largest) {
-    return Error("json-limit", fmt::format("{} bytes are more than such a file can have, {}",
-                                           text.size(), largest));
+    return Error("json-limit",
+                 fmt::format("{} bytes exceed the limit of {}", text.size(), largest));
   }
   const std::string_view content = without_byte_order_mark(text);
   Builder builder(content);
   const bool parsed = nlohmann::json::sax_parse(content.begin(), content.end(), &builder);
   if (parsed && !builder.error_) return std::move(builder.root_);
   if (builder.error_) return std::move(*builder.error_);
-  return Error("json-syntax", "this is not JSON");
+  return Error("json-syntax", "not valid JSON");
 }
 
 Error error_at(std::string_view text, std::size_t offset, std::string code, std::string message,

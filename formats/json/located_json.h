@@ -8,8 +8,8 @@
 
 #include "core/result.h"
 
-// Small JSON files that people write by hand, with the place of each value kept, so that what is
-// wrong with one can be said by line and column.
+// JSON parser for small, hand-written files. Keeps the location of each value, so that errors can
+// be reported with line and column.
 
 namespace krok::json {
 
@@ -38,9 +38,9 @@ struct Value::Member {
 // "a number", for messages.
 std::string_view kind_name(Value::Kind kind);
 
-// One JSON value (RFC 8259) and nothing after it; a byte order mark is passed over. At most 32
-// levels deep, 1000 keys an object and `largest` bytes long; a key twice in one object is an error.
-// Codes json-syntax, json-limit, with line and column.
+// Parses one JSON value (RFC 8259) with nothing after it; a byte-order mark is skipped. Limits: 32
+// levels of nesting, 1000 keys per object, `largest` bytes; a duplicate key is an error. Codes
+// json-syntax, json-limit, with line and column.
 Result<Value> parse(std::string_view text, std::size_t largest = std::size_t{16} << 20);
 
 // An error about the value that begins at `offset` of `text`, with its line and column.

@@ -32,7 +32,7 @@ Status Members::only(const Value& object, std::string_view what,
     if (std::ranges::find(keys, entry.key) != keys.end()) continue;
     const std::vector<std::string> known(keys.begin(), keys.end());
     return error_at(text_, entry.key_offset, format_ + "-structure",
-                    fmt::format("{} has no '{}'", what, shown(entry.key)),
+                    fmt::format("{} has an unknown key '{}'", what, shown(entry.key)),
                     nearest_hint(entry.key, known));
   }
   return {};
@@ -42,7 +42,7 @@ Result<const Value*> Members::get(const Value& object, std::string_view what, st
                                   Value::Kind kind) const {
   auto value = find(object, what, key, kind);
   if (value && *value == nullptr) {
-    return structure(object, fmt::format("{} lacks \"{}\"", what, key));
+    return structure(object, fmt::format("{} is missing \"{}\"", what, key));
   }
   return value;
 }
@@ -69,7 +69,7 @@ Result<std::optional<std::size_t>> Members::choice(
   }
   const auto* const last = words.end() - 1;
   return wrong(**value, fmt::format("\"{}\" of {} is '{}'", key, what, shown((*value)->text)),
-               fmt::format("known are {} and {}", fmt::join(words.begin(), last, ", "), *last));
+               fmt::format("use {} or {}", fmt::join(words.begin(), last, ", "), *last));
 }
 
 Result<std::optional<double>> Members::quantity(const Value& object, std::string_view what,
@@ -77,8 +77,9 @@ Result<std::optional<double>> Members::quantity(const Value& object, std::string
   const Value* value = object.find(key);
   if (value == nullptr) return std::optional<double>();
   if (value->kind != Value::Kind::number && value->kind != Value::Kind::string) {
-    return wrong(*value, fmt::format("\"{}\" of {} is {}, expected a number or a text with a unit",
-                                     key, what, kind_name(value->kind)));
+    return wrong(*value,
+                 fmt::format("\"{}\" of {} is {}, expected a number or a string with a unit", key,
+                             what, kind_name(value->kind)));
   }
   const std::string text =
       value->kind == Value::Kind::number ? fmt::format("{}", value->number) : value->text;
@@ -92,14 +93,13 @@ Result<std::optional<double>> Members::quantity(const Value& object, std::string
 
 Result<std::string> Members::path(const Value& value, std::string_view what) const {
   if (value.kind != Value::Kind::string) {
-    return wrong(value,
-                 fmt::format("{} is {}, expected the path of a file", what, kind_name(value.kind)));
+    return wrong(value, fmt::format("{} is {}, expected a file path", what, kind_name(value.kind)));
   }
   const std::string fault = path_fault(value.text);
   if (fault.empty()) return value.text;
   return error_at(text_, value.offset, format_ + "-path",
                   fmt::format("{}, '{}', {}", what, shown(value.text), fault),
-                  "paths are relative to the file and stay in its folder");
+                  "paths are relative to the file and must stay in its folder");
 }
 
 Result<double> Members::number(const Value& object, std::string_view what, std::string_view key,
@@ -139,7 +139,7 @@ Result<double> Members::moment(const Value& value, std::string_view name,
 Result<double> Members::moment(const Value& object, std::string_view what, std::string_view key,
                                std::optional<double> rate, double latest) const {
   const Value* const value = object.find(key);
-  if (value == nullptr) return structure(object, fmt::format("{} lacks \"{}\"", what, key));
+  if (value == nullptr) return structure(object, fmt::format("{} is missing \"{}\"", what, key));
   return moment(*value, fmt::format("\"{}\" of {}", key, what), rate, latest);
 }
 

@@ -36,7 +36,7 @@ Status read_key(std::string_view text, const Value& item, const json::Members& i
   if (!time) return time.error();
   if (!file.times.empty() && !(*time > file.times.back())) {
     return json::error_at(text, item.find("time")->offset, "key-shapes-time",
-                          fmt::format("{} is at {} s, not after the key before at {} s", what,
+                          fmt::format("{} is at {} s, not after the previous key at {} s", what,
                                       readable(*time, 9), readable(file.times.back(), 9)));
   }
   const auto shape = in.get(item, what, "shape", Kind::string);

@@ -8,22 +8,20 @@
 #include "core/result.h"
 #include "skin/key_frame_mesh.h"
 
-// Which shapes a mesh has when, as a text file that people write: per-vertex key frames.
-// formats/key_shapes/SPEC.md describes it.
+// Reader for per-vertex key frames of a mesh (JSON, hand-written); see formats/key_shapes/SPEC.md.
 
 namespace krok::key_shapes {
 
 struct KeyShapeFile {
-  std::vector<double> times;        // [keys] seconds from 0, rising strictly
-  std::vector<std::string> shapes;  // [keys] paths relative to the file, within its folder
+  std::vector<double> times;        // [keys] seconds, >= 0, strictly increasing
+  std::vector<std::string> shapes;  // [keys] paths relative to the file, inside its folder
   ShapeJoin join = ShapeJoin::linear;
   double tension = 0;          // 0 to 1
-  std::optional<double> rate;  // frames a second of the result, where the file tells
+  std::optional<double> rate;  // frames per second of the result, if in the file
 };
 
-// Trusts nothing in `text`. Codes, each with line and column: json-syntax, json-limit,
-// key-shapes-structure, key-shapes-value, key-shapes-path, key-shapes-time (times that do not
-// rise).
+// Safe for untrusted input. Codes, each with line and column: json-syntax, json-limit,
+// key-shapes-structure, key-shapes-value, key-shapes-path, key-shapes-time (times not increasing).
 Result<KeyShapeFile> read(std::string_view text);
 
 }  // namespace krok::key_shapes

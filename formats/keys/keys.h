@@ -8,45 +8,44 @@
 #include "core/result.h"
 #include "scene/motion_keys.h"
 
-// Contacts and keytimes beside a motion, as a text file that tools write and people edit:
-// NAME.keys.json; SPEC.md describes it.
+// Sidecar file with contacts and keytimes of a motion, NAME.keys.json: written by tools, editable
+// by hand; see SPEC.md.
 
 namespace krok::keys {
 
-// All that such a file holds.
+// The content of a sidecar file.
 struct Sidecar {
   MotionKeys keys;
-  // 1 for what a person set, shape [contacts] and [keytimes]; empty stands for all 0.
+  // 1 for entries set by hand, shape [contacts] and [keytimes]; empty means all 0.
   std::vector<std::uint8_t> contacts_by_hand, keytimes_by_hand;
 
-  // Whether a person changed what no mark shows: took something out by a tool, which then says so,
-  // or wrote into the file, so that its checksum differs.
+  // Whether there are edits without marks: something was removed with a tool, which sets this, or
+  // the file was edited, so that its checksum differs.
   bool edited = false;
 
-  // Of the motion it was made for, seconds; 0 where the file does not tell.
+  // Duration of the motion it was made for, seconds; 0 if not in the file.
   double duration = 0;
 
-  // Whether a person had a hand in it at all.
+  // Whether it was edited by hand in any way.
   bool has_edits() const;
 };
 
-// The keys alone. `path` is for messages; `duration` is the motion's, in seconds. Contacts and
-// keytimes are brought in order. Codes, each with line and column: json-syntax, json-limit,
+// Reads only the keys. `path` is for messages; `duration` is the motion's, in seconds. Contacts and
+// keytimes are sorted. Codes, each with line and column: json-syntax, json-limit,
 // keys-structure, keys-value, keys-joint (no joint has that name), keys-time (outside the motion,
-// an end before its start, two keytimes at one moment).
+// an end before its start, two keytimes at the same time).
 Result<MotionKeys> read(std::string_view text, const std::string& path, const Skeleton& skeleton,
                         double duration);
 
-// The same with all else that the file holds.
+// The same with all other content of the file.
 Result<Sidecar> read_sidecar(std::string_view text, const std::string& path,
                              const Skeleton& skeleton, double duration);
 
-// The file's text. `keys` must pass check(). Times are rounded to a microsecond (keytimes
-// kept at least two apart), places to a hundredth of a millimetre. The same keys give the same
-// bytes.
+// The text of the file. `keys` must pass check(). Times are rounded to 1 us (keytimes are kept at
+// least 2 us apart), contact positions to 0.01 mm. Deterministic.
 std::string write(const MotionKeys& keys, const Skeleton& skeleton, double duration);
 
-// The same with marks of what is set by hand. Where `edited` is set, the file says so.
+// The same with `edited` and the marks of entries set by hand.
 std::string write_sidecar(const Sidecar& sidecar, const Skeleton& skeleton);
 
 }  // namespace krok::keys

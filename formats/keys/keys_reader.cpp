@@ -19,7 +19,7 @@ namespace {
 using json::Value;
 using Kind = Value::Kind;
 
-constexpr double kBeyond = 1e-3;        // seconds: times are rounded when they are written
+constexpr double kBeyond = 1e-3;        // seconds: written times are rounded
 constexpr double kMinReadGap = 1.5e-6;  // seconds, between keytimes
 constexpr double kFurthest = 1e6;       // metres
 constexpr std::size_t kLongestName = 200;
@@ -46,7 +46,7 @@ class Reader {
     for (const auto part : {&Reader::read_facts, &Reader::read_contacts, &Reader::read_keytimes}) {
       if (Status status = (this->*part)(*root); !status) return status.error();
     }
-    // A file without a checksum was written by hand altogether.
+    // A file without a checksum was written by hand.
     sidecar_.edited = sidecar_.edited || checksum(sidecar_, skeleton_) != checksum_;
     return std::move(sidecar_);
   }
@@ -78,7 +78,7 @@ class Reader {
     return (*value)->number;
   }
 
-  // A moment of the motion.
+  // A time within the motion.
   Result<double> moment(const Value& object, std::string_view what, std::string_view key) const {
     const auto time = number(object, what, key);
     if (!time) return time.error();
@@ -86,19 +86,19 @@ class Reader {
       return json::error_at(text_, object.find(key)->offset, "keys-time",
                             fmt::format("\"{}\" of {} is {} s, outside the motion's 0 to {} s", key,
                                         what, readable(*time, 9), readable(duration_, 9)),
-                            "is it the file of another motion, or of one that was cut since?");
+                            "is this the file of another motion, or was the motion trimmed?");
     }
     return time;
   }
 
-  // Whether a person set it.
+  // Whether it was set by hand.
   Result<bool> mark(const Value& object, std::string_view what) const {
     const auto by = in_.find(object, what, "by", Kind::string);
     if (!by) return by.error();
     if (*by == nullptr) return false;
     if ((*by)->text != "hand") {
-      return in_.wrong(**by, fmt::format("\"by\" of {} is '{}', expected \"hand\" or nothing", what,
-                                         shown((*by)->text)));
+      return in_.wrong(**by, fmt::format("\"by\" of {} is '{}', expected \"hand\" or no \"by\"",
+                                         what, shown((*by)->text)));
     }
     return true;
   }
@@ -126,7 +126,7 @@ class Reader {
       place[static_cast<Eigen::Index>(i)] = item.number;
     }
     if (good) return place;
-    return in_.wrong(**list, fmt::format("\"place\" of {} is not three numbers, metres", what));
+    return in_.wrong(**list, fmt::format("\"place\" of {} must be three numbers (metres)", what));
   }
 
   Result<Contact> read_contact(const Value& item) {
@@ -186,8 +186,8 @@ class Reader {
     const bool plain = std::ranges::none_of(
         text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
     if (text.empty() || !plain || text.size() > kLongestName) {
-      return in_.wrong(**name, fmt::format("'{}' is no name for a keytime", shown(text)),
-                       fmt::format("it is not empty and has at most {} bytes", kLongestName));
+      return in_.wrong(**name, fmt::format("'{}' is not a valid keytime name", shown(text)),
+                       fmt::format("use 1 to {} bytes and no control characters", kLongestName));
     }
     const auto time = moment(item, fmt::format("'{}'", shown(text)), "time");
     if (!time) return time.error();
@@ -217,13 +217,13 @@ class Reader {
           text_, std::max(offsets[i - 1], offsets[i]), "keys-time",
           fmt::format("'{}' and '{}' are both at {} s", shown(keytimes[i - 1].name),
                       shown(keytimes[i].name), readable(keytimes[i].time, 9)),
-          "keytimes follow one another; put them at least 2 microseconds apart");
+          "keytimes must be at least 2 microseconds apart");
     }
     sidecar_.keys.keytimes = std::move(keytimes);
     return {};
   }
 
-  // Sorts items by a key, what belongs to them along.
+  // Sorts items by a key, together with their marks.
   template <typename Item, typename Key>
   static void sort(std::vector<Item>& items, std::vector<std::uint8_t>& marks, const Key& key,
                    std::vector<std::size_t>* offsets = nullptr) {

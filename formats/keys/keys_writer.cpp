@@ -13,7 +13,7 @@ using json::in_quotes;
 
 namespace {
 
-// A number with up to `digits` places after the point, without trailing zeros and negative zero.
+// A number with up to `digits` decimals, without trailing zeros or negative zero.
 std::string fixed(double value, int digits) {
   std::string text = fmt::format("{:.{}f}", value, digits);
   text.erase(text.find_last_not_of('0') + 1);
@@ -27,7 +27,7 @@ std::string joined(const std::vector<std::string>& lines) {
 
 constexpr const char* kMark = ", \"by\": \"hand\"";
 constexpr double kMinWrittenGap =
-    2e-6;  // seconds, so that keytimes still differ when they are rounded
+    2e-6;  // seconds, so that keytimes are still distinct after rounding
 
 void keep_apart(std::vector<Keytime>& keytimes) {
   for (std::size_t i = 1; i < keytimes.size(); ++i) {

@@ -28,7 +28,8 @@ json::Members::Parser parser_of(std::string_view measures) {
     return [](std::string_view text) -> Result<double> {
       const auto time = parse_clip_time(text);
       if (!time) return time.error();
-      if (time->in_frames) return Error("quantity-unit", "frames are no unit here", "use s or ms");
+      if (time->in_frames)
+        return Error("quantity-unit", "frames are not a valid unit here", "use s or ms");
       return time->value;
     };
   }
@@ -58,7 +59,7 @@ class Reader {
  private:
   Location place_of(const Value& value) const { return locate(text_, value.offset, path_); }
 
-  // Texts that may be left out but not be empty.
+  // Optional strings that must not be empty.
   Status take(const Value& object, std::string_view what, std::string_view key,
               std::string& text) const {
     const auto found = members_.find(object, what, key, Kind::string);
@@ -109,7 +110,7 @@ class Reader {
       return members_.wrong(value,
                             fmt::format("\"{}\" of {} is {}, expected a time", shown(key), what,
                                         json::kind_name(value.kind)),
-                            "seconds as a number, or a text such as \"1.5s\" or \"90f\"");
+                            "use seconds as a number, or a string such as \"1.5s\" or \"90f\"");
     }
     if (value.kind == Kind::number) {
       if (value.number >= 0) return ClipTime{value.number, false};
@@ -185,10 +186,10 @@ class Reader {
     }
     for (const Value& item : items) {
       if (item.kind != Kind::string || item.text.empty() || item.text.size() > kLongestName) {
-        return members_.wrong(item, "a keytime's name is a text that is not empty");
+        return members_.wrong(item, "a keytime name must be a non-empty string");
       }
       if (std::ranges::find(library_.keytimes, item.text) != library_.keytimes.end()) {
-        return members_.wrong(item, fmt::format("two keytimes are called '{}'", shown(item.text)));
+        return members_.wrong(item, fmt::format("duplicate keytime '{}'", shown(item.text)));
       }
       library_.keytimes.push_back(item.text);
     }
@@ -222,15 +223,16 @@ class Reader {
     if (status) status = take(item, "a parameter", "name", entry.name);
     if (!status) return status;
     if (entry.name.find('=') != std::string::npos || entry.name.size() > kLongestName) {
-      return members_.wrong(item, fmt::format("'{}' is no name for a parameter", shown(entry.name)),
-                            "names have no = in them and at most 200 bytes");
+      return members_.wrong(item,
+                            fmt::format("'{}' is not a valid parameter name", shown(entry.name)),
+                            "use at most 200 bytes and no =");
     }
     const auto same = [&](const ParameterEntry& other) { return other.name == entry.name; };
     if (std::ranges::any_of(library_.parameters, same)) {
-      return members_.wrong(item, fmt::format("two parameters are called '{}'", shown(entry.name)),
-                            "give one another \"name\"");
+      return members_.wrong(item, fmt::format("duplicate parameter name '{}'", shown(entry.name)),
+                            "give one of them another \"name\"");
     }
-    if (Status status = read_range(item, entry); !status) return status;
+    if (Status step = read_range(item, entry); !step) return step;
     library_.parameters.push_back(std::move(entry));
     return {};
   }
@@ -251,7 +253,7 @@ class Reader {
                             fmt::format("the tolerance of {} is not positive", what));
     }
     if (entry.least.has_value() != entry.most.has_value()) {
-      return members_.wrong(item, fmt::format("{} has one end of a range alone", what),
+      return members_.wrong(item, fmt::format("{} has only one end of a range", what),
                             "give both \"from\" and \"to\", or neither");
     }
     if (entry.least && !(*entry.least < *entry.most)) {
@@ -286,7 +288,7 @@ class Reader {
     if (!found) return found.error();
     if (*found == nullptr) return {};
     if (entry.automatic) {
-      return members_.wrong(**found, "an example whose steps are found takes no keytimes",
+      return members_.wrong(**found, "an example with \"steps\": \"auto\" cannot have keytimes",
                             "\"steps\": \"one\" makes the clip one example");
     }
     for (const Value::Member& member : (*found)->members) {

@@ -8,18 +8,18 @@
 #include "core/quantity.h"
 #include "core/result.h"
 
-// What a step library is to be made of, as a text file that people write: what is measured, and the
-// motions that are its examples. formats/library/SPEC.md describes it.
+// Description of a step library, the hand-written input of krok-fit: the parameters, and the
+// motions that are its examples. See formats/library/SPEC.md.
 
 namespace krok::library {
 
 enum class Side : unsigned char { left, right };
 
 struct ParameterEntry {
-  std::string name;                   // what users call it: "length"
+  std::string name;                   // for users: "length"
   std::string measures;               // "step.length", "LeftHand.up@touch"
   std::optional<double> tolerance;    // metres, radians or seconds, > 0
-  std::optional<double> least, most;  // the range that is asked for, least < most
+  std::optional<double> least, most;  // the requested range, least < most
   Location place;                     // of the entry
 };
 
@@ -30,32 +30,32 @@ struct KeytimeEntry {
 };
 
 struct ExampleEntry {
-  std::string name;                    // for people; empty: after the clip
-  std::string clip;                    // a path, with wildcards where `automatic`
-  bool automatic = false;              // steps are found in it, otherwise it is one example
-  std::optional<ClipTime> from, to;    // the part that counts
-  std::string keys;                    // path of its keytimes; empty: beside the clip, or found
-  std::vector<KeytimeEntry> keytimes;  // one for each of the library's, or none
+  std::string name;                    // for users; empty: that of the clip
+  std::string clip;                    // a path, may have wildcards if `automatic`
+  bool automatic = false;              // detect steps in it; otherwise it is one example
+  std::optional<ClipTime> from, to;    // the part to use
+  std::string keys;                    // path of its keytimes; empty: its sidecar, or detected
+  std::vector<KeytimeEntry> keytimes;  // one for each keytime of the library, or none
   Location place;
 };
 
 struct LibraryDescription {
-  std::string name;                   // for people; may be empty
+  std::string name;                   // for users; may be empty
   std::string skeleton;               // path of a motion or model; empty: the first example's
   std::string map;                    // path of a role map; may be empty
-  Side swing = Side::left;            // the foot that steps
-  bool mirror = false;                // steps of the other side count too, mirrored
-  std::vector<std::string> keytimes;  // names, two or more; empty: those of a step
-  std::optional<double> rate;         // frames a second of what is made, > 0
-  // How many median deviations from the median a step found may be before it is left out, > 0.
+  Side swing = Side::left;            // the swing foot
+  bool mirror = false;                // use steps of the other side too, mirrored
+  std::vector<std::string> keytimes;  // names, at least two; empty: those of a step
+  std::optional<double> rate;         // frames per second of generated motions, > 0
+  // Detected steps further than this from the median, in median deviations, are dropped, > 0.
   std::optional<double> outlier_deviations;
-  // How close examples found may lie, as a share of the ranges; 0 keeps all.
+  // Min distance of detected examples, as a fraction of the ranges; 0 keeps all.
   std::optional<double> spacing;
   std::vector<ParameterEntry> parameters;  // one to eight, names unique
-  std::vector<ExampleEntry> examples;      // one or more
+  std::vector<ExampleEntry> examples;      // at least one
 };
 
-// `path` is for the places of entries and errors. Codes: json-syntax, json-limit,
+// `path` is for the locations of entries and errors. Codes: json-syntax, json-limit,
 // library-structure, library-value, each with line and column.
 Result<LibraryDescription> read(std::string_view text, const std::string& path);
 

@@ -20,7 +20,7 @@ using Kind = Value::Kind;
 
 constexpr std::size_t kMaxMaterials = 10'000;
 
-// The linear value of one that a screen takes. Source: IEC 61966-2-1 (sRGB).
+// sRGB to linear. Source: IEC 61966-2-1 (sRGB).
 double linear_of(double shown_value) {
   return shown_value <= 0.04045 ? shown_value / 12.92
                                 : std::pow((shown_value + 0.055) / 1.055, 2.4);
@@ -85,7 +85,7 @@ class Reader {
     if (const auto [place, added] = numbers_.emplace(text, materials_.size()); !added) {
       return json::error_at(
           text_, (*name)->offset, "material-name",
-          fmt::format("{} is called '{}', as material {} is", what_, shown(text), place->second));
+          fmt::format("{} has the name '{}' of material {}", what_, shown(text), place->second));
     }
     material_.name = text;
     what_ = fmt::format("'{}'", shown(text));
@@ -109,7 +109,7 @@ class Reader {
     return {};
   }
 
-  // A path, or an object with one.
+  // A path, or an object with a path.
   Status read_texture(const Value& value, const std::string& what, Texture& texture) {
     const Value* file = &value;
     if (value.kind != Kind::string) {
@@ -169,7 +169,7 @@ class Reader {
     return {};
   }
 
-  // [r, g, b], [r, g, b, a], "#RRGGBB" or "#RRGGBBAA"; alpha for the base colour alone.
+  // [r, g, b], [r, g, b, a], "#RRGGBB" or "#RRGGBBAA"; alpha only for the base colour.
   Status read_color(const char* key, Vec4f& color) {
     const Value* value = object_->find(key);
     if (value == nullptr) return {};
@@ -177,10 +177,10 @@ class Reader {
     const auto numbers =
         value->kind == Kind::string ? from_hexadecimal(value->text) : from_list(*value);
     if (!numbers || (numbers->size() == 4 && !with_alpha)) {
-      return in_.wrong(*value, fmt::format("\"{}\" of {} is no colour", key, what_),
+      return in_.wrong(*value, fmt::format("\"{}\" of {} is not a colour", key, what_),
                        with_alpha
-                           ? "write [0.8, 0.4, 0.2], each from 0 to 1 and linear, with alpha "
-                             "as a fourth if there is any; or \"#E6AA7C\""
+                           ? "write [0.8, 0.4, 0.2], each from 0 to 1 and linear, optionally "
+                             "with alpha as a fourth; or \"#E6AA7C\""
                            : "write [0.8, 0.4, 0.2], each from 0 to 1 and linear; or "
                              "\"#E6AA7C\"");
     }
@@ -267,9 +267,9 @@ class Reader {
 
   std::string_view text_;
   json::Members in_;
-  const Value* object_ = nullptr;  // the material that is read, ...
-  std::string what_;               // ... its name for messages, ...
-  Material material_;              // ... and what is known of it
+  const Value* object_ = nullptr;  // the material being read
+  std::string what_;               // its name for messages
+  Material material_;              // what was read of it
   std::vector<Material> materials_;
   std::map<std::string, std::size_t> numbers_;  // of materials, by name
   std::map<std::string, std::shared_ptr<const EncodedImage>> images_;

@@ -24,7 +24,7 @@ std::string_view word_of(const std::array<Word<T>, kCount>& words, T meaning) {
 
 std::string list_of(std::span<const float> numbers) {
   std::vector<std::string> texts;
-  for (const float number : numbers) texts.push_back(shortest(number + 0.0f));  // -0 is 0
+  for (const float number : numbers) texts.push_back(shortest(number + 0.0f));  // turns -0 into 0
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 

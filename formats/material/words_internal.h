@@ -6,7 +6,7 @@
 
 #include "scene/material.h"
 
-// Private to this folder: what reader and writer share.
+// Private to this folder: shared by reader and writer.
 
 namespace krok::material {
 
@@ -25,8 +25,7 @@ inline constexpr std::array<Word<Texture::Wrap>, 3> kWrapWords = {
      {"clamp", Texture::Wrap::clamp},
      {"mirror", Texture::Wrap::mirror}}};
 
-// A material as it is where a file says no more than which textures it has: what a texture shows is
-// not darkened by a factor that nobody gave.
+// Defaults of a material with these textures: factors that are not given do not change a texture.
 inline Material with_textures_of(const Material& material) {
   Material usual;
   if (material.base_color_texture) usual.base_color = Vec4f::Ones();

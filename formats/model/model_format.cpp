@@ -32,14 +32,14 @@ static_assert(sizeof(PartRecord) == 8);
 static_assert(sizeof(Vec2f) == 8 && sizeof(Vec3f) == 12 && sizeof(Vec4f) == 16);
 static_assert(sizeof(std::array<std::uint32_t, 3>) == 12);
 
-// Counts fit 31 bits, so that indices may be ints.
+// Counts fit in 31 bits, so that indices can be ints.
 constexpr std::uint64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 
 template <typename T>
 Status write_array(std::string_view name, const std::vector<T>& values,
                    ContainerWriter& container) {
-  // as_bytes wants trivially copyable elements by convention only; Eigen's fixed vectors are plain
-  // arrays of floats (the assertions above).
+  // Eigen's fixed-size vectors are not formally trivially copyable, but plain arrays of floats (see
+  // the assertions above).
   return container.section(
       name, {reinterpret_cast<const std::byte*>(values.data()), values.size() * sizeof(T)});
 }
@@ -86,13 +86,13 @@ Status check_storable(const Model& model) {
   for (const Model::Part& part : model.parts) {
     if (is_storable_text(part.name) && is_storable_text(part.material)) continue;
     return Error("model-shape",
-                 "the name or material of a part is no valid UTF-8 or has a zero byte",
+                 "the name or material of a part is not valid UTF-8 or has a zero byte",
                  "rename the part or its material");
   }
   return {};
 }
 
-// The section that check(Model) complains about by this code.
+// The section of an error of check(Model), by its code.
 std::string_view section_of(const std::string& code) {
   if (code == "model-weight") return "VWEIGHTS";
   if (code == "model-index") return "TRIANGLE";
@@ -143,11 +143,11 @@ Result<Model> read(std::span<const std::byte> file) {
       info.influences_per_vertex > static_cast<std::uint32_t>(Model::kMaxInfluences)) {
     return at_section(
         Error("model-shape",
-              fmt::format("says it has {} joints, {} vertices, {} triangles, {} parts and {} "
-                          "influences a vertex, which is not possible",
+              fmt::format("has invalid counts: {} joints, {} vertices, {} triangles, {} parts and "
+                          "{} influences per vertex",
                           info.joint_count, info.vertex_count, info.triangle_count, info.part_count,
                           info.influences_per_vertex),
-              "make the file anew"),
+              "create the file again"),
         *container, "INFO");
   }
 
@@ -174,9 +174,9 @@ Result<Model> read(std::span<const std::byte> file) {
   if (status) status = read_parts(*container, info.part_count, model);
   if (!status) return status.error();
 
-  if (Status status = check(model); !status) {
-    const std::string_view section = section_of(status.error().code);
-    return at_section(std::move(status).error(), *container, section);
+  if (Status step = check(model); !step) {
+    const std::string_view section = section_of(step.error().code);
+    return at_section(std::move(step).error(), *container, section);
   }
   return model;
 }

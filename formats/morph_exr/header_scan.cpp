@@ -20,10 +20,10 @@ constexpr std::uint32_t kExrVersion = 2;
 constexpr std::uint32_t kLongNames = 0x400;
 constexpr std::size_t kLongestName = 255;
 constexpr std::uint32_t kMaxAttributes = 1000;
-// What deflate can make of a byte at most, and room for small files.
+// Max expansion of deflate, rounded up for small files.
 constexpr std::uint64_t kMaxExpansion = 1040;
 
-// Types whose readers take no more memory than the attribute's bytes; texts are looked at here.
+// Types whose readers use no more memory than the attribute's size; strings are checked here.
 constexpr std::string_view kTypes[] = {"box2f",       "box2i",    "chlist",       "chromaticities",
                                        "compression", "double",   "envmap",       "float",
                                        "int",         "keycode",  "lineOrder",    "m33f",
@@ -36,28 +36,28 @@ class Scan {
   explicit Scan(std::span<const std::byte> file) : file_(file), in_(file) {}
 
   Result<HeaderFacts> run() {
-    if (in_.read<std::uint32_t>() != kMagic) return fail("this is no OpenEXR file");
+    if (in_.read<std::uint32_t>() != kMagic) return fail("not an OpenEXR file");
     const auto version = in_.read<std::uint32_t>();
     if ((version & 0xFF) != kExrVersion || (version & ~(0xFFu | kLongNames)) != 0) {
-      return fail("it is tiled, deep, of several parts or of another version of OpenEXR",
-                  "save it as a single-part scan-line picture");
+      return fail("tiled, deep and multi-part files and other OpenEXR versions are not supported",
+                  "save it as a single-part scan-line image");
     }
     for (std::uint32_t i = 0; i < kMaxAttributes; ++i) {
       std::string_view name, type;
-      if (!take_name(name)) return fail("its header is cut short");
+      if (!take_name(name)) return fail("truncated header");
       if (name.empty()) return finish();
-      if (!take_name(type)) return fail("its header is cut short");
+      if (!take_name(type)) return fail("truncated header");
       const auto size = in_.read<std::uint32_t>();
       if (!in_.ok() || size > in_.remaining()) {
-        return fail(fmt::format("attribute {} does not lie within the file", i));
+        return fail(fmt::format("attribute {} exceeds the file", i));
       }
       if (auto looked = look_at(name, type, in_.take(size)); !looked) return looked.error();
     }
-    return fail("its header has more than a thousand attributes");
+    return fail("the header has more than 1000 attributes");
   }
 
  private:
-  Error fail(const std::string& what, std::string hint = "the file is damaged or was cut short") {
+  Error fail(const std::string& what, std::string hint = "the file is damaged or truncated") {
     const auto place = static_cast<std::int64_t>(file_.size() - in_.remaining());
     return Error("exr-header", what, std::move(hint)).at_byte(place);
   }
@@ -76,24 +76,25 @@ class Scan {
   Status look_at(std::string_view name, std::string_view type, std::span<const std::byte> value) {
     ByteReader in(value);
     if (std::find(std::begin(kTypes), std::end(kTypes), type) == std::end(kTypes)) {
-      return fail(fmt::format("attribute '{}' is of a type that is not read", shown(name)),
-                  "save it without previews and other extras");
+      return fail(fmt::format("attribute '{}' has an unsupported type", shown(name)),
+                  "save it without previews and custom attributes");
     }
     while (type == "stringvector" && in.ok() && in.remaining() > 0) {
       in.take(in.read<std::uint32_t>());
-      if (!in.ok()) return fail(fmt::format("the texts of '{}' are longer than it", shown(name)));
+      if (!in.ok())
+        return fail(fmt::format("the strings of attribute '{}' exceed its size", shown(name)));
     }
     if (name == "compression") {
       const auto method = in.read<std::uint8_t>();
       if (in.ok() && method <= 3) return {};
-      return fail("its compression is none of NO, RLE, ZIPS and ZIP", "save it with ZIP");
+      return fail("the compression must be NO, RLE, ZIPS or ZIP", "save it with ZIP");
     }
     if (name == "dataWindow") {
       const auto left = in.read<std::int32_t>(), top = in.read<std::int32_t>();
       const auto right = in.read<std::int32_t>(), bottom = in.read<std::int32_t>();
       if (!in.ok() || left != 0 || top != 0 || right < 0 || bottom < 0 || right >= (1 << 20) ||
           bottom >= (1 << 20)) {
-        return fail("its data window is not one of a texture");
+        return fail("invalid data window for a texture");
       }
       facts_ = {static_cast<std::uint32_t>(right) + 1, static_cast<std::uint32_t>(bottom) + 1};
     }
@@ -102,12 +103,12 @@ class Scan {
 
   Result<HeaderFacts> finish() {
     const std::uint64_t texels = std::uint64_t{facts_.width} * facts_.height;
-    if (texels == 0) return fail("its header has no data window");
-    // Each block of up to 16 lines has an offset and a head of 8 bytes each.
+    if (texels == 0) return fail("the header has no data window");
+    // Each block of up to 16 lines has an offset and a header, 8 bytes each.
     const std::uint64_t blocks = (facts_.height + 15) / 16;
     if (texels * 12 > kMaxExpansion * file_.size() || blocks * 16 > file_.size()) {
-      return fail(fmt::format("it says that it is {} by {} texels, which {} bytes cannot hold",
-                              facts_.width, facts_.height, file_.size()));
+      return fail(fmt::format("{} by {} texels are not possible in {} bytes", facts_.width,
+                              facts_.height, file_.size()));
     }
     return facts_;
   }

@@ -6,8 +6,8 @@
 
 #include "core/result.h"
 
-// Private to this folder: a look at an OpenEXR header before the library gets it, which trusts the
-// sizes that stand there with memory.
+// Private to this folder: checks an OpenEXR header before the library reads it, which allocates
+// memory by the sizes in the header.
 
 namespace krok::morph_exr {
 
@@ -15,9 +15,9 @@ struct HeaderFacts {
   std::uint32_t width = 0, height = 0;
 };
 
-// Whether the file is a single-part picture of scan lines, without loss (NO, RLE, ZIPS or ZIP
-// compression), whose attributes lie within it, and whose size is one that so many bytes can hold.
-// Code exr-header, with the byte.
+// Checks that the file is a single-part scan-line image with lossless compression (NO, RLE, ZIPS or
+// ZIP), that its attributes are within the file, and that the image size is possible for the file
+// size. Code: exr-header, with the byte offset.
 Result<HeaderFacts> scan_header(std::span<const std::byte> file);
 
 }  // namespace krok::morph_exr

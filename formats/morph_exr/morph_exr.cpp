@@ -75,7 +75,7 @@ class BytesOut : public Imf::OStream {
   std::size_t position_ = 0;
 };
 
-// Where rows `first_row` and on of the picture lie: in `texels`, from its beginning.
+// Maps the image's rows from `first_row` on to `texels`.
 Imf::FrameBuffer rows_in(std::vector<Vec3f>& texels, std::size_t width, std::size_t first_row) {
   static_assert(sizeof(Vec3f) == 12);
   Imf::FrameBuffer buffer;
@@ -101,7 +101,7 @@ struct Layout {
   std::size_t width = 0, rows = 0;  // of a half
 };
 
-// The width is the power of two that makes the picture nearly square.
+// The width is the power of two that makes the image nearly square.
 Layout layout_of(std::uint64_t vertices) {
   std::uint64_t width = 1;
   while (width < kMaxWidth && width * width < 2 * vertices) width *= 2;
@@ -117,11 +117,11 @@ Status check_channels(const Imf::Header& header) {
     });
     if (!known || channel.channel().type != Imf::FLOAT || channel.channel().xSampling != 1 ||
         channel.channel().ySampling != 1) {
-      return not_morphs("its channels are not R, G and B of 32-bit floats");
+      return not_morphs("the channels must be R, G and B of 32-bit floats");
     }
     ++count;
   }
-  if (count != 3) return not_morphs("its channels are not R, G and B of 32-bit floats");
+  if (count != 3) return not_morphs("the channels must be R, G and B of 32-bit floats");
   return {};
 }
 
@@ -131,10 +131,10 @@ Result<MorphSet> read_checked(std::span<const std::byte> file, const HeaderFacts
   const Imf::Header& header = input.header();
   const auto* names = header.findTypedAttribute<Imf::StringVectorAttribute>(kNamesName);
   const int version = int_attribute(header, kVersionName);
-  if (version < 1 || names == nullptr) return not_morphs("it is a picture without morph targets");
+  if (version < 1 || names == nullptr) return not_morphs("the image has no morph targets");
   if (version > kMorphVersion) {
-    return not_morphs(
-        fmt::format("its version is {}, this program reads up to {}", version, kMorphVersion));
+    return not_morphs(fmt::format("the file has version {}; this program reads up to version {}",
+                                  version, kMorphVersion));
   }
   if (Status status = check_channels(header); !status) return status.error();
   MorphSet morphs;
@@ -146,7 +146,7 @@ Result<MorphSet> read_checked(std::span<const std::byte> file, const HeaderFacts
   const std::uint64_t texels = vertices * morphs.names.size();
   if (texels == 0 || facts.height % 2 != 0 || rows != (texels + width - 1) / width ||
       with_normals < 0 || with_normals > 1) {
-    return not_morphs(fmt::format("{} targets of {} vertices do not fit {} by {} texels",
+    return not_morphs(fmt::format("{} targets of {} vertices do not match {} by {} texels",
                                   morphs.names.size(), morphs.vertex_count, facts.width,
                                   facts.height));
   }
@@ -172,7 +172,7 @@ Result<MorphSet> read_checked(std::span<const std::byte> file, const HeaderFacts
   return morphs;
 }
 
-// One half of the picture: the texels in order, zeros after the last.
+// Writes one half of the image: the texels in order, padded with zeros.
 void write_half(Imf::OutputFile& output, const std::vector<Vec3f>& values, const Layout& layout,
                 std::size_t first_row) {
   std::vector<Vec3f> texels = values;
@@ -197,8 +197,8 @@ Result<MorphSet> read(std::span<const std::byte> file) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    return Error("exr-data", fmt::format("the picture cannot be read: {}", error.what()),
-                 "the file is damaged or was cut short");
+    return Error("exr-data", fmt::format("cannot read the image: {}", error.what()),
+                 "the file is damaged or truncated");
   }
 }
 
@@ -230,7 +230,7 @@ Status write(const MorphSet& morphs, OutputFile& file) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    return Error("exr-data", fmt::format("the texture cannot be written: {}", error.what()));
+    return Error("exr-data", fmt::format("cannot write the texture: {}", error.what()));
   }
   return file.write(stream.bytes());
 }

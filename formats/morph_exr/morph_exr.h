@@ -7,29 +7,28 @@
 #include "core/result.h"
 #include "scene/morph_set.h"
 
-// Morph targets in a float texture, an OpenEXR file that a shader can take as it is: the upper half
-// holds the positions of all targets, the lower half their normals. formats/morph_exr/SPEC.md tells
-// where a vertex stands.
+// Morph targets as a float texture: an OpenEXR file that shaders can use directly. The upper half
+// has the positions of all targets, the lower half their normals. See formats/morph_exr/SPEC.md for
+// the layout.
 //
-// Codes: exr-header (not an OpenEXR file, or one of a kind that is not read), exr-morphs (an
-// OpenEXR file without targets, or whose counts do not fit its size), exr-data (the pixels are
-// damaged), and those of check(MorphSet).
+// Codes: exr-header (not an OpenEXR file, or an unsupported kind), exr-morphs (no targets, or
+// counts that do not match the image size), exr-data (damaged pixels), and those of
+// check(MorphSet).
 
 namespace krok::morph_exr {
 
-// Trusts nothing in `file`: memory is taken only in proportion to its bytes.
+// For untrusted input: memory is proportional to the file size.
 Result<MorphSet> read(std::span<const std::byte> file);
 
-// How large the picture of such a file is, in texels; both halves together.
+// Size of the image in texels, both halves together.
 struct ImageSize {
   int width = 0, height = 0;
 };
 Result<ImageSize> image_size(std::span<const std::byte> file);
 
-// Appends the whole file to `file`, to which nothing was written before; the caller commits. The
-// same targets give the same bytes, and targets that were read come back bit for bit. An Error for
-// what check() refuses, and for sets without targets or too large for a picture of 16384 by 32768
-// texels (code exr-morphs).
+// Writes the whole file to `file`, which must be empty; the caller commits. Output is deterministic
+// and round trips are bit-exact. Codes: those of check(MorphSet); exr-morphs for no targets, or for
+// more than an image of 16384 by 32768 texels can hold.
 Status write(const MorphSet& morphs, OutputFile& file);
 
 }  // namespace krok::morph_exr

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMaxParts = 65'536;
 constexpr std::size_t kMaxElements = std::numeric_limits<std::int32_t>::max();
 
-// Statements of free-form geometry and of display, which have no part in a mesh.
+// Free-form geometry and display statements, which are ignored.
 constexpr std::array kPassedOver = {"s",        "mtllib",     "vp",       "lod",
                                     "bevel",    "maplib",     "usemap",   "c_interp",
                                     "d_interp", "shadow_obj", "trace_obj"};
@@ -27,7 +27,7 @@ constexpr std::array kLeftOut = {"p",    "l",    "curv", "curv2", "surf",  "csty
                                  "bmat", "step", "parm", "trim",  "hole",  "scrv",   "sp",
                                  "end",  "con",  "mg",   "ctech", "stech", "call",   "csh"};
 
-// A corner of a face: places in the file's lists from 0, -1 for none.
+// A corner of a face: 0-based indices in the file's lists, -1 for none.
 struct Corner {
   long long position = -1, texture = -1, normal = -1;
 };
@@ -46,8 +46,8 @@ class Reader {
   }
 
  private:
-  // The words of the next line, and of those that it goes on in after a backslash, without
-  // comments. False at the end.
+  // Splits the next line into words, with continuation lines (backslash), without comments. False
+  // at the end.
   bool next_statement() {
     words_.clear();
     if (at_ >= text_.size()) return false;
@@ -100,7 +100,7 @@ class Reader {
       left_out_.emplace(kind);
       return {};
     }
-    return fault("obj-text", kind, fmt::format("'{}' is no statement of OBJ files", shown(kind)));
+    return fault("obj-text", kind, fmt::format("'{}' is not an OBJ statement", shown(kind)));
   }
 
   std::string rest_of_line(std::string_view first) const {
@@ -118,15 +118,15 @@ class Reader {
     const auto value = parse_finite(words_[word]);
     if (!value) {
       return fault("obj-number", words_[word],
-                   fmt::format("'{}' is no number", shown(words_[word])));
+                   fmt::format("'{}' is not a number", shown(words_[word])));
     }
     const auto result = static_cast<float>(*value * scale);
     if (std::isfinite(result)) return result;
     return fault("obj-number", words_[word],
-                 fmt::format("{} is out of proportion", shown(words_[word])));
+                 fmt::format("{} is out of range", shown(words_[word])));
   }
 
-  // Further numbers (a weight, a colour) are passed over.
+  // More numbers (a weight, a colour) are ignored.
   Status read_numbers(std::size_t count, std::vector<Vec3f>& list, double scale) {
     Vec3f values;
     for (std::size_t i = 0; i < count; ++i) {
@@ -140,7 +140,7 @@ class Reader {
   template <typename Value>
   Status append(std::vector<Value>& list, const Value& value) {
     if (list.size() == kMaxElements) {
-      return fault("obj-limit", words_[0], "the file has more of these than can be counted");
+      return fault("obj-limit", words_[0], "too many of these statements");
     }
     list.push_back(value);
     return {};
@@ -154,18 +154,19 @@ class Reader {
     return append(textures_, Vec2f(*u, 1 - *v));
   }
 
-  // A place in a list of `count` so far: from 1, or from the end with a sign.
+  // An index in a list of `count` so far: 1-based, or relative to the end if negative.
   Result<long long> place(std::string_view word, std::string_view part, std::size_t count,
                           const char* what) const {
     const auto index = parse_integer(part);
     if (!index || *index == 0) {
-      return fault("obj-index", word, fmt::format("'{}' names no {}", shown(word), what),
-                   "a corner is V, V/T, V//N or V/T/N; they count from 1");
+      return fault("obj-index", word, fmt::format("'{}' has no index of a {}", shown(word), what),
+                   "a corner is V, V/T, V//N or V/T/N; indices begin at 1");
     }
     const long long found = *index > 0 ? *index - 1 : static_cast<long long>(count) + *index;
     if (found >= 0 && found < static_cast<long long>(count)) return found;
-    return fault("obj-index", word,
-                 fmt::format("'{}' names {} {}, of {} so far", shown(word), what, *index, count));
+    return fault(
+        "obj-index", word,
+        fmt::format("'{}' refers to {} {}, of {} so far", shown(word), what, *index, count));
   }
 
   Result<Corner> corner(std::string_view word) const {
@@ -222,7 +223,7 @@ class Reader {
     return {};
   }
 
-  // A part begins with its first face, so that none is empty.
+  // A part begins with its first face, so that no part is empty.
   Status begin_part() {
     if (!new_part_) return {};
     new_part_ = false;
@@ -236,7 +237,7 @@ class Reader {
     return {};
   }
 
-  // What the corners of a face say of its vertices.
+  // Takes normals and texture coordinates from the corners of a face.
   void take_corners() {
     Model& model = shape_.model;
     for (const Corner& one : corners_) {
@@ -276,7 +277,7 @@ class Reader {
   Vec3f normal_at(std::size_t vertex) const {
     if (vertex >= first_normal_.size() || first_normal_[vertex] < 0) return Vec3f::UnitY();
     const Vec3f& first = normals_[static_cast<std::size_t>(first_normal_[vertex])];
-    // What is of length 1 stays as it stands.
+    // A unit normal is kept exactly.
     if (mixed_[vertex] == 0 && std::abs(first.norm() - 1) < 1e-4f) return first;
     const double length = normal_sums_[vertex].norm();
     if (!(length > 1e-9)) return Vec3f::UnitY();
@@ -297,7 +298,7 @@ class Reader {
     const std::size_t count = positions_.size();
     if (count == 0) {
       return Error("obj-empty", "the file has no vertices",
-                   "an OBJ file has them in lines 'v x y z'")
+                   "OBJ files have vertices in lines 'v x y z'")
           .in_file(path_);
     }
     if (all_normals_ && !model.triangles.empty()) {
@@ -318,12 +319,12 @@ class Reader {
     model.influence_weights.assign(count, 1.0f);
     if (!left_out_.empty()) {
       warn("obj-left-out",
-           fmt::format("left out, for it is no polygon: {}", fmt::join(left_out_, ", ")));
+           fmt::format("left out, as only polygons are read: {}", fmt::join(left_out_, ", ")));
     }
     if (several_textures_ > 0) {
       warn("obj-several",
-           fmt::format("at {} a vertex has another texture coordinate than at its first one; the "
-                       "first is taken",
+           fmt::format("at {} a vertex has another texture coordinate than at its first corner; "
+                       "the first is used",
                        counted(several_textures_, "corner")));
     }
     if (Status status = check(model); !status) return std::move(status).error().in_file(path_);
@@ -342,8 +343,8 @@ class Reader {
   std::string name_, material_;
   bool new_part_ = true;
 
-  // Of each vertex that a face has named so far: its first normal and texture coordinate in the
-  // lists, the sum of its normals, and whether they differ.
+  // For each vertex used so far: indices of its first normal and texture coordinate, the sum of its
+  // normals, and whether they differ.
   std::vector<long long> first_normal_, texture_of_;
   std::vector<Vec3> normal_sums_;
   std::vector<std::uint8_t> mixed_;

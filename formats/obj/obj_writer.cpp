@@ -14,12 +14,12 @@ namespace krok::obj {
 
 namespace {
 
-// The longest text of a float, "-1.17549435e-38", and the space before it.
+// The longest text of a float, "-1.17549435e-38", and a space.
 constexpr std::size_t kNumberRoom = 16;
 constexpr std::size_t kLineRoom = 3 + 3 * kNumberRoom;
 constexpr std::size_t kWrittenAtOnce = std::size_t{1} << 18;
 
-// Text that is written when it is long enough.
+// A text buffer that is flushed when it is long enough.
 class Lines {
  public:
   explicit Lines(OutputFile& file) : file_(file), text_(kWrittenAtOnce, '\0') {}
@@ -57,7 +57,7 @@ Status add_all(Lines& lines, std::string_view keyword, std::span<const Vec3f> ve
   return {};
 }
 
-// Names of one kind as the file can hold them: none empty, each different from the others.
+// Makes names of one kind valid and unique.
 class Names {
  public:
   const std::string& operator()(const std::string& name) {
@@ -67,7 +67,7 @@ class Names {
   }
 
  private:
-  // Space and control characters end a name, a backslash may join two lines, '#' begin a comment.
+  // Spaces and control characters end a name, a backslash joins lines, '#' begins a comment.
   static std::string usable(std::string name) {
     std::ranges::replace_if(
         name,
@@ -97,7 +97,7 @@ std::string head_text(const WriteOptions& options) {
   return text + "# metres, +Y up\no " + names(options.name) + "\n";
 }
 
-// OBJ's v runs up.
+// In OBJ, v is up.
 std::string coordinates_text(std::span<const Vec2f> coordinates) {
   std::string text;
   for (const Vec2f& uv : coordinates) {
@@ -106,7 +106,7 @@ std::string coordinates_text(std::span<const Vec2f> coordinates) {
   return text;
 }
 
-// "f 1/1/1 2/2/2 3/3/3": an index each of position, texture coordinate and normal.
+// "f 1/1/1 2/2/2 3/3/3": indices of position, texture coordinate and normal.
 void add_face(std::string& text, const std::array<std::uint32_t, 3>& triangle, bool coordinates,
               bool normals) {
   const auto out = std::back_inserter(text);
@@ -144,7 +144,7 @@ std::string faces_text(const Model& model) {
 Result<Writer> Writer::create(const Model& model, const WriteOptions& options) {
   if (Status status = check(model); !status) return status.error();
   if (model.triangles.empty()) {
-    return Error("obj-empty-mesh", "the model has no triangles, so there is no mesh to write");
+    return Error("obj-empty-mesh", "the model has no triangles");
   }
   Writer writer;
   writer.vertices_ = model.positions.size();
@@ -158,9 +158,10 @@ Result<Writer> Writer::create(const Model& model, const WriteOptions& options) {
 Status Writer::write(const MeshShape& shape, OutputFile& file) const {
   const std::size_t normals = normals_ ? vertices_ : 0;
   if (shape.positions.size() != vertices_ || shape.normals.size() != normals) {
-    return Error("obj-shape",
-                 fmt::format("the shape has {} positions and {} normals, the model {} and {}",
-                             shape.positions.size(), shape.normals.size(), vertices_, normals));
+    return Error(
+        "obj-shape",
+        fmt::format("the shape has {} positions and {} normals, but the model has {} and {}",
+                    shape.positions.size(), shape.normals.size(), vertices_, normals));
   }
   if (!all_finite(shape.positions) || !all_finite(shape.normals)) {
     return Error("obj-shape", "a vertex is not finite");

@@ -9,7 +9,7 @@
 #include "scene/model.h"
 #include "scene/provenance.h"
 
-// Wavefront OBJ files of a model's mesh. A motion is a file a frame.
+// Writes a model's mesh as Wavefront OBJ; for a motion, one file per frame.
 //
 // Codes: obj-empty-mesh, obj-shape and those of check(Model).
 
@@ -20,22 +20,21 @@ struct WriteOptions {
   std::string name = "krok";  // of the object
 };
 
-// Writes files of one model in any number of shapes. What all of them share is made once; the
-// model need not live on.
+// Writes one model in any number of shapes. Shared text is prepared once; the model need not
+// outlive the call of create().
 //
-// Positions, normals and texture coordinates are lists of as many as the model has vertices, in its
-// order, so that a point cache of the model fits the mesh; in metres, +Y up, facing +Z. Every
-// number has the digits that give the same float when read. Parts are groups with their materials'
-// names; no file of materials is named. Characters that would end a name become '_'.
+// Positions, normals and texture coordinates are written per vertex, in the model's order, so that
+// a point cache of the model fits the mesh; in metres, +Y up, facing +Z. Numbers have enough digits
+// to read back as the same float. Parts are groups with material names; no material file (.mtl) is
+// referenced. Characters that would end a name become '_'.
 class Writer {
  public:
   // Codes: obj-empty-mesh (no triangles) and those of check(Model).
   static Result<Writer> create(const Model& model, const WriteOptions& options);
 
-  // Appends one whole file to `file`. May be called from several threads at once, for different
-  // files. The shape needs normals where the model has them, and has none where it has none;
-  // tangents are left out. Code obj-shape: other numbers of them than the model's, or one that is
-  // not finite.
+  // Appends one whole file to `file`. Thread-safe for different files. The shape must have normals
+  // if and only if the model has; tangents are not written. Code: obj-shape if the counts differ
+  // from the model's, or a value is not finite.
   Status write(const MeshShape& shape, OutputFile& file) const;
 
  private:
@@ -45,7 +44,7 @@ class Writer {
   std::string head_, texture_coordinates_, faces_;
 };
 
-// One file: create() and write().
+// A single file: create() and write().
 Status write(const Model& model, const MeshShape& shape, const WriteOptions& options,
              OutputFile& file);
 

@@ -5,15 +5,15 @@
 #include <cstddef>
 #include <cstdint>
 
-// Private to this folder: the first bytes of a PC2 file, as SPEC.md has them.
+// Private to this folder: the header of a PC2 file; see SPEC.md.
 
 namespace krok::pc2 {
 
-static_assert(std::endian::native == std::endian::little, "the format's numbers are");
+static_assert(std::endian::native == std::endian::little, "the format is little-endian");
 
 inline constexpr std::array<char, 12> kMagic = {'P', 'O', 'I', 'N', 'T', 'C',
                                                 'A', 'C', 'H', 'E', '2', '\0'};
-inline constexpr std::size_t kMaxCount = 0x7FFFFFFF;  // of vertices, of samples
+inline constexpr std::size_t kMaxCount = 0x7FFFFFFF;  // vertices or samples
 inline constexpr std::int32_t kVersion = 1;
 
 struct Header {

@@ -16,15 +16,15 @@ constexpr std::uint64_t kVectorBytes = 3 * sizeof(float);
 Status check(const Header& header) {
   if (header.version != kVersion) {
     return Error("pc2-version",
-                 fmt::format("the file is of version {}, known is {}", header.version, kVersion))
+                 fmt::format("the file has version {}, expected {}", header.version, kVersion))
         .at_byte(offsetof(Header, version));
   }
   if (header.points < 0) {
-    return Error("pc2-value", fmt::format("the file would have {} vertices", header.points))
+    return Error("pc2-value", fmt::format("invalid number of vertices, {}", header.points))
         .at_byte(offsetof(Header, points));
   }
   if (header.samples < 0) {
-    return Error("pc2-value", fmt::format("the file would have {} samples", header.samples))
+    return Error("pc2-value", fmt::format("invalid number of samples, {}", header.samples))
         .at_byte(offsetof(Header, samples));
   }
   if (!std::isfinite(header.start_frame)) {
@@ -32,7 +32,8 @@ Status check(const Header& header) {
         .at_byte(offsetof(Header, start_frame));
   }
   if (!std::isfinite(header.frames_per_sample) || header.frames_per_sample <= 0) {
-    return Error("pc2-value", fmt::format("a sample every {} frames", header.frames_per_sample))
+    return Error("pc2-value",
+                 fmt::format("invalid number of frames per sample, {}", header.frames_per_sample))
         .at_byte(offsetof(Header, frames_per_sample));
   }
   return {};
@@ -46,21 +47,20 @@ Result<PointCache> PointCache::read(std::span<const std::byte> file) {
     return Error("pc2-format", "the file does not begin with POINTCACHE2");
   }
   if (file.size() < sizeof header) {
-    return Error("pc2-truncated",
-                 fmt::format("the file ends within its header, after {} bytes", file.size()));
+    return Error("pc2-truncated", fmt::format("truncated header of {} bytes", file.size()));
   }
   std::memcpy(&header, file.data(), sizeof header);
   if (Status status = check(header); !status) return status.error();
 
-  // At most 12 * 2^62, which 64 bits do not hold: so by division.
+  // Divide: the product of up to 12 * 2^62 would overflow 64 bits.
   const std::uint64_t left = file.size() - sizeof header;
   const auto points = static_cast<std::uint64_t>(header.points);
   const auto samples = static_cast<std::uint64_t>(header.samples);
   if (points > 0 && left / (points * kVectorBytes) < samples) {
     return Error("pc2-truncated",
-                 fmt::format("{} samples of {} vertices take more than the file's {} bytes",
-                             samples, points, file.size()),
-                 "the file is damaged or was cut short");
+                 fmt::format("{} samples of {} vertices exceed the file's {} bytes", samples,
+                             points, file.size()),
+                 "the file is damaged or truncated");
   }
   PointCache cache;
   const std::uint64_t bytes = samples * points * kVectorBytes;
@@ -77,7 +77,7 @@ Status PointCache::get(std::int64_t sample, std::span<Vec3f> positions) const {
   assert(sample >= 0 && sample < samples_);
   assert(positions.size() == static_cast<std::size_t>(points_));
   const std::size_t begin = static_cast<std::size_t>(sample) * positions.size_bytes();
-  // Files need not begin where floats may.
+  // The data may not be aligned for floats.
   if (!positions.empty()) {
     std::memcpy(positions.front().data(), &data_[begin], positions.size_bytes());
   }

@@ -14,19 +14,19 @@ namespace {
 
 Status check_option(const char* what, double value) {
   if (std::isfinite(value) && std::abs(value) <= std::numeric_limits<float>::max()) return {};
-  return Error("pc2-option", fmt::format("a point cache cannot hold the {} {}", what, value));
+  return Error("pc2-option", fmt::format("a point cache cannot store the {} {}", what, value));
 }
 
 Status check(const WriteOptions& options) {
   if (Status status = check_option("start frame", options.start_frame); !status) return status;
   if (Status status = check_option("scale", options.scale); !status) return status;
   if (Status status = check_option("sampling", options.frames_per_sample); !status) return status;
-  if (!(options.scale > 0)) return Error("pc2-option", "the scale must be more than 0");
+  if (!(options.scale > 0)) return Error("pc2-option", "the scale must be greater than 0");
   if (static_cast<float>(options.frames_per_sample) > 0) return {};
-  return Error("pc2-option", "the frames a sample must be more than 0");
+  return Error("pc2-option", "the frames per sample must be greater than 0");
 }
 
-// Brings a shape into the file's axes and units.
+// Converts a shape to the file's axes and units.
 Status convert(const WriteOptions& options, int frame, std::span<Vec3f> positions) {
   const auto scale = static_cast<float>(options.scale);
   if (options.up == Up::z) {
@@ -46,8 +46,7 @@ Status write(const Model& model, const MeshMotion& motion, const WriteOptions& o
   if (Status status = check(options); !status) return status;
   const std::size_t points = model.positions.size();
   if (points > kMaxCount) {
-    return Error("pc2-too-large",
-                 fmt::format("{} vertices are more than a PC2 file tells", points));
+    return Error("pc2-too-large", fmt::format("{} vertices exceed the limit of PC2 files", points));
   }
   Header header;
   header.points = static_cast<std::int32_t>(points);

@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::string_view kHierarchy = "HIERARCHY";
 
-// What people give by mistake, by its first bytes.
+// Other kinds of files that users may pass by mistake, by their first bytes.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kOtherKinds = {
-    {{"\x89PNG", "a PNG picture"},
+    {{"\x89PNG", "a PNG image"},
      {"PK\x03\x04", "a ZIP archive"},
      {"\x1F\x8B", "a gzip archive"},
      {"BZh", "a bzip2 archive"},
@@ -25,16 +25,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kOtherKi
       "an xz archive"},
      {"7z\xBC\xAF\x27\x1C", "a 7-Zip archive"},
      {"Rar!\x1A\x07", "a RAR archive"},
-     {"\x76\x2F\x31\x01", "an OpenEXR picture"},
+     {"\x76\x2F\x31\x01", "an OpenEXR image"},
      {"%PDF-", "a PDF document"},
-     {"version https://git-lfs", "a pointer of Git LFS, not the file that it stands for"}}};
+     {"version https://git-lfs", "a Git LFS pointer, not the file itself"}}};
 
 std::string_view text_of(std::span<const std::byte> content) {
   return {reinterpret_cast<const char*>(content.data()), content.size()};
-}
-
-std::string_view view(const Magic& magic) {
-  return {magic.data(), magic.size()};
 }
 
 // The text without a byte-order mark and leading white space.
@@ -44,7 +40,7 @@ std::string_view first_word(std::string_view text) {
   return start == std::string_view::npos ? std::string_view() : text.substr(start);
 }
 
-// The first section of an Acclaim file, after comments, says which of the two it is.
+// ASF or AMC, by the first section after comments.
 Kind acclaim_kind(std::string_view text) {
   for (text = first_word(text); text.starts_with('#'); text = first_word(text)) {
     text.remove_prefix(std::min(text.find_first_of("\r\n"), text.size()));
@@ -76,7 +72,7 @@ Kind json_kind(std::string_view text) {
   return has(head, "\"asset\"") || has(tail, "\"asset\"") ? Kind::gltf : Kind::unknown;
 }
 
-// 3DS: the main chunk, whose length is that of the file or whose first part is one that opens it.
+// 3DS: begins with the main chunk, which has the length of the file or a known first subchunk.
 bool is_3ds(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
@@ -87,7 +83,7 @@ bool is_3ds(std::string_view text) {
   return length == text.size() || first == 0x0002 || first == 0x3D3D || first == 0xB000;
 }
 
-// Words of a text that begins with them, past comments of two slashes.
+// Consumes the next word of a text, skipping // comments.
 std::string_view next_word(std::string_view& text) {
   text = first_word(text);
   while (text.starts_with("//")) {
@@ -99,7 +95,7 @@ std::string_view next_word(std::string_view& text) {
   return word;
 }
 
-// What formats/assimp reads.
+// Kinds read by formats/assimp.
 Kind scene_kind(std::string_view text) {
   constexpr std::size_t kWindow = std::size_t{64} << 10;
   const std::string_view head = text.substr(0, kWindow);
@@ -127,54 +123,74 @@ bool is_text(std::string_view text) {
   });
 }
 
+// Known formats: file extension, description for messages, and how to recognise the content. Tried
+// in this order.
+struct Format {
+  Kind kind;
+  std::string_view ending;  // without the dot
+  std::string_view description;
+  bool (*matches)(std::string_view content);
+};
+
+template <const Magic& magic>
+bool begins_with(std::string_view content) {
+  return content.starts_with(std::string_view(magic.data(), magic.size()));
+}
+template <Kind kind>
+bool is_acclaim(std::string_view content) {
+  return acclaim_kind(content) == kind;
+}
+template <Kind kind>
+bool is_json(std::string_view content) {
+  return json_kind(content) == kind;
+}
+template <Kind kind>
+bool is_scene(std::string_view content) {
+  return scene_kind(content) == kind;
+}
+bool is_pc2(std::string_view content) {
+  return content.starts_with(std::string_view("POINTCACHE2", 12));
+}
+bool is_glb(std::string_view content) {
+  return content.starts_with("glTF");
+}
+bool is_bvh(std::string_view content) {
+  return same_word(first_word(content).substr(0, kHierarchy.size()), kHierarchy);
+}
+
+constexpr auto kFormats = std::to_array<Format>({
+    {Kind::anim, "anim", "a Krok motion (.anim)", begins_with<kAnimMagic>},
+    {Kind::model, "model", "a Krok model (.model)", begins_with<kModelMagic>},
+    {Kind::cam, "cam", "a Krok camera (.cam)", begins_with<kCamMagic>},
+    {Kind::steps, "steps", "a Krok step library (.steps)", begins_with<kStepsMagic>},
+    {Kind::pc2, "pc2", "a point cache (.pc2)", is_pc2},
+    {Kind::glb, "glb", "a binary glTF file (.glb)", is_glb},
+    {Kind::bvh, "bvh", "a BVH text file", is_bvh},
+    {Kind::material, "material", "Krok materials (.material)", is_json<Kind::material>},
+    {Kind::character, "character", "a Krok character (.character)", is_json<Kind::character>},
+    {Kind::gltf, "gltf", "a glTF file (.gltf)", is_json<Kind::gltf>},
+    {Kind::fbx, "fbx", "an FBX file", is_scene<Kind::fbx>},
+    {Kind::collada, "dae", "a COLLADA file (.dae)", is_scene<Kind::collada>},
+    {Kind::smd, "smd", "a Valve SMD file", is_scene<Kind::smd>},
+    {Kind::ms3d, "ms3d", "a MilkShape file (.ms3d)", is_scene<Kind::ms3d>},
+    {Kind::max_3ds, "3ds", "a 3DS file", is_scene<Kind::max_3ds>},
+    {Kind::ase, "ase", "an ASE file", is_scene<Kind::ase>},
+    {Kind::md5mesh, "md5mesh", "an MD5 mesh", is_scene<Kind::md5mesh>},
+    {Kind::md5anim, "md5anim", "an MD5 motion (.md5anim)", is_scene<Kind::md5anim>},
+    {Kind::asf, "asf", "an Acclaim skeleton (ASF)", is_acclaim<Kind::asf>},
+    {Kind::amc, "amc", "an Acclaim motion (AMC)", is_acclaim<Kind::amc>},
+});
+
+const Format* find_format(Kind kind) {
+  const auto found = std::ranges::find(kFormats, kind, &Format::kind);
+  return found == kFormats.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 std::string_view kind_name(Kind kind) {
-  switch (kind) {
-    case Kind::anim:
-      return "anim";
-    case Kind::model:
-      return "model";
-    case Kind::cam:
-      return "cam";
-    case Kind::steps:
-      return "steps";
-    case Kind::material:
-      return "material";
-    case Kind::character:
-      return "character";
-    case Kind::bvh:
-      return "bvh";
-    case Kind::asf:
-      return "asf";
-    case Kind::amc:
-      return "amc";
-    case Kind::pc2:
-      return "pc2";
-    case Kind::glb:
-      return "glb";
-    case Kind::gltf:
-      return "gltf";
-    case Kind::fbx:
-      return "fbx";
-    case Kind::collada:
-      return "dae";
-    case Kind::smd:
-      return "smd";
-    case Kind::ms3d:
-      return "ms3d";
-    case Kind::max_3ds:
-      return "3ds";
-    case Kind::ase:
-      return "ase";
-    case Kind::md5mesh:
-      return "md5mesh";
-    case Kind::md5anim:
-      return "md5anim";
-    case Kind::unknown:
-      break;
-  }
-  return "unknown";
+  const Format* format = find_format(kind);
+  return format == nullptr ? "unknown" : format->ending;
 }
 
 bool is_read_through_assimp(Kind kind) {
@@ -183,28 +199,17 @@ bool is_read_through_assimp(Kind kind) {
 
 Kind kind_of_content(std::span<const std::byte> content) {
   const std::string_view text = text_of(content);
-  if (text.starts_with(view(kAnimMagic))) return Kind::anim;
-  if (text.starts_with(view(kModelMagic))) return Kind::model;
-  if (text.starts_with(view(kCamMagic))) return Kind::cam;
-  if (text.starts_with(view(kStepsMagic))) return Kind::steps;
-  if (text.starts_with(std::string_view("POINTCACHE2", 12))) return Kind::pc2;
-  if (text.starts_with("glTF")) return Kind::glb;
-  if (same_word(first_word(text).substr(0, kHierarchy.size()), kHierarchy)) return Kind::bvh;
-  if (const Kind kind = json_kind(text); kind != Kind::unknown) return kind;
-  const Kind scene = scene_kind(text);
-  return scene != Kind::unknown ? scene : acclaim_kind(text);
+  const auto found =
+      std::ranges::find_if(kFormats, [&](const Format& format) { return format.matches(text); });
+  return found == kFormats.end() ? Kind::unknown : found->kind;
 }
 
 Kind kind_of_name(const std::string& path) {
   const std::string ending = extension(path);
-  for (const Kind kind :
-       {Kind::anim,      Kind::model,   Kind::cam, Kind::steps,   Kind::material,
-        Kind::character, Kind::bvh,     Kind::asf, Kind::amc,     Kind::pc2,
-        Kind::glb,       Kind::gltf,    Kind::fbx, Kind::collada, Kind::smd,
-        Kind::ms3d,      Kind::max_3ds, Kind::ase, Kind::md5mesh, Kind::md5anim}) {
-    if (ending.size() > 1 && std::string_view(ending).substr(1) == kind_name(kind)) return kind;
-  }
-  return Kind::unknown;
+  if (ending.size() < 2) return Kind::unknown;
+  const auto found =
+      std::ranges::find(kFormats, std::string_view(ending).substr(1), &Format::ending);
+  return found == kFormats.end() ? Kind::unknown : found->kind;
 }
 
 Kind identify(const std::string& path, std::span<const std::byte> content) {
@@ -214,50 +219,7 @@ Kind identify(const std::string& path, std::span<const std::byte> content) {
 
 std::string_view describe_content(std::span<const std::byte> content) {
   if (content.empty()) return "an empty file";
-  switch (kind_of_content(content)) {
-    case Kind::anim:
-      return "a Krok motion (.anim)";
-    case Kind::model:
-      return "a Krok model (.model)";
-    case Kind::cam:
-      return "a Krok camera (.cam)";
-    case Kind::steps:
-      return "a Krok step library (.steps)";
-    case Kind::material:
-      return "Krok materials (.material)";
-    case Kind::character:
-      return "a Krok character (.character)";
-    case Kind::bvh:
-      return "a BVH text file";
-    case Kind::asf:
-      return "an Acclaim skeleton (ASF)";
-    case Kind::amc:
-      return "an Acclaim motion (AMC)";
-    case Kind::pc2:
-      return "a point cache (.pc2)";
-    case Kind::glb:
-      return "a binary glTF file (.glb)";
-    case Kind::gltf:
-      return "a glTF file (.gltf)";
-    case Kind::fbx:
-      return "an FBX file";
-    case Kind::collada:
-      return "a COLLADA file (.dae)";
-    case Kind::smd:
-      return "a Valve SMD file";
-    case Kind::ms3d:
-      return "a MilkShape file (.ms3d)";
-    case Kind::max_3ds:
-      return "a 3DS file";
-    case Kind::ase:
-      return "an ASE file";
-    case Kind::md5mesh:
-      return "an MD5 mesh";
-    case Kind::md5anim:
-      return "an MD5 motion (.md5anim)";
-    case Kind::unknown:
-      break;
-  }
+  if (const Format* format = find_format(kind_of_content(content))) return format->description;
   const std::string_view text = text_of(content);
   for (const auto& [start, what] : kOtherKinds) {
     if (text.starts_with(start)) return what;

@@ -18,7 +18,7 @@ constexpr std::string_view kSchema = "krok.role-map/1";
 constexpr const char* kForm =
     "write {\"joints\": {\"Bone_012\": \"left_hand\", ...}}; see formats/role_map/SPEC.md";
 
-// Every word that may stand as a role.
+// All valid role labels.
 std::vector<std::string> all_labels() {
   std::vector<std::string> labels;
   for (int r = 0; r <= static_cast<int>(Role::helper); ++r) {
@@ -66,16 +66,16 @@ class Reader {
         if (member.value.text != kSchema) {
           return json::error_at(text_, member.value.offset, "role-map-shape",
                                 fmt::format("the schema is not \"{}\"", kSchema),
-                                "leave the line out, or write that");
+                                "remove it or write this schema");
         }
       } else if (member.key != "comment") {
         return json::error_at(text_, member.key_offset, "role-map-shape",
-                              fmt::format("\"{}\" is not known here", shown(member.key)), kForm);
+                              fmt::format("unknown key \"{}\"", shown(member.key)), kForm);
       }
     }
     if (joints == nullptr || joints->kind != json::Value::Kind::object) {
       return json::error_at(text_, joints == nullptr ? root.offset : joints->offset,
-                            "role-map-shape", "there is no object \"joints\"", kForm);
+                            "role-map-shape", "\"joints\" is missing or not an object", kForm);
     }
     return {};
   }
@@ -94,8 +94,8 @@ class Reader {
     if (member.value.kind != json::Value::Kind::string) {
       return json::error_at(
           text_, member.value.offset, "role-map-role",
-          fmt::format("a role is a text, this is {}", json::kind_name(member.value.kind)),
-          "\"none\" takes a joint's role away");
+          fmt::format("expected a role (a string), found {}", json::kind_name(member.value.kind)),
+          "use \"none\" to remove a joint's role");
     }
     auto given = parse_role_label(member.value.text);
     if (!given || given->role == Role::end) {
@@ -110,7 +110,7 @@ class Reader {
     return {};
   }
 
-  // The place of the joint that an error of find_roles names.
+  // Adds the location of the joint named in an error of find_roles.
   Error located(Error error, const json::Value& joints) const {
     std::size_t offset = joints.offset;
     for (const json::Value::Member& member : joints.members) {

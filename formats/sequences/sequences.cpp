@@ -45,7 +45,7 @@ class Reader {
     const auto list = members_.get(*root, "the file", "sequences", Kind::array);
     if (!list) return list.error();
     if ((*list)->items.size() > kMaxSequences) {
-      return members_.wrong(**list, fmt::format("{} sequences are more than {}",
+      return members_.wrong(**list, fmt::format("{} sequences, at most {} are allowed",
                                                 (*list)->items.size(), kMaxSequences));
     }
     for (const Value& item : (*list)->items) {
@@ -73,13 +73,13 @@ class Reader {
     const double number = (*value)->number;
     if (!(number >= 0) || number > kLastFrame || number != std::floor(number)) {
       return members_.wrong(
-          **value, fmt::format("\"{}\" of {} is {}, expected a frame: a whole number from 0", key,
-                               what, readable(number, 12)));
+          **value, fmt::format("\"{}\" of {} is {}, expected a frame (integer from 0)", key, what,
+                               readable(number, 12)));
     }
     return static_cast<int>(number);
   }
 
-  // Sequences become files, so a name must be one.
+  // Sequences become files, so the name must be a valid file name.
   Status check_name(const Value& name, const SequenceFile& file) const {
     const std::string& text = name.text;
     const bool plain = std::ranges::none_of(text, [](char c) {
@@ -87,11 +87,11 @@ class Reader {
     });
     if (text.empty() || text == "." || text == ".." || !plain || text.size() > kLongestName) {
       return members_.wrong(
-          name, fmt::format("'{}' is no name for a sequence", shown(text)),
-          fmt::format("it is not empty, has no slashes and at most {} bytes", kLongestName));
+          name, fmt::format("'{}' is not a valid sequence name", shown(text)),
+          fmt::format("use 1 to {} bytes, no slashes and no control characters", kLongestName));
     }
     if (file.find(text) != nullptr) {
-      return members_.wrong(name, fmt::format("two sequences are called '{}'", shown(text)));
+      return members_.wrong(name, fmt::format("duplicate sequence name '{}'", shown(text)));
     }
     return {};
   }
@@ -113,9 +113,9 @@ class Reader {
     const auto last = frame(item, what, "last");
     if (!last) return last.error();
     if (*last < *first) {
-      return members_.wrong(*item.find("last"),
-                            fmt::format("{} ends with frame {}, before it begins with frame {}",
-                                        what, *last, *first));
+      return members_.wrong(
+          *item.find("last"),
+          fmt::format("{} ends at frame {}, before it begins at frame {}", what, *last, *first));
     }
     sequence.first = *first;
     sequence.last = *last;

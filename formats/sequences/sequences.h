@@ -6,20 +6,20 @@
 
 #include "core/result.h"
 
-// Named parts of one long take, as a text file that people write; formats/sequences/SPEC.md
-// describes it.
+// Reader for sequences, named parts of one long take (JSON, hand-written); see
+// formats/sequences/SPEC.md.
 
 namespace krok::sequences {
 
 struct Sequence {
   std::string name;
-  int first = 0, last = 0;  // frames, counted from 0, both belonging to it; first <= last
+  int first = 0, last = 0;  // frames, zero-based, inclusive; first <= last
   double speed = 1;         // > 0; 2 plays it twice as fast
   bool loop = false;        // whether it repeats
 };
 
 struct SequenceFile {
-  double rate = 0;  // the frame rate that the frames are counted at; 0 for that of the motion
+  double rate = 0;                  // frame rate of the frame numbers; 0 for that of the motion
   std::vector<Sequence> sequences;  // names unique
 
   const Sequence* find(std::string_view name) const;

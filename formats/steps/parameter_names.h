@@ -7,9 +7,9 @@
 
 namespace krok::steps {
 
-// What the library's parameters are called, [parameters]: as its report says (the member
-// "parameters", a list of objects with a "name"), otherwise what stands behind the last dot of what
-// is measured: "length" for "step.length".
+// Names of the library's parameters, [parameters]: from its report (the member "parameters", an
+// array of objects with a "name"), or else the part after the last dot of the measure: "length" for
+// "step.length".
 std::vector<std::string> parameter_names(const StepsFile& steps);
 
 }  // namespace krok::steps

@@ -7,7 +7,7 @@
 #include "formats/container/sections.h"
 #include "scene/skeleton.h"
 
-// The records of a .steps file as they stand in its sections; formats/steps/SPEC.md.
+// The records in the sections of a .steps file; see formats/steps/SPEC.md.
 
 namespace krok::steps::detail {
 
@@ -74,7 +74,7 @@ inline constexpr std::uint32_t kMaxParameters = 64;
 inline constexpr std::uint32_t kMaxExamples = 65535;
 inline constexpr std::size_t kMaxReport = std::size_t{16} << 20;
 
-// Each example has the joints' names in memory: no more than this of them in all.
+// Each example stores the joint names in memory; this is the limit for all together.
 inline constexpr std::uint64_t kMaxNames = std::uint64_t{64} << 20;  // bytes
 Status check_names(const Skeleton& skeleton, std::uint64_t examples);
 

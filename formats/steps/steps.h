@@ -11,25 +11,25 @@
 #include "rbf/weight_function.h"
 #include "scene/provenance.h"
 
-// Krok's own format for step libraries, .steps: examples, what is measured on them, and the weights
-// by parameters. formats/steps/SPEC.md describes its bytes.
+// Krok's format for step libraries, .steps: examples, their measured parameters, and the weight
+// function. formats/steps/SPEC.md describes the bytes.
 
 namespace krok::steps {
 
 struct StepsFile {
-  parametric::Library library;                 // with one example or more
-  std::optional<rbf::WeightFunction> weights;  // nothing: not fitted yet
-  std::string report;                          // how it was fitted, a JSON object; may be empty
+  parametric::Library library;                 // with at least one example
+  std::optional<rbf::WeightFunction> weights;  // nullopt: not fitted yet
+  std::string report;                          // fit report, a JSON object; may be empty
   Provenance provenance;
 };
 
-// Whether library and weights hold and belong together, names can be stored and the report is a
-// JSON object of at most 16 MiB. Codes: those of check(Library) and WeightFunction::check(),
+// Checks that library and weights are valid and match, names can be stored and the report is a JSON
+// object of at most 16 MiB. Codes: those of check(Library) and WeightFunction::check(),
 // steps-shape, steps-report.
 Status check(const StepsFile& steps);
 
-// A file for which check() holds. Orientations stored as x, y, z come back with w <= 0. Trusts
-// nothing in `file`: memory is taken only for what the file has bytes for. Codes: those of
+// Reads a file; the result passes check(). Orientations stored as x, y, z are read with w <= 0.
+// Safe for untrusted input: memory use is bounded by the file size. Codes: those of
 // formats/container/container.h and of check(), with byte offsets.
 Result<StepsFile> read(std::span<const std::byte> file);
 
@@ -37,9 +37,8 @@ struct WriteOptions {
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 
-// Appends the whole file to `file`, to which nothing was written before; the caller commits. The
-// same library gives the same bytes, and one that was read from a file gives that file's. An Error
-// for what check() refuses, before anything is written.
+// Writes to `file`, which must be empty; the caller commits. Deterministic; a library that was read
+// from a file gives the bytes of that file. An Error if check() fails, before anything is written.
 Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& file);
 
 }  // namespace krok::steps

@@ -21,7 +21,7 @@ Vec3 vector(const std::array<double, 3>& v) {
 }
 
 Error invalid(const ContainerReader& container, std::string_view section, std::string message) {
-  return at_section(Error("steps-shape", std::move(message), "make the file anew"), container,
+  return at_section(Error("steps-shape", std::move(message), "create the file again"), container,
                     section);
 }
 
@@ -36,8 +36,8 @@ Result<Info> read_info(const ContainerReader& container) {
   }
   return invalid(
       container, "INFO",
-      fmt::format("says it has {} joints, {} keytimes, {} parameters, {} examples and "
-                  "swing foot {}, which is not possible",
+      fmt::format("has invalid values: {} joints, {} keytimes, {} parameters, {} examples and "
+                  "swing foot {}",
                   info.joints, info.keytimes, info.parameters, info.examples, info.swing));
 }
 
@@ -62,7 +62,7 @@ Status read_frame(const ContainerReader& container, const Info& info, Library& l
   for (const ParameterRecord& record : records) {
     if (record.quantity > static_cast<std::uint32_t>(parametric::Quantity::joint) ||
         record.direction > static_cast<std::uint32_t>(parametric::Direction::along)) {
-      return invalid(container, "PARAMS", "has a parameter of a kind that is not known");
+      return invalid(container, "PARAMS", "has a parameter of unknown kind");
     }
     library.parameters.push_back(
         {static_cast<parametric::Quantity>(record.quantity), record.keytime, record.joint,
@@ -71,7 +71,7 @@ Status read_frame(const ContainerReader& container, const Info& info, Library& l
   return {};
 }
 
-// Frames and contacts of all examples, before memory is taken for any.
+// Counts frames and contacts of all examples before memory is allocated.
 struct Totals {
   std::uint64_t frames = 0, contacts = 0;
 };
@@ -152,8 +152,7 @@ Result<rbf::WeightFunction> read_weights(const ContainerReader& container, const
   if (record.kernel > static_cast<std::uint32_t>(rbf::Kernel::wendland) || m < n ||
       m > static_cast<std::uint64_t>(rbf::kMaxCentres)) {
     return invalid(container, "WEIGHTS",
-                   fmt::format("says it has kernel {} and {} centres for {} examples, which is not "
-                               "possible",
+                   fmt::format("has invalid values: kernel {} and {} centres for {} examples",
                                record.kernel, m, n));
   }
   rbf::WeightFunction weights;
@@ -174,13 +173,13 @@ Result<rbf::WeightFunction> read_weights(const ContainerReader& container, const
   const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(d);
   weights.lower.assign(ranges.begin(), middle);
   weights.upper.assign(middle, ranges.end());
-  if (Status status = weights.check(); !status) {
-    return at_section(std::move(status).error(), container, "WEIGHTS");
+  if (Status step = weights.check(); !step) {
+    return at_section(std::move(step).error(), container, "WEIGHTS");
   }
   return weights;
 }
 
-// The section that a fault lies in, by its code.
+// The section of an error, by its code.
 std::string_view section_of(const std::string& code) {
   if (code.starts_with("clip")) return "FRAMES";
   if (code == "parametric-feet") return "FEET";
@@ -200,7 +199,7 @@ Result<StepsFile> read(std::span<const std::byte> file) {
   if (!info) return info.error();
   StepsFile steps;
   if (Status status = read_frame(*container, *info, steps.library); !status) return status.error();
-  // Before each example has a skeleton of its own in memory.
+  // Checked before each example gets its own skeleton.
   if (Status status = check_names(steps.library.skeleton, info->examples); !status) {
     return at_section(std::move(status).error(), *container, "INFO");
   }

@@ -117,7 +117,7 @@ Status detail::check_names(const Skeleton& skeleton, std::uint64_t examples) {
   for (const std::string& name : skeleton.names) bytes += name.size();
   if (bytes <= kMaxNames / std::max<std::uint64_t>(examples, 1)) return {};
   return shape(
-      fmt::format("{} bytes of joints' names are too many for {} examples", bytes, examples));
+      fmt::format("{} bytes of joint names are too many for {} examples", bytes, examples));
 }
 
 Status check(const StepsFile& steps) {
@@ -129,27 +129,27 @@ Status check(const StepsFile& steps) {
   if (library.examples.empty() || library.examples.size() > kMaxExamples ||
       library.keytimes.size() > kMaxKeytimes || library.parameters.size() > kMaxParameters) {
     return shape(
-        fmt::format("{} examples, {} keytimes and {} parameters; a file holds 1 to {}, "
-                    "2 to {} and 1 to {}",
+        fmt::format("{} examples, {} keytimes and {} parameters; expected 1 to {}, 2 to {} and 1 "
+                    "to {}",
                     library.examples.size(), library.keytimes.size(), library.parameters.size(),
                     kMaxExamples, kMaxKeytimes, kMaxParameters));
   }
   std::vector<std::string> names = library.keytimes;
   for (const Example& example : library.examples) names.push_back(example.name);
   if (!all_storable(names)) {
-    return shape("the name of an example or keytime is no valid UTF-8 or has a zero byte");
+    return shape("the name of an example or keytime is not valid UTF-8 or has a zero byte");
   }
   if (steps.weights) {
     if (Status status = steps.weights->check(); !status) return status;
     if (steps.weights->examples != static_cast<int>(library.examples.size()) ||
         steps.weights->dimensions != library.dimensions()) {
-      return shape("the weights are for another number of examples or parameters");
+      return shape("the weights do not match the number of examples or parameters");
     }
   }
   if (steps.report.empty()) return {};
   const auto json = parse_json(steps.report);
   if (steps.report.size() <= kMaxReport && json.is_object()) return {};
-  return Error("steps-report", "the report is no JSON object, or longer than 16 MiB");
+  return Error("steps-report", "the report is not a JSON object, or exceeds 16 MiB");
 }
 
 Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& file) {

@@ -19,7 +19,7 @@ using Kind = Value::Kind;
 
 }  // namespace
 
-// Many places are kept, so lines are counted once.
+// Many locations are stored, so line offsets are found once.
 Items::Items(std::string_view text, const std::string& path, const Fields& fields,
              const std::vector<std::string>& source_names, const double& rate)
     : lines_{0}, path_(path), fields_(fields), source_names_(source_names), rate_(rate) {
@@ -40,7 +40,7 @@ Location Items::place_of(const Value& value) const {
   return where;
 }
 
-// What items of the base and of layers have in common.
+// Members shared by items of the base and of layers.
 Status Items::read_play(const Value& item, std::string_view what, std::string& name, Play& play,
                         std::vector<Mark>& marks) const {
   const auto source = fields_.members().get(item, what, "source", Kind::string);
@@ -126,8 +126,8 @@ Result<BaseItem> Items::base_item(const Value& value, bool is_first) const {
   take("place", item.place, [&](const Field& field) { return ground_frame(*field.value); });
   take("change", item.change, [&](const Field& field) -> Result<Change> {
     if (!is_first) return change(field);
-    return fields_.members().wrong(*field.value,
-                                   "the first item has no change: nothing is before it");
+    return fields_.members().wrong(
+        *field.value, "the first item cannot have a change: there is no item before it");
   });
   if (Status status = take.done(); !status) return status.error();
   return item;
@@ -143,7 +143,7 @@ Result<timeline::Easing> Items::easing(const Field& field) const {
   return *timeline::parse_easing(names[*index]);
 }
 
-// An object; a cut may be told by its name alone.
+// An object, or only the string "cut".
 Result<Change> Items::change(const Field& field) const {
   constexpr std::string_view kChange = "a change";
   const std::vector<std::pair<std::string, ChangeKind>> kinds = {
@@ -193,11 +193,11 @@ Result<Change> Items::change(const Field& field) const {
   return change;
 }
 
-// A key that means nothing to a kind of change is a mistake, as is a duration that is not told.
+// A key that a kind of change does not use is an error, as is a missing duration.
 Status Items::check_change_keys(const Value& value, ChangeKind kind) const {
   if (kind != ChangeKind::cut && value.find("duration") == nullptr) {
-    return fields_.members().wrong(
-        value, fmt::format("a change of kind {} has a \"duration\"", timeline::change_name(kind)));
+    return fields_.members().wrong(value, fmt::format("a change of kind {} needs a \"duration\"",
+                                                      timeline::change_name(kind)));
   }
   const std::pair<std::string_view, std::vector<ChangeKind>> uses[] = {
       {"duration", {ChangeKind::crossfade, ChangeKind::smooth, ChangeKind::inertial}},

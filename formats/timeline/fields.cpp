@@ -43,9 +43,9 @@ Result<T> Fields::quantity(const Field& field, const Parse& parse, const Make& m
     if (std::isfinite(field.value->number) && std::abs(field.value->number) <= kMax) {
       return make(field.value->number);
     }
-    return wrong(field, "a number of a sensible size");
+    return wrong(field, "a number within +-1e9");
   }
-  if (field.value->kind != Kind::string) return wrong(field, "a number, or a text with a unit");
+  if (field.value->kind != Kind::string) return wrong(field, "a number, or a string with a unit");
   const auto parsed = parse(field.value->text);
   if (!parsed) {
     return wrong(
@@ -59,7 +59,7 @@ Result<ClipTime> Fields::time(const Field& field) const {
   auto found = quantity<ClipTime>(field, parse_clip_time, [](double seconds) {
     return ClipTime{seconds, false};
   });
-  if (found && !(std::abs(found->value) <= kMax)) return wrong(field, "a time of a sensible size");
+  if (found && !(std::abs(found->value) <= kMax)) return wrong(field, "a time within +-1e9");
   return found;
 }
 
@@ -72,7 +72,7 @@ Result<double> Fields::length(const Field& field) const {
 Result<double> Fields::angle(const Field& field) const {
   auto found = quantity<double>(field, parse_angle,
                                 [](double degrees) { return degrees * kRadiansPerDegree; });
-  if (found && !(std::abs(*found) <= 1e6)) return wrong(field, "an angle of a sensible size");
+  if (found && !(std::abs(*found) <= 1e6)) return wrong(field, "an angle within +-1e6 rad");
   return found;
 }
 
@@ -87,7 +87,7 @@ Result<int> Fields::whole(const Field& field, int low, int high) const {
   const double value = field.value->number;
   if (field.value->kind != Kind::number || value != std::floor(value) || value < low ||
       value > high) {
-    return wrong(field, fmt::format("a whole number from {} to {}", low, high));
+    return wrong(field, fmt::format("an integer from {} to {}", low, high));
   }
   return static_cast<int>(value);
 }
@@ -101,7 +101,7 @@ Result<double> Fields::duration(const Field& field, double rate) const {
   const auto found = time(field);
   if (!found) return found.error();
   if (found->in_frames && rate == 0) {
-    return wrong(field, "seconds", "frames are those of the result: give the file a \"rate\"");
+    return wrong(field, "seconds", "durations in frames need a \"rate\" in the file");
   }
   if (!(found->value >= 0)) return wrong(field, "0 s or more");
   return found->seconds(rate);
@@ -111,7 +111,7 @@ Result<const Value*> Fields::entries(const Value& object, std::string_view what,
                                      std::string_view key) const {
   auto list = in_.find(object, what, key, Kind::array);
   if (list && *list != nullptr && (*list)->items.size() > kMaxEntries) {
-    return in_.wrong(**list, fmt::format("\"{}\" has {} entries, more than {}", key,
+    return in_.wrong(**list, fmt::format("\"{}\" has {} entries, at most {} are allowed", key,
                                          (*list)->items.size(), kMaxEntries));
   }
   return list;
@@ -132,9 +132,9 @@ Result<std::size_t> Fields::word_index(const Field& field,
   if (field.value->kind == Kind::string) {
     const auto found = std::ranges::find(words, field.value->text);
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
-    return wrong(field, "one of its words", nearest_hint(field.value->text, words));
+    return wrong(field, "a known value", nearest_hint(field.value->text, words));
   }
-  return wrong(field, "one of its words", fmt::format("known are {}", fmt::join(words, ", ")));
+  return wrong(field, "a known value", fmt::format("use one of {}", fmt::join(words, ", ")));
 }
 
 }  // namespace krok::timeline_file

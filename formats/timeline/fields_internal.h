@@ -10,11 +10,11 @@
 #include "core/quantity.h"
 #include "formats/json/members.h"
 
-// Takes values out of a timeline's objects.
+// Reads values of the objects in a timeline file.
 
 namespace krok::timeline_file {
 
-// A value with the words for what it is in, "the item 'walk'".
+// A value with its key and a description of its object for messages, "the item 'walk'".
 struct Field {
   const json::Value* value = nullptr;
   std::string_view key;
@@ -27,25 +27,26 @@ class Fields {
 
   const json::Members& members() const { return in_; }
 
-  // Whether `object` is one, with none but these keys. A key that is nearly one of them is told.
+  // Checks that `object` is an object without any other keys. The error suggests the nearest key.
   Status only(const json::Value& object, std::string_view what,
               std::initializer_list<std::string_view> keys) const;
 
   Error wrong(const Field& field, const std::string& expected, const std::string& hint = {}) const;
 
-  // Numbers, or texts with units: seconds or frames, seconds, metres, degrees.
+  // Numbers, or strings with units: time in seconds or frames, lengths in metres, angles in
+  // radians (degrees if the file has no unit).
   Result<ClipTime> time(const Field& field) const;
   Result<double> length(const Field& field) const;
   Result<double> angle(const Field& field) const;
   Result<double> number(const Field& field) const;
   Result<int> whole(const Field& field, int low, int high) const;
   Result<bool> truth(const Field& field) const;
-  // Seconds, 0 or more. Frames are those of the result, at `rate`; 0 where that is not known.
+  // Seconds, >= 0. Frames are converted with `rate`, that of the result; 0 if it is not known.
   Result<double> duration(const Field& field, double rate) const;
   // Not empty, no control characters, at most 200 bytes.
   Result<std::string> name(const Field& field) const;
 
-  // One of several words; the nearest one is told where it is none.
+  // One of several words; the error suggests the nearest one.
   template <typename T>
   Result<T> choice(const Field& field, const std::vector<std::pair<std::string, T>>& words) const {
     std::vector<std::string> names;
@@ -57,7 +58,7 @@ class Fields {
   }
   Result<std::size_t> word_index(const Field& field, const std::vector<std::string>& words) const;
 
-  // The entries of a list, which may be left out, one by one: use(entry) gives a Status.
+  // Calls use(entry), which returns a Status, for each entry of an optional array.
   template <typename Use>
   Status each(const json::Value& object, std::string_view what, std::string_view key,
               const Use& use) const {
@@ -74,20 +75,20 @@ class Fields {
   Result<const json::Value*> entries(const json::Value& object, std::string_view what,
                                      std::string_view key) const;
 
-  // A number, or what a text with a unit stands for.
+  // A number, or a string with a unit.
   template <typename T, typename Parse, typename Make>
   Result<T> quantity(const Field& field, const Parse& parse, const Make& make) const;
 
   json::Members in_;
 };
 
-// Takes values out of one object, one after the other, until one is wrong.
+// Reads values of one object in turn, until the first error.
 class Taker {
  public:
   // Both must outlive it.
   Taker(const json::Value& object, std::string_view what) : object_(object), what_(what) {}
 
-  // Where the key is there and nothing was wrong before: target = read(field).
+  // target = read(field), if the key exists and there was no error before.
   template <typename Target, typename Read>
   Taker& operator()(std::string_view key, Target& target, const Read& read) {
     return check(key, [&](const Field& field) -> Status {
@@ -98,7 +99,7 @@ class Taker {
     });
   }
 
-  // The same where the value is used in another way, which gives a Status.
+  // Calls use(field), which returns a Status, under the same conditions.
   template <typename Use>
   Taker& check(std::string_view key, const Use& use) {
     const json::Value* value = object_.find(key);

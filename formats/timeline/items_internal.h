@@ -9,10 +9,10 @@
 
 namespace krok::timeline_file {
 
-// Reads what stands in the lists "base" and "layers" of a timeline.
+// Reads the entries of "base" and "layers" of a timeline.
 class Items {
  public:
-  // `rate`: of the result, 0 where the file does not tell. All must outlive this.
+  // `rate`: of the result, 0 if not in the file. All arguments must outlive this.
   Items(std::string_view text, const std::string& path, const Fields& fields,
         const std::vector<std::string>& source_names, const double& rate);
 
@@ -34,7 +34,7 @@ class Items {
   Result<timeline::LayerItem> layer_item(const json::Value& value) const;
   Result<timeline::MaskRule> rule(const json::Value& value) const;
 
-  std::vector<std::size_t> lines_;  // where they begin in the text
+  std::vector<std::size_t> lines_;  // offsets of the lines
   const std::string& path_;
   const Fields& fields_;
   const std::vector<std::string>& source_names_;

@@ -49,12 +49,12 @@ Result<blend::WeightCurve> Items::weight(const Field& field) const {
   }
   blend::WeightCurve curve;
   if (field.value->items.empty() || field.value->items.size() > kMaxPoints) {
-    return fields_.members().wrong(*field.value,
-                                   fmt::format("a weight has 1 to {} points", grouped(kMaxPoints)));
+    return fields_.members().wrong(
+        *field.value, fmt::format("a weight needs 1 to {} points", grouped(kMaxPoints)));
   }
   for (const Value& point : field.value->items) {
     if (point.kind != Kind::array || point.items.size() != 2) {
-      return fields_.members().wrong(point, "a point of a weight is not [time, weight]");
+      return fields_.members().wrong(point, "a point of a weight must be [time, weight]");
     }
     const Field at{&point.items[0], "time", "a weight"};
     const auto time = fields_.duration(at, rate_);
@@ -62,7 +62,7 @@ Result<blend::WeightCurve> Items::weight(const Field& field) const {
     const auto value = fields_.number({&point.items[1], "value", "a weight"});
     if (!value) return value.error();
     if (!curve.generic.empty() && *time <= curve.generic.back()) {
-      return fields_.wrong(at, "a time after the one before it");
+      return fields_.wrong(at, "a time after the previous one");
     }
     curve.generic.push_back(*time);
     curve.weights.push_back(*value);
@@ -102,7 +102,7 @@ Result<MaskRule> Items::rule(const Value& value) const {
   rule.where = place_of(value);
   const bool by_name = value.find("joints") != nullptr;
   if (by_name == (value.find("below") != nullptr)) {
-    return fields_.members().wrong(value, "a rule of a mask has either \"joints\" or \"below\"");
+    return fields_.members().wrong(value, "a rule of a mask needs either \"joints\" or \"below\"");
   }
   const auto name = [&](const Field& field) { return fields_.name(field); };
   Taker take(value, kRule);
@@ -114,7 +114,7 @@ Result<MaskRule> Items::rule(const Value& value) const {
   });
   take("soft", rule.soft, [&](const Field& field) -> Result<int> {
     if (!by_name) return fields_.whole(field, 0, 1000);
-    return fields_.members().wrong(*field.value, "a soft edge is one of a sub-tree: \"below\"");
+    return fields_.members().wrong(*field.value, "\"soft\" needs \"below\"");
   });
   if (Status status = take.done(); !status) return status.error();
   return rule;
@@ -139,14 +139,14 @@ Result<Layer> Items::layer(const Value& value, std::size_t number) const {
   });
   take("space", layer.space, [&](const Field& field) -> Result<Space> {
     if (layer.mode != LayerMode::override) {
-      return fields_.members().wrong(*field.value, "only layers that override have a \"space\"");
+      return fields_.members().wrong(*field.value, "only override layers have a \"space\"");
     }
     return fields_.choice<Space>(field, {{"parent", Space::parent}, {"model", Space::model}});
   });
   take.check("reference", [&](const Field& field) -> Status {
     if (layer.mode == LayerMode::override) {
       return fields_.members().wrong(*field.value,
-                                     "only additive layers and modifiers have a \"reference\"");
+                                     "only additive and modifier layers have a \"reference\"");
     }
     layer.reference_pose = field.value->kind == Kind::string && field.value->text == "pose";
     if (layer.reference_pose) return {};

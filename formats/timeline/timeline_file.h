@@ -7,25 +7,25 @@
 #include "core/result.h"
 #include "timeline/timeline.h"
 
-// A timeline as a text file that people write; SPEC.md describes it.
+// Reader for timeline files (JSON, hand-written); see SPEC.md.
 
 namespace krok::timeline_file {
 
 struct SourceFile {
-  std::string name;       // by which items call it
+  std::string name;       // used by items
   std::string path;       // of the motion, as written: relative to the timeline's folder
-  std::string sequences;  // of a file that names parts of it; may be empty
+  std::string sequences;  // path of a sequences file; may be empty
   Location where;
 };
 
 struct Document {
-  std::vector<SourceFile> sources;  // in the file's order; items count them
-  timeline::Timeline timeline;      // parts of motions by name, not looked up
+  std::vector<SourceFile> sources;  // in file order; items refer to them by index
+  timeline::Timeline timeline;      // sequences by name, not resolved
 };
 
-// `path` is for messages, and for the places that the timeline keeps. What hangs on the motions is
-// not checked. Codes, each with line and column: json-syntax, json-limit, timeline-structure (a key
-// that is missing or not known), timeline-value.
+// `path` is for messages and for the locations stored in the timeline. Nothing is checked against
+// the motions. Codes, each with line and column: json-syntax, json-limit, timeline-structure (a
+// missing or unknown key), timeline-value.
 Result<Document> read(std::string_view text, const std::string& path);
 
 }  // namespace krok::timeline_file

@@ -46,7 +46,7 @@ class Reader {
     take("rate", document_.timeline.rate, [&](const Field& field) -> Result<double> {
       auto rate = fields_.number(field);
       if (rate && (*rate < kMinRate || *rate > kMaxRate)) {
-        return fields_.wrong(field, "frames a second from 0.001 to 1000000");
+        return fields_.wrong(field, "frames per second from 0.001 to 1000000");
       }
       return rate;
     });

@@ -6,7 +6,7 @@
 #include "formats/json/members.h"
 #include "formats/weights/weights_internal.h"
 
-// Weights as keys that people write: JSON.
+// Reader for weights as keys (JSON).
 
 namespace krok::weights {
 
@@ -50,7 +50,7 @@ class Reader {
  private:
   static constexpr std::string_view kWhole = "the file";
 
-  // "between" and "tension", where they stand.
+  // Optional "between" and "tension".
   Status read_join(const Value& object, std::string_view what, Join& join) const {
     static constexpr std::array kJoins = {WeightJoin::linear, WeightJoin::smooth,
                                           WeightJoin::monotone};
@@ -92,7 +92,7 @@ class Reader {
     MorphCurve& curve = file_.curves.curves[static_cast<std::size_t>(target - targets_.begin())];
     if (!curve.times.empty()) {
       return json::error_at(text_, (*name)->offset, "weights-structure",
-                            fmt::format("two curves are of the target '{}'", shown(*target)));
+                            fmt::format("duplicate curve of the target '{}'", shown(*target)));
     }
     Join join = usual_;
     if (Status status = read_join(item, what, join); !status) return status;
@@ -116,7 +116,7 @@ class Reader {
       const std::string name = fmt::format("key {} of {}", i, what);
       if (pair.kind != Kind::array || pair.items.size() != 2) {
         return json::error_at(text_, pair.offset, "weights-structure",
-                              fmt::format("{} is not [time, weight]", name));
+                              fmt::format("{} must be [time, weight]", name));
       }
       const auto time = in_.moment(pair.items[0], "the time of " + name, file_.rate, kLatest);
       if (!time) return time.error();
@@ -125,7 +125,7 @@ class Reader {
       if (!weight) return weight.error();
       if (i > 0 && !(*time > curve.times.back())) {
         return json::error_at(text_, pair.items[0].offset, "weights-time",
-                              fmt::format("{} is at {} s, not after the key before at {} s", name,
+                              fmt::format("{} is at {} s, not after the previous key at {} s", name,
                                           readable(*time, 9), readable(curve.times.back(), 9)));
       }
       curve.times.push_back(*time);

@@ -6,7 +6,7 @@
 #include "formats/csv/table.h"
 #include "formats/weights/weights_internal.h"
 
-// Weights as a table: a row a moment, a column a target.
+// Reader for weights as a table: one row per time, one column per target.
 
 namespace krok::weights {
 
@@ -19,12 +19,12 @@ Error at(Error error, const Location& place) {
   return error;
 }
 
-// What the columns of a table are.
+// The meaning of the columns of a table.
 struct Columns {
   std::size_t time = kNone;  // in seconds, or
   std::size_t frame = kNone;
   std::vector<std::size_t> weights;  // columns, and ...
-  std::vector<std::size_t> targets;  // ... whose weights they hold
+  std::vector<std::size_t> targets;  // ... their targets
 };
 
 Result<Columns> find_columns(const csv::Table& table, std::span<const std::string> targets) {
@@ -44,7 +44,7 @@ Result<Columns> find_columns(const csv::Table& table, std::span<const std::strin
       const auto index = static_cast<std::size_t>(target - targets.begin());
       if (std::ranges::find(columns.targets, index) != columns.targets.end()) {
         return at(Error("weights-structure",
-                        fmt::format("two columns are called '{}'", shown(names[c].header))),
+                        fmt::format("duplicate column '{}'", shown(names[c].header))),
                   table.header_location(c));
       }
       columns.weights.push_back(c);
@@ -52,8 +52,8 @@ Result<Columns> find_columns(const csv::Table& table, std::span<const std::strin
     }
   }
   if (columns.time == kNone) {
-    return at(Error("weights-structure", "no column is called 'time'",
-                    "it holds seconds; krok-import --morph-weights writes such tables"),
+    return at(Error("weights-structure", "there is no column 'time'",
+                    "it has times in seconds; krok-import --morph-weights writes such tables"),
               table.header_location(0));
   }
   return columns;
@@ -70,7 +70,7 @@ Status check_times(const csv::Table& table, std::size_t column, const std::vecto
     }
     if (row > 0 && !(times[row] > times[row - 1])) {
       return at(
-          Error("weights-time", fmt::format("{} s is not after the row before at {} s",
+          Error("weights-time", fmt::format("{} s is not after the previous row at {} s",
                                             readable(times[row], 9), readable(times[row - 1], 9))),
           table.place(row, column));
     }
@@ -78,7 +78,7 @@ Status check_times(const csv::Table& table, std::size_t column, const std::vecto
   return {};
 }
 
-// The rate of times that are i / rate, to the digits that a float has.
+// The rate if times are i / rate within float precision.
 std::optional<double> rate_of(const std::vector<double>& times) {
   if (times.size() < 2 || times[0] != 0) return std::nullopt;
   double rate = static_cast<double>(times.size() - 1) / times.back();
@@ -116,7 +116,7 @@ Result<WeightFile> read_table(std::string_view text, const std::string& path,
       if (std::isnan(values[row])) continue;  // a gap: no key here
       if (!(std::abs(values[row]) <= kLargestWeight)) {
         return at(Error("weights-value",
-                        fmt::format("the weight {} is out of proportion", readable(values[row]))),
+                        fmt::format("the weight {} is out of range", readable(values[row]))),
                   table->place(row, columns->weights[i]));
       }
       curve.times.push_back(times[row]);

@@ -9,28 +9,28 @@
 #include "scene/morph_set.h"
 #include "skin/morph_curves.h"
 
-// How much of each morph target shows over time, as text: a table (CSV) as krok-import writes it,
-// or keys that people write (JSON). formats/weights/SPEC.md describes both.
+// Reader for morph target weights over time: a table (CSV) as written by krok-import, or
+// hand-written keys (JSON). See formats/weights/SPEC.md.
 //
 // Codes, with line and column: json-syntax, json-limit, those of csv::Table, weights-structure,
-// weights-value, weights-time (times that do not rise), weights-target (a target that is not
-// there; the message names the nearest one that is).
+// weights-value, weights-time (times not increasing), weights-target (unknown target; the hint
+// names the nearest one).
 
 namespace krok::weights {
 
 struct WeightFile {
-  MorphCurves curves;          // for all targets, in their order; 0 for those the file leaves out
-  std::optional<double> rate;  // frames a second, where the file tells; of a table with even times
+  MorphCurves curves;          // for all targets, in their order; 0 for those not in the file
+  std::optional<double> rate;  // frames per second, if in the file or the table has even times
 };
 
-// `text` is JSON where its first character is a brace, otherwise a table. `path` is for messages.
-// Trusts nothing in `text`.
+// `text` is JSON if its first character is a brace, otherwise a table. `path` is for messages. Safe
+// for untrusted input.
 Result<WeightFile> read(std::string_view text, const std::string& path,
                         std::span<const std::string> targets);
 
-// The same at even times from 0 to the file's last one: at `rate`, or else at the file's own, or
-// else at 30 frames a second. The rows of a table with even times from 0 come out as they stand
-// where `rate` is its own. For a motion of any length: weights_at() goes on with the last ones.
+// The same, sampled at even times from 0 to the last time in the file: at `rate`, or else the rate
+// of the file, or else 30 fps. A table with even times from 0 is returned unchanged at its own
+// rate. Usable with a motion of any length: weights_at() holds the last weights.
 Result<MorphWeights> read_weights(std::string_view text, const std::string& path,
                                   const MorphSet& morphs, std::optional<double> rate = {});
 

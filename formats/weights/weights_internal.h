@@ -6,7 +6,7 @@
 #include "core/text.h"
 #include "formats/weights/weights.h"
 
-// Private to this folder: the two kinds of files.
+// Private to this folder: readers of the two file kinds.
 
 namespace krok::weights {
 
@@ -18,7 +18,7 @@ Result<WeightFile> read_table(std::string_view text, const std::string& path,
                               std::span<const std::string> targets);
 Result<WeightFile> read_keys(std::string_view text, std::span<const std::string> targets);
 
-// An error, without its place, about a target that there is none of.
+// An error for an unknown target, without a location.
 inline Error unknown_target(std::string_view name, std::span<const std::string> targets) {
   const std::string nearest = nearest_name(name, targets);
   return Error("weights-target", fmt::format("there is no target '{}'", shown(name)),

@@ -24,7 +24,7 @@ constexpr double kRounding = 1e-6;  // of a frame, for the number of frames
 constexpr std::size_t kFramesAtOnce = 32;
 
 Status check_inputs(std::span<const BlendInput> inputs) {
-  if (inputs.empty()) return Error("blend-empty", "there is no motion to blend");
+  if (inputs.empty()) return Error("blend-empty", "there are no motions to blend");
   for (const BlendInput& input : inputs) {
     if (Status status = check(*input.clip); !status) {
       return std::move(status).error().in_file(input.name);
@@ -36,9 +36,9 @@ Status check_inputs(std::span<const BlendInput> inputs) {
         difference_in_structure(inputs.front().clip->skeleton, input.clip->skeleton);
     if (!differs.empty()) {
       return Error("blend-skeleton",
-                   fmt::format("{} and {} are not of one skeleton: {}", inputs.front().name,
+                   fmt::format("{} and {} have different skeletons: {}", inputs.front().name,
                                input.name, differs),
-                   "krok-retarget brings one on the other's skeleton");
+                   "use krok-retarget to transfer one to the other's skeleton");
     }
     if (input.keys == nullptr) continue;
     if (Status status = check(*input.keys, input.clip->skeleton, input.clip->duration()); !status) {
@@ -48,7 +48,7 @@ Status check_inputs(std::span<const BlendInput> inputs) {
   return {};
 }
 
-// Where all curves have their points, the sum is linear between them.
+// The sum is linear between the points of all curves, so checking at the points suffices.
 Status check_sum(std::span<const BlendInput> inputs) {
   std::set<double> points = {0};
   for (const BlendInput& input : inputs) {
@@ -62,7 +62,7 @@ Status check_sum(std::span<const BlendInput> inputs) {
     return Error("blend-sum",
                  fmt::format("the weights sum to {}{}, not to 1", readable(sum),
                              constant ? "" : fmt::format(" at generic time {}", readable(point))),
-                 "--modifier allows it, for motions that are added on top of another");
+                 "use --modifier for motions that are added on top of another");
   }
   return {};
 }
@@ -95,7 +95,7 @@ class Blender {
     return inputs_[motion].weight.at(blended_.generic[at(frame)]);
   }
 
-  // Joints that touch something in the motions, where all of them have keys.
+  // Joints with contacts in any motion; none unless all motions have keys.
   void find_contact_joints() {
     for (const BlendInput& input : inputs_) {
       if (input.keys == nullptr) {
@@ -106,7 +106,7 @@ class Blender {
     }
   }
 
-  // Steps 2 and 3: generic time of each frame, and what time it is in each motion.
+  // Steps 2 and 3: generic time of each frame, and the corresponding time in each motion.
   void find_times() {
     blended_.times.resize(motions_.size());
     for (int f = 0; f < frames(); ++f) {
@@ -118,8 +118,8 @@ class Blender {
     }
   }
 
-  // Steps 4 and 5 for the pose, as seen from the figure's place on the ground. The first motion
-  // decides which of q and -q are summed.
+  // Steps 4 and 5 for the pose relative to the ground frame. The first motion determines the
+  // hemisphere of the quaternions.
   void sum_poses() {
     Clip& clip = blended_.clip;
     const auto joints = clip.skeleton.names.size();
@@ -160,7 +160,7 @@ class Blender {
     return {sum.x / all, sum.z / all, reference + sum.heading / all};
   }
 
-  // Step 4 for the way: what the figure walks from frame to frame, in its own heading.
+  // Step 4 for root motion: displacement per frame relative to the character's heading.
   void walk() {
     Clip& clip = blended_.clip;
     std::vector<Transform> pose(clip.skeleton.names.size());
@@ -199,9 +199,9 @@ class Blender {
     return {place.x + moved.x(), place.z + moved.z(), place.heading + turn};
   }
 
-  // The way with which what stands moves no more than it does in the motions. `stay(j)` is the way,
-  // in the heading before, with which joint j would not move at all. As much as all motions'
-  // contacts count, the rest is `way`.
+  // The displacement with which joints in contact slide no more than they do in the motions.
+  // `stay(j)` is the displacement, relative to the previous heading, with which joint j would not
+  // move at all. Weighted by the contacts of all motions; the remainder is `way`.
   template <typename Stay>
   Vec3 pinned(const Vec3& way, int frame, const Stay& stay) const {
     double all = 0;
@@ -261,11 +261,11 @@ class Blender {
       const bool is_end =
           (k == 0 && name == "begin") || (k + 1 == correspondence.moments() && name == "end");
       if (is_end) continue;
-      // The last may lie a part of a frame behind the last frame.
+      // The last moment may be up to a frame after the last frame.
       keys.keytimes.push_back({std::min(time_.moments()[at(k)], blended_.clip.duration()), name});
     }
     if (contact_joints_.empty() || frames() < 2) return;
-    // What stands by the weights of most.
+    // A joint is in contact if the motions in contact have more than half of the weight.
     for (const int joint : contact_joints_) {
       int begin = -1;
       for (int f = 0; f <= frames(); ++f) {
@@ -307,14 +307,14 @@ Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& r
   if (Status status = check_inputs(inputs); !status) return status.error();
   if (Status status = check(correspondence); !status) return status.error();
   if (correspondence.times.size() != inputs.size()) {
-    return Error("blend-keys", "there are not as many motions as there are lists of moments");
+    return Error("blend-keys", "the number of motions and of keytime lists differ");
   }
   if (!options.any_sum) {
     if (Status status = check_sum(inputs); !status) return status.error();
   }
   const double rate = options.rate > 0 ? options.rate : inputs.front().clip->rate;
   if (!std::isfinite(rate) || options.rate < 0) {
-    return Error("clip-rate", "the rate of a blend must be a positive number");
+    return Error("clip-rate", "the frame rate of a blend must be positive");
   }
   std::vector<TimeMap> maps;
   std::vector<WeightCurve> weights;
@@ -325,7 +325,7 @@ Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& r
   const auto time = BlendTime::create(std::move(maps), std::move(weights), 2 / rate * (1 - 1e-9));
   if (!time) return time.error();
   if (time->duration() * rate * inputs.front().clip->joint_count() > kMaxTransforms) {
-    return Error("clip-too-long", fmt::format("{} s at {} frames a second are too many frames",
+    return Error("clip-too-long", fmt::format("{} s at {} frames per second exceed the limit",
                                               readable(time->duration()), readable(rate)));
   }
   return Blender(inputs, roles, options, *time, rate).blend(correspondence);

@@ -42,7 +42,7 @@ Correspondence take_all(std::span<const KeyedMotion> motions) {
   return result;
 }
 
-// Leaves out moments that follow too soon in some motion; the first and the last stay.
+// Removes moments that are too close to the previous one in any motion, but not the first and last.
 void thin_out(std::span<const KeyedMotion> motions, Correspondence& moments) {
   const auto too_soon = [&](std::size_t moment) {
     for (std::size_t m = 0; m < motions.size(); ++m) {
@@ -60,7 +60,7 @@ void thin_out(std::span<const KeyedMotion> motions, Correspondence& moments) {
     Diagnostic note;
     note.severity = Severity::note;
     note.code = "blend-keys";
-    note.message = fmt::format("{} is left out: it lies within two frames of another keytime",
+    note.message = fmt::format("{} is left out: it is within two frames of another keytime",
                                moments.names[left_out]);
     moments.notes.push_back(std::move(note));
     const auto place = static_cast<std::ptrdiff_t>(left_out);
@@ -70,15 +70,15 @@ void thin_out(std::span<const KeyedMotion> motions, Correspondence& moments) {
   }
 }
 
-// For each keytime of `first` the one of `other` that is the same, or -1: the stretch of both with
-// the most names in common, where at most one in a row is passed over on either side, as where two
-// events that nearly coincide come in another order. Local alignment after Smith and Waterman
-// (Identification of common molecular subsequences, J. Mol. Biol. 147, 1981).
+// For each keytime of `first` the matching one of `other`, or -1: the range with the most matching
+// names, skipping at most one keytime in a row on either side, as when two nearly simultaneous
+// events are in a different order. Local alignment after Smith and Waterman (Identification of
+// common molecular subsequences, J. Mol. Biol. 147, 1981).
 std::vector<int> align(const std::vector<Keytime>& first, const std::vector<Keytime>& other) {
   constexpr int kSame = 4, kPassedOver = 1;
   const std::size_t n = first.size(), m = other.size();
   std::vector<int> score(n * m, 0);
-  std::vector<std::int8_t> from(n * m, -1);  // 2 * passed over in first + passed over in other
+  std::vector<std::int8_t> from(n * m, -1);  // 2 * skipped in first + skipped in other
   std::size_t best_i = 0, best_j = 0;
   int best = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -112,7 +112,7 @@ std::vector<int> align(const std::vector<Keytime>& first, const std::vector<Keyt
   return same;
 }
 
-// For each motion the keytimes that all have: [motions][moments].
+// For each motion the indices of the common keytimes: [motions][moments].
 std::vector<std::vector<int>> common_keytimes(std::span<const KeyedMotion> motions) {
   const auto& first = motions.front().keys->keytimes;
   std::vector<std::vector<int>> same;
@@ -129,7 +129,7 @@ std::vector<std::vector<int>> common_keytimes(std::span<const KeyedMotion> motio
 
 Status check(const Correspondence& correspondence) {
   if (correspondence.moments() < 2 || correspondence.times.empty()) {
-    return Error("blend-keys", "motions need at least two moments in common");
+    return Error("blend-keys", "the motions need at least two common keytimes");
   }
   for (const auto& times : correspondence.times) {
     bool sound = times.size() == correspondence.names.size() && std::isfinite(times.front()) &&
@@ -138,7 +138,7 @@ Status check(const Correspondence& correspondence) {
       sound = times[i] >= times[i - 1] + kApart;
     }
     if (!sound) {
-      return Error("blend-keys", "a motion's moments do not follow one another in time");
+      return Error("blend-keys", "the keytimes of a motion are not increasing");
     }
   }
   return {};
@@ -149,8 +149,8 @@ Result<Correspondence> ends_alone(std::span<const double> durations) {
   result.names = {"begin", "end"};
   for (const double duration : durations) {
     if (!(duration > 0) || !std::isfinite(duration)) {
-      return Error("blend-duration", "a motion of one frame has no time that could be warped",
-                   "give motions of two frames or more");
+      return Error("blend-duration", "a motion with one frame cannot be time-warped",
+                   "use motions with at least two frames");
     }
     result.times.push_back({0, duration});
   }
@@ -162,13 +162,13 @@ Result<Correspondence> match_keytimes(std::span<const KeyedMotion> motions) {
   for (const KeyedMotion& motion : motions) {
     if (motion.keys != nullptr && motion.keys->keytimes.size() > kMax) {
       return Error("blend-keys",
-                   fmt::format("{} has {} keytimes; {} are the most that can be matched",
-                               motion.name, motion.keys->keytimes.size(), kMax),
+                   fmt::format("{} has {} keytimes; at most {} can be matched", motion.name,
+                               motion.keys->keytimes.size(), kMax),
                    "cut the motion with krok-edit --from --to");
     }
     if (motion.keys == nullptr || motion.keys->keytimes.empty()) {
       return Error("blend-keys", fmt::format("{} has no keytimes", motion.name),
-                   "krok-keys finds or sets them; --warp dtw or --keys none does without");
+                   "detect or set them with krok-keys, or use --warp dtw or --keys none");
     }
   }
   const bool all_alike = std::ranges::all_of(
@@ -190,8 +190,8 @@ Result<Correspondence> match_keytimes(std::span<const KeyedMotion> motions) {
       }
       if (motion.keys->keytimes.size() > 6) sequences += " ...";
     }
-    return Error("blend-keys", "no two keytimes are common to all motions" + sequences,
-                 "name them alike with krok-keys --set, or use --warp dtw");
+    return Error("blend-keys", "fewer than two keytimes are common to all motions" + sequences,
+                 "give them the same names with krok-keys --set, or use --warp dtw");
   }
   Correspondence result;
   for (const int k : common.front()) {
@@ -206,7 +206,7 @@ Result<Correspondence> match_keytimes(std::span<const KeyedMotion> motions) {
     note.severity = Severity::note;
     note.code = "blend-keys";
     note.message =
-        fmt::format("{}: {} s to {} s of {} s are used, from {} to {}, which all motions have",
+        fmt::format("{}: uses {} s to {} s of {} s, from {} to {}, the range common to all motions",
                     motions[m].name, readable(times.front()), readable(times.back()),
                     readable(motions[m].duration), result.names.front(), result.names.back());
     result.notes.push_back(std::move(note));

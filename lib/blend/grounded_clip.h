@@ -8,27 +8,27 @@
 
 namespace krok::blend {
 
-// A motion taken apart: where the figure stands and faces over time, and its poses as seen from
-// there. Poses of figures that walk different ways can then be summed.
+// A motion split into the character's ground frame (position and heading) over time and poses
+// relative to it, so that motions along different paths can be blended.
 class GroundedClip {
  public:
-  // `carrier` is what carrying_joint() gives; -1 leaves the poses in the world and the figure at
-  // the origin. `clip` has a frame or more and must outlive this.
+  // `carrier` comes from carrying_joint(); -1 keeps the poses in world space and the ground frame
+  // at the origin. `clip` needs at least one frame and must outlive this.
   GroundedClip(const Clip& clip, int carrier);
 
-  // The poses relative to the place, joint_to_parent (the root's to the place).
+  // joint_to_parent; the root is relative to the ground frame.
   const PackedClip& poses() const { return poses_; }
 
-  // The place at `time` seconds, between frames evenly; the heading goes on beyond half turns.
+  // The ground frame at `time` seconds, linear between frames; the heading is unwrapped.
   GroundFrame place(double time) const;
 
-  // A joint's position in the world.
+  // World position of a joint.
   Vec3 position(int joint, double time) const;
 
  private:
   const Clip& clip_;
   PackedClip poses_;
-  std::vector<GroundFrame> places_;  // [frames], headings without jumps
+  std::vector<GroundFrame> places_;  // [frames], unwrapped headings
 };
 
 }  // namespace krok::blend

@@ -12,15 +12,15 @@ namespace krok::blend {
 
 namespace {
 
-constexpr int kParts = 64;  // of an interval, for weights that change
+constexpr int kParts = 64;  // per interval, for varying weights
 constexpr double kMinSum = 1e-3;
 
 std::size_t at_index(double value) {
   return static_cast<std::size_t>(value);
 }
 
-// The place of `value` in a function that rises over [low, high], by Newton's steps kept within
-// what bisection leaves.
+// Solves function(x) = value for a function that increases over [low, high], by Newton's method
+// safeguarded by bisection.
 template <typename Function, typename Slope>
 double solve(double value, double low, double high, const Function& function, const Slope& slope) {
   double x = 0.5 * (low + high);
@@ -107,7 +107,7 @@ Status BlendTime::integrate(double shortest) {
       return Error("blend-weights",
                    fmt::format("the weights sum to {} at generic time {}", readable(all),
                                readable(static_cast<double>(part) / kParts)),
-                   "weights are numbers that sum to 1");
+                   "weights must be finite and sum to 1");
     }
     if (constant_) break;
   }
@@ -120,12 +120,12 @@ Status BlendTime::integrate(double shortest) {
       const double from = static_cast<double>(part % kParts) / kParts;
       const double low = slope(interval, from), middle = slope(interval, from + 0.5 / kParts),
                    high = slope(interval, from + 1.0 / kParts);
-      // A cubic may come to rest at its ends.
+      // The slope of a monotone cubic may be 0 at its ends.
       if (!(std::min(low, high) >= 0) || !(middle > 0)) {
         return Error(
             "blend-interval",
             fmt::format("time would run backwards at generic time {}", readable(interval + from)),
-            "negative weights ask too much here");
+            "the negative weights are too large here");
       }
       table_.push_back(table_.back() + (low + 4 * middle + high) / (6 * kParts));
     }
@@ -139,7 +139,7 @@ Status BlendTime::integrate(double shortest) {
           fmt::format("the interval from moment {} to moment {} would last {} s, less than "
                       "two frames",
                       i - 1, i, readable(lasts)),
-          "take out a keytime there, or use other weights");
+          "remove a keytime there, or change the weights");
     }
   }
   return {};

@@ -5,27 +5,27 @@
 
 #include "core/result.h"
 
-// From generic time, which counts the moments that motions have in common, to the time of each
-// motion, and from the time of a blend to generic time (SOURCES: the keytimes of a blend are the
-// weighted sums of its examples').
+// Maps generic time, which numbers the moments that motions share, to the time of each motion, and
+// the time of a blend to generic time (SOURCES: the keytimes of a blend are the weighted sums of
+// those of its examples).
 
 namespace krok::blend {
 
 enum class Warp : unsigned char {
-  pchip,  // a monotone cubic through the moments: speeds have no jumps
-  linear  // straight between them: speeds jump at them
+  pchip,  // monotone cubic through the moments: continuous speed
+  linear  // piecewise linear: speed jumps at the moments
 };
 
-// A motion's time by generic time in [0, moments - 1], rising strictly; clamped outside.
+// A motion's time over generic time in [0, moments - 1], strictly increasing; clamped outside.
 class TimeMap {
  public:
-  // `times`: of the moments, at least two, rising.
+  // `times`: of the moments, at least two, increasing.
   TimeMap(std::vector<double> times, Warp warp);
 
   double last() const { return static_cast<double>(times_.size() - 1); }  // generic time
   double at(double generic) const;                                        // seconds
-  double slope(double generic) const;  // seconds for one of generic time, >= 0
-  // The same at a part in [0, 1] of an interval, whose ends belong to it.
+  double slope(double generic) const;  // seconds per unit of generic time, >= 0
+  // The slope at `part` in [0, 1] of an interval; at 0 and 1 it is the one-sided slope.
   double slope(int interval, double part) const;
 
  private:
@@ -33,24 +33,25 @@ class TimeMap {
   Warp warp_;
 };
 
-// A motion's weight by generic time: straight lines between points, the same before the first and
-// after the last.
+// A motion's weight over generic time: piecewise linear, constant before the first point and after
+// the last.
 struct WeightCurve {
-  std::vector<double> generic, weights;  // of the points, by rising generic time; at least one
+  std::vector<double> generic, weights;  // points by increasing generic time; at least one
 
   static WeightCurve constant(double weight) { return {{0}, {weight}}; }
   bool is_constant() const { return weights.size() == 1; }
   double at(double time) const;
 };
 
-// The time of a blend, from 0 on: a second of generic time lasts the weighted sum of what it lasts
-// in the motions. With weights that do not change its moments are the weighted sums of theirs.
+// The time of a blend, starting at 0: an interval of generic time lasts the weighted sum of its
+// durations in the motions. With constant weights the blend's moments are the weighted sums of the
+// motions' moments.
 class BlendTime {
  public:
-  // As many curves as maps, one at least; all maps have as many moments. Weights that do not sum to
-  // 1 count by their shares. Codes: blend-weights where they sum to nothing (under 0.001) or are
-  // no numbers; blend-interval where an interval between moments lasts less than `shortest` seconds
-  // or time would run backwards.
+  // One curve per map, at least one map, all with the same number of moments. Weights are
+  // normalised to sum to 1. Codes: blend-weights if the magnitude of their sum is below 0.001 or
+  // they are not finite; blend-interval if an interval between moments is shorter than `shortest`
+  // seconds or time would run backwards.
   static Result<BlendTime> create(std::vector<TimeMap> maps, std::vector<WeightCurve> weights,
                                   double shortest);
 
@@ -66,7 +67,7 @@ class BlendTime {
   BlendTime(std::vector<TimeMap> maps, std::vector<WeightCurve> weights)
       : maps_(std::move(maps)), weights_(std::move(weights)) {}
 
-  // Of the weights' shares, d seconds / d generic.
+  // d seconds / d generic, with normalised weights.
   double slope(int interval, double part) const;
   double slope(double generic) const;
   Status integrate(double shortest);
@@ -75,7 +76,7 @@ class BlendTime {
   std::vector<WeightCurve> weights_;
   bool constant_ = true;
   std::vector<double> moments_;
-  std::vector<double> table_;  // time at each part of an interval, for weights that change
+  std::vector<double> table_;  // time at each part of an interval, for varying weights
 };
 
 }  // namespace krok::blend

@@ -19,8 +19,8 @@ constexpr int kMaxMoments = 1000;
 constexpr double kUsualRate = 30;
 constexpr double kVelocityTime = 0.1;  // seconds
 
-// A motion at evenly spread moments from its beginning to its end: joints' positions as seen from
-// the figure's place, and their velocities.
+// A motion sampled at evenly spaced moments from start to end: joint positions relative to the
+// ground frame, and their velocities.
 class Shapes {
  public:
   Shapes(const Clip& clip, int carrier, int moments) : joints_(clip.joint_count()) {
@@ -61,8 +61,8 @@ class Shapes {
   std::vector<Vec3f> positions_, velocities_;  // [moments x joints]
 };
 
-// The cheapest path from (0, 0) to (n - 1, n - 1): for each moment of the first the place, between
-// moments, in the second.
+// The cheapest path from (0, 0) to (n - 1, n - 1): for each moment of the first motion the
+// (fractional) moment of the second.
 std::vector<double> find_path(const Shapes& first, const Shapes& second, int n, double band) {
   const int reach = std::max(2, static_cast<int>(std::ceil(band * n)));
   const int width = 2 * reach + 1;

@@ -40,8 +40,8 @@ BlockedField::BlockedField(const Field& field, double cell, int jobs) : field_(f
       all[i].corner = {c[0] * kCells, c[1] * kCells, c[2] * kCells};
       const Vec3 center = lattice_point(all[i].corner[0], all[i].corner[1], all[i].corner[2]) +
                           Vec3::Constant(0.5 * block);
-      // With room for the cells beyond: where the surface passes within a cell of a block's
-      // points, the block that holds the other end of the lattice's edges is there too.
+      // With a margin of neighbouring cells: if the surface passes within a cell of a block's
+      // points, the block with the other end of the lattice edges exists too.
       all[i].near = field.near(center, half_diagonal + 2 * cell);
       active[i] = all[i].near.ranges.empty() ? 0 : 1;
     }

@@ -9,19 +9,19 @@
 
 namespace krok::body {
 
-// Bits of one coordinate in a key.
+// Bits per coordinate in a key.
 inline constexpr int kLatticeKeyBits = 20;
 
-// A key for the coordinates of a lattice point or block, each in [0, 2^20).
+// A hash key for the coordinates of a lattice point or block, each in [0, 2^20).
 constexpr std::uint64_t lattice_key(std::int64_t x, std::int64_t y, std::int64_t z) {
   const auto u = [](std::int64_t v) { return static_cast<std::uint64_t>(v); };
   return (u(x) << (2 * kLatticeKeyBits)) | (u(y) << kLatticeKeyBits) | u(z);
 }
 
-// A field with the tubes that matter looked up block by block of space.
+// A field with a spatial index: the relevant tubes are stored per block of space.
 class BlockedField {
  public:
-  // Blocks of kCells lattice cells of size `cell`, those that the surface may pass through.
+  // Blocks of kCells^3 lattice cells of size `cell`; only those that may contain the surface.
   static constexpr int kCells = 8;
   BlockedField(const Field& field, double cell, int jobs);
 
@@ -29,18 +29,18 @@ class BlockedField {
   std::vector<TubePoint> places(const Vec3& point) const {
     return field_.places(point, near(point));
   }
-  // The nearest of them; its tube is -1 where there is none.
+  // The nearest of places(); its tube is -1 if there is none.
   TubePoint nearest_place(const Vec3& point) const {
     return field_.nearest_place(point, near(point));
   }
-  // Moves a point near the surface onto it, by at most `limit`.
+  // Projects a point near the surface onto it, moving it by at most `limit`.
   Vec3 onto_surface(const Vec3& point, double limit) const;
 
   struct Block {
-    std::array<std::int64_t, 3> corner;  // lattice coordinates of its lowest corner
+    std::array<std::int64_t, 3> corner;  // lattice coordinates of its min corner
     Field::Near near;
   };
-  // The number of the block with this lowest corner over kCells, or -1.
+  // Index of the block with these block coordinates (min corner / kCells), or -1.
   int block_at(std::int64_t x, std::int64_t y, std::int64_t z) const;
   const std::vector<Block>& blocks() const { return blocks_; }
   Vec3 lattice_point(std::int64_t x, std::int64_t y, std::int64_t z) const {

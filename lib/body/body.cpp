@@ -39,7 +39,7 @@ Level level_of(BodyDetail detail) {
   return {10000, 5};
 }
 
-// Cells small enough for the thinnest limb, as far as the number of vertices allows.
+// A cell size fine enough for the thinnest limb, within the limit of the vertex count.
 double cell_size(const Field& field, std::size_t target) {
   // A lattice of this kind has about four vertices per squared cell.
   const double finest =
@@ -50,7 +50,7 @@ double cell_size(const Field& field, std::size_t target) {
   return std::clamp(0.8 * field.smallest_radius(), finest, coarsest);
 }
 
-// Limbs thinner than the lattice can show would break up.
+// Thickens limbs that are thinner than the lattice resolution and would break up.
 void thicken(Shape& shape, double least) {
   for (Tube& tube : shape.tubes) {
     for (Station& station : tube.stations) {
@@ -69,7 +69,7 @@ Mesh build_mesh(const BlockedField& blocked, std::size_t target, int jobs, Progr
     lattice.make_ball();
     mesh = polygonise(lattice, jobs);
   }
-  // Marching leaves slivers that would block the collapses.
+  // Removes slivers of the marching step, which would block edge collapses.
   smooth(mesh, jobs);
   progress.advance(1);
   std::vector<double> detail(mesh.positions.size(), 1.0);
@@ -86,7 +86,7 @@ Mesh build_mesh(const BlockedField& blocked, std::size_t target, int jobs, Progr
   return mesh;
 }
 
-// Linear blend skinning of the mesh into another pose of its skeleton.
+// Moves the mesh into another pose of its skeleton by linear blend skinning.
 void move_to(const Skeleton& skeleton, std::span<const Transform> built,
              std::span<const Transform> wanted, const Model& bound, Mesh& mesh) {
   std::vector<Transform> palette(skeleton.names.size());
@@ -110,20 +110,20 @@ Status check_request(const Clip& clip, const BodyOptions& options) {
       (options.frame < 0 || options.frame >= clip.frame_count())) {
     return Error(
         "body-frame",
-        fmt::format("there is no frame {}, the clip has {}", options.frame, clip.frame_count()),
+        fmt::format("frame {} is out of range, the clip has {}", options.frame, clip.frame_count()),
         "frames count from 0");
   }
   const std::size_t joints = clip.skeleton.names.size();
   if (joints > 65536) {
-    return Error("body-joints", fmt::format("{} joints, at most 65,536 fit in a model", joints));
+    return Error("body-joints", fmt::format("{} joints, a model has at most 65,536", joints));
   }
   return {};
 }
 
-// What to build, and where.
+// The shape to build, and its poses.
 struct Plan {
   std::vector<Transform> built;   // joint_to_world, the pose that the surface is made in
-  std::vector<Transform> wanted;  // the pose it is then moved to; empty where that is the same
+  std::vector<Transform> wanted;  // the final pose; empty if it is the same
   Shape shape;
 };
 
@@ -140,7 +140,7 @@ Plan make_plan(const Clip& clip, const BodyOptions& options, Body& body) {
                                                     : fmt::format("frame {}", options.frame);
   if (actor) {
     body.stature = actor->stature;
-    // Built with fanned fingers, so that the surface does not grow together between them.
+    // Built with spread fingers, so that their surfaces do not merge.
     plan.built = spread_fingers(skeleton, *actor, pose.joint_to_world);
     if (plan.wanted.empty()) plan.wanted = std::move(pose.joint_to_world);
     plan.shape = human_shape(skeleton, *actor, plan.built);
@@ -170,8 +170,8 @@ Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
   const Field field(plan.shape);
   const double size = field.bounds().diagonal().norm();
   if (!(size > 1e-9) || !(size < 1e9)) {
-    return Error("body-size", fmt::format("the figure is {} m large", size),
-                 "import it with its real unit of length");
+    return Error("body-size", fmt::format("the skeleton is {} m in size", size),
+                 "import it with the correct unit of length");
   }
   const BlockedField blocked(field, cell, options.jobs);
   Mesh mesh = build_mesh(blocked, level.vertices, options.jobs, progress);

@@ -10,7 +10,7 @@ namespace krok::body {
 
 namespace {
 
-// A figure taken from a clip stands where the capture was; the body stands at the origin.
+// Moves a pose of a clip, which is at the captured position, to the origin.
 void bring_home(std::vector<Transform>& pose) {
   Vec3 middle = pose.front().position;
   double low = middle.y();
@@ -18,13 +18,13 @@ void bring_home(std::vector<Transform>& pose) {
   for (Transform& transform : pose) transform.position -= Vec3(middle.x(), low, middle.z());
 }
 
-constexpr int kSamples = 60;  // frames looked at for a pose
+constexpr int kSamples = 60;  // candidate frames
 
-// Past this much turning (radians) the reference pose is no use and a frame may be better.
+// Total bone rotation (radians) above which a frame may be better than the reference pose.
 constexpr double kTooMuch = 4.0;
 
-// How far a pose spreads its bones: the mean distance between the middles of bones that do not
-// meet, over the length of all bones.
+// The spread of a pose's bones: the mean distance from a bone's midpoint to that of the nearest
+// bone that it is not connected to, over the total bone length.
 double spread(const Skeleton& skeleton, std::span<const Transform> pose) {
   std::vector<Vec3> middles;
   std::vector<std::pair<int, int>> ends;

@@ -24,7 +24,7 @@ class GeneralBuilder {
     if (!(total_ > 0) || !(extent_ > 0)) return lone_ball(lone_radius);
     tube_of_.assign(count_, -1);
     std::vector<int> starts{0};
-    // Each chain runs from where it branches off along its heaviest child.
+    // Each chain follows the heaviest child from its branching point.
     for (std::size_t next = 0; next < starts.size(); ++next) follow(starts[next], starts);
     blend_at_joints();
     return std::move(shape_);
@@ -60,8 +60,8 @@ class GeneralBuilder {
     return std::move(shape_);
   }
 
-  // The radius where `carried` metres of bone hang on. Bushes and single chains are slimmer than
-  // figures with a few limbs.
+  // The radius of a bone with `carried` metres of descendant bones. Skeletons with very many
+  // branches and single chains are slimmer than those with a few limbs.
   double radius(double carried) const {
     const double share = std::sqrt(carried / total_), stretched = extent_ / total_;
     const double bush = std::min(1.0, 0.45 + std::sqrt(stretched));
@@ -69,8 +69,8 @@ class GeneralBuilder {
     return extent_ * std::max(0.012, 0.105 * share * bush * chain);
   }
 
-  // The chain that starts with the bones from `joint`'s parent to `joint` (the root: from itself);
-  // what branches off is added to `starts`.
+  // Builds the chain that starts with the bone from `joint`'s parent to `joint` (the root: from
+  // itself); adds its branches to `starts`.
   void follow(int joint, std::vector<int>& starts) {
     Tube tube;
     std::vector<int> chain;
@@ -95,7 +95,7 @@ class GeneralBuilder {
     }
     double chain_length = 0;
     for (std::size_t i = 1; i < chain.size(); ++i) chain_length += length_[at(chain[i])];
-    if (chain_length == 0) {  // nothing to see: its joints move nothing
+    if (chain_length == 0) {  // invisible: its joints influence nothing
       for (const int j : chain) {
         if (j != parent) tube_of_[at(j)] = parent >= 0 ? tube_of_[at(parent)] : index;
       }
@@ -115,13 +115,13 @@ class GeneralBuilder {
     Station station;
     station.center = pose_[at(joint)].position;
     double carried = beyond_[at(joint)];
-    if (i == 0 && parent >= 0) {  // a branch starts no thicker than it goes on
+    if (i == 0 && parent >= 0) {  // a branch starts with the thickness that it continues with
       carried = beyond_[at(chain[1])] + length_[at(chain[1])];
     } else if (i + 1 < chain.size()) {
       carried = beyond_[at(chain[i + 1])] + length_[at(chain[i + 1])];
     }
     if (joint == 0) carried = std::min(carried, 0.5 * total_);
-    // Not fatter than it is long.
+    // Limits the thickness by the length.
     const double r = std::min(radius(carried), std::max(0.4 * chain_length, 0.01 * extent_));
     station.width = station.depth = station.cap = r;
     station.arc = reach;
@@ -136,7 +136,7 @@ class GeneralBuilder {
     if (!repeats) tube.stations.push_back(station);
   }
 
-  // Gives the stations frames that do not turn about the tube more than they must.
+  // Assigns minimal-twist frames to the stations.
   void orient(Tube& tube) const {
     Vec3 front = Vec3::UnitZ();
     for (std::size_t i = 0; i < tube.stations.size(); ++i) {
@@ -163,7 +163,7 @@ class GeneralBuilder {
     }
   }
 
-  // Tubes that meet at a joint melt together there.
+  // Blends tubes that meet at a joint.
   void blend_at_joints() {
     for (std::size_t j = 0; j < count_; ++j) {
       std::vector<int> meeting;
@@ -180,8 +180,8 @@ class GeneralBuilder {
         for (const Station& s : shape_.tubes[at(tube)].stations) r = std::max(r, s.width);
         thinnest = std::min(thinnest, r);
       }
-      // In pairs with the tube that runs through the joint, so that neighbouring branches (fingers,
-      // legs) do not web.
+      // Pairwise with the tube through the joint, so that there is no webbing between neighbouring
+      // branches (fingers, legs).
       for (const int tube : meeting) {
         if (tube != tube_of_[j]) shape_.blends.push_back({{tube_of_[j], tube}, 0.9 * thinnest});
       }

@@ -14,7 +14,7 @@ double distance(std::span<const Transform> pose, int a, int b) {
 // Follows from `joint` the child with the deepest chain to the tip.
 std::vector<int> longest_chain(const Skeleton& skeleton,
                                const std::vector<std::vector<int>>& children, int joint) {
-  // Children stand after their parents, so one pass backwards finds the longest way down.
+  // Children come after their parents, so one backward pass finds the longest paths.
   std::vector<double> reach(skeleton.names.size(), 0);
   std::vector<int> next(skeleton.names.size(), -1);
   for (int j = skeleton.joint_count() - 1; j >= joint; --j) {
@@ -30,8 +30,8 @@ std::vector<int> longest_chain(const Skeleton& skeleton,
   return chain;
 }
 
-// All chains of fingers below the wrist. A joint between wrist and knuckles that several fingers
-// share (a palm) is passed through.
+// All finger chains below the wrist. Skips a joint between wrist and knuckles that several fingers
+// share (a palm).
 void find_fingers(const Skeleton& skeleton, const std::vector<std::vector<int>>& children,
                   int joint, int depth, std::vector<std::vector<int>>& fingers) {
   for (const int child : children[static_cast<std::size_t>(joint)]) {
@@ -47,8 +47,8 @@ void find_fingers(const Skeleton& skeleton, const std::vector<std::vector<int>>&
   }
 }
 
-// Some skeletons go from the ankle down to the sole first, and from there to the tip of the foot;
-// that joint is no ball of the foot.
+// Some skeletons have a joint at the sole below the ankle, with the tip of the foot as its child;
+// that joint is not the ball of the foot.
 void tell_sole_from_toes(const Skeleton& skeleton, double stature, HumanActor::Leg& leg) {
   if (leg.toes < 0 || leg.tip < 0 || leg.tip == leg.toes) return;
   const auto& pose = skeleton.reference;

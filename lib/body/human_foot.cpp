@@ -12,7 +12,7 @@ void HumanBuilder::build_foot(std::size_t side) {
   const auto& leg = actor_.legs[side];
   const Vec3 ankle = position(leg.ankle);
   const int far = leg.toes >= 0 ? leg.toes : leg.tip;
-  // Forward along the foot, level; the ball of the foot where the skeleton has it.
+  // Forward along the foot, horizontal; towards the ball of the foot if the skeleton has it.
   Vec3 forward = Vec3::UnitZ();
   double ball = 0.078 * u;
   if (far >= 0) {
@@ -23,8 +23,7 @@ void HumanBuilder::build_foot(std::size_t side) {
       if (leg.toes >= 0) ball = std::clamp(level.norm(), 0.06 * u, 0.11 * u);
     }
   }
-  // The sole lies a malleolus' height (0.039 of the stature) below the ankle, or where the toes
-  // are.
+  // The sole is a malleolus height (0.039 of stature) below the ankle, or at the toes.
   double sole = ankle.y() - 0.039 * u;
   if (leg.toes >= 0) {
     sole = std::clamp(position(leg.toes).y() - 0.010 * u, ankle.y() - 0.065 * u,

@@ -31,8 +31,8 @@ HandLayout hand_layout(const Skeleton& skeleton, const HumanActor& actor, std::s
   const Vec3 forearm = (wrist - at(arm.elbow)).normalized();
 
   for (std::vector<int> chain : arm.fingers) {
-    // Joints between wrist and knuckle, and those that step back from where the finger goes, are
-    // parts of the palm. A thumb starts near the wrist, and its first bone may go aside.
+    // Joints between wrist and knuckle, and those that go against the finger's direction, are
+    // part of the palm. A thumb starts near the wrist, and its first bone may point sideways.
     const bool thumb = named_thumb(skeleton.names[static_cast<std::size_t>(chain.back())]);
     while (chain.size() > 2) {
       const Vec3 first = at(chain[1]) - at(chain[0]), whole = at(chain.back()) - at(chain[0]);
@@ -71,7 +71,7 @@ HandLayout hand_layout(const Skeleton& skeleton, const HumanActor& actor, std::s
   const auto sideways = [&hand](const Vec3& v) -> Vec3 {
     return v - hand.along * hand.along.dot(v);
   };
-  Vec3 thumb = Vec3::UnitZ();  // forward where no thumb tells otherwise
+  Vec3 thumb = Vec3::UnitZ();  // forward if there is no thumb
   if (!hand.thumb.empty() && sideways(at(hand.thumb.back()) - wrist).norm() > 0.012 * u) {
     thumb = at(hand.thumb.back()) - wrist;
   }

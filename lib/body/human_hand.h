@@ -7,21 +7,21 @@
 
 namespace krok::body {
 
-// How a hand lies in a pose, and which of its joints are fingers.
+// The orientation of a hand in a pose, and its finger joints.
 struct HandLayout {
   Vec3 along = Vec3::UnitX();   // unit, from the wrist to the knuckles
-  Vec3 across = Vec3::UnitZ();  // unit, perpendicular, to the thumb's side
-  // Chains from the knuckle to the tip, two joints or more each, from the thumb's side on.
+  Vec3 across = Vec3::UnitZ();  // unit, perpendicular to `along`, towards the thumb
+  // Chains from knuckle to tip, at least two joints each, starting at the thumb side.
   std::vector<std::vector<int>> fingers;
-  std::vector<int> thumb;  // empty where there is none
-  // Three fingers or more: the skeleton has a whole hand. Otherwise the fingers are a stand-in.
+  std::vector<int> thumb;  // empty if there is none
+  // Whether the skeleton has a complete hand. With fewer than three fingers they are placeholders.
   bool whole() const { return fingers.size() >= 3; }
 };
 
 HandLayout hand_layout(const Skeleton& skeleton, const HumanActor& actor, std::size_t side,
                        std::span<const Transform> pose);
 
-// `pose` with the fingers of whole hands straight and fanned out, so that none touches another.
+// `pose` with the fingers of complete hands straightened and spread so that they do not touch.
 std::vector<Transform> spread_fingers(const Skeleton& skeleton, const HumanActor& actor,
                                       std::span<const Transform> pose);
 

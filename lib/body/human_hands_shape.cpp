@@ -37,7 +37,7 @@ void HumanBuilder::build_hand(std::size_t side) {
   palm.joints = {{arm.wrist, -1e9, 0}};
   palms_[side] = shape_.add(std::move(palm));
 
-  // Fingers where the skeleton has them, else a hand of our own with whatever moves it.
+  // The skeleton's fingers, or a default hand that follows the available joints.
   if (hand.whole()) {
     if (!hand.thumb.empty()) build_finger_along(side, hand, hand.thumb);
     for (const auto& chain : hand.fingers) build_finger_along(side, hand, chain);
@@ -56,7 +56,7 @@ void HumanBuilder::build_finger_along(std::size_t side, const HandLayout& hand,
   const double radius = 0.0047 * u;
   Tube tube;
   std::vector<Vec3> points;
-  // From inside the palm, so that short and long chains both hold on to it.
+  // Starts inside the palm, so that short and long chains connect to it.
   const Vec3 first = position(chain.front());
   points.push_back(wrist + 0.55 * (first - wrist));
   double arc = -(first - points.back()).norm();
@@ -103,7 +103,7 @@ void HumanBuilder::build_free_finger(std::size_t side, const HandLayout& hand, i
   const Vec3 wrist = position(wrist_joint), thick = hand.along.cross(hand.across);
   std::vector<int> chain = hand.thumb;
   if (finger > 0) chain = hand.fingers.empty() ? std::vector<int>() : hand.fingers.front();
-  // Thumb, then index to little finger: where they start, how long they are, how they spread.
+  // Thumb, then index to little finger: start, length, spread.
   struct Row {
     double ahead, aside, length, radius, spread;
   };
@@ -120,7 +120,7 @@ void HumanBuilder::build_free_finger(std::size_t side, const HandLayout& hand, i
   for (int i = 0; i <= 3; ++i) {
     const double t = i / 3.0;
     Station station;
-    // Slightly bent, as a hand at rest is.
+    // Slightly bent, as in a relaxed hand.
     station.center = start + (direction * t + palm_side * (0.16 * t * t)) * (row.length * u);
     station.width = station.depth = station.cap = row.radius * (1.05 - 0.22 * t) * u;
     station.front = thick;

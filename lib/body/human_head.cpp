@@ -17,7 +17,7 @@ int HumanBuilder::chest_joint() const {
   return common;
 }
 
-// The top of the head: the end site where it is plausible, else from the joint at the skull's base.
+// The top of the head: the end site if plausible, else derived from the joint at the skull's base.
 void HumanBuilder::place_head() {
   const double u = unit_;
   head_ = actor_.head >= 0 ? actor_.head : actor_.neck;
@@ -27,7 +27,7 @@ void HumanBuilder::place_head() {
     const double above = position(actor_.head_top).y() - joint.y();
     if (above > 0.085 * u && above < 0.16 * u) top = joint.y() + above;
   }
-  // Not sunk into the shoulders, not on a stalk.
+  // Keeps a plausible distance from the shoulders.
   const double shoulder = trunk_point(0.285, 0, 0).y();
   top = std::clamp(top, shoulder + 0.165 * u, shoulder + 0.205 * u);
   crown_ = Vec3(joint.x(), top, joint.z() + 0.010 * u);
@@ -61,7 +61,7 @@ void HumanBuilder::build_neck() {
   neck_ = shape_.add(std::move(neck));
 }
 
-// A tube that moves with the head: rows of a point and the half-axes there, over stature.
+// A tube that moves with the head: rows of a point and half-axes, as fractions of stature.
 int HumanBuilder::add_head_tube(std::initializer_list<HeadRow> rows, double detail) {
   Tube tube;
   for (const HeadRow& row : rows) {
@@ -93,7 +93,7 @@ void HumanBuilder::build_head() {
   build_face();
 }
 
-// A hint of a face. The eyes lie between brow, nose and cheek-bones; nothing is cut out for them.
+// A simple face. The eye sockets result from brow, nose and cheek-bones; nothing is cut out.
 void HumanBuilder::build_face() {
   const double fine = 0.42;
   const int nose = add_head_tube({{0, 0.058, 0.0510, 0.0050, 0.0060, 0.005},

@@ -9,7 +9,7 @@
 #include "body/human_hand.h"
 #include "body/implicit.h"
 
-// The parts of the human shape; used by the human_*.cpp files that build them alone.
+// The parts of the human shape; internal to the human_*.cpp files.
 
 namespace krok::body {
 
@@ -24,13 +24,13 @@ class HumanBuilder {
     const int parent = skeleton_.parents[static_cast<std::size_t>(joint)];
     return parent < 0 ? joint : parent;
   }
-  // The joint that neck and arms hang on.
+  // The common parent joint of neck and arms.
   int chest_joint() const;
   std::vector<TubeJoint> joints_along(const std::vector<int>& path, const Vec3& origin,
                                       const Vec3& axis, double half_width) const;
   void push_path(Tube& tube, int from, int to, const Vec3& origin, const Vec3& axis, double arc,
                  double half_width) const;
-  // A point by its height over the hip joints and its offsets, over stature.
+  // A point given by its height above the hip joints and its offsets, as fractions of stature.
   Vec3 trunk_point(double height, double left, double forward) const;
   int add_ball(const Vec3& center, const Vec3& axes, double detail, int like);
 
@@ -56,7 +56,7 @@ class HumanBuilder {
   const HumanActor& actor_;
   std::span<const Transform> pose_;
   double unit_;                // stature, metres
-  std::vector<double> along_;  // distance from the root along the bones, [joints]
+  std::vector<double> along_;  // [joints], distance from the root along the bones
   Shape shape_;
 
   Vec3 trunk_base_ = Vec3::Zero(), trunk_axis_ = Vec3::UnitY();

@@ -20,7 +20,7 @@ class Straightener {
   StandingPose run() {
     face_forward();
     straighten_trunk();
-    // What one side needs, both get.
+    // Corrections apply to both sides.
     const bool legs = leg_in_the_way(0) || leg_in_the_way(1);
     const bool arms = arm_in_the_way(0) || arm_in_the_way(1);
     for (std::size_t side = 0; side < 2; ++side) {
@@ -36,8 +36,8 @@ class Straightener {
 
   void rotate(int joint, const Quat& rotation) { turn_joint(skeleton_, joint, rotation, pose_); }
 
-  // Turns `joint` so that the bone to `child` points along `wanted`, if it is more than `tolerance`
-  // away from it.
+  // Rotates `joint` so that the bone to `child` points along `wanted`, if it deviates by more than
+  // `tolerance`.
   void point(int joint, int child, const Vec3& wanted, double tolerance) {
     const Vec3 now = bone(joint, child);
     if (now.norm() < 1e-3 * actor_.stature) return;
@@ -57,7 +57,7 @@ class Straightener {
       from << axes.left, axes.up, axes.forward;
       rotation = Quat(Mat3(from.transpose()));
       heading_ = tilt;
-    } else {  // a trunk that leans a little may
+    } else {  // a slight lean is kept
       forward.y() = 0;
       const double turn = std::atan2(forward.x(), forward.z());
       if (std::abs(turn) < 10 * kDegree) return;
@@ -67,8 +67,8 @@ class Straightener {
     rotate(0, normalized_or_identity(rotation));
   }
 
-  // The bones from one joint to another, turned up one by one where they are folded or, taken
-  // together, lie more than 40 degrees from it. Single bones that step back or aside are left.
+  // Rotates the bones from one joint to another upwards, one by one, if they are folded or their
+  // overall direction is more than 40 degrees from up. Otherwise single bones may deviate.
   void straighten(int from, int to) {
     const auto path = joint_path(skeleton_, from, to);
     double length = 0;
@@ -87,13 +87,13 @@ class Straightener {
         skeleton_.parents[static_cast<std::size_t>(actor_.neck >= 0 ? actor_.neck : actor_.head)];
     straighten(actor_.hips, chest);
     straighten(chest, top);
-    // The face looks where it did. (Where the end site of the head lies tells nothing: some
-    // exporters put it anywhere.)
+    // Keeps the direction of the face. (The end site of the head is not reliable: some exporters
+    // put it anywhere.)
     rotate(top, normalized_or_identity(
                     before * pose_[static_cast<std::size_t>(top)].orientation.conjugate()));
   }
 
-  // A thigh that crosses to the other side, is spread wide or is raised.
+  // Whether a thigh crosses to the other side, is spread wide or raised.
   bool leg_in_the_way(std::size_t side) const {
     const auto& leg = actor_.legs[side];
     const Vec3 thigh = bone(leg.hip, leg.knee).normalized();
@@ -101,7 +101,7 @@ class Straightener {
     return apart < -0.06 || apart > 0.28 || std::abs(thigh.z()) > 0.30 || thigh.y() > 0;
   }
 
-  // An upper arm beside the trunk, raised, or well before or behind it.
+  // Whether an upper arm is beside the trunk, raised, or far in front of or behind it.
   bool arm_in_the_way(std::size_t side) const {
     const auto& arm = actor_.arms[side];
     const Vec3 upper = bone(arm.shoulder, arm.elbow).normalized();
@@ -146,7 +146,7 @@ class Straightener {
     const Vec3 upper = bone(arm.shoulder, arm.elbow).normalized();
     if (turn) {
       const double hanging = turn_angle(upper, -Vec3::UnitY());
-      // A raised or level arm goes to a T-pose, a hanging one half-way there.
+      // A raised or horizontal arm goes to a T-pose, a hanging one to an A-pose.
       const double aim = hanging > 75 * kDegree ? 90 * kDegree : 45 * kDegree;
       point(arm.shoulder, arm.elbow, Vec3(out * std::sin(aim), -std::cos(aim), 0), 0);
     }

@@ -7,18 +7,18 @@
 
 namespace krok::body {
 
-// A pose that human_shape can build a body in, made from one that it may not be able to.
+// A pose suitable for human_shape, derived from an arbitrary pose.
 struct StandingPose {
   std::vector<Transform> joint_to_world;
-  double turned = 0;   // radians, how far bones were turned, all added up; 0: the pose as it was
-  double heading = 0;  // radians, how far the whole figure was turned to stand upright facing +Z
+  double turned = 0;   // radians, sum of all bone rotations; 0: the pose is unchanged
+  double heading = 0;  // radians, rotation of the whole body to stand upright facing +Z
 };
 
-// Turns what stands in the way of a body, and nothing else: the whole figure upright and facing +Z,
-// arms away from the trunk (some 30 to 100 degrees from hanging straight down), elbows, wrists,
-// knees and toes that are bent by more than some 25 degrees straight, legs side by side under the
-// hips, feet level and forward, a folded trunk or neck up. What one side needs, both get. Bones
-// keep their lengths. Limbs are turned by the shortest way, so that they keep their twist.
+// Rotates only what prevents building a body: the whole body upright and facing +Z, arms away from
+// the trunk (about 30 to 100 degrees from hanging straight down), elbows, wrists, knees and toes
+// bent by more than about 25 degrees straight, legs side by side under the hips, feet level and
+// forward, a folded trunk or neck up. Corrections apply to both sides. Bone lengths are kept. Limbs
+// are rotated by the shortest arc, so that they keep their twist.
 StandingPose stand_upright(const Skeleton& skeleton, const HumanActor& actor,
                            std::span<const Transform> pose);
 

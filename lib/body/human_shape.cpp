@@ -9,7 +9,7 @@ namespace krok::body {
 
 namespace {
 
-// A row of a profile: where along the bone (0 to 1), half-axes and offsets over stature.
+// A row of a profile: position along the bone (0 to 1), half-axes and offsets over stature.
 struct LimbRow {
   double at, width, depth, outward, back;
 };
@@ -77,8 +77,8 @@ Shape HumanBuilder::build() {
   return std::move(shape_);
 }
 
-// The joints of `path` as they take over along a tube that starts at `origin` and runs along
-// `axis`: arc is the distance along that axis, rising from joint to joint.
+// The joints of `path` along a tube that starts at `origin` and follows `axis`: arc is the distance
+// along that axis, increasing from joint to joint.
 std::vector<TubeJoint> HumanBuilder::joints_along(const std::vector<int>& path, const Vec3& origin,
                                                   const Vec3& axis, double half_width) const {
   std::vector<TubeJoint> joints;
@@ -101,9 +101,9 @@ void HumanBuilder::build_trunk() {
   trunk_scale_ = length / (kTrunkLength * unit_);
   const double half_breadth =
       0.5 * (position(actor_.arms[0].shoulder) - position(actor_.arms[1].shoulder)).norm();
-  // Narrow shoulders get a narrow chest, so that the arms stand off it.
+  // Narrow shoulders get a narrow chest, so that the arms do not touch it.
   chest_scale_ = std::clamp(half_breadth / (0.105 * unit_), 0.8, 1.3);
-  // Hip joints far apart get wide hips and thighs, or the thighs would stand out as lumps.
+  // Hip joints far apart get wide hips and thighs, or the thighs would bulge.
   const double half_hips =
       0.5 * (position(actor_.legs[0].hip) - position(actor_.legs[1].hip)).norm();
   hip_scale_ = std::clamp((half_hips / unit_ + 0.045) / 0.097, 0.95, 1.4);
@@ -111,7 +111,7 @@ void HumanBuilder::build_trunk() {
   Tube tube;
   for (const TrunkRow& row : kTrunk) {
     const double part = std::clamp((row.height - 0.10) / 0.10, 0.0, 1.0);
-    // At the waist a compromise of both.
+    // Interpolates between both at the waist.
     const double widen = 1 + part * (chest_scale_ - 1) +
                          (1 - part) * (hip_scale_ - 1) * (row.height < 0.06 ? 1.0 : 0.6);
     Station station;
@@ -128,7 +128,7 @@ void HumanBuilder::build_trunk() {
   }
   tube.joints = joints_along(joint_path(skeleton_, actor_.hips, chest_joint()), trunk_base_,
                              trunk_axis_, 0.04 * unit_);
-  // What lies below the first spine joint follows the hips.
+  // The part below the first spine joint follows the hips.
   trunk_ = shape_.add(std::move(tube));
 
   for (std::size_t side = 0; side < 2; ++side) {
@@ -145,8 +145,8 @@ Vec3 HumanBuilder::trunk_point(double height, double left, double forward) const
          Vec3(left * unit_, 0, forward * unit_);
 }
 
-// An ellipsoid with half-axes (left, forward, up) over stature that moves with the trunk or
-// whatever `like` moves with.
+// An ellipsoid with half-axes (left, forward, up) over stature that follows the joints of the trunk
+// or of tube `like`.
 int HumanBuilder::add_ball(const Vec3& center, const Vec3& axes, double detail, int like) {
   Tube tube;
   Station station;
@@ -156,7 +156,7 @@ int HumanBuilder::add_ball(const Vec3& center, const Vec3& axes, double detail, 
   station.cap = axes.z() * unit_;
   station.detail = detail;
   const Tube& carrier = shape_.tubes[static_cast<std::size_t>(like)];
-  // The nearest place of the carrier tells which joints move the ball.
+  // The ball follows the joints at the nearest station of the carrier.
   const Station* nearest = &carrier.stations.front();
   for (const Station& s : carrier.stations) {
     if ((s.center - center).norm() < (nearest->center - center).norm()) nearest = &s;
@@ -180,7 +180,7 @@ void HumanBuilder::build_leg(std::size_t side) {
     station.center = from + row.at * bone + Vec3(row.outward * out * unit_, 0, -row.back * unit_);
     station.width = row.width * unit_ * (arc > 0 ? 1.0 : 1 + (hip_scale_ - 1) * 0.6 * (1 - row.at));
     station.depth = row.depth * unit_;
-    // The inside of a thigh stays on its own half of the body.
+    // The inside of a thigh must not cross the midline.
     const double room = out * (station.center.x() - trunk_base_.x()) - 0.004 * unit_;
     if (room < station.width) {
       const double width = std::max(0.7 * station.width, 0.5 * (room + station.width));
@@ -246,7 +246,7 @@ void HumanBuilder::build_arm(std::size_t side) {
   tube.joints.push_back({arm.wrist, std::max(upper + lower, tube.joints.back().at), 0.018 * unit_});
   arms_[side] = shape_.add(std::move(tube));
 
-  // From the neck over the collar bone to the shoulder: trapezius and deltoid.
+  // Trapezius and deltoid: from the neck over the collar bone to the shoulder.
   const double out = side == 0 ? 1.0 : -1.0;
   Tube ridge;
   const Vec3 inner = trunk_point(0.315, 0.018 * out, -0.008);
@@ -283,7 +283,7 @@ void HumanBuilder::join() {
     const auto& fingers = fingers_[side];
     for (std::size_t i = 0; i < fingers.size(); ++i) {
       shape_.blends.push_back({{palms_[side], fingers[i]}, 0.008 * u});
-      // A little between fingers, or the lattice would leave threads where they part.
+      // A small blend between fingers, or the lattice would leave threads where they separate.
       if (i > 0) shape_.blends.push_back({{fingers[i - 1], fingers[i]}, 0.006 * u});
     }
     shape_.blends.push_back({{skull_, ears_[side]}, 0.006 * u});

@@ -12,7 +12,7 @@ namespace krok::body {
 //
 // Proportions: segment lengths and heights over stature after Drillis and Contini (1966) as given
 // by Winter; breadths, depths and girths over stature rounded from the means of ANSUR II (Gordon et
-// al. 2014, 1.756 m men and 1.629 m women), between the two and slightly leaner. Girths become
+// al. 2014, men 1.756 m, women 1.629 m), between the two and slightly leaner. Girths become
 // ellipses of that circumference.
 Shape human_shape(const Skeleton& skeleton, const HumanActor& actor,
                   std::span<const Transform> pose);

@@ -9,7 +9,7 @@ namespace krok::body {
 
 namespace {
 
-constexpr int kPieces = 5;  // straight pieces of a spline between two stations
+constexpr int kPieces = 5;  // linear segments of a spline between two stations
 
 double cubic(double a, double b, double c, double d, double t) {
   return 0.5 *
@@ -30,7 +30,7 @@ Station mix(const Station& a, const Station& b, double t) {
   return result;
 }
 
-// Makes side and front unit and perpendicular; front gives way.
+// Orthonormalises side and front; side keeps its direction.
 void square_up(Station& station) {
   const double side = station.side.norm();
   station.side = side > 1e-9 ? Vec3(station.side / side) : Vec3(Vec3::UnitX());
@@ -169,11 +169,11 @@ double Field::segment_value(const Path& path, int segment, const Vec3& point,
   t = std::clamp(t, 0.0, 1.0);
   *fraction = t;
   const Vec3 q = point - (a.center + t * axis);
-  // Round on both ends: no frame is needed, which in general shapes may turn from one to the other.
+  // Round at both ends: no frame is needed, which in general shapes may rotate between them.
   if (a.width == a.depth && a.width == a.cap && b.width == b.depth && b.width == b.cap) {
     return q.norm() - (a.width + t * (b.width - a.width));
   }
-  // The frames of neighbouring stations differ little, so the mixed one is nearly orthonormal.
+  // The frames of neighbouring stations differ little: the interpolated one is nearly orthonormal.
   const Vec3 side = a.side + t * (b.side - a.side);
   const Vec3 front = a.front + t * (b.front - a.front);
   const double width = a.width + t * (b.width - a.width);
@@ -193,7 +193,7 @@ double Field::segment_value(const Path& path, int segment, const Vec3& point,
 double Field::tube_value(int tube, int first, int last, const Vec3& point, int* segment,
                          double* fraction) const {
   const Path& path = paths_[static_cast<std::size_t>(tube)];
-  // The segment whose middle is nearest goes first; then most others are seen to lie too far away.
+  // Starts with the segment whose midpoint is nearest, so that most others can be rejected.
   int start = first;
   double shortest = std::numeric_limits<double>::max();
   for (int s = first; s <= last; ++s) {
@@ -239,8 +239,8 @@ double Field::value(const Vec3& point, const Near& near) const {
   }
   for (const int index : near.blends) {
     const Blend& blend = blends_[static_cast<std::size_t>(index)];
-    // Members from the nearest on, each blended into the result so far: the order of the list does
-    // not matter, and where two change places their values are the same.
+    // Blends members one by one, nearest first: the result does not depend on the order of the
+    // list, and is continuous where two members swap, since their values are equal there.
     std::array<double, 16> members;
     std::size_t count = 0;
     double nearest = std::numeric_limits<double>::max();
@@ -320,7 +320,7 @@ void Field::bind(const TubePoint& place, double scale,
                  std::vector<std::pair<int, double>>& weights) const {
   const Path& path = paths_[static_cast<std::size_t>(place.tube)];
   const double arc = station_at(place).arc;
-  double reached = 1;  // how much of joint i has come in
+  double reached = 1;  // fade-in of joint i
   for (std::size_t i = 0; i < path.joints.size(); ++i) {
     double next = 0;
     if (i + 1 < path.joints.size()) {

@@ -5,32 +5,31 @@
 
 #include "math/types.h"
 
-// The implicit surface of a body: tubes along the bones, blended smoothly where they belong
-// together and not at all where they merely come close, so that an arm beside the trunk stays
-// apart.
+// The implicit surface of a body: tubes along the bones. Connected tubes are blended smoothly;
+// tubes that merely come close are not, so that an arm beside the trunk stays separate.
 
 namespace krok::body {
 
-// A cross-section of a tube: an ellipse about `center` with half-axes `width` along `side` and
-// `depth` along `front` (unit vectors, perpendicular). `cap` is the half-axis along the tube where
-// it ends here.
+// A cross-section of a tube: an ellipse around `center` with half-axes `width` along `side` and
+// `depth` along `front` (unit vectors, perpendicular). `cap` is the half-axis along the tube if it
+// ends here.
 struct Station {
   Vec3 center = Vec3::Zero();
   double width = 0, depth = 0;
   Vec3 side = Vec3::UnitX(), front = Vec3::UnitZ();
   double cap = 0;     // 0: the smaller of width and depth
-  double arc = 0;     // where the tube's joints take over from each other, see Tube::joints
+  double arc = 0;     // parameter along the tube, see TubeJoint::at
   double along = 0;   // distance from the root along the bones
-  double detail = 1;  // edge length wanted here, relative to the rest of the body
+  double detail = 1;  // target edge length, relative to the rest of the body
 };
 
-// A half-space that cuts a tube: the inside is where normal . x <= offset. `blend` rounds the edge.
+// A half-space that cuts a tube: inside is normal . x <= offset. `blend` rounds the edge.
 struct Cut {
   Vec3 normal = Vec3::UnitY();
   double offset = 0, blend = 0;
 };
 
-// From Station::arc = `at` on the tube follows `joint`, coming in over `half_width` on either side.
+// From Station::arc = `at` on the tube follows `joint`, fading in over `half_width` on either side.
 struct TubeJoint {
   int joint = 0;
   double at = 0, half_width = 0;
@@ -39,12 +38,12 @@ struct TubeJoint {
 struct Tube {
   std::vector<Station> stations;  // at least one
   std::vector<TubeJoint>
-      joints;  // at least one, in rising order of `at`; the first holds before it too
+      joints;  // at least one, by increasing `at`; the first also applies before its `at`
   std::vector<Cut> cuts;
-  bool spline = true;  // round the path and the profile through the stations
+  bool spline = true;  // spline through the stations instead of straight segments
 };
 
-// Tubes that melt into each other over about `radius`.
+// Tubes that are blended into each other over about `radius`.
 struct Blend {
   std::vector<int> tubes;
   double radius = 0;
@@ -60,21 +59,21 @@ struct Shape {
   }
 };
 
-// Where a point lies on a tube.
+// The closest location on a tube to a point.
 struct TubePoint {
-  double value = 0;  // signed distance, about
+  double value = 0;  // approximate signed distance
   int tube = 0;
   int segment = 0;      // between stations segment and segment + 1 of Field::tube_stations
   double fraction = 0;  // in [0, 1]
 };
 
-// Evaluates a shape. Built once, then read by many threads. Uses +, -, *, / and sqrt alone, so that
-// the same bits come out on every machine.
+// Evaluates a shape. Immutable after construction and safe to share between threads. Uses only
+// +, -, *, / and sqrt, so that results are bit-identical on every machine.
 class Field {
  public:
   explicit Field(const Shape& shape);
 
-  // The tubes that can matter within `radius` of `center`.
+  // The tubes that can affect points within `radius` of `center`.
   struct Near {
     struct Range {
       int tube, first, last;  // segments [first, last]
@@ -84,21 +83,20 @@ class Field {
   };
   Near near(const Vec3& center, double radius) const;
 
-  // Below zero inside, above outside, about the distance to the surface close to it.
+  // Negative inside, positive outside; near the surface about the signed distance.
   double value(const Vec3& point, const Near& near) const;
-  // By differences over `step`; `value` is the one at the point.
+  // By finite differences over `step`; `value` is the value at the point.
   Vec3 gradient(const Vec3& point, double value, const Near& near, double step) const;
 
-  // The places on all tubes of `near`, nearest first.
+  // The closest locations on all tubes of `near`, nearest first.
   std::vector<TubePoint> places(const Vec3& point, const Near& near) const;
 
-  // The first of them, or one with tube -1 where there is none.
+  // The first of places(); tube is -1 if there is none.
   TubePoint nearest_place(const Vec3& point, const Near& near) const;
 
   Station station_at(const TubePoint& place) const;
   double detail_at(const TubePoint& place) const;  // of station_at
-  // The joints that move the place, with weights that sum to 1; appended to `weights`, times
-  // `scale`.
+  // Appends the joints that move a location, with weights that sum to `scale`, to `weights`.
   void bind(const TubePoint& place, double scale,
             std::vector<std::pair<int, double>>& weights) const;
   bool blended(int tube_a, int tube_b) const;
@@ -107,7 +105,7 @@ class Field {
   Eigen::AlignedBox3d bounds() const { return bounds_; }
   double area_estimate() const { return area_; }
   double smallest_radius() const { return smallest_radius_; }
-  // Balls that together hold the surface: one a segment.
+  // Balls that together contain the surface, one per segment.
   struct Ball {
     Vec3 center;
     double radius;
@@ -116,7 +114,7 @@ class Field {
 
  private:
   struct Path {
-    std::vector<Station> stations;  // after the spline; one station is a ball
+    std::vector<Station> stations;  // sampled from the spline; a single station is a ball
     std::vector<Ball> balls;        // around each segment
     std::vector<Cut> cuts;
     std::vector<TubeJoint> joints;

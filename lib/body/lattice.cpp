@@ -19,7 +19,7 @@ constexpr std::array<int, 3> offset_of(int neighbour) {
   return {sign * (corner & 1), sign * ((corner >> 1) & 1), sign * ((corner >> 2) & 1)};
 }
 
-// For each of the 2^14 ways in which neighbours can be inside, whether the point is simple.
+// Whether a point is simple, for each of the 2^14 inside/outside configurations of its neighbours.
 std::vector<char> simple_points() {
   std::array<unsigned, kNeighbours> adjacent{};
   for (int a = 0; a < kNeighbours; ++a) {
@@ -30,7 +30,7 @@ std::vector<char> simple_points() {
         low = std::min(low, q[axis] - p[axis]);
         high = std::max(high, q[axis] - p[axis]);
       }
-      // Two points are neighbours where their difference is a corner, or the opposite of one.
+      // Two points are neighbours if their difference is a corner, or the negative of one.
       if (a != b && (low >= 0 || high <= 0) && high - low <= 1 && low >= -1 && high <= 1) {
         adjacent[static_cast<std::size_t>(a)] |= 1u << b;
       }
@@ -81,8 +81,8 @@ void Lattice::sample(std::size_t block) {
   for (int part = 0; part < 8; ++part) {
     const int x0 = (part & 1) * kPart, y0 = ((part >> 1) & 1) * kPart,
               z0 = ((part >> 2) & 1) * kPart;
-    // From a value in the middle, whether the surface is beyond all points and their neighbours.
-    // Outside, values are distances or less; inside they may be up to twice that.
+    // The value at the centre decides whether the surface is beyond all points and their
+    // neighbours. Outside, values are at most the distance; inside they may be up to twice that.
     const double half = 0.5 * (kPart - 1);
     const double middle =
         field_.field().value(field_.lattice_point(corner[0] + x0, corner[1] + y0, corner[2] + z0) +
@@ -179,7 +179,7 @@ void Lattice::make_ball() {
       if (next.block < 0) continue;
       if (grown[static_cast<std::size_t>(next.block) * kPoints + next.at]) around |= 1u << n;
     }
-    // One that is not simple yet comes back when another neighbour is added.
+    // A point that is not simple yet is queued again when another neighbour is added.
     if (simple[around]) add(index);
   }
   for (std::size_t i = 0; i < values_.size(); ++i) {

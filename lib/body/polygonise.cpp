@@ -13,11 +13,11 @@ namespace {
 
 using EdgeKey = std::uint64_t;
 
-// Corners of a cube are bit masks of the axes. A tetrahedron of Kuhn's subdivision walks from
-// corner 0 to corner 7 along the axes in one order; listed so that all are oriented alike.
+// Corners of a cube are bit masks of the axes. Each tetrahedron of Kuhn's subdivision is a path
+// from corner 0 to corner 7 along the axes; all have the same orientation.
 constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
                                    {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}};
-// Even orders that put one vertex, or two, in front.
+// Even permutations that put one vertex, or two, first.
 constexpr int kOneFirst[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}};
 constexpr int kTwoFirst[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
                                  {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};

@@ -16,7 +16,7 @@ std::size_t corner_of(const Triangle& triangle, std::uint32_t v) {
   return triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
 }
 
-// The edges of a closed mesh as (low vertex, high vertex, two triangles), in order.
+// The edges of a closed mesh as (lower vertex, higher vertex, two triangles), sorted.
 struct Edge {
   std::uint32_t a, b, left, right;
 };
@@ -43,7 +43,7 @@ std::vector<Edge> edges_of(const Mesh& mesh) {
   return edges;
 }
 
-// Flips edges where that brings the numbers of neighbours closer to six.
+// Flips edges if that brings vertex valences closer to six.
 void flip_edges(Mesh& mesh) {
   std::vector<int> valence(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles) {
@@ -89,7 +89,7 @@ void flip_edges(Mesh& mesh) {
   }
 }
 
-// Takes back the moves that would fold a triangle over.
+// Reverts moves that would flip a triangle.
 void keep_facing(const Mesh& mesh, const std::vector<Vec3>& normals, std::vector<Vec3>& moved) {
   for (int round = 0; round < 3; ++round) {
     bool folded = false;

@@ -11,7 +11,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// A list in place: of the triangles at a vertex, or of its neighbours.
+// A fixed-capacity list of the triangles or neighbours of a vertex.
 struct Ring {
   static constexpr std::size_t kMax = 16;
   std::array<std::uint32_t, kMax> items;
@@ -21,7 +21,7 @@ struct Ring {
   const std::uint32_t* end() const { return items.data() + count; }
   bool has(std::uint32_t item) const { return std::find(begin(), end(), item) != end(); }
   void add(std::uint32_t item) {
-    if (count == kMax) throw std::length_error("a vertex of more than 16 triangles");
+    if (count == kMax) throw std::length_error("a vertex has more than 16 triangles");
     items[count++] = item;
   }
   void remove(std::uint32_t item) {
@@ -47,8 +47,8 @@ class Simplifier {
     }
   }
 
-  // In rounds, each over all edges cheaper than a limit that rises from round to round: nearly the
-  // order of a queue, without one.
+  // Passes over all edges below a cost limit that rises from pass to pass: approximates the order
+  // of a priority queue.
   void run(std::size_t target) {
     constexpr double kRise = 1.25;
     std::size_t count = positions_.size();
@@ -69,10 +69,10 @@ class Simplifier {
           if (!collapse(a, b)) continue;
           --count;
           ++collapsed;
-          break;  // the rest of its neighbours are new
+          break;  // the neighbours have changed
         }
       }
-      if (collapsed == 0 && cheapest_left < 0) return;  // no edge can go
+      if (collapsed == 0 && cheapest_left < 0) return;  // no edge can collapse
       limit = collapsed == 0 ? std::max(limit * kRise, cheapest_left * 1.01) : limit * kRise;
     }
   }
@@ -106,7 +106,7 @@ class Simplifier {
     return triangles_.empty() ? 0.0 : sum / static_cast<double>(triangles_.size());
   }
 
-  // In a closed manifold the triangles at a vertex name each neighbour once as the next corner.
+  // In a closed manifold each neighbour is the next corner of exactly one triangle at the vertex.
   Ring neighbours(std::uint32_t v) const {
     Ring result;
     for (const std::uint32_t t : at_vertex_[v]) {
@@ -116,7 +116,7 @@ class Simplifier {
     return result;
   }
 
-  // Whether the triangles at v, but those that also hold `other`, stay sound with v at `to`.
+  // Whether the triangles at v, except those that also contain `other`, stay valid with v at `to`.
   bool fits(std::uint32_t v, std::uint32_t other, const Vec3& to) const {
     for (const std::uint32_t t : at_vertex_[v]) {
       const Triangle& triangle = triangles_[t];
@@ -135,7 +135,7 @@ class Simplifier {
       const double length = after.norm();
       if (length < 0.08 * longest) return false;
       if (after.dot(before) < 0.3 * length * before.norm()) return false;
-      // Nor may it turn away from where the surface faced at the start, little by little.
+      // Prevents gradual rotation away from the original surface normal.
       const Vec3 facing = normals_[triangle[0]] + normals_[triangle[1]] + normals_[triangle[2]];
       if (after.dot(facing) < 0.3 * length * facing.norm()) return false;
     }
@@ -149,7 +149,7 @@ class Simplifier {
     for (const std::uint32_t u : around_a) {
       if (around_b.has(u)) shared.add(u);
     }
-    // The link condition (Dey et al. 1999): only then does the topology stay.
+    // The link condition (Dey et al. 1999) for keeping the topology.
     if (shared.count != 2) return false;
     if (at_vertex_[shared.items[0]].count <= 3 || at_vertex_[shared.items[1]].count <= 3) {
       return false;
@@ -171,7 +171,7 @@ class Simplifier {
         for (const std::uint32_t u : triangle) at_vertex_[u].remove(t);
       }
     }
-    for (const std::uint32_t t : at_vertex_[b]) {  // those that live on
+    for (const std::uint32_t t : at_vertex_[b]) {  // the remaining triangles
       Triangle& triangle = triangles_[t];
       std::replace(triangle.begin(), triangle.end(), b, a);
       at_vertex_[a].add(t);

@@ -12,7 +12,7 @@ namespace {
 
 using Weights = std::vector<std::pair<int, double>>;  // joint and weight, by joint
 
-// Adds up the weights of each joint, makes them sum to 1 and leaves out the vanishing ones.
+// Merges the weights per joint, drops negligible ones and normalises.
 void tidy(Weights& weights) {
   std::stable_sort(weights.begin(), weights.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -99,7 +99,7 @@ void map_surface(const Mesh& mesh, const BlockedField& field, int jobs, Model& m
       const Station station = field.field().station_at(places.front());
       const Vec3 offset = mesh.positions[i] - station.center;
       const double x = std::abs(offset.dot(station.side)), y = offset.dot(station.front);
-      // The angle from the front in a form without trigonometry: 0 ahead, 1/2 aside, 1 behind.
+      // Angle from the front without trigonometry: 0 front, 1/2 side, 1 back.
       const double whole = x + std::abs(y);
       const double quarter = whole > 0 ? 0.5 * x / whole : 0.5;
       model.texture_coordinates[i].x() = static_cast<float>(y >= 0 ? quarter : 1 - quarter);

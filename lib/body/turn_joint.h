@@ -6,7 +6,7 @@
 
 namespace krok::body {
 
-// Turns a joint and all below it about its position, in the world's frame.
+// Rotates a joint and its descendants about the joint's position, in world space.
 void turn_joint(const Skeleton& skeleton, int joint, const Quat& rotation,
                 std::span<Transform> joint_to_world);
 

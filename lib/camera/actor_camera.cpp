@@ -20,17 +20,18 @@ namespace {
 
 constexpr double kFarthest = 1e4;  // metres
 constexpr int kMaxTries = 500;
-constexpr double kCloseEnough = 0.999;  // of the distance that would do
+constexpr double kCloseEnough = 0.999;  // fraction of a distance that works
 constexpr double kLargestMargin = 0.45;
 
 Status check(const Clip& clip, const ActorCamera& camera) {
   const auto wrong = [](const char* what) { return Error("camera-value", what); };
-  if (camera.joint >= clip.joint_count()) return wrong("the joint to follow does not exist");
+  if (camera.joint >= clip.joint_count())
+    return wrong("the joint to follow is not in the skeleton");
   if (!(camera.field_of_view > 0 && camera.field_of_view < kPi)) {
     return wrong("the field of view is not between 0 and 180 degrees");
   }
   if (!(camera.aspect > 0) || !std::isfinite(camera.aspect)) {
-    return wrong("the picture's width by height is not more than 0");
+    return wrong("the aspect ratio is not greater than 0");
   }
   if (!(camera.margin >= 0 && camera.margin <= kLargestMargin)) {
     return wrong("the margin is not from 0 to 0.45");
@@ -40,7 +41,7 @@ Status check(const Clip& clip, const ActorCamera& camera) {
   }
   if (!std::isfinite(camera.azimuth) || !std::isfinite(camera.turning) ||
       !std::isfinite(camera.smoothing) || !(camera.dead_zone >= 0)) {
-    return wrong("azimuth, turning, smoothing or dead zone is no number that can be used");
+    return wrong("azimuth, turning, smoothing or dead zone is not finite or is out of range");
   }
   if (camera.distance && !(*camera.distance > 0 && *camera.distance <= kFarthest)) {
     return wrong("the distance is not between 0 and 10 km");
@@ -48,7 +49,7 @@ Status check(const Clip& clip, const ActorCamera& camera) {
   return {};
 }
 
-// A box about all that is framed.
+// The bounding box of everything to be framed.
 struct Box {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 high = -low;
@@ -60,7 +61,7 @@ struct Box {
   Vec3 middle() const { return (low + high) / 2; }
 };
 
-// What is followed stays where it is until it is farther than the radius from there.
+// The followed point stays put until the path is farther away than the radius.
 void apply_dead_zone(double radius, std::span<Vec3> path) {
   for (std::size_t i = 1; i < path.size(); ++i) {
     const Vec3 way = path[i] - path[i - 1];
@@ -69,7 +70,7 @@ void apply_dead_zone(double radius, std::span<Vec3> path) {
   }
 }
 
-// The places and directions of a camera while its distance is sought.
+// The camera's positions and directions while its distance is searched.
 class Shooting {
  public:
   Shooting(const Clip& clip, const RoleMap& roles, const ActorCamera& camera, ActorShape shape)
@@ -93,9 +94,8 @@ class Shooting {
       return result();
     }
     if (!find_distance()) {
-      return Error(
-          "camera-frame", "no place within 10 km shows all that is to be framed",
-          "does the motion have joints that fly away? --frame or --map may leave them out");
+      return Error("camera-frame", "no camera position within 10 km shows everything to be framed",
+                   "check the motion for stray joints; --frame or --map can exclude them");
     }
     return result();
   }
@@ -115,7 +115,7 @@ class Shooting {
     if (camera_.azimuth_from != AzimuthFrom::world) {
       start = ground_frame(clip_, carrier, 0).heading;
     }
-    // As x of vectors, so that the smoothing is that of the path.
+    // As the x of vectors, to use the same smoothing as for the path.
     std::vector<Vec3> headings(at(frames_), Vec3(start, 0, 0));
     if (camera_.azimuth_from == AzimuthFrom::actor) {
       for (int f = 1; f < frames_; ++f) {
@@ -134,7 +134,7 @@ class Shooting {
     return balls_;
   }
 
-  // What the camera looks at in each frame.
+  // The point the camera looks at in each frame.
   void find_path() {
     Box whole;
     double above = 0;
@@ -158,8 +158,8 @@ class Shooting {
     for (Vec3& place : path_) place.y() += above;
   }
 
-  // All frames in one picture, from as near as can be. False where that is under the ground or
-  // within the body.
+  // All frames in one image, from as close as possible. False if that position is below the ground
+  // or inside the body.
   bool stand_still() {
     const Quat direction = looking_from(azimuths_[0], camera_.elevation);
     CameraFit tight(wanted_, direction);
@@ -174,14 +174,14 @@ class Shooting {
     return is_clear();
   }
 
-  // The camera in all frames; kept over the ground unless that is not asked for.
+  // Places the camera in all frames, above the ground if `over_ground`.
   void place(double distance, bool over_ground = true) {
     distance_ = distance;
     eyes_.clear();
     directions_.clear();
     for (int f = 0; f < frames_; ++f) {
       double elevation = std::clamp(camera_.elevation, -kPi / 2, kPi / 2);
-      // The sine that brings the camera over the ground, where it must be raised.
+      // The sine of the elevation at which the camera clears the ground.
       const double least = (ground_ + kClearance - path_[at(f)].y()) / distance;
       if (over_ground && least > std::sin(elevation)) elevation = std::asin(std::min(least, 1.0));
       const Quat direction = looking_from(azimuths_[at(f)], elevation);
@@ -190,7 +190,7 @@ class Shooting {
     }
   }
 
-  // The distance that the directions as they are ask for.
+  // The distance required with the current directions.
   double needed() {
     double distance = 0;
     for (int f = 0; f < frames_; ++f) {
@@ -209,9 +209,8 @@ class Shooting {
     return true;
   }
 
-  // The first answer is exact where the camera need not be raised over the ground and is clear of
-  // the figure. Otherwise its directions hang on the distance: it goes back until all is well, then
-  // half of the way forth again and again.
+  // The first result is exact if the camera is above the ground and clear of the character.
+  // Otherwise the directions depend on the distance: increase it until it works, then bisect.
   bool find_distance() {
     place(1, false);
     double distance = std::max(needed(), 1e-3);
@@ -263,7 +262,7 @@ class Shooting {
   const ActorCamera& camera_;
   ActorShape shape_;
   int frames_;
-  ImageExtent wanted_, edges_;  // with the margin, and the whole
+  ImageExtent wanted_, edges_;  // with the margin, and without
   double ground_ = 0, distance_ = 0;
   std::vector<double> azimuths_;
   std::vector<Vec3> path_, eyes_;

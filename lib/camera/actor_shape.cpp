@@ -14,8 +14,8 @@ namespace krok {
 
 namespace {
 
-// Radii as parts of the figure's height: flesh about a joint, and what is beyond the last joint of
-// a head or a hand that has no end sites.
+// Radii as fractions of the character's height: flesh around a joint, and what extends beyond the
+// last joint of a head or hand without end sites.
 constexpr double kFlesh = 0.06;
 constexpr double kHeadBeyond = 0.14;
 constexpr double kHandBeyond = 0.12;
@@ -48,11 +48,11 @@ void mark(std::vector<std::uint8_t>& marks, const std::vector<std::uint8_t>& mor
 
 Error unknown(const char* part, const char* role) {
   return Error("camera-part",
-               fmt::format("no joint is known as {}, so the {} is not known", role, part),
-               "tell the joints' roles with a map, or frame the full figure");
+               fmt::format("no joint has the role {}, so the {} cannot be framed", role, part),
+               "assign the joint roles with a map, or frame the full character");
 }
 
-// 1 for the joints of the part.
+// 1 for joints of the part.
 Result<std::vector<std::uint8_t>> part_of(const Skeleton& skeleton, const RoleMap& roles,
                                           Framing framing) {
   std::vector<std::uint8_t> part(skeleton.names.size(), framing == Framing::full ? 1 : 0);
@@ -79,7 +79,7 @@ Result<std::vector<std::uint8_t>> part_of(const Skeleton& skeleton, const RoleMa
 Result<ActorShape> actor_shape(const Clip& clip, const RoleMap& roles, Framing framing) {
   const Skeleton& skeleton = clip.skeleton;
   if (skeleton.empty() || clip.frame_count() == 0) {
-    return Error("camera-empty", "the motion has no frames to look at");
+    return Error("camera-empty", "the motion has no frames");
   }
   const auto part = part_of(skeleton, roles, framing);
   if (!part) return part.error();

@@ -8,35 +8,35 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 
-// What of a figure is to be in the picture.
+// The part of the character to frame.
 
 namespace krok {
 
 enum class Framing : unsigned char {
-  full,   // all of it
-  upper,  // from the hips up, with the arms
-  head    // the head, with the neck where there is no more of it
+  full,   // the whole character
+  upper,  // from the hips up, including the arms
+  head    // the head, or the neck if the head has no other joint
 };
 
-// The figure as balls about its joints, whose size comes from the figure's. Joints above the hips
-// that only place the figure, and props and helpers, do not count, unless there is nothing else.
+// The character as balls around its joints, sized by its height. Ancestors of the hips that only
+// position the character, props and helpers are ignored, unless there are no other joints.
 struct ActorShape {
-  std::vector<int> shown;     // joints that must be in the picture; not empty
-  std::vector<int> body;      // all that count, to be kept clear of
+  std::vector<int> shown;     // joints that must be in the image; not empty
+  std::vector<int> body;      // all joints the camera stays clear of
   std::vector<double> radii;  // [joints], metres
-  std::vector<int> parents;   // [joints], of the bones; -1 for none
+  std::vector<int> parents;   // [joints], for the bones; -1 for none
 };
 
-// `clip` gives the figure's size where the reference pose has none. Codes: camera-empty (no joints
-// or no frames), camera-part (no joint is known to belong to that part).
+// `clip` gives the character's height if the reference pose has none. Codes: camera-empty (no
+// joints or no frames), camera-part (no joint has the roles of that part).
 Result<ActorShape> actor_shape(const Clip& clip, const RoleMap& roles, Framing framing);
 
-// The balls of `joints` in a frame.
+// The balls of `joints` in one frame.
 void balls_of(const ActorShape& shape, std::span<const int> joints,
               std::span<const Vec3f> positions, std::vector<Ball>& balls);
 
-// The distance of a point from the surface of the body: the nearest of all bones, with the smaller
-// of the balls at their ends for a thickness. Negative within.
+// Distance of a point from the surface of the body: the nearest of all bones, each with the radius
+// of the smaller of its end balls. Negative inside.
 double distance_to_body(const ActorShape& shape, std::span<const Vec3f> positions,
                         const Vec3& point);
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kTouching = 1e-6;
 
-// A ball as a camera with its own orientation at the origin sees it.
+// A ball in camera space.
 struct Seen {
   double x = 0, y = 0, depth = 0;
 };
@@ -20,7 +20,7 @@ Seen seen(const Quat& orientation, const Vec3& offset) {
   return {place.x(), place.y(), -place.z()};
 }
 
-// How much of a ball's radius counts along the depth at an edge whose tangent is `half`.
+// The ball's extent along the depth axis at a side plane with half-angle tangent `half`.
 double reach(double half, double radius) {
   return radius * std::sqrt(1 + half * half);
 }

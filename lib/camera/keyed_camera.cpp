@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMaxFrames = 1e7;
 
-// Values that are added: places and numbers.
+// Values interpolated by addition: positions and numbers.
 template <typename T>
 struct Sum {
   using Value = T;
@@ -62,12 +62,12 @@ Error wrong(std::size_t key, const std::string& what) {
 
 Status check_direction(std::size_t index, const CameraKey& key) {
   if (key.target.has_value() == key.orientation.has_value()) {
-    return wrong(index, "one of target and orientation must be given");
+    return wrong(index, "expected exactly one of target and orientation");
   }
   if (key.target) {
     if (!key.target->allFinite()) return wrong(index, "the target is not finite");
     if ((*key.target - key.position).norm() < 1e-6) {
-      return wrong(index, "the target is where the camera is, so it has no direction to look in");
+      return wrong(index, "the target is at the camera's position");
     }
     return {};
   }
@@ -77,7 +77,7 @@ Status check_direction(std::size_t index, const CameraKey& key) {
 
 Status check_key(std::size_t index, const CameraKey& key) {
   if (!(key.time >= 0) || !std::isfinite(key.time)) {
-    return wrong(index, fmt::format("the time is {} s, expected 0 or more", readable(key.time)));
+    return wrong(index, fmt::format("the time is {} s, expected at least 0", readable(key.time)));
   }
   if (!key.position.allFinite() || !std::isfinite(key.roll)) {
     return wrong(index, "position or roll is not finite");
@@ -97,17 +97,17 @@ Status check(const KeyedCamera& camera) {
     const CameraKey& key = camera.keys[i];
     if (Status status = check_key(i, key); !status) return status;
     if (i > 0 && !(key.time > camera.keys[i - 1].time)) {
-      return wrong(i, fmt::format("its time, {} s, is not after that of the key before",
+      return wrong(i, fmt::format("the time, {} s, is not after that of the previous key",
                                   readable(key.time)));
     }
     if (camera.closed && i + 1 < camera.keys.size() && key.between != Between::smooth) {
-      return wrong(i, "a closed camera movement is smooth from key to key");
+      return wrong(i, "all keys of a closed camera must be smooth");
     }
   }
   return {};
 }
 
-// The keys that take part in a property.
+// The keys that define a property.
 template <typename Wanted>
 KeyTimes times_of(const KeyedCamera& camera, const Wanted& wanted) {
   KeyTimes keys;
@@ -117,7 +117,7 @@ KeyTimes times_of(const KeyedCamera& camera, const Wanted& wanted) {
     keys.between.push_back(key.between);
     keys.tensions.push_back(key.tension);
   }
-  // Whether a property closes: its own first and last keys are those of the whole.
+  // A property is closed only if its first and last key are those of the camera.
   keys.closed = camera.closed && keys.times.size() > 1 &&
                 keys.times.front() == camera.keys.front().time &&
                 keys.times.back() == camera.keys.back().time;
@@ -149,7 +149,7 @@ std::vector<double> lens_over_time(const KeyedCamera& camera, std::span<const do
   return lens;
 }
 
-// Where the camera looks, without the roll.
+// View directions, without the roll.
 std::vector<Quat> directions_over_time(const KeyedCamera& camera, std::span<const double> moments,
                                        std::span<const Vec3> positions) {
   std::vector<Vec3> targets;
@@ -162,7 +162,8 @@ std::vector<Quat> directions_over_time(const KeyedCamera& camera, std::span<cons
     for (const double time : moments) targets.push_back(curve.at(time));
     return look_at(positions, targets);
   }
-  // Keys with a target among keys with an orientation: each looks as it would by itself.
+  // Where keys with a target and keys with an orientation are mixed, each target is evaluated at
+  // its own key.
   std::vector<Quat> at_keys;
   Quat before = Quat::Identity();
   for (const CameraKey& key : camera.keys) {
@@ -176,7 +177,7 @@ std::vector<Quat> directions_over_time(const KeyedCamera& camera, std::span<cons
   return directions;
 }
 
-// The times of the frames; the last is not before `end`, up to a millionth of a frame.
+// The times of the frames; the last is not before `end`, within a millionth of a frame.
 Result<std::vector<double>> frame_times(double end, double rate) {
   if (!std::isfinite(rate) || !(rate > 0)) {
     return Error("camera-rate",
@@ -185,8 +186,8 @@ Result<std::vector<double>> frame_times(double end, double rate) {
   const double last = std::ceil(end * rate - 1e-6);
   if (!(last < kMaxFrames)) {
     return Error("camera-too-long",
-                 fmt::format("{} s at {} frames a second are more than 10 million frames",
-                             readable(end), readable(rate)));
+                 fmt::format("{} s at {} fps exceed the limit of 10 million frames", readable(end),
+                             readable(rate)));
   }
   std::vector<double> times;
   for (int i = 0; i <= static_cast<int>(last); ++i) times.push_back(i / rate);
@@ -218,8 +219,8 @@ Result<CameraTrack> make_track(const KeyedCamera& camera, double rate) {
     track.fields_of_view.push_back(static_cast<float>(lens[i]));
   }
   if (Status status = krok::check(track); !status) {
-    return Error("camera-keys", "between its keys the camera leaves what numbers hold",
-                 "are positions and tensions as they should be?");
+    return Error("camera-keys", "the interpolated values are not finite",
+                 "check positions and tensions");
   }
   return track;
 }

@@ -7,26 +7,26 @@
 #include "camera/keyed_camera.h"
 #include "math/hermite.h"
 
-// Private to this folder: one property of a camera through its keys.
+// Private to this folder: interpolation of one camera property through its keys.
 
 namespace krok {
 
-// What is known of the keys of a property whatever its kind.
+// Key data that does not depend on the type of the property.
 struct KeyTimes {
-  std::vector<double> times;     // seconds, rising strictly
-  std::vector<Between> between;  // [keys], from each to the next; the last one's does not matter
+  std::vector<double> times;     // seconds, strictly increasing
+  std::vector<Between> between;  // [keys], from each to the next; the last one is unused
   std::vector<double> tensions;  // [keys]
-  bool closed = false;           // all are smooth and the last is the first again
+  bool closed = false;           // all keys are smooth and the last equals the first
 };
 
-// The keys of which a smooth curve is made: the first, and how many.
+// The keys of one smooth curve: index of the first, and count.
 struct SmoothRun {
   std::size_t first = 0, count = 0;
 };
 std::vector<SmoothRun> smooth_runs(const KeyTimes& keys);
 
-// Where a moment lies: after key `key`, with the part `t` of the way to the next one over as the
-// join has it (0 or, at the last key, 0 for step). Clamped to the keys.
+// A time relative to the keys: the interval from `key` to the next, and the interpolation weight
+// `t` after easing (0 for step and at the last key). Clamped to the keys.
 struct Moment {
   std::size_t key = 0;
   double t = 0;     // in [0, 1)
@@ -35,9 +35,9 @@ struct Moment {
 };
 Moment moment_at(const KeyTimes& keys, double time);
 
-// Values, with a velocity at each key for the curves that leave and arrive there, which is one and
-// the same within a run. `Kind` has Value, Velocity, velocities(times, values, ends, velocities),
-// smooth(...) and straight(from, to, t).
+// Values with a velocity at each key for the curves that start and end there; within a run both are
+// the same. `Kind` has Value, Velocity, velocities(times, values, ends, velocities), smooth(...)
+// and straight(from, to, t).
 template <typename Kind>
 class KeyedCurve {
  public:

@@ -13,11 +13,11 @@ namespace {
 
 const double kSineAtVertical = std::sin(0.1 * kRadiansPerDegree);
 
-// The direction from eye to target; nothing where there is none.
+// The unit direction from eye to target, if defined.
 std::optional<Vec3> direction(const Vec3& eye, const Vec3& target) {
   const Vec3 way = target - eye;
   const double length = way.stableNorm();
-  // As near as that the rounding of the places decides where the camera looks.
+  // Closer than this, rounding errors decide the direction.
   const double least = 1e-12 * (eye.stableNorm() + target.stableNorm());
   if (!(length > least) || !std::isfinite(length)) return std::nullopt;
   return Vec3(way / length);
@@ -39,7 +39,7 @@ Quat turned_to(const Vec3& forward, const Quat& before) {
   return normalized_or_identity(shortest_arc(before * Vec3(-Vec3::UnitZ()), forward) * before);
 }
 
-// What a camera that looks up or down has for a past before its first moment.
+// The `before` of the first time, for a camera that starts out looking straight up or down.
 Quat first_past(std::span<const Vec3> eyes, std::span<const Vec3> targets) {
   std::optional<Vec3> vertical;
   for (std::size_t i = 0; i < eyes.size(); ++i) {

@@ -10,7 +10,7 @@ namespace krok {
 
 namespace {
 
-// After so many times of the spring less than a thousandth of its start is left.
+// After kMemory * time, less than a thousandth of the initial state remains.
 constexpr double kMemory = 5;
 
 void run(std::span<double> series, double step, double time) {
@@ -31,8 +31,8 @@ SpringState follow(const SpringState& state, double from, double to, double step
   const double slope = (to - from) / step;
   if (!(time > 0)) return {to, slope};
   const double w = 2 / time;
-  // Behind an even motion it comes to rest at from + slope (t - time); what is off from that dies
-  // away as (a + b t) exp(-w t).
+  // For constant velocity the steady state is from + slope (t - time); the deviation from it decays
+  // as (a + b t) exp(-w t).
   const double a = state.value - from + slope * time;
   const double b = state.velocity - slope + w * a;
   const double left = std::exp(-w * step);

@@ -27,7 +27,7 @@ void report_joint(Diagnostics& diagnostics, Severity severity, std::string code,
   diagnostics.push_back(std::move(told));
 }
 
-// The rotation by quarter turns nearest to another.
+// The rotation by multiples of 90 degrees nearest to another.
 Mat3 nearest_by_quarters(const Mat3& rotation) {
   Mat3 best = Mat3::Identity();
   double most = -4;
@@ -80,7 +80,7 @@ class Finder {
   std::size_t joint_of(int skin, std::size_t place) const {
     return at(joints_.node_to_joint[at(skin_of(skin).joints[place])]);
   }
-  // Where the joint's node stands without animation.
+  // The transform of the joint's node without animation.
   Mat4 rest(int joint) const {
     const int node = joints_.nodes[at(joint)];
     return node < 0 ? to_axes_ : Mat4(to_axes_ * rest_.node_to_world[at(node)]);
@@ -141,7 +141,7 @@ void Finder::find_weighted() {
   }
 }
 
-// The skins, those with most joints first.
+// The skins, those with the most joints first.
 std::vector<int> Finder::by_size() const {
   std::vector<int> skins = joints_.skins;
   std::stable_sort(skins.begin(), skins.end(), [&](int a, int b) {
@@ -150,7 +150,8 @@ std::vector<int> Finder::by_size() const {
   return skins;
 }
 
-// The placement of the first node in the scene whose mesh is bound by the skin.
+// The transform of the first node in the scene whose mesh is bound by the skin; NaN if there is
+// none.
 Mat4 Finder::world_of_mesh(int skin) const {
   for (const int node : evaluator_.order()) {
     const nodes::Node& one = scene_.nodes[at(node)];
@@ -161,8 +162,8 @@ Mat4 Finder::world_of_mesh(int skin) const {
   return Mat4::Constant(std::nan(""));
 }
 
-// A mesh_to_world of the bind pose for a figure whose nodes stand in another pose, and whose
-// topmost joint is turned in it: such a pose stands as the whole of the joints does, along axes.
+// The mesh_to_world of the bind pose for a character whose nodes are in another pose that rotates
+// the topmost joint: fits all joints as a whole, aligned to the axes.
 Mat4 Finder::upright(int skin, const std::vector<std::size_t>& places, const Mat4& by_top) const {
   const nodes::Skin& one = skin_of(skin);
   const Mat3 linear = by_top.topLeftCorner<3, 3>();
@@ -196,19 +197,19 @@ Mat4 Finder::upright(int skin, const std::vector<std::size_t>& places, const Mat
   const Mat3 quarters = nearest_by_quarters(turn);
   if (angle_of(quarters.transpose() * turn) < kNear) turn = quarters;
   Vec3 offset = shown_mean - turn * bound_mean;
-  if (offset.norm() < 0.5 * size_) offset.setZero();  // the mesh's own origin is the better floor
+  if (offset.norm() < 0.5 * size_) offset.setZero();  // the mesh's origin is the better ground
   Mat4 result = Mat4::Identity();
   result.topLeftCorner<3, 3>() = turn * scale;
   result.topRightCorner<3, 1>() = offset;
   return result;
 }
 
-// X for a skin none of whose joints is placed yet.
+// X for a skin without a joint whose bind pose is known.
 Mat4 Finder::mesh_to_world(int skin, const std::vector<std::size_t>& places) {
   const nodes::Skin& one = skin_of(skin);
   const std::size_t top = places.front();
   const int top_joint = static_cast<int>(joint_of(skin, top));
-  // Hung under joints that are known: as its node hangs there.
+  // Below known joints: attached as its node is.
   for (int above = joints_.parents[at(top_joint)]; above >= 0; above = joints_.parents[at(above)]) {
     if (!known_[at(above)]) continue;
     const Mat4 local = inverse_or_identity(rest(above)) * rest(top_joint);
@@ -224,14 +225,14 @@ Mat4 Finder::mesh_to_world(int skin, const std::vector<std::size_t>& places) {
     mesh_agrees = mesh_agrees || nearly_same(shown, by_mesh, size_);
   }
   const Mat4 chosen = all_agree ? by_top : mesh_agrees ? by_mesh : upright(skin, places, by_top);
-  // Any X gives the same motion of the vertices, so the rounding of a file need not tilt the
-  // figure.
+  // Any X gives the same motion of the vertices, so avoid tilting the character by rounding in the
+  // file.
   const bool untouched = (chosen - Mat4::Identity()).cwiseAbs().maxCoeff() < 1e-5;
   return untouched ? Mat4(Mat4::Identity()) : chosen;
 }
 
-// The places in a skin's list whose matrices can be used, those of joints that carry vertices
-// first, parents before their children.
+// Indices in a skin's list whose matrices are usable, those of joints with vertices first, parents
+// before children.
 std::vector<std::size_t> Finder::usable_binds(int skin) {
   const nodes::Skin& one = skin_of(skin);
   std::vector<std::size_t> places;
@@ -249,8 +250,8 @@ std::vector<std::size_t> Finder::usable_binds(int skin) {
   return places;
 }
 
-// Whether a bone has the length and scale under its parent that its nodes give it. Some exporters
-// write any matrix for joints that carry no vertices.
+// Whether a bone has the length and scale relative to its parent that its nodes give it. Some
+// exporters write arbitrary matrices for joints without vertices.
 bool Finder::fits_parent(std::size_t joint, const Mat4& place) const {
   const int parent = joints_.parents[joint];
   if (parent < 0 || !known_[at(parent)]) return true;
@@ -295,15 +296,15 @@ void Finder::use_skin(int skin) {
   const std::string joint = scene_.nodes[at(worst)].name;
   report_joint(
       diagnostics_, Severity::warning, "scene-bind",
-      fmt::format("{} binds {} {} units and {} degrees from where another skin does; the pose of "
-                  "the skin with most joints is kept",
+      fmt::format("{} binds {} {} units and {} degrees away from another skin; the bind pose of "
+                  "the skin with the most joints is kept",
                   label("skin", skin, one.name), shown(joint), readable(farthest, 3),
                   readable(widest / kRadiansPerDegree, 3)),
       joint);
 }
 
-// Joints without inverse bind matrices: ancestors from what hangs under them, then the rest from
-// their parents.
+// Joints without inverse bind matrices: ancestors from their descendants, then the rest from their
+// parents.
 void Finder::follow_nodes() {
   const int count = joints_.count();
   const auto& parents = joints_.parents;
@@ -330,8 +331,8 @@ void Finder::report_binds() {
   if (unusable_ > 0) {
     report_joint(
         diagnostics_, Severity::warning, "scene-bind",
-        fmt::format("{} cannot be inverted, the first that of {}; such a joint is placed by its "
-                    "node",
+        fmt::format("{} cannot be inverted, first that of {}; such joints use the transform of "
+                    "their node",
                     counted(static_cast<long long>(unusable_), "inverse bind matrix",
                             "inverse bind matrices"),
                     shown(first_unusable_)),
@@ -358,8 +359,8 @@ void Finder::report_binds() {
   const std::string joint = node < 0 ? std::string() : scene_.nodes[at(node)].name;
   report_joint(
       diagnostics_, Severity::note, "scene-pose",
-      fmt::format("without animation the joints stand in another pose than the one the mesh is "
-                  "bound in ({} is turned by {} degrees); the bind pose is the reference pose",
+      fmt::format("without animation the nodes are not in the bind pose of the mesh ({} is rotated "
+                  "by {} degrees); the bind pose is the reference pose",
                   shown(joint), readable(widest / kRadiansPerDegree, 3)),
       joint);
 }

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMaxJoints = 65535;
 constexpr std::size_t kMaxNamed = 6;  // in a message
 
-// Sets that grow together.
+// Disjoint sets (union-find).
 class Groups {
  public:
   explicit Groups(std::size_t count) : parents_(count) {
@@ -43,12 +43,12 @@ class Groups {
   std::vector<int> parents_;
 };
 
-// What nodes and all below them carry.
+// What nodes and their descendants contain.
 struct Subtrees {
   std::vector<char> skinned;   // a mesh with a skin
   std::vector<char> laden;     // a mesh or a camera
   std::vector<char> animated;  // a node that an animation moves
-  std::vector<char> useful;    // something else than cameras
+  std::vector<char> useful;    // something other than cameras
 };
 
 std::vector<char> animated_nodes(const Scene& scene) {
@@ -104,7 +104,8 @@ class Chooser {
       take_without_skin();
     }
     if (std::find(taken_.begin(), taken_.end(), 1) == taken_.end()) {
-      return Error("scene-skeleton", "there is no skeleton: no skin, and no node for a joint");
+      return Error("scene-skeleton",
+                   "no skeleton found: there is no skin and no node that can be a joint");
     }
     join_trees();
     take_bare_nodes();
@@ -144,7 +145,7 @@ void Chooser::group_skins(Groups& groups) {
       if (first < 0) first = static_cast<int>(s);
     }
   }
-  std::vector<int> above(scene_.nodes.size(), -1);  // the skin of the nearest joint at or above
+  std::vector<int> above(scene_.nodes.size(), -1);  // skin of the nearest joint at or above it
   for (const int node : order_) {
     const int parent = scene_.nodes[at(node)].parent;
     const int inherited = parent < 0 ? -1 : above[at(parent)];
@@ -152,7 +153,7 @@ void Chooser::group_skins(Groups& groups) {
     if (own >= 0 && inherited >= 0) groups.join(own, inherited);
     above[at(node)] = own >= 0 ? own : inherited;
   }
-  std::vector<int> within = skin_of;  // a skin with joints at or below
+  std::vector<int> within = skin_of;  // a skin with joints at the node or below
   for (auto node = order_.rbegin(); node != order_.rend(); ++node) {
     for (const int child : scene_.nodes[at(*node)].children) {
       int& here = within[at(*node)];
@@ -175,8 +176,8 @@ Result<int> Chooser::find_skin(const std::string& name) const {
   for (std::size_t s = 0; s < std::min(scene_.skins.size(), kMaxNamed); ++s) {
     known.push_back(skin_label(static_cast<int>(s)));
   }
-  return Error("scene-skin", fmt::format("no skin '{}' is in the file", shown(name)),
-               fmt::format("it has {}{}", fmt::join(known, ", "),
+  return Error("scene-skin", fmt::format("the file has no skin '{}'", shown(name)),
+               fmt::format("the skins are {}{}", fmt::join(known, ", "),
                            known.size() < scene_.skins.size() ? ", ..." : ""));
 }
 
@@ -227,9 +228,9 @@ void Chooser::report_choice(int chosen, const std::vector<std::vector<int>>& ske
   Diagnostic told;
   told.severity = by_name ? Severity::note : Severity::warning;
   told.code = "scene-skeletons";
-  told.message = fmt::format("the file has {} skeletons; that of {} is taken{}", skeletons.size(),
+  told.message = fmt::format("the file has {} skeletons; using that of {}{}", skeletons.size(),
                              skin_label(chosen), by_name ? "" : ", which has the most joints");
-  told.hint = fmt::format("--skin takes another: {}{}", fmt::join(others, ", "),
+  told.hint = fmt::format("use --skin to select another: {}{}", fmt::join(others, ", "),
                           others.size() + 1 < skeletons.size() ? ", ..." : "");
   diagnostics_.push_back(std::move(told));
 }
@@ -247,8 +248,8 @@ void Chooser::take_without_skin() {
   }
 }
 
-// The node that all taken ones hang under (perhaps one of them), or -1 where they have none in
-// common. In depth-first order it is the one above the first and the last.
+// The lowest common ancestor of all taken nodes (may be one of them), or -1 if there is none. In
+// depth-first order it is that of the first and the last.
 int Chooser::top_of_joints() const {
   int first = -1, last = -1;
   for (const int node : order_) {
@@ -274,7 +275,7 @@ int Chooser::top_of_joints() const {
   return first;
 }
 
-// Takes what lies between the joints and the node that all of them hang under.
+// Takes the nodes between the joints and their lowest common ancestor.
 void Chooser::join_trees() {
   const int top = top_of_joints();
   several_trees_ = top < 0;
@@ -300,7 +301,7 @@ void Chooser::take_bare_nodes() {
   }
 }
 
-// Fills the rest of a Joints from its nodes; whether parents stand before their children.
+// Fills the rest of a Joints from its nodes; returns whether parents come before their children.
 bool Chooser::link(Joints& joints) const {
   joints.node_to_joint.assign(scene_.nodes.size(), -1);
   joints.parents.assign(joints.nodes.size(), -1);
@@ -329,7 +330,7 @@ Result<Joints> Chooser::order_joints() {
     if (taken_[at(node)]) result.nodes.push_back(node);
   }
   if (result.nodes.size() > kMaxJoints) {
-    return Error("scene-joints", fmt::format("the skeleton has {} joints; {} is the limit",
+    return Error("scene-joints", fmt::format("the skeleton has {} joints; the limit is {}",
                                              result.nodes.size(), kMaxJoints));
   }
   if (skins_.size() == 1) {

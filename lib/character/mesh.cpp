@@ -23,7 +23,7 @@ using nodes::Scene;
 
 namespace {
 
-// Names, each once, for a message; the first few.
+// The first few distinct names, for a message.
 class NameList {
  public:
   void add(const std::string& name) {
@@ -127,11 +127,11 @@ void MeshBuilder::report_what_is_left() {
   const auto left_out = [&](const NameList& names, const char* why) {
     if (names.empty()) return;
     tell(diagnostics_, Severity::warning, "scene-mesh",
-         fmt::format("left out, for {}: {}", why, names.text()));
+         fmt::format("meshes skipped because {}: {}", why, names.text()));
   };
-  left_out(elsewhere_, "no joint moves it");
-  left_out(other_skeleton_, "it hangs on another skeleton");
-  left_out(without_triangles_, "it has points or lines and no triangles");
+  left_out(elsewhere_, "no joint moves them");
+  left_out(other_skeleton_, "they are bound to another skeleton");
+  left_out(without_triangles_, "they have points or lines but no triangles");
 }
 
 void MeshBuilder::look_at_attributes() {
@@ -194,7 +194,7 @@ void MeshBuilder::add_normals(const nodes::Primitive& shape) {
   }
 }
 
-// Where the placement mirrors, what was counter-clockwise is turned back.
+// If the transform mirrors, the winding is reversed to stay counter-clockwise.
 void MeshBuilder::add_triangles(const nodes::Instance& instance, std::uint32_t first) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
   Model& model = actor_.model;
@@ -253,10 +253,10 @@ Status MeshBuilder::finish() {
   const auto finite = [](const auto& value) { return value.allFinite(); };
   if (!std::all_of(model.positions.begin(), model.positions.end(), finite) ||
       !std::all_of(model.texture_coordinates.begin(), model.texture_coordinates.end(), finite)) {
-    return Error("scene-value", "the numbers are so large that the mesh's vertices overflow",
-                 "perhaps the unit is another: say it with --unit");
+    return Error("scene-value", "the mesh's vertices are not finite or too large for floats",
+                 "the unit may be wrong; set it with --unit");
   }
-  // A tangent that is zero, or that a flat placement swallowed, takes the others with it.
+  // If a tangent is zero in the file or made zero by a flat transform, all are dropped.
   const auto is_unit = [](const Vec4f& tangent) {
     return std::abs(tangent.head<3>().norm() - 1) < 1e-3f;
   };
@@ -276,9 +276,10 @@ Status MeshBuilder::add_targets() {
   const std::size_t all = morphs.names.size() * vertices;
   constexpr std::size_t kMax = 50'000'000;
   if (!morphs.names.empty() && vertices > kMax / morphs.names.size()) {
-    return Error("scene-morphs",
-                 fmt::format("{} morph targets of {} vertices are out of proportion",
-                             morphs.names.size(), vertices));
+    return Error(
+        "scene-morphs",
+        fmt::format("{} morph targets of {} vertices exceed the limit of 50 million in total",
+                    morphs.names.size(), vertices));
   }
   morphs.positions.reserve(all);
   for (std::size_t t = 0; t < morphs.names.size(); ++t) {

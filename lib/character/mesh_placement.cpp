@@ -7,7 +7,6 @@
 
 namespace krok::character {
 
-// The inverse transpose of a linear part up to a positive factor, without a division.
 Mat3 normal_matrix(const Mat3& linear) {
   Mat3 result;
   for (int c = 0; c < 3; ++c) {
@@ -56,7 +55,8 @@ void Placements::find(const nodes::Instance& instance) {
     const int joint = rig_.joints.node_to_joint[at(skin.joints[k])];
     whole.push_back(rig_.reference[at(joint)] * skin.inverse_binds[k]);
   }
-  // The joints that agree most often do: then one placement does for all, without its rounding.
+  // Usually all joints agree: then one transform is enough for all, without the rounding of the
+  // blend.
   bool agree = true;
   const auto per_vertex = static_cast<std::size_t>(shape.influences_per_vertex);
   for (std::size_t k = 0; k < shape.influence_joints.size() && agree; ++k) {

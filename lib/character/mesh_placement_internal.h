@@ -7,13 +7,13 @@
 #include "character/space.h"
 #include "nodes/evaluate.h"
 
-// Private to this folder: where vertices of a mesh at a node stand in the reference pose.
+// Private to this folder: transforms of mesh vertices to the reference pose.
 
 namespace krok::character {
 
 using Affine = Eigen::Matrix<double, 3, 4>;
 
-// The inverse transpose of a linear part up to a positive factor, without a division.
+// The inverse transpose of a linear part up to a positive factor, without division.
 Mat3 normal_matrix(const Mat3& linear);
 
 // mesh_to_reference in Krok's frame for the vertices of one primitive at a time.
@@ -23,10 +23,10 @@ class Placements {
   Placements(const nodes::Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
              const Conversion& conversion);
 
-  // Whether a skin moves the primitive, rather than the joint that it hangs on.
+  // Whether the primitive is skinned, rather than attached to a joint.
   bool is_skinned(const nodes::Instance& instance) const;
 
-  // Works them out for a primitive that joints of the rig move.
+  // Computes the transforms for a primitive that is moved by joints of the rig.
   void find(const nodes::Instance& instance);
   const Affine& of(std::size_t vertex) const {
     return placements_.size() == 1 ? placements_[0] : placements_[vertex];

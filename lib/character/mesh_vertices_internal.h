@@ -7,12 +7,11 @@
 
 namespace krok::character {
 
-// Normals from the triangles for the vertices whose normal is zero, each triangle counting by its
-// area; up where that gives none. The model has normals.
+// Computes area-weighted normals for the vertices whose normal is zero; +Y if the triangles give
+// none. The model must have normals.
 void make_missing_normals(Model& model);
 
-// Whether two primitives have the very same vertices, as those of one mesh with several materials
-// often do.
+// Whether two primitives have identical vertices, as is common for a mesh with several materials.
 bool same_vertices(const nodes::Primitive& a, const nodes::Primitive& b);
 
 }  // namespace krok::character

@@ -60,7 +60,7 @@ std::uint64_t TargetNames::fingerprint(const Actor::WeightSource& source) const 
   return stream.digest();
 }
 
-// The same at rest, and in each animation the same keys.
+// Whether the weights are the same without animation, and have the same keys in each animation.
 bool TargetNames::same_weights(const Actor::WeightSource& a, const Actor::WeightSource& b) const {
   if (resting(scene_, a) != resting(scene_, b)) return false;
   const auto channels = channels_of(a.node), others = channels_of(b.node);

@@ -10,7 +10,7 @@
 #include "character/mesh.h"
 #include "nodes/evaluate.h"
 
-// Private to this folder: which targets of several meshes are one.
+// Private to this folder: merges morph targets of several meshes.
 
 namespace krok::character {
 
@@ -20,7 +20,7 @@ class TargetNames {
 
   void add(const nodes::Instance& instance);
 
-  // The target that the `target`-th of an added instance's mesh became.
+  // The merged target of target number `target` of an added instance's mesh.
   int index_of(const nodes::Instance& instance, int target) const {
     return indices_.at({instance.node, target});
   }
@@ -28,16 +28,16 @@ class TargetNames {
   const std::vector<Actor::WeightSource>& sources() const { return sources_; }
 
  private:
-  // A node's weights channel in each animation, null where it has none.
+  // A node's weights channel in each animation, null if there is none.
   std::vector<const nodes::Channel*> channels_of(int node) const;
   bool same_weights(const Actor::WeightSource& a, const Actor::WeightSource& b) const;
-  // The same for all that same_weights() takes for the same.
+  // Equal for all sources that same_weights() finds equal.
   std::uint64_t fingerprint(const Actor::WeightSource& source) const;
 
   const nodes::Scene& scene_;
   const nodes::Evaluator& evaluator_;
   std::map<std::pair<int, int>, int> indices_;  // by node and the mesh's target
-  // Channels are many, and so are targets that share a name.
+  // Maps, since there may be many channels and many targets with the same name.
   std::vector<std::map<int, const nodes::Channel*>> channels_;  // for each animation, by node
   std::map<std::pair<std::string, std::uint64_t>, std::vector<int>> by_name_;  // and fingerprint
   UniqueNames unique_;

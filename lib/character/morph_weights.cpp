@@ -12,9 +12,9 @@ Result<MorphWeights> make_weights(const Actor& actor, const nodes::Evaluator& ev
   const std::size_t targets = actor.weight_sources.size();
   if (targets > 0 && at(sampling.frames) > kMax / targets) {
     return Error("scene-too-long",
-                 fmt::format("{} frames of {} morph targets' weights are out of proportion",
+                 fmt::format("{} frames of {} morph weights exceed the limit of 100 million",
                              sampling.frames, targets),
-                 "--resample N takes fewer frames a second");
+                 "use --resample N for a lower frame rate");
   }
   MorphWeights weights;
   weights.rate = sampling.rate;

@@ -19,15 +19,15 @@ namespace {
 
 constexpr double kMaxTransforms = 1e8;
 constexpr std::size_t kFramesAtOnce = 16;
-constexpr double kStretchTold = 1e-3;  // a tenth of a percent
+constexpr double kStretchTold = 1e-3;  // reported from 0.1 %
 constexpr double kUsualFieldOfView = kPi / 4;
 
 Error overflow() {
-  return Error("scene-value", "the numbers are so large that positions overflow",
-               "perhaps the unit is another: say it with --unit");
+  return Error("scene-value", "joint or camera positions are too large for floats",
+               "the unit may be wrong; set it with --unit");
 }
 
-// How far a linear part is from a rotation: the largest change of length of an axis, as a share.
+// The deviation of a linear part from a rotation: the largest relative change of an axis.
 struct Stretch {
   double size = 0;
   int joint = -1;
@@ -54,18 +54,18 @@ void report_scale(const std::vector<Stretch>& worst_of_frames, const Rig& rig,
   told.joint = rig.skeleton.names[at(worst.joint)];
   told.frame = static_cast<std::int64_t>(frame);
   told.message = fmt::format(
-      "joints are scaled otherwise than in the bind pose, which a motion cannot hold: {} by {}% in "
-      "frame {}, the most; joints keep their places, what hangs on them its size",
+      "joint scales differ from the bind pose, which a motion cannot store; worst: {} by {}% in "
+      "frame {}; joint positions are kept, scales are dropped",
       shown(told.joint), readable(100 * worst.size, 3), frame);
   diagnostics.push_back(std::move(told));
 }
 
-// The field of view of a perspective camera at a moment of an animation.
+// The field of view of a perspective camera at a time of an animation.
 double lens_at(const nodes::Camera& lens, double time) {
   if (lens.lens.empty()) return lens.field_of_view;
   const auto last = static_cast<double>(lens.lens.size() - 1);
   double place = std::clamp(time * lens.lens_rate, 0.0, last);
-  // Key times are floats: a frame's own value is its own.
+  // Key times are floats: snap to frames.
   if (std::abs(place - std::round(place)) < 1e-4) place = std::round(place);
   const auto before = static_cast<std::size_t>(place);
   const double after = static_cast<double>(lens.lens[std::min(before + 1, lens.lens.size() - 1)]);
@@ -92,9 +92,9 @@ Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
   const double transforms = static_cast<double>(sampling.frames) * rig.joints.count();
   if (transforms > kMaxTransforms) {
     return Error("scene-too-long",
-                 fmt::format("{} frames of {} joints are more than can be held", sampling.frames,
-                             rig.joints.count()),
-                 "--resample takes a lower rate");
+                 fmt::format("{} frames of {} joints exceed the limit of 100 million transforms",
+                             sampling.frames, rig.joints.count()),
+                 "use --resample N for a lower frame rate");
   }
   Clip clip;
   clip.skeleton = std::move(*skeleton);
@@ -175,15 +175,14 @@ Result<CameraTrack> make_camera(const Scene& scene, const nodes::Evaluator& eval
     Diagnostic told;
     told.severity = Severity::warning;
     told.code = "scene-camera";
-    told.message =
-        fmt::format("{} is orthographic and has no field of view; 45 degrees are written",
-                    label("camera", scene.nodes[at(node)].camera, lens.name));
+    told.message = fmt::format("{} is orthographic and has no field of view; 45 degrees is used",
+                               label("camera", scene.nodes[at(node)].camera, lens.name));
     diagnostics.push_back(std::move(told));
   }
   CameraTrack track;
   track.rate = sampling.rate;
   nodes::Evaluation state;
-  // A camera has no reference pose of its own: only the world turns about it.
+  // A camera has no reference pose: only the rotation to world axes applies.
   const Quat turn =
       conversion.reference_to_motion().orientation * Quat(conversion.reference_axes());
   for (int frame = 0; frame < sampling.frames; ++frame) {

@@ -20,7 +20,7 @@ using nodes::Scene;
 
 namespace {
 
-// Names that only mark where a bone ends: "Head_end", "HeadTop_End", "L Finger0Nub".
+// Names that mark the end of a bone: "Head_end", "HeadTop_End", "L Finger0Nub".
 bool names_an_end(const std::string& name) {
   const std::string lower = ascii_lower(name);
   for (const char* ending : {"_end", ".end", " end", "_end_site", " nub", "_nub", "endsite"}) {
@@ -55,8 +55,8 @@ Status RigBuilder::fold_scales() {
   for (int j = 0; j < rig_.joints.count(); ++j) {
     const Mat4& reference = rig_.reference[at(j)];
     if (!reference.allFinite() || reference.cwiseAbs().maxCoeff() > 1e30) {
-      return Error("scene-value", "the transforms of the bind pose are so large that they overflow",
-                   "the file is damaged, or its exporter has a fault");
+      return Error("scene-value", "the bind pose transforms are not finite or too large",
+                   "the file is damaged or its exporter is faulty");
     }
     const Transform rigid = nodes::rigid_part(reference);
     Mat4 scale = Mat4::Identity();
@@ -92,25 +92,25 @@ void RigBuilder::name_joints() {
   }
   if (renamed > 0) {
     tell(diagnostics_, Severity::warning, "scene-joint-names",
-         fmt::format("{} had the name of another and {} renamed: {}{}",
+         fmt::format("{} with a duplicate name {} renamed: {}{}",
                      counted(static_cast<long long>(renamed), "joint"), renamed == 1 ? "is" : "are",
                      fmt::join(examples, ", "), renamed > examples.size() ? ", ..." : ""));
   }
   if (unnamed > 0) {
     tell(diagnostics_, Severity::note, "scene-joint-names",
-         fmt::format("{} had no name and {} called by the node's number",
+         fmt::format("{} without a name {} named by node number",
                      counted(static_cast<long long>(unnamed), "joint"),
                      unnamed == 1 ? "is" : "are"));
   }
   if (rig_.joints.nodes[0] < 0) {
     tell(diagnostics_, Severity::warning, "scene-roots",
-         fmt::format("the joints have no node in common; the joint {} at the origin was put above "
-                     "them",
+         fmt::format("the joints have no common ancestor; a root joint {} was added at the "
+                     "origin",
                      shown(rig_.skeleton.names[0])));
   }
 }
 
-// Leaves that are named as ends, carry no vertex and never move.
+// Marks leaves that are named as ends, carry no vertices and never rotate.
 void RigBuilder::mark_ends(const std::vector<char>& weighted) {
   std::vector<char> other(rig_.skeleton.names.size(), 0);
   for (const int parent : rig_.joints.parents) {
@@ -123,7 +123,7 @@ void RigBuilder::mark_ends(const std::vector<char>& weighted) {
       if (channel.path != nodes::Path::rotation) continue;
       const std::vector<float>& values = *channel.values;
       const auto width = static_cast<std::size_t>(channel.width);
-      // Of cubic splines in-tangent, value and out-tangent of each key.
+      // Cubic splines have in-tangent, value and out-tangent per key.
       const bool spline = channel.interpolation == nodes::Interpolation::cubic_spline;
       const std::size_t parts = spline ? 3 : 1;
       for (std::size_t i = 0; i < values.size(); ++i) {

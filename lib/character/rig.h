@@ -7,14 +7,14 @@
 #include "nodes/evaluate.h"
 #include "scene/skeleton.h"
 
-// The skeleton of a scene in its bind pose, and how the scene's transforms, which may scale, become
-// the rigid ones that Krok's motions hold.
+// The skeleton of a scene in its bind pose, and the conversion of the scene's transforms, which may
+// scale, to the rigid ones of Krok's motions.
 //
 // With G_j(t) the node_to_world of joint j and B_j its inverse bind matrix, the scene shows a
-// vertex v at sum_j w_j G_j(t) B_j v. Let X be the mesh_to_world of the bind pose, so that
-// F_j = X B_j^-1 is the joint_to_world there, and F_j = C_j S_j with C_j its rigid part. Then
-// M_j(t) = G_j(t) S_j^-1 moves X v to the same place by M_j C_j^-1, and it is rigid wherever the
-// animation leaves scales as they were: a scale of 0.01 above the whole armature drops out.
+// vertex v at sum_j w_j G_j(t) B_j v. Let X be the mesh_to_world of the bind pose, so that F_j = X
+// B_j^-1 is the joint_to_world there, and F_j = C_j S_j with C_j its rigid part. Then M_j(t) =
+// G_j(t) S_j^-1 moves X v to the same position by M_j C_j^-1, and it is rigid wherever the
+// animation does not change scales: a scale of 0.01 above the whole armature cancels out.
 
 namespace krok::character {
 
@@ -29,29 +29,29 @@ struct Rig {
   // Applied to everything; see rotation_to_apply.
   Mat4 to_axes = Mat4::Identity();
 
-  // M_j without its rounding to a rigid transform.
+  // M_j before it is made rigid.
   Mat4 joint_to_world(const nodes::Evaluation& state, int joint) const;
 };
 
-// The bind pose from the inverse bind matrices; joints without one follow their node's transform
-// relative to the parent, and so do those that carry no vertices and whose matrix does not fit the
-// length and scale of their bone. Any X gives the same motion of the mesh. It is what the nodes
-// without animation give; where they stand in another pose than the bind pose, it is the placement
-// of the mesh's own node if a joint agrees with it, otherwise that of the topmost joint, or where
-// that joint is turned in that pose the rotation by quarter turns that comes nearest to the whole.
-// Names are made unique and not empty.
+// The bind pose from the inverse bind matrices. Joints without one follow their node's transform
+// relative to the parent, as do joints without vertices whose matrix does not match the length and
+// scale of their bone. Any X gives the same motion of the mesh. It is the one given by the nodes
+// without animation; if these are in another pose than the bind pose, it is the transform of the
+// mesh's own node if a joint agrees with it, otherwise that of the topmost joint, or if that joint
+// is rotated in that pose, the rotation by multiples of 90 degrees that best fits all joints. Names
+// are made unique and not empty.
 //
-// Notes and warnings: scene-joint-names, scene-pose (nodes stand in another pose), scene-bind
-// (skins disagree, matrices that cannot be inverted). An Error (code scene-value) where transforms
-// are not finite.
+// Notes and warnings: scene-joint-names, scene-pose (nodes are in another pose), scene-bind (skins
+// disagree, matrices that cannot be inverted). An Error (code scene-value) if transforms are not
+// finite.
 Result<Rig> make_rig(const nodes::Scene& scene, const nodes::Evaluator& evaluator, Joints joints,
                      Diagnostics& diagnostics);
 
-// The inverse of an affine matrix, the identity where it has none; `usable` tells which.
+// The inverse of an affine matrix, or the identity if it is singular; `usable` returns which.
 Mat4 inverse_or_identity(const Mat4& matrix, bool* usable = nullptr);
 
-// Whether two placements are the same up to the rounding of files: a ten-thousandth of the linear
-// part, and of `size` for the position.
+// Whether two transforms are equal up to rounding in files: 1e-4 of the linear part, and of `size`
+// for the position.
 bool nearly_same(const Mat4& a, const Mat4& b, double size);
 
 }  // namespace krok::character

@@ -18,23 +18,24 @@ constexpr std::array kCommonRates = {30.0,         24.0,         25.0,          
                                      50.0,         48.0,         120.0,         100.0,
                                      90.0,         240.0,        30.0 / 1.001,  24.0 / 1.001,
                                      60.0 / 1.001, 48.0 / 1.001, 120.0 / 1.001, 240.0 / 1.001};
-constexpr double kMinRate = 20.0;  // below it keys are too sparse to be frames
+constexpr double kMinRate = 20.0;  // below this, keys are too sparse to be frames
 constexpr double kUsualRate = 30.0;
 constexpr double kUnevenRate = 60.0;
 constexpr double kMaxFrames = 1e7;
 
-// What rounding to floats makes of a time, in frames. From half a frame on all times would fit.
+// The float rounding error of a time, in frames. From half a frame on, every time would match.
 double float_rounding(double rate, double time) {
   return std::min(0.24, 2.4e-7 * std::abs(time) * rate);
 }
 
-// How far a time may lie from a frame, in frames: rounding of floats, plus that of printed times
-// where they lie a frame apart.
+// The max distance of a time from a frame, in frames: float rounding, plus that of printed times if
+// they are one frame apart.
 double tolerance(double rate, double time, bool printed) {
   return 0.01 + (printed ? std::min(0.04, 6e-4 * rate) : 0.0) + float_rounding(rate, time);
 }
 
-// The farthest that a time lies from a frame of `rate`, in frames; nothing where one lies too far.
+// The largest distance of a time from a frame at `rate`, in frames; nullopt if one is out of
+// tolerance.
 std::optional<double> misfit(const std::vector<double>& times, double rate, bool printed) {
   double worst = 0;
   for (const double time : times) {
@@ -46,7 +47,7 @@ std::optional<double> misfit(const std::vector<double>& times, double rate, bool
   return worst;
 }
 
-// As misfit, for times that come one a frame.
+// As misfit, for times that come one per frame.
 std::optional<double> even_misfit(const std::vector<double>& times, double rate) {
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (std::lround((times[i] - times.front()) * rate) != static_cast<long>(i)) return std::nullopt;
@@ -56,37 +57,38 @@ std::optional<double> even_misfit(const std::vector<double>& times, double rate)
 
 struct FoundRate {
   double rate = kUsualRate;
-  bool on_keys = false;  // keys fall on its frames
+  bool on_keys = false;  // keys are on its frames
   std::string reason;
   Confidence confidence = Confidence::guess;
 };
 
 FoundRate find_rate(const std::vector<double>& times) {
-  if (times.size() < 2) return {kUsualRate, true, "there is one key alone", Confidence::guess};
+  if (times.size() < 2) return {kUsualRate, true, "fewer than two keys", Confidence::guess};
   const auto even = even_rate(times);
   if (even && *even >= kMinRate) {
-    return {*even, true, fmt::format("the keys come {} a second", readable(*even)),
+    return {*even, true, fmt::format("the keys are evenly spaced at {} fps", readable(*even)),
             Confidence::certain};
   }
   if (const auto grid = common_grid(times)) {
-    return {*grid, true, fmt::format("all keys fall on the frames of {} a second", readable(*grid)),
+    return {*grid, true, fmt::format("all keys are on frames at {} fps", readable(*grid)),
             Confidence::likely};
   }
   if (even) {
     return {kUnevenRate, false,
-            fmt::format("the keys come {} a second, too few to be frames; {} is the default",
-                        readable(*even), readable(kUnevenRate)),
+            fmt::format(
+                "the keys are evenly spaced at {} fps, too sparse to be frames; the default is {}",
+                readable(*even), readable(kUnevenRate)),
             Confidence::guess};
   }
   return {kUnevenRate, false,
-          fmt::format("the keys come at uneven times; {} is the default", readable(kUnevenRate)),
+          fmt::format("the keys are unevenly spaced; the default is {}", readable(kUnevenRate)),
           Confidence::guess};
 }
 
 }  // namespace
 
 std::vector<double> distinct_key_times(const nodes::Animation& animation) {
-  std::unordered_set<const std::vector<float>*> seen;  // channels mostly share their times
+  std::unordered_set<const std::vector<float>*> seen;  // channels often share their times
   std::vector<double> times;
   for (const nodes::Channel& channel : animation.channels) {
     if (!seen.insert(channel.times.get()).second) continue;
@@ -107,7 +109,7 @@ std::optional<double> even_rate(const std::vector<double>& times) {
   double least = 0;
   for (const double rate : kCommonRates) {
     const auto off = even_misfit(times, rate);
-    // A whole rate goes before one of NTSC's that fits no better.
+    // Prefers an integer rate to an NTSC rate that does not fit better.
     if (off && (!best || *off < least - 2e-3)) {
       best = rate;
       least = *off;
@@ -142,20 +144,19 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   sampling.start = chosen.keys_from;
   sampling.rate = found.rate;
   chosen.rate = {readable(found.rate), found.reason, found.confidence};
-  double stretch = 1.0;  // seconds of the scene for one of the result
+  double stretch = 1.0;  // scene seconds per second of the result
   if (options.source_rate) {
     if (!found.on_keys) {
-      return Error("scene-rate",
-                   "--fps counts the keys as frames, but they do not come at even times",
-                   "--resample N says how many frames a second the result should have");
+      return Error("scene-rate", "--fps takes the keys as frames, but they are unevenly spaced",
+                   "use --resample N to set the frame rate of the result");
     }
     stretch = *options.source_rate / found.rate;
     sampling.rate = *options.source_rate;
     chosen.rate = {readable(sampling.rate), "as given", Confidence::certain};
   } else if (!options.rate) {
     tell(diagnostics, Severity::note, "scene-rate",
-         fmt::format("{} frames a second: {}", readable(found.rate), found.reason),
-         "--resample N takes another rate");
+         fmt::format("{} fps: {}", readable(found.rate), found.reason),
+         "use --resample N for another rate");
   }
   if (options.rate) sampling.rate = *options.rate;
   sampling.step = stretch / sampling.rate;
@@ -163,10 +164,10 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   const double steps = (chosen.keys_to - chosen.keys_from) / sampling.step;
   if (!(steps < kMaxFrames)) {
     return Error("scene-too-long",
-                 fmt::format("{} frames a second over {} s are too many frames",
-                             readable(sampling.rate), readable(chosen.keys_to - chosen.keys_from)));
+                 fmt::format("{} fps over {} s gives too many frames", readable(sampling.rate),
+                             readable(chosen.keys_to - chosen.keys_from)));
   }
-  // A remainder that rounding explains makes no frame.
+  // A remainder within rounding adds no frame.
   const double rest = 1e-2 + float_rounding(1 / sampling.step, chosen.keys_to);
   sampling.frames = static_cast<int>(std::ceil(steps - rest)) + 1;
   sampling.frames = std::max(sampling.frames, 1);
@@ -177,7 +178,7 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   const double late = (sampling.frames - 1) - steps;
   if (late > 0.05) {
     tell(diagnostics, Severity::note, "scene-end",
-         fmt::format("the last key, at {} s, falls between two frames; the last frame holds it, {} "
+         fmt::format("the last key, at {} s, is between two frames; the last frame holds it, {} "
                      "frames late",
                      readable(chosen.keys_to), readable(late, 2)));
   }

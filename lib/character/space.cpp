@@ -35,7 +35,7 @@ void take_axes(const nodes::Space& space, Conventions& found) {
   found.up = found.reference_up = nearest(back * Vec3::UnitY());
   found.forward = found.reference_forward = nearest(back * Vec3::UnitZ());
   found.up_confidence = found.forward_confidence = Confidence::certain;
-  found.up_reason = found.forward_reason = "the file's format or header says so";
+  found.up_reason = found.forward_reason = "specified by the file format or header";
 }
 
 }  // namespace
@@ -58,12 +58,12 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig, const Ro
     found = detect_conventions(rig->skeleton, roles, samples);
   } else if (!all_known) {
     found.unit_reason = found.up_reason = found.forward_reason =
-        "the file does not say, and there is no figure to go by";
+        "not specified by the file, and there is no character to detect it from";
   }
   if (space.metres) {
     found.unit = unit_of(*space.metres);
     found.unit_confidence = Confidence::certain;
-    found.unit_reason = "the file's format or header says so";
+    found.unit_reason = "specified by the file format or header";
   }
   if (space.file_to_krok) take_axes(space, found);
   apply_given(given, found);
@@ -72,7 +72,7 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig, const Ro
 
 void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
   if (!roles.humanoid) return;
-  // Dolls and giants are left in peace.
+  // Allows for dolls and giants.
   constexpr double kSmallest = 0.3;
   constexpr double kTallest = 5.0;
   Eigen::AlignedBox3d box;
@@ -80,10 +80,10 @@ void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& dia
   const double size = box.sizes().maxCoeff();
   if (size >= kSmallest && size <= kTallest) return;
   tell(diagnostics, Severity::warning, "scene-unit",
-       fmt::format("the figure is {} m large in the unit that is taken from the file, which is no "
-                   "person's size",
+       fmt::format("the character is {} m in size in the file's unit, which is not a plausible "
+                   "human size",
                    readable(size, 3)),
-       "say what the file's unit is with --unit");
+       "set the file's unit with --unit");
 }
 
 void check_actor(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
@@ -91,13 +91,12 @@ void check_actor(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& di
   const Conventions found = detect_conventions(skeleton, roles, {});
   if (found.up_confidence != Confidence::guess && found.up != Direction::plus_y) {
     tell(diagnostics, Severity::warning, "scene-up",
-         fmt::format("the figure does not stand along +y: {}", found.up_reason),
-         "if it should, say which of the file's axes points up with --up");
+         fmt::format("the character's up axis is not +y: {}", found.up_reason),
+         "if it should be, set the file's up axis with --up");
   } else if (found.forward_confidence != Confidence::guess && found.forward != Direction::plus_z) {
     tell(diagnostics, Severity::warning, "scene-forward",
-         fmt::format("the figure does not face +z: {}; it is left as it stands",
-                     found.forward_reason),
-         fmt::format("--forward {} turns it to +z", direction_name(found.forward)));
+         fmt::format("the character does not face +z: {}; it is not rotated", found.forward_reason),
+         fmt::format("use --forward {} to rotate it to +z", direction_name(found.forward)));
   }
 }
 

@@ -9,7 +9,7 @@
 
 namespace krok {
 
-// Adds what is told of a file as a whole.
+// Appends a diagnostic about the file as a whole.
 inline void tell(Diagnostics& diagnostics, Severity severity, const char* code, std::string message,
                  std::string hint = {}) {
   Diagnostic told;

@@ -9,7 +9,7 @@
 
 namespace krok::compare {
 
-// How far two cameras are apart, frame by frame as in ClipDifference.
+// Difference of two cameras; frames are matched as in ClipDifference.
 struct CameraDifference {
   std::vector<std::string> structure;
   int compared_frames = 0;
@@ -23,7 +23,7 @@ struct CameraDifference {
   }
 };
 
-// An Error if one of the cameras fails its check().
+// An Error if a camera fails its check().
 Result<CameraDifference> difference(const CameraTrack& first, const CameraTrack& second,
                                     const Tolerance& tolerance);
 

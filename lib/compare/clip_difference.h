@@ -10,20 +10,19 @@
 
 namespace krok::compare {
 
-// How far two clips are apart, joint by joint in world space. Provenance does not matter.
+// Difference of two clips, joint by joint in world space. Provenance is ignored.
 struct ClipDifference {
-  // What keeps the two from being the same whatever the tolerance: another skeleton (then nothing
-  // was measured), other numbers of frames or rates. Sentences for people.
+  // Differences that no tolerance covers: another skeleton (then nothing is measured), other frame
+  // counts or rates. Readable sentences.
   std::vector<std::string> structure;
 
-  // Frames that stand at the same time in both: all, where the rates are the same (see
-  // match_frames); frame by frame, where only the rates differ; otherwise those whose times agree
-  // within a thousandth of a frame.
+  // Number of frames compared: all if the rates are equal (see match_frames); frame by frame if
+  // only the rates differ; otherwise frames whose times agree within a thousandth of a frame.
   int compared_frames = 0;
 
   Measure reference_positions, reference_orientations;  // metres, radians
   Measure positions, orientations;
-  std::vector<JointDifference> joints;  // over all frames, those that were compared
+  std::vector<JointDifference> joints;  // over the frames that were compared
 
   bool same() const {
     return structure.empty() && reference_positions.within() && reference_orientations.within() &&
@@ -31,13 +30,12 @@ struct ClipDifference {
   }
 };
 
-// An Error if one of the clips fails its check() (a value that is not finite, say); the error's
-// file is empty, its message says "the first" or "the second". Places carry joints and frames of
-// `first`.
+// An Error if a clip fails its check() (for example, a value that is not finite); its file is
+// empty, its message says "the first" or "the second". Locations have joints and frames of `first`.
 //
-// Joints are matched by name, so their order does not matter, or by place where names repeat;
-// Matching::order takes their place whatever the names; Matching::name compares those that both
-// have where others are missing. Matching::nearest is Matching::automatic.
+// Joints are matched by name, or by index if names repeat. Matching::order always matches by index;
+// Matching::name compares the joints that both have even if others are missing; Matching::nearest
+// is the same as Matching::automatic.
 Result<ClipDifference> difference(const Clip& first, const Clip& second, const Tolerance& tolerance,
                                   Matching matching = Matching::automatic);
 

@@ -12,7 +12,7 @@ namespace krok::compare {
 namespace {
 
 constexpr double kSameRate = 1e-6;    // relative
-constexpr double kSameMoment = 1e-3;  // of a frame
+constexpr double kSameMoment = 1e-3;  // of the frame time
 
 std::vector<std::pair<int, int>> frames_at_common_times(int first_frames, double first_rate,
                                                         int second_frames, double second_rate) {

@@ -6,14 +6,14 @@
 
 namespace krok::compare {
 
-// Which evenly spaced frames of two recordings belong together; see ClipDifference.
+// Which evenly spaced frames of two recordings correspond; see ClipDifference.
 struct FrameMatch {
   std::vector<std::pair<int, int>> frames;  // of the first, of the second
-  std::vector<std::string> differences;     // sentences for people
+  std::vector<std::string> differences;     // readable sentences
 };
 
-// Rates are positive and finite. Two rates are the same if they agree within 1e-6, or if none of
-// the frames that both have is parted by more than `same_time` (seconds).
+// Rates are positive and finite. Rates are equal if they agree within 1e-6, or if no common frame
+// differs in time by more than `same_time` (seconds).
 FrameMatch match_frames(int first_frames, double first_rate, int second_frames, double second_rate,
                         double same_time = 0);
 

@@ -10,7 +10,7 @@ namespace {
 
 using Names = std::span<const std::string>;
 
-// The k-th item of a name with the k-th of that name.
+// Matches the k-th item of a name with the k-th item of that name.
 ListMatch match_by_name(Names first, Names second) {
   ListMatch match;
   match.by_name = true;

@@ -5,22 +5,23 @@
 #include <utility>
 #include <vector>
 
-// Which item of one list is which of another.
+// Matches the items of two lists.
 
 namespace krok::compare {
 
-// What of the first belongs to what of the second.
+// How items of the first list are matched to items of the second.
 enum class Matching {
-  // By name where all names of both are unique and the same, otherwise by place. Vertices by
-  // number.
+  // By name if all names of both are unique and the same set, otherwise by index. Vertices by
+  // index.
   automatic,
-  // By place in the list, whatever the names. Vertices by number.
+  // By index, whatever the names. Vertices by index.
   order,
-  // By name, whatever the place; of a name that repeats the first with the first. What only one has
-  // is said, the rest compared. Vertices by number.
+  // By name, whatever the index; repeated names in order of occurrence. Items that only one has are
+  // reported, the rest is compared. Vertices by index.
   name,
-  // As in `automatic`, but each vertex with the nearest point of the other's surface, both ways:
-  // for meshes with other numbers or another order of vertices, other triangles or other parts.
+  // As `automatic`, but each vertex is matched to the nearest point of the other's surface, in both
+  // directions: for meshes with another number or order of vertices, other triangles or other
+  // parts.
   nearest,
 };
 

@@ -59,7 +59,7 @@ class Comparison {
 
   template <typename Value>
   void number(const char* what, const Value& first, const Value& second) {
-    // One that is no number is within nothing.
+    // False for NaN.
     if (distance(first, second) <= tolerance_) return;
     say(fmt::format("{} {} and {}", what, text_of(first), text_of(second)));
   }
@@ -78,7 +78,7 @@ class Comparison {
       say(fmt::format("another {} texture", what));
     } else if (first.wrap_u != second.wrap_u || first.wrap_v != second.wrap_v ||
                first.smooth != second.smooth) {
-      say(fmt::format("the {} texture is wrapped or smoothed otherwise", what));
+      say(fmt::format("the {} texture has another sampler", what));
     }
   }
 

@@ -32,8 +32,8 @@ double angle_between_directions(const Vec3& a, const Vec3& b) {
   const double length_a = a.norm();
   const double length_b = b.norm();
   if (length_a == 0 || length_b == 0) return length_a == length_b ? 0.0 : kPi;
-  // Kahan's formula, "How futile are mindless assessments of roundoff", section 12: no loss of
-  // digits at either end.
+  // Kahan's formula, "How futile are mindless assessments of roundoff", section 12: accurate at
+  // both ends.
   const Vec3 u = a / length_a;
   const Vec3 v = b / length_b;
   return 2.0 * std::atan2((u - v).norm(), (u + v).norm());

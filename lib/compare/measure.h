@@ -8,19 +8,19 @@
 #include "compare/spread.h"
 #include "math/types.h"
 
-// How far apart many values of one kind are: the largest difference and where it is, the root of
-// the mean square, what 95 % do not exceed, and how many lie over a tolerance.
+// Statistics of the differences between many values of one kind: max and its location, RMS,
+// percentiles, and how many exceed a tolerance.
 
 namespace krok::compare {
 
-// What still counts as the same. A difference equal to the tolerance is within it.
+// Max accepted differences. A difference equal to the tolerance is within it.
 struct Tolerance {
   double length = 1e-5;                     // metres
   double angle = 0.01 * kRadiansPerDegree;  // radians
-  double ratio = 1e-4;                      // for what has no unit: weights, texture coordinates
-  double time = 1e-4;                       // seconds; times that differ by no more are one
-  // Where these are to differ from the former.
-  std::optional<double> normals = {};             // radians; of tangents too
+  double ratio = 1e-4;  // for values without a unit: weights, texture coordinates
+  double time = 1e-4;   // seconds; times that differ by no more are equal
+  // Override `angle` or `length` if set.
+  std::optional<double> normals = {};             // radians; also for tangents
   std::optional<double> joint_positions = {};     // metres
   std::optional<double> joint_orientations = {};  // radians
 
@@ -29,7 +29,7 @@ struct Tolerance {
   double of_joint_orientations() const { return joint_orientations.value_or(angle); }
 };
 
-// Where a value is; -1 for what does not apply.
+// Location of a value; -1 for fields that do not apply.
 struct ValueLocation {
   int mesh = -1;
   int vertex = -1;
@@ -37,24 +37,24 @@ struct ValueLocation {
   int target = -1;     // morph target
   int animation = -1;  // among several
   int frame = -1;
-  double time = 0;         // seconds, where frame is given
-  bool in_second = false;  // mesh and vertex are the second's, not the first's
+  double time = 0;         // seconds, if frame is set
+  bool in_second = false;  // mesh and vertex are in the second, not the first
 };
 
-// Differences of one quantity, gathered one by one. Adding in the same order gives the same bits;
-// the place of the largest is that of the first of equal ones.
+// Accumulates differences of one quantity. Adding in the same order is bit-reproducible; of equal
+// maxima, the first gives the location.
 struct Totals {
   double tolerance = 0;
   double largest = 0;
-  ValueLocation where;  // of the largest; meaningful if largest > 0
+  ValueLocation where;  // of the largest; valid if largest > 0
   double square_sum = 0;
-  std::int64_t count = 0;  // how many values were compared
-  std::int64_t over = 0;   // how many of them differ by more than the tolerance
+  std::int64_t count = 0;  // number of values compared
+  std::int64_t over = 0;   // number of differences above the tolerance
 
   Totals() = default;
   explicit Totals(double allowed) : tolerance(allowed) {}
 
-  // `difference` >= 0. One that is not a number counts as infinite.
+  // `difference` >= 0. NaN counts as infinity.
   void add(double difference, const ValueLocation& place) {
     difference = finite_or_infinite(difference);
     if (difference > largest) {
@@ -66,7 +66,7 @@ struct Totals {
     ++count;
   }
 
-  // Adds what others with the same tolerance have gathered, as if it came after.
+  // Adds the totals of later values, with the same tolerance.
   void merge(const Totals& later);
 
   double rms() const;
@@ -79,7 +79,7 @@ struct Totals {
   }
 };
 
-// The same with percentiles.
+// Totals with percentiles.
 struct Measure : Totals {
   Spread spread;
 
@@ -92,28 +92,29 @@ struct Measure : Totals {
   }
   void merge(const Measure& later);
 
-  // What a share of all, in (0, 1], do not exceed; see Spread, but never more than the largest.
+  // The value that a fraction `share`, in (0, 1], of all do not exceed; see Spread. Never above the
+  // largest.
   double percentile(double share) const;
 };
 
-// How one joint differs.
+// Differences of one joint.
 struct JointDifference {
   int joint = -1;        // of the first
   Measure positions;     // metres
   Measure orientations;  // radians
 };
 
-// The angle between two directions in [0, pi], accurate near 0 and pi. 0 if both vanish, pi if one
-// does.
+// The angle between two directions in [0, pi], accurate near 0 and pi. 0 if both are zero, pi if
+// only one is.
 double angle_between_directions(const Vec3& a, const Vec3& b);
 
-// The same, quicker, for directions that are of unit length or vanish.
+// The same, faster, for directions that are unit length or zero.
 inline double angle_between_units(const Vec3& a, const Vec3& b) {
-  constexpr double kNear = 1e-4;  // squared length of a chord
-  constexpr double kUnit = 0.5;   // squared length; less vanishes
+  constexpr double kNear = 1e-4;  // squared chord length
+  constexpr double kUnit = 0.5;   // squared length; below it is zero
   const double square = (a - b).squaredNorm();
   if (!(square < kNear) || a.squaredNorm() < kUnit) return angle_between_directions(a, b);
-  // angle = 2 asin(chord / 2); what the series leaves out is less than 1e-17 of it.
+  // angle = 2 asin(chord / 2); the truncated series has a relative error below 1e-17.
   return std::sqrt(square) * (1 + square * (1.0 / 24 + square * (3.0 / 640 + square * 5.0 / 7168)));
 }
 

@@ -10,7 +10,7 @@ namespace krok::compare {
 
 namespace {
 
-// The same triangle with its smallest index first, the order of its corners kept.
+// The same triangle, rotated to start with its smallest index.
 Triangle from_smallest(const Triangle& t) {
   const auto smallest = static_cast<std::size_t>(std::min_element(t.begin(), t.end()) - t.begin());
   return {t[smallest], t[(smallest + 1) % 3], t[(smallest + 2) % 3]};

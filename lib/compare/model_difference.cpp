@@ -10,7 +10,7 @@ namespace krok::compare {
 
 namespace {
 
-// Whether both have the attribute; where only one has it, that is a difference of structure.
+// Whether both have the attribute; reports a difference of structure if only one does.
 template <typename T>
 bool both_have(const char* what, const std::vector<T>& first, const std::vector<T>& second,
                std::vector<std::string>& structure) {
@@ -45,7 +45,7 @@ std::string difference_in_parts(const Model& first, const Model& second) {
   return {};
 }
 
-// Parts may differ in where their triangles stand, so each is compared on its own.
+// Parts may have different triangle ranges, so each is compared separately.
 std::string difference_in_surface(const Model& first, const Model& second) {
   if (first.triangles.size() != second.triangles.size()) {
     return difference_in_triangles(first.triangles, second.triangles);

@@ -10,27 +10,27 @@
 
 namespace krok::compare {
 
-// How far two models are apart. Vertices are matched by index, triangles in any order, joints as in
-// ClipDifference; provenance does not matter.
+// Difference of two models. Vertices are matched by index, triangles in any order, joints as in
+// ClipDifference; provenance is ignored.
 struct ModelDifference {
-  // What keeps the two from being the same whatever the tolerance: another skeleton, other numbers
-  // of vertices, other triangles or parts, normals or the like that only one has. Sentences for
-  // people. What can be measured all the same, is.
+  // Differences that no tolerance covers: another skeleton, other vertex counts, triangles or
+  // parts, attributes such as normals that only one has. Readable sentences. Whatever can still be
+  // measured is.
   std::vector<std::string> structure;
 
   Measure reference_positions, reference_orientations;  // of joints
   Measure positions;                                    // metres
   Measure normals;                                      // radians
-  Measure texture_coordinates;                          // the larger of u and v
+  Measure texture_coordinates;                          // max of u and v
   Measure tangents;                                     // radians, of their directions
-  Measure tangent_sides;  // 1 where the handedness is the other one, else 0; tolerance 0
-  Measure weights;        // the largest of a vertex; place has the joint too
+  Measure tangent_sides;  // 1 if the handedness differs, else 0; tolerance 0
+  Measure weights;        // max per vertex; the location includes the joint
   std::vector<JointDifference> joints;
 
   bool same() const;
 };
 
-// An Error if one of the models fails its check(). Places carry vertices and joints of `first`.
+// An Error if a model fails its check(). Locations have vertices and joints of `first`.
 Result<ModelDifference> difference(const Model& first, const Model& second,
                                    const Tolerance& tolerance,
                                    Matching matching = Matching::automatic);

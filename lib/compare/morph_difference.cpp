@@ -11,7 +11,7 @@ namespace {
 void say_only_in(const char* which, const MorphSet& morphs, const std::vector<int>& targets,
                  MorphDifference& result) {
   for (const int target : targets) {
-    result.structure.push_back(fmt::format("the target {} is only in the {}",
+    result.structure.push_back(fmt::format("target {} is only in the {}",
                                            morphs.names[static_cast<std::size_t>(target)], which));
   }
 }

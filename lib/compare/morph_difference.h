@@ -10,11 +10,10 @@
 
 namespace krok::compare {
 
-// How far two sets of morph targets are apart. Vertices are matched by number; provenance does not
-// matter.
+// Difference of two sets of morph targets. Vertices are matched by index; provenance is ignored.
 struct MorphDifference {
-  // What keeps the two from being the same whatever the tolerance: other numbers of vertices (then
-  // nothing was measured), targets or normals that only one has. Sentences for people.
+  // Differences that no tolerance covers: other vertex counts (then nothing is measured), targets
+  // or normals that only one has. Readable sentences.
   std::vector<std::string> structure;
 
   int compared_targets = 0;
@@ -24,8 +23,8 @@ struct MorphDifference {
   bool same() const { return structure.empty() && positions.within() && normals.within(); }
 };
 
-// Targets are matched by place for Matching::order, else by name. An Error if one of the sets
-// fails its check(). Places carry targets and vertices of `first`.
+// Targets are matched by index for Matching::order, else by name. An Error if a set fails its
+// check(). Locations have targets and vertices of `first`.
 Result<MorphDifference> difference(const MorphSet& first, const MorphSet& second,
                                    const Tolerance& tolerance,
                                    Matching matching = Matching::automatic);

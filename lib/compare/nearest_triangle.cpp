@@ -10,11 +10,11 @@ namespace krok::compare {
 
 namespace {
 
-// One instruction set for all machines and one thread for building.
+// One instruction set on all machines and one build thread, for reproducible results.
 constexpr const char* kDevice = "isa=sse4.2,threads=1,set_affinity=0";
 
-// The tree works in floats, so its boxes and its circles are drawn wider by this share of the size
-// of everything; distances themselves are found in doubles.
+// The tree uses floats, so its boxes and search radii are enlarged by this fraction of the total
+// size; distances are computed in doubles.
 constexpr double kMargin = 1e-6;
 
 std::array<double, 3> nearest_on_edges(const std::array<Vec3, 3>& triangle, const Vec3& point) {
@@ -141,7 +141,7 @@ bool FacetTree::build() {
 void FacetTree::find(const Vec3& point, std::vector<FoundFacet>& found) const {
   found.clear();
   const Vec3 from = point - centre_;
-  // What floats lose of a point far away from everything, too.
+  // Allows for float rounding of points far away from everything, too.
   const double margin = 4 * kMargin * (size_ + from.norm());
   Search search{facets_, point, touching_, margin, std::numeric_limits<double>::infinity(), found};
   RTCPointQueryContext context;

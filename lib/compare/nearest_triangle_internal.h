@@ -8,18 +8,18 @@
 
 #include "math/types.h"
 
-// Private to this folder: the triangles that are nearest to a point.
+// Private to this folder: finds the triangles nearest to a point.
 
 namespace krok::compare {
 
-// A triangle, or an edge or a point where corners are the same.
+// A triangle, or an edge or a point if corners coincide.
 struct Facet {
   int mesh = -1;
   std::array<std::uint32_t, 3> corners{};
   std::array<Vec3, 3> points;
 };
 
-// The nearest point of a facet: the shares of its corners, each in [0, 1], together 1. Source:
+// Barycentric coordinates of the nearest point of a triangle, each in [0, 1], summing to 1. Source:
 // Ericson, Real-Time Collision Detection (2005), section 5.1.5.
 std::array<double, 3> nearest_shares(const std::array<Vec3, 3>& triangle, const Vec3& point);
 
@@ -29,11 +29,10 @@ struct FoundFacet {
   double distance = 0;
 };
 
-// A search tree over facets, of which there is at least one; points are finite. Const functions may
-// be called from many threads.
+// A BVH (Embree) over at least one facet; points must be finite. Const functions are thread-safe.
 class FacetTree {
  public:
-  // Null where Embree cannot be used.
+  // Null if Embree is not available.
   static std::unique_ptr<const FacetTree> create(std::vector<Facet> facets);
   ~FacetTree();
   FacetTree(const FacetTree&) = delete;
@@ -41,11 +40,12 @@ class FacetTree {
 
   const Facet& facet(std::uint32_t index) const { return facets_[index]; }
 
-  // How far apart surfaces may be that count as touching: a millionth of the box around all.
+  // Max distance between surfaces that count as touching: a millionth of the size of the bounding
+  // box.
   double touching() const { return touching_; }
 
-  // Fills `found` with the facet that is nearest to `point` and all that are no more than
-  // touching() farther, by their index.
+  // Fills `found` with the facet nearest to `point` and all facets at most touching() farther away,
+  // sorted by index.
   void find(const Vec3& point, std::vector<FoundFacet>& found) const;
 
  private:
@@ -54,8 +54,8 @@ class FacetTree {
   bool build();
 
   std::vector<Facet> facets_;
-  Vec3 centre_ = Vec3::Zero();  // of the tree's floats
-  double size_ = 0;             // of the box around all
+  Vec3 centre_ = Vec3::Zero();  // origin of the tree's floats
+  double size_ = 0;             // of the bounding box of all facets
   double touching_ = 0;
   std::unique_ptr<Embree> embree_;
 };

@@ -11,54 +11,54 @@
 #include "math/types.h"
 #include "scene/material.h"
 
-// An animated scene as a comparison sees it: what it has, and how to get it at any moment. How it
-// is animated (a skin, morph targets, nodes that move, frames of points) does not matter.
+// An animated scene for comparison: its contents, and a function that evaluates it at any time. How
+// it is animated (skin, morph targets, node animation, cached points) does not matter.
 
 namespace krok::compare {
 
-// A mesh as it stands in the scene. The spans belong to whoever made the description.
+// A mesh in the scene. The spans point into memory of the creator.
 struct SceneMesh {
-  std::string name;  // for people and for matching; may be empty
+  std::string name;  // for messages and matching; may be empty
   std::size_t vertex_count = 0;
   bool has_normals = false;
   bool has_tangents = false;
-  bool only_points = false;  // the file tells positions alone: that the rest lacks is no difference
+  bool only_points = false;  // the file has only positions; missing attributes are not a difference
   std::span<const Triangle> triangles;
   std::span<const Vec2f> texture_coordinates;  // [vertices] or none
 
-  // Displacements of a shape, [vertices] or none.
+  // Displacements of a morph target, [vertices] or empty.
   struct Target {
     std::string name;
     std::span<const Vec3f> positions;
     std::span<const Vec3f> normals;
-    std::span<const Vec3f> tangents{};  // of their xyz
+    std::span<const Vec3f> tangents{};  // of the tangents' xyz
   };
   std::vector<Target> targets;
 
-  const Material* material = nullptr;  // null: none
+  const Material* material = nullptr;  // null if none
 
-  Influences influences;  // joints are indices into Scene::joint_names; none: per_vertex = 0
+  Influences influences;  // indices into Scene::joint_names; per_vertex = 0 if there are none
 };
 
-// Vertices and joints at one moment, in world space, metres.
+// Vertices and joints at one time, in world space, metres.
 struct SceneState {
   std::vector<std::vector<Vec3>> positions;  // [meshes][vertices]
-  std::vector<std::vector<Vec3>> normals;    // [meshes][vertices], or none for a mesh without
-  // The same of meshes that have them, others are not looked at: xyz unit or zero, the sign of w is
-  // glTF's handedness.
+  std::vector<std::vector<Vec3>>
+      normals;  // [meshes][vertices], or empty for a mesh without normals
+  // The same for meshes with tangents, ignored for others: xyz unit or zero, sign of w as in glTF.
   std::vector<std::vector<Vec4>> tangents;
   std::vector<Transform> joints;  // [joints]
 };
 
 struct Scene {
-  // What the file's format cannot hold is no difference where the other has it.
+  // Missing data that the file format cannot store is not a difference.
   bool only_joints = false;  // no meshes
   bool only_still = false;   // no animations
 
   std::vector<SceneMesh> meshes;
-  bool knows_materials = false;          // whether a mesh without one has none
-  std::vector<std::string> joint_names;  // may be empty or repeat; then places decide
-  std::vector<int> joint_parents;        // the nearest ancestor that is a joint, or -1
+  bool knows_materials = false;          // whether a missing material means that there is none
+  std::vector<std::string> joint_names;  // matched by index if names are empty or repeat
+  std::vector<int> joint_parents;        // nearest ancestor that is a joint, or -1
 
   struct Animation {
     std::string name;
@@ -66,8 +66,8 @@ struct Scene {
   };
   std::vector<Animation> animations;
 
-  // Fills `state` for a moment of an animation, or (-1) for the pose without any. Called from many
-  // threads at once, each with a state of its own. Never fails.
+  // Fills `state` for a time of an animation, or (-1) for the pose without animation. Must be
+  // thread-safe with one state per thread. Never fails.
   std::function<void(int animation, double time, SceneState& state)> evaluate;
 };
 

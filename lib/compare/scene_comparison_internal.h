@@ -10,17 +10,17 @@
 #include "compare/scene_difference.h"
 #include "compare/surface_match_internal.h"
 
-// Private to this folder: the steps of comparing two scenes, and what they share.
+// Private to this folder: the steps of comparing two scenes, and their shared data.
 
 namespace krok::compare {
 
-// One moment at which both scenes are evaluated.
+// A time at which both scenes are evaluated.
 struct Moment {
   int first_animation = -1;
   int second_animation = -1;
   int frame = -1;
   double first_time = 0;
-  double second_time = 0;  // within the tolerance of the other
+  double second_time = 0;  // equal to first_time within the tolerance
 };
 
 struct SceneComparison {
@@ -29,19 +29,19 @@ struct SceneComparison {
   const SceneOptions& options;
   SceneDifference result{};
 
-  Pairs joints{};  // those that are compared
+  Pairs joints{};  // joints to compare
   std::vector<int> first_joint_of_second{};
-  Pairs meshes{};                        // those whose vertices are compared by number
-  std::vector<SurfaceGroup> groups{};    // those whose vertices are compared by nearest points
-  std::vector<SurfaceMatch> surfaces{};  // of the groups, both ways
+  Pairs meshes{};                        // meshes with vertices compared by index
+  std::vector<SurfaceGroup> groups{};    // meshes compared by nearest points
+  std::vector<SurfaceMatch> surfaces{};  // of the groups, in both directions
   std::vector<Moment> moments{};
-  std::set<std::pair<const Material*, const Material*>> materials{};  // those that were compared
+  std::set<std::pair<const Material*, const Material*>> materials{};  // already compared
 
   void say(std::string sentence) { result.structure.push_back(std::move(sentence)); }
   void note(std::string sentence) { result.notes.push_back(std::move(sentence)); }
 };
 
-// "mesh Body", or "mesh 3" for one without a name.
+// "mesh Body", or "mesh 3" if it has no name.
 std::string label(const char* kind, const std::string& name, int index);
 
 template <typename Item>
@@ -56,24 +56,24 @@ std::vector<std::string> names_of(const std::vector<Item>& items) {
 void match_scene_joints(SceneComparison& comparison);
 void match_scene_meshes(SceneComparison& comparison);
 
-// What two meshes are made of whose vertices correspond by number: triangles, texture coordinates,
+// Compares static data of two meshes with corresponding vertices: triangles, texture coordinates,
 // morph targets, weights, materials.
 void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh);
 
 bool has_normal_texture(const SceneMesh& mesh);
 
-// Says that only one has tangents: a difference where normal textures of both would show them
+// Reports that only one has tangents: a difference if both have normal textures that use them
 // (`shown`), else a note.
 void report_tangents(SceneComparison& comparison, const std::string& before, bool first_has,
                      bool shown);
 
-// Fills `moments`; code compare-too-long.
+// Fills `moments`. Code: compare-too-long.
 Status choose_moments(SceneComparison& comparison);
 
-// Fills `surfaces` from `groups`; code compare-value.
+// Fills `surfaces` from `groups`. Code: compare-value.
 Status match_surfaces(SceneComparison& comparison, int jobs);
 
-// Evaluates both scenes at all moments; code compare-value.
+// Evaluates both scenes at all moments. Code: compare-value.
 Status compare_moments(SceneComparison& comparison, int jobs, Progress& progress);
 
 }  // namespace krok::compare

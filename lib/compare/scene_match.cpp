@@ -41,7 +41,7 @@ void say_partners_missing(SceneComparison& comparison, const ListMatch& match,
   }
 }
 
-// One group for each pair of names, or one of all.
+// One group per pair of names, or one for everything.
 std::vector<SurfaceGroup> groups_of(const ListMatch& match, std::size_t first, std::size_t second) {
   std::vector<SurfaceGroup> groups;
   if (match.by_name) {
@@ -114,7 +114,7 @@ void match_scene_joints(SceneComparison& comparison) {
     std::string text = fmt::format(
         "only the {} has joints ({}), so joints are not compared", first_has ? "first" : "second",
         first_has ? first.joint_names.size() : second.joint_names.size());
-    // Without meshes there is nothing else that could be the same.
+    // Without meshes there is nothing else to compare.
     if (!first.meshes.empty() && !second.meshes.empty()) {
       comparison.note(std::move(text));
     } else {
@@ -139,7 +139,7 @@ void match_scene_meshes(SceneComparison& comparison) {
   const auto first = names_of(comparison.first.meshes);
   const auto second = names_of(comparison.second.meshes);
   if (comparison.first.only_joints != comparison.second.only_joints) {
-    comparison.note(fmt::format("only the {} can have meshes, so joints alone are compared",
+    comparison.note(fmt::format("only the {} can have meshes, so only joints are compared",
                                 comparison.first.only_joints ? "second" : "first"));
     return;
   }

@@ -17,8 +17,8 @@ constexpr double kRounding = 1e-4;  // seconds
 
 using Times = std::vector<std::pair<double, double>>;  // of the first, of the second
 
-// The key times of both as far as both last, rising. Times of the two that differ by no more than
-// `same` are one moment, at which each is taken at its own time.
+// Key times of both, for as long as both last, rising. Times that differ by at most `same` are one
+// moment; each scene uses its own time.
 Times common_times(const std::vector<double>& first, const std::vector<double>& second,
                    double same) {
   Times times;
@@ -27,7 +27,7 @@ Times common_times(const std::vector<double>& first, const std::vector<double>& 
   const double infinite = std::numeric_limits<double>::infinity();
   const auto add = [&](double a, double b) {
     if (std::max(a, b) < begin || std::min(a, b) > end) return;
-    // Keys of several channels of one file, parted by rounding.
+    // Skips keys of several channels that differ only by rounding.
     if (!times.empty() && a - times.back().first <= kRounding) return;
     times.emplace_back(a, b);
   };
@@ -39,7 +39,7 @@ Times common_times(const std::vector<double>& first, const std::vector<double>& 
     const double a = at(first, i);
     const double b = at(second, j);
     const double apart = std::abs(a - b);
-    // The next of the earlier one may be nearer.
+    // The next key of the earlier one may be nearer.
     const double other = a < b ? std::abs(at(first, i + 1) - b) : std::abs(at(second, j + 1) - a);
     if (apart <= same && apart <= other) {
       add(a, b);
@@ -72,8 +72,8 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
   if (std::abs(a.key_times.back() - b.key_times.back()) > same ||
       std::abs(a.key_times.front() - b.key_times.front()) > same) {
     comparison.say(
-        fmt::format("{}: {} s to {} s in the first, {} s to {} s in the second; compared where "
-                    "both have it",
+        fmt::format("{}: {} s to {} s in the first, {} s to {} s in the second; only the common "
+                    "range is compared",
                     name, readable(a.key_times.front()), readable(a.key_times.back()),
                     readable(b.key_times.front()), readable(b.key_times.back())));
   }
@@ -90,7 +90,7 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
   const auto frames = static_cast<std::size_t>(frame);
   if (frames > a.key_times.size() || frames > b.key_times.size()) {
     comparison.note(
-        fmt::format("{}: {} key times in the first, {} in the second; compared at the {} of both",
+        fmt::format("{}: {} key times in the first, {} in the second; compared at {} common times",
                     name, a.key_times.size(), b.key_times.size(), frames));
   }
   return {};
@@ -104,7 +104,7 @@ Status choose_moments(SceneComparison& comparison) {
   if (comparison.first.only_still != comparison.second.only_still) {
     comparison.moments.push_back({});
     if (first.empty() && second.empty()) return {};
-    comparison.note(fmt::format("only the {} can be animated, so it is compared as it stands",
+    comparison.note(fmt::format("only the {} can be animated, so only the static pose is compared",
                                 comparison.first.only_still ? "second" : "first"));
     return {};
   }

@@ -13,7 +13,7 @@ void compare_targets(SceneComparison& comparison, const SceneMesh& a, const Scen
   if (a.targets.size() != b.targets.size()) {
     std::string text = fmt::format("{}: {} morph targets in the first, {} in the second", name,
                                    a.targets.size(), b.targets.size());
-    // One with a skin, which may have targets too, against one without is a rig against its baked
+    // A skinned mesh (possibly with targets) against one without a skin is a rig against its baked
     // motion.
     const bool first_skinned = a.influences.per_vertex > 0;
     const bool second_skinned = b.influences.per_vertex > 0;
@@ -72,7 +72,7 @@ void say_only_one_has(SceneComparison& comparison, const std::string& name, cons
   comparison.say(fmt::format("{}: only the {} has {}", name, first_has ? "first" : "second", what));
 }
 
-// Meshes often share a material; what differs in it is told once.
+// Meshes often share a material; its differences are reported once.
 void compare_materials(SceneComparison& comparison, const SceneMesh& a, const SceneMesh& b,
                        const std::string& name) {
   if (!comparison.first.knows_materials || !comparison.second.knows_materials) return;
@@ -104,7 +104,7 @@ void report_tangents(SceneComparison& comparison, const std::string& before, boo
                      bool shown) {
   std::string text =
       fmt::format("{}only the {} has tangents", before, first_has ? "first" : "second");
-  // A format that knows no materials may lack tangents, or have some that none of them uses.
+  // Formats without materials may omit tangents, or have unused ones.
   if (shown && comparison.first.knows_materials && comparison.second.knows_materials) {
     comparison.say(text + ", which normal textures need");
   } else {

@@ -11,18 +11,18 @@ namespace krok::compare {
 
 namespace {
 
-// A mesh whose vertices are compared: with those of another by number, or with points of a surface.
+// A mesh whose vertices are compared: by index with another mesh, or with points of a surface.
 struct Part {
   int mesh = -1;
   bool in_second = false;
   int other = -1;
   const std::vector<SurfacePoint>* points = nullptr;
-  // Whether both have them; of a surface, whether all of those points have.
+  // Whether both have them; for a surface, whether all matched points do.
   bool normals = true;
   bool tangents = false;
 };
 
-// What is measured of vertices, and where it is gathered.
+// Quantities measured per vertex, and where they are accumulated.
 enum Quantity : std::size_t { kPositions, kNormals, kTangents, kTangentSides, kQuantities };
 constexpr std::array<Measure SceneDifference::*, kQuantities> kOfScene = {
     &SceneDifference::positions, &SceneDifference::normals, &SceneDifference::tangents,
@@ -31,10 +31,10 @@ constexpr std::array<Measure PartDifference::*, kQuantities> kOfPart = {
     &PartDifference::positions, &PartDifference::normals, &PartDifference::tangents,
     &PartDifference::tangent_sides};
 
-using PartTotals = std::array<Totals, kQuantities>;   // what was found of one part at one moment
+using PartTotals = std::array<Totals, kQuantities>;   // of one part at one moment
 using PartSpreads = std::array<Spread, kQuantities>;  // of one part at all moments
 
-// What belongs to a thread: memory that is used again, and what may be gathered in any order.
+// Per-thread data: reusable memory, and results that can be accumulated in any order.
 struct Slot {
   SceneState first, second;
   std::vector<PartTotals> parts;            // of the moment
@@ -68,7 +68,7 @@ std::vector<Part> parts_of(const SceneComparison& comparison) {
   return parts;
 }
 
-// Adds up values in order, of vertices from `begin` on.
+// Accumulates values in order, for vertices from `begin` on.
 void gather(std::span<const double> values, std::size_t begin, ValueLocation place, Totals& totals,
             Spread& spread) {
   std::size_t worst = values.size();
@@ -88,7 +88,7 @@ void gather(std::span<const double> values, std::size_t begin, ValueLocation pla
   totals.where = place;
 }
 
-// Vertices are looked at so many at a time, which stay in the processor's nearest memory.
+// Vertices are processed in blocks that fit into the L1 cache.
 constexpr std::size_t kBlock = 1024;
 
 // Calls with(begin, values) for each block of `count` values, filled by find(i).
@@ -102,7 +102,7 @@ void in_blocks(std::size_t count, const Find& find, const With& with) {
   }
 }
 
-// Directions and sides; gatherer(quantity) takes blocks of values.
+// Tangent directions and handedness; gatherer(quantity) accepts blocks of values.
 template <typename Gatherer>
 void measure_tangents(const Part& part, const SceneState& own, const SceneState& other,
                       const Gatherer& gatherer) {
@@ -279,8 +279,8 @@ MomentValue value_of(const Totals& totals) {
 
 Status Measuring::take(const Moment& moment, Slot& slot) {
   if (!slot.finite) {
-    return Error("compare-value", "a scene gives positions that are not finite numbers",
-                 "its nodes or keys hold values that are too large");
+    return Error("compare-value", "a scene has positions that are NaN or infinite",
+                 "its nodes or keys have values that are too large");
   }
   MomentDifference found = take_parts(slot);
   take_joints(place_of(moment), slot, found);
@@ -326,7 +326,7 @@ void Measuring::take_joints(ValueLocation place, const Slot& slot, MomentDiffere
   moment.joint_orientations = value_of(orientations);
 }
 
-// Puts together what the slots have gathered, and the parts' and joints' spreads to those of all.
+// Merges the results of all slots, and the spreads of parts and joints into the totals.
 void Measuring::finish() {
   SceneDifference& result = comparison_.result;
   for (const Slot& slot : slots_) {

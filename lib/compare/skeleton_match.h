@@ -7,20 +7,20 @@
 #include "compare/matching.h"
 #include "scene/skeleton.h"
 
-// Which joint of one skeleton is which of another.
+// Matches the joints of two skeletons.
 
 namespace krok::compare {
 
 struct SkeletonMatch {
-  // What differs, in words for people: joints that only one has, a joint under another parent, an
-  // end site that the other has as a joint. Empty if nothing does; the order of joints is nothing.
+  // Readable difference: joints that only one has, a joint with another parent, an end site that is
+  // a joint in the other. Empty if there is none; the order of joints is ignored.
   std::string difference;
-  // For each joint of the first the joint of the second that it is. Filled if `difference` is
-  // empty; for Matching::name in any case, with -1 for joints that only the first has.
+  // The second's joint for each joint of the first. Filled if `difference` is empty; for
+  // Matching::name always, with -1 for joints that only the first has.
   std::vector<int> second_of_first;
 };
 
-// Matching::automatic: by name, or by place in the list where names are missing or not unique.
+// Matching::automatic: by name, or by index if names are missing or not unique.
 SkeletonMatch match_skeletons(const Skeleton& first, const Skeleton& second,
                               Matching matching = Matching::automatic);
 

@@ -4,18 +4,18 @@
 #include <cstdint>
 #include <vector>
 
-// How values spread, without keeping them: enough to tell percentiles in bounded memory.
+// Streaming percentiles of a distribution in bounded memory.
 
 namespace krok::compare {
 
-// Values that are not 0 are kept as they are up to kExact of them; more are counted in bins, 64 to
-// a doubling. What comes out depends on the values alone, never on the order in which they came or
-// on how they were shared out before merging.
+// Up to kExact nonzero values are kept exactly; beyond that they are counted in bins, 64 per
+// octave. Results depend only on the values, not on their order or on how they were split before
+// merging.
 class Spread {
  public:
   static constexpr std::size_t kExact = 256;
 
-  // `value` >= 0, infinity included.
+  // `value` >= 0; infinity is allowed.
   void add(double value) {
     const std::uint64_t bin = bin_of(value) - first_bin_;
     if (value == 0) {
@@ -31,14 +31,14 @@ class Spread {
 
   std::int64_t count() const { return zeros_ + positive_; }
 
-  // The least value that a share of all, in (0, 1], does not exceed (the nearest-rank definition);
-  // 0 without values. Exact up to kExact values beside 0; of more at most 1.6 % above the true one,
-  // never below. Values under 1e-19 count as that, values over 1e19 as infinite.
+  // The smallest value that a fraction `share`, in (0, 1], of all do not exceed (nearest rank); 0
+  // without values. Exact for up to kExact nonzero values, otherwise at most 1.6 % too high, never
+  // too low. Values under 1e-19 count as 1e-19, values over 1e19 as infinity.
   double percentile(double share) const;
 
  private:
-  // The exponent and the first bits of the mantissa: a number for each bin, rising with the value.
-  // Taken from the bits, so that the same value falls into the same bin on every machine.
+  // Bin index: exponent and first mantissa bits, rising with the value. Taken from the bits, so
+  // that it is the same on every machine.
   static std::uint64_t bin_of(double value) { return std::bit_cast<std::uint64_t>(value) >> 46; }
 
   void add_positive(double value);
@@ -48,10 +48,10 @@ class Spread {
 
   std::int64_t zeros_ = 0;
   std::int64_t positive_ = 0;
-  std::int64_t beyond_ = 0;         // too large for the bins
-  std::vector<double> few_;         // those there are, while they are few
-  std::uint64_t first_bin_ = 0;     // where bins_ begin
-  std::vector<std::int64_t> bins_;  // only octaves between those that occur
+  std::int64_t beyond_ = 0;         // above the bins
+  std::vector<double> few_;         // exact values, while there are few
+  std::uint64_t first_bin_ = 0;     // index of bins_[0]
+  std::vector<std::int64_t> bins_;  // only the octaves between those that occur
 };
 
 }  // namespace krok::compare

@@ -17,10 +17,10 @@ namespace krok::compare {
 
 namespace {
 
-constexpr std::size_t kMaxProbes = 5;    // moments at which touching surfaces are told apart
-constexpr std::size_t kMaxTried = 1024;  // points that touch, so that time stays in bounds
-constexpr double kNoShare = 1e-9;        // less of a corner is rounding
-constexpr double kSameAngle = 1e-4;      // radians; normals that float noise alone tells apart
+constexpr std::size_t kMaxProbes = 5;    // times used to choose between touching surfaces
+constexpr std::size_t kMaxTried = 1024;  // touching points, to bound the run time
+constexpr double kNoShare = 1e-9;        // smaller coordinates are rounding errors
+constexpr double kSameAngle = 1e-4;      // radians; smaller angles between normals are float noise
 
 std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> meshes) {
   std::vector<Facet> facets;
@@ -37,8 +37,8 @@ std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> m
   return facets;
 }
 
-// The same point for all triangles that meet in it: corners without a share are gone, the others
-// in the order of their numbers.
+// The same point for all triangles that share it: corners with coordinate 0 are replaced by the
+// largest one, then corners are sorted by index.
 SurfacePoint point_on(const Facet& facet, const std::array<double, 3>& shares) {
   std::array<std::pair<std::uint32_t, double>, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -69,12 +69,12 @@ bool same_corners(const SurfacePoint& a, const SurfacePoint& b) {
 // How well a point fits a vertex over the probed moments.
 struct Fit {
   double distance = 0;  // the largest
-  double angle = 0;     // of normals, the largest; 0 where one has none
-  double tangents = 0;  // how far those are apart, the largest; 0 where both have none
+  double angle = 0;     // max, of normals; 0 if one has none
+  double tangents = 0;  // max, see tangents_apart(); 0 if both have none
 };
 
-// Of one moment: the angle, more by half a turn for the other side, and that where only one of the
-// two has tangents, so that meshes with and without them which meet are told apart.
+// Angle between tangents at one moment, plus pi for opposite handedness; pi if only one mesh has
+// tangents, so that coincident meshes with and without tangents are not confused.
 double tangents_apart(const SurfacePoint& point, const SurfaceMoments& own, std::size_t mesh,
                       std::size_t vertex, const SurfaceMoments& other, std::size_t moment) {
   const bool has = own.meshes[mesh].has_tangents;
@@ -111,8 +111,8 @@ SurfacePoint choose(const std::vector<SurfacePoint>& points, const SurfaceMoment
     fits.push_back(fit_of(point, own, mesh, vertex, other));
     least = std::min(least, fits.back().distance);
   }
-  // Of those that stay closest the ones whose normals fit; tangents decide where a texture's seam
-  // parts what else is one vertex.
+  // Keeps the closest points, of those the ones with matching normals; tangents decide at texture
+  // seams, where vertices are otherwise the same.
   double least_angle = std::numeric_limits<double>::infinity();
   for (const Fit& fit : fits) {
     if (fit.distance <= least + touching) least_angle = std::min(least_angle, fit.angle);
@@ -150,7 +150,8 @@ std::size_t vertices_of(const std::vector<SceneMesh>& meshes, const std::vector<
   return count;
 }
 
-// The points of what was found for `place`; of triangles that are folded up all corners.
+// Distinct candidate points for `place`, including corners at the same distance (all corners of
+// degenerate triangles).
 std::vector<SurfacePoint> distinct_points(const FacetTree& tree, const Vec3& place,
                                           const std::vector<FoundFacet>& found) {
   std::vector<SurfacePoint> points;
@@ -173,7 +174,7 @@ std::vector<SurfacePoint> distinct_points(const FacetTree& tree, const Vec3& pla
   return points;
 }
 
-// The numbers of vertices, those in one place next to each other.
+// Vertex indices sorted by position, so that coincident vertices are adjacent.
 std::vector<std::uint32_t> by_place(const Points& vertices) {
   std::vector<std::uint32_t> order(vertices.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -185,14 +186,14 @@ std::vector<std::uint32_t> by_place(const Points& vertices) {
   return order;
 }
 
-// For each vertex of a mesh of `own` the nearest point of `other`, whose facets the tree has.
+// For each vertex of a mesh of `own`, the nearest point of `other`, whose facets are in the tree.
 SurfaceMatch match_surface(const SurfaceMoments& own, int mesh, const SurfaceMoments& other,
                            const FacetTree& tree, int jobs) {
   const Points& vertices = own.states[0].positions[static_cast<std::size_t>(mesh)];
   SurfaceMatch match;
   match.mesh = mesh;
   match.points.resize(vertices.size());
-  // Vertices in one place, as at seams or in a prop that is still folded up, share a search.
+  // Coincident vertices, as at seams or in a collapsed prop, share a search.
   const std::vector<std::uint32_t> order = by_place(vertices);
   parallel_for(order.size(), 1024, jobs, [&](std::size_t begin, std::size_t end) {
     std::vector<FoundFacet> found;
@@ -209,7 +210,7 @@ SurfaceMatch match_surface(const SurfaceMoments& own, int mesh, const SurfaceMom
   return match;
 }
 
-// A mesh is compared in what all of its nearest points have.
+// A mesh is compared in the attributes that all of its nearest points have.
 void report_tangents_left_out(SceneComparison& comparison) {
   for (const SurfaceMatch& match : comparison.surfaces) {
     const auto& own = match.in_second ? comparison.second.meshes : comparison.first.meshes;
@@ -239,8 +240,8 @@ Status match_surfaces(SceneComparison& comparison, int jobs) {
     comparison.second.evaluate(moment.second_animation, moment.second_time, second.emplace_back());
   }
   if (!finite(first.front()) || !finite(second.front())) {
-    return Error("compare-value", "a scene gives positions that are not finite numbers",
-                 "its nodes or keys hold values that are too large");
+    return Error("compare-value", "a scene has positions that are NaN or infinite",
+                 "its nodes or keys have values that are too large");
   }
   const SurfaceMoments a{comparison.first.meshes, first};
   const SurfaceMoments b{comparison.second.meshes, second};
@@ -258,7 +259,7 @@ Status match_surfaces(SceneComparison& comparison, int jobs) {
     const auto first_tree = FacetTree::create(facets_of(a, group.first));
     const auto second_tree = FacetTree::create(facets_of(b, group.second));
     if (!first_tree || !second_tree) {
-      return Error("compare-search", "Embree cannot be used on this machine");
+      return Error("compare-search", "Embree is not available on this machine");
     }
     for (const int mesh : group.first) {
       comparison.surfaces.push_back(match_surface(a, mesh, b, *second_tree, jobs));

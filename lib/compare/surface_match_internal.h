@@ -8,13 +8,13 @@
 #include "compare/scene.h"
 #include "core/result.h"
 
-// Private to this folder: which point of one surface is nearest to each vertex of another.
+// Private to this folder: the nearest point of one surface to each vertex of another.
 
 namespace krok::compare {
 
 using Points = std::vector<Vec3>;
 
-// Meshes of both scenes that together are one surface.
+// Meshes of both scenes that together form one surface.
 struct SurfaceGroup {
   std::vector<int> first, second;
 };
@@ -23,24 +23,24 @@ struct SurfaceGroup {
 struct SurfacePoint {
   int mesh = -1;
   std::array<std::uint32_t, 3> corners{};
-  std::array<double, 3> shares{};  // of the corners, together 1
+  std::array<double, 3> shares{};  // barycentric coordinates, summing to 1
 };
 
-// The points that belong to the vertices of one mesh.
+// The nearest points for the vertices of one mesh.
 struct SurfaceMatch {
   int mesh = -1;
-  bool in_second = false;            // whose mesh it is; the points are the other scene's
+  bool in_second = false;  // whether `mesh` is in the second; the points are in the other scene
   std::vector<SurfacePoint> points;  // [vertices]
 };
 
-// One scene at a few moments: the one at which nearest points are found, and others by which
-// surfaces that touch there are told apart.
+// One scene at a few times: the first is used to find nearest points, the others to choose between
+// surfaces that touch there.
 struct SurfaceMoments {
   const std::vector<SceneMesh>& meshes;
   std::span<const SceneState> states;
 };
 
-// The value of a point where each corner has one, as positions, normals and tangents
+// Interpolates a value given per corner, such as positions, normals or tangents
 // ([meshes][vertices]).
 template <typename Vector>
 Vector value_at(const SurfacePoint& point, const std::vector<std::vector<Vector>>& values) {

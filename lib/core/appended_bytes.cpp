@@ -9,10 +9,10 @@ namespace krok {
 
 namespace {
 
-// Whole stretches of a file, which the system keeps in large pieces at half the cost of others.
+// Aligned blocks of the file, which the system caches in large pieces at half the cost.
 constexpr std::uint64_t kFlushedBytes = std::uint64_t{1} << 18;
 constexpr std::uint64_t kWorthStoring = std::uint64_t{8} << 20;
-constexpr std::size_t kMaxParts = 1024;  // that the system takes at once (IOV_MAX)
+constexpr std::size_t kMaxParts = 1024;  // per system call (IOV_MAX)
 
 }  // namespace
 

@@ -7,32 +7,32 @@
 #include <span>
 #include <vector>
 
-// Bytes on their way to the end of an open file: OutputFile's.
+// Buffered appending to an open file, for OutputFile.
 
 namespace krok {
 
 class AppendedBytes {
  public:
   AppendedBytes() = default;
-  // Of a descriptor that stays the caller's. A stream is not told to be stored.
+  // The caller keeps ownership of the descriptor. Streams are not flushed to disk.
   AppendedBytes(int descriptor, bool is_stream) : descriptor_(descriptor), is_stream_(is_stream) {}
 
-  // Appends the parts one behind the other. What is left of the last whole stretch waits. Both
-  // return 0 or the system's error.
+  // Appends the parts in order. Bytes after the last full block stay buffered. Both return 0 or an
+  // errno.
   int append(std::span<const std::span<const std::byte>> parts);
-  // Gives what waits to the system.
+  // Writes the buffered bytes.
   int flush();
 
-  // How many bytes were appended, whether or not they wait.
+  // Bytes appended, including buffered ones.
   std::uint64_t size() const { return given_ + waiting_.size(); }
-  // How many the system was given and not yet told to store.
+  // Bytes written for which writeback has not been started.
   std::uint64_t not_stored() const { return given_ - storing_; }
 
-  // Has the disk begin with what was given, so that whoever waits at the end does not wait long.
-  // Only a beginning: what fails here, fsync() or syncfs() tells.
+  // Starts writeback of what was written, so that a later sync takes less time. Failures are
+  // reported by fsync() or syncfs().
   void start_storing();
 
-  // Lets go of memory.
+  // Frees memory.
   void end();
 
  private:
@@ -41,10 +41,10 @@ class AppendedBytes {
 
   int descriptor_ = -1;
   bool is_stream_ = false;
-  std::uint64_t given_ = 0;    // to the system
-  std::uint64_t storing_ = 0;  // of these, told to be stored
+  std::uint64_t given_ = 0;    // bytes written
+  std::uint64_t storing_ = 0;  // of these, with writeback started
   std::vector<std::byte> waiting_;
-  std::vector<iovec> planned_;  // what is given next
+  std::vector<iovec> planned_;  // to be written next
 };
 
 }  // namespace krok

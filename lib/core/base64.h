@@ -6,8 +6,8 @@
 
 namespace krok {
 
-// Bytes as text in base64 (RFC 4648), with its padding. What is encoded in pieces is the same text
-// as the whole if all pieces but the last hold a multiple of three bytes.
+// Base64 (RFC 4648) with padding. Data encoded in pieces gives the same text as a whole if all
+// pieces but the last have a multiple of three bytes.
 std::string to_base64(std::span<const std::byte> bytes);
 
 }  // namespace krok

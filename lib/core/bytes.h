@@ -9,15 +9,15 @@
 #include <type_traits>
 #include <vector>
 
-// Bounded reading and growing writing of little-endian binary data. Krok builds on little-endian
-// machines only (checked below), so values are copied as they are.
+// Bounds-checked reader and growing writer for little-endian binary data. Krok builds only on
+// little-endian machines (checked below), so values are copied without conversion.
 
 namespace krok {
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the binary formats are little-endian");
 
-// Reads from a span it does not own. A read past the end gives zeros, moves to the end and makes
-// ok() false from then on, so that a run of reads needs one check.
+// Reads from a span that it does not own. A read past the end returns zeros, moves to the end and
+// clears ok() for good, so that a series of reads needs one check.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> data) : data_(data) {}
@@ -30,7 +30,7 @@ class ByteReader {
     return value;
   }
 
-  // The next `count` bytes, or nothing (and ok() false) if fewer are left.
+  // The next `count` bytes, or an empty span (and ok() false) if fewer are left.
   std::span<const std::byte> take(std::size_t count) {
     if (count > remaining()) {
       ok_ = false;
@@ -75,7 +75,7 @@ class ByteWriter {
 
   void append_text(std::string_view text) { append(std::as_bytes(std::span(text))); }
 
-  // Zeros up to the next multiple of `alignment`.
+  // Pads with zeros to the next multiple of `alignment`.
   void align(std::size_t alignment) {
     const std::size_t over = data_.size() % alignment;
     if (over != 0) data_.resize(data_.size() + alignment - over, std::byte{0});

@@ -24,7 +24,7 @@ namespace krok {
 
 namespace {
 
-// Sanitizers reserve terabytes, and look into memory by way of pipes that they open.
+// Sanitizers reserve terabytes of address space and inspect memory through pipes that they open.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kSanitized = true;
 #else
@@ -33,7 +33,7 @@ constexpr bool kSanitized = false;
 
 using Clock = std::chrono::steady_clock;
 
-// What goes over the pipe: one header, then `size` bytes.
+// The pipe carries one header, then `size` bytes.
 struct Header {
   std::uint32_t magic = kMagic;
   std::uint32_t end = 0;
@@ -63,7 +63,7 @@ void send(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(result_descriptor, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return;  // the caller has gone
+    if (count <= 0) return;  // the caller is gone
     bytes = bytes.subspan(static_cast<std::size_t>(count));
   }
 }
@@ -74,7 +74,7 @@ void send(std::span<const std::byte> bytes) {
   header.size = bytes.size();
   send(std::as_bytes(std::span(&header, 1)));
   send(bytes);
-  _exit(0);  // without what runs at the end of a program: buffers, leak checks
+  _exit(0);  // skips exit handlers: buffers, leak checks
 }
 
 [[noreturn]] void report_out_of_memory() {
@@ -107,7 +107,7 @@ void forget_signal_handlers() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-// Leaves the result's descriptor, and standard ones that lead nowhere.
+// Keeps the result's descriptor and points the standard ones to /dev/null.
 void close_descriptors() {
   result_descriptor = fcntl(result_descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -137,7 +137,7 @@ void close_descriptors() {
     }
   }
   set_limit(RLIMIT_CORE, 0);
-  prctl(PR_SET_DUMPABLE, 0);  // no core to a program that collects them either
+  prctl(PR_SET_DUMPABLE, 0);  // no core for a collector either
   set_limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(std::max(limits.seconds, 1.0))));
   set_limit(RLIMIT_FSIZE, 0);
   if (!kSanitized) set_limit(RLIMIT_NOFILE, 0);  // nothing more can be opened
@@ -160,7 +160,8 @@ void close_descriptors() {
 
 enum class Arrival { whole, ended, late };
 
-// Appends `count` bytes to `bytes`. Memory is taken as they come, not as they are promised.
+// Appends `count` bytes to `bytes`. Memory grows with the data received, not with the announced
+// size.
 Arrival receive(int descriptor, std::uint64_t count, Clock::time_point deadline,
                 std::vector<std::byte>& bytes) {
   const std::size_t begin = bytes.size();
@@ -191,7 +192,7 @@ ChildReport report_of(ChildEnd end) {
   return report;
 }
 
-// What the child sent; `crashed` where it sent nothing whole.
+// The child's report; `crashed` if it is incomplete.
 ChildReport receive_report(int descriptor, const ChildLimits& limits, Clock::time_point deadline) {
   std::vector<std::byte> bytes;
   const auto unfinished = [](Arrival arrival) {
@@ -222,8 +223,8 @@ ChildReport receive_report(int descriptor, const ChildLimits& limits, Clock::tim
   return report;
 }
 
-// Waits for the child's end; kills it at the deadline, or at once if nothing more is wanted of it.
-// Whether it was killed here; `status` is what waitpid says, -1 where the system does not tell.
+// Waits for the child to end; kills it at the deadline, or immediately if `at_once`. Returns
+// whether it was killed here; `status` is that of waitpid(), -1 if unknown.
 bool reap(pid_t child, bool at_once, Clock::time_point deadline, int& status) {
   bool killed = false;
   for (long nap = 50'000;; nap = std::min(nap * 2, 10'000'000L)) {
@@ -244,17 +245,17 @@ bool reap(pid_t child, bool at_once, Clock::time_point deadline, int& status) {
   }
 }
 
-// Tells a crash, from how the child ended.
+// Describes a crash from the child's exit status.
 void describe_crash(int status, bool killed, ChildReport& report) {
   if (status == -1) {
-    report.what = "it ended before its work was done";
+    report.what = "the process ended before it was done";
   } else if (WIFSIGNALED(status)) {
     report.signal = WTERMSIG(status);
     report.what = signal_text(report.signal);
     const bool late = report.signal == SIGXCPU || (killed && report.signal == SIGKILL);
     if (late) report = report_of(ChildEnd::out_of_time);
   } else {
-    report.what = fmt::format("it ended with code {} before its work was done",
+    report.what = fmt::format("the process exited with code {} before it was done",
                               WIFEXITED(status) ? WEXITSTATUS(status) : -1);
   }
 }
@@ -274,9 +275,9 @@ std::string signal_text(int signal) {
     case SIGILL:
       return "illegal instruction";
     case SIGKILL:
-      return "killed, perhaps by the system for want of memory";
+      return "killed, perhaps because the system is out of memory";
     case SIGXFSZ:
-      return "an attempt to write a file";
+      return "attempt to write a file";
     default:
       return fmt::format("signal {}", signal);
   }
@@ -297,7 +298,7 @@ ChildReport run_in_child(const std::function<std::vector<std::byte>()>& work,
   pipe.read_end = ends[0];
   pipe.write_end = ends[1];
 
-  // The child must not run the caller's handlers before it has forgotten them.
+  // The child must not run the caller's handlers before it has reset them.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-// Replaces the functions of the same names by those that look at the machine.
+// Replaces the functions of the same names by versions with runtime CPU dispatch.
 #ifdef KROK_XXHASH_DISPATCHES
 #include <xxh_x86dispatch.h>
 #endif

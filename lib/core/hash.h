@@ -15,7 +15,7 @@ std::uint64_t xxh3(std::span<const std::byte> data);
 // Sixteen lower-case hexadecimal digits.
 std::string hex(std::uint64_t value);
 
-// The same checksum over data that comes in pieces.
+// Streaming version of xxh3().
 class Xxh3Stream {
  public:
   Xxh3Stream();

@@ -4,7 +4,7 @@
 
 namespace krok {
 
-// A joint's, frame's or vertex's number (not negative) as an index of a container.
+// Converts a non-negative joint, frame or vertex number to a container index.
 constexpr std::size_t at(int number) {
   return static_cast<std::size_t>(number);
 }

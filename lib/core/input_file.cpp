@@ -17,18 +17,18 @@ namespace krok {
 
 namespace {
 
-constexpr std::size_t kHashedBytes = std::size_t{4} << 20;  // worth a call; whole pages
+constexpr std::size_t kHashedBytes = std::size_t{4} << 20;  // large enough per call; whole pages
 
 }  // namespace
 
 struct InputFile::Content {
   void* mapped = nullptr;
   std::size_t mapped_size = 0;
-  std::size_t released = 0;  // what before is given back already
+  std::size_t released = 0;  // bytes before this are released
   std::unique_ptr<std::byte[]> read;
   std::size_t read_size = 0;
-  // The checksum of what stands before `summed`. A mapped file that is released from front to back
-  // is summed on the way, while its bytes are at hand.
+  // The checksum of the bytes before `summed`. A mapped file that is released front to back is
+  // hashed on the way, while its pages are in memory.
   std::optional<Xxh3Stream> sum;
   std::size_t summed = 0;
 
@@ -77,12 +77,12 @@ void InputFile::release_before(std::size_t offset) const {
   Content& content = *content_;
   if (content.mapped == nullptr) return;
   const std::size_t end = std::min(offset, content.mapped_size) / kHashedBytes * kHashedBytes;
-  // Going back means that the file is read once more from its front.
+  // Going back means that the file is read again from the start.
   if (end < content.released) content.released = 0;
   if (end == content.released) return;
   content.sum_up_to(end);
-  // The mapping is private and nothing was written to it, so the file's bytes come back. Where the
-  // system does not follow, nothing is lost but memory.
+  // The mapping is private and never written, so the pages are read from the file again. If the
+  // system does not release them, only memory is lost.
   (void)madvise(static_cast<std::byte*>(content.mapped) + content.released, end - content.released,
                 MADV_DONTNEED);
   content.released = end;
@@ -111,12 +111,13 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
                       fmt::format("cannot be examined: {}", system_text(errno)));
   }
   if (S_ISDIR(status.st_mode)) {
-    return file_error("file-directory", path, "is a folder, not a file", "name a file inside it");
+    return file_error("file-directory", path, "is a folder, not a file",
+                      "specify a file inside it");
   }
   const auto too_large = [&] {
     return file_error("file-too-large", path, fmt::format("is larger than {} bytes", limit));
   };
-  // A map costs each thread of the program a little; small files are sooner read.
+  // Small files are read, since a mapping costs each thread of the program a little.
   constexpr std::uint64_t kMappedFrom = std::uint64_t{1} << 16;
   auto content = std::make_unique<Content>();
   const auto size =
@@ -130,8 +131,8 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
       return InputFile(path, std::move(content));
     }
   }
-  // What cannot be mapped takes memory as it comes, and a device may never end. Not by way of the
-  // stack: where memory is at an end, a stack that cannot grow ends the program.
+  // Memory grows with the data, since a device may never end. No stack buffer: with no memory left,
+  // a stack that cannot grow ends the program.
   limit = std::min(limit, InputFile::kStreamLimit);
   std::size_t room = size > 0 && size < kMappedFrom ? size + 1 : kMappedFrom;
   std::size_t& used = content->read_size;
@@ -146,7 +147,7 @@ Result<InputFile> InputFile::open(const std::string& path, std::uint64_t limit) 
     if (count == 0) break;
     used += static_cast<std::size_t>(count);
     if (used > limit) return too_large();
-    if (used == size) break;  // a regular file, to its end
+    if (used == size) break;  // end of a regular file
     if (used < room) continue;
     room *= 2;
     auto larger = std::make_unique_for_overwrite<std::byte[]>(room);

@@ -16,16 +16,16 @@ namespace krok {
 
 namespace {
 
-// Whether this thread is in a call's work.
+// Whether this thread is inside the work of a call.
 thread_local bool within_work = false;
 
-// A call in progress. It lives where it was made; a helper's last use of it is to count itself out.
+// A call in progress, on the caller's stack. A helper's last access is to decrement `running`.
 struct Call {
   const std::function<void()>& work;
-  std::size_t wanted;                   // helpers that may still begin
-  std::atomic<std::size_t> running{0};  // helpers that have begun and are not done
+  std::size_t wanted;                   // helpers that may still start
+  std::atomic<std::size_t> running{0};  // helpers that have started and are not done
   bool caller_sleeps = false;
-  Call* next = nullptr;  // of those that want helpers
+  Call* next = nullptr;  // in the list of calls that want helpers
 };
 
 class Threads {
@@ -52,8 +52,8 @@ class Threads {
     wait_for(call);
   }
 
-  // Ends all threads, but not in the middle of work: a program may end so, and its threads with it.
-  // Returns whether they have ended.
+  // Ends all threads, unless work is in progress, as when a program exits within it. Returns
+  // whether they have ended.
   bool end() {
     {
       const std::lock_guard lock(mutex_);
@@ -107,8 +107,8 @@ class Threads {
     work_done_.wait(lock, done);
   }
 
-  // As many as are missing for `helpers` more, up to `most` in all. Where the system gives fewer,
-  // the work goes on with those.
+  // Creates the threads missing for `helpers` more, up to `most` in all. If the system provides
+  // fewer, the work runs on those.
   void make_threads(std::size_t helpers, std::size_t most) {
     try {
       while (free_ < wanted_ + helpers && threads_.size() < most) {
@@ -120,7 +120,7 @@ class Threads {
     }
   }
 
-  // Helpers may begin, after those of older calls.
+  // Lets helpers start, after those of older calls.
   void open(Call& call) {
     Call** last = &first_open_;
     while (*last != nullptr) last = &(*last)->next;
@@ -128,7 +128,7 @@ class Threads {
     set_wanted(wanted_ + call.wanted);
   }
 
-  // No further helper begins.
+  // Lets no further helper start.
   void close(Call& call) {
     Call** place = &first_open_;
     while (*place != &call) place = &(*place)->next;
@@ -147,11 +147,11 @@ class Threads {
   std::condition_variable call_made_, work_done_;
   std::vector<std::thread> threads_;
   Call* first_open_ = nullptr;              // the oldest that wants helpers
-  std::size_t wanted_ = 0;                  // helpers, by all of these
-  std::atomic<std::size_t> wanted_now_{0};  // the same, for a look without the mutex
-  std::size_t asked_ = 0;                   // helpers, by all calls in progress that are outermost
-  std::size_t free_ = 0;                    // threads that help no call
-  std::size_t asleep_ = 0;                  // of these, those that must be woken
+  std::size_t wanted_ = 0;                  // helpers wanted by all open calls
+  std::atomic<std::size_t> wanted_now_{0};  // same, readable without the mutex
+  std::size_t asked_ = 0;                   // helpers of all outermost calls in progress
+  std::size_t free_ = 0;                    // idle threads
+  std::size_t asleep_ = 0;                  // idle threads that must be woken
   bool ending_ = false;
 };
 
@@ -159,7 +159,7 @@ std::atomic<Threads*> kept{nullptr};
 std::atomic<bool> ended{false};
 Threads* of_parent = nullptr;
 
-// Null where there is no memory for them, and at the program's end.
+// Null if out of memory, and at program exit.
 Threads* kept_threads() {
   if (Threads* threads = kept.load(std::memory_order_acquire)) return threads;
   if (ended.load()) return nullptr;
@@ -170,7 +170,7 @@ Threads* kept_threads() {
   return other;
 }
 
-// The threads are not there in a child, and what they share may be in any state.
+// A forked child does not have the threads, and their shared state may be inconsistent.
 const int forks_reported =
     pthread_atfork(nullptr, nullptr, [] { of_parent = kept.exchange(nullptr); });
 

@@ -5,7 +5,7 @@
 namespace krok {
 
 std::string to_markup(std::string_view text) {
-  // U+FFFE and U+FFFF are the only ones above the control characters that XML leaves out.
+  // U+FFFE and U+FFFF are the only characters above the control characters that XML does not allow.
   const auto is_no_character = [](std::string_view rest) {
     return rest.substr(0, 3) == "\xEF\xBF\xBE" || rest.substr(0, 3) == "\xEF\xBF\xBF";
   };
@@ -31,7 +31,7 @@ std::string to_markup(std::string_view text) {
           result += ' ';
           i += 2;
         } else {
-          // Other control characters are no XML.
+          // XML does not allow other control characters.
           result += static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' ? ' ' : c;
         }
     }

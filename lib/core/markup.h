@@ -5,8 +5,8 @@
 
 namespace krok {
 
-// `text` as it stands in XML and HTML, in attributes too: UTF-8, with &, <, > and " escaped and a
-// space for each character that XML has none of.
+// `text` for XML and HTML, including attributes: UTF-8, with &, <, > and " escaped and characters
+// that XML does not allow replaced by spaces.
 std::string to_markup(std::string_view text);
 
 }  // namespace krok

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxLetters = 64;
 
-// Levenshtein's distance, row by row.
+// Levenshtein distance, row by row.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -51,7 +51,7 @@ std::string nearest_name(std::string_view word, std::span<const std::string> nam
 std::string nearest_hint(std::string_view word, std::span<const std::string> names) {
   const std::string nearest = nearest_name(word, names);
   if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
-  return fmt::format("known are {}", fmt::join(names, ", "));
+  return fmt::format("expected one of {}", fmt::join(names, ", "));
 }
 
 }  // namespace krok

@@ -10,7 +10,7 @@ namespace krok {
 
 namespace {
 
-// from_chars takes no '+', people and some exporters write one.
+// from_chars does not accept '+', which people and some exporters write.
 std::string_view without_plus(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   return text;

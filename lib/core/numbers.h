@@ -4,30 +4,29 @@
 #include <string>
 #include <string_view>
 
-// Numbers as text, independent of the locale.
+// Conversion between numbers and text, independent of the locale.
 
 namespace krok {
 
 // The whole of `text` as a finite number in decimal or exponent form, with an optional sign ('+'
-// too); nothing for an empty text, trailing characters, NaN, infinity or a value out of range.
+// too); nullopt for empty text, trailing characters, NaN, infinity or a value out of range.
 std::optional<double> parse_finite(std::string_view text);
 
-// The whole of `text` as a decimal integer with an optional sign; nothing otherwise.
+// The whole of `text` as a decimal integer with an optional sign; nullopt otherwise.
 std::optional<long long> parse_integer(std::string_view text);
 
-// The shortest text that reads back as the same number.
+// The shortest text that parses to the same number.
 std::string shortest(double value);
 std::string shortest(float value);
 
-// A number for people: `digits` significant digits, no exponent between 1e-4 and 1e9, no trailing
+// A number for display: `digits` significant digits, no exponent between 1e-4 and 1e9, no trailing
 // zeros.
 std::string readable(double value, int digits = 6);
 
-// A whole number for people: 1234567 as "1,234,567".
+// An integer for display: 1234567 as "1,234,567".
 std::string grouped(long long value);
 
-// How many there are of something, for people: "1 frame", "1,500 frames". `many` is the plural;
-// without it an s is added.
+// A count for display: "1 frame", "1,500 frames". `many` is the plural; if empty, an s is appended.
 std::string counted(long long count, std::string_view one, std::string_view many = {});
 
 }  // namespace krok

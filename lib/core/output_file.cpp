@@ -20,7 +20,7 @@ namespace krok {
 
 namespace {
 
-// What a chain of symbolic links ends in, whether or not that exists.
+// The target of a chain of symbolic links, whether or not it exists.
 std::filesystem::path link_target(std::filesystem::path path) {
   constexpr int kMaxLinks = 40;
   for (int i = 0; i < kMaxLinks; ++i) {
@@ -32,27 +32,27 @@ std::filesystem::path link_target(std::filesystem::path path) {
   return path;
 }
 
-// Gives the temporary file its name; EEXIST where `no_clobber` and the name is taken. Two programs
-// with --no-clobber cannot both win.
+// Renames the temporary file; EEXIST if `no_clobber` and the name is taken. Of two programs with
+// --no-clobber only one can succeed.
 int put_in_place(const std::string& temporary, const std::string& target, bool no_clobber) {
   if (!no_clobber) return ::rename(temporary.c_str(), target.c_str()) == 0 ? 0 : errno;
   if (renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0) {
     return 0;
   }
   if (errno != EINVAL && errno != ENOSYS) return errno;
-  // A file system that cannot do that in one step: link() refuses an existing name too.
+  // For file systems without RENAME_NOREPLACE: link() fails on an existing name too.
   if (link(temporary.c_str(), target.c_str()) != 0) return errno;
   unlink(temporary.c_str());
   return 0;
 }
 
 Error exists_error(const std::string& path) {
-  return file_error("file-exists", path, "exists already and --no-clobber was given",
-                    "choose another name or leave --no-clobber out");
+  return file_error("file-exists", path, "already exists and --no-clobber was given",
+                    "choose another name or remove --no-clobber");
 }
 
-// How many files without a name wait for their place. Each takes a descriptor, of which a program
-// may have few; further ones get a name to wait under.
+// Max sealed files without a name that wait to be put in place. Each takes a descriptor, of which a
+// program may have few; others get a temporary name.
 constexpr int kMaxKeptOpen = 16;
 std::atomic<int> kept_open{0};
 
@@ -64,14 +64,14 @@ std::string folder_of(const std::string& path) {
 }  // namespace
 
 struct OutputFile::State {
-  std::string path;       // as the caller wrote it, for messages
-  std::string target;     // what is replaced, through symbolic links
-  std::string temporary;  // the name until the file is placed; empty where it has none
+  std::string path;       // as given by the caller, for messages
+  std::string target;     // the file to replace, symbolic links resolved
+  std::string temporary;  // name until put in place; empty if it has none
   int descriptor = -1;
-  // A file that had nothing to replace when it was begun has no name until it is placed, if the
-  // file system allows that.
+  // A file that replaces none has no name until it is put in place, if the file system supports
+  // that.
   bool unnamed = false;
-  std::string unnamed_path;  // where it can be read meanwhile
+  std::string unnamed_path;  // where it can be read until then
   bool is_kept_open = false;
   std::atomic<int>* slot = nullptr;
   bool sealed = false;
@@ -83,7 +83,7 @@ struct OutputFile::State {
 
   ~State() { discard(); }
 
-  // Whether bytes go to `path` as they come.
+  // Whether bytes are written directly to `path`.
   bool direct() const { return temporary.empty() && !unnamed; }
 
   void open(int to, bool is_stream) {
@@ -98,7 +98,7 @@ struct OutputFile::State {
     if (std::exchange(is_kept_open, false)) --kept_open;
   }
 
-  // The temporary name is no more.
+  // Call when the temporary name no longer exists.
   void forget_name() {
     forget_temporary(slot);
     temporary.clear();
@@ -114,7 +114,7 @@ struct OutputFile::State {
   Status fail(int error_number, const char* what) {
     failure =
         file_error("file-unwritable", path, fmt::format("{}: {}", what, system_text(error_number)),
-                   error_number == ENOSPC ? "free some space, nothing was changed" : "");
+                   error_number == ENOSPC ? "free some disk space; nothing was changed" : "");
     return failure;
   }
 
@@ -122,11 +122,11 @@ struct OutputFile::State {
     return trouble == 0 ? Status() : fail(trouble, "cannot be written");
   }
 
-  // Brings what was written to the disk; not where someone waits for many files later.
+  // Flushes to disk, unless store_files() is called later for many files.
   Status store() {
     const bool later = stored_later && access(target.c_str(), F_OK) != 0 && errno == ENOENT;
     if (later) {
-      // A start for each of many small files costs more than it saves at the end.
+      // For small files, starting writeback costs more than it saves at the end.
       constexpr std::uint64_t kWorthAStart = std::uint64_t{1} << 16;
       if (bytes.not_stored() >= kWorthAStart) bytes.start_storing();
       return {};
@@ -154,8 +154,8 @@ struct OutputFile::State {
     return {};
   }
 
-  // Gives the file its name. With `can_go_back` what it replaces stays for a while, under the
-  // temporary name.
+  // Gives the file its name. With `can_go_back`, the replaced file is kept under the temporary name
+  // for now.
   Status place(bool can_go_back) {
     placed = Placed::for_good;
     if (direct()) return {};
@@ -167,7 +167,7 @@ struct OutputFile::State {
         return {};
       }
       if (trouble != EEXIST || no_clobber) return cannot_be_placed(trouble);
-      // Something has come there since.
+      // The path has come into existence since.
       if (Status status = give_temporary_name(); !status) return status;
       close();
     }
@@ -190,8 +190,8 @@ struct OutputFile::State {
 
   Status cannot_be_placed(int trouble) {
     placed = Placed::no;
-    failure =
-        trouble == EEXIST ? Status(exists_error(path)) : fail(trouble, "cannot be put in place");
+    failure = trouble == EEXIST ? Status(exists_error(path))
+                                : fail(trouble, "cannot be moved into place");
     return failure;
   }
 
@@ -230,16 +230,16 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
     state->open(STDOUT_FILENO, true);
     return OutputFile(std::move(state));
   }
-  if (path.empty()) return Error("file-unwritable", "the output has no name");
+  if (path.empty()) return Error("file-unwritable", "the output file name is empty");
   struct stat status {};
   bool exists = lstat(path.c_str(), &status) == 0;
-  // Through a link, the file that it points to is replaced, not the link.
+  // A symbolic link is followed: its target is replaced, not the link.
   const bool is_link = exists && S_ISLNK(status.st_mode);
   state->target = is_link ? link_target(path).string() : path;
   if (is_link) exists = stat(path.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) {
     return file_error("file-directory", path, "is a folder, not a file",
-                      "give the output a file name");
+                      "specify a file name for the output");
   }
   if (exists && !S_ISREG(status.st_mode)) {
     state->open(::open(path.c_str(), O_WRONLY | O_CLOEXEC), true);
@@ -270,7 +270,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
     const int why = errno;
     std::error_code unknown;
     if (!std::filesystem::is_directory(folder, unknown)) {
-      return file_error("file-unwritable", path, fmt::format("there is no folder {}", folder),
+      return file_error("file-unwritable", path, fmt::format("folder {} does not exist", folder),
                         "create the folder first");
     }
     return file_error("file-unwritable", path,
@@ -279,7 +279,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
   state->open(temporary.descriptor, false);
   state->temporary = std::move(temporary.path);
   state->slot = temporary.slot;
-  // The result gets the mode it would have had, or had before; not the bits that lend out rights.
+  // The mode of the replaced file, or the default; without the setuid, setgid and sticky bits.
   (void)fchmod(state->descriptor, exists ? (status.st_mode & 0777) : (0666 & ~mode_mask()));
   return OutputFile(std::move(state));
 }
@@ -297,7 +297,7 @@ bool OutputFile::can_overwrite() const {
 Status OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (!state_->failure) return state_->failure;
   if (state_->direct()) {
-    return file_error("file-unwritable", state_->path, "is a stream and cannot be rewritten");
+    return file_error("file-unwritable", state_->path, "is a stream and cannot be overwritten");
   }
   if (Status status = state_->written(state_->bytes.flush()); !status) return status;
   while (!bytes.empty()) {
@@ -336,7 +336,7 @@ Status OutputFile::place_all(std::span<OutputFile> files) {
   for (OutputFile& file : files) {
     if (const Status status = file.state_->place(files.size() > 1); !status) return give_up(status);
   }
-  // What was replaced goes.
+  // Removes the replaced files.
   for (OutputFile& file : files) file.state_->discard();
   return {};
 }
@@ -367,7 +367,7 @@ Status store_files(const std::string& folder) {
   ::close(descriptor);
   if (trouble == 0) return {};
   return file_error("file-unwritable", folder,
-                    fmt::format("what was written there may be lost: {}", system_text(trouble)));
+                    fmt::format("data written there may be lost: {}", system_text(trouble)));
 }
 
 }  // namespace krok

@@ -54,7 +54,7 @@ void parallel_for(std::size_t count, std::size_t grain, int jobs,
       } catch (...) {
         next.store(ranges);
         const std::lock_guard lock(failure_mutex);
-        // Ranges are begun in order, so that the first one that throws is always among those run.
+        // Ranges are started in order, so the first one that throws is always among those run.
         if (range < failed_range) {
           failed_range = range;
           failure = std::current_exception();
@@ -76,7 +76,7 @@ std::size_t slots_for(int jobs) {
 
 namespace {
 
-// Items are begun in order and at most one a slot, so that each keeps the slot i % slots.
+// Items are started in order and at most one per slot, so that each uses the slot i % slots.
 class InOrder {
  public:
   using Work = std::function<Status(std::size_t, std::size_t)>;
@@ -132,7 +132,7 @@ class InOrder {
     slot_is_free_.wait(lock, free);
   }
 
-  // Whoever makes the next item that is due takes it, and all after it that wait.
+  // The thread that makes the next item due takes it, and all finished items after it.
   void take_what_is_made(std::unique_lock<std::mutex>& lock) {
     someone_takes_ = true;
     while (taken_ < end_ && made_[taken_ % slots_].there) {
@@ -158,10 +158,10 @@ class InOrder {
   std::mutex mutex_;
   std::condition_variable slot_is_free_;
   std::size_t end_ = count_;  // where to stop; 0 after a failure
-  std::size_t next_ = 0;      // the first item not begun
+  std::size_t next_ = 0;      // the first item not started
   std::size_t taken_ = 0;     // the first item not taken
   bool someone_takes_ = false;
-  std::atomic<std::size_t> freed_{0};  // how often a slot became free, for a look without the mutex
+  std::atomic<std::size_t> freed_{0};  // slots freed so far, readable without the mutex
   std::vector<Outcome> made_;          // [slots]
   Status failure_;
   std::exception_ptr thrown_;

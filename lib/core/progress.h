@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-// How the library tells a program how far it is. The library never prints: a program passes a
-// Progress that does.
+// Progress reporting. The library never prints: a program passes a Progress that does.
 
 namespace krok {
 
@@ -12,7 +11,7 @@ namespace krok {
 class Progress {
  public:
   virtual ~Progress() = default;
-  // A new piece of work of `total` steps (0: unknown), named for people: "reading frames".
+  // Starts a task of `total` steps (0: unknown); `what` is for display: "reading frames".
   virtual void begin(std::string_view /*what*/, std::uint64_t /*total*/) {}
   virtual void advance(std::uint64_t /*steps*/) {}
   virtual void end() {}

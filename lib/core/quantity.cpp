@@ -22,7 +22,7 @@ struct Split {
   std::string_view unit;
 };
 
-// The number is the longest prefix that is followed by no more than letters.
+// The unit is the letters at the end; the rest is the number.
 Result<Split> split(std::string_view text) {
   std::size_t end = text.size();
   while (end > 0 && ((text[end - 1] >= 'a' && text[end - 1] <= 'z') ||
@@ -34,7 +34,7 @@ Result<Split> split(std::string_view text) {
   const auto value = parse_finite(number);
   if (!value) {
     return Error("quantity-number", fmt::format("'{}' is not a number", text),
-                 "write a number, with or without a unit after it");
+                 "enter a number with an optional unit");
   }
   return Split{*value, text.substr(end)};
 }
@@ -48,8 +48,7 @@ Result<double> parse_with(std::string_view text, std::span<const NamedUnit> unit
     if (unit.name == parts->unit) return parts->number * unit.size;
     known += fmt::format("{}{}", known.empty() ? "" : ", ", unit.name);
   }
-  return Error("quantity-unit",
-               fmt::format("'{}' in '{}' is no unit that fits here", parts->unit, text),
+  return Error("quantity-unit", fmt::format("invalid unit '{}' in '{}'", parts->unit, text),
                fmt::format("use one of {}", known));
 }
 

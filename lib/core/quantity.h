@@ -4,21 +4,21 @@
 
 #include "core/result.h"
 
-// Numbers with units, as people write them on a command line. The whole text must parse; codes
-// quantity-number, quantity-unit.
+// Numbers with units from a command line. The whole text must parse; codes quantity-number,
+// quantity-unit.
 
 namespace krok {
 
-// Metres from "0.1mm", "5 cm", "1.7m", "3in", "1ft"; a bare number is metres.
+// Metres from "0.1mm", "5 cm", "1.7m", "3in", "1ft"; without a unit, metres.
 Result<double> parse_length(std::string_view text);
 
-// Radians from "15deg", "0.26rad"; a bare number is degrees.
+// Radians from "15deg", "0.26rad"; without a unit, degrees.
 Result<double> parse_angle(std::string_view text);
 
-// Hertz from "6Hz", "0.5 Hz"; a bare number is hertz.
+// Hertz from "6Hz", "0.5 Hz"; without a unit, hertz.
 Result<double> parse_frequency(std::string_view text);
 
-// A moment in a clip: "1.5s", "250ms" or a bare number are seconds, "120f" is a frame.
+// A time in a clip: "1.5s" or "250ms", without a unit seconds; "120f" is a frame.
 struct ClipTime {
   double value = 0;
   bool in_frames = false;

@@ -8,13 +8,13 @@
 #include <vector>
 
 // Errors and warnings as values. The library never prints and never exits: a function that can fail
-// returns Result<T>, and reports recoverable trouble as a list of Diagnostics beside its value.
+// returns Result<T> and reports recoverable problems as a list of Diagnostics.
 
 namespace krok {
 
 enum class Severity { note, warning, error };
 
-// Where in which file. Lines and columns count from 1 (columns in bytes), 0 is unknown;
+// A location in a file. Lines and columns count from 1 (columns in bytes), 0 is unknown;
 // byte_offset counts from 0, -1 is unknown. Text formats give lines, binary formats byte offsets.
 struct Location {
   std::string file;
@@ -23,21 +23,22 @@ struct Location {
   std::int64_t byte_offset = -1;
 };
 
-// One thing to tell the user. `code` is stable and short, "bvh-channel-count"; `message` says what
-// is wrong and why, in lower case without a full stop; `hint` says what to do, and may be empty.
+// A message for the user. `code` is short and stable, such as "bvh-channel-count"; `message` says
+// what is wrong and why, in lower case without a full stop; `hint` says what to do, and may be
+// empty.
 struct Diagnostic {
   Severity severity = Severity::error;
   std::string code;
   std::string message;
   std::string hint;
   Location where;
-  std::string joint;        // the joint concerned, if one is
-  std::int64_t frame = -1;  // the frame concerned, counted from 0; -1 for none
+  std::string joint;        // the joint concerned, if any
+  std::int64_t frame = -1;  // the frame concerned, from 0; -1 for none
 };
 
 using Diagnostics = std::vector<Diagnostic>;
 
-// An error is a Diagnostic that stopped something.
+// A Diagnostic that made an operation fail.
 struct Error : Diagnostic {
   Error() = default;
   Error(std::string error_code, std::string text, std::string what_to_do = {}) {
@@ -47,7 +48,7 @@ struct Error : Diagnostic {
   }
   explicit Error(Diagnostic diagnostic) : Diagnostic(std::move(diagnostic)) {}
 
-  // The same error with a place; what is already known of the place is kept.
+  // Sets the location; a file that is already set is kept.
   [[nodiscard]] Error in_file(const std::string& path) && {
     if (where.file.empty()) where.file = path;
     return std::move(*this);
@@ -63,7 +64,7 @@ struct Error : Diagnostic {
   }
 };
 
-// A value or an Error. Reading the value of a failed result is a programmer's error (assert).
+// A value or an Error. Accessing the value of a failed result is a programming error (assert).
 template <typename T>
 class [[nodiscard]] Result {
  public:

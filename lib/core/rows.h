@@ -5,7 +5,7 @@
 
 namespace krok {
 
-// Row `index` of values that stand row by row, each of `width`.
+// Row `index` of a row-major array with rows of `width` values.
 template <class Values>
 auto row_of(Values& values, int width, int index) {
   const auto count = static_cast<std::size_t>(width);

@@ -1,24 +1,24 @@
 #pragma once
 
-// Which vector instructions the machine has, for kernels that are compiled for several (with
-// Highway, a header away). Highway's own choice among them lives in a library that measures the
-// clock whenever a program starts, which takes longer than many a tool's whole work.
+// Detects the vector instructions of the machine, for kernels compiled for several targets (with
+// Highway, header only). Highway's own dispatch is in a library that measures the clock at program
+// start, which takes longer than many tools run.
 
 namespace krok {
 
-// avx512: F, CD, BW, DQ and VL, Highway's target AVX3. avx2: with FMA, F16C, BMI and BMI2, its
-// AVX2.
+// avx512: F, CD, BW, DQ and VL, Highway's target AVX3. avx2: with FMA, F16C, BMI and BMI2,
+// Highway's target AVX2.
 enum class Simd { other, avx2, avx512 };
 Simd machine_simd();
 
-// From now on machine_simd() says at most `most`: for tests that hold the versions of a kernel
-// against each other. Gives what the machine has.
+// Limits machine_simd() to at most `most`, for tests that compare the versions of a kernel. Returns
+// what the machine has.
 Simd limit_simd(Simd most);
 
 }  // namespace krok
 
-// The address of the best of a function's versions for this machine; behind <hwy/highway.h>, in the
-// part of a file that is compiled once, in the namespace around HWY_NAMESPACE.
+// The address of the best version of a function for this machine. For use after <hwy/highway.h>, in
+// the part of a file that is compiled once, in the namespace around HWY_NAMESPACE.
 #define KROK_STATIC_VERSION(function) (&HWY_STATIC_DISPATCH(function))
 #define KROK_BEST_VERSION(function)                                           \
   (krok::machine_simd() == krok::Simd::avx512 ? KROK_AVX512_VERSION(function) \

@@ -3,12 +3,12 @@
 #include <chrono>
 #include <thread>
 
-// Waiting for another thread that will be done in a moment.
+// Spin-waiting for another thread that is about to finish.
 
 namespace krok {
 
-// For how long whoever waits looks again and again before it sleeps: loops often follow each other
-// closely, and to wake a core takes tens of microseconds.
+// How long to spin before sleeping: loops often follow each other closely, and waking a core takes
+// tens of microseconds.
 inline constexpr std::chrono::microseconds kAwake{200};
 
 inline void rest_a_moment() {
@@ -19,12 +19,12 @@ inline void rest_a_moment() {
 #endif
 }
 
-// Until the condition, which is looked at without any lock, or until it is time to sleep. Other
-// programs that want the core get it meanwhile.
+// Spins until the condition, which is checked without a lock, holds or until it is time to sleep.
+// Yields the core to other programs in between.
 template <typename Condition>
 void stay_awake_until(const Condition& condition) {
   using Clock = std::chrono::steady_clock;
-  constexpr int kLooks = 32;  // between two looks at the clock
+  constexpr int kLooks = 32;  // checks between two clock reads
   const auto end = Clock::now() + kAwake;
   do {
     for (int i = 0; i < kLooks; ++i) {

@@ -24,9 +24,9 @@ namespace krok {
 
 namespace {
 
-// Temporary files that a signal must remove. A signal handler may not allocate or lock, so they
-// stand in tables that never move: a slot is claimed, filled, and marked ready once its file is
-// there. A further table is made when all are full, and never freed.
+// Temporary files to remove on a signal. A signal handler must not allocate or lock, so they are
+// kept in tables that never move: a slot is claimed, filled, and marked ready once its file exists.
+// Another table is allocated when all are full, and never freed.
 enum SlotState : int { slot_free, slot_changing, slot_opening, slot_ready };
 struct Table {
   static constexpr std::size_t kSlots = 256;
@@ -36,11 +36,11 @@ struct Table {
 };
 Table first_table;
 std::atomic<bool> ending{false};
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait");
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
-static_assert(std::atomic<Table*>::is_always_lock_free, "a signal handler may not wait");
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait");
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not wait");
+static_assert(std::atomic<Table*>::is_always_lock_free, "a signal handler must not wait");
 
-// The table after `table`; null where there is none and no memory for one.
+// The table after `table`; null if there is none and no memory for one.
 Table* following(Table& table) {
   if (Table* next = table.next.load()) return next;
   Table* added = new (std::nothrow) Table;
@@ -50,7 +50,7 @@ Table* following(Table& table) {
   return other;
 }
 
-// Null for a path that cannot be remembered.
+// Null if the path cannot be registered.
 std::atomic<int>* remember_temporary(const std::string& path) {
   if (path.size() >= PATH_MAX) return nullptr;
   for (Table* table = &first_table; table != nullptr; table = following(*table)) {
@@ -80,15 +80,15 @@ extern "C" void remove_temporaries_and_end(int signal_number) {
   raise(signal_number);
 }
 
-// Once the program is about to end, no new file is begun.
+// Creates no new file once the program is about to end.
 void stop_if_ending(std::atomic<int>* slot) {
   if (!ending.load()) return;
   forget_temporary(slot);
   for (;;) pause();
 }
 
-// What the names of temporary files begin with, before the number of their process: which machine
-// and process namespace that number belongs to, for a folder may be shared.
+// The prefix of temporary file names, before the process id: identifies the machine and process
+// namespace of that id, since a folder may be shared.
 const std::string& temporary_prefix() {
   static const std::string prefix = [] {
     std::array<char, 256> host{};
@@ -101,17 +101,17 @@ const std::string& temporary_prefix() {
   return prefix;
 }
 
-// Those that end a program unless it says otherwise: by someone's wish, by a limit, by a fault.
+// Signals that end a program by default: requests, limits, faults.
 constexpr int kEndingSignals[] = {SIGINT,    SIGTERM, SIGHUP,  SIGPIPE, SIGQUIT, SIGALRM,
                                   SIGVTALRM, SIGPROF, SIGUSR1, SIGUSR2, SIGPOLL, SIGXCPU,
                                   SIGABRT,   SIGBUS,  SIGSEGV, SIGFPE,  SIGILL,  SIGSYS};
 
-// A temporary file at a name that nothing has yet, by `make`, which gives its descriptor or -1 and
-// errno. The name is remembered before the file exists.
+// Creates a temporary file under an unused name with `make`, which returns its descriptor, or -1
+// and sets errno. The name is registered before the file exists.
 Temporary with_new_name(const std::string& folder,
                         const std::function<int(const char* path)>& make) {
   static std::atomic<unsigned> counter{0};
-  constexpr int kAttempts = 1000;  // names that killed programs left behind
+  constexpr int kAttempts = 1000;  // names left by killed programs
   Temporary temporary;
   for (int i = 0; i < kAttempts; ++i) {
     temporary.path =
@@ -149,7 +149,7 @@ Temporary create_temporary(const std::string& folder) {
 }
 
 int create_unnamed(const std::string& folder) {
-  // The name is given through /proc, which some sandboxes lack.
+  // Files are named through /proc, which some sandboxes do not have.
   static const bool can_be_named = access("/proc/self/fd", X_OK) == 0;
   if (!can_be_named) return -1;
   return ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
@@ -174,8 +174,8 @@ Temporary name_as_temporary(int unnamed, const std::string& folder) {
 }
 
 void remove_temporaries() {
-  // Other threads go on until the process ends. One that is just opening a file is waited for, not
-  // for long: it may be the very thread that a signal interrupted.
+  // Other threads run until the process ends. Waits briefly for one that is just opening a file: it
+  // may be the very thread that the signal interrupted.
   ending.store(true);
   constexpr int kWaits = 50;
   for (int i = 0; i < kWaits && any_is_opening(); ++i) {
@@ -209,18 +209,18 @@ void remove_temporaries_of_killed(const std::string& folder) {
 }
 
 void remove_temporaries_on_signals() {
-  (void)mode_mask();  // while there is one thread
+  (void)mode_mask();  // while there is only one thread
   struct sigaction action {};
   action.sa_handler = remove_temporaries_and_end;
   sigemptyset(&action.sa_mask);
   for (const int signal_number : kEndingSignals) {
-    // What the caller ignores stays ignored (nohup, a shell's background jobs), and what a
-    // profiler or a sanitizer handles is left to it.
+    // Signals that are ignored stay ignored (nohup, background jobs of a shell), and those handled
+    // by a profiler or a sanitizer are left alone.
     struct sigaction before {};
     if (sigaction(signal_number, nullptr, &before) == 0 && before.sa_handler != SIG_DFL) continue;
     sigaction(signal_number, &action, nullptr);
   }
-  // A file that grows past the limit of the shell is then an error of write().
+  // Makes exceeding the file size limit an error of write().
   signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -2,9 +2,9 @@
 
 namespace krok {
 
-// Removes the temporary files of all living OutputFiles (file.h), as a signal does, for a program
-// that is about to end without leaving its scopes. Those that other threads are about to begin are
-// not begun. Takes no memory.
+// Removes the temporary files of all live OutputFiles (file.h), as the signal handlers do, for a
+// program that is about to exit without unwinding. Threads that are about to create one are
+// blocked. Does not allocate.
 void remove_temporaries();
 
 }  // namespace krok

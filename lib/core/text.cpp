@@ -6,11 +6,12 @@ namespace krok {
 
 namespace {
 
-// Length of the character that a lead byte begins, and its bits; 0 for a byte that begins none.
+// Length of the character that starts with a lead byte, and its bits; 0 for a byte that starts
+// none.
 struct Lead {
   std::size_t length = 0;
   std::uint32_t bits = 0;
-  std::uint32_t least = 0;  // smaller values must be written shorter
+  std::uint32_t least = 0;  // smaller values are overlong
 };
 
 Lead lead_of(unsigned char byte) {
@@ -54,7 +55,7 @@ Location Locator::operator()(std::size_t offset) {
   }
   for (; at_ < offset; ++at_) {
     if (!is_line_end(text_[at_])) continue;
-    // A CR LF counts at its LF, which may stand after `offset`.
+    // A CR LF counts at its LF, which may be after `offset`.
     if (text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n') continue;
     ++line_;
     line_begin_ = at_ + 1;
@@ -110,7 +111,7 @@ std::string to_utf8(std::string_view text) {
 std::string shown(std::string_view text) {
   constexpr std::size_t kMax = 40;
   std::size_t length = std::min(text.size(), kMax);
-  // Not in the middle of a character.
+  // Do not cut within a character.
   while (length < text.size() && length > kMax - 4 &&
          (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) {
     --length;

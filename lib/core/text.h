@@ -8,7 +8,7 @@
 
 #include "core/result.h"
 
-// What readers of text formats need of text, independent of the locale.
+// Text functions for readers of text formats, independent of the locale.
 
 namespace krok {
 
@@ -25,7 +25,7 @@ inline bool is_line_end(char c) {
   return c == '\n' || c == '\r';
 }
 
-// `text` without white space at its ends.
+// `text` without leading and trailing white space.
 std::string_view trimmed(std::string_view text);
 
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -37,12 +37,12 @@ constexpr char ascii_lower(char c) {
 }
 std::string ascii_lower(std::string_view text);
 
-// Whether two texts are the same but for the case of ASCII letters.
+// Whether two texts are equal, ignoring the case of ASCII letters.
 bool same_word(std::string_view a, std::string_view b);
 
-// Lines and columns of bytes, for messages; lines end with LF, CR LF or a lone CR. Going forward
-// costs one look at each byte in all, going back starts anew. An offset beyond the text is its end.
-// Both arguments must outlive the locator.
+// Converts byte offsets to lines and columns, for messages; lines end with LF, CR LF or a lone CR.
+// Increasing offsets scan each byte once, going back starts over. An offset beyond the text is its
+// end. Both arguments must outlive the locator.
 class Locator {
  public:
   Locator(std::string_view text, const std::string& file_name)
@@ -58,22 +58,21 @@ class Locator {
   std::int64_t line_ = 1;
 };
 
-// The place of one byte. Takes time with the offset.
+// The location of one byte. Takes time linear in the offset.
 Location locate(std::string_view text, std::size_t offset, const std::string& file_name);
 
 // Whether `text` is well-formed UTF-8 (RFC 3629): no stray or missing continuation bytes, no
-// overlong forms, no surrogates, nothing above U+10FFFF. An empty text is.
+// overlong forms, no surrogates, nothing above U+10FFFF. Empty text is valid.
 bool is_utf8(std::string_view text);
 
-// Whether `text` can be the name of something: UTF-8 without zero bytes, of 1 to kLongestName
-// bytes.
+// Whether `text` is valid as a name: UTF-8 without zero bytes, 1 to kLongestName bytes.
 inline constexpr std::size_t kLongestName = 1000;
 bool is_name(std::string_view text);
 
 // `text` itself if it is UTF-8, otherwise its bytes read as Latin-1.
 std::string to_utf8(std::string_view text);
 
-// For messages: UTF-8, without control characters, cut after about 40 bytes.
+// For messages: UTF-8, control characters replaced by '?', truncated after about 40 bytes.
 std::string shown(std::string_view text);
 
 }  // namespace krok

@@ -10,7 +10,7 @@
 namespace krok::draw {
 
 int motion_colour(std::size_t place) {
-  // Neither of the sides' colours; the first is black.
+  // Distinct from the colours of the sides; the first is black.
   constexpr std::array kColours = {6, 3, 2, 5, 1};
   return kColours[place % kColours.size()];
 }

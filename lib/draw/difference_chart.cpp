@@ -39,7 +39,7 @@ std::vector<JointPair> common_joints(const Skeleton& first, const Skeleton& seco
   return pairs;
 }
 
-// The largest of one frame's differences and the root of their mean square.
+// The max and the RMS of one frame's differences.
 class FrameMeasure {
  public:
   void add(double value) {
@@ -69,7 +69,7 @@ void add_frame(const ChartedMotion& first, const ChartedMotion& second,
     const double length = (places_a[a].cast<double>() - places_b[b].cast<double>()).norm();
     const double angle = angle_between(turns_a[a].cast<double>().normalized(),
                                        turns_b[b].cast<double>().normalized());
-    const compare::Place place{.joint = pair.first, .frame = frames.first, .time = time};
+    const compare::ValueLocation place{.joint = pair.first, .frame = frames.first, .time = time};
     result.positions.add(length, place);
     result.orientations.add(angle, place);
     lengths.add(length);
@@ -90,10 +90,11 @@ Result<MotionDifference> difference_over_time(const ChartedMotion& first,
   const Skeleton& skeleton = first.clip->skeleton;
   const auto pairs = common_joints(skeleton, second.clip->skeleton, joints);
   if (pairs.empty()) {
-    return Error("chart-difference",
-                 joints.empty() ? "the two motions have no joint of the same name"
-                                : "the two motions have none of the chosen joints in common",
-                 "krok-info lists the joints; krok-retarget brings a motion onto another skeleton");
+    return Error(
+        "chart-difference",
+        joints.empty() ? "the two motions have no joints with the same name"
+                       : "none of the chosen joints is in both motions",
+        "krok-info lists the joints; krok-retarget transfers a motion to another skeleton");
   }
   MotionDifference result;
   result.joints = static_cast<int>(pairs.size());
@@ -107,7 +108,7 @@ Result<MotionDifference> difference_over_time(const ChartedMotion& first,
     add_frame(first, second, pairs, frames, result);
   }
   if (result.times.empty()) {
-    return Error("chart-difference", "the two motions have no moment in common");
+    return Error("chart-difference", "the two motions do not overlap in time");
   }
   return result;
 }

@@ -11,10 +11,11 @@ namespace krok::draw {
 
 namespace {
 
-// The sine of 15 degrees: of a thigh closer to the line from hip to hip the direction in the
-// sagittal plane is chance.
+// The sine of 15 degrees: for a thigh closer to the line between the hips, the direction in the
+// sagittal plane is noise.
 constexpr double kMinInPlane = 0.2588;
-constexpr double kMaxExtended = -120;  // degrees: no hip is, so flexion is counted up from there
+constexpr double kMaxExtended =
+    -120;  // degrees; lower limit of the hip range, beyond what any hip extends
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double degrees(double radians) {
@@ -30,14 +31,14 @@ Quat orientation(const Clip& clip, int frame, int joint) {
       clip.frame_orientations(frame)[static_cast<std::size_t>(joint)].cast<double>());
 }
 
-// Degrees between two directions.
+// Angle between two directions, in degrees.
 double between(const Vec3& a, const Vec3& b) {
   if (a.isZero(0) || b.isZero(0)) return kNone;
   const Vec3 u = a.stableNormalized(), v = b.stableNormalized();
   return degrees(std::atan2(u.cross(v).norm(), u.dot(v)));
 }
 
-// The joints that angles of one side take; -1 where there is none.
+// The joints used for the angles of one side; -1 if missing.
 struct Limbs {
   int upper_leg, lower_leg, foot, upper_arm, lower_arm, hand;
 };
@@ -73,7 +74,7 @@ struct Trunk {
   }
 };
 
-// The angle at the middle one of three joints, 0 where they stand in a line.
+// The angle at the middle one of three joints, 0 if they are collinear.
 std::vector<double> bend(const Clip& clip, int above, int middle, int below,
                          const FrameRange& frames) {
   std::vector<double> angles;
@@ -113,7 +114,7 @@ std::vector<double> shoulder_elevation(const Clip& clip, const Trunk& trunk, con
   return angles;
 }
 
-// Where the sole points in the frame of the ankle; zero where that is not known.
+// The direction of the sole in the ankle's frame; zero if unknown.
 Vec3 sole_direction(const Clip& clip, const RoleMap& roles, Side side) {
   const Role foot = side == Side::left ? Role::left_foot : Role::right_foot;
   const int ankle = roles.joint(foot);
@@ -139,7 +140,7 @@ std::vector<double> ankle_dorsiflexion(const Clip& clip, const RoleMap& roles, S
   return angles;
 }
 
-// joint_to_parent of the reference pose, turned back, times that of a frame.
+// Inverse of joint_to_parent in the reference pose, times joint_to_parent in a frame.
 Quat turn_from_reference(const Clip& clip, int joint, int frame) {
   const int parent = clip.skeleton.parents[static_cast<std::size_t>(joint)];
   Quat local = orientation(clip, frame, joint);

@@ -24,21 +24,21 @@ constexpr std::array kBodyAngles = {BodyAngleName{BodyAngle::hip, "Hip flexion",
 
 constexpr const char* kDegrees = "\u00B0";
 constexpr std::array<std::string_view, 3> kAxisNames = {"x", "y", "z"};
-// Red, green and blue, as programs show the axes.
+// Red, green and blue, as is usual for x, y and z.
 constexpr std::array kAxisColours = {1, 2, 0};
 
 // Three curves of a joint, [3][frames].
 using ThreeCurves =
     std::function<std::vector<std::vector<double>>(const ChartedMotion& motion, int joint)>;
 
-// What the three curves of a joint are called.
+// Labels of the three curves of a joint.
 struct CurveNames {
   std::string title;  // after the joint's name
   std::string label, unit;
   std::array<std::size_t, 3> axes;
 };
 
-// Of one motion a panel a joint; of several one for each joint and curve.
+// For one motion, a panel per joint; for several, a panel per joint and curve.
 std::vector<Panel> three_curve_panels(std::span<const ChartedMotion> motions,
                                       std::span<const std::string> joints, const CurveNames& names,
                                       const ThreeCurves& curves_of) {
@@ -127,12 +127,13 @@ std::vector<Panel> turn_panels(std::span<const ChartedMotion> motions,
   const bool apart = motions.size() > 1;
   std::vector<Panel> panels;
   if (!apart && !joints.empty()) {
-    panels.push_back(time_panel(motions, "Turn from the reference pose", "angle", kDegrees));
+    panels.push_back(time_panel(motions, "Rotation from the reference pose", "angle", kDegrees));
   }
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (apart) {
-      panels.push_back(time_panel(
-          motions, fmt::format("{}: turn from the reference pose", joints[j]), "angle", kDegrees));
+      panels.push_back(time_panel(motions,
+                                  fmt::format("{}: rotation from the reference pose", joints[j]),
+                                  "angle", kDegrees));
     }
     for (std::size_t m = 0; m < motions.size(); ++m) {
       const int index = motions[m].clip->skeleton.find(joints[j]);

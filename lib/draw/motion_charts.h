@@ -13,55 +13,56 @@
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
 
-// Charts of motions: panels for a Figure. Several motions go into the same panels. Left and right
-// have a colour each, the same in all panels, and motions a stroke pattern each, so that
-// motion_legend tells all; lines that are neither left nor right take a motion's own colour.
+// Charts of motions: panels for a Chart. Several motions share the same panels. Each side has its
+// own colour in all panels, and each motion its own dash pattern, so that motion_legend covers
+// every panel; lines that are neither left nor right take the colour of their motion.
 
 namespace krok::draw {
 
 struct ChartedMotion {
-  std::string name;  // for legends
+  std::string name;  // shown in legends
   const Clip* clip = nullptr;
   const RoleMap* roles = nullptr;
-  FrameRange frames;  // shown; times stay those of the clip
-  // Contacts of feet are drawn as bars below the panels about legs, one lane a side and motion;
-  // keytimes as lines across, with their names over the heights of the feet.
+  FrameRange frames;  // frames to show; times stay those of the clip
+  // Foot contacts are drawn as bars below the leg panels, one lane per side and motion; keytimes as
+  // vertical lines, labelled in the foot height panel.
   MotionKeys keys;
 };
 
-// What colours and patterns stand for: left and right if `sides`, the motions if there are several.
+// Legend entries: left and right if `sides`, and the motions if there is more than one.
 std::vector<LegendEntry> motion_legend(std::span<const ChartedMotion> motions, bool sides);
 
-// The way of the hips (of the root where no role tells of hips) from above, +Z to the right and +X,
-// the left of a figure that faces +Z, upwards. An arrow ends it; dots mark even steps in time, told
-// in the title. Places of contacts of feet are points in their side's colour.
+// Top view of the path of the hips (of the root if no joint has the hips role), with +Z to the
+// right and +X, the left of a character that faces +Z, upwards. The path ends in an arrow; dots
+// mark equal time steps, given in the title. Foot contact positions are points in the colour of
+// their side.
 std::vector<Panel> path_panels(std::span<const ChartedMotion> motions);
 
-// Heights (metres over y = 0) of the lowest joint of each foot and speeds (metres a second) of its
-// slowest one, so that a foot that stands or rolls shows as one at rest. Speeds are central
-// differences, at a clip's ends one-sided. No panels where no motion has feet; no speeds of clips
-// of one frame.
+// Heights (metres above y = 0) of the lowest joint of each foot and speeds (metres per second) of
+// its slowest joint, so that a planted or rolling foot has a speed near zero. Speeds are central
+// differences, one-sided at the ends of a clip. No panels if no motion has feet; no speeds for
+// clips of one frame.
 std::vector<Panel> foot_panels(std::span<const ChartedMotion> motions, Scale speed_scale);
 
-// Hips, knees, ankles, shoulders, elbows: see body_angle. A panel for each that any motion has.
+// Hips, knees, ankles, shoulders, elbows: see body_angle. One panel for each that any motion has.
 std::vector<Panel> body_angle_panels(std::span<const ChartedMotion> motions);
 
-// World positions of joints (metres). Of one motion a panel a joint; of several one for each joint
-// and axis, with a line for each motion that has a joint of that name.
+// World positions of joints (metres). For one motion, a panel per joint; for several, a panel per
+// joint and axis with a line for each motion that has a joint of that name.
 std::vector<Panel> position_panels(std::span<const ChartedMotion> motions,
                                    std::span<const std::string> joints);
 
-// How far joints are turned from the reference pose: see turn_angle. Of one motion all in one
+// Rotation angles of joints from the reference pose: see turn_angle. For one motion, all in one
 // panel.
 std::vector<Panel> turn_panels(std::span<const ChartedMotion> motions,
                                std::span<const std::string> joints);
 
-// The same as Euler angles: see euler_angles. Panels as in position_panels.
+// The same rotations as Euler angles: see euler_angles. Panels as in position_panels.
 std::vector<Panel> euler_panels(std::span<const ChartedMotion> motions,
                                 std::span<const std::string> joints, const EulerOrder& order);
 
-// The names of the joints that turn most in the frames shown, `count` of them at most, in the
-// skeleton's order; end sites and joints that do not turn are left out.
+// The names of at most `count` joints that rotate most in the frames shown, in skeleton order; end
+// sites and joints that do not rotate are left out.
 std::vector<std::string> most_turning_joints(const ChartedMotion& motion, int count);
 
 }  // namespace krok::draw

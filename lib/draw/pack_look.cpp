@@ -8,7 +8,7 @@ namespace krok::draw {
 
 namespace {
 
-// Materials as the page makes three.js's of them (page/src/look.js), their pictures once each.
+// Packs materials for three.js (page/src/look.js), and each image once.
 class LookPacker {
  public:
   LookPacker(const Model& body, Blob& blob) : body_(body), blob_(blob) {}
@@ -34,7 +34,7 @@ class LookPacker {
   }
 
  private:
-  // Of the material in the page's list. What no material says is as it is without one.
+  // Index of the material in the page's list. Unset properties keep their defaults.
   Result<std::size_t> place_of(const std::string& name, std::span<const Material> materials) {
     const auto [at, added] = places_.try_emplace(name, materials_.size());
     if (!added) return at->second;

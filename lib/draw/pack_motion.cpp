@@ -12,14 +12,14 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "typed arrays of browsers are so");
 
-// Changes below these are rounding, not motion.
+// Changes below these are rounding errors, not motion.
 constexpr double kStillLength = 2e-5;  // metres
 constexpr double kStillAngle = 2e-5;   // radians, half of what packing rounds to
 
 constexpr double kComponentLimit = 0.70710678118654752;
 constexpr double kPackedSteps = 32767.0;
 
-// joint_to_parent of all frames: what moves and what stays.
+// joint_to_parent of all frames, and which joints move.
 struct Locals {
   std::vector<Transform> first;     // [joints]: the reference pose's, or the first frame's
   std::vector<std::uint8_t> turns;  // [joints]
@@ -174,7 +174,8 @@ Json pack_body(const Model& body, Blob& blob) {
       normals[v * 4 + static_cast<std::size_t>(axis)] =
           static_cast<std::int8_t>(std::lround(body.normals[v][axis] * 127.0F));
     }
-    // Weights fall, so the first four are the largest; what rounding leaves goes to the first.
+    // Weights are in descending order, so the first four are the largest; the first takes the
+    // rounding remainder.
     int left = 255;
     float sum = 0.0F;
     for (std::size_t k = 0; k < kept; ++k) sum += body.influence_weights[v * influences + k];

@@ -2,11 +2,11 @@
 
 #include <string_view>
 
-// Private to this folder: the page's program and style in one HTML text, made by page/bundle.mjs.
+// Private to this folder: the page's script and style as one HTML text, made by page/bundle.mjs.
 
 namespace krok::draw {
 
-// Holds "<!--krok-data-->" once, where the data goes.
+// Contains "<!--krok-data-->" once, as the placeholder for the data.
 std::string_view page_text();
 
 }  // namespace krok::draw

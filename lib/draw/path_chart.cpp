@@ -12,14 +12,14 @@ namespace krok::draw {
 namespace {
 
 constexpr int kMaxDots = 15;
-constexpr double kMinExtent = 0.5;  // metres, so that standing still looks like it
+constexpr double kMinExtent = 0.5;  // metres; minimum extent, so that jitter is not magnified
 
 Vec3 carrier_position(const ChartedMotion& motion, int frame) {
   const auto carrier = static_cast<std::size_t>(carrying_joint(*motion.roles));
   return motion.clip->frame_positions(frame)[carrier].cast<double>();
 }
 
-// A round number of seconds between dots, so that the longest motion has not too many.
+// A round time step between dots that limits their number on the longest motion.
 double dot_step(std::span<const ChartedMotion> motions) {
   double longest = 0;
   for (const ChartedMotion& motion : motions) {
@@ -47,7 +47,7 @@ Series path_of(const ChartedMotion& motion, std::size_t place) {
   return path;
 }
 
-// Where the path is every `step` seconds, counted from the first frame shown.
+// Positions on the path every `step` seconds from the first frame shown.
 Series dots_of(const ChartedMotion& motion, std::size_t place, double step) {
   Series dots;
   dots.style = SeriesStyle::points;
@@ -67,7 +67,7 @@ Series dots_of(const ChartedMotion& motion, std::size_t place, double step) {
   return dots;
 }
 
-// Where feet stood, in the colours of their sides.
+// Foot contact positions, in the colours of their sides.
 void add_places(const ChartedMotion& motion, Panel& panel) {
   const double first = motion.frames.first / motion.clip->rate;
   const double last = motion.frames.last / motion.clip->rate;
@@ -85,7 +85,7 @@ void add_places(const ChartedMotion& motion, Panel& panel) {
   }
 }
 
-// Limits with some room around, at least kLeastExtent wide.
+// Limits with a margin, at least kMinExtent wide.
 void set_limits(Panel& panel) {
   const auto limit = [](Axis& axis, const auto& values_of, const std::vector<Series>& all) {
     double low = INFINITY, high = -INFINITY;

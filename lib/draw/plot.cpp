@@ -18,9 +18,9 @@ namespace krok::draw {
 
 namespace {
 
-// What a panel needs around its plotted area.
+// Space around the plot area of a panel.
 constexpr double kLeft = 66, kRight = 16, kTop = 28, kBottom = 48;
-constexpr double kMargin = 16;  // of the figure's own title and legend
+constexpr double kMargin = 16;  // of the chart's own title and legend
 
 constexpr const char* kStyle =
     "<style>text{font:12px system-ui,-apple-system,'Segoe UI',Helvetica,Arial,sans-serif;fill:#222}"
@@ -31,10 +31,10 @@ constexpr const char* kStyle =
     ".moment{stroke:#555;stroke-width:1;stroke-dasharray:3 3}</style>\n";
 
 Status check_chart(const Chart& chart) {
-  if (chart.panels.empty()) return Error("plot-empty", "a figure needs a panel");
+  if (chart.panels.empty()) return Error("plot-empty", "a chart needs at least one panel");
   const auto is_length = [](double length) { return length >= 1 && length <= 1e5; };
   if (!is_length(chart.panel_width) || !is_length(chart.panel_height)) {
-    return Error("plot-size", "a panel is 1 to 100,000 pixels wide and high");
+    return Error("plot-size", "panel width and height must be 1 to 100,000 pixels");
   }
   for (const Panel& panel : chart.panels) {
     for (const Axis* axis : {&panel.x, &panel.y}) {
@@ -45,15 +45,15 @@ Status check_chart(const Chart& chart) {
     }
     for (const Series& series : panel.series) {
       if (series.x.size() != series.y.size()) {
-        return Error("plot-shape", fmt::format("the series '{}' has {} x and {} y", series.name,
-                                               series.x.size(), series.y.size()));
+        return Error("plot-shape", fmt::format("the series '{}' has {} x values and {} y values",
+                                               series.name, series.x.size(), series.y.size()));
       }
     }
   }
   return {};
 }
 
-// The panels row by row, from `y` downwards; returns where they end.
+// Writes the panels row by row from `y` downwards; returns the lower edge.
 double write_panels(const Chart& chart, int columns, double y, std::string& body) {
   const double cell_width = kLeft + chart.panel_width + kRight;
   for (std::size_t first = 0; first < chart.panels.size();) {
@@ -82,8 +82,8 @@ double write_panels(const Chart& chart, int columns, double y, std::string& body
 }  // namespace
 
 const std::vector<std::string>& palette() {
-  // Okabe and Ito, Color Universal Design (2008): told apart by colour-blind people too. Its yellow
-  // is left out, for on white paper it cannot be seen; black comes last.
+  // Okabe and Ito, Color Universal Design (2008): distinct for colour-blind readers too. Their
+  // yellow is left out, because it is invisible on white paper; black comes last.
   static const std::vector<std::string> colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                    "#e69f00", "#56b4e9", "#000000"};
   return colours;

@@ -8,11 +8,11 @@ namespace krok::draw {
 
 namespace {
 
-constexpr double kMin = 1e-250;       // values below are 0 to an axis
+constexpr double kMin = 1e-250;       // smaller values count as 0 on an axis
 constexpr double kSameValue = 1e-12;  // relative
 
-// The smallest 1, 2 or 5 times a power of ten that is not below `value`; their inverses are of the
-// same form.
+// The smallest 1, 2 or 5 times a power of ten that is at least `value`; the inverses have the same
+// form.
 double round_up(double value) {
   return tick_step(0, value, 1);
 }
@@ -40,8 +40,8 @@ Status check_axis(const Axis& axis) {
                    (axis.scale == Scale::logarithmic &&
                     ((axis.low && *axis.low <= 0) || (axis.high && *axis.high <= 0)));
   if (!bad) return {};
-  return Error("plot-axis", fmt::format("the limits of the axis '{}' do not rise, or are no "
-                                        "numbers that it can show",
+  return Error("plot-axis", fmt::format("axis '{}': limits must be finite and increasing, and "
+                                        "positive on a logarithmic axis",
                                         axis.label));
 }
 
@@ -77,7 +77,7 @@ std::string tick_text(double value, double step, Scale scale) {
   }
   const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
   std::string text = fmt::format("{:.{}f}", value, digits);
-  if (text[0] == '-') text.replace(0, 1, "\u2212");  // a minus sign as long as the digits
+  if (text[0] == '-') text.replace(0, 1, "\u2212");  // a minus sign as wide as the digits
   return text;
 }
 

@@ -6,18 +6,18 @@
 
 #include "draw/plot.h"
 
-// Private to this folder: from values to places on an axis, and the texts beside it.
+// Private to this folder: mapping of values to axis positions, and tick labels.
 
 namespace krok::draw {
 
-// Whether a value has a place on such an axis. Those near the end of what doubles hold have none,
-// for the length of an axis must be a number too.
+// Whether a value can be drawn on such an axis. Values near the limits of double cannot, because
+// the length of the axis would overflow.
 inline bool can_show(double value, Scale scale) {
   constexpr double kMax = 1e250;
   return std::abs(value) <= kMax && (scale == Scale::linear || value >= 1 / kMax);
 }
 
-// Where on an axis a value lies, from 0 to 1.
+// Maps values to axis positions in [0, 1].
 struct Mapping {
   double low = 0.0, high = 1.0;
   Scale scale = Scale::linear;
@@ -29,33 +29,33 @@ struct Mapping {
   bool shows(double value) const { return can_show(value, scale); }
 };
 
-// The least and the greatest of values that an axis can show; low > high where there are none.
+// The min and max of the values that an axis can show; low > high if there are none.
 struct Range {
   double low = INFINITY, high = -INFINITY;
   void add(double value, Scale scale);
-  // What an axis can cover: a stretch around one value or values that doubles hardly tell apart,
-  // any where there are none.
+  // A valid axis range: widened around a single value or values too close together for double,
+  // arbitrary if there are no values.
   Range settled(Scale scale) const;
 };
 
-// plot-axis where an axis' limits are not finite, not rising, or not positive on a logarithmic one.
+// plot-axis if the limits are not finite, not increasing, or not positive on a logarithmic axis.
 Status check_axis(const Axis& axis);
 
-// The limits given, or those of the values, rounded outwards to ticks of which `wanted` are asked
-// for.
+// The given limits, or those of the values, rounded outwards to about `wanted` ticks.
 Mapping map_axis(const Axis& axis, const Range& values, int wanted);
 
-// The smallest 1, 2 or 5 times a power of ten of which no more than `wanted` fit between low and
-// high; low < high.
+// The smallest 1, 2 or 5 times a power of ten of which at most `wanted` fit between low and high;
+// low < high.
 double tick_step(double low, double high, int wanted);
 
-// How far apart ticks are; with one or none a length for tick_text to go by.
+// The distance between ticks; with fewer than two, a length that tick_text can use.
 double step_of(const std::vector<double>& ticks);
 
-// A tick's value: as many digits as tell it from its neighbours, on a logarithmic axis its own.
+// A tick label: as many digits as distinguish it from its neighbours; on a logarithmic axis, from
+// its own value.
 std::string tick_text(double value, double step, Scale scale);
 
-// "time (s)"; only one of both where the other is empty.
+// "time (s)"; label or unit alone if the other is empty.
 std::string axis_title(const Axis& axis);
 
 }  // namespace krok::draw

@@ -15,15 +15,15 @@ namespace krok::draw {
 
 namespace {
 
-constexpr int kMaxCells = 1000;   // in a row or a column
-constexpr int kColourSteps = 24;  // of colour, about
-constexpr double kBarStep = 4.0;  // pixels of a bar for one colour
+constexpr int kMaxCells = 1000;   // per row and per column
+constexpr int kColourSteps = 24;  // approximate
+constexpr double kBarStep = 4.0;  // pixels of the colour bar per colour
 constexpr double kBarHeight = 8.0;
 
 using Colour = std::array<double, 3>;
 
-// White, a pale and a dark tone, evenly far apart; after the scheme PuOr of Brewer's ColorBrewer,
-// which colour-blind people can read.
+// White, a light and a dark tone at equal distances; after ColorBrewer's PuOr scheme, which is safe
+// for colour-blind readers.
 constexpr std::array<Colour, 3> kAbove = {{{255, 255, 255}, {253, 184, 99}, {179, 88, 6}}};
 constexpr std::array<Colour, 3> kBelow = {{{255, 255, 255}, {178, 171, 210}, {84, 39, 136}}};
 
@@ -63,16 +63,16 @@ Status check_field(const Field& field) {
   if (field.columns < 1 || field.rows < 1 || field.columns > kMaxCells || field.rows > kMaxCells ||
       field.values.size() !=
           static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows)) {
-    return Error("plot-shape", fmt::format("a field of {} by {} has {} values", field.columns,
-                                           field.rows, field.values.size()));
+    return Error("plot-shape", fmt::format("invalid field: {} by {} cells, {} values",
+                                           field.columns, field.rows, field.values.size()));
   }
   if (!rise(field.x_low, field.x_high) || !rise(field.y_low, field.y_high)) {
-    return Error("plot-shape", "the edges of a field do not rise");
+    return Error("plot-shape", "field edges must be finite and increasing");
   }
   return {};
 }
 
-// Steps of a round size, of which one has zero in its middle.
+// Steps of a round size, one of which is centred on zero.
 FieldScale scale_of(const Field& field) {
   Range range;
   range.add(0, Scale::linear);
@@ -91,7 +91,7 @@ void write_field(const Field& field, const PlotArea& area, std::string& out) {
   const FieldScale scale = scale_of(field);
   const double width = (field.x_high - field.x_low) / field.columns;
   const double height = (field.y_high - field.y_low) / field.rows;
-  // Crisp edges, or the seams between rectangles would show as thin lines.
+  // Crisp edges avoid thin seams between rectangles.
   out += "<g shape-rendering=\"crispEdges\">\n";
   for (int row = 0; row < field.rows; ++row) {
     const double* values = field.values.data() +
@@ -123,7 +123,7 @@ void write_field(const Field& field, const PlotArea& area, std::string& out) {
 double write_field_bar(const Field& field, double right, double bottom, std::string& out) {
   const FieldScale scale = scale_of(field);
   const double step = step_size(scale);
-  // The ends of the bar are the middles of the outer steps, which are round numbers.
+  // The labels are the centres of the outer steps, which are round numbers.
   const std::string low = tick_text(scale.low + step / 2, step, Scale::linear);
   const std::string high = tick_text(scale.high - step / 2, step, Scale::linear);
   const double end = right - text_width(high) - kTick;

@@ -10,7 +10,7 @@ namespace krok::draw {
 
 namespace {
 
-constexpr double kSample = 24;  // a line's length
+constexpr double kSample = 24;  // length of the line
 constexpr double kBeforeText = 30;
 constexpr double kAfterText = 14;
 

@@ -5,14 +5,15 @@
 
 #include "draw/plot.h"
 
-// Private to this folder: names beside samples of how they are drawn.
+// Private to this folder: legends.
 
 namespace krok::draw {
 
-// What a panel's named series look like.
+// Legend entries of the panel's named series.
 std::vector<LegendEntry> legend_of(const Panel& panel);
 
-// Lays the names out in rows of `width` pixels; returns the height. `out` null: only measures.
+// Lays the entries out in rows of `width` pixels; returns the height. If `out` is null, only
+// measures.
 double write_legend(const std::vector<LegendEntry>& entries, double left, double top, double width,
                     std::string* out);
 

@@ -17,7 +17,7 @@ namespace krok::draw {
 namespace {
 
 constexpr double kThinning = 0.02;  // pixels
-// Points that are thinned together: the time that it takes can go with the square.
+// Points simplified together: the worst case is quadratic in time.
 constexpr std::size_t kPiece = 4096;
 constexpr double kArrowLength = 9.0;
 constexpr double kArrowWidth = 7.0;
@@ -30,8 +30,8 @@ double distance_to_segment(const Point& p, const Point& a, const Point& b) {
   return std::hypot(p.x - a.x - along * dx, p.y - a.y - along * dy);
 }
 
-// The line without what nobody can see where many points fall on one place of the x axis: of each
-// stretch of them the first, the highest, the lowest and the last.
+// Drops points of the line that fall on the same x position: of each such group, the first, the
+// highest, the lowest and the last remain.
 std::vector<Point> gathered(const std::vector<Point>& line) {
   std::vector<Point> result;
   for (std::size_t first = 0; first < line.size();) {
@@ -50,8 +50,8 @@ std::vector<Point> gathered(const std::vector<Point>& line) {
   return result;
 }
 
-// Marks those of the points from `begin` to `end` that the line needs to stay within kThinning of
-// itself (Douglas and Peucker, 1973).
+// Marks the points from `begin` to `end` that must be kept to stay within kThinning of the line
+// (Douglas and Peucker, 1973).
 void mark_corners(const std::vector<Point>& line, std::size_t begin, std::size_t end,
                   std::vector<std::uint8_t>& kept) {
   kept[begin] = kept[end] = 1;
@@ -139,7 +139,7 @@ std::string path_of(const std::vector<std::vector<Point>>& runs) {
 std::vector<Point> arrow_head(const std::vector<std::vector<Point>>& runs) {
   if (runs.empty()) return {};
   const Point tip = runs.back().back();
-  // Back to where the line is far enough away to tell its direction from jitter.
+  // Go back far enough to distinguish the line's direction from jitter.
   const auto begin = std::find_if(runs.back().rbegin(), runs.back().rend(), [&](const Point& p) {
     return std::hypot(tip.x - p.x, tip.y - p.y) >= kArrowLength;
   });

@@ -7,7 +7,7 @@
 #include "draw/plot.h"
 #include "draw/plot_axis_internal.h"
 
-// Private to this folder: the lines of series.
+// Private to this folder: geometry of series.
 
 namespace krok::draw {
 
@@ -15,13 +15,12 @@ struct Point {
   double x = 0, y = 0;  // pixels, y down
 };
 
-// What lies far outside of given limits is put outside at a distance that every viewer can count
-// to.
+// Clamps positions far outside the limits to coordinates that every SVG viewer can handle.
 inline double within_reach(double place) {
   return std::clamp(place, -1e4, 1e4);
 }
 
-// The plotted area of a panel: from values to pixels.
+// The plot area of a panel: maps values to pixels.
 struct PlotArea {
   double left = 0, top = 0, width = 1, height = 1;  // of the data, without the lanes of spans
   Mapping x, y;
@@ -31,18 +30,16 @@ struct PlotArea {
   bool shows(double at, double value) const { return x.shows(at) && y.shows(value); }
 };
 
-// The stretches of a series that can be shown without a break, each thinned to the points that it
-// needs to stay within a fiftieth of a pixel of itself.
+// The unbroken parts of a series, each simplified to within 1/50 pixel.
 std::vector<std::vector<Point>> runs_of(const Series& series, const PlotArea& area);
 
-// The points of a series that can be shown, one for each quarter of a pixel.
+// The visible points of a series, at most one per quarter pixel.
 std::vector<Point> points_of(const Series& series, const PlotArea& area);
 
-// "M1 2L3 4"; a run of one point becomes a dot as wide as the line.
+// "M1 2L3 4"; a run of one point becomes a dot of the line's width.
 std::string path_of(const std::vector<std::vector<Point>>& runs);
 
-// The corners of a head at the end of the last run, in its direction there; empty where it is too
-// short to have one.
+// The corners of an arrowhead at the end of the last run; empty if the run is too short.
 std::vector<Point> arrow_head(const std::vector<std::vector<Point>>& runs);
 
 }  // namespace krok::draw

@@ -14,14 +14,14 @@ namespace krok::draw {
 namespace {
 
 constexpr double kLane = 10.0;
-constexpr double kBetweenNames = 10.0;  // of moments, so that each can be read
-constexpr double kAroundArea = 3.0;     // what is drawn at the limits of an axis is drawn whole
+constexpr double kBetweenNames = 10.0;  // between moment names, so that they do not overlap
+constexpr double kAroundArea = 3.0;     // margin, so that marks at the axis limits are not clipped
 
 std::string opacity_of(const Series& series) {
   return series.faint ? " opacity=\"0.4\"" : "";
 }
 
-// So many that they stand `apart` pixels; five at least, where that leaves them `close` pixels.
+// As many ticks as fit `apart` pixels apart; at least five if they fit `close` pixels apart.
 int ticks_wanted(double length, double apart, double close) {
   const int least = std::clamp(static_cast<int>(length / close), 1, 5);
   return std::clamp(static_cast<int>(length / apart), least, 20);
@@ -93,8 +93,8 @@ void PanelWriter::map() {
     }
   }
   Axis along = panel_.x;
-  // Time and the like fill the panel's width; a half-empty last step would look like missing
-  // data.
+  // The time axis and the like fill the panel's width; a partly empty last step would look like
+  // missing data.
   if (along.scale == Scale::linear && !panel_.same_scale && x.low < x.high) {
     const Range whole = x.settled(along.scale);
     if (!along.low) along.low = whole.low;
@@ -111,7 +111,7 @@ void PanelWriter::map() {
   if (panel_.same_scale) equalise();
 }
 
-// Widens the axis that has the finer scale, so that a unit is as long on both.
+// Widens the axis with the finer scale, so that both have the same scale.
 void PanelWriter::equalise() {
   Mapping& x = area_.x;
   Mapping& y = area_.y;
@@ -193,7 +193,7 @@ void PanelWriter::moment_names() {
     if (moment.name.empty() || !(place >= 0 && place <= 1)) continue;
     if (std::abs(x - last) < kBetweenNames) continue;
     last = x;
-    // To the right of the line, so that the first one stays clear of the axis.
+    // To the right of the line, so that the first name does not overlap the axis.
     const bool at_end = x + kBetweenNames > left_ + width_;
     put("<text class=\"small name\" transform=\"rotate(-90 {0} {1})\" x=\"{0}\" y=\"{1}\" "
         "text-anchor=\"end\">{2}</text>\n",

@@ -14,10 +14,10 @@
 
 namespace krok::draw {
 
-// One panel on its way into the text of a figure.
+// Writes one panel of a chart as SVG.
 class PanelWriter {
  public:
-  // `width` and `height` of the plotted area; `id` tells its clipping path from those of others.
+  // `width` and `height` are those of the plot area; `id` makes its clip path unique.
   PanelWriter(const Panel& panel, double left, double top, double width, double height, int id,
               std::string& out);
 

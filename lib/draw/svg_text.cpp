@@ -14,7 +14,7 @@ bool continues_character(char c) {
   return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
 }
 
-// Chinese, Japanese and Korean characters, from U+2E80 on, take twice the room.
+// CJK characters, from U+2E80 on, count as twice as wide.
 double width_of(std::string_view character) {
   const bool wide = static_cast<unsigned char>(character[0]) >= 0xE3 ||
                     (character[0] == '\xE2' && character.size() > 1 &&
@@ -22,7 +22,7 @@ double width_of(std::string_view character) {
   return wide ? 2 * kCharacter : kCharacter;
 }
 
-// The characters of a text, each with its continuation bytes.
+// The characters of a text, as UTF-8 sequences.
 std::vector<std::string_view> characters_of(std::string_view text) {
   std::vector<std::string_view> characters;
   for (std::size_t at = 0; at < text.size();) {
@@ -52,7 +52,7 @@ double text_width(std::string_view text) {
 std::string shortened(const std::string& text, double width) {
   if (text_width(text) <= width) return text;
   const auto characters = characters_of(text);
-  // The end tells files of one series apart, so it gets as much as the beginning.
+  // File names of one series differ at the end, so the end gets as much space as the beginning.
   std::string begin, end;
   double room = width - kCharacter;
   for (std::size_t i = 0; i < characters.size() / 2; ++i) {

@@ -22,7 +22,7 @@ std::vector<double> linear_ticks(double low, double high, int wanted) {
   std::vector<double> result;
   const double first = std::ceil(low / step - 1e-9);
   const double last = std::floor(high / step + 1e-9);
-  // Counted, not added up, so that 0 is 0 and no tick drifts.
+  // Multiplied, not accumulated, so that 0 is exact and ticks do not drift.
   for (double k = first; k <= last && result.size() < 1000; ++k) {
     result.push_back(k == 0 ? 0.0 : k * step);
   }

@@ -10,7 +10,7 @@ namespace krok::draw {
 
 namespace {
 
-// The page so far: the JSON that describes it and the script elements with the arrays.
+// Parts of the page: the JSON description and the script elements with the arrays.
 struct Parts {
   Json items = Json::array();
   std::string scripts;
@@ -44,8 +44,9 @@ Status add_motion(const ViewedMotion& viewed, Parts& parts) {
     if (Status status = check(*viewed.body); !status) return status;
     const std::string difference = difference_in_structure(clip.skeleton, viewed.body->skeleton);
     if (!difference.empty()) {
-      return Error("viewer-body",
-                   fmt::format("the body is not of the motion's skeleton: {}", difference));
+      return Error(
+          "viewer-body",
+          fmt::format("the body does not have the skeleton of the motion: {}", difference));
     }
     Json body = pack_body(*viewed.body, blob);
     if (!viewed.materials.empty()) {
@@ -71,7 +72,7 @@ Status add_motion(const ViewedMotion& viewed, Parts& parts) {
   return {};
 }
 
-// JSON inside a script element: "</script" and "<!--" must not appear, whatever the names hold.
+// JSON inside a script element must not contain "</script" or "<!--", whatever the names contain.
 std::string script_safe(std::string text) {
   std::string safe;
   safe.reserve(text.size());
@@ -118,7 +119,7 @@ Result<std::string> write_viewer_page(const ViewerPage& page) {
   const std::size_t place = text.find(kPlace);
   std::string html(text.substr(0, place));
   html += "<script type=\"application/json\" id=\"krok-data\">";
-  // Names that are no UTF-8 are shown with replacement characters.
+  // Invalid UTF-8 in names is shown as replacement characters.
   html += script_safe(json_text(data));
   html += "</script>\n";
   html += parts.scripts;

@@ -15,7 +15,7 @@ using Vector = Eigen::VectorXd;
 
 constexpr int kIterations = 50;
 
-// Columns of length 1, orthogonal to each other and to (1, .., 1): Helmert's matrix.
+// Orthonormal columns, orthogonal to (1, .., 1): Helmert matrix.
 Matrix sum_zero_basis(Eigen::Index size) {
   Matrix basis = Matrix::Zero(size, size - 1);
   for (Eigen::Index k = 1; k < size; ++k) {
@@ -26,7 +26,7 @@ Matrix sum_zero_basis(Eigen::Index size) {
   return basis;
 }
 
-// The residuals by y: parameters, distance from the start, weights that are too negative.
+// Residuals as functions of y: parameters, distance from the start, weights that are too negative.
 class BlendCost final : public ceres::CostFunction {
  public:
   BlendCost(const rbf::Measure& measure, std::span<const double> inverse_ranges,
@@ -65,7 +65,7 @@ class BlendCost final : public ceres::CostFunction {
     for (Eigen::Index i = 0; i < n; ++i) {
       rest[d + free + i] = options_.positive * std::max(0.0, -weights[i] - options_.slack);
     }
-    // Ceres would print a warning of what is not finite.
+    // Ceres would print a warning about numbers that are not finite.
     if (!rest.allFinite()) return false;
     if (!slopes) return true;
     Eigen::Map<Matrix> jacobian(jacobians[0], num_residuals(), free);
@@ -116,7 +116,7 @@ BlendWeights solve_weights(const rbf::Measure& measure, std::span<const double> 
   BlendCost cost(measure, inverse_ranges, wanted, start, options);
   Vector y = Vector::Zero(cost.free());
 
-  // Ceres prints where the first evaluation fails, however silent it is told to be.
+  // If the first evaluation fails, Ceres prints a message even when logging is off.
   if (!cost.can_begin(y.data())) {
     return {{start.begin(), start.end()}, std::numeric_limits<double>::infinity()};
   }

@@ -12,12 +12,12 @@ namespace krok::fit::detail {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kPointGrain = 8;  // points that a thread takes at once
+constexpr std::size_t kPointGrain = 8;  // points per task
 constexpr int kClimbSteps = 12;
-constexpr double kLastStride = 1.0 / 16;  // of the first
+constexpr double kLastStride = 1.0 / 16;  // relative to the first
 constexpr double kAround = 0.25;
 
-// Memory for looking at one point after the other.
+// Reusable memory for evaluating points one at a time.
 class Probe {
  public:
   Probe(const rbf::WeightFunction& function, const rbf::WeightEvaluator& evaluator,
@@ -33,7 +33,7 @@ class Probe {
         slopes_(d_ * n_),
         jacobian_(d_ * n_) {}
 
-  // The error's parts at a place, scaled.
+  // Error components at a place, scaled.
   Status error_at(std::span<const double> place, std::span<double> error) {
     unscale(function_, place, point_);
     evaluator_.weights(point_, weights_);
@@ -41,7 +41,7 @@ class Probe {
     return take_error(error);
   }
 
-  // Also the gradient of half its square.
+  // Also the gradient of half the squared error.
   Status gradient_at(std::span<const double> place, std::span<double> error,
                      std::span<double> gradient) {
     unscale(function_, place, point_);
@@ -64,7 +64,7 @@ class Probe {
   Status take_error(std::span<double> error) const {
     for (std::size_t a = 0; a < d_; ++a) {
       error[a] = (measured_[a] - point_[a]) * evaluator_.inverse_ranges()[a];
-      if (!std::isfinite(error[a])) return Error("fit-measure", "a parameter is no number");
+      if (!std::isfinite(error[a])) return Error("fit-measure", "a parameter is NaN or infinite");
     }
     return {};
   }

@@ -9,7 +9,7 @@
 
 namespace krok::fit::detail {
 
-// The error |f(w(p)) - p| over the points p of the parameters' range. Places are in scaled
+// The error |f(w(p)) - p| over the points p of the parameters' range. "Places" are scaled
 // parameters, [0, 1] within the range.
 class ErrorField {
  public:
@@ -21,19 +21,19 @@ class ErrorField {
         inside_(inside),
         jobs_(jobs) {}
 
-  // At [places x d]: the parts of the error, scaled, [places x d]; NaN where f fails. The first
-  // failure's Error in `failure`, if it is not null.
+  // Error components at `places`, both [places x d], scaled; NaN where f fails. Stores the first
+  // failure in `failure` if it is not null.
   std::vector<double> at(std::span<const double> places, Error* failure = nullptr) const;
 
-  // Climbs from each of the places, [places x d], within the range and inside, to where the error
-  // is largest around; `stride`: how far a first step goes. The places, and the error there,
+  // Climbs from each of the places, [places x d], to a local maximum of the error within the range
+  // and inside. `stride`: length of the first step. Updates the places and returns their errors,
   // scaled.
   std::vector<double> climb(std::span<double> places, double stride) const;
 
-  // Of errors from at(): the length of each; 0 where f failed.
+  // Norms of errors from at(); 0 where f failed.
   std::vector<double> lengths(std::span<const double> errors) const;
 
-  // By parameter in its own unit, of errors from at().
+  // Errors from at() per parameter, in its unit.
   std::vector<ParameterError> by_parameter(std::span<const double> errors) const;
 
   std::size_t dimensions() const { return static_cast<std::size_t>(function_.dimensions); }
@@ -48,14 +48,14 @@ class ErrorField {
   int jobs_;
 };
 
-// Points of Sobol's sequence over the range that are inside, and those in a quarter of it around
-// and in the range that are not; [count x d].
+// Points of the Sobol sequence, [count x d]: inside and in the range, or not inside and at most a
+// quarter of the range beyond it.
 std::vector<double> places_within(const rbf::WeightFunction& function, int count,
                                   std::uint64_t seed, const rbf::Inside& inside);
 std::vector<double> places_around(const rbf::WeightFunction& function, int count,
                                   std::uint64_t seed, const rbf::Inside& inside);
 
-// A scaled place in own units.
+// Converts a scaled place to parameter units.
 void unscale(const rbf::WeightFunction& function, std::span<const double> place,
              std::span<double> point);
 

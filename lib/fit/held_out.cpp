@@ -10,10 +10,10 @@ namespace krok::fit::detail {
 
 namespace {
 
-constexpr int kHeldOutPerParameter = 256;  // for each parameter
+constexpr int kHeldOutPerParameter = 256;  // per parameter
 constexpr int kMaxPoints = 1024;
 constexpr int kOutsidePoints = 256;
-constexpr int kActorPoints = 128;  // for the range and roughness of weights
+constexpr int kMetricPoints = 128;  // for range and roughness of the weights
 
 }  // namespace
 
@@ -59,7 +59,7 @@ void HeldOut::add_rest(const rbf::WeightSolver& solver, const rbf::WeightEvaluat
                        RefineMetrics& metrics) const {
   const ErrorField field(solver.function(), evaluator, measure_, options_.inside, options_.jobs);
   metrics.outside = field.by_parameter(field.at(outside_));
-  if (const auto weights = rbf::weight_metrics(solver.function(), kActorPoints, options_.inside)) {
+  if (const auto weights = rbf::weight_metrics(solver.function(), kMetricPoints, options_.inside)) {
     metrics.least_weight = weights->least;
     metrics.largest_weight = weights->largest;
     metrics.roughness = weights->roughness;

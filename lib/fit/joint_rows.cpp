@@ -13,21 +13,21 @@ namespace krok::fit::detail {
 
 namespace {
 
-constexpr std::size_t kRowGrain = 16;      // points, or rows, that a thread takes at once
-constexpr std::size_t kPointsAtOnce = 64;  // whose weights fit into the fastest memory
-constexpr double kMinGain = 1e-4;          // of the cost in one iteration, or it ends
-constexpr int kMemory = 20;                // gradients that the direction is made of
-constexpr double kNothing = 1e-24;         // cost at the start that is none
+constexpr std::size_t kRowGrain = 16;      // points or rows per task
+constexpr std::size_t kPointsAtOnce = 64;  // their weights fit into the L1 cache
+constexpr double kMinGain = 1e-4;          // min relative decrease of the cost per iteration
+constexpr int kMemory = 20;                // number of gradients that L-BFGS keeps
+constexpr double kNothing = 1e-24;         // initial cost that counts as zero
 
-// What is taken off is what would change the sum.
+// Projects out the component that would change the sum.
 void remove_mean(std::span<double> values) {
   const double mean =
       std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   for (double& value : values) value -= mean;
 }
 
-// The cost and its gradient by what is added to the rows. The Jacobian of thousands of errors by
-// thousands of numbers is not made: both take two products with the influences.
+// Cost and gradient as functions of the row changes. The Jacobian (thousands of errors by thousands
+// of numbers) is never formed: both take two products with the influences.
 class JointCost final : public ceres::FirstOrderFunction {
  public:
   JointCost(const JointRows& problem, const JointTerms& terms, int jobs)
@@ -40,7 +40,7 @@ class JointCost final : public ceres::FirstOrderFunction {
 
   int NumParameters() const override { return static_cast<int>(problem_.rows * n_); }
 
-  // In parts of `unit`, so that Ceres' tolerances do not depend on how small errors are.
+  // Costs are divided by `unit`, so that Ceres' tolerances do not depend on the size of the errors.
   void set_unit(double unit) { unit_ = unit; }
 
   bool Evaluate(const double* added, double* cost, double* gradient) const override {
@@ -66,9 +66,9 @@ class JointCost final : public ceres::FirstOrderFunction {
   }
 
  private:
-  // The costs of points, and the gradient by their weights.
+  // Costs of points, and the gradient by their weights.
   void take_points(std::span<const double> changes, std::size_t begin, std::size_t end) const {
-    std::vector<double> by(n_);  // what is added to a point's weights
+    std::vector<double> by(n_);  // [d], not inside, up to a quarter of the range beyond it
     const double scale = 1 / static_cast<double>(problem_.points) / unit_;
     for (std::size_t p = begin; p < end; ++p) {
       std::ranges::fill(by, 0.0);
@@ -107,7 +107,7 @@ class JointCost final : public ceres::FirstOrderFunction {
 
 std::vector<double> joint_changes(const JointRows& problem, const JointTerms& terms, int jobs) {
   std::vector<double> changes(problem.rows * problem.examples);
-  auto* cost = new JointCost(problem, terms, jobs);  // the problem's own
+  auto* cost = new JointCost(problem, terms, jobs);  // owned by the Ceres problem
   ceres::GradientProblem gradient_problem(cost);
   double at_start = 0;
   cost->Evaluate(changes.data(), &at_start, nullptr);

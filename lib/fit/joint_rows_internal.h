@@ -5,24 +5,24 @@
 
 namespace krok::fit::detail {
 
-// How blends at points depend on the rows of inserted points, about the rows that they have.
+// Linear model of how blends at points depend on changes of the rows of inserted points.
 struct JointRows {
   std::size_t points = 0, dimensions = 0, rows = 0, examples = 0;
-  std::vector<double> influences;  // [points x rows]: what is added to a row counts so much
-  std::vector<double> weights;     // [points x examples], without changes
+  std::vector<double> influences;  // [points x rows], effect of a change of a row
+  std::vector<double> weights;     // [points x examples], with unchanged rows
   std::vector<double> errors;      // [points x d], scaled
-  std::vector<double> slopes;      // [points x d x examples], of the errors by each weight
+  std::vector<double> slopes;      // [points x d x examples], of the errors by the weights
 };
 
 struct JointTerms {
   double stay = 0;      // lambda
   double positive = 0;  // mu
-  double low = 0;       // which weights cost something
-  int iterations = 0;   // at most
+  double low = 0;       // weights below it are penalised
+  int iterations = 0;   // max
 };
 
-// What is best added to the rows, [rows x examples], each of sum 0: the least of what polish.h
-// says, by Ceres. The same with any number of jobs. All 0 where there is nothing to gain.
+// The changes of the rows, [rows x examples], each with sum 0, that minimise the cost in polish.h,
+// by Ceres. Independent of the number of jobs. All 0 if nothing improves.
 std::vector<double> joint_changes(const JointRows& problem, const JointTerms& terms, int jobs);
 
 }  // namespace krok::fit::detail

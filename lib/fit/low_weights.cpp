@@ -9,7 +9,7 @@ namespace krok::fit::detail {
 
 namespace {
 
-// The lowest weight at each of the places.
+// The lowest weight at each place.
 std::vector<double> lowest_at(const rbf::WeightFunction& function,
                               const rbf::WeightEvaluator& evaluator,
                               std::span<const double> places) {

@@ -8,12 +8,12 @@
 
 namespace krok::fit::detail {
 
-// The lowest of all weights at scaled places, [places x d].
+// The lowest weight at scaled places, [places x d].
 double lowest_weight(const rbf::WeightFunction& function, const rbf::WeightEvaluator& evaluator,
                      std::span<const double> places);
 
-// Of the places those with a weight under `limit`, the lowest first, `wanted` at most, that lie
-// apart from each other and from those avoided. `usual`: the usual distance.
+// At most `wanted` places with a weight below `limit`, lowest first, spaced from each other and
+// from those avoided. `usual`: usual distance.
 std::vector<std::vector<double>> low_places(const rbf::WeightFunction& function,
                                             const rbf::WeightEvaluator& evaluator,
                                             std::span<const double> places,

@@ -12,14 +12,14 @@ namespace {
 using rbf::InverseSearch;
 
 constexpr int kSearchSteps = 30;        // for p'
-constexpr double kFound = 1e-9;         // scaled error at which p' is found
-constexpr double kFoundWell = 1e-6;     // where the search may end as well
-constexpr double kLargeResidual = 0.1;  // of the error that is to be mended
-constexpr double kLowMargin = 0.005;    // weights are too low from so much before the limit on
-constexpr double kLowRow = 0.8;         // of the limit: which weights of new rows cost something
-constexpr int kRowSteps = 10;           // to make a row right that was found for its weights
+constexpr double kFound = 1e-9;         // scaled error at which the search for p' stops
+constexpr double kFoundWell = 1e-6;     // scaled error at which p' is accepted
+constexpr double kLargeResidual = 0.1;  // relative to the error to be removed
+constexpr double kLowMargin = 0.005;    // added to `lowest` as a safety margin
+constexpr double kLowRow = 0.8;         // of `lowest`: new rows are penalised for weights below it
+constexpr int kRowSteps = 10;           // of the correction that follows the solver
 
-// The nearest to the weights there that is not too low and right.
+// The row nearest to the weights at the point that has the right parameters and no weight too low.
 void find_low_row(const rbf::WeightEvaluator& evaluator, const rbf::Measure& measure,
                   const RefineOptions& options, Found& found) {
   RefineOptions gently = options;

@@ -11,7 +11,7 @@ namespace krok::fit::detail {
 
 // A point to insert.
 struct Found {
-  std::vector<double> place, point;  // scaled, own units
+  std::vector<double> place, point;  // scaled; in parameter units
   double sought = 0;                 // the error there
   bool low = false;                  // a weight is too low there
   std::vector<double> row;
@@ -20,10 +20,11 @@ struct Found {
   double value = 0;  // of the refusal
 };
 
-// From which weight on a weight is too low: a little over what none may fall under.
+// Weights below this are too low: slightly above RefineOptions::lowest.
 double low_limit(const RefineOptions& options);
 
-// Finds the row of a point, as refine.h has it, or why there is none. `usual`: the usual distance.
+// Finds the row of a point as described in refine.h, or the reason for refusal. `usual`: usual
+// distance.
 void find_row(const rbf::WeightSolver& solver, const rbf::WeightEvaluator& evaluator,
               const rbf::Measure& measure, const RefineOptions& options, double usual,
               Found& found);

@@ -20,26 +20,25 @@ using rbf::WeightEvaluator;
 using rbf::WeightFunction;
 using rbf::WeightSolver;
 
-// Points for each row and at least, that the rows are fitted to: with fewer, errors between them
-// grow.
+// Training points per row, and their min and max number: with fewer, errors between them grow.
 constexpr int kPointsPerRow = 16;
 constexpr int kMinPoints = 1024;
 constexpr int kMaxPoints = 4096;
-// For each parameter but the first, points are drawn from a range that is larger by so much on each
-// side, and brought back: errors are largest at the edge, of which there is more with each.
+// Training points are drawn from a range that is larger by this on each side, per parameter beyond
+// the first, and clamped: errors are largest at the boundary, whose share grows with dimension.
 constexpr double kEdge = 0.015;
-constexpr std::uint32_t kMaxTries = 1000;  // for each point that is inside
+constexpr std::uint32_t kMaxTries = 1000;  // per accepted point
 constexpr detail::JointTerms kTerms = {.stay = 0.003, .positive = 0.1, .low = 0, .iterations = 100};
-constexpr double kParts[] = {1, 0.5, 0.25};  // of the way
-constexpr double kMaxRoughness = 1.1;        // of the unrefined
+constexpr double kParts[] = {1, 0.5, 0.25};  // of the full change
+constexpr double kMaxRoughness = 1.1;        // relative to the unrefined function
 constexpr std::size_t kPolishGrain = 8;
 
-// Weight functions, and how good they are.
+// Weight functions with their metrics.
 struct Candidate {
   WeightSolver solver;
   WeightEvaluator evaluator;
   RefineMetrics metrics;
-  double lowest = 0;  // weight at the points held out
+  double lowest = 0;  // weight at held-out points
 };
 
 class Polisher {
@@ -99,7 +98,7 @@ std::vector<double> Polisher::training_points() const {
   return points;
 }
 
-// Points that cannot be measured pull nowhere.
+// Points that cannot be measured have no effect.
 detail::JointRows Polisher::about(const Candidate& found) const {
   const std::vector<double> points = training_points();
   detail::JointRows rows;

@@ -4,8 +4,8 @@
 
 namespace krok::fit::detail {
 
-// With the rows as they were found. Its planes and coefficients are still those of the polished
-// rows; a solver makes them anew.
+// Restores the rows as they were found. Affine part and coefficients are still those of the
+// polished rows; a solver recomputes them.
 Refined without_polish(Refined refined);
 
 }  // namespace krok::fit::detail

@@ -26,11 +26,11 @@ using rbf::WeightEvaluator;
 using rbf::WeightFunction;
 using rbf::WeightSolver;
 
-constexpr int kPointsPerParameter = 40;  // for each parameter
-constexpr double kGrowth = 1.25;         // of the mean square error held out, over the least so far
+constexpr int kPointsPerParameter = 40;  // per parameter
+constexpr double kGrowth = 1.25;  // max mean square held-out error, relative to its min so far
 constexpr int kStalledRounds = 3;
 constexpr double kLowerOnTheWay = 0.02;
-constexpr int kRefusedRounds = 2;  // for so long a refused point is not tried again
+constexpr int kRefusedRounds = 2;  // rounds before a refused point may be tried again
 
 using detail::Found;
 
@@ -60,7 +60,7 @@ class Refiner {
   }
   double limit() const { return detail::low_limit(options_); }
   std::vector<Found> seek(double usual, double& worst) const;
-  // False: there is no error left.
+  // Returns false if no error is left.
   Result<bool> make_round();
   Status insert(std::vector<Found>& found, RefineRound& round);
   bool has_grown(const RefineMetrics& now) const;
@@ -75,10 +75,10 @@ class Refiner {
   std::size_t d_, n_;
   detail::HeldOut held_out_;
   RefineMetrics now_;
-  double lowest_ = 0;  // weight at the points held out
+  double lowest_ = 0;  // weight at held-out points
 };
 
-// After each change of the functions.
+// Call after each change of the functions.
 Status Refiner::update() {
   auto evaluator = WeightEvaluator::create(solver_.function());
   if (!evaluator) return evaluator.error();
@@ -108,7 +108,7 @@ Status Refiner::begin() {
     state_.example_error = std::ranges::max(field().lengths(at_examples));
   }
   if (held_out_.count() == 0) {
-    return Error("fit-inside", "no point of the parameters' range is where weights are wanted");
+    return Error("fit-inside", "no point of the parameters' range is inside the allowed region");
   }
   now_ = held_out_.errors(solver_.function(), *evaluator_, &failure);
   if (now_.failed > static_cast<int>(held_out_.count() / 2)) {
@@ -128,7 +128,7 @@ int Refiner::points_left() const {
   return most - solver_.function().inserted();
 }
 
-// Whether errors are as small as they are to be.
+// Whether all errors are within the targets.
 bool Refiner::is_good() const {
   if (options_.tolerance.empty() || now_.failed > 0) return false;
   for (std::size_t a = 0; a < d_; ++a) {
@@ -143,7 +143,7 @@ bool Refiner::is_good() const {
 
 std::optional<Stop> Refiner::stop(std::size_t rounds_before) const {
   const auto& rounds = state_.rounds;
-  // Weights that are too low do not hold up what is good otherwise once nothing helps.
+  // Weights that are too low do not prevent stopping once no round improves them.
   const bool low = lowest_ < limit() && (rounds.empty() || rounds.back().inserted > 0);
   if (is_good() && !low) return Stop::tolerance;
   if (points_left() <= 0) return Stop::points;
@@ -179,8 +179,8 @@ Status Refiner::run(Progress& progress) {
   return {};
 }
 
-// Where the error is greatest: at most as many points as a round takes, the worst first. `worst`:
-// the largest error looked at.
+// The points with the largest errors, worst first, at most as many as a round takes. `worst`:
+// receives the largest error of the sweep.
 std::vector<Found> Refiner::seek(double usual, double& worst) const {
   const int sweep = options_.sweep > 0 ? options_.sweep : 128 * static_cast<int>(d_);
   const std::vector<double> sweep_places = detail::places_within(
@@ -223,8 +223,8 @@ bool Refiner::has_grown(const RefineMetrics& now) const {
   return now.failed > now_.failed || !(now.mean_square <= kGrowth * least);
 }
 
-// Weights that were high enough stay so. Where some are not, they may fall a little under what they
-// were at first on the way to where all are.
+// Weights that satisfy `lowest` must keep doing so. If some do not yet, they may temporarily fall
+// slightly below their initial values.
 double Refiner::lowest_allowed(double before) const {
   if (before >= options_.lowest) return options_.lowest;
   return std::min(state_.before.least_weight, options_.lowest) - kLowerOnTheWay;
@@ -236,7 +236,7 @@ void Refiner::refuse(const Found& found, RefineRound& round) {
                             found.refusal.value_or(Refusal::system), found.value});
 }
 
-// All at once; where that makes the error grow, or cannot be, one after the other.
+// Inserts all at once; if that increases the error or fails, one by one.
 Status Refiner::insert(std::vector<Found>& found, RefineRound& round) {
   const auto try_points = [&](std::span<Found> some) -> Status {
     std::vector<double> points, rows;
@@ -306,21 +306,21 @@ Result<bool> Refiner::make_round() {
 
 Status check_options(const RefineOptions& o, int dimensions) {
   const auto wrong = [](const char* what) {
-    return Error("fit-options", fmt::format("refinement cannot work with {}", what));
+    return Error("fit-options", fmt::format("invalid refinement options: {}", what));
   };
   if (o.points < 0 || o.rounds < 0 || o.points_a_round < 1 || o.sweep < 0 || o.held_out < 0) {
-    return wrong("negative numbers of points or rounds");
+    return wrong("negative number of points or rounds");
   }
   if (!o.tolerance.empty() && o.tolerance.size() != static_cast<std::size_t>(dimensions)) {
-    return wrong("a tolerance for some of the parameters only");
+    return wrong("tolerances must be given for all parameters or none");
   }
-  if (!(o.gain >= 0)) return wrong("a gain that is negative or no number");
+  if (!(o.gain >= 0)) return wrong("gain is negative or NaN");
   if (std::ranges::any_of(o.tolerance, [](double t) { return !(t >= 0); })) {
-    return wrong("a tolerance that is negative or no number");
+    return wrong("a tolerance is negative or NaN");
   }
   if (!(o.scale > 0) || !(o.stay > 0) || !(o.positive >= 0) || !(o.slack >= 0) || !(o.least <= 0) ||
       !(o.largest >= 1) || !(o.lowest <= 0)) {
-    return wrong("such terms or limits of weights");
+    return wrong("cost terms or weight limits are out of range");
   }
   return {};
 }
@@ -340,7 +340,7 @@ std::string_view stop_name(Stop stop) {
 
 Result<Refined> refine(const Refined& start, const rbf::Measure& measure,
                        const RefineOptions& options, Progress& progress) {
-  // It goes on with the rows that it found.
+  // Refinement continues with the rows as found.
   const Refined found = detail::without_polish(start);
   auto solver = WeightSolver::resume(found.function);
   if (!solver) return solver.error();

@@ -1,6 +1,6 @@
 #include "fit/row_products_internal.h"
 
-// Nothing is compiled that KROK_BEST_VERSION does not choose.
+// Compiles only targets that KROK_BEST_VERSION can choose.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "fit/row_products.cpp"
 #include <hwy/foreach_target.h>
-// The order matters: foreach_target.h sets up what highway.h reads.
+// Order matters: foreach_target.h sets up what highway.h reads.
 #include <hwy/highway.h>
 
 #include "core/simd.h"
@@ -19,8 +19,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Adds four rows from number i on, as many numbers at once as the tag has and while they go into n;
-// where it ended. Each number by itself and nothing fused, so that it does not matter how many.
+// Adds four rows from index i on, one vector at a time while it fits into n; returns the end index.
+// Elements are independent and nothing is fused, so the result does not depend on the vector size.
 template <class D>
 HWY_INLINE std::size_t add_four(D d, const double* f, const double* rows, std::size_t n,
                                 std::size_t i, double* to) {
@@ -37,7 +37,7 @@ HWY_INLINE std::size_t add_four(D d, const double* f, const double* rows, std::s
   return i;
 }
 
-// Four rows at a time, so that the sum is fetched and stored less often.
+// Four rows at a time, so that the sum is loaded and stored less often.
 void add_rows(const double* factors, std::size_t stride, const double* rows, std::size_t count,
               std::size_t n, double* to) {
   std::size_t r = 0;

@@ -68,7 +68,7 @@ std::vector<ErrorPoint> worst_points(const ErrorField& field, std::span<const do
     climbing.insert(climbing.end(), place.begin(), place.end());
   }
   const std::vector<double> heights = field.climb(climbing, kApart * usual);
-  // Where a climb leads to what is avoided, its start may do.
+  // If a climb ends near an avoided point, its start may still be usable.
   for (std::size_t s = 0; s < starts.size(); ++s) {
     const auto top = std::span(climbing).subspan(s * d, d);
     if (!is_apart(top, avoided, kNear * usual)) continue;

@@ -43,7 +43,7 @@ PivotedColumns pivoted_columns(const Eigen::MatrixXd& a, double threshold) {
 Mat3 nearest_rotation(const Mat3& a) {
   const Eigen::JacobiSVD<Mat3> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Mat3 u = svd.matrixU();
-  // Singular values fall, so that the last direction is the one that costs least to turn round.
+  // Singular values are in decreasing order, so flipping the last direction changes least.
   if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
   return u * svd.matrixV().transpose();
 }

@@ -31,7 +31,7 @@ Vec3 to_euler(const Quat& q, const EulerOrder& order, double last_at_lock) {
   if (cosine > 1e-7) {
     return {std::atan2(-parity * m(j, k), m(k, k)), middle, std::atan2(-parity * m(i, j), m(i, i))};
   }
-  // Locked: take the last rotation off and read the first from what is left.
+  // Gimbal lock: remove the last rotation and read the first from the remainder.
   const Mat3 rest = (q * axis_rotation(order[2], -last_at_lock)).toRotationMatrix();
   return {std::atan2(parity * rest(k, j), rest(j, j)), middle, last_at_lock};
 }

@@ -25,8 +25,8 @@ Value cubic_velocity(const Value& p0, const Value& v0, const Value& p1, const Va
   return (6 * (t2 - t) / span) * (p0 - p1) + (3 * t2 - 4 * t + 1) * v0 + (3 * t2 - 2 * t) * v1;
 }
 
-// The keys on both sides of each key, as the ends have them, handed to
-// inner(before, at, after, span_before, span_after); at an open end to end(key, from, to).
+// Calls inner(key, before, after, span_before, span_after) with the differences to both neighbours
+// of each key, which depend on `ends`, and end(key) at open ends.
 template <typename Value, typename Inner, typename End>
 void each_key(std::span<const double> times, std::span<const Value> values, Ends ends,
               const Inner& inner, const End& end) {
@@ -69,8 +69,8 @@ void set_tension_velocities(std::span<const double> times, std::span<const Value
       });
 }
 
-// Between the slopes on both sides of a key: 0 where they have different signs, otherwise their
-// harmonic mean with more weight for the shorter side.
+// The slope at a key from those on both sides: 0 if their signs differ, otherwise their harmonic
+// mean, weighted towards the shorter side.
 double monotone_slope(double slope_before, double slope_after, double span_before,
                       double span_after) {
   if (!(slope_before * slope_after > 0)) return 0;
@@ -80,7 +80,7 @@ double monotone_slope(double slope_before, double slope_after, double span_befor
          (weight_before / slope_before + weight_after / slope_after);
 }
 
-// At an end: the parabola's through three keys, unless that leaves the bounds of monotone cubics.
+// The slope at an end: that of the parabola through three keys, limited to keep the cubic monotone.
 double monotone_end_slope(double near_slope, double far_slope, double near_span, double far_span) {
   const double slope =
       ((2 * near_span + far_span) * near_slope - near_span * far_slope) / (near_span + far_span);
@@ -178,7 +178,7 @@ Vec3 sample_curve(std::span<const double> times, std::span<const Vec3> values,
 std::size_t key_before(std::span<const double> times, double time, std::size_t guess) {
   assert(!times.empty());
   const std::size_t last = times.size() - 1;
-  // A few steps from where it was last, forwards or one back; else a search.
+  // Tries a few steps forwards or one back from `guess`, then a binary search.
   constexpr std::size_t kSteps = 4;
   std::size_t k = std::min(guess, last);
   if (k > 0 && time < times[k]) --k;

@@ -26,7 +26,7 @@ Quat nlerp(const Quat& a, const Quat& b, double t) {
 
 Quat slerp(const Quat& a, const Quat& b, double t) {
   const Quat near_b = in_hemisphere_of(a, b);
-  // The 4-D arc between the two; half the rotation's angle.
+  // The 4-D arc between the two, half the rotation angle.
   const double arc = 2.0 * std::atan2((near_b.coeffs() - a.coeffs()).norm(),
                                       (near_b.coeffs() + a.coeffs()).norm());
   if (arc < 5e-7) return nlerp(a, near_b, t);
@@ -63,8 +63,8 @@ Quat shortest_arc(const Vec3& from, const Vec3& to) {
   const Vec3 axis = a.cross(b);
   const double cosine = a.dot(b);
   if (cosine < 0 && axis.norm() < 1e-12) {
-    // Opposite: half a turn about an axis perpendicular to a, from the coordinate axis that is
-    // least along a.
+    // Opposite: 180 degrees about an axis perpendicular to a, made from the coordinate axis with
+    // the smallest component of a.
     int least = 0;
     a.cwiseAbs().minCoeff(&least);
     const Vec3 perpendicular = a.cross(Vec3::Unit(least)).normalized();

@@ -10,18 +10,19 @@ namespace krok {
 
 namespace {
 
-// The rotation vector of the shorter way from a to b, in a's frame (and in b's, being the axis).
+// The rotation vector of the shorter arc from a to b, in a's frame (and in b's, since it is the
+// axis).
 Vec3 arc(const Quat& a, const Quat& b) {
   return rotation_vector(a.conjugate() * b);
 }
 
-// Slerp along the way that the signs give, so that nothing jumps where the inner curves stand more
-// than a quarter of the 4-D circle apart.
+// Slerp without a sign change, so that nothing jumps where the inner curves are more than a quarter
+// of the 4-D circle apart.
 Quat slerp_as_signed(const Quat& a, const Quat& b, double t) {
   const double angle =
       2.0 * std::atan2((b.coeffs() - a.coeffs()).norm(), (b.coeffs() + a.coeffs()).norm());
   const double sine = std::sin(angle);
-  // Too close for the sine, or opposite, where every way is as good: the straight line.
+  // Too close to divide by the sine, or opposite, where all arcs are equally long: lerp.
   if (!(sine > 5e-7))
     return normalized_or_identity(Quat(Vec4(a.coeffs() * (1 - t) + b.coeffs() * t)));
   return normalized_or_identity(Quat(Vec4(a.coeffs() * (std::sin((1 - t) * angle) / sine) +
@@ -39,7 +40,7 @@ void squad_velocities(std::span<const double> times, std::span<const Quat> rotat
   }
   const std::size_t last = times.size() - 1;
   const double share = 1 - tension;
-  // Through a key where one segment ends and another begins.
+  // Velocity at a key between two segments.
   const auto through = [&](std::size_t from, std::size_t to) {
     const Vec3 before = arc(rotations[from], rotations[from + 1]);
     const Vec3 after = arc(rotations[to], rotations[to + 1]);

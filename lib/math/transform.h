@@ -4,8 +4,8 @@
 
 namespace krok {
 
-// A rigid transform: x -> orientation * x + position. Named a_to_b it takes coordinates in frame a
-// to coordinates in frame b; joint_to_world is what the formats call a joint's global transform.
+// A rigid transform: x -> orientation * x + position. A transform named a_to_b maps coordinates in
+// frame a to frame b; joint_to_world is a joint's global transform.
 struct Transform {
   Vec3 position = Vec3::Zero();         // metres
   Quat orientation = Quat::Identity();  // unit

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
-// Short names for the vectors and quaternions that the project uses. Column vectors; doubles where
-// accuracy is decided, floats (suffix f) where throughput is.
+// Short names for vectors and quaternions. Column vectors; double where accuracy matters, float
+// (suffix f) where throughput does.
 
 namespace krok {
 

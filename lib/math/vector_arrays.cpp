@@ -1,6 +1,6 @@
 #include "math/vector_arrays_internal.h"
 
-// Nothing is compiled that KROK_BEST_VERSION does not choose.
+// Only targets that KROK_BEST_VERSION can choose are compiled.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -25,10 +25,10 @@ using Lanes = hn::CappedTag<float, 16>;
 using Bits = hn::RebindToUnsigned<Lanes>;
 using V = hn::Vec<Lanes>;
 using VBits = hn::Vec<Bits>;
-// Three registers hold as many whole vectors as one holds numbers: x, y and z come round again.
+// Three registers hold as many whole vectors as one holds floats: the order of x, y and z repeats.
 constexpr std::size_t kLanes = hn::MaxLanes(Lanes());
 
-// The exponent of what is not finite is all ones: one more carries into the sign's place.
+// The exponent of a non-finite float is all ones: adding one carries into the sign bit.
 HWY_INLINE VBits carry(V value) {
   const Bits d;
   const VBits size = hn::And(hn::BitCast(d, value), hn::Set(d, 0x7FFFFFFFu));
@@ -123,7 +123,7 @@ VectorBounds subtract_best(std::span<const Vec3f> base, std::span<Vec3f> vectors
   const auto best = KROK_BEST_VERSION(subtract_wide);
   VectorBounds bounds = best(base.data(), vectors.data(), wide);
   subtract(base.subspan(wide), vectors.subspan(wide), bounds);
-  // Of 0 and -0 either may be the least: which one depends on the order.
+  // Whether 0 or -0 is the min depends on the order; adding 0 makes both 0.
   bounds.least.array() += 0.0f;
   bounds.most.array() += 0.0f;
   return bounds;

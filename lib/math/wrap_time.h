@@ -2,17 +2,17 @@
 
 namespace krok {
 
-// What is shown before the beginning and after the end of something that lasts from 0 to
-// `duration`.
+// How times before the start and after the end of something that lasts from 0 to `duration` are
+// mapped.
 enum class Wrap : unsigned char {
-  clamp,     // the first moment before, the last after
-  loop,      // again and again; the end is the beginning of the next round
-  ping_pong  // forwards and backwards in turn
+  clamp,     // hold the first or last value
+  loop,      // repeat; the end is the start of the next cycle
+  ping_pong  // alternate forwards and backwards
 };
 
-// The moment in [0, duration] that is shown at `time`; the unit does not matter. loop gives less
-// than `duration`, but for times within [0, duration] the time itself. 0 where the duration is not
-// positive and finite, where the time is not a number, and where an infinite one goes round.
+// Maps `time` to [0, duration], in any unit. loop gives less than `duration`, except that times
+// within [0, duration] are unchanged. 0 if the duration is not positive and finite, if the time is
+// NaN, or if it is infinite and `wrap` is not clamp.
 double wrap_time(double time, double duration, Wrap wrap);
 
 }  // namespace krok

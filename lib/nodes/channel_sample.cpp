@@ -9,7 +9,7 @@ namespace krok::nodes {
 
 namespace {
 
-// Cubic spline keys stand as (in-tangent, value, out-tangent).
+// Cubic spline keys are stored as (in-tangent, value, out-tangent).
 std::size_t value_offset(const Channel& channel, std::size_t key) {
   const auto width = static_cast<std::size_t>(channel.width);
   return channel.interpolation == Interpolation::cubic_spline ? (3 * key + 1) * width : key * width;

@@ -61,7 +61,7 @@ void load_vectors(const Shared<From>& source, std::vector<To>& values) {
   }
 }
 
-// What an instance has of each kind; normals and tangents may be none.
+// The vertex data of an instance; normals and tangents may be empty.
 struct Vertices {
   std::vector<Vec3>& positions;
   std::vector<Vec3>& normals;
@@ -90,7 +90,7 @@ void skin(const Primitive& primitive, const std::vector<Affine>& palette, const 
   }
 }
 
-// The inverse transpose of a linear map up to a positive factor, without a division.
+// The inverse transpose of a linear map up to a positive factor, without division.
 Mat3 cofactors_of(const Mat3& linear) {
   Mat3 cofactors;
   for (int c = 0; c < 3; ++c) {
@@ -110,7 +110,7 @@ void place(const Mat4& node_to_world, const Vertices& out) {
   for (Vec4& tangent : out.tangents) turn(linear, mirrors, tangent);
 }
 
-// Brings normals or the xyz of tangents to length 1, where they do not vanish.
+// Normalises normals or the xyz of tangents unless they are zero.
 template <typename Vector>
 void normalize(std::vector<Vector>& vectors) {
   constexpr double kNearUnit = 1e-5;
@@ -119,7 +119,7 @@ void normalize(std::vector<Vector>& vectors) {
     const double square = normal.squaredNorm();
     const double excess = square - 1;
     if (std::abs(excess) < kNearUnit) {
-      // What a file's floats are: 1 / sqrt(1 + excess), what the series leaves out is under 1e-15.
+      // Nearly unit, as in files: 1 / sqrt(1 + excess) as a series with an error below 1e-15.
       normal *= 1 - excess * (0.5 - 0.375 * excess);
     } else if (square > 1e-200 && square < 1e200) {
       normal /= std::sqrt(square);
@@ -149,8 +149,8 @@ const Primitive& Evaluator::primitive(const Instance& instance) const {
       .primitives[static_cast<std::size_t>(instance.primitive)];
 }
 
-// Depth first through the scene, so that instances come in the order that people see in an outline;
-// nodes outside of it after.
+// Depth first through the scene, so that instances have the order of an outliner; then the nodes
+// outside of it.
 void Evaluator::order_nodes() {
   const auto& nodes = scene_->nodes;
   std::vector<int> pending(scene_->roots.rbegin(), scene_->roots.rend());
@@ -182,7 +182,7 @@ Status Evaluator::find_instances() {
     }
     if (vertices > kMaxVertices) {
       return Error("scene-too-large",
-                   fmt::format("the scene shows more than {} vertices", kMaxVertices));
+                   fmt::format("the scene has more than {} vertices", kMaxVertices));
     }
   }
   return {};
@@ -197,7 +197,7 @@ void Evaluator::find_joints() {
   if (scene_->skins.empty() && instances_.empty()) {
     for (std::size_t i = 0; i < nodes.size(); ++i) is_joint[i] = nodes[i].in_scene ? 1 : 0;
   }
-  // The place in joints_ of each node or of its nearest ancestor that is a joint.
+  // For each node the index in joints_ of itself or its nearest ancestor that is a joint.
   std::vector<int> nearest(nodes.size(), -1);
   for (const int index : order_) {
     const auto i = static_cast<std::size_t>(index);
@@ -213,7 +213,7 @@ void Evaluator::find_joints() {
 
 std::vector<double> Evaluator::key_times(int animation) const {
   std::vector<double> times;
-  std::vector<const std::vector<float>*> seen;  // channels mostly share their times
+  std::vector<const std::vector<float>*> seen;  // channels often share their times
   for (const Channel& channel : scene_->animations[static_cast<std::size_t>(animation)].channels) {
     if (std::find(seen.begin(), seen.end(), channel.times.get()) != seen.end()) continue;
     seen.push_back(channel.times.get());
@@ -301,7 +301,7 @@ void Evaluator::evaluate_instance(std::size_t index, Evaluation& out) const {
   add_targets(shape, weights, &MorphTarget::tangents, vertices.tangents);
 
   if (node.skin >= 0 && shape.influences_per_vertex > 0) {
-    // A skinned mesh stands where its joints are; its own node does not matter.
+    // The joints alone place a skinned mesh; its own node is ignored.
     const Skin& one = scene_->skins[static_cast<std::size_t>(node.skin)];
     out.palette.resize(one.joints.size());
     for (std::size_t j = 0; j < one.joints.size(); ++j) {

@@ -8,14 +8,13 @@
 #include "math/transform.h"
 #include "nodes/scene.h"
 
-// A scene at a moment of one of its animations, in doubles: what a viewer would show.
-// Nodes are placed by their (animated) transforms, then morph targets are added, then vertices are
-// skinned with up to 8 influences each. Source: glTF 2.0 Specification, sections 3.5, 3.7 and
-// appendix C (interpolation).
+// Evaluates a scene at a time of one of its animations, in double precision, as a viewer would show
+// it: node transforms, then morph targets, then skinning with up to 8 influences per vertex.
+// Source: glTF 2.0 Specification, sections 3.5, 3.7 and appendix C (interpolation).
 
 namespace krok::nodes {
 
-// A primitive of a mesh at a node of the scene that is shown.
+// A primitive of a mesh at a node of the displayed scene.
 struct Instance {
   int node = 0;
   int mesh = 0;
@@ -25,43 +24,43 @@ struct Instance {
 struct Evaluation {
   std::vector<Mat4> node_to_world;           // [nodes]
   std::vector<std::vector<Vec3>> positions;  // [instances][vertices], world space
-  std::vector<std::vector<Vec3>> normals;    // the same, unit or zero; none where the file has none
-  bool with_tangents = false;                // set by who wants them; otherwise `tangents` has none
-  // The same, xyz unit or zero; w is the file's sign, turned round where vertices are mirrored.
+  std::vector<std::vector<Vec3>> normals;    // same shape, unit or zero; empty if not in the file
+  bool with_tangents = false;                // set by the caller; if false, `tangents` is empty
+  // Same shape, xyz unit or zero; w is the file's sign, negated for mirrored vertices.
   std::vector<std::vector<Vec4>> tangents;
-  std::vector<Vec3> node_translations, node_scales;  // to the parent, [nodes]
+  std::vector<Vec3> node_translations, node_scales;  // relative to the parent, [nodes]
   std::vector<Quat> node_rotations;
-  std::vector<std::vector<double>> node_weights;  // of the mesh's targets, [nodes]
-  // Working space.
+  std::vector<std::vector<double>> node_weights;  // morph target weights, [nodes]
+  // Scratch memory.
   std::vector<double> values;
   std::vector<Eigen::Matrix<double, 3, 4>> palette;
 };
 
-// Evaluates one scene, which must outlive it. Const functions may be called from many threads,
-// each with an Evaluation of its own (which is reused to save allocations).
+// Evaluates one scene, which must outlive it. Const functions are thread-safe if each thread has
+// its own Evaluation (which is reused to avoid allocations).
 class Evaluator {
  public:
-  // An Error (code scene-too-large) if the scene shows so many vertices, because many nodes have
-  // the same mesh, that they could not be held.
+  // An Error (code scene-too-large) if the scene has too many vertices to hold, because many nodes
+  // share a mesh.
   static Result<Evaluator> create(const Scene& scene);
 
   const std::vector<Instance>& instances() const { return instances_; }
   const Primitive& primitive(const Instance& instance) const;
 
-  // The nodes that are a skin's joints, or all nodes of the scene if it has neither skins nor
-  // meshes; in an order with parents before children.
+  // The nodes that are joints of a skin, or all nodes of the scene if it has neither skins nor
+  // meshes; parents before children.
   const std::vector<int>& joints() const { return joints_; }
-  // For each of joints() the place in it of the nearest ancestor that is a joint too, or -1.
+  // For each of joints() the index in it of the nearest ancestor that is a joint, or -1.
   const std::vector<int>& joint_parents() const { return joint_parents_; }
 
-  // All key times of an animation, each once, rising; seconds.
+  // All distinct key times of an animation, increasing; seconds.
   std::vector<double> key_times(int animation) const;
 
-  // Fills `out`. animation -1: the nodes as the file has them. Before the first key of a channel
-  // its first value holds, after the last the last.
+  // Fills `out`. animation -1: the nodes as in the file. Times are clamped to the first and last
+  // key of each channel.
   void evaluate(int animation, double time, Evaluation& out) const;
 
-  // The same for the nodes alone: fills node_to_world and the node_ members.
+  // Same for the nodes alone: fills node_to_world and the node_ members.
   void place_nodes(int animation, double time, Evaluation& out) const;
 
   // All nodes, parents before children: depth first through the scene, then those outside of it.
@@ -80,11 +79,11 @@ class Evaluator {
   std::vector<int> joints_, joint_parents_;
 };
 
-// The value of a channel at `time`; `values` has channel.width elements. Rotations come out unit.
+// The value of a channel at `time`; `values` has channel.width elements. Rotations are normalised.
 void sample(const Channel& channel, double time, std::span<double> values);
 
-// Position and orientation of a transform that may scale, mirror or shear: the nearest rotation to
-// its linear part (mirrored back where it mirrors).
+// Position and orientation of a transform that may scale, mirror or shear: the rotation nearest to
+// its linear part (negated first if it mirrors).
 Transform rigid_part(const Mat4& matrix);
 
 }  // namespace krok::nodes

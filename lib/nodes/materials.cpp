@@ -15,13 +15,14 @@ namespace {
 
 constexpr std::size_t kRoomForNumbers = 16;
 
-// As much of a name as Krok takes.
+// The name as valid UTF-8 without zero bytes, truncated to leave room for a number.
 std::string usable(const std::string& name) {
   std::string text = to_utf8(name);
   std::erase(text, '\0');
   if (text.size() + kRoomForNumbers <= kLongestName) return text;
   std::size_t end = kLongestName - kRoomForNumbers;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // within one
+  // Do not cut within a character.
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   return text.substr(0, end);
 }
 

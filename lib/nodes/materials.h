@@ -6,9 +6,8 @@
 
 namespace krok::nodes {
 
-// Gives materials that a file has without names, with names that Krok does not take (see is_name)
-// or with the same ones names of their own: "material_3" for the fourth, "Skin_2" for the second
-// called Skin.
+// Makes material names valid (see is_name) and unique: a material without a name becomes
+// "material_3" (the fourth), the second one named Skin becomes "Skin_2".
 void make_names_unique(std::vector<Material>& materials);
 
 }  // namespace krok::nodes

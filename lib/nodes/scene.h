@@ -11,15 +11,14 @@
 #include "math/types.h"
 #include "scene/material.h"
 
-// A character file as other programs write it: a tree of nodes with meshes, morph targets, skins,
-// cameras, and animations whose keys are at times of their own. It has the shape of glTF 2.0, into
-// which the other formats fit too. Lights are left aside.
-// Indices between the parts are checked by the reader and always in range.
-// Source: Khronos Group, glTF 2.0 Specification (ISO/IEC 12113).
+// An imported scene: a tree of nodes with meshes, morph targets, skins, cameras and keyframe
+// animations. Its structure is that of glTF 2.0, to which other formats are mapped. Lights are
+// ignored. Indices are checked by the reader and always in range. Source: Khronos Group, glTF 2.0
+// Specification (ISO/IEC 12113).
 
 namespace krok::nodes {
 
-// Values of an accessor, shared by all that refer to it; null where the file has none.
+// Values of an accessor, shared by all that refer to it; null if not in the file.
 template <typename T>
 using Shared = std::shared_ptr<const std::vector<T>>;
 
@@ -27,7 +26,7 @@ struct Node {
   std::string name;  // may be empty, need not be unique
   int parent = -1;
   std::vector<int> children;
-  // node_to_parent: `matrix` where the file gives one, otherwise translation * rotation * scale.
+  // node_to_parent: `matrix` if the file has one, otherwise translation * rotation * scale.
   bool has_matrix = false;
   Mat4 matrix = Mat4::Identity();
   Vec3 translation = Vec3::Zero();
@@ -36,32 +35,33 @@ struct Node {
   int mesh = -1;
   int skin = -1;
   int camera = -1;
-  std::vector<double> weights;  // of the mesh's targets; empty: the mesh's own
-  bool in_scene = false;        // reached from the scene that is shown
+  std::vector<double> weights;  // morph target weights; empty: those of the mesh
+  bool in_scene = false;        // part of the displayed scene
 };
 
 struct MorphTarget {
-  std::string name;  // from the mesh's extras.targetNames, where exporters put it; may be empty
+  std::string name;         // from extras.targetNames of the mesh; may be empty
   Shared<Vec3f> positions;  // displacements, [vertices] or null
   Shared<Vec3f> normals;
-  Shared<Vec3f> tangents{};  // of their xyz; w never changes
+  Shared<Vec3f> tangents{};  // displacements of xyz; w does not change
 };
 
 struct Primitive {
   static constexpr int kMaxInfluences = 8;
 
-  std::string material;     // its name as the file has it; may be empty
-  int material_index = -1;  // in Scene::materials; -1: none, or materials were not asked for
+  std::string material;     // name in the file; may be empty
+  int material_index = -1;  // in Scene::materials; -1: none, or materials were not requested
   Shared<Vec3f> positions;  // never null
   Shared<Vec3f> normals;
-  // As glTF has them: xyz unit, or zero where the file's is; w, 1 or -1, is the third axis' side.
+  // As in glTF: xyz unit, or zero if zero in the file; w, 1 or -1, is the handedness.
   Shared<Vec4f> tangents;
   Shared<Vec2f> texture_coordinates;  // the first set
-  // [vertices x influences_per_vertex]; joints are places in the skin's list. 0, 4 or 8 a vertex.
+  // [vertices x influences_per_vertex]; joints are indices into the skin's list. 0, 4 or 8 per
+  // vertex.
   int influences_per_vertex = 0;
   std::vector<std::uint16_t> influence_joints;
   std::vector<float> influence_weights;
-  // Strips and fans are written out; none for points and lines.
+  // Strips and fans are converted to triangles; empty for points and lines.
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<MorphTarget> targets;
 
@@ -82,29 +82,30 @@ struct Skin {
   std::vector<Mat4> inverse_binds;  // mesh_to_joint in the bind pose, [joints]
 };
 
-// Looks along its node's -Z with +Y up.
+// Looks along the node's local -Z with +Y up.
 struct Camera {
   std::string name;            // may be empty
   bool perspective = true;     // otherwise orthographic, without a field of view
   double field_of_view = 0.0;  // vertical, radians, in (0, pi) for a perspective camera
-  // Of a perspective camera whose field of view changes over time: what it is at the times
-  // i / lens_rate of any animation, linear between them, before and after that the first and last.
-  double lens_rate = 0.0;     // > 0 where there is any
+  // For a perspective camera with animated field of view: its values at times i / lens_rate of any
+  // animation, interpolated linearly and clamped at the ends.
+  double lens_rate = 0.0;     // > 0 if `lens` is not empty
   std::vector<float> lens{};  // in (0, pi)
 };
 
-// What a file says of the space its nodes are in. Where it says nothing, whoever imports it must
-// find out. glTF prescribes both.
+// Unit and axes as specified by the file. If unset, the importer must detect them. glTF specifies
+// both.
 struct Space {
-  std::optional<double> metres;      // that one unit of length has
-  std::optional<Quat> file_to_krok;  // turns its axes to +Y up and the figure facing +Z
+  std::optional<double> metres;      // per unit of length
+  std::optional<Quat> file_to_krok;  // rotates to +Y up and the character facing +Z
 };
 
 enum class Path : unsigned char { translation, rotation, scale, weights };
 enum class Interpolation : unsigned char { linear, step, cubic_spline };
 
-// Keys of one property of one node. Times rise strictly. Values have `width` numbers a key (3, 4 or
-// the number of targets), for cubic splines three times: in-tangent, value, out-tangent.
+// Keys of one property of one node. Times are strictly increasing. Values have `width` numbers per
+// key (3, 4 or the number of targets), three times that for cubic splines: in-tangent, value,
+// out-tangent.
 struct Channel {
   int node = 0;
   Path path = Path::translation;
@@ -122,17 +123,17 @@ struct Animation {
 struct Scene {
   std::string generator;
   std::vector<Node> nodes;
-  std::vector<int> roots;  // of the scene that is shown: the default one, else the first, else all
+  std::vector<int> roots;  // of the displayed scene: the default one, else the first, else all
   std::vector<Mesh> meshes;
   std::vector<Skin> skins;
   std::vector<Camera> cameras;
   std::vector<Animation> animations;
-  // With names of their own, which are the file's where those are unique and not empty; pictures
-  // with their bytes. Only where they were asked for.
+  // With unique names, those of the file if they are unique and not empty; images include their
+  // bytes. Only if requested.
   std::vector<Material> materials;
   Space space;
-  std::vector<std::string> files;  // paths of those that were read besides the one asked for
-  Diagnostics diagnostics;         // what was left aside or is doubtful
+  std::vector<std::string> files;  // paths of other files that were read
+  Diagnostics diagnostics;         // what was ignored or is doubtful
 };
 
 }  // namespace krok::nodes

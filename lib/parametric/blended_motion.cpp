@@ -18,10 +18,10 @@ namespace {
 constexpr double kSumOff = 1e-6;
 constexpr double kMaxTransforms = 1e8;
 constexpr double kNoWeight = 1e-9;
-constexpr int kPosesAtOnce = 16;  // as many as local_to_model() takes in one go
+constexpr int kPosesAtOnce = 16;  // batch size of local_to_model()
 
-// The part of an interval at which a monotone cubic through its ends has the value `value`:
-// Newton's steps within what bisection leaves.
+// The fraction of an interval at which a monotone cubic has the value `value`, by Newton's method
+// safeguarded by bisection.
 double part_at(double value, double from, double from_slope, double to, double to_slope,
                double span) {
   double low = 0, high = 1;
@@ -39,7 +39,7 @@ double part_at(double value, double from, double from_slope, double to, double t
   return s;
 }
 
-// What a keytime of a step is called in a walk.
+// The name of a step's keytime in a walk.
 std::string walk_name(const std::string& keytime, const Library& library) {
   if (keytime == "stance_strike") return fmt::format("{}_strike", name_of(library.stance()));
   if (keytime == "swing_strike") return fmt::format("{}_strike", name_of(library.swing));
@@ -55,9 +55,9 @@ Result<BlendedMotion> BlendedMotion::create(const Library& library, const Packed
   for (const double weight : weights) sum += weight;
   if (weights.size() != packed.clips.size() || !(std::abs(sum - 1) <= kSumOff)) {
     return Error("parametric-weights",
-                 fmt::format("{} weights that sum to {}, for {} examples", weights.size(),
+                 fmt::format("{} weights with sum {} for {} examples", weights.size(),
                              readable(sum), packed.clips.size()),
-                 "give each example a weight, so that they sum to 1");
+                 "give one weight per example; they must sum to 1");
   }
   BlendedMotion motion(library, packed);
   motion.weights_.assign(weights.begin(), weights.end());
@@ -73,10 +73,10 @@ Result<BlendedMotion> BlendedMotion::create(const Library& library, const Packed
     const double lasts = motion.keytimes_[k] - motion.keytimes_[k - 1];
     if (lasts >= shortest_interval(library)) continue;
     return Error("parametric-interval",
-                 fmt::format("the interval from {} to {} would last {} s, the least is {} s",
+                 fmt::format("the interval from {} to {} would last {} s, the min is {} s",
                              library.keytimes[k - 1], library.keytimes[k], readable(lasts),
                              readable(shortest_interval(library), 3)),
-                 "the weights ask too much of the examples' times here");
+                 "the weights extrapolate too far from the examples' timing");
   }
   monotone_velocities(packed.generic, motion.keytimes_, Ends::open, motion.slopes_);
   motion.set_on_stance_foot();
@@ -148,7 +148,7 @@ Result<BlendedMotion::Made> BlendedMotion::make(double rate, LastFrame last) con
   const double frames = duration() * rate;
   const auto joints = library_.skeleton.names.size();
   if (!(frames * static_cast<double>(joints) <= kMaxTransforms)) {
-    return Error("clip-too-long", fmt::format("{} s at {} frames a second are too many frames",
+    return Error("clip-too-long", fmt::format("{} s at {} frames per second are too many frames",
                                               readable(duration()), readable(rate)));
   }
   const int count = last == LastFrame::kept ? std::max(1, static_cast<int>(std::lround(frames)))
@@ -195,8 +195,8 @@ MotionKeys BlendedMotion::keys(double stretch, double duration) const {
   return keys;
 }
 
-// The first contact of a joint is the same in all examples, and so is the second, where all that
-// have a weight have as many.
+// Contacts of a joint are matched by order across the examples, if all that have a weight have
+// equally many.
 std::vector<Contact> BlendedMotion::contacts() const {
   struct Sum {
     double start = 0, end = 0;  // generic time

@@ -18,7 +18,7 @@ constexpr double kMinRange = 1e-9;
 constexpr double kRounding = 1e-9;    // of scaled distances
 constexpr double kTolerance = 1e-10;  // of squares of scaled distances
 
-// The weights, summing to 1, of the point nearest to 0 on the affine hull of columns.
+// Weights, summing to 1, of the point nearest to 0 in the affine hull of the columns.
 VectorXd affine_minimum(const MatrixXd& points) {
   const Index n = points.cols();
   MatrixXd system = MatrixXd::Ones(n + 1, n + 1);
@@ -29,8 +29,8 @@ VectorXd affine_minimum(const MatrixXd& points) {
   return solve_full_pivoting(system, right).head(n);
 }
 
-// The point nearest to 0 in the convex hull of columns. The corral is the set of columns whose hull
-// holds it.
+// Weights of the point nearest to 0 in the convex hull of the columns. The corral is the set of
+// columns whose hull contains it.
 VectorXd nearest_to_origin(const MatrixXd& points) {
   Index first = 0;
   points.colwise().squaredNorm().minCoeff(&first);
@@ -58,7 +58,7 @@ VectorXd nearest_to_origin(const MatrixXd& points) {
         weights = wanted;
         break;
       }
-      // As far towards it as the hull reaches; what falls to 0 there leaves.
+      // Moves towards it as far as the hull reaches; columns whose weight becomes 0 are dropped.
       double part = 1;
       for (Index i = 0; i < weights.size(); ++i) {
         if (wanted[i] > kTolerance) continue;

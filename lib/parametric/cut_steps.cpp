@@ -17,17 +17,17 @@ namespace {
 
 constexpr double kJumpAngle = 60 * kRadiansPerDegree;
 constexpr double kJumpWay = 0.3;  // metres
-constexpr double kTouch = 0.05;   // seconds; less of a contact within a step is none of it
-// What an outlier must be further off than.
+constexpr double kTouch = 0.05;   // seconds; shorter overlaps of a contact with a step are ignored
+// Min deviation of an outlier.
 constexpr double kFarLength = 0.1, kFarAngle = 15 * kRadiansPerDegree, kFarTime = 0.3;
-constexpr std::ptrdiff_t kMaxOutliers = 10;  // one of so many
+constexpr std::ptrdiff_t kMaxOutliers = 10;  // at most one in this many
 constexpr double kNormal = 1.4826;  // standard deviation of a normal distribution over its MAD
 
-// From a strike of the stance foot to the swing foot's.
+// From a strike of the stance foot to the next of the swing foot.
 struct Found {
   FootSide swing = FootSide::left;
   double start = 0, off = 0, end = 0;  // seconds
-  std::string fault;                   // why it is no whole step; empty where it is
+  std::string fault;                   // why it is not a valid step; empty if it is
 };
 
 struct Strike {
@@ -67,7 +67,7 @@ std::vector<Found> find_steps(const MotionKeys& keys, const CutOptions& options)
       step.fault =
           fmt::format("{} {} between the strikes", offs == 0 ? "no" : "more than one", off);
     } else if (lasts < options.shortest || lasts > options.longest) {
-      step.fault = fmt::format("{} s are too {}", readable(lasts, 3),
+      step.fault = fmt::format("{} s is too {}", readable(lasts, 3),
                                lasts < options.shortest ? "short" : "long");
     }
     steps.push_back(std::move(step));
@@ -75,7 +75,7 @@ std::vector<Found> find_steps(const MotionKeys& keys, const CutOptions& options)
   return steps;
 }
 
-// Where the pose jumps from a frame to the next, in words.
+// Description of a jump of the pose between frames; empty if there is none.
 std::string jump_in(const Clip& piece) {
   std::vector<Transform> before(piece.skeleton.names.size()), pose(before.size()),
       local(before.size());
@@ -92,8 +92,7 @@ std::string jump_in(const Clip& piece) {
   return {};
 }
 
-// The moment at which the swing foot passes the stance foot, along the way of the stance foot's
-// toes.
+// When the swing foot passes the stance foot, along the direction of the stance foot's toes.
 std::optional<double> pass_of(const Clip& piece, const Library& library, double from, double to) {
   const FootShape& stance = library.foot(library.stance());
   const FootShape& swing = library.foot(library.swing);
@@ -156,7 +155,7 @@ class Cutter {
     }
   }
 
-  // Outliers are told from all measures at once, so that one does not hide another.
+  // Outliers are found from all measures at once, so that one does not mask another.
   void drop_outliers() {
     Library& library = result_.library;
     if (options_.outlier <= 0 || library.examples.size() < 5) return;
@@ -179,9 +178,9 @@ class Cutter {
       if (!result_.dropped.empty()) why = "; the first: " + result_.dropped.front().reason;
       return Error(
           "parametric-none",
-          fmt::format("no step was found, {} dropped{}",
+          fmt::format("no usable step was found, {} dropped{}",
                       counted(static_cast<long long>(result_.dropped.size()), "was", "were"), why),
-          "krok-keys shows the strikes and offs of a walk");
+          "krok-keys lists the strikes and offs of a walk");
     }
     return std::move(result_);
   }
@@ -196,14 +195,14 @@ class Cutter {
     result_.dropped.push_back({walk, start, end, std::move(reason)});
   }
 
-  // Why the step cannot be taken; empty where it was.
+  // Why the step cannot be used; empty if it was added.
   std::string add_step(const Walk& walk, const Found& step, int number) {
     Library& library = result_.library;
     const Clip& clip = *walk.clip;
     const int first = std::max(0, static_cast<int>(std::floor(step.start * clip.rate + 1e-6)));
     const int last =
         std::min(clip.frame_count() - 1, static_cast<int>(std::ceil(step.end * clip.rate - 1e-6)));
-    if (last <= first) return "it lies outside the walk";
+    if (last <= first) return "it is outside the walk";
     Clip piece = cut(clip, first, last);
     if (std::string jump = jump_in(piece); !jump.empty()) return jump;
     const double shift = first / clip.rate;
@@ -216,7 +215,7 @@ class Cutter {
     std::vector<double> times = {within(step.start), within(step.off), within(step.end)};
     if (options_.pass) {
       const auto pass = pass_of(piece, library, times[1], times[2]);
-      if (!pass) return "the swing foot does not pass the stance foot once";
+      if (!pass) return "the swing foot does not pass the stance foot exactly once";
       times.insert(times.end() - 1, *pass);
     }
     auto example =
@@ -253,7 +252,7 @@ class Cutter {
     }
   }
 
-  // The measures of one parameter, the duration behind the last one.
+  // Flags the outliers of parameter d; the index after the last parameter is the duration.
   void find_outliers(std::size_t d, std::vector<std::string>& faults) const {
     const Library& library = result_.library;
     const bool lasts = d == library.parameters.size();
@@ -268,7 +267,7 @@ class Cutter {
     for (const double value : values) apart.push_back(std::abs(value - middle));
     const double floor = unit == "rad" ? kFarAngle : unit == "s" ? kFarTime : kFarLength;
     const double far = std::max(floor, options_.outlier * kNormal * median(apart));
-    // Outliers are few; where they are more, the library is made of such variations.
+    // If there are many, they are variation of the data, not outliers.
     const auto beyond = std::ranges::count_if(apart, [&](double value) { return value > far; });
     if (beyond * kMaxOutliers > static_cast<std::ptrdiff_t>(apart.size())) return;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -276,7 +275,7 @@ class Cutter {
       const std::string name =
           lasts ? "duration" : name_of(library.parameters[d], library.skeleton, library.keytimes);
       const double scale = unit == "rad" ? 1 / kRadiansPerDegree : 1;
-      faults[i] = fmt::format("an outlier: {} is {} {}, the median {} {}", name,
+      faults[i] = fmt::format("an outlier: {} is {} {}, the median is {} {}", name,
                               readable(values[i] * scale, 3), unit == "rad" ? "degrees" : unit,
                               readable(middle * scale, 3), unit == "rad" ? "degrees" : unit);
     }
@@ -299,7 +298,7 @@ class Cutter {
 
 Result<StepLibrary> cut_steps(std::span<const Walk> walks, const RoleMap& roles,
                               std::span<const std::string> parameters, const CutOptions& options) {
-  if (walks.empty()) return Error("parametric-none", "there is no walk to cut steps out of");
+  if (walks.empty()) return Error("parametric-none", "no walk to cut steps from");
   Cutter cutter(roles, options);
   if (Status status = cutter.begin(walks, parameters); !status) return status.error();
   for (const Walk& walk : walks) cutter.add(walk);

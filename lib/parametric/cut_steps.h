@@ -9,36 +9,37 @@
 #include "roles/roles.h"
 #include "scene/motion_keys.h"
 
-// Steps cut out of walks: each from the strike of one foot to the next strike of the other.
+// Cuts walks into steps, each from the heel strike of one foot to the next strike of the other.
 
 namespace krok::parametric {
 
 // A walk with its keytimes: left_strike, left_off, right_strike, right_off.
 struct Walk {
-  std::string name;  // for people and for the examples' names
+  std::string name;  // for messages and the examples' names
   const Clip* clip = nullptr;
   const MotionKeys* keys = nullptr;
-  const FoundContacts* found = nullptr;  // may be null; tells what the soles are
+  const FoundContacts* found = nullptr;  // may be null; used to find the soles
 };
 
 struct CutOptions {
-  FootSide swing = FootSide::left;  // the foot that steps
-  // Whether steps of the other foot are taken too, as seen in a mirror.
+  FootSide swing = FootSide::left;  // the stepping foot
+  // Whether steps of the other foot are mirrored and used too.
   bool mirror = true;
-  // Adds the keytime swing_pass: the swing foot passes the stance foot.
+  // Adds the keytime swing_pass, when the swing foot passes the stance foot.
   bool pass = false;
   double shortest = 0.2, longest = 2.0;  // seconds from strike to strike
-  // A step is an outlier where one of its measures is further from the median of all than this
-  // many median deviations (scaled to a normal distribution's standard deviation), and further
-  // than 0.1 m, 15 degrees or 0.3 s, if no more than a tenth of all are. 0: none is.
+  // A step is an outlier if one of its measures differs from the median by more than this many
+  // median absolute deviations (scaled to the standard deviation of a normal distribution) and by
+  // more than 0.1 m, 15 degrees or 0.3 s, provided that at most a tenth of all steps do. 0 keeps
+  // all.
   double outlier = 5;
 };
 
-// A step that was found and not taken.
+// A step that was found but not used.
 struct DroppedStep {
   std::string walk;
   double start = 0, end = 0;  // seconds in the walk
-  std::string reason;         // for people: "no left_off between the strikes"
+  std::string reason;         // for messages: "no left_off between the strikes"
 };
 
 struct StepLibrary {
@@ -46,16 +47,16 @@ struct StepLibrary {
   std::vector<DroppedStep> dropped;
 };
 
-// The library of all steps. Its skeleton and rate are the first walk's, its keytimes
-// stance_strike, swing_off, swing_strike. `parameters` are names as parse_parameter() takes them.
+// Builds the library of all steps. Skeleton and rate are those of the first walk, keytimes are
+// stance_strike, swing_off, swing_strike. `parameters` are names for parse_parameter().
 //
-// Dropped are steps without the swing foot's off (or with several) between the strikes, too short
-// or too long ones, those in which the pose jumps (a joint turns by more than 60 degrees, or the
-// root moves by more than 0.3 m, from one frame to the next: a rest pose before the capture), those
-// of which a parameter cannot be measured, and outliers.
+// Drops steps with no or several offs of the swing foot between the strikes; steps that are too
+// short or too long; steps with a jump in the pose (a joint rotates by more than 60 degrees or the
+// root moves by more than 0.3 m between frames, as after a rest pose before the capture); steps
+// with a parameter that cannot be measured; and outliers.
 //
 // Codes: parametric-skeleton for a walk on another skeleton, with its name; parametric-feet,
-// parametric-parameter; parametric-none where no step is left.
+// parametric-parameter; parametric-none if no step is left.
 Result<StepLibrary> cut_steps(std::span<const Walk> walks, const RoleMap& roles,
                               std::span<const std::string> parameters, const CutOptions& options);
 

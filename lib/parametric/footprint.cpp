@@ -10,10 +10,10 @@ namespace krok::parametric {
 
 namespace {
 
-constexpr double kUpright = 1e-3;  // of the level part of a unit vector
-constexpr double kClimb = 0.15;    // of the leg, between the feet's heights
+constexpr double kUpright = 1e-3;  // of the horizontal part of a unit vector
+constexpr double kClimb = 0.15;    // of the leg length, between the heights of contacts
 
-// Vectors of which the median is wanted, coordinate by coordinate.
+// Collects vectors for a component-wise median.
 class Medians {
  public:
   void add(const Vec3& v) {
@@ -41,7 +41,7 @@ Quat orientation(const Clip& clip, int frame, int joint) {
       .normalized();
 }
 
-// Up in the foot's frame where heel and ball stay at once.
+// The up direction in the foot's frame, for frames with both heel and ball in contact.
 void add_flat_frames(const ClipContacts& given, FootSide side, int joint, Medians& up) {
   if (given.contacts == nullptr) return;
   const Clip& clip = *given.clip;
@@ -62,7 +62,7 @@ void add_flat_frames(const ClipContacts& given, FootSide side, int joint, Median
   }
 }
 
-// Whether the feet stand at different heights, as on a slope, where a flat foot is tilted.
+// Whether contacts are at different heights, as on a slope, where a flat foot is tilted.
 bool climbs(const ClipContacts& given) {
   if (given.contacts == nullptr || given.contacts->stays.empty()) return false;
   const auto [low, high] = std::ranges::minmax(given.contacts->stays, {},
@@ -74,7 +74,7 @@ Vec3 level(const Vec3& v, const Vec3& up) {
   return v - up * up.dot(v);
 }
 
-// The way from the heel to the front of the foot, a joint before the ankle.
+// From the foot joint to the front of the foot, in the foot's frame.
 Vec3 front_of(const Skeleton& skeleton, const SolePoint& front, int foot) {
   if (front.joint == foot) return front.offset;
   const Transform& from = skeleton.reference[static_cast<std::size_t>(foot)];
@@ -123,8 +123,8 @@ Result<std::array<FootShape, 2>> find_foot_shapes(std::span<const ClipContacts> 
       add_flat_frames(given, side, shape.joint, up);
     }
     if (shape.joint < 0) {
-      return Error("parametric-feet", "the skeleton's feet are not known",
-                   "name its feet with --map");
+      return Error("parametric-feet", "the skeleton has no known feet",
+                   "assign its feet with --map");
     }
     const Skeleton& skeleton = clips.front().clip->skeleton;
     const Quat world_to_foot =

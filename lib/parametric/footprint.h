@@ -9,43 +9,42 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 
-// Where a foot stands on the ground, told from the pose of its foot joint alone, whether the foot
-// is flat, comes down on its heel or on its ball.
+// Footprint of a foot on the ground, from the pose of its foot joint alone, whether the foot is
+// flat, on its heel or on its ball.
 
 namespace krok::parametric {
 
-// What the sole is in the frame of the foot joint (at the ankle).
+// Sole geometry in the frame of the foot joint (ankle).
 struct FootShape {
   int joint = -1;
-  Vec3 heel = Vec3::Zero();      // the heel's point of the sole, metres
-  Vec3 forward = Vec3::UnitZ();  // along the sole, unit
-  double length = 0;             // from the heel to the ball, metres; 0 where the ball is not known
+  Vec3 heel = Vec3::Zero();      // of the sole, metres
+  Vec3 forward = Vec3::UnitZ();  // along the sole, unit vector
+  double length = 0;             // from heel to ball, metres; 0 if the ball is not known
 };
 
-// A place on the ground and the direction that the toes point to.
+// Position on the ground and direction of the toes.
 struct Footprint {
   Vec3 place = Vec3::Zero();  // of the heel, metres
-  double heading = 0;         // about +Y: 0 faces +Z, a quarter turn +X
+  double heading = 0;         // about +Y: 0 faces +Z, a quarter turn faces +X
 
-  // From the footprint's frame (origin at the heel, toes to +Z) to that of `place`.
+  // From the footprint's frame (origin at the heel, toes to +Z) to the frame of `place`.
   Transform to_world() const;
 };
 
-// The sole's ball in the foot joint's frame.
+// The ball of the foot, in the frame of the foot joint.
 Vec3 ball_of(const FootShape& foot);
 
-// The footprint as it is once the foot has rolled flat: a foot with its heel lower than its ball
-// turns about the heel, which is where it stands; one with its ball lower turns about the ball, so
-// that the heel comes down its length behind. Feet of a pitch of either sign are told alike, and
-// there is no jump from one to the other. The heading is the level direction of the sole; 0 where
-// the foot stands on its tips within 0.001 of upright.
+// The footprint after the foot has rolled flat: if the heel is lower than the ball, the foot
+// rotates about the heel; if the ball is lower, about the ball, so that the heel lands one sole
+// length behind it. Continuous in pitch. The heading is the horizontal direction of the sole; 0 if
+// the sole is within 0.001 of vertical.
 Footprint footprint(const FootShape& foot, const Transform& foot_to_world);
 
-// The soles of a figure, [FootSide]. Heels and balls are where find_feet() has them, the medians
-// over the clips; which way is forward in the foot's frame is read off the frames in which heel and
-// ball of a foot stay, for then it is flat, otherwise off the reference pose. Clips that
-// climb count only where all do, for on a slope a flat foot is tilted. Clips of one skeleton, at
-// least one. Code: parametric-feet where roles know no feet.
+// Sole geometry of both feet, [FootSide]. Heels and balls are those of find_feet(), as medians over
+// the clips. The forward direction comes from frames in which both heel and ball are in contact,
+// since the foot is flat then, otherwise from the reference pose. Clips that climb are used only if
+// all do, because a flat foot is tilted on a slope. All clips share one skeleton; at least one is
+// needed. Code: parametric-feet if `roles` have no feet.
 struct ClipContacts {
   const Clip* clip = nullptr;
   const FoundContacts* contacts = nullptr;  // may be null

@@ -15,7 +15,7 @@ namespace krok::parametric {
 
 namespace {
 
-constexpr int kParts = 16;  // moments in an interval between keytimes
+constexpr int kParts = 16;  // samples per interval between keytimes
 
 std::vector<double> parameters_of(const Library& library) {
   std::vector<double> all;
@@ -36,7 +36,7 @@ Result<rbf::WeightFunction> weights_of(const Library& library, rbf::Kernel kerne
   return solver->function();
 }
 
-// What the least-squares hyperplanes through the examples' weights are at a point.
+// Values of the least-squares affine fit of the examples' weights at a point.
 std::vector<double> plane_weights(const Bounds& bounds, std::span<const double> point) {
   const Eigen::Index d = bounds.dimensions;
   const auto n = static_cast<Eigen::Index>(bounds.points.size()) / d;
@@ -69,7 +69,7 @@ std::vector<double> nearest_weights(const Bounds& bounds, std::span<const double
   return weights;
 }
 
-// The poses of a motion at parts of its intervals, positions alone: [moments x joints].
+// Joint positions of a motion at fractions of its intervals: [samples x joints].
 std::vector<Vec3> poses_of(const BlendedMotion& motion, const Skeleton& skeleton) {
   auto scratch = motion.make_scratch();
   std::vector<PoseBlock> pose(scratch.reference.size());
@@ -98,11 +98,11 @@ std::optional<double> distance(const Library& library, const PackedExamples& pac
   return std::sqrt(sum / static_cast<double>(found.size()));
 }
 
-// A library without one of its examples, and what that is.
+// A library without one of its examples, and that example.
 struct Gap {
   Library others;
   PackedExamples packed;
-  std::vector<double> point;  // what the example measures
+  std::vector<double> point;  // parameters of the example
   std::vector<Vec3> wanted;
 };
 
@@ -124,7 +124,7 @@ Gap gap_of(const Library& library, std::size_t index) {
   return gap;
 }
 
-// How far the weight function of the others is off.
+// Distance of the motion by the weight function of the others.
 std::optional<double> weighted_distance(const Gap& gap, rbf::Kernel kernel, double smoothing) {
   const auto function = weights_of(gap.others, kernel, smoothing);
   if (!function) return std::nullopt;
@@ -193,7 +193,7 @@ Result<std::vector<double>> distances_to_examples(const Library& library,
   if (function.examples != static_cast<int>(library.examples.size()) ||
       function.dimensions != library.dimensions()) {
     return Error("parametric-weights",
-                 "the weights are for another number of examples or parameters");
+                 "the weight function has another number of examples or parameters");
   }
   const PackedExamples packed = pack_examples(library);
   std::vector<double> weights(library.examples.size()), distances;

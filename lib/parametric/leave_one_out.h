@@ -8,25 +8,25 @@
 
 namespace krok::parametric {
 
-// How near a library without one of its examples comes to that example: the distance of all joints
-// over the motion, root mean square (metres), each motion seen from its own stance foot and
-// compared at the same part between the same keytimes.
+// Leave-one-out error of an example: RMS distance over all joints and the whole motion (metres) to
+// what the library without it makes, both relative to their stance foot and compared at the same
+// fraction between keytimes.
 struct HeldOut {
   int example = 0;
   double weighted = 0;  // by the weight function of the others
-  double linear = 0;    // by its plane alone: the least-squares fit to the others' weights
-  double nearest = 0;  // by the other example whose parameters, scaled by their ranges, are nearest
-  bool inside = false;  // whether its parameters lie between the others'
-  bool failed = false;  // whether the others make no motion there; the distances are then 0
+  double linear = 0;    // by its affine part alone: the least-squares fit to the others' weights
+  double nearest = 0;   // by the other example with the nearest parameters, scaled by their ranges
+  bool inside = false;  // whether its parameters are within the bounds of the others
+  bool failed = false;  // whether the others give no motion there; the distances are then 0
 };
 
-// Each example left out in turn. `kernel` and `smoothing` are those of the weight functions;
-// nothing is refined. The same with any number of jobs (threads, see thread_count()). Codes: those
-// of check(Library) and of WeightSolver::create() for all examples together.
+// Leaves out each example in turn. `kernel` and `smoothing` are those of the weight functions,
+// which are not refined. Independent of the number of jobs (threads, see thread_count()). Codes:
+// those of check(Library) and of WeightSolver::create() for all examples together.
 Result<std::vector<HeldOut>> leave_one_out(const Library& library, rbf::Kernel kernel,
                                            double smoothing = 0, int jobs = 1);
 
-// Means over the examples that lie between the others, for there alone the others can tell; 0 where
+// Means over the examples inside the bounds of the others, since only those can be predicted; 0 if
 // there are none.
 struct LeftOutMeans {
   int examples = 0;
@@ -34,21 +34,21 @@ struct LeftOutMeans {
 };
 LeftOutMeans means_of(std::span<const HeldOut> left_out);
 
-// The same distance from each example to what a weight function makes at the example's own
-// parameters, [examples]: 0 but for rounding where weights meet the examples, more with smoothing.
-// Infinite where there is no such motion. Codes: those of check(Library) and of
-// WeightEvaluator::create(); parametric-weights where the function is for another library.
+// The same distance between each example and the motion that a weight function gives at its
+// parameters, [examples]: 0 up to rounding if the weights interpolate, larger with smoothing.
+// Infinity if there is no such motion. Codes: those of check(Library) and
+// WeightEvaluator::create(); parametric-weights if the function is for another library.
 Result<std::vector<double>> distances_to_examples(const Library& library,
                                                   const rbf::WeightFunction& function);
 
-// How far off the weights of others are with a smoothing, in the mean over the examples that lie
-// between the others and that the others can make.
+// Mean leave-one-out error for a smoothing, over the examples that are inside the bounds of the
+// others and that the others can make.
 struct SmoothingTrial {
   double smoothing = 0;
   int examples = 0;
   double weighted = 0;  // metres
 };
-// One for each of the smoothings. Codes as those of leave_one_out().
+// One result per smoothing. Codes: those of leave_one_out().
 Result<std::vector<SmoothingTrial>> try_smoothings(const Library& library, rbf::Kernel kernel,
                                                    std::span<const double> smoothings,
                                                    int jobs = 1);

@@ -15,7 +15,7 @@ namespace krok::parametric {
 
 namespace {
 
-constexpr double kSameOffset = 0.01;  // of the figure's extent
+constexpr double kSameOffset = 0.01;  // of the skeleton's extent
 constexpr double kShortest = 0.01;    // seconds
 constexpr std::size_t kLongestName = 1000;
 
@@ -24,22 +24,22 @@ Error keytime_error(const std::string& name, std::string message) {
           "krok-keys finds or sets keytimes"};
 }
 
-// What an example's keytimes must be beside the library's.
+// What an example's keytimes must satisfy in this library.
 Status check_keytimes(const Library& library, const std::string& name, const Clip& motion,
                       const std::vector<double>& times) {
   if (times.size() != library.keytimes.size()) {
-    return keytime_error(name, fmt::format("{} keytimes, the library has {}", times.size(),
+    return keytime_error(name, fmt::format("has {} keytimes, the library has {}", times.size(),
                                            library.keytimes.size()));
   }
   for (std::size_t k = 0; k < times.size(); ++k) {
     if (!(times[k] >= -1e-9 && times[k] <= motion.duration() + 1e-9)) {
       return keytime_error(
-          name, fmt::format("{} at {} s lies outside the motion's {} s", library.keytimes[k],
+          name, fmt::format("{} at {} s is outside the motion of {} s", library.keytimes[k],
                             readable(times[k]), readable(motion.duration())));
     }
     if (k == 0 || times[k] - times[k - 1] >= shortest_interval(library)) continue;
     return keytime_error(name,
-                         fmt::format("{} s from {} to {} are too short, the least is {} s",
+                         fmt::format("{} s from {} to {} is too short, the min is {} s",
                                      readable(times[k] - times[k - 1]), library.keytimes[k - 1],
                                      library.keytimes[k], readable(shortest_interval(library), 3)));
   }
@@ -68,18 +68,18 @@ void sort_contacts(std::vector<Contact>& contacts) {
 
 Error example_error(std::size_t index, std::string message) {
   return {"parametric-example", fmt::format("example {} {}", index + 1, std::move(message)),
-          "make the library anew"};
+          "make the library again"};
 }
 
 Status check_example(const Library& library, std::size_t index) {
   const Example& example = library.examples[index];
   if (example.name.empty() || example.name.size() > kLongestName) {
-    return example_error(index, "has no name or one of over 1,000 bytes");
+    return example_error(index, "has no name or one longer than 1,000 bytes");
   }
   if (example.motion.frame_count() == 0) return example_error(index, "has no frames");
   if (example.parameters.size() != library.parameters.size() ||
       !std::ranges::all_of(example.parameters, [](double p) { return std::isfinite(p); })) {
-    return example_error(index, "has not all parameters measured");
+    return example_error(index, "has missing or invalid parameters");
   }
   if (Status status = check(example.motion); !status) return status;
   if (Status status = same_skeleton(library.skeleton, example.motion.skeleton); !status)
@@ -95,7 +95,7 @@ Vec3 image(const Vec3& v) {
   return {-v.x(), v.y(), v.z()};
 }
 
-// What the sole of `joint`'s partner is in a mirror.
+// The sole of `foot` mirrored to its partner.
 FootShape mirrored_foot(const FootShape& foot, const Skeleton& skeleton, int partner) {
   const Quat& from = skeleton.reference[static_cast<std::size_t>(foot.joint)].orientation;
   const Quat& to = skeleton.reference[static_cast<std::size_t>(partner)].orientation;
@@ -110,7 +110,7 @@ double shortest_interval(const Library& library) {
 }
 
 Status same_skeleton(const Skeleton& library, const Skeleton& other) {
-  constexpr const char* kRetarget = "krok-retarget brings a motion on another skeleton";
+  constexpr const char* kRetarget = "krok-retarget transfers a motion to another skeleton";
   const std::string difference = difference_in_structure(library, other);
   if (!difference.empty()) {
     return Error("parametric-skeleton", "not the library's skeleton: " + difference, kRetarget);
@@ -122,7 +122,7 @@ Status same_skeleton(const Skeleton& library, const Skeleton& other) {
     if ((ours - theirs).norm() <= allowed) continue;
     const std::string& name = library.names[static_cast<std::size_t>(j)];
     Error error("parametric-skeleton",
-                fmt::format("not the library's skeleton: {} stands {} m elsewhere in its parent's "
+                fmt::format("not the library's skeleton: {} is offset by {} m in its parent's "
                             "frame",
                             name, readable((ours - theirs).norm(), 3)),
                 kRetarget);
@@ -173,11 +173,11 @@ Status check(const Library& library) {
         std::abs(foot.forward.norm() - 1) <= 1e-4) {
       continue;
     }
-    return Error("parametric-feet", "a foot has no joint or no sole", "make the library anew");
+    return Error("parametric-feet", "a foot has no joint or no sole", "make the library again");
   }
   if (library.keytimes.size() < 2 ||
       std::ranges::any_of(library.keytimes, [](const auto& name) { return name.empty(); })) {
-    return Error("parametric-keytimes", "a library needs two keytimes or more, with names");
+    return Error("parametric-keytimes", "a library needs at least two named keytimes");
   }
   if (!(library.rate > 0) || !std::isfinite(library.rate)) {
     return Error("clip-rate", "the rate of a library must be a positive number");
@@ -200,7 +200,7 @@ Result<Library> mirrored(const Library& library, const RoleMap& roles) {
     const FootShape& foot = library.foot(side);
     if (partner(foot.joint) == MirrorPairs::kNone || partner(foot.joint) == foot.joint) {
       return Error("parametric-feet", "the feet are not each other's mirror image",
-                   "name them with --map");
+                   "assign them with --map");
     }
     result.feet[1 - static_cast<std::size_t>(side)] =
         mirrored_foot(foot, library.skeleton, partner(foot.joint));
@@ -210,7 +210,7 @@ Result<Library> mirrored(const Library& library, const RoleMap& roles) {
     parameter.joint = partner(parameter.joint);
     if (parameter.joint == MirrorPairs::kNone) {
       return Error("parametric-feet", "a measured joint has no mirror image",
-                   "name the joints with --map");
+                   "assign the joints with --map");
     }
   }
   for (Example& example : result.examples) {

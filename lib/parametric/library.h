@@ -10,29 +10,29 @@
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
 
-// A library of variations of one motion, such as steps of different lengths: what is common to
-// them, and the examples with their measured parameters.
+// A library of variations of one motion, such as steps of different lengths: shared data, and the
+// examples with their measured parameters.
 
 namespace krok::parametric {
 
-// A motion as seen from the footprint of its stance foot at the first keytime: the heel is at the
+// A motion relative to the footprint of its stance foot at the first keytime: the heel is at the
 // origin, the toes point to +Z.
 struct Example {
-  std::string name;               // for people: "walk_07 2 left"
-  Clip motion;                    // of the library's skeleton, without provenance
-  std::vector<double> keytimes;   // seconds from the motion's first frame, rising, [keytimes]
-  std::vector<Contact> contacts;  // in the motion's frame and time
+  std::string name;               // display name: "walk_07 2 left"
+  Clip motion;                    // on the library's skeleton, without provenance
+  std::vector<double> keytimes;   // [keytimes], seconds from the motion's first frame, rising
+  std::vector<Contact> contacts;  // in the frame and time of `motion`
   bool mirrored = false;
   std::vector<double> parameters;  // measured, [parameters]: metres, radians, seconds
 };
 
 struct Library {
   Skeleton skeleton;
-  FootSide swing = FootSide::left;    // the foot that steps; the other one is the stance foot
+  FootSide swing = FootSide::left;    // the stepping foot; the other is the stance foot
   std::array<FootShape, 2> feet;      // [FootSide]
   std::vector<std::string> keytimes;  // names, at least two: "stance_strike", ...
   std::vector<Parameter> parameters;  // what is measured
-  double rate = 30;                   // frames a second of the motions that are made
+  double rate = 30;                   // frames per second of synthesised motions
   std::vector<Example> examples;
 
   FootSide stance() const { return swing == FootSide::left ? FootSide::right : FootSide::left; }
@@ -40,31 +40,31 @@ struct Library {
   int dimensions() const { return static_cast<int>(parameters.size()); }
 };
 
-// What no interval between keytimes may fall below, seconds: two frames of the library's rate, or
-// 10 ms where those last longer. (Who walks fast lifts the foot 10 to 30 ms after the other one
-// strikes, which is less than two frames of most captures.)
+// Min interval between keytimes, seconds: two frames at the library's rate, at most 10 ms. (In fast
+// walks the foot lifts 10 to 30 ms after the other one strikes, less than two frames of most
+// captures.)
 double shortest_interval(const Library& library);
 
-// Whether two skeletons are one to a library: names, order, parents, and the reference poses'
-// offsets up to a hundredth of the figure's extent. Code parametric-skeleton, with the joint.
+// Whether two skeletons can share a library: same names, order and parents; offsets in the
+// reference poses equal to within a hundredth of the skeleton's extent. Code: parametric-skeleton,
+// naming the joint.
 Status same_skeleton(const Skeleton& library, const Skeleton& other);
 
-// A motion with its keytimes (seconds) made an example: brought into the stance foot's frame, its
-// parameters measured. `contacts` are the motion's. Codes: parametric-skeleton; parametric-keytimes
-// where times do not fit the library, do not rise by shortest_interval(), or lie outside the
-// motion; parametric-foot as Measure.
+// Makes an example of a motion with keytimes (seconds): moves it into the stance foot's frame and
+// measures its parameters. `contacts` are those of the motion. Codes: parametric-skeleton;
+// parametric-keytimes if times do not match the library, do not rise by at least
+// shortest_interval(), or lie outside the motion; parametric-foot as in Measure.
 Result<Example> make_example(const Library& library, std::string name, const Clip& motion,
                              std::vector<double> keytimes, std::vector<Contact> contacts = {});
 
-// Whether what the comments above promise holds, feet have joints, all examples have frames and
-// finite parameters, and no name is empty or longer than 1,000 bytes. A library may have no
-// examples. Codes: those of check(Skeleton), check(Clip), check(MotionKeys) and check(parameters),
-// parametric-feet, parametric-keytimes, parametric-example.
+// Validates a library: the invariants above hold, feet have joints, all examples have frames and
+// finite parameters, and names have 1 to 1,000 bytes. A library may be empty. Codes: those of
+// check(Skeleton), check(Clip), check(MotionKeys) and check(parameters), parametric-feet,
+// parametric-keytimes, parametric-example.
 Status check(const Library& library);
 
-// Left and right exchanged, parameters the same: how a library of steps to the left makes steps to
-// the right. `roles` are those of the library's skeleton. Codes: parametric-feet where a foot has
-// no partner.
+// Swaps left and right and keeps the parameters, so that a library of left steps makes right steps.
+// `roles` are those of the library's skeleton. Code: parametric-feet if a foot has no mirror joint.
 Result<Library> mirrored(const Library& library, const RoleMap& roles);
 
 }  // namespace krok::parametric

@@ -12,7 +12,7 @@ namespace krok::parametric {
 namespace {
 
 constexpr double kMinSum = 1e-6;
-constexpr double kMinLevel = 1e-3;   // of the sole's direction
+constexpr double kMinLevel = 1e-3;   // of the horizontal part of the sole's direction
 constexpr double kSamePlace = 2e-6;  // metres, within the rounding of floats
 
 Vec3 forward_of(double heading) {
@@ -24,12 +24,12 @@ Vec3 left_of(double heading) {
 
 }  // namespace
 
-// A footprint with what its derivatives need.
+// A footprint with the data for its derivatives.
 struct Measure::Print {
   int node = 0;
   Footprint print;
   Vec3 heel = Vec3::Zero(), forward = Vec3::Zero();  // world
-  double length = 0;                                 // of the sole where it stands on its ball
+  double length = 0;                                 // of the sole if the foot is on its ball
 };
 
 Measure::Measure(const Library& library, const PackedExamples& packed)
@@ -115,7 +115,7 @@ Status Measure::pose(const Eigen::Ref<const Eigen::VectorXd>& weights, Scratch& 
     state.length = sum.norm();
     if (!(state.length > kMinSum)) {
       return Error("parametric-sum", "rotations of the examples cancel each other",
-                   "use examples that are more alike, or weights that are less extreme");
+                   "use more similar examples or less extreme weights");
     }
     state.rotation.coeffs() = sum / state.length;
     Vec3 place = at.place;
@@ -137,16 +137,16 @@ Status Measure::print_of(const FootShape& foot, int node, const Scratch& scratch
   print.heel = to_world * foot.heel;
   print.forward = to_world.orientation * foot.forward;
   if (std::hypot(print.forward.x(), print.forward.z()) < kMinLevel) {
-    return Error("parametric-foot", "a foot stands upright, so that it points nowhere",
-                 "take a keytime at which it stands flat");
+    return Error("parametric-foot", "a foot is vertical, so its heading is undefined",
+                 "use a keytime at which it is flat");
   }
   print.print = footprint(foot, to_world);
   print.length = print.forward.y() < 0 ? foot.length : 0;
   return {};
 }
 
-// Adds to the node what moves it: the derivatives by the print's place and heading, as a force and
-// a moment about the origin.
+// Adds the derivatives by the print's position and heading to its node, as a force and a moment
+// about the origin.
 void Measure::pull(const Print& print, const Vec3& place, double heading, Scratch& scratch) const {
   NodeState& state = scratch[static_cast<std::size_t>(print.node)];
   const Vec3& ahead = print.forward;
@@ -180,7 +180,7 @@ Status Measure::evaluate(const Parameter& parameter, const Print& stance, Scratc
   if (parameter.quantity == Quantity::step_length) direction = Direction::along;
   if (parameter.quantity == Quantity::step_width) direction = Direction::across;
   if (parameter.quantity == Quantity::step_height) direction = Direction::up;
-  // The axis, and how it changes with the stance foot's heading.
+  // The axis, and its derivative by the stance foot's heading.
   Vec3 axis = Vec3::UnitY(), change = Vec3::Zero();
   if (direction == Direction::along) {
     axis = forward_of(heading);
@@ -202,9 +202,9 @@ Status Measure::evaluate(const Parameter& parameter, const Print& stance, Scratc
   return {};
 }
 
-// Up the tree, from forces to what each example's rotations and places do to the parameter. A turn
-// of a joint by the small vector v in its parent's frame is 2 vec(dq q*), of which the part along q
-// drops out, as it must for a sum that is brought to length 1.
+// Accumulates forces up the hierarchy into the derivatives by each example's rotations and
+// positions. A rotation of a joint by a small vector v in its parent's frame is 2 vec(dq q*); the
+// component along q drops out, as it must for a normalised sum.
 void Measure::gather(Scratch& scratch, Eigen::Ref<Eigen::RowVectorXd> row) const {
   row.setZero();
   for (std::size_t n = nodes_.size(); n-- > 0;) {

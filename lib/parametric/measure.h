@@ -8,14 +8,13 @@
 
 namespace krok::parametric {
 
-// The parameters of the motion that weights blend: f(w). The examples' poses at the keytimes are
-// summed with their weights (positions and, in one hemisphere, rotations brought to length 1), and
-// what is measured is worked out by forward kinematics along the joints that it needs, relative to
-// the blend's own stance footprint. It is what the motion of BlendedMotion measures, but for the
-// rounding of its floats.
+// Measures the parameters f(w) of a blend. The examples' poses at the keytimes are summed with the
+// weights (positions; rotations in one hemisphere, normalised), then forward kinematics along the
+// joints needed gives the parameters, relative to the blend's own stance footprint. Equal to what
+// is measured on a BlendedMotion, except for its float rounding.
 class Measure {
  public:
-  // The library must hold, with one example or more; neither argument is kept.
+  // The library must be valid, with at least one example. No reference to the arguments is kept.
   Measure(const Library& library, const PackedExamples& packed);
 
   int examples() const { return examples_; }
@@ -31,10 +30,10 @@ class Measure {
   Scratch make_scratch() const { return Scratch(nodes_.size()); }
 
   // `weights`: [examples], summing to 1. `parameters`: [dimensions], metres, radians, seconds.
-  // `jacobian`: [dimensions x examples], row by row, of the parameters by each weight, or empty.
-  // Allocates nothing; several threads may call it, each with a scratch of its own. Codes:
-  // parametric-sum where rotations cancel (a sum shorter than 1e-6), parametric-foot where a foot
-  // stands upright so that it points nowhere.
+  // `jacobian`: [dimensions x examples], row-major, derivatives of the parameters by the weights,
+  // or empty. Does not allocate; thread-safe with one scratch per thread. Codes: parametric-sum if
+  // rotations cancel (a sum shorter than 1e-6), parametric-foot if a foot is vertical, so that it
+  // has no heading.
   Status operator()(std::span<const double> weights, std::span<double> parameters,
                     std::span<double> jacobian, Scratch& scratch) const;
 
@@ -44,7 +43,7 @@ class Measure {
     int keytime = 0;
     int joint = 0;
     int parent = -1;     // index of a node
-    bool moves = false;  // whether its place in its parent differs between the examples
+    bool moves = false;  // whether its position in its parent differs between the examples
     Vec3 place = Vec3::Zero();
   };
   struct Print;
@@ -61,7 +60,7 @@ class Measure {
   void gather(Scratch& scratch, Eigen::Ref<Eigen::RowVectorXd> row) const;
 
   int examples_ = 0;
-  double side_ = 1;  // +1 where the swing foot is the left one
+  double side_ = 1;  // +1 if the swing foot is the left one
   FootShape stance_, swing_;
   std::vector<Parameter> parameters_;
   std::vector<Node> nodes_;    // by keytime; parents before their children

@@ -11,10 +11,10 @@ namespace krok::parametric {
 
 namespace {
 
-constexpr double kReferenceRate = 60;   // poses of the reference a second of generic time
-constexpr double kMaxReference = 4096;  // of them
-constexpr double kMinReach = 0.01;      // of the figure's extent
-constexpr int kSpreadParts = 4;         // of an interval, where the spread is looked for
+constexpr double kReferenceRate = 60;   // reference poses per second of generic time
+constexpr double kMaxReference = 4096;  // max number of reference poses
+constexpr double kMinReach = 0.01;      // of the skeleton's extent
+constexpr int kSpreadParts = 4;         // samples per interval for the spread
 
 void add_times(const Library& library, PackedExamples& packed) {
   const auto keytimes = static_cast<Eigen::Index>(library.keytimes.size());
@@ -33,7 +33,6 @@ void add_times(const Library& library, PackedExamples& packed) {
     for (Eigen::Index k = 0; k < keytimes; ++k) {
       packed.times(k, i) = times[static_cast<std::size_t>(k)];
     }
-    // Columns are contiguous.
     monotone_velocities(packed.generic, times, Ends::open,
                         {packed.slopes.col(i).data(), static_cast<std::size_t>(keytimes)});
   }
@@ -48,12 +47,12 @@ std::vector<Transform> local_pose(const PackedExamples& packed, int example, dou
   return local;
 }
 
-// Sums in the hemisphere of the pose before, so that the reference has no jumps.
+// Sums in the hemisphere of the previous pose, so that the reference is continuous.
 void add_reference(PackedExamples& packed) {
   const int joints = packed.clips.front().joints;
   PackedClip& reference = packed.reference;
   reference.joints = joints;
-  // However long a motion says it is, the reference stays small.
+  // Bounds the size of the reference for motions of any duration.
   const double last = packed.generic.back();
   const double count = std::clamp(std::ceil(last * kReferenceRate), 1.0, kMaxReference);
   reference.rate = count / last;

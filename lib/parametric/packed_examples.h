@@ -10,38 +10,39 @@
 
 namespace krok::parametric {
 
-// The examples of a library made ready for blending, once. Generic time is that of the average
-// example: 0 at the first keytime, at each other one the mean of the examples' seconds. (Counting
-// keytimes, 0, 1, 2, would do as well if intervals were of like length; where a short one meets a
-// long one the cubic through them comes to rest at an end, and blends begin with a jerk.)
+// A library's examples prepared for blending. Generic time is that of the average example: 0 at the
+// first keytime, and at each other one the mean of the examples' times, seconds. (Numbering
+// keytimes 0, 1, 2 works only if intervals have similar length; otherwise the cubic comes to rest
+// at the end of a short interval, and blends start with a jerk.)
 struct PackedExamples {
   std::vector<PackedClip> clips;  // [examples]
-  std::vector<double> generic;    // [keytimes], of the keytimes, rising from 0
-  // Each example's time by generic time is a monotone cubic (PCHIP) through its keytimes: seconds
-  // at them, and seconds for one of generic time. [keytimes x examples]
+  std::vector<double> generic;    // [keytimes], generic time of the keytimes, rising from 0
+  // Each example's time by generic time is a monotone cubic (PCHIP) through its keytimes: values
+  // (seconds) and derivatives at them. [keytimes x examples]
   Eigen::MatrixXd times, slopes;
-  // The mean of all examples by generic time: the hemisphere that rotations are summed in.
+  // Mean of all examples by generic time; rotations are summed in its hemisphere.
   PackedClip reference;
-  // [joints], 1 where a joint carries a bone longer than a hundredth of the figure's extent.
+  // [joints], 1 if the joint carries a bone longer than a hundredth of the skeleton's extent.
   std::vector<std::uint8_t> carries;
 
   int examples() const { return static_cast<int>(clips.size()); }
   int keytimes() const { return static_cast<int>(times.rows()); }
 };
 
-// The library must hold, with one example or more.
+// The library must be valid, with at least one example.
 PackedExamples pack_examples(const Library& library);
 
-// A place within generic time: the interval, and what values and slopes at its ends count there.
+// A point in generic time: its interval, and the Hermite basis values for the values and slopes at
+// the interval's ends.
 struct GenericTimePoint {
   int interval = 0;
   double value[2] = {1, 0}, slope[2] = {0, 0};
 };
 
-// `generic` is brought between the first keytime and the last.
+// `generic` is clamped to the keytimes.
 GenericTimePoint generic_place(std::span<const double> knots, double generic);
 
-// Seconds in the example's motion.
+// Time in the example's motion, seconds.
 inline double example_time(const PackedExamples& packed, const GenericTimePoint& place,
                            int example) {
   const int k = place.interval;
@@ -50,9 +51,9 @@ inline double example_time(const PackedExamples& packed, const GenericTimePoint&
          place.slope[1] * packed.slopes(k + 1, example);
 }
 
-// How far apart examples are: the largest angle between the rotations to the parent of one joint in
-// two of them, at the same generic time. Over 90 degrees a weighted sum means little. Joints that
-// carry nothing, such as eyes, do not count: captures leave them anywhere.
+// Largest difference between examples: the angle between the local rotations of one joint in two
+// examples at the same generic time. Beyond 90 degrees a weighted sum of rotations is unreliable.
+// Joints that carry nothing, such as eyes, are ignored: captures leave them in arbitrary poses.
 struct Spread {
   double angle = 0;                      // radians
   int joint = 0, first = 0, second = 0;  // the two examples

@@ -24,7 +24,6 @@ Error wrong(std::string message, std::string hint) {
   return {"parametric-parameter", std::move(message), std::move(hint)};
 }
 
-// The index of a name in a list.
 template <typename Names>
 std::optional<int> index_of(const Names& names, std::string_view name) {
   const auto found = std::ranges::find(names, name);
@@ -36,14 +35,14 @@ bool is_step(Quantity quantity) {
   return quantity <= Quantity::step_turn;
 }
 
-// "LeftHand.up".
+// Parses "LeftHand.up".
 Status parse_joint(std::string_view name, const Skeleton& skeleton, Parameter& parameter) {
   const auto dot = name.rfind('.');
   const auto axis =
       dot == std::string_view::npos ? std::nullopt : index_of(kDirections, name.substr(dot + 1));
   if (!axis) {
-    return wrong(fmt::format("no parameter is called {}", shown(name)),
-                 "one of step.length, step.width, step.height, step.turn, duration, or a joint "
+    return wrong(fmt::format("unknown parameter {}", shown(name)),
+                 "use step.length, step.width, step.height, step.turn, duration, or a joint "
                  "with .across, .up or .along, @ and a keytime");
   }
   parameter.quantity = Quantity::joint;
@@ -95,7 +94,7 @@ Result<Parameter> parse_parameter(std::string_view name, const Skeleton& skeleto
   if (!has_keytime && parameter.quantity != Quantity::joint) return parameter;
   const auto keytime = has_keytime ? index_of(keytimes, name.substr(at + 1)) : std::nullopt;
   if (!keytime || parameter.quantity == Quantity::duration) {
-    return wrong(fmt::format("{} names no keytime that it could be measured at", shown(name)),
+    return wrong(fmt::format("{} has no valid keytime", shown(name)),
                  fmt::format("keytimes are {}", fmt::join(keytimes, ", ")));
   }
   parameter.keytime = *keytime;
@@ -104,7 +103,7 @@ Result<Parameter> parse_parameter(std::string_view name, const Skeleton& skeleto
 
 Status check(std::span<const Parameter> parameters, const Skeleton& skeleton,
              std::span<const std::string> keytimes) {
-  if (parameters.empty()) return wrong("no parameter is measured", "name one or more");
+  if (parameters.empty()) return wrong("no parameters", "name at least one");
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& one = parameters[i];
     const bool known = one.quantity <= Quantity::joint && one.direction <= Direction::along;
@@ -112,13 +111,13 @@ Status check(std::span<const Parameter> parameters, const Skeleton& skeleton,
         one.quantity != Quantity::joint || (one.joint >= 0 && one.joint < skeleton.joint_count());
     const bool keytime = one.keytime >= 0 && one.keytime < static_cast<int>(keytimes.size());
     if (!known || !joint || !keytime || !(one.tolerance > 0) || !std::isfinite(one.tolerance)) {
-      return wrong(fmt::format("parameter {} measures nothing that is there", i + 1),
+      return wrong(fmt::format("parameter {} is invalid", i + 1),
                    "its joint, keytime or tolerance is out of range");
     }
     for (std::size_t j = 0; j < i; ++j) {
       const std::string name = name_of(one, skeleton, keytimes);
       if (name != name_of(parameters[j], skeleton, keytimes)) continue;
-      return wrong(fmt::format("{} is measured twice", name), "name it once");
+      return wrong(fmt::format("duplicate parameter {}", name), "remove one of them");
     }
   }
   return {};

@@ -8,33 +8,33 @@
 #include "core/result.h"
 #include "scene/skeleton.h"
 
-// What is asked of a motion, and measured on it: how long, wide and high a step is, how far it
-// turns, how long it lasts, or where any joint is at a keytime.
+// Parameters that are requested of a motion and measured on it: length, width, height, turn and
+// duration of a step, or the position of a joint at a keytime.
 //
-// Measures are taken as seen from the stance foot's footprint at the first keytime: `along` is
-// where its toes point, `up` is up, `across` goes to the side of the swing foot. A step to the
-// left and its mirror image to the right therefore have the same parameters.
+// Measured relative to the stance foot's footprint at the first keytime: `along` is the direction
+// of its toes, `up` is up, `across` points to the side of the swing foot. A left step and its
+// mirrored right step therefore have the same parameters.
 
 namespace krok::parametric {
 
 enum class Quantity : unsigned char {
-  step_length,  // along, from the stance foot's print to the swing foot's; metres
-  step_width,   // across, metres; negative where the feet cross
+  step_length,  // along, from the stance footprint to the swing footprint; metres
+  step_width,   // across, metres; negative if the feet cross
   step_height,  // up, metres
-  step_turn,    // of the swing foot's heading, radians, positive to its side
+  step_turn,    // change of the swing foot's heading, radians, positive to its side
   duration,     // from the first keytime to the last, seconds
-  joint         // where a joint is at a keytime, on one axis, metres
+  joint         // position of a joint at a keytime along one axis, metres
 };
 
 enum class Direction : unsigned char { across, up, along };
 
 struct Parameter {
   Quantity quantity = Quantity::step_length;
-  // Where the swing foot's print is taken or the joint is; index into the library's keytimes.
+  // When the swing footprint or the joint is measured; index into the library's keytimes.
   int keytime = 0;
   int joint = -1;  // for Quantity::joint
   Direction direction = Direction::along;
-  double tolerance = 0;  // what an error of the motion's own parameter is held against; > 0
+  double tolerance = 0;  // accepted error of the measured parameter; > 0
 
   bool operator==(const Parameter&) const = default;
 };
@@ -49,14 +49,14 @@ double usual_tolerance(Quantity quantity);
 std::string name_of(const Parameter& parameter, const Skeleton& skeleton,
                     std::span<const std::string> keytimes);
 
-// The parameter of such a name, with the usual tolerance. Steps may name another keytime than the
-// last, at which the swing foot's print is taken: "step.length@swing_strike". Code
-// parametric-parameter for a joint, axis or keytime that is not there.
+// Parses such a name, with the usual tolerance. Step parameters may name the keytime of the swing
+// footprint, by default the last: "step.length@swing_strike". Code: parametric-parameter for an
+// unknown joint, axis or keytime.
 Result<Parameter> parse_parameter(std::string_view name, const Skeleton& skeleton,
                                   std::span<const std::string> keytimes);
 
-// Whether joints and keytimes are there, tolerances are positive and no measure is taken twice.
-// Code parametric-parameter.
+// Whether joints and keytimes exist, tolerances are positive and no parameter is repeated. Code:
+// parametric-parameter.
 Status check(std::span<const Parameter> parameters, const Skeleton& skeleton,
              std::span<const std::string> keytimes);
 

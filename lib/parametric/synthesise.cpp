@@ -17,7 +17,7 @@ constexpr int kHalvings = 4;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// "step.length 0.8 m, step.turn 12 degrees".
+// Formatted for messages: "step.length 0.8 m, step.turn 12 degrees".
 std::string in_words(const Library& library, std::span<const double> parameters) {
   std::string text;
   for (std::size_t d = 0; d < parameters.size(); ++d) {
@@ -51,7 +51,7 @@ Result<Synthesiser> Synthesiser::create(const Library& library,
                              "library has {} with {}",
                              weights.examples, weights.dimensions, library.examples.size(),
                              library.dimensions()),
-                 "fit the library anew");
+                 "fit the library again");
   }
   auto evaluator = rbf::WeightEvaluator::create(weights);
   if (!evaluator) return evaluator.error();
@@ -71,15 +71,15 @@ double Synthesiser::error_of(std::span<const double> parameters,
 Result<Synthesis> Synthesiser::weights(std::span<const double> parameters,
                                        const SynthesisOptions& options) const {
   if (parameters.size() != library_->parameters.size()) {
-    return Error("parametric-bounds", fmt::format("{} parameters are given, the library has {}",
+    return Error("parametric-bounds", fmt::format("got {} parameters, the library has {}",
                                                   parameters.size(), library_->dimensions()));
   }
   const Outside off = outside(bounds_, parameters);
   if (off.distance > 0 && !(options.extrapolate && std::isfinite(off.distance))) {
     return Error(
         "parametric-bounds",
-        fmt::format("{} lies outside what the examples span", in_words(*library_, parameters)),
-        "the nearest inside is " + in_words(*library_, off.nearest));
+        fmt::format("{} is outside the range of the examples", in_words(*library_, parameters)),
+        "the nearest parameters inside are " + in_words(*library_, off.nearest));
   }
   Synthesis synthesis;
   synthesis.weights.resize(library_->examples.size());
@@ -114,7 +114,7 @@ Status Synthesiser::correct(std::span<const double> parameters, int steps,
       const auto p = static_cast<std::size_t>(k);
       const double scale = 1 / library_->parameters[p].tolerance;
       missing[k] = (parameters[p] - measured[p]) * scale;
-      // Less its mean a row asks for nothing but changes that sum to 0.
+      // Subtracting the mean restricts the row to changes that sum to 0.
       jacobian.row(k).array() -= jacobian.row(k).mean();
       jacobian.row(k) *= scale;
     }

@@ -17,7 +17,7 @@ std::vector<int> thin_out(const Library& library, double spacing) {
   kept.clear();
   const Bounds bounds = bounds_of(library);
   const Eigen::Map<const Eigen::MatrixXd> points(bounds.points.data(), bounds.dimensions, n);
-  // To the nearest that is kept.
+  // Distance to the nearest kept example.
   Eigen::VectorXd distances = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
   Eigen::Index next = 0;
   const Eigen::VectorXd middle = points.rowwise().mean();

@@ -5,7 +5,7 @@
 
 namespace krok::pose_detail {
 
-// The two frames around a time, clamped to the clip, and the part between them.
+// The two frames around a time, clamped to the clip, and the interpolation factor between them.
 Between between_frames(const PackedClip& clip, double time, float weight);
 
 }  // namespace krok::pose_detail

@@ -13,7 +13,7 @@ namespace {
 using pose_detail::Between;
 using pose_detail::Kernels;
 
-// Terms go to the kernel in rounds of so many, which fit on the stack.
+// Terms per kernel call, which fit on the stack.
 constexpr std::size_t kRound = 16;
 
 float blend_with(const Kernels& kernels, std::span<const BlendTerm> terms,

@@ -1,6 +1,6 @@
 #include "pose/model_kernel_internal.h"
 
-// As in pose_kernels.cpp: targets without fused arithmetic take the scalar reference.
+// As in pose_kernels.cpp: targets without FMA use the scalar reference.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -38,7 +38,7 @@ HWY_INLINE void transpose_fours(V& a, V& b, V& c, V& d) {
   math_detail::HWY_NAMESPACE::transpose_fours(Lanes(), a, b, c, d);
 }
 
-// Hands the parts of four lanes to take(part, four), from the lowest on.
+// Calls take(part, four) for each group of four lanes, lowest first.
 template <class D, class Take>
 HWY_INLINE void each_four(D d, hn::Vec<D> v, std::size_t first, const Take& take) {
   if constexpr (hn::MaxLanes(d) == 4) {
@@ -50,14 +50,14 @@ HWY_INLINE void each_four(D d, hn::Vec<D> v, std::size_t first, const Take& take
   }
 }
 
-// One component of sixteen joints in sixteen poses, of which there are `used`: from a row a pose to
-// a row a joint. `row` gives a block's row for that component.
+// Transposes one component of sixteen joints in sixteen poses, `used` of which exist, from a row
+// per pose to a row per joint. `row` returns a block's row for that component.
 template <class Row>
 HWY_INLINE void turn_rows(const PoseBlock* poses, std::size_t stride, std::size_t used,
                           PoseBlock* joints, const Row& row) {
   const Lanes d;
   for (std::size_t pose = 0; pose < kPoses; pose += 4) {
-    // Poses that there are not are the last one again.
+    // Missing poses repeat the last one.
     const PoseBlock* from[4];
     for (std::size_t i = 0; i < 4; ++i) {
       from[i] = poses + (pose + i < used ? pose + i : used - 1) * stride;
@@ -127,7 +127,7 @@ HWY_INLINE Joint combined(const Joint& parent, const Joint& local) {
   return joint;
 }
 
-// Turns four components of a joint in kLanes poses into four floats a pose, and hands them to
+// Transposes four components of a joint in kLanes poses to four floats per pose, and calls
 // put(pose, four) for each.
 template <class Put>
 HWY_INLINE void each_pose(V a, V b, V c, V d, const Put& put) {
@@ -139,7 +139,7 @@ HWY_INLINE void each_pose(V a, V b, V c, V d, const Put& put) {
   }
 }
 
-// Stores three of four lanes; `more` says that the fourth may be written over.
+// Stores three of four lanes; `more` allows the fourth to be overwritten.
 HWY_INLINE void store_three(hn::Vec<Four> value, float* to, bool more) {
   const Four d;
   if (more) {
@@ -153,7 +153,7 @@ HWY_INLINE void store_three(hn::Vec<Four> value, float* to, bool more) {
   }
 }
 
-// What becomes of a joint in up to kLanes poses, the first of which is number `pose`.
+// Writes the result of a joint in up to kLanes poses, starting at `pose`.
 HWY_INLINE void put_transform(const ModelJob& job, const Joint& joint, std::size_t j,
                               std::size_t pose, std::size_t used) {
   const bool more = j + 1 < job.joints;

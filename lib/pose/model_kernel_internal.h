@@ -4,7 +4,7 @@
 
 #include "pose/local_to_model.h"
 
-// What the scalar reference and the SIMD kernel of local_to_model() share; see
+// Shared by the scalar reference and the SIMD kernel of local_to_model(); see
 // pose_kernels_internal.h.
 
 namespace krok::pose_detail {
@@ -13,9 +13,9 @@ struct ModelJob {
   const int* parents;
   std::size_t joints;
   const PoseBlock* poses;
-  std::size_t count;  // of poses
+  std::size_t count;  // number of poses
   PoseBlock* scratch;
-  // Where the result goes, [count x joints]: either the first two or the last.
+  // Outputs, [count x joints]: either the first two or the last.
   float* positions;     // x, y, z
   float* orientations;  // x, y, z, w
   JointMatrix* matrices;

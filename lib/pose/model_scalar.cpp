@@ -11,7 +11,7 @@ struct Joint {
   float x, y, z, w;
 };
 
-// a b - c d, the second product rounded before it is taken away.
+// a b - c d, with the second product rounded before the subtraction.
 float difference(float a, float b, float c, float d) {
   return std::fma(a, b, -(c * d));
 }

@@ -1,8 +1,8 @@
 #include "pose/pose_kernels_internal.h"
 
-// Fused arithmetic is part of the result, so targets without it are left out: such a machine takes
-// the static target below, which is the scalar reference. Nothing is compiled that
-// KROK_BEST_VERSION does not choose.
+// The results require FMA, so targets without it are left out: such a machine uses the static
+// target below, which is the scalar reference. Only targets that KROK_BEST_VERSION can choose are
+// compiled.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -78,7 +78,7 @@ HWY_INLINE Rotation scaled(V factor, const Rotation& q) {
   return {hn::Mul(factor, q.x), hn::Mul(factor, q.y), hn::Mul(factor, q.z), hn::Mul(factor, q.w)};
 }
 
-// `factor`, turned round where q does not lie in the hemisphere of `towards`.
+// `factor`, negated if q is not in the hemisphere of `towards`.
 HWY_INLINE V signed_factor(V factor, const Rotation& q, const Rotation& towards) {
   const auto away = hn::Lt(dot(q, towards), hn::Zero(Lanes()));
   return hn::IfThenElse(away, hn::Neg(factor), factor);

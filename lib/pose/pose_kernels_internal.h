@@ -4,16 +4,16 @@
 
 #include "pose/packed_pose.h"
 
-// What the scalar references and the SIMD kernels share: plain pointers and numbers. No inline
+// Shared by the scalar references and the SIMD kernels: plain pointers and numbers. No inline
 // functions here: the kernels are compiled for several instruction sets, and the linker keeps one
-// copy of an inline function, perhaps one that the machine cannot run.
+// copy of an inline function, possibly one that the machine cannot run.
 //
-// Kernel and reference do the same multiply-adds, fused alike and in the same order, so that they
-// give the same bits.
+// Kernel and reference use the same multiply-adds, fused alike and in the same order, and so give
+// the same bits.
 
 namespace krok::pose_detail {
 
-// A pose between two frames: (1 - part) of one and `part` of the other, with a weight in a blend.
+// An interpolated pose, (1 - part) of one frame and `part` of the other, with a blend weight.
 struct Between {
   const PoseBlock* before;
   const PoseBlock* after;
@@ -21,17 +21,17 @@ struct Between {
   float weight;
 };
 
-// Under this square of its length a sum of rotations has no direction.
+// Below this squared length a sum of rotations has no direction.
 inline constexpr float kMinSquare = 1e-12f;
 
-// Where a sum comes from and goes to, so that it can be made in several rounds of terms.
+// Allows summing terms in several rounds.
 struct Round {
-  bool first;  // begins at zero, otherwise at what `sum` holds
-  bool last;   // brings the rotations to length 1
+  bool first;  // starts at zero, otherwise continues `sum`
+  bool last;   // normalises the rotations
 };
 
-// Those that give a number give the least square of the length that a sum of rotations had; 0 for
-// what has no direction. Only last rounds do, others give 1.
+// `blend` returns the smallest squared length of a sum of rotations, 0 for one without direction,
+// in the last round; 1 in other rounds.
 struct Kernels {
   void (*sample)(const Between& term, std::size_t blocks, PoseBlock* pose);
   float (*blend)(const Between* terms, std::size_t count, Round round, const PoseBlock* reference,
@@ -41,7 +41,7 @@ struct Kernels {
               const PoseBlock* reference, std::size_t blocks, PoseBlock* sum);
 };
 
-// The scalar reference, and the best for this machine.
+// The scalar reference, and the best kernels for this machine.
 Kernels scalar_kernels();
 Kernels best_kernels();
 

@@ -33,7 +33,7 @@ float between(float before, float after, float part) {
   return std::fma(part, after, (1.0f - part) * before);
 }
 
-// Not yet of length 1.
+// Not normalised.
 Rotation rotation_between(const PoseBlock& before, const PoseBlock& after, float part, int lane) {
   const Rotation a = rotation_of(before, lane);
   const Rotation b = rotation_of(after, lane);

@@ -6,7 +6,7 @@ namespace krok::rbf::detail {
 
 namespace {
 
-// In four sums, so that one addition need not wait for the other.
+// Four partial sums, so that additions do not wait for each other.
 double dot(const double* a, const double* b, std::size_t count) {
   double sums[4] = {};
   std::size_t i = 0;

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-// The factors A = L U, L with ones on its diagonal, of a matrix that grows by a row and a column at
-// a time, without exchange of rows. Every number is made by the same operations in the same order
-// however the matrix came to its size.
+// LU factors A = L U (unit diagonal in L, no pivoting) of a matrix that grows by one row and column
+// at a time. Each element is computed by the same operations in the same order, however the matrix
+// reached its size.
 
 namespace krok::rbf::detail {
 
@@ -14,17 +14,17 @@ class BorderedFactors {
  public:
   std::size_t size() const { return size_; }
 
-  // Adds the row (row, corner) and the column (column, corner), both [size()]. False, and nothing
-  // is changed, where the new diagonal element of U is under `least` or no number: A would be
-  // (almost) singular.
+  // Appends the row (row, corner) and the column (column, corner), both [size()]. Returns false and
+  // changes nothing if the new diagonal element of U is below `least` or NaN: A would be (almost)
+  // singular.
   bool append(std::span<const double> row, std::span<const double> column, double corner,
               double least);
 
-  // Back to the first `size` rows and columns.
+  // Keeps the first `size` rows and columns.
   void truncate(std::size_t size) { size_ = size; }
 
-  // X = L^-1 B for the rows from `first` on, B and X [size() x columns] in the same place; the rows
-  // before are solved already.
+  // X = L^-1 B from row `first` on, in place; B and X are [size() x columns]. Earlier rows must be
+  // solved already.
   void solve_lower(std::span<double> values, std::size_t columns, std::size_t first = 0) const;
   // X = U^-1 B.
   void solve_upper(std::span<double> values, std::size_t columns) const;
@@ -40,8 +40,7 @@ class BorderedFactors {
   }
 
   std::size_t size_ = 0;
-  // Row after row of L, column after column of U, each up to the diagonal: what is appended stands
-  // at the end.
+  // L by rows and U by columns, each up to the diagonal, so that appending adds to the end.
   std::vector<double> lower_, upper_;
 };
 

@@ -7,31 +7,32 @@
 
 #include "rbf/weight_function.h"
 
-// The kernels of all centres at all centres, and the matrix that remains to be solved when the
-// planes are taken care of.
+// Kernel values between all centres, and the matrix left to solve once the affine part is
+// eliminated.
 
 namespace krok::rbf::detail {
 
-// For kernels that need planes in their system (cubic, linear) d + 1 examples, the base, are set
-// apart. Planes l_a that are 1 at one of them and 0 at the others take what is 0 at the base out of
-// every kernel,
+// Kernels that need an affine part in their system (cubic, linear) set d + 1 examples apart, the
+// base. The Lagrange functions l_a (affine, 1 at one base point and 0 at the others) project each
+// kernel to one that vanishes at the base,
 //
 //   kappa(x, y) = phi(x, y) - sum_a l_a(x) phi(x_a, y) - sum_b l_b(y) phi(x, x_b)
-//                 + sum_ab l_a(x) l_b(y) phi(x_a, x_b),
+//                 + sum_ab l_a(x) l_b(y) phi(x_a, x_b).
 //
-// and the matrix of kappa over all other centres is definite (Wendland: Scattered Data
-// Approximation, 2005, ch. 10.3), where the usual saddle matrix with planes is neither definite nor
-// easily extended. With other kernels the base is empty and kappa = phi.
+// The matrix of kappa over all other centres is definite (Wendland: Scattered Data Approximation,
+// 2005, ch. 10.3); the usual saddle-point matrix is neither definite nor easy to extend. For other
+// kernels the base is empty and kappa = phi.
 //
-// Smoothing is added to phi of each example at its own place (taken off for linear, whose phi is
-// negative on what is orthogonal to planes), so that the rest need not know of it.
+// Smoothing is added to phi of each example at its own position (subtracted for linear, whose phi
+// is conditionally negative definite), so that no other code has to handle it.
 class CentreMatrix {
  public:
-  // The base of examples, [examples x d] scaled: indices. Empty for kernels without planes.
+  // `base`: indices of examples, empty for kernels without an affine part. `examples`: [examples x
+  // d], scaled.
   CentreMatrix(Kernel kernel, std::size_t dimensions, double smoothing,
                std::vector<std::size_t> base, std::span<const double> examples);
 
-  // A new centre; examples first. `radius` is not read for kernels without.
+  // Adds a centre; examples first. `radius` is ignored for kernels without one.
   void append(std::span<const double> place, double radius);
   void truncate(std::size_t centres);
 
@@ -39,43 +40,44 @@ class CentreMatrix {
   std::span<const double> place(std::size_t k) const {
     return std::span(places_).subspan(k * dimensions_, dimensions_);
   }
-  // The distance from `place` to the nearest centre; infinite if there is none.
+  // Distance from `place` to the nearest centre; infinity if there is none.
   double nearest(std::span<const double> place) const;
 
-  // phi of centre k at the place of centre i, with the smoothing.
+  // phi of centre k at the position of centre i, with smoothing.
   double phi(std::size_t i, std::size_t k) const;
-  // The planes of the base at centre i, [base].
+  // The Lagrange functions of the base at centre i, [base].
   std::span<const double> planes(std::size_t i) const {
     return std::span(planes_).subspan(i * base_.size(), base_.size());
   }
-  // kappa of centre k at the place of centre i; neither is of the base.
+  // kappa of centre k at the position of centre i; neither may be in the base.
   double kappa(std::size_t i, std::size_t k) const;
-  // kappa of each of `centres`, none of the base, at any place; no centre's smoothing counts there.
+  // kappa of each of `centres` (none in the base) at any position, without smoothing.
   void kappa_at(std::span<const double> place, std::span<const std::size_t> centres,
                 std::span<double> values) const;
 
   const std::vector<std::size_t>& base() const { return base_; }
   bool in_base(std::size_t k) const;
-  // [(d + 1) x base]: the plane through values at the base, by (1, q).
+  // [(d + 1) x base]: maps values at the base to affine coefficients of (1, q).
   const Eigen::MatrixXd& base_inverse() const { return base_inverse_; }
 
  private:
   double phi_between(std::span<const double> place, std::size_t k) const;
-  // Appends the planes of the base at a place, and phi between it and each of the base.
+  // Appends the Lagrange functions of the base at a position, and phi between it and each base
+  // point.
   void append_base_parts(std::span<const double> place, std::vector<double>& planes,
                          std::vector<double>& to_base) const;
 
   Kernel kernel_;
   std::size_t dimensions_, examples_;
-  double smoothing_;  // with its sign
+  double smoothing_;  // signed
   std::vector<std::size_t> base_;
   Eigen::MatrixXd base_inverse_;
   std::vector<double> base_places_, base_phi_;  // [base x d], [base x base]
   std::vector<double> places_, inverse_squares_;
-  // [centres x base]: the planes, phi of the centre with each of the base, and that less its part
-  // within the base.
+  // [centres x base]: Lagrange functions; phi between the centre and each base point; the latter
+  // minus its part within the base.
   std::vector<double> planes_, to_base_, beyond_base_;
-  // Row after row up to the diagonal, phi of earlier centres here and of this one there.
+  // Rows up to the diagonal: phi of earlier centres at this one, and of this one at earlier ones.
   std::vector<double> phi_here_, phi_there_;
 };
 

@@ -1,8 +1,8 @@
 #include "rbf/evaluate_internal.h"
 
-// Fused arithmetic is part of the result, so targets without it are left out: such a machine takes
-// the static target below, which is the scalar reference. Nothing is compiled that
-// KROK_BEST_VERSION does not choose.
+// Results depend on fused multiply-add, so targets without it are disabled: such machines use the
+// static target below, which is the scalar reference. Only targets that KROK_BEST_VERSION can
+// choose are compiled.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rbf/evaluate_kernel.cpp"
 #include <hwy/foreach_target.h>
-// The order matters: foreach_target.h sets up what highway.h reads.
+// Order matters: foreach_target.h sets up what highway.h reads.
 #include <hwy/highway.h>
 
 #include "core/simd.h"
@@ -45,7 +45,7 @@ HWY_INLINE V exp_of(V x) {
   return hn::IfThenElseZero(hn::Ge(x, number(kMinExponent)), hn::Mul(p, hn::BitCast(d, exponent)));
 }
 
-// phi and, unless it is not asked for, the slope by the distance; see basis_scalar().
+// phi and, with kSlopes, its slope, by the squared distance; see basis_scalar().
 template <Kernel kKernel, bool kSlopes>
 HWY_INLINE void basis(V square, V inverse_square, V& value, V& slope) {
   const Doubles d;

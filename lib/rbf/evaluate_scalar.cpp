@@ -20,7 +20,7 @@ double exp_of(double x) {
   return p * std::bit_cast<double>(exponent);
 }
 
-// Adds what `count` centres from `first` on give, values[k] being theirs, to the weights.
+// Adds the terms of `count` centres from `first` on to the weights; values[k] are their kernels.
 void add_chunk(const Job& job, const double* values, std::size_t first, std::size_t count,
                double* weights) {
   for (std::size_t j = 0; j < job.examples; ++j) {

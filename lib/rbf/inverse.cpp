@@ -9,15 +9,15 @@ namespace krok::rbf {
 
 namespace {
 
-// At most kMostDimensions: these stay on the stack.
+// At most kMaxDimensions: these stay on the stack.
 using SmallMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDimensions, kMaxDimensions>;
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxDimensions, 1>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRidge = 1e-12;  // relative, so that directions without effect do no harm
+constexpr double kRidge = 1e-12;  // relative; keeps directions without effect from being singular
 constexpr int kMaxHalvings = 4;   // of a Gauss-Newton step
-constexpr double kBeyond = 0.5;   // of the range: how far outside a point may be searched
+constexpr double kBeyond = 0.5;   // of the range: how far outside it a point may move
 constexpr int kPointSteps = 20;   // of weights_for()
 constexpr int kWeightSteps = 10;
 constexpr double kMinDamping = 1e-6, kMaxDamping = 1e6;
@@ -76,7 +76,7 @@ Match InverseSearch::correct(std::span<const double> wanted, int steps, double e
   const double before = now;
   const auto d = static_cast<Eigen::Index>(d_);
   for (int step = 0; step < steps && now > enough && std::isfinite(now); ++step) {
-    // The shortest change that does it to first order and keeps the sum: J without its mean.
+    // Minimum-norm change to first order that keeps the sum: J minus its row mean.
     for (std::size_t a = 0; a < d_; ++a) {
       double mean = 0;
       for (std::size_t j = 0; j < n_; ++j) mean += jacobian_[a * n_ + j];

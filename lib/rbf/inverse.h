@@ -8,51 +8,52 @@
 #include "core/result.h"
 #include "rbf/weight_evaluator.h"
 
-// From parameters that are wanted to weights whose blend has them. What a blend with weights w
-// really has, f(w), is measured; f(w(p)) is not quite p.
+// Finds weights whose blend has the wanted parameters. The measured parameters f(w) of a blend
+// differ from the request: f(w(p)) is only approximately p.
 
 namespace krok::rbf {
 
-// Measures the parameters f(w), [d] in their own units, of a blend with weights that sum to 1, and,
-// unless it is empty, the Jacobian d f_a / d w_i as [d x examples], of which only the part along
-// changes that keep the sum is used. Must be safe to call from several threads. An error means that
-// these weights give no motion; it is not the end of a search.
+// Measures the parameters f(w), [d] in their units, of a blend with weights that sum to 1, and, if
+// `jacobian` is not empty, d f_a / d w_i as [d x examples]. Only its component along changes that
+// keep the sum is used. Must be thread-safe. An error means that these weights give no motion; the
+// search continues.
 using Measure = std::function<Status(std::span<const double> weights, std::span<double> parameters,
                                      std::span<double> jacobian)>;
 
-// How near a search came. Errors are |f(w) - wanted| with each parameter scaled by its range.
+// Result of a search. Errors are |f(w) - wanted|, each parameter scaled by its range.
 struct Match {
-  double before = 0;  // infinite where f failed at the start
+  double before = 0;  // infinity if f failed at the start
   double after = 0;
-  int measured = 0;  // how often f was measured
+  int measured = 0;  // number of evaluations of f
 };
 
-// Holds memory for the search, so that no call takes any; one for each thread. The evaluator
-// outlives it.
+// Owns the memory of the search, so that calls do not allocate. Use one per thread. The evaluator
+// must outlive it.
 class InverseSearch {
  public:
   InverseSearch(const WeightEvaluator& evaluator, Measure measure);
 
-  // Moves weights, which sum to 1 and go on to, by up to `steps` Gauss-Newton steps of least length
-  // towards f(w) = wanted; a step that makes the error larger is shortened, and then left out.
-  // Stops when the error is at most `enough`.
+  // Moves weights that sum to 1 towards f(w) = wanted by up to `steps` minimum-norm Gauss-Newton
+  // steps, which keep the sum. A step that increases the error is halved, then dropped. Stops when
+  // the error is at most `enough`.
   Match correct(std::span<const double> wanted, int steps, double enough,
                 std::span<double> weights);
 
-  // Moves a point, [d] in own units, so that f(w(point)) = wanted, by Newton's method with damping
-  // (Levenberg-Marquardt); it stays within half a range of the parameters' range. At most `steps`.
+  // Moves a point, [d] in parameter units, towards f(w(point)) = wanted by at most `steps` damped
+  // Newton (Levenberg-Marquardt) steps. The point stays within half a range of the parameters'
+  // range.
   Match find_point(std::span<const double> wanted, int steps, double enough,
                    std::span<double> point);
 
-  // Weights for `wanted` from w(wanted): by find_point() if that is enough, and by correct() from
-  // there on.
+  // Weights for `wanted`, starting from w(wanted): by find_point() if that suffices, followed by
+  // correct().
   Match weights_for(std::span<const double> wanted, double enough, std::span<double> weights);
 
  private:
-  // Measures and returns the scaled error, which is infinite if that fails.
+  // Measures and returns the scaled error; infinity on failure.
   double measure_at(std::span<const double> weights, std::span<const double> wanted, bool slopes,
                     std::vector<double>& error);
-  // The same for weights at a point.
+  // The same for the weights at a point.
   double measure_point(std::span<const double> point, std::span<const double> wanted, bool slopes,
                        std::vector<double>& error);
 
@@ -60,7 +61,7 @@ class InverseSearch {
   Measure measure_;
   std::size_t d_, n_;
   int measured_ = 0;
-  std::vector<double> parameters_, jacobian_;         // what f gave, scaled
+  std::vector<double> parameters_, jacobian_;         // f, scaled
   std::vector<double> error_, tried_error_;           // [d], wanted - f, scaled
   std::vector<double> weights_, slopes_, direction_;  // [N], [d x N], [N]
   std::vector<double> point_, wanted_point_;          // [d]

@@ -9,7 +9,7 @@ namespace krok::rbf {
 namespace {
 
 // From the second dimension on: degree and inner coefficients of a primitive polynomial, and the
-// first direction numbers.
+// initial direction numbers.
 struct Polynomial {
   std::uint32_t degree, inner;
   std::array<std::uint32_t, 5> first;
@@ -65,7 +65,7 @@ void Sobol::point(std::uint32_t index, std::span<double> point) const {
 
 std::vector<double> points_inside(const WeightFunction& function, int count, std::uint64_t seed,
                                   const Inside& inside) {
-  constexpr std::uint32_t kMaxTried = 1000;  // for each one wanted
+  constexpr std::uint32_t kMaxTried = 1000;  // per wanted point
   const auto d = static_cast<std::size_t>(function.dimensions);
   const Sobol sobol(function.dimensions, seed);
   const auto wanted = static_cast<std::uint32_t>(std::max(count, 0));

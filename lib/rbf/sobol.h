@@ -7,16 +7,16 @@
 
 #include "rbf/weight_function.h"
 
-// Sobol's sequence: points that fill a unit cube evenly, any number of them (Sobol 1967; direction
-// numbers of Joe and Kuo, Constructing Sobol sequences with better two-dimensional projections,
-// 2008, their file new-joe-kuo-6.21201; in the order of Antonov and Saleev).
+// Sobol sequence: a low-discrepancy sequence of points in the unit cube (Sobol 1967; direction
+// numbers from Joe and Kuo, Constructing Sobol sequences with better two-dimensional projections,
+// 2008, file new-joe-kuo-6.21201; Gray code order of Antonov and Saleev).
 
 namespace krok::rbf {
 
 class Sobol {
  public:
-  // 1 to kMostDimensions dimensions. Seed 0 is the sequence itself, whose first point is 0; any
-  // other shifts its binary digits at random, which keeps it as even (a digital shift).
+  // 1 to kMaxDimensions dimensions. Seed 0 is the plain sequence, whose first point is 0; any other
+  // seed applies a random digital shift (XOR), which keeps the uniformity.
   explicit Sobol(int dimensions, std::uint64_t seed = 0);
 
   // Point `index`, [dimensions], each in [0, 1).
@@ -28,8 +28,8 @@ class Sobol {
   std::array<std::uint32_t, kMaxDimensions> shift_ = {};
 };
 
-// The first `count` points of the sequence over a function's range that are inside, [count x d] in
-// the parameters' own units; fewer where under a thousandth of them are.
+// The first `count` points of the sequence, scaled to the function's range, for which `inside` is
+// true; [count x d] in parameter units. Fewer if less than a thousandth of the points are inside.
 std::vector<double> points_inside(const WeightFunction& function, int count, std::uint64_t seed,
                                   const Inside& inside);
 

@@ -29,7 +29,7 @@ Result<WeightEvaluator> WeightEvaluator::create(const WeightFunction& function) 
   for (std::size_t i = 0; i < d; ++i) {
     e.inverse_range_.push_back(1 / (function.upper[i] - function.lower[i]));
   }
-  // Fills up with centres at 0 of radius 1.
+  // Padding: centres at 0 with radius 1.
   e.centres_.resize(d * e.centre_blocks_);
   e.inverse_squares_.resize(e.centre_blocks_);
   for (Block& block : e.inverse_squares_) std::ranges::fill(block.values, 1.0);
@@ -75,7 +75,7 @@ void WeightEvaluator::run(const double* point, double* weights, double* slopes) 
                         coefficients_.data()->values,
                         affine_.data()->values};
   detail::evaluate_best(job, scaled, weights, slopes);
-  // What rounding left of the sum, large where coefficients are.
+  // Removes the rounding error of the sum, which is large if the coefficients are.
   double sums[2] = {};
   for (std::size_t j = 0; j < examples_; ++j) sums[j % 2] += weights[j];
   const double more = (1 - (sums[0] + sums[1])) / static_cast<double>(examples_);

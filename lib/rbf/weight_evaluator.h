@@ -7,8 +7,8 @@
 #include "core/result.h"
 #include "rbf/weight_function.h"
 
-// Weights for parameters, fast: a weight function packed for vector instructions (AVX-512 or AVX2
-// where the machine has them; the same bits with each and without).
+// Fast evaluation of a weight function, packed for SIMD (AVX-512 or AVX2 if the machine has them).
+// Results are bit-identical on all instruction sets.
 
 namespace krok::rbf {
 
@@ -20,21 +20,20 @@ class WeightEvaluator {
   int dimensions() const { return static_cast<int>(dimensions_); }
   int examples() const { return static_cast<int>(examples_); }
 
-  // Of the parameters' range, [d].
+  // The parameters' range, [d].
   std::span<const double> lower() const { return lower_; }
   std::span<const double> inverse_ranges() const { return inverse_range_; }
 
-  // The weights, [examples], at a point, [d] in the parameters' own units. Outside the range the
-  // functions go on; there they are not to be trusted. A parameter that is NaN gives NaN, and one
-  // beyond 1e50 ranges may. Allocates nothing; may be called from several threads. The spans do not
-  // overlap.
+  // Weights, [examples], at a point, [d] in parameter units. Outside the range the function
+  // extrapolates and is not reliable. NaN parameters give NaN; parameters beyond 1e50 ranges may.
+  // Does not allocate; thread-safe. The spans must not overlap.
   void weights(std::span<const double> point, std::span<double> weights) const;
 
-  // The same for [points x d]: weights are [points x examples].
+  // The same for [points x d]; weights are [points x examples].
   void weights_of_many(std::span<const double> points, std::span<double> weights) const;
 
-  // The weights and their slopes d w_i / d p_a as [d x examples], for one of a parameter's own
-  // unit. With the linear kernel slopes are taken as 0 for a centre's own part at the centre.
+  // Weights and their derivatives d w_i / d p_a, [d x examples], per parameter unit. For the linear
+  // kernel, the derivative of a centre's own term at the centre is 0.
   void slopes(std::span<const double> point, std::span<double> weights,
               std::span<double> slopes) const;
 
@@ -47,7 +46,7 @@ class WeightEvaluator {
 
   Kernel kernel_ = Kernel::cubic;
   std::size_t dimensions_ = 0, examples_ = 0;
-  std::size_t centre_blocks_ = 0;              // of eight
+  std::size_t centre_blocks_ = 0;              // of eight centres
   std::vector<double> lower_, inverse_range_;  // [d]
   std::vector<Block> centres_;                 // [d x centre blocks], scaled
   std::vector<Block> inverse_squares_;         // [centre blocks], 1 / radius^2

@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::string_view kNames[] = {"cubic", "linear", "gaussian", "bspline", "wendland"};
 
-// How far from their sums the numbers of a file may be, relative to the largest of them.
+// Max error of the sums of a file's numbers, relative to the largest number.
 constexpr double kSumTolerance = 1e-9;
 
-// Whether each of the rows of `columns` numbers sums to what it should, the first one to `first`.
+// Whether each row of `columns` numbers has the right sum: `first` for row 0, else `others`.
 bool sums_are(std::span<const double> rows, std::size_t columns, double first, double others) {
   for (std::size_t r = 0; r * columns < rows.size(); ++r) {
     double sum = 0, largest = 1;
@@ -33,25 +33,28 @@ bool sums_are(std::span<const double> rows, std::size_t columns, double first, d
 
 Status check_counts(const WeightFunction& f) {
   if (static_cast<std::size_t>(f.kernel) >= std::size(kNames)) {
-    return Error("rbf-kernel", "the kernel of a weight function is none that is known");
+    return Error("rbf-kernel", "unknown kernel");
   }
   if (f.dimensions < 1 || f.dimensions > kMaxDimensions) {
-    return Error("rbf-dimensions", fmt::format("a weight function of {} parameters", f.dimensions),
-                 fmt::format("it has 1 to {}", kMaxDimensions));
+    return Error("rbf-dimensions",
+                 fmt::format("a weight function cannot have {} parameters", f.dimensions),
+                 fmt::format("1 to {} are allowed", kMaxDimensions));
   }
   if (f.examples < f.dimensions + 1 || f.examples > kMaxExamples) {
     return Error(
         "rbf-examples",
-        fmt::format("a weight function of {} examples for {} parameters", f.examples, f.dimensions),
-        fmt::format("it takes one more than there are parameters, and at most {}", kMaxExamples));
+        fmt::format("a weight function cannot have {} examples for {} parameters", f.examples,
+                    f.dimensions),
+        fmt::format("at least one more than parameters, and at most {}, are needed", kMaxExamples));
   }
   const auto d = static_cast<std::size_t>(f.dimensions);
   if (f.centres.size() % d != 0 || f.centres.size() / d < static_cast<std::size_t>(f.examples) ||
       f.centres.size() / d > kMaxCentres) {
-    return Error("rbf-centres",
-                 fmt::format("{} numbers for the centres of {} examples in {} parameters",
-                             f.centres.size(), f.examples, f.dimensions),
-                 fmt::format("each example is a centre; there are at most {}", kMaxCentres));
+    return Error(
+        "rbf-centres",
+        fmt::format("invalid centres: {} numbers for {} examples with {} parameters",
+                    f.centres.size(), f.examples, f.dimensions),
+        fmt::format("each example is a centre; at most {} centres are allowed", kMaxCentres));
   }
   return {};
 }
@@ -69,16 +72,17 @@ Status check_shapes(const WeightFunction& f) {
                 {"centres", f.centres, centres * d},
                 {"radii", f.radii, has_radii(f.kernel) ? centres : 0},
                 {"rows of inserted points", f.inserted_rows, (centres - n) * n},
-                {"planes", f.affine, (d + 1) * n},
+                {"affine coefficients", f.affine, (d + 1) * n},
                 {"coefficients", f.coefficients, centres * n}};
   for (const auto& array : arrays) {
     if (array.values.size() != array.size) {
-      return Error("rbf-shape", fmt::format("a weight function has {} numbers for its {}, not {}",
-                                            array.values.size(), array.name, array.size));
+      return Error("rbf-shape",
+                   fmt::format("a weight function has {} numbers in its {}, expected {}",
+                               array.values.size(), array.name, array.size));
     }
     if (!detail::all_finite(array.values)) {
       return Error("rbf-number",
-                   fmt::format("a weight function's {} are not all finite numbers", array.name));
+                   fmt::format("the {} of a weight function contain NaN or infinity", array.name));
     }
   }
   return {};
@@ -113,19 +117,19 @@ Status WeightFunction::check() const {
     if (!(upper[i] > lower[i]) || !std::isfinite(1 / (upper[i] - lower[i])) ||
         !std::isfinite(upper[i] - lower[i])) {
       return Error("rbf-bounds",
-                   fmt::format("parameter {} ranges from {} to {}", i + 1, readable(lower[i]),
+                   fmt::format("invalid range of parameter {}: {} to {}", i + 1, readable(lower[i]),
                                readable(upper[i])),
-                   "a parameter that is the same in all examples is none: leave it out");
+                   "leave out parameters that are the same in all examples");
     }
   }
   for (const double radius : radii) {
     if (!(radius > 0) || !std::isfinite(1 / (radius * radius))) {
-      return Error("rbf-radius", fmt::format("a centre has the radius {}", readable(radius)));
+      return Error("rbf-radius", fmt::format("invalid radius {} of a centre", readable(radius)));
     }
   }
   if (!(smoothing >= 0) || !std::isfinite(smoothing)) {
-    return Error("rbf-number", fmt::format("a smoothing of {}", readable(smoothing)),
-                 "it is 0 or more");
+    return Error("rbf-number", fmt::format("invalid smoothing {}", readable(smoothing)),
+                 "it must be 0 or more");
   }
   const auto n = static_cast<std::size_t>(examples);
   if (!sums_are(affine, n, 1, 0) || !sums_are(coefficients, n, 0, 0) ||

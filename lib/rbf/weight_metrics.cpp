@@ -11,7 +11,7 @@ namespace krok::rbf {
 
 namespace {
 
-constexpr double kStep = 0.01;  // of the range, to each side
+constexpr double kStep = 0.01;  // of the range, in each direction
 
 void take(std::span<const double> weights, WeightMetrics& metrics) {
   const auto [least, largest] = std::ranges::minmax(weights);

@@ -14,14 +14,14 @@ namespace krok::rbf {
 
 namespace {
 
-constexpr double kMinDistance = 1e-6;      // of the ranges, between centres
-constexpr double kRowSumTolerance = 1e-6;  // of rows that are given
+constexpr double kMinDistance = 1e-6;      // between centres, relative to the ranges
+constexpr double kRowSumTolerance = 1e-6;  // of given rows
 
 double radius_factor(Kernel kernel) {
   return kernel == Kernel::wendland ? 4 : 2;
 }
 
-// From each example to the nearest other one, scaled. Code: rbf-duplicate.
+// Distance from each example to the nearest other one, scaled. Code: rbf-duplicate.
 Result<std::vector<double>> example_distances(const WeightFunction& f) {
   const auto n = static_cast<std::size_t>(f.examples);
   const auto d = static_cast<std::size_t>(f.dimensions);
@@ -42,7 +42,7 @@ Result<std::vector<double>> example_distances(const WeightFunction& f) {
         return Error("rbf-duplicate",
                      fmt::format("examples {} and {} have the same parameters, {}", i + 1, k + 1,
                                  detail::place_text(f.centre(static_cast<int>(k)))),
-                     "leave out one of them, or add a parameter that tells them apart");
+                     "leave out one of them, or add a parameter that distinguishes them");
       }
       nearest[k] = std::min(nearest[k], distance);
       nearest[i] = std::min(nearest[i], distance);
@@ -76,7 +76,7 @@ Result<WeightSolver> WeightSolver::create(int dimensions, std::span<const double
       f.upper[i % d] = std::max(f.upper[i % d], parameters[i]);
     }
   }
-  // What is not known yet must not fail.
+  // check() must pass before the radii and coefficients are known.
   WeightFunction shape = f;
   if (has_radii(f.kernel)) shape.radii.assign(n, 1.0);
   shape.affine.assign((d + 1) * n, 0.0);
@@ -91,7 +91,7 @@ Result<WeightSolver> WeightSolver::resume(const WeightFunction& function) {
   return from_function(function);
 }
 
-// All examples, then all inserted points. The radii of examples are made where there are none.
+// Adds all examples, then all inserted points. Computes the examples' radii if missing.
 Result<WeightSolver> WeightSolver::from_function(WeightFunction function) {
   const std::vector<double> centres = function.centres;
   const std::vector<double> rows = std::move(function.inserted_rows);
@@ -130,8 +130,8 @@ Status WeightSolver::insert(std::span<const double> points, std::span<const doub
   const std::size_t before = system.matrix.size();
   const std::size_t count = points.size() / system.d();
   if (before + count > kMaxCentres) {
-    return Error("rbf-centres", fmt::format("{} centres", before + count),
-                 fmt::format("there are at most {}", kMaxCentres));
+    return Error("rbf-centres", fmt::format("too many centres: {}", before + count),
+                 fmt::format("the max is {}", kMaxCentres));
   }
   std::vector<double> affine = system.f.affine, coefficients = system.f.coefficients;
   const double residual = system.residual;
@@ -165,17 +165,17 @@ double WeightSolver::distance_to_centres(std::span<const double> point) const {
 Status WeightSolver::check_insertion(std::span<const double> point,
                                      std::span<const double> row) const {
   if (!detail::all_finite(point) || !detail::all_finite(row)) {
-    return Error("rbf-number", "a point to insert or its weights are not all finite numbers");
+    return Error("rbf-number", "an inserted point or its weights contain NaN or infinity");
   }
   const double sum = std::accumulate(row.begin(), row.end(), 0.0);
   if (!(std::abs(sum - 1) <= kRowSumTolerance)) {
-    return Error("rbf-sum", fmt::format("the weights wanted at {} sum to {}, not to 1",
+    return Error("rbf-sum", fmt::format("the weights given at {} sum to {}, not to 1",
                                         detail::place_text(point), readable(sum)));
   }
   if (!(distance_to_centres(point) >= kMinDistance)) {
     return Error("rbf-duplicate",
-                 fmt::format("there is a centre at {} already", detail::place_text(point)),
-                 "two centres differ by a millionth of the ranges at least");
+                 fmt::format("there is already a centre at {}", detail::place_text(point)),
+                 "centres must differ by at least a millionth of the ranges");
   }
   return {};
 }
@@ -184,7 +184,7 @@ void WeightSolver::remove_last(int points) {
   const int removed = std::clamp(points, 0, system_->f.inserted());
   if (removed == 0) return;
   system_->truncate(system_->matrix.size() - static_cast<std::size_t>(removed));
-  // The function of these centres has been found before.
+  // These centres were solved before, so it cannot fail.
   (void)system_->solve().ok();
 }
 

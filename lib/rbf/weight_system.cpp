@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRankTolerance = 1e-6;
 constexpr double kMinPivot = 1e-13;      // relative to the diagonal
-constexpr double kGoodResidual = 3e-13;  // not worth another round of improvement
+constexpr double kGoodResidual = 3e-13;  // no further refinement below it
 constexpr int kMaxImprovements = 3;
 
 }  // namespace
@@ -48,14 +48,14 @@ Result<std::unique_ptr<WeightSystem>> WeightSystem::start(WeightFunction functio
     a(row, 0) = 1;
     for (std::size_t i = 0; i < d; ++i) a(row, static_cast<Eigen::Index>(i) + 1) = place[i];
   }
-  // Takes columns, examples here, in the order in which each adds most.
+  // Pivots on columns, which are the examples here.
   const PivotedColumns columns = pivoted_columns(a.transpose(), kRankTolerance);
   if (columns.rank < a.cols()) {
     return Error("rbf-rank",
-                 fmt::format("the parameters of the {} examples vary in {} directions only, not "
+                 fmt::format("the parameters of the {} examples vary in only {} directions, not "
                              "in all {}",
                              n, std::max<Eigen::Index>(columns.rank - 1, 0), d),
-                 "leave out a parameter that follows from the others, or add examples");
+                 "leave out a parameter that depends on the others, or add examples");
   }
   std::vector<std::size_t> base;
   if (!has_radii(function.kernel)) {
@@ -118,10 +118,9 @@ Status WeightSystem::add_centre(std::span<const double> point, std::span<const d
   const double corner = matrix.kappa(k, k);
   others.push_back(k);
   if (corner == 0 || !factors.append(in_row, in_column, corner, kMinPivot * std::abs(corner))) {
-    return Error(
-        "rbf-conditioning",
-        fmt::format("the weights at {} depend too much on those around", place_text(point)),
-        "leave out one of points that lie close together, or use another kernel");
+    return Error("rbf-conditioning",
+                 fmt::format("the system is nearly singular at {}", place_text(point)),
+                 "leave out points that are close together, or use another kernel");
   }
   forward.resize(others.size() * n());
   less_planes(wanted, k, std::span(forward).last(n()));
@@ -140,8 +139,8 @@ void WeightSystem::truncate(std::size_t centres) {
   if (has_radii(f.kernel)) f.radii.resize(centres);
 }
 
-// Adds to the function what gives `values` at the centres; those of the other centres come less
-// their planes and solved with L.
+// Adds the solution for `values` at the centres to the function. `solved_below`: L^-1 of the values
+// at the centres outside the base, minus the affine part.
 void WeightSystem::add_solution(std::vector<double> solved_below, std::span<const double> values) {
   factors.solve_upper(solved_below, n());
   const std::size_t base = matrix.base().size();
@@ -158,7 +157,7 @@ void WeightSystem::add_solution(std::vector<double> solved_below, std::span<cons
       for (std::size_t j = 0; j < n(); ++j) to[j] -= factor * from[j];
     }
   }
-  // The planes through what the kernels leave over at the base.
+  // The affine part fits what the kernels leave over at the base.
   for (std::size_t a = 0; a < base; ++a) {
     std::vector<double> left(
         values.begin() + static_cast<std::ptrdiff_t>(matrix.base()[a] * n()),
@@ -180,7 +179,7 @@ void WeightSystem::add_solution(std::vector<double> solved_below, std::span<cons
   bring_sums(f.affine, n(), 1, 0);
 }
 
-// What the function leaves over of what is wanted at the centres, and the largest of it.
+// Residual of the targets at the centres; returns the largest.
 double WeightSystem::find_residual(std::span<double> left) const {
   double largest = 0;
   for (std::size_t k = 0; k < matrix.size(); ++k) {
@@ -196,7 +195,7 @@ double WeightSystem::find_residual(std::span<double> left) const {
       for (std::size_t j = 0; j < n(); ++j) here[j] -= phi * from[j];
     }
     for (const double value : here) {
-      // A NaN stays the largest.
+      // Also keeps NaN as the largest.
       if (!(std::abs(value) <= largest)) largest = std::abs(value);
     }
   }
@@ -230,8 +229,8 @@ Status WeightSystem::solve() {
   }
   if (residual <= WeightSolver::kResidual) return {};
   return Error("rbf-conditioning",
-               fmt::format("the weights at the centres can be met to {} only", readable(residual)),
-               "leave out one of points that lie close together, or use another kernel");
+               fmt::format("the residual of the weights at the centres is {}", readable(residual)),
+               "leave out points that are close together, or use another kernel");
 }
 
 double WeightSystem::condition() const {
@@ -243,7 +242,7 @@ double WeightSystem::condition() const {
     for (const std::size_t i : others) sum += std::abs(matrix.kappa(i, k));
     norm = std::max(norm, sum);
   }
-  // Hager's climb to the column of the inverse with the largest sum.
+  // Hager's ascent to the column of the inverse with the largest 1-norm.
   std::vector<double> x(size, 1 / static_cast<double>(size));
   double inverse_norm = 0;
   for (int i = 0; i < 5; ++i) {
@@ -266,9 +265,8 @@ double WeightSystem::condition() const {
   return norm * inverse_norm;
 }
 
-// The function's part by what is wanted at the other centres is kappa(p, .) K^-1 u, with K their
-// kappa and u the wanted weights less the planes through the base: rows that are inserted stand in
-// u as they are.
+// With targets u (minus the affine part through the base) at the other centres, the function is
+// kappa(p, .) K^-1 u, where K is their kappa matrix. Inserted rows enter u unchanged.
 void WeightSystem::influences(std::span<const double> point, std::span<double> of_rows) const {
   double place_values[kMaxDimensions];
   const auto place = std::span(place_values).first(d());

@@ -12,30 +12,29 @@
 
 namespace krok::rbf::detail {
 
-// A weight function in the making: its centres, what is wanted at them, and the factors.
+// A weight function under construction: its centres, the target weights at them, and the factors.
 struct WeightSystem {
   WeightFunction f;
   CentreMatrix matrix;
-  std::vector<std::size_t> others;  // the centres that are not of the base
+  std::vector<std::size_t> others;  // centres that are not in the base
   BorderedFactors factors;          // of kappa over them
   std::vector<double> wanted;       // [centres x N]
-  std::vector<double> forward;      // [others x N], L^-1 of what is wanted less the planes
-  std::vector<double> plane;        // [(d + 1) x N], of kernels without planes in the system
+  std::vector<double> forward;      // [others x N], L^-1 of the targets minus the affine part
+  std::vector<double> plane;  // [(d + 1) x N], for kernels without an affine part in the system
   double residual = 0;
 
   std::size_t n() const { return static_cast<std::size_t>(f.examples); }
   std::size_t d() const { return static_cast<std::size_t>(f.dimensions); }
 
-  // Without centres yet; `function` has those of its examples. Code: rbf-rank.
+  // Starts without centres; `function` has those of its examples. Code: rbf-rank.
   static Result<std::unique_ptr<WeightSystem>> start(WeightFunction function);
 
-  // Adds a centre, whose part in the function is solved later: the examples in their order, whose
-  // rows are not read, then other points.
-  // After an error truncate() mends. Code: rbf-conditioning.
+  // Adds a centre, to be solved later: first the examples in order (`row` is ignored), then
+  // inserted points. After an error, truncate() restores a valid state. Code: rbf-conditioning.
   Status add_centre(std::span<const double> point, std::span<const double> row, double radius);
-  void truncate(std::size_t centres);  // the examples at least
+  void truncate(std::size_t centres);  // at least the examples
 
-  // Makes the function. Code: rbf-conditioning.
+  // Computes the function. Code: rbf-conditioning.
   Status solve();
 
   // See WeightSolver.
@@ -43,7 +42,7 @@ struct WeightSystem {
   void influences(std::span<const double> point, std::span<double> of_rows) const;
 
  private:
-  // What is left of values at centre k, [N], when the planes are taken off.
+  // The values at centre k, [N], minus the affine part.
   void less_planes(std::span<const double> values, std::size_t k, std::span<double> left) const;
   void add_solution(std::vector<double> solved_below, std::span<const double> values);
   double find_residual(std::span<double> left) const;
@@ -51,10 +50,11 @@ struct WeightSystem {
 
 bool all_finite(std::span<const double> values);
 
-// Adds to each row the same number, so that it sums to what it should: `first` for the first row.
+// Adds the same number to all elements of a row so that it sums to its target: `first` for the
+// first row, `others` for the rest.
 void bring_sums(std::span<double> rows, std::size_t columns, double first, double others);
 
-// A point for people: "(0.3, 12)".
+// A point formatted for messages: "(0.3, 12)".
 std::string place_text(std::span<const double> point);
 
 }  // namespace krok::rbf::detail

@@ -9,7 +9,7 @@ namespace {
 constexpr float kMaxCoordinate = 1e15F;
 
 bool usable(const Vec3f& point) {
-  // Not a number fails the comparison.
+  // NaN fails the comparison.
   return point.cwiseAbs().maxCoeff() <= kMaxCoordinate && point.allFinite();
 }
 
@@ -18,42 +18,42 @@ bool usable(float radius) {
 }
 
 Error fault(const char* what) {
-  return Error("render-figure", fmt::format("the figure cannot be drawn: {}", what));
+  return Error("render-figure", fmt::format("cannot render the character: {}", what));
 }
 
 Status check(const Paint& paint, std::size_t vertices) {
   if (paint.image == nullptr || paint.image->levels().empty()) {
-    return fault("a surface is painted with no picture");
+    return fault("a surface's texture has no image");
   }
   if (paint.coordinates == nullptr || paint.coordinates->size() != vertices) {
-    return fault("not as many texture coordinates as vertices");
+    return fault("number of texture coordinates does not match the vertices");
   }
   for (const Vec2f& place : *paint.coordinates) {
     if (!place.allFinite()) return fault("a texture coordinate is not finite");
   }
   if (!(paint.factor.minCoeff() >= 0 && paint.factor.maxCoeff() <= 1) ||
       !paint.factor.allFinite() || !(paint.cutoff >= 0 && paint.cutoff <= 1)) {
-    return fault("what multiplies a picture is not from 0 to 1");
+    return fault("the texture factor is not in 0 to 1");
   }
   return {};
 }
 
 Status check(const Surface& surface) {
   const std::size_t vertices = surface.positions.size();
-  if (surface.triangles == nullptr) return fault("a surface has no list of triangles");
+  if (surface.triangles == nullptr) return fault("a surface has no triangles");
   if (!surface.normals.empty() && surface.normals.size() != vertices) {
-    return fault("not as many normals as vertices");
+    return fault("number of normals does not match the vertices");
   }
   if (surface.colours.size() != 1 && surface.colours.size() != vertices) {
-    return fault("neither one colour nor one for each vertex");
+    return fault("expected one colour or one per vertex");
   }
   for (const auto& triangle : *surface.triangles) {
     for (const std::uint32_t corner : triangle) {
-      if (corner >= vertices) return fault("a triangle names a vertex that does not exist");
+      if (corner >= vertices) return fault("a triangle index is out of range");
     }
   }
   for (const Vec3f& point : surface.positions) {
-    if (!usable(point)) return fault("a vertex is not finite, or too far away");
+    if (!usable(point)) return fault("a vertex is not finite or is too far away");
   }
   for (const Vec3f& normal : surface.normals) {
     if (!normal.allFinite()) return fault("a normal is not finite");
@@ -70,14 +70,14 @@ Status check(const Actor& actor) {
   }
   for (const Bone& bone : actor.bones) {
     if (!usable(bone.from) || !usable(bone.to)) {
-      return fault("a joint is not finite, or too far away");
+      return fault("a joint is not finite or is too far away");
     }
     if (!usable(bone.from_radius) || !usable(bone.to_radius)) {
       return fault("a bone's radius is negative or not finite");
     }
   }
   if (!usable(Vec3f(actor.centre.cast<float>()))) {
-    return fault("its place is not finite, or too far away");
+    return fault("its centre is not finite or is too far away");
   }
   return {};
 }

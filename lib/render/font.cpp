@@ -1,7 +1,6 @@
 #include "render/font_internal.h"
 
-// The assembler takes the file in as it is; a source file with its bytes as numbers would be many
-// times as long.
+// Included by the assembler: a C++ array of the bytes would be many times as large.
 asm(".section .rodata\n"
     ".balign 16\n"
     "krok_label_font_begin:\n"

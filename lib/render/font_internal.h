@@ -5,7 +5,7 @@
 
 namespace krok::render {
 
-// The typeface of labels, DejaVu Sans, as a TrueType file.
+// The label font, DejaVu Sans, as a TrueType file.
 std::span<const std::byte> font_file();
 
 }  // namespace krok::render

@@ -33,8 +33,8 @@ void Image::blend(int x, int y, Colour colour, double cover) {
 
 namespace {
 
-// The pixels from `low` to `high` that a picture of `size` has; a position that is no number or out
-// of range counts as the nearest end.
+// The pixel range from `low` to `high`, clipped to `size`; NaN and values out of range are clamped
+// to the nearest end.
 struct Run {
   int begin = 0, end = 0;
   Run(double low, double high, int size)
@@ -42,7 +42,7 @@ struct Run {
         end(static_cast<int>(std::clamp(std::ceil(high), 0.0, static_cast<double>(size)))) {}
 };
 
-// How much of the pixel [i, i + 1] lies in [low, high].
+// The fraction of the pixel [i, i + 1] that lies in [low, high].
 double overlap(int i, double low, double high) {
   return std::clamp(std::min(i + 1.0, high) - std::max(static_cast<double>(i), low), 0.0, 1.0);
 }
@@ -75,7 +75,7 @@ void draw_line(Image& image, const Vec2& from, const Vec2& to, double width, Col
       const Vec2 offset = Vec2(x + 0.5, y + 0.5) - from;
       const double part = squared > 0 ? std::clamp(offset.dot(along) / squared, 0.0, 1.0) : 0.0;
       const double distance = (offset - part * along).norm();
-      // A line thinner than a pixel is one pixel wide and fainter.
+      // A line thinner than a pixel is drawn one pixel wide and fainter.
       const double cover = std::clamp(0.5 * std::max(width, 1.0) + 0.5 - distance, 0.0, 1.0);
       image.blend(x, y, colour, opacity * std::min(width, 1.0) * cover);
     }

@@ -7,8 +7,8 @@
 #include "math/types.h"
 #include "render/colour.h"
 
-// A picture in memory, and what is painted on it flat. Pixel (x, y) covers [x, x + 1] x [y, y + 1]
-// with x to the right and y down. Whatever lies outside is left out.
+// An image in memory and 2D drawing. Pixel (x, y) covers [x, x + 1] x [y, y + 1] with x to the
+// right and y down. Drawing is clipped to the image.
 
 namespace krok::render {
 
@@ -21,7 +21,7 @@ struct Image {
 
   Colour at(int x, int y) const;
   void set(int x, int y, Colour colour);
-  // Lays `colour` over a pixel, `cover` (0 .. 1) of it.
+  // Blends `colour` over a pixel with coverage `cover` (0 .. 1).
   void blend(int x, int y, Colour colour, double cover);
 
  private:
@@ -31,15 +31,15 @@ struct Image {
   }
 };
 
-// A rectangle with sides along the axes; `low` is its upper left corner.
+// An axis-aligned rectangle; `low` is its upper left corner.
 struct Box {
   Vec2 low = Vec2::Zero(), high = Vec2::Zero();
 };
 
-// Edges between pixels cover them in part.
+// Anti-aliased: edges cover pixels partly.
 void fill(Image& image, const Box& box, Colour colour, double opacity = 1.0);
 
-// A straight line with round ends, `width` pixels wide, as far as it lies in `clip`.
+// A straight line with round caps, `width` pixels wide, clipped to `clip`.
 void draw_line(Image& image, const Vec2& from, const Vec2& to, double width, Colour colour,
                const Box& clip, double opacity = 1.0);
 

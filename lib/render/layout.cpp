@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kMaxPixelsAcross = 30'000;
 constexpr double kMaxPixels = 100e6;
-constexpr double kHeightLines = 44;  // pixels from one to the next, at least
+constexpr double kHeightLines = 44;  // min pixels between height lines
 
-// What cells show, in metres to the right of and above their centres.
+// The range that cells show, in metres to the right of and above their centres.
 struct Window {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
   Vec2 high = -low;
@@ -30,7 +30,7 @@ struct Window {
   }
 };
 
-// Places of the world as one metre a unit, up positive.
+// Projects world points to an image plane at one unit per metre, up positive.
 class Plane {
  public:
   Plane(const SheetRow& row, const Vec3& centre) : centre_(centre) {
@@ -68,7 +68,7 @@ Window window_of(const SheetRow& row, const SheetCell& cell) {
   return window;
 }
 
-// A row's window, with the ground where that is near enough.
+// A row's window, including the ground if it is near enough.
 Window window_of(const SheetRow& row, RowLayout& place) {
   Window window;
   for (const SheetCell& cell : row.cells) {
@@ -94,17 +94,15 @@ Window window_of(const SheetRow& row, RowLayout& place) {
 Status check_options(const Sheet& sheet, const SheetOptions& options) {
   const auto has_cells = [](const SheetRow& row) { return !row.cells.empty(); };
   if (std::none_of(sheet.rows.begin(), sheet.rows.end(), has_cells)) {
-    return Error("sheet-empty", "there is nothing to put on the sheet");
+    return Error("sheet-empty", "the sheet has no cells");
   }
   if (options.row_height < 32 || options.row_height > 4000) {
-    return Error("sheet-size",
-                 fmt::format("rows of {} pixels are out of range", options.row_height),
-                 "from 32 to 4000 pixels");
+    return Error("sheet-size", fmt::format("row height {} is out of range", options.row_height),
+                 "expected 32 to 4000 pixels");
   }
   if (options.cell_width < 32 || options.cell_width > 16'000) {
-    return Error("sheet-size",
-                 fmt::format("cells of {} pixels are out of range", options.cell_width),
-                 "from 32 to 16000 pixels");
+    return Error("sheet-size", fmt::format("cell width {} is out of range", options.cell_width),
+                 "expected 32 to 16000 pixels");
   }
   return {};
 }
@@ -124,7 +122,7 @@ Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options) {
   Layout layout;
   layout.rows.resize(sheet.rows.size());
   std::vector<Window> windows;
-  Vec2 size = Vec2::Zero();  // of the widest and of the tallest, metres
+  Vec2 size = Vec2::Zero();  // of the widest and the tallest window, metres
   double left = std::numeric_limits<double>::infinity();
   double right = -left;
   std::size_t columns = 0;
@@ -139,7 +137,7 @@ Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options) {
   }
   size.x() = right - left;
   const auto scale = [](int pixels, double metres) { return (pixels - 2 * kAir) / metres; };
-  // Figures of no size are shown as if they had some, for otherwise there is no scale.
+  // A nominal size for characters of zero size, so that the scale is finite.
   size = size.cwiseMax(size.maxCoeff() > 0 ? 1e-3 * size.maxCoeff() : 1.0);
   layout.pixels_per_metre =
       std::min(scale(options.row_height, size.y()), scale(options.cell_width, size.x()));
@@ -158,15 +156,15 @@ Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options) {
     const double bottom = y + kHeader + std::ceil(high) + 2 * kAir + kGroundBand;
     if (wide > kMaxPixelsAcross || bottom > kMaxPixelsAcross || wide * bottom > kMaxPixels) {
       return Error("sheet-size",
-                   fmt::format("the picture would be {:.0f} pixels wide and {:.0f} high or more; "
-                               "at most {} million pixels and {} in one direction are made",
+                   fmt::format("the image would be at least {:.0f} x {:.0f} pixels; "
+                               "the limit is {} million pixels and {} in each direction",
                                wide, bottom, static_cast<int>(kMaxPixels / 1e6), kMaxPixelsAcross),
-                   "take a smaller size, or fewer moments, sides or files");
+                   "reduce the size or the number of times, sides or files");
     }
     place.header = static_cast<int>(y);
     place.top = place.header + (row.title.empty() && row.note.empty() ? 0 : kHeader);
     place.bottom = static_cast<int>(place.top + std::ceil(high)) + 2 * kAir + kGroundBand;
-    // A whole pixel, so that the line is sharp.
+    // On a pixel boundary, so that the line is sharp.
     place.ground = std::round(place.top + kAir + window.high.y() * per_metre);
     place.low = (place.ground - place.bottom) / per_metre;
     place.high = (place.ground - place.top) / per_metre;

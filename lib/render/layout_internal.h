@@ -4,32 +4,32 @@
 
 #include "render/sheet.h"
 
-// Where everything on a sheet stands.
+// The layout of a sheet.
 
 namespace krok::render {
 
 // Lengths in pixels.
 inline constexpr int kMargin = 16;
-inline constexpr int kGutter = 46;  // left of the cells, for heights
+inline constexpr int kGutter = 46;  // left of the cells, for height labels
 inline constexpr int kHeader = 24;  // above a row's cells
 inline constexpr int kLabel = 17;   // a line below a cell
 inline constexpr int kRowGap = 12;
-inline constexpr int kAir = 8;         // around the figures in a cell
+inline constexpr int kAir = 8;         // padding around the characters in a cell
 inline constexpr int kGroundBand = 9;  // below the ground
 inline constexpr int kKey = 46;
 inline constexpr double kTitleSize = 14, kTextSize = 12, kSmallSize = 11;
 
-// Above this the ground is seen from above.
+// Above this elevation the ground is drawn as a grid.
 inline constexpr double kRaised = 2 * kRadiansPerDegree;
 
 struct RowLayout {
-  int header = 0;           // the upper edge of its title
+  int header = 0;           // top edge of its title
   int top = 0, bottom = 0;  // of its cells
-  double ground = 0;        // the pixel line of y = 0 through the cells' centres
+  double ground = 0;        // pixel row of y = 0 at the cells' centres
   bool shows_ground = true;
-  double ground_distance = 0;  // metres from the figures down (or, negative, up) to the ground
+  double ground_distance = 0;  // metres from the characters down (or, negative, up) to the ground
   bool has_labels = false, has_notes = false;
-  double low = 0, high = 0;  // metres above the ground that its cells show
+  double low = 0, high = 0;  // height range of its cells, metres above the ground
 };
 
 struct Layout {

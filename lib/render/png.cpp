@@ -7,7 +7,7 @@ namespace krok::render {
 
 namespace {
 
-// libpng's own bookkeeping, freed whatever happens.
+// Frees libpng's state on every path.
 struct PngImage {
   png_image image{};
   PngImage() { image.version = PNG_IMAGE_VERSION; }
@@ -24,9 +24,9 @@ struct PngImage {
 
 Result<std::vector<std::byte>> write_png(const Image& image) {
   constexpr const char* kCode = "png-write";
-  constexpr const char* kWhat = "the picture cannot be written as PNG";
+  constexpr const char* kWhat = "cannot write the image as PNG";
   if (image.width < 1 || image.height < 1) {
-    return Error(kCode, "a picture without a pixel cannot be written as PNG");
+    return Error(kCode, "cannot write an empty image as PNG");
   }
   PngImage png;
   png.image.width = static_cast<png_uint_32>(image.width);
@@ -44,7 +44,7 @@ Result<std::vector<std::byte>> write_png(const Image& image) {
 
 Result<Image> read_png(std::span<const std::byte> bytes, std::size_t most_pixels) {
   constexpr const char* kCode = "png-read";
-  constexpr const char* kWhat = "this cannot be read as a PNG picture";
+  constexpr const char* kWhat = "cannot read the data as PNG";
   PngImage png;
   if (png_image_begin_read_from_memory(&png.image, bytes.data(), bytes.size()) == 0) {
     return png.error(kCode, kWhat);
@@ -52,7 +52,7 @@ Result<Image> read_png(std::span<const std::byte> bytes, std::size_t most_pixels
   png.image.format = PNG_FORMAT_RGB;
   const std::size_t pixels = std::size_t{png.image.width} * std::size_t{png.image.height};
   if (pixels > most_pixels) {
-    return Error(kCode, fmt::format("a picture of {} x {} pixels is too large", png.image.width,
+    return Error(kCode, fmt::format("the image is too large: {} x {} pixels", png.image.width,
                                     png.image.height));
   }
   Image image(static_cast<int>(png.image.width), static_cast<int>(png.image.height), {});

@@ -9,12 +9,12 @@
 
 namespace krok::render {
 
-// The image as a PNG file: eight bits a channel, marked as sRGB, without a time. The same image
-// gives the same bytes. Code png-write where libpng cannot (no memory, an image without a pixel).
+// Encodes the image as PNG: 8 bits per channel, tagged as sRGB, without a timestamp. Output is
+// deterministic. Code png-write if libpng fails (out of memory, empty image).
 Result<std::vector<std::byte>> write_png(const Image& image);
 
-// The pixels of a PNG file of at most `most_pixels`, transparent ones over white. Code png-read for
-// what is no PNG file, is damaged, or has more.
+// Decodes a PNG file of at most `most_pixels` pixels; transparency is blended over white. Code
+// png-read for data that is not a valid PNG file or has more pixels.
 Result<Image> read_png(std::span<const std::byte> bytes, std::size_t most_pixels = 400'000'000);
 
 }  // namespace krok::render

@@ -11,22 +11,22 @@ namespace krok::render {
 
 namespace {
 
-constexpr int kTile = 16;   // pixels, both ways
-constexpr int kAcross = 3;  // samples of a pixel, both ways
+constexpr int kTile = 16;   // pixels, in both directions
+constexpr int kAcross = 3;  // samples per pixel, in both directions
 constexpr int kSamples = kAcross * kAcross;
-constexpr float kReach = 0.16F;        // units; how near a surface must be to take light away
-constexpr float kShadowReach = 0.35F;  // the same for the ground
+constexpr float kReach = 0.16F;        // units; max distance of surfaces that occlude
+constexpr float kShadowReach = 0.35F;  // the same for ground shadows
 constexpr float kShadow = 0.55F;
 
-// The rays that one of a pixel's samples follows; all samples together follow all.
+// The rays of one of a pixel's samples; together, the samples cover all directions.
 TracedActor::Rays rays_of(int sample, int directions) {
   const int count = directions / kSamples;
   return {directions, sample * count, count};
 }
 
-// Where light comes from, in the camera's own directions (right, up, towards it), so that a figure
-// looks the same from all sides: a strong one from the upper left, a weak one from the right, one
-// from behind that brightens the rim; and light from everywhere, more from above.
+// Lights fixed to the camera (right, up, towards it), so that a character is lit the same way from
+// all sides: a key light from the upper left, a fill light from the right, a rim light from behind,
+// and ambient light, stronger from above.
 struct Lamp {
   Vec3f direction;
   float strength;
@@ -60,7 +60,7 @@ class Lights {
   Vec3f up_;
 };
 
-// What one view needs for each of its pixels.
+// Per-view state shared by its pixels.
 class ViewPainter {
  public:
   explicit ViewPainter(const View& view)
@@ -95,7 +95,7 @@ class ViewPainter {
     Light light;
   };
 
-  // The pixels that a figure and its shadow may lie on.
+  // The pixels that an actor and its shadow may cover.
   Box reach_of(const TracedActor& actor) const {
     Bounds box = actor.box();
     if (view_.shadows) {
@@ -131,7 +131,7 @@ class ViewPainter {
     if (changed) image.set(x, y, to_colour(sum / static_cast<float>(kSamples)));
   }
 
-  // Lays what is seen at a place over `light`; false where nothing is.
+  // Blends what is visible at an image position over `light`; false if nothing is.
   bool look(const Vec2& place, int sample, const std::vector<std::size_t>& near,
             Light& light) const {
     const Camera& camera = view_.camera;
@@ -152,7 +152,7 @@ class ViewPainter {
     }
     bool changed = !seen.empty();
     if (view_.shadows) changed = add_shadows(point, sample, near, light) || changed;
-    // From the farthest to the nearest; of equally far ones in the order of the layers.
+    // Back to front; at equal depth, in layer order.
     std::stable_sort(seen.begin(), seen.end(),
                      [](const Seen& a, const Seen& b) { return a.depth < b.depth; });
     for (const Seen& one : seen) light += one.opacity * (one.light - light);
@@ -176,7 +176,7 @@ class ViewPainter {
   const View& view_;
   Lights lights_;
   Vec3 right_, up_, towards_;
-  double step_;  // metres from one sample to the next
+  double step_;  // metres between samples
   std::vector<Box> reaches_;
 };
 

@@ -30,7 +30,7 @@ Box box_of(const CellLayout& cell) {
   return {Vec2(cell.left, cell.top), Vec2(cell.right, cell.bottom)};
 }
 
-// Paints all that lies flat: what is behind the figures, and the words.
+// Paints the 2D parts: background and text.
 class SheetPainter {
  public:
   SheetPainter(const Sheet& sheet, const Layout& layout, TextPainter& text, Image& image)
@@ -47,11 +47,11 @@ class SheetPainter {
     }
   }
 
-  // What is before the figures.
+  // What is drawn over the actors.
   void paint_words() {
     for (const CellLayout& cell : layout_.cells) {
       const bool raised = sheet_.rows[static_cast<std::size_t>(cell.row)].elevation > kRaised;
-      // Looks at different grounds are kept apart.
+      // Separates grounds seen from above.
       if (raised && cell.column > 0) {
         fill(image_, {{cell.left - 1.0, cell.top}, {cell.left + 1.0, cell.bottom}}, kPaper);
       }
@@ -91,7 +91,7 @@ class SheetPainter {
     fill(image_, {{left, place.ground}, {right, place.ground + 1.5}}, kGroundLine);
   }
 
-  // Lines on the ground as far apart as those of equal height, fainter away from the centre.
+  // A ground grid with the spacing of the height lines, fading away from the centre.
   void paint_grid(const CellLayout& cell) {
     const Camera& camera = cell.camera;
     const double step = layout_.height_step;
@@ -121,7 +121,7 @@ class SheetPainter {
   }
 
   void paint_path(const std::vector<Vec3>& path, const CellLayout& cell) {
-    // In steps of some pixels, for where pieces overlap a line is darker.
+    // In steps, because overlapping line pieces would be darker.
     constexpr double kStep = 4;
     std::vector<Vec2> line;
     for (const Vec3& point : path) {
@@ -156,7 +156,7 @@ class SheetPainter {
     double line = cell.bottom + 13;
     text_.draw(image_, {middle, line}, text_.fitted(what.label, kTextSize, most), kTextSize,
                what.marked ? kAccent : kInk, Align::centre);
-    std::vector<std::pair<double, double>> taken;  // marks that would touch another are left out
+    std::vector<std::pair<double, double>> taken;  // marks that would overlap another are left out
     for (const SheetCell::Mark& mark : what.marks) {
       const double x = cell.camera.project(mark.at).x();
       const double half = 0.5 * text_.width(mark.text, kSmallSize) + 3;
@@ -205,12 +205,12 @@ Colour ColourKey::at(double value) const {
   constexpr Colour kMiddle = colour(0xE8C84A);
   constexpr Colour kLarge = colour(0xD03B3B);
   if (value <= low) return kSame;
-  const double share = value < high ? value / high : 1.0;  // also what is not a number
+  const double share = value < high ? value / high : 1.0;  // NaN maps to 1 too
   return share < 0.5 ? mixed(kSmall, kMiddle, 2 * share) : mixed(kMiddle, kLarge, 2 * share - 1);
 }
 
 Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
-  // Each figure once, however many cells show it.
+  // Each actor once, however many cells show it.
   std::map<const Actor*, std::size_t> places;
   std::vector<const Actor*> actors;
   for (const SheetRow& row : sheet.rows) {

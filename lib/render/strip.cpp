@@ -8,12 +8,11 @@ namespace krok::render {
 namespace {
 
 constexpr double kFirst = 0.35;  // opacity
-constexpr double kApart = 0.62;  // of the widest figure's width
-// Where figures stand nearer to each other than this share of their width (on the whole way), they
-// hide one another.
+constexpr double kApart = 0.62;  // of the widest actor's width
+// If the mean spacing is less than this fraction of the width, actors overlap too much.
 constexpr double kCrowded = 0.3;
 
-// How wide a figure is in the picture.
+// An actor's extent in the image.
 struct Width {
   double low = 0, high = 0;
 };

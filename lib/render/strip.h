@@ -5,37 +5,37 @@
 
 #include "render/sheet.h"
 
-// Motion strips: the figure at several moments in one picture, where it was at each of them, the
-// earlier ones paler.
+// Motion strips: a character at several times in one image, at its position at each time; earlier
+// ones are fainter.
 
 namespace krok::render {
 
 struct Strip {
   struct Moment {
-    const Actor* actor = nullptr;  // must outlive what is made of the strip
+    const Actor* actor = nullptr;  // must outlive the StripCells made from the strip
     std::string label;
   };
   std::string title, note;
-  double yaw = 0, elevation = 0;  // where the camera looks from, see Camera
-  std::vector<Moment> moments;    // in order of time
-  std::vector<Vec3> path;         // a line to draw with them, such as the hips'
+  double yaw = 0, elevation = 0;  // direction to the camera, see Camera
+  std::vector<Moment> moments;    // in time order
+  std::vector<Vec3> path;         // a line to draw, such as the path of the hips
 };
 
 enum class Spread : unsigned char {
-  automatic,  // as `place` where the figure moves on enough to be told apart, otherwise as `time`
-  place,      // each figure where it was
+  automatic,  // `place` if the character travels far enough to be distinct, otherwise `time`
+  place,      // at the position at each time
   time        // side by side from left to right
 };
 
 struct StripCells {
   SheetRow row;              // one cell
-  std::vector<Actor> moved;  // figures that stand elsewhere than in the strip; the row uses them
+  std::vector<Actor> moved;  // actors at new positions; the row refers to them
   bool spread_by_time = false;
 };
 
-// The row of a sheet that shows the strip. A figure shows with an opacity that rises from kFirst
-// for the first to 1 for the last. Spread by time, each figure stands kApart of the widest one's
-// width from the one before, in one line across the picture, and no path is drawn.
+// A sheet row that shows the strip. Opacity rises from kFirst for the first actor to 1 for the
+// last. Spread by time, actors are kApart of the widest one's width apart, in one line across the
+// image, and no path is drawn.
 StripCells strip_row(const Strip& strip, Spread spread);
 
 }  // namespace krok::render

@@ -15,7 +15,7 @@ namespace krok::render {
 
 namespace {
 
-// The characters of a text that is UTF-8.
+// Decodes UTF-8 into characters.
 std::vector<char32_t> characters(const std::string& text) {
   std::vector<char32_t> result;
   for (std::size_t i = 0; i < text.size();) {
@@ -32,8 +32,8 @@ std::vector<char32_t> characters(const std::string& text) {
 }
 
 constexpr char32_t kEllipsis = 0x2026;
-constexpr double kMaxCoordinate = 1e6;  // pixels
-constexpr double kFixed = 64.0;         // FreeType counts in 1/64 pixels
+constexpr double kMaxTextCoordinate = 1e6;  // pixels
+constexpr double kFixed = 64.0;             // FreeType uses 26.6 fixed point
 
 }  // namespace
 
@@ -54,7 +54,7 @@ struct TextPainter::Face {
     FT_Set_Char_Size(face, 0, static_cast<FT_F26Dot6>(std::lround(kept * kFixed)), 72, 72);
   }
 
-  // Without hints letters keep their shapes and widths at every size.
+  // Without hinting, glyphs keep their shapes and widths at every size.
   bool load(char32_t character, bool drawn) const {
     const FT_Int32 how = FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP | (drawn ? FT_LOAD_RENDER : 0);
     return FT_Load_Char(face, character, how) == 0;
@@ -81,7 +81,7 @@ Result<TextPainter> TextPainter::create() {
   if (FT_Init_FreeType(&face->library) != 0 ||
       FT_New_Memory_Face(face->library, bytes, static_cast<FT_Long>(file.size()), 0, &face->face) !=
           0) {
-    return Error("text-font", "the typeface of labels cannot be loaded");
+    return Error("text-font", "cannot load the label font");
   }
   return TextPainter(std::move(face));
 }
@@ -93,14 +93,14 @@ double TextPainter::width(std::string_view text, double size) {
 
 void TextPainter::draw(Image& image, const Vec2& place, std::string_view text, double size,
                        Colour colour, Align align) {
-  if (!(place.cwiseAbs().maxCoeff() < kMaxCoordinate)) return;
+  if (!(place.cwiseAbs().maxCoeff() < kMaxTextCoordinate)) return;
   face_->set_size(size);
   const auto letters = characters(to_utf8(text));
   double x = place.x();
   if (align != Align::left) x -= face_->width(letters) * (align == Align::centre ? 0.5 : 1.0);
   const double line = std::round(place.y());
   for (const char32_t character : letters) {
-    // Letters begin at quarters of a pixel, so that they stand evenly.
+    // Glyphs start at quarter pixels, for even spacing.
     const double start = std::floor(x * 4 + 0.5) / 4;
     FT_Vector shift{static_cast<FT_Pos>(std::lround((start - std::floor(start)) * kFixed)), 0};
     FT_Set_Transform(face_->face, nullptr, &shift);
@@ -132,7 +132,7 @@ std::string TextPainter::fitted(std::string_view text, double size, double most)
     letters.pop_back();
   }
   if (letters.empty()) return {};
-  // The bytes of the letters that are left: those of the text before its character number size - 1.
+  // The number of bytes that remain: those before character number size - 1.
   std::size_t bytes = 0;
   for (std::size_t kept = 0; kept + 1 < letters.size(); ++kept) {
     ++bytes;

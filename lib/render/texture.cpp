@@ -12,7 +12,7 @@ namespace {
 
 using Wrap = krok::Texture::Wrap;
 
-// One pixel's light and alpha.
+// One pixel's linear colour and alpha.
 Vec4f pixel(const Mipmap::Level& level, int x, int y) {
   const std::size_t place =
       4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) +
@@ -22,8 +22,8 @@ Vec4f pixel(const Mipmap::Level& level, int x, int y) {
   return {light.x(), light.y(), light.z(), static_cast<float>(rgba[3]) / 255.0F};
 }
 
-// The pixels of a line that fall on one of half as many, and how much of each; an odd number of
-// pixels is shared out evenly.
+// The source pixels of one pixel of the next level, and their weights; odd sizes use fractional
+// weights.
 struct Share {
   int first = 0, count = 0;
   std::array<float, 3> parts{};  // sum to 1
@@ -31,7 +31,7 @@ struct Share {
 
 std::vector<Share> shares(int from, int to) {
   std::vector<Share> result;
-  // In parts of a pixel of `from`, of which there are `to`.
+  // In units of 1/`to` of a source pixel.
   for (std::int64_t i = 0; i < to; ++i) {
     const std::int64_t begin = i * from, end = begin + from;
     Share share;
@@ -72,7 +72,7 @@ Mipmap::Level halved(const Mipmap::Level& from) {
   return to;
 }
 
-// Into 0 .. 1.
+// Wraps a coordinate into 0 .. 1.
 double wrapped(float coordinate, Wrap wrap) {
   const double value = static_cast<double>(coordinate);
   double inside = value;
@@ -81,10 +81,10 @@ double wrapped(float coordinate, Wrap wrap) {
     inside = value - 2 * std::floor(value / 2);
     if (inside > 1) inside = 2 - inside;
   }
-  return inside >= 0 ? std::min(inside, 1.0) : 0.0;  // not a number is 0
+  return inside >= 0 ? std::min(inside, 1.0) : 0.0;  // NaN maps to 0
 }
 
-// The two pixels of a line between whose middles a coordinate (0 .. 1) lies, and where.
+// The two pixels whose centres enclose a coordinate (0 .. 1), and the interpolation weight.
 struct Between {
   int first, second;
   float share;  // of the second
@@ -94,7 +94,7 @@ Between between(double coordinate, int size, Wrap wrap) {
   const double place = coordinate * size - 0.5;
   const double below = std::floor(place);
   const int first = static_cast<int>(below);
-  // Mirrored, the pixel beyond the edge is the one at it, as it is where the picture ends.
+  // For mirror and clamp, the pixel beyond the edge is the edge pixel.
   const auto kept = [&](int index) {
     if (wrap == Wrap::repeat) return index < 0 ? size - 1 : (index >= size ? 0 : index);
     return std::clamp(index, 0, size - 1);
@@ -143,7 +143,7 @@ Result<Mipmap> Mipmap::create(int width, int height, std::vector<std::uint8_t> r
   if (width < 1 || height < 1 ||
       rgba.size() / 4 / static_cast<std::size_t>(width) != static_cast<std::size_t>(height) ||
       rgba.size() % (4 * static_cast<std::size_t>(width)) != 0) {
-    return Error("render-texture", "a picture on a surface has another size than it says");
+    return Error("render-texture", "the texture's pixel count does not match its size");
   }
   Mipmap mipmap;
   mipmap.levels_.push_back({width, height, std::move(rgba)});
@@ -160,7 +160,7 @@ Vec4f Paint::at(const Vec2f& place, const Vec2f& across, const Vec2f& down) cons
   const double second = static_cast<double>(down.cwiseProduct(size).norm());
   const bool wider = first > second;
   double longer = wider ? first : second, shorter = wider ? second : first;
-  // A surface seen edge on has no way that can be told: all of the picture.
+  // A surface seen edge-on has no finite offset: use the whole image.
   if (!std::isfinite(longer + shorter)) longer = shorter = 1e9;
   shorter = std::max(shorter, longer / kMaxProbes);
   const double level = shorter > 1 ? std::log2(shorter) : 0.0;

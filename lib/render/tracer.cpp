@@ -10,16 +10,16 @@ namespace krok::render {
 
 namespace {
 
-// One instruction set for all machines and one thread for building, so that the same rays meet the
-// same surfaces everywhere.
+// One instruction set for all machines and a single-threaded build, so that results are the same
+// everywhere.
 constexpr const char* kDevice = "isa=sse4.2,threads=1,set_affinity=0";
 
-constexpr double kMaxDistance = 1.0;  // units; no figure reaches farther than 0.87 from its middle
-constexpr double kStart = 2.0;        // units before the middle, where looks begin
-constexpr float kStep = 1e-4F;        // off the surface that a ray leaves
-constexpr float kSmallest = 1e-6F;    // units; a bone shorter than this is a ball
+constexpr double kMaxDistance = 1.0;  // units; no actor extends farther than 0.87 from its middle
+constexpr double kStart = 2.0;        // units in front of the middle, where view rays start
+constexpr float kStep = 1e-4F;        // offset of secondary rays from the surface
+constexpr float kSmallest = 1e-6F;    // units; shorter bones are balls
 
-// Directions about +Z in which light comes to a surface, as many as its cosine gives them.
+// Cosine-weighted directions about +Z.
 template <int count>
 const std::array<Vec3f, count>& directions() {
   static const auto table = [] {
@@ -37,7 +37,7 @@ const std::array<Vec3f, count>& directions() {
   return table;
 }
 
-// A point given to Embree, with room for the radius.
+// Writes a point into an Embree buffer, with room for the radius.
 void put(float* place, const Vec3f& point) {
   std::copy_n(point.data(), 3, place);
 }
@@ -62,7 +62,7 @@ struct Tracer::Device {
 
 struct TracedActor::Scene {
   RTCScene scene = nullptr;
-  // Which bones are bars and which are balls, in the order that Embree has them.
+  // Indices of the bones that are capsules and balls, in Embree's order.
   std::vector<std::size_t> bars, balls;
   unsigned bars_geometry = RTC_INVALID_GEOMETRY_ID, balls_geometry = RTC_INVALID_GEOMETRY_ID;
 
@@ -73,7 +73,7 @@ struct TracedActor::Scene {
     if (scene != nullptr) rtcReleaseScene(scene);
   }
 
-  // Commits and attaches; the scene keeps it alive. False where Embree had no memory for a buffer.
+  // Commits and attaches a geometry, which the scene then keeps alive; returns its id.
   unsigned attach(RTCGeometry geometry) const {
     rtcCommitGeometry(geometry);
     const unsigned id = rtcAttachGeometry(scene, geometry);
@@ -84,7 +84,7 @@ struct TracedActor::Scene {
 
 namespace {
 
-// Memory of a geometry for `count` elements, or null. Embree takes no empty buffers.
+// A geometry buffer for `count` elements, or null. Embree rejects empty buffers.
 template <typename T>
 T* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t stride,
           std::size_t count) {
@@ -116,7 +116,8 @@ RTCGeometry mesh(RTCDevice device, const Surface& surface, const TracedActor& ac
   return geometry;
 }
 
-// What a paint cuts out lets rays through. Asked by Embree for each meeting, one ray at a time.
+// Lets rays through where the alpha test fails. Embree filter function, called for each hit with
+// one ray at a time.
 void cut_out(const RTCFilterFunctionNArguments* arguments) {
   if (arguments->N != 1 || arguments->valid[0] != -1) return;
   const auto& surface = *static_cast<const Surface*>(arguments->geometryUserPtr);
@@ -169,7 +170,7 @@ Result<Tracer> Tracer::create() {
   tracer.device_ = std::make_unique<Device>();
   tracer.device_->device = rtcNewDevice(kDevice);
   if (tracer.device_->device == nullptr) {
-    return Error("render-memory", "the renderer cannot be started");
+    return Error("render-memory", "cannot start the renderer");
   }
   return tracer;
 }
@@ -211,13 +212,13 @@ Result<TracedActor> Tracer::add(const Actor& actor) const {
   if (!ball_curves.empty()) scene.balls_geometry = scene.attach(balls(device, ball_curves));
   rtcCommitScene(scene.scene);
   if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
-    return Error("render-memory", "the renderer has no memory for a figure of this size");
+    return Error("render-memory", "out of memory while preparing the character for rendering");
   }
   return traced;
 }
 
-// How far the shares of a triangle's corners go from one line of sight to the next decides how much
-// of the picture lies between them.
+// The filter footprint follows from how the barycentric coordinates change from one line of sight
+// to the next.
 Light TracedActor::painted(const Surface& surface, std::size_t triangle, const Vec3f& shares,
                            const Sight& sight) const {
   const auto& corners = (*surface.triangles)[triangle];
@@ -228,7 +229,7 @@ Light TracedActor::painted(const Surface& surface, std::size_t triangle, const V
   const auto& coordinates = *surface.paint->coordinates;
   const Vec2f along_first = coordinates[corners[1]] - coordinates[corners[0]];
   const Vec2f along_second = coordinates[corners[2]] - coordinates[corners[0]];
-  // step = a first + b second + c towards, by Cramer's rule. Edge on, the volume is zero and
+  // step = a first + b second + c towards, by Cramer's rule. Edge-on, the volume is zero and
   // neither a nor b is finite.
   const float volume = first.cross(second).dot(towards);
   const auto way = [&](const Vec3& step) -> Vec2f {
@@ -273,7 +274,7 @@ std::optional<Hit> TracedActor::look(const Sight& sight) const {
   const Vec3& towards = sight.towards;
   const Vec3 offset = (sight.point - middle_) / unit_;
   const Vec3 aside = offset - towards.dot(offset) * towards;
-  // Embree wants no rays from far away.
+  // Skip rays that pass far from the actor: Embree should not get distant origins.
   if (!(aside.squaredNorm() <= kMaxDistance * kMaxDistance)) return std::nullopt;
   const Vec3f start = (aside + kStart * towards).cast<float>();
   const Vec3f direction = -towards.cast<float>();
@@ -306,8 +307,8 @@ std::optional<Hit> TracedActor::look(const Sight& sight) const {
 float TracedActor::occlusion(const Vec3f& point, const Vec3f& normal, const Rays& rays,
                              float reach) const {
   if (!(point.norm() <= static_cast<float>(kMaxDistance) + reach)) return 0;
-  // Two directions across the normal. Source: Duff et al., Building an Orthonormal Basis, Revisited
-  // (JCGT 6(1), 2017).
+  // An orthonormal basis about the normal. Source: Duff et al., Building an Orthonormal Basis,
+  // Revisited (JCGT 6(1), 2017).
   const float sign = std::copysign(1.0F, normal.z());
   const float a = -1.0F / (sign + normal.z());
   const float b = normal.x() * normal.y() * a;

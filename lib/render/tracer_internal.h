@@ -7,7 +7,7 @@
 #include "core/result.h"
 #include "render/actor.h"
 
-// Figures made ready for rays, by Intel Embree.
+// Actors prepared for ray tracing with Intel Embree.
 
 namespace krok::render {
 
@@ -15,22 +15,23 @@ namespace krok::render {
 using Light = Vec3f;
 
 struct Hit {
-  double depth = 0;  // metres towards the viewer from the figure's own middle
-  Vec3f point;       // where, for occlusion()
-  Vec3f normal;      // unit, on the side that is seen
+  double depth = 0;  // metres towards the viewer from the actor's middle
+  Vec3f point;       // hit point, for occlusion()
+  Vec3f normal;      // unit, on the visible side
   Light colour;
 };
 
-// A line along which something is seen, world: through `point`, from the far end of `towards` (a
-// unit vector). The lines beside it are `right` and `down` away, across `towards`.
+// A line of sight in world space: through `point`, seen from the far end of `towards` (a unit
+// vector). The neighbouring pixels' lines are offset by `right` and `down`, perpendicular to
+// `towards`.
 struct Sight {
   Vec3 point, towards, right, down;
 };
 
 class Tracer;
 
-// A figure in a box of its own, the middle in the origin and about one unit wide, so that neither
-// very large and small figures nor far ones lose digits. The figure must outlive it.
+// An actor normalised to about one unit around the origin, so that very large, small or distant
+// characters do not lose precision. The Actor must outlive it.
 class TracedActor {
  public:
   TracedActor(TracedActor&&) noexcept;
@@ -41,20 +42,20 @@ class TracedActor {
   const Vec3& middle() const { return middle_; }
   double unit() const { return unit_; }  // metres
 
-  // What is seen of it.
+  // The nearest visible hit.
   std::optional<Hit> look(const Sight& sight) const;
 
-  // Of a set of `directions` about a normal, as many as its cosine gives them, those that are to be
-  // followed at a time.
+  // A subset of `directions` rays with a cosine-weighted distribution about a normal: `count` rays
+  // from `first`.
   struct Rays {
     int directions = 18;  // of 18 or 54
     int first = 0, count = 2;
   };
-  // The share (0 .. 1) of these rays that leave a point with this normal and meet the figure within
-  // `reach` units. The directions are the same at each point.
+  // The fraction (0 .. 1) of these rays that start at a point with this normal and hit the actor
+  // within `reach` units. The directions are the same at each point.
   float occlusion(const Vec3f& point, const Vec3f& normal, const Rays& rays, float reach) const;
 
-  // A point of the world in units.
+  // Transforms a world point to units.
   Vec3f local(const Vec3& world) const { return ((world - middle_) / unit_).cast<float>(); }
 
  private:
@@ -72,16 +73,16 @@ class TracedActor {
   std::unique_ptr<Scene> scene_;
 };
 
-// Embree's device. Figures that it made keep what they need of it.
+// Embree's device. Traced actors keep their own references to what they need.
 class Tracer {
  public:
-  // Code render-memory where Embree cannot.
+  // Code render-memory if Embree fails.
   static Result<Tracer> create();
   Tracer(Tracer&&) noexcept;
   Tracer& operator=(Tracer&&) noexcept;
   ~Tracer();
 
-  // Codes: those of check(Figure); render-memory.
+  // Codes: those of check(Actor); render-memory.
   Result<TracedActor> add(const Actor& actor) const;
 
  private:

@@ -8,8 +8,8 @@
 
 namespace krok {
 
-// A camera over time, in Krok's frame. As in glTF the camera looks along its own -Z with +Y up.
-// Arrays have [frames] elements; frame i is at time i / rate.
+// A camera over time, in Krok's coordinate frame. As in glTF the camera looks along its local -Z
+// with +Y up. Arrays have [frames] elements; frame i is at time i / rate.
 struct CameraTrack {
   double rate = 30.0;
   std::vector<Vec3f> positions;       // metres
@@ -20,7 +20,7 @@ struct CameraTrack {
   int frame_count() const { return static_cast<int>(positions.size()); }
 };
 
-// Whether what the comments above promise holds. Codes: camera-shape, camera-rate, camera-value.
+// Checks everything documented above. Codes: camera-shape, camera-rate, camera-value.
 Status check(const CameraTrack& camera);
 
 }  // namespace krok

@@ -15,7 +15,7 @@ Error fault(std::string message) {
   return Error("character-value", std::move(message));
 }
 
-// Each name once, and not empty.
+// Names must be unique and not empty.
 template <typename Item>
 Status check_names(const std::vector<Item>& items, const char* what) {
   std::unordered_set<std::string_view> seen;
@@ -25,7 +25,7 @@ Status check_names(const std::vector<Item>& items, const char* what) {
           fmt::format("the name of {} is empty, too long, not UTF-8 or has a zero byte", what));
     }
     if (seen.insert(item.name).second) continue;
-    return fault(fmt::format("{} '{}' stands there twice", what, shown(item.name)));
+    return fault(fmt::format("{} '{}' appears twice", what, shown(item.name)));
   }
   return {};
 }
@@ -44,17 +44,17 @@ Status check(const Character& character) {
   }
   for (const Character::Eye& eye : character.eyes) {
     if (!is_name(eye.joint)) return fault(fmt::format("eye '{}' has no joint", shown(eye.name)));
-    // NaN is not within anything.
+    // Rejects NaN too.
     if ((eye.position.array().abs() <= Character::kFurthest).all()) continue;
-    return fault(
-        fmt::format("eye '{}' is farther away than {} m", shown(eye.name), Character::kFurthest));
+    return fault(fmt::format("eye '{}' is more than {} m from the origin", shown(eye.name),
+                             Character::kFurthest));
   }
   for (const Character::Expression& expression : character.expressions) {
     if (!is_utf8(expression.target)) {
       return fault(fmt::format("the target of '{}' is not UTF-8", shown(expression.name)));
     }
     if (std::abs(expression.weight) <= Character::kMaxWeight) continue;
-    return fault(fmt::format("the weight of expression '{}' is not within {}",
+    return fault(fmt::format("the weight of expression '{}' is not within +-{}",
                              shown(expression.name), Character::kMaxWeight));
   }
   if (!character.expressions.empty() && character.morphs.empty()) {

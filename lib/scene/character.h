@@ -8,24 +8,24 @@
 
 namespace krok {
 
-// What belongs together to show and to animate a figure: the files that hold it, and what none of
-// them says. Paths are relative to the character's own file, with '/', and stay in its folder.
+// A character: the files needed to display and animate it, and what none of them stores. Paths are
+// relative to the character file, use '/', and stay in its folder.
 struct Character {
   static constexpr float kFurthest = 1e6f;
   static constexpr float kMaxWeight = 1000.0f;
 
-  std::string name;                    // for people; may be empty
+  std::string name;                    // for display; may be empty
   std::string model;                   // mesh, skin and skeleton, a .model file
-  std::vector<std::string> materials;  // .material files; none has a material of another's name
+  std::vector<std::string> materials;  // .material files; material names are unique across them
 
-  // What the model's parts of a name look like, where it is not as the model says.
+  // Overrides the material of parts of the model.
   struct Part {
     std::string name;      // of one or several parts of the model
-    std::string material;  // of one of the materials; empty for none
+    std::string material;  // name of a material; empty for none
   };
-  std::vector<Part> parts;  // each name once
+  std::vector<Part> parts;  // names are unique
 
-  // A place that moves with a joint.
+  // An eye position that moves with a joint.
   struct Eye {
     std::string name;                // "left"; unique, not empty
     std::string joint;               // of the model
@@ -35,19 +35,18 @@ struct Character {
 
   std::string morphs;  // morph targets of the model, a float EXR; empty for none
 
-  // A morph target under the name and with the weight that it has where no motion of the face is
-  // given.
+  // A morph target with a display name, and its weight while no face motion is given.
   struct Expression {
     std::string name;     // unique, not empty
-    std::string target;   // in `morphs`; empty: the one called as the expression
-    float weight = 0.0f;  // +-kMostWeight
+    std::string target;   // in `morphs`; empty: the one with the expression's name
+    float weight = 0.0f;  // +-kMaxWeight
   };
-  std::vector<Expression> expressions;  // none: all targets, at rest
+  std::vector<Expression> expressions;  // empty: all targets, at rest
 
-  std::string role_map;  // what joints are in a body (formats/role_map); empty: found by names
+  std::string role_map;  // joint roles (formats/role_map); empty: found by joint names
 };
 
-// Whether what the comments above promise holds, as far as it can be told without the files. Code
+// Checks everything documented above that can be checked without reading the files. Code
 // character-value.
 Status check(const Character& character);
 

@@ -49,10 +49,9 @@ Status check(const Clip& clip) {
   if (Status status = check(clip.skeleton); !status) return status;
   if (clip.positions.size() != clip.orientations.size() ||
       clip.positions.size() % clip.skeleton.names.size() != 0) {
-    return Error(
-        "clip-shape",
-        fmt::format("{} positions and {} orientations do not make whole frames of {} joints",
-                    clip.positions.size(), clip.orientations.size(), clip.joint_count()));
+    return Error("clip-shape",
+                 fmt::format("{} positions and {} orientations are not whole frames of {} joints",
+                             clip.positions.size(), clip.orientations.size(), clip.joint_count()));
   }
   if (!std::isfinite(clip.rate) || clip.rate <= 0) {
     return Error("clip-rate",

@@ -10,13 +10,14 @@
 namespace krok {
 
 // A motion: the joint_to_world transforms of a skeleton's joints at evenly spaced times, in Krok's
-// frame (metres, +Y up). Frame i is at time i / rate seconds; n frames last (n - 1) / rate.
+// coordinate frame (metres, +Y up). Frame i is at time i / rate seconds; n frames last (n - 1) /
+// rate.
 //
-// Positions and orientations are global (to the world, not to the parent) and stand frame by frame,
-// shape [frames x joints]. Orientations are unit quaternions of either sign.
+// Positions and orientations are in world space (not relative to the parent), stored frame by
+// frame, shape [frames x joints]. Orientations are unit quaternions of either sign.
 struct Clip {
   Skeleton skeleton;
-  double rate = 30.0;  // frames a second, > 0
+  double rate = 30.0;  // frames per second, > 0
   std::vector<Vec3f> positions;
   std::vector<Quatf> orientations;
   Provenance provenance;
@@ -39,14 +40,14 @@ struct Clip {
   std::span<const Quatf> frame_orientations(int frame) const;
   std::span<Quatf> frame_orientations(int frame);
 
-  // One frame in doubles, orientations normalised; `joint_to_world` has [joints] elements.
+  // One frame in double precision, orientations normalised; `joint_to_world` has [joints] elements.
   void get_pose(int frame, std::span<Transform> joint_to_world) const;
   void set_pose(int frame, std::span<const Transform> joint_to_world);
 };
 
-// Whether what the comments above promise holds: check(skeleton), equal lengths, a whole number of
-// frames, a positive finite rate, finite values, unit orientations (within 1e-3). A clip may have
-// no frames. Codes: those of check(Skeleton), clip-shape, clip-rate, clip-value.
+// Checks everything documented above: check(skeleton), equal lengths, a whole number of frames, a
+// positive finite rate, finite values, unit orientations (within 1e-3). A clip may have no frames.
+// Codes: those of check(Skeleton), clip-shape, clip-rate, clip-value.
 Status check(const Clip& clip);
 
 }  // namespace krok

@@ -14,7 +14,7 @@ std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// Both formats write numbers with the high byte first.
+// Both formats are big-endian.
 std::uint32_t number_at(std::string_view text, std::size_t at, int bytes) {
   std::uint32_t number = 0;
   for (int i = 0; i < bytes; ++i) {
@@ -24,8 +24,8 @@ std::uint32_t number_at(std::string_view text, std::size_t at, int bytes) {
 }
 
 Error damaged(std::string_view kind, std::string_view what) {
-  return Error("picture-damaged", fmt::format("the {} picture {}", kind, what),
-               "it is damaged or was cut short; save it again");
+  return Error("picture-damaged", fmt::format("the {} image {}", kind, what),
+               "the file is damaged or truncated; save it again");
 }
 
 Result<ImageInfo> sized(ImageKind kind, std::uint32_t width, std::uint32_t height) {
@@ -33,8 +33,8 @@ Result<ImageInfo> sized(ImageKind kind, std::uint32_t width, std::uint32_t heigh
   if (width >= 1 && width <= most && height >= 1 && height <= most) {
     return ImageInfo{kind, static_cast<int>(width), static_cast<int>(height)};
   }
-  return Error("picture-size", fmt::format("the picture says that it has {} x {} pixels, expected "
-                                           "1 to {} a side",
+  return Error("picture-size", fmt::format("the image size is {} x {} pixels, expected 1 to {} "
+                                           "per side",
                                            width, height, most));
 }
 
@@ -50,7 +50,7 @@ Result<ImageInfo> png_facts(std::string_view text) {
     if (size > text.size() - at - kFrame) break;
     const bool first = at == kPngStart.size();
     if (first != (type == "IHDR") || (first && size != kHeader)) {
-      return damaged("PNG", "does not begin with a header");
+      return damaged("PNG", "does not start with a header");
     }
     has_pixels = has_pixels || type == "IDAT";
     if (type == "IEND" && has_pixels) {
@@ -59,10 +59,11 @@ Result<ImageInfo> png_facts(std::string_view text) {
     }
     at += kFrame + size;
   }
-  return damaged("PNG", "has no end");
+  return damaged("PNG", "has no end marker");
 }
 
-// Whether a marker begins a frame, whose header has the size: SOF0 .. SOF15 but DHT, JPG and DAC.
+// Whether a marker starts a frame, whose header has the size: SOF0 .. SOF15 except DHT, JPG and
+// DAC.
 bool begins_frame(std::uint32_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
@@ -92,7 +93,7 @@ Result<ImageInfo> jpeg_facts(std::string_view text) {
     if (text.find("\xFF\xD9", at) == std::string_view::npos) break;
     return *facts;
   }
-  return damaged("JPEG", "has no end");
+  return damaged("JPEG", "has no end marker");
 }
 
 }  // namespace
@@ -109,10 +110,9 @@ Result<ImageInfo> image_info(std::span<const std::byte> bytes) {
   const std::string_view text = text_of(bytes);
   if (text.starts_with(kPngStart)) return png_facts(text);
   if (text.starts_with("\xFF\xD8\xFF")) return jpeg_facts(text);
-  return Error(
-      "picture-kind",
-      bytes.empty() ? "the picture is an empty file" : "the picture is neither PNG nor JPEG",
-      "save it as PNG or JPEG, the kinds that glTF takes");
+  return Error("picture-kind",
+               bytes.empty() ? "the image file is empty" : "the image is neither PNG nor JPEG",
+               "save it as PNG or JPEG, the formats that glTF supports");
 }
 
 }  // namespace krok

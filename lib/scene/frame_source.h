@@ -8,22 +8,22 @@
 
 namespace krok {
 
-// A motion whose frames are made when they are asked for, so that a long one need not be in memory
-// as a whole. What Clip says of skeleton, rate, positions and orientations holds here too.
+// A motion whose frames are produced on demand, so that a long one need not fit in memory.
+// Skeleton, rate, positions and orientations are as in Clip.
 struct FrameSource {
   Skeleton skeleton;
   double rate = 30.0;
   int frame_count = 0;
 
-  // Fills in the frames [first, first + count), which exist; both spans have the shape
-  // [count x joints]. Called from several threads at once. The values are as check(Clip) wants
-  // them; an Error where a frame cannot be made.
+  // Reads the frames [first, first + count), which must exist; both spans have the shape
+  // [count x joints]. Called from several threads at once. Values pass check(Clip); an Error if a
+  // frame cannot be produced.
   std::function<Status(int first, int count, std::span<Vec3f> positions,
                        std::span<Quatf> orientations)>
       read;
 
-  // May be empty. Tells that the frames before `frame` were read, so that memory may be given back;
-  // called with increasing numbers in each pass over the frames, by one thread at a time.
+  // Optional. Called when the frames before `frame` have been read, so that memory can be released;
+  // with increasing numbers in each pass over the frames, by one thread at a time.
   std::function<void(int frame)> release;
 
   int joint_count() const { return skeleton.joint_count(); }
@@ -31,10 +31,10 @@ struct FrameSource {
   double duration() const { return frame_count < 2 ? 0.0 : (frame_count - 1) / rate; }
 };
 
-// All of it, read on `jobs` threads (as in parallel_for), without provenance.
+// Loads all frames on `jobs` threads (as in parallel_for), without provenance.
 Result<Clip> load(const FrameSource& source, int jobs);
 
-// The frames of `clip`, which must outlive the source.
+// A source of the frames of `clip`, which must outlive it.
 FrameSource frames_of(const Clip& clip);
 
 }  // namespace krok

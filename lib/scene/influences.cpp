@@ -15,7 +15,7 @@ struct Influence {
 
 using Influences = std::array<Influence, Model::kMaxInfluences>;
 
-// Appends to the first `count` influences, or adds to the one that names the same joint.
+// Appends to the first `count` influences, or adds the weight to the one with the same joint.
 int merge(Influences& influences, int count, std::uint16_t joint, double weight) {
   if (!(weight > 0) || !std::isfinite(weight)) return count;
   for (int k = 0; k < count; ++k) {
@@ -28,7 +28,7 @@ int merge(Influences& influences, int count, std::uint16_t joint, double weight)
   return count + 1;
 }
 
-// Insertion sort: there are eight at most.
+// Insertion sort: there are at most eight.
 void sort_falling(Influences& influences, int count) {
   const auto before = [](const Influence& a, const Influence& b) {
     return a.weight != b.weight ? a.weight > b.weight : a.joint < b.joint;

@@ -4,11 +4,11 @@
 
 namespace krok {
 
-// Brings the influences of every vertex into the form that Model promises and that viewers insist
-// on: no joint twice (their weights are added), no negative weight, weights in falling order (equal
-// ones by joint), unused places with weight 0 and joint 0, and a sum of 1 to within the rounding of
-// floats. A vertex without any positive weight is bound to joint 0. Idempotent up to that rounding.
-// The spans that Model describes must have their promised lengths.
+// Normalises the influences of every vertex to the form that Model documents and viewers require:
+// no joint twice (weights are added), no negative weights, weights in decreasing order (ties by
+// joint), unused influences with weight 0 and joint 0, and a sum of 1 up to float rounding. A
+// vertex without any positive weight is bound to joint 0. Idempotent up to that rounding. The
+// arrays must have the lengths that Model documents.
 void normalize_influences(Model& model);
 
 }  // namespace krok

@@ -12,14 +12,14 @@ namespace krok {
 
 namespace {
 
-// The first factor that is out of its range, or the text "".
+// A message for the first factor out of its range, or "".
 std::string fault_of(const Material& material) {
   const auto outside = [](float value) { return !(value >= 0.0f && value <= 1.0f); };
   const auto any = [&](const auto& values) {
     return std::any_of(values.data(), values.data() + values.size(), outside);
   };
   const auto out_of_range = [](const char* what) {
-    return fmt::format("its {} is not from 0 to 1", what);
+    return fmt::format("the {} is not in the range 0 to 1", what);
   };
   if (any(material.base_color)) return out_of_range("base colour");
   if (outside(material.metallic)) return out_of_range("metallic factor");
@@ -28,7 +28,7 @@ std::string fault_of(const Material& material) {
   if (any(material.emissive)) return out_of_range("emissive colour");
   if (outside(material.alpha_cutoff)) return out_of_range("alpha cutoff");
   if (!(std::abs(material.normal_scale) <= kMaxNormalScale)) {
-    return fmt::format("its normal scale is not within {}", kMaxNormalScale);
+    return fmt::format("the normal scale is not within +-{}", kMaxNormalScale);
   }
   return {};
 }
@@ -54,7 +54,7 @@ Status check(std::span<const Material> materials) {
     }
     if (!seen.insert(material.name).second) {
       return Error("material-name",
-                   fmt::format("two materials are called '{}'", shown(material.name)));
+                   fmt::format("two materials are named '{}'", shown(material.name)));
     }
     std::string fault = fault_of(material);
     if (!std::ranges::all_of(material.shaders, is_utf8)) fault = "a shader's name is not UTF-8";

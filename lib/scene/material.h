@@ -12,28 +12,28 @@
 
 namespace krok {
 
-// A picture on a surface, at the model's texture coordinates: u to the right, v down, the picture
-// from 0 to 1.
+// An image mapped to a surface by the model's texture coordinates: u to the right, v down, 0 to 1
+// over the image.
 struct Texture {
-  enum class Wrap : unsigned char { repeat, clamp, mirror };  // beyond 0 .. 1
+  enum class Wrap : unsigned char { repeat, clamp, mirror };  // outside 0 .. 1
 
-  std::shared_ptr<const EncodedImage> image;  // null: no texture. Several textures may share one
+  std::shared_ptr<const EncodedImage> image;  // null: no texture. Textures may share an image
   Wrap wrap_u = Wrap::repeat;
   Wrap wrap_v = Wrap::repeat;
-  bool smooth = true;  // false: from near each pixel is a square
+  bool smooth = true;  // false: nearest-neighbour magnification
 
   explicit operator bool() const { return image != nullptr; }
-  friend bool operator==(const Texture&, const Texture&) = default;  // the very same picture
+  friend bool operator==(const Texture&, const Texture&) = default;  // same image object
 };
 
-// How a surface looks: glTF's metallic-roughness model. Factors are linear and multiply what their
-// texture has at a place, or stand alone where there is none. As constructed: light grey and matt.
-// Source: Khronos Group, glTF 2.0 Specification (ISO/IEC 12113), section 3.9.
+// Material properties: glTF's metallic-roughness model. Factors are linear and multiply the
+// texture's value, or are used alone without a texture. Defaults: light grey and matt. Source:
+// Khronos Group, glTF 2.0 Specification (ISO/IEC 12113), section 3.9.
 struct Material {
   enum class Alpha : unsigned char {
-    opaque,  // alpha does not count
+    opaque,  // alpha is ignored
     mask,    // drawn where alpha >= alpha_cutoff
-    blend    // over what is behind
+    blend    // blended over what is behind
   };
 
   std::string name;  // is_name(), unique among those of one file
@@ -43,34 +43,34 @@ struct Material {
   float metallic = 0.0f;                     // 0 .. 1
   float roughness = 0.8f;                    // 0 .. 1
   Texture metallic_roughness_texture;        // roughness in green, metallic in blue
-  Texture normal_texture;                    // in the frame of normal and tangent; 0.5 is 0
-  float normal_scale = 1.0f;                 // of its x and y, +-kMostNormalScale
-  Texture occlusion_texture;                 // in red: how much light from around gets there
+  Texture normal_texture;                    // tangent space; 0.5 is 0
+  float normal_scale = 1.0f;                 // of its x and y, +-kMaxNormalScale
+  Texture occlusion_texture;                 // ambient occlusion in red, 1 is unoccluded
   float occlusion_strength = 1.0f;           // 0 .. 1
   Vec3f emissive = Vec3f::Zero();            // 0 .. 1
   Texture emissive_texture;                  // sRGB
 
   Alpha alpha = Alpha::opaque;
   float alpha_cutoff = 0.5f;  // 0 .. 1
-  bool double_sided = false;  // backs of triangles are drawn too
-  bool unlit = false;         // shows base_color whatever the light
+  bool double_sided = false;  // back faces are drawn too
+  bool unlit = false;         // shows base_color, ignoring lights
 
-  // Programs that other software draws it with, by name; kept and not used.
+  // Names of shaders used by other software; kept but not used.
   std::vector<std::string> shaders;
 };
 
 inline constexpr float kMaxNormalScale = 1000.0f;
 
-// All its textures, those that are none too: base colour, metallic-roughness, normal, occlusion,
+// All its textures, including empty ones: base colour, metallic-roughness, normal, occlusion,
 // emissive.
 std::array<Texture*, 5> textures_of(Material& material);
 std::array<const Texture*, 5> textures_of(const Material& material);
 
-// Whether what the comments above promise holds of the materials of one file. Codes:
-// material-name, material-value.
+// Checks everything documented above for the materials of one file. Codes: material-name,
+// material-value.
 Status check(std::span<const Material> materials);
 
-// The one with this name, or nullptr.
+// The material with this name, or nullptr.
 const Material* find_material(std::span<const Material> materials, std::string_view name);
 
 }  // namespace krok

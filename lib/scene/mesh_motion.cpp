@@ -9,8 +9,8 @@ namespace krok {
 
 namespace {
 
-// Who takes is one thread; what it takes is made by about as much work, so that with more threads
-// than these the others would wait.
+// Only one thread at a time takes, and taking costs about as much as making: with more threads than
+// this, the others would wait.
 constexpr int kMaxThreads = 8;
 
 std::size_t frame_bytes(const ShapeRange& range) {
@@ -18,8 +18,8 @@ std::size_t frame_bytes(const ShapeRange& range) {
          (sizeof(Vec3f) * (range.normals ? 2 : 1) + (range.tangents ? sizeof(Vec4f) : 0));
 }
 
-// How many frames are handed over in one go: threads that wait for each other after little work
-// wait longer than they work, and files are written best in large pieces.
+// Frames per call of `take`: threads that synchronise after little work mostly wait, and files are
+// written best in large pieces.
 int frames_together(const ShapeRange& range) {
   constexpr std::size_t kBytes = std::size_t{1} << 20;
   constexpr std::size_t kMaxFrames = 16;
@@ -27,7 +27,7 @@ int frames_together(const ShapeRange& range) {
       kBytes / std::max<std::size_t>(frame_bytes(range), 1), 1, kMaxFrames));
 }
 
-// Frames of many vertices are held by few threads.
+// Fewer threads for frames with many vertices, to limit memory.
 int threads_for(const ShapeRange& range, int jobs) {
   constexpr std::size_t kBytes = std::size_t{256} << 20;
   const std::size_t each = 2 * std::max<std::size_t>(frame_bytes(range), 1);
@@ -35,7 +35,7 @@ int threads_for(const ShapeRange& range, int jobs) {
   return std::min(thread_count(jobs), fit);
 }
 
-// What belongs to a slot of make_in_order().
+// The state of a slot of make_in_order().
 struct Slot {
   ShapeSource source;
   std::vector<ShapeRoom> rooms;

@@ -11,7 +11,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// For each vertex the first in order of those at its place. NaN is at no place but its own.
+// For each vertex the first one at the same position. NaN only matches itself.
 std::vector<std::uint32_t> welded(std::span<const Vec3> positions) {
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
     const Vec3 &p = positions[a], &q = positions[b];
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> welded(std::span<const Vec3> positions) {
 
 bool is_closed(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
   const auto place = welded(positions);
-  // Each edge, the lower end first, and 1 or -1 for its direction.
+  // Each edge, lower index first, with 1 or -1 for its direction.
   std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, int>> edges;
   for (const Triangle& triangle : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {

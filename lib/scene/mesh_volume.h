@@ -8,20 +8,20 @@
 
 namespace krok {
 
-// The volume within a surface and its area.
+// The volume enclosed by a surface, and its area.
 struct MeshVolume {
-  double volume = 0;    // cubic metres; less than 0 where triangles are clockwise seen from outside
+  double volume = 0;    // cubic metres; negative if triangles are clockwise seen from outside
   double area = 0;      // square metres
-  bool closed = false;  // without it `volume` depends on where the origin is, and means nothing
+  bool closed = false;  // if false, `volume` is meaningless
 };
 
-// By the divergence theorem: the sum over the triangles of a . (b x c) / 6, with points taken from
-// the middle of their box, so that a mesh far from the origin loses no digits. Closed means that
-// each edge is passed as often in one direction as in the other, where vertices at exactly the same
-// place count as one (files double those at seams). Parts that overlap count twice, a part turned
-// inside out counts less than 0. `triangles` are places in `positions`. No triangles: all 0, not
-// closed; NaN in positions that triangles name: NaN. Source: Zhang, Chen, Efficient Feature
-// Extraction for 2D/3D Objects in Mesh Representation (ICIP 2001).
+// By the divergence theorem: the sum over the triangles of a . (b x c) / 6, relative to the centre
+// of the bounding box, so that a mesh far from the origin loses no precision. Closed means that
+// each edge is used as often in one direction as in the other, where vertices at exactly the same
+// position are merged (files duplicate them at seams). Overlapping parts count twice, inverted
+// parts negatively. `triangles` are indices into `positions`. No triangles: all 0, not closed; NaN
+// in positions that are used: NaN. Source: Zhang, Chen, Efficient Feature Extraction for 2D/3D
+// Objects in Mesh Representation (ICIP 2001).
 MeshVolume mesh_volume(std::span<const Vec3> positions,
                        std::span<const std::array<std::uint32_t, 3>> triangles);
 

@@ -21,14 +21,14 @@ Status check_influences(const Model& model) {
       }
       if (model.influence_joints[k] >= model.skeleton.names.size()) {
         return Error("model-index",
-                     fmt::format("vertex {} is bound to joint {}, of {}", v,
-                                 model.influence_joints[k], model.skeleton.joint_count()));
+                     fmt::format("vertex {} refers to joint {} of {}", v, model.influence_joints[k],
+                                 model.skeleton.joint_count()));
       }
       if (weight > previous || (weight == 0 && model.influence_joints[k] != 0)) {
         return Error(
             "model-weight",
-            fmt::format("the influences of vertex {} are not in falling order, or an unused "
-                        "one names a joint",
+            fmt::format("the influences of vertex {} are not in decreasing order, or an unused "
+                        "one has a joint",
                         v));
       }
       previous = weight;
@@ -46,7 +46,7 @@ Status check_triangles(const Model& model) {
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     for (const std::uint32_t index : model.triangles[t]) {
       if (index >= model.positions.size()) {
-        return Error("model-index", fmt::format("triangle {} names vertex {}, of {}", t, index,
+        return Error("model-index", fmt::format("triangle {} refers to vertex {} of {}", t, index,
                                                 model.positions.size()));
       }
     }
@@ -54,7 +54,7 @@ Status check_triangles(const Model& model) {
   std::uint64_t next = 0;
   for (const Model::Part& part : model.parts) {
     if (part.first_triangle != next) {
-      return Error("model-shape", fmt::format("part {} begins at triangle {}, expected {}",
+      return Error("model-shape", fmt::format("part {} starts at triangle {}, expected {}",
                                               part.name, part.first_triangle, next));
     }
     next += part.triangle_count;
@@ -88,7 +88,7 @@ Status check_directions(const Model& model) {
     const Vec4f& tangent = model.tangents[v];
     if (is_unit(tangent.head<3>()) && std::abs(tangent.w()) == 1.0f) continue;
     return Error("model-value",
-                 fmt::format("the tangent of vertex {} is no unit vector with 1 or -1", v));
+                 fmt::format("the tangent of vertex {} is not a unit vector with w of 1 or -1", v));
   }
   return {};
 }
@@ -105,7 +105,7 @@ Status check(const Model& model) {
                  "normals, texture coordinates or tangents do not match the vertices");
   }
   if (model.influences_per_vertex < 1 || model.influences_per_vertex > Model::kMaxInfluences) {
-    return Error("model-shape", fmt::format("{} influences a vertex, expected 1 to {}",
+    return Error("model-shape", fmt::format("{} influences per vertex, expected 1 to {}",
                                             model.influences_per_vertex, Model::kMaxInfluences));
   }
   const std::size_t influences = count * static_cast<std::size_t>(model.influences_per_vertex);

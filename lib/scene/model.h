@@ -11,20 +11,20 @@
 
 namespace krok {
 
-// A triangle mesh bound to a skeleton. Vertices are given in the model's reference pose, which is
-// the skeleton's: with C_j the reference joint_to_world of joint j and M_j the animated one, linear
-// blend skinning moves a vertex to sum_j w_j M_j C_j^-1 v.
+// A triangle mesh bound to a skeleton. Vertices are in the model's reference pose, which is the
+// skeleton's: with C_j the reference joint_to_world of joint j and M_j the animated one, linear
+// blend skinning moves a vertex v to sum_j w_j M_j C_j^-1 v.
 //
-// Per-vertex arrays have [vertices] elements, or none where the file has no such data (normals,
+// Per-vertex arrays have [vertices] elements, or none if the file has no such data (normals,
 // texture_coordinates, tangents). Influences have [vertices x influences_per_vertex] elements,
-// vertex by vertex, weights in falling order, unused ones with weight 0 and joint 0.
+// vertex by vertex, weights in decreasing order, unused ones with weight 0 and joint 0.
 struct Model {
   static constexpr int kMaxInfluences = 8;
 
   Skeleton skeleton;
 
   std::vector<Vec3f> positions;            // metres
-  std::vector<Vec3f> normals;              // unit, pointing out
+  std::vector<Vec3f> normals;              // unit, pointing outwards
   std::vector<Vec2f> texture_coordinates;  // u to the right, v down (glTF's)
   std::vector<Vec4f> tangents;             // unit xyz; w is +1 or -1, glTF's handedness
 
@@ -35,7 +35,7 @@ struct Model {
   // Counter-clockwise seen from outside.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
-  // A run of triangles with one material. Parts cover all triangles in order; a model without
+  // A range of triangles with one material. Parts cover all triangles in order; a model without
   // materials has one part with an empty material.
   struct Part {
     std::string name;
@@ -50,8 +50,8 @@ struct Model {
   int vertex_count() const { return static_cast<int>(positions.size()); }
 };
 
-// Whether what the comments above promise holds (weights in falling order with a sum of 1 within
-// 1e-4, indices in range, finite values, normals and tangents of length 1 within 1e-3, parts cover
+// Checks everything documented above (weights in decreasing order with a sum of 1 within 1e-4,
+// indices in range, finite values, normals and tangents of length 1 within 1e-3, parts that cover
 // the triangles). Codes: those of check(Skeleton), model-shape, model-index, model-weight,
 // model-value.
 Status check(const Model& model);

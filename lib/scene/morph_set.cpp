@@ -49,13 +49,13 @@ Status check(const MorphSet& morphs) {
       return Error("morph-name", "a target's name is empty or not UTF-8");
     }
     if (!seen.insert(name).second) {
-      return Error("morph-name", fmt::format("two targets are called {}", shown(name)));
+      return Error("morph-name", fmt::format("two targets are named {}", shown(name)));
     }
   }
   const auto finite = [](const Vec3f& value) { return value.allFinite(); };
   if (!std::all_of(morphs.positions.begin(), morphs.positions.end(), finite) ||
       !std::all_of(morphs.normals.begin(), morphs.normals.end(), finite)) {
-    return Error("morph-value", "a target has a number that is not finite");
+    return Error("morph-value", "a target has a value that is not finite");
   }
   return {};
 }

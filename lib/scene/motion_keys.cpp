@@ -9,7 +9,7 @@
 namespace krok {
 namespace {
 
-constexpr double kBeyond = 1e-3;  // seconds: times are rounded when they are written
+constexpr double kBeyond = 1e-3;  // seconds; times are rounded when written
 constexpr double kApart = 1e-6;   // seconds
 
 bool within(double time, double duration) {
@@ -38,8 +38,8 @@ Status check(const MotionKeys& keys, const Skeleton& skeleton, double duration) 
   for (std::size_t i = 0; i < keys.contacts.size(); ++i) {
     const Contact& contact = keys.contacts[i];
     if (contact.joint < 0 || contact.joint >= skeleton.joint_count()) {
-      return Error("keys-joint", fmt::format("contact {}: joint {} of {}", i, contact.joint,
-                                             skeleton.joint_count()));
+      return Error("keys-joint", fmt::format("contact {} refers to joint {} of {}", i,
+                                             contact.joint, skeleton.joint_count()));
     }
     if (!within(contact.start, duration) || !within(contact.end, duration) ||
         contact.end < contact.start) {
@@ -47,7 +47,7 @@ Status check(const MotionKeys& keys, const Skeleton& skeleton, double duration) 
                                             contact.start, contact.end, duration));
     }
     if (!contact.place.allFinite()) {
-      return Error("keys-place", fmt::format("contact {}: its place is not finite", i));
+      return Error("keys-place", fmt::format("the position of contact {} is not finite", i));
     }
   }
   for (std::size_t i = 0; i < keys.keytimes.size(); ++i) {

@@ -6,8 +6,8 @@
 
 namespace krok {
 
-// Where data came from and what was done to it. Written into Krok's own files, so it holds nothing
-// that differs between two runs on the same input: base names only, no times of day.
+// The origin of data and what was done to it. Written into Krok's files, so it contains nothing
+// that differs between two runs on the same input: base names only, no timestamps.
 struct Provenance {
   std::string tool;     // "krok-import"
   std::string version;  // "0.1.0"
@@ -18,7 +18,7 @@ struct Provenance {
   std::vector<Source> sources;
   std::vector<std::pair<std::string, std::string>> options;  // as given, in a fixed order
   std::vector<std::string> conversions;  // "unit: centimetres to metres (detected, certain)"
-  std::vector<std::string> warnings;     // the messages, with their codes
+  std::vector<std::string> warnings;     // messages with their codes
 };
 
 }  // namespace krok

@@ -64,9 +64,10 @@ Status check(const Skeleton& skeleton) {
                                i == 0 ? "none" : "an earlier joint"));
     }
     if (parent >= 0 && skeleton.end_sites[static_cast<std::size_t>(parent)] != 0) {
-      return Error("skeleton-parent",
-                   fmt::format("joint {} hangs on {}, an end site, which has no children", name,
-                               skeleton.names[static_cast<std::size_t>(parent)]));
+      return Error(
+          "skeleton-parent",
+          fmt::format("the parent of joint {} is {}, an end site, which must not have children",
+                      name, skeleton.names[static_cast<std::size_t>(parent)]));
     }
     const Transform& transform = skeleton.reference[i];
     if (!transform.position.allFinite() || !transform.orientation.coeffs().allFinite() ||
@@ -124,7 +125,7 @@ std::string difference_in_structure(const Skeleton& a, const Skeleton& b) {
   }
   if (a.joint_count() != b.joint_count()) {
     const Skeleton& longer = a.joint_count() > b.joint_count() ? a : b;
-    return fmt::format("{} joints in the first, {} in the second (the first one more: {})",
+    return fmt::format("{} joints in the first, {} in the second (first extra joint: {})",
                        a.joint_count(), b.joint_count(),
                        longer.names[static_cast<std::size_t>(common)]);
   }

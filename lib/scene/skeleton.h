@@ -11,17 +11,17 @@
 
 namespace krok {
 
-// A tree of joints with a reference pose, in Krok's frame: metres, right-handed, +Y up, the figure
-// facing +Z (so its left is +X).
+// A tree of joints with a reference pose, in Krok's coordinate frame: metres, right-handed, +Y up,
+// the character facing +Z (so its left is +X).
 //
-// A struct of arrays, all of the same length joint_count(). Parents stand before their children;
-// exactly one joint, the first, has no parent.
+// A struct of arrays, all of length joint_count(). Parents come before their children; exactly one
+// joint, the first, has no parent.
 struct Skeleton {
   static constexpr int kNoParent = -1;
 
   std::vector<std::string> names;       // unique, not empty, UTF-8
   std::vector<int> parents;             // index of the parent, kNoParent for the root
-  std::vector<std::uint8_t> end_sites;  // 1: a leaf that only marks where the last bone ends
+  std::vector<std::uint8_t> end_sites;  // 1: a leaf that only marks the end of the last bone
   std::vector<Transform> reference;     // joint_to_world in the reference pose
 
   int joint_count() const { return static_cast<int>(names.size()); }
@@ -40,10 +40,9 @@ struct Skeleton {
   std::vector<std::vector<int>> children() const;
 };
 
-// Whether everything that the comments above promise holds: equal lengths, unique non-empty names,
-// parents before children, one root, end sites without children, finite positions, unit
-// orientations (within 1e-4). Codes: skeleton-shape, skeleton-name, skeleton-parent,
-// skeleton-value.
+// Checks everything documented above: equal lengths, unique non-empty names, parents before
+// children, one root, end sites without children, finite positions, unit orientations (within
+// 1e-4). Codes: skeleton-shape, skeleton-name, skeleton-parent, skeleton-value.
 Status check(const Skeleton& skeleton);
 
 // joint_to_world of all joints from joint_to_parent of all joints. Both spans have [joints]
@@ -55,11 +54,11 @@ void local_to_world(std::span<const int> parents, std::span<const Transform> joi
 void world_to_local(std::span<const int> parents, std::span<const Transform> joint_to_world,
                     std::span<Transform> joint_to_parent);
 
-// Largest extent (metres) of the reference pose over the three axes; 0 for one joint.
+// The largest extent (metres) of the reference pose along the three axes; 0 for one joint.
 double reference_extent(const Skeleton& skeleton);
 
-// What differs between two skeletons in names, order or parents, in words for people; empty if
-// nothing does. Reference poses are not compared.
+// The differences of two skeletons in names, order or parents, worded for a message; empty if there
+// are none. Reference poses are not compared.
 std::string difference_in_structure(const Skeleton& a, const Skeleton& b);
 
 }  // namespace krok

@@ -7,7 +7,7 @@ namespace krok {
 
 namespace {
 
-// What of `direction` lies in the plane of a unit normal, of length 1; zero where nothing does.
+// The component of `direction` in the plane of a unit normal, normalised; zero if it vanishes.
 Vec3 in_plane(const Vec3& direction, const Vec3& normal) {
   const Vec3 part = direction - normal.dot(direction) * normal;
   const double length = part.norm();
@@ -45,7 +45,8 @@ std::vector<Vec4f> make_tangents(std::span<const Vec3f> positions, std::span<con
       const double weight =
           angle_between(corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
       sums[vertex] += weight * in_plane(along_u, normal);
-      // Seen from outside, a picture that is not mirrored has v, which points down, clockwise of u.
+      // Seen from outside, in an image that is not mirrored v, which points down, is clockwise of
+      // u.
       sides[vertex] -= weight * side;
     }
   }

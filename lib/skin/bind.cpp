@@ -35,13 +35,13 @@ Diagnostic warning(std::string code, std::string joint, std::string message, std
 
 constexpr double kPlaceTolerance = 1e-3;  // metres
 
-// Of the places that joint `j` takes in its parent's frame, in the reference pose and in all
-// frames, the one nearest to `wanted`.
+// The offset of joint `j` in its parent's frame that is nearest to `wanted`, over the reference
+// pose and all frames.
 Vec3 nearest_place(const Clip& motion, int j, const Vec3& wanted) {
   Vec3 nearest = motion.skeleton.reference_local(j).position;
   const int parent = motion.skeleton.parents[j];
   for (int f = 0; f < motion.frame_count(); ++f) {
-    // Most joints have one place only, which the reference pose shows.
+    // The offsets of most joints are constant: the reference pose suffices.
     if ((nearest - wanted).norm() <= kPlaceTolerance) break;
     const auto positions = motion.frame_positions(f);
     const Quat orientation = motion.frame_orientations(f)[parent].cast<double>().normalized();
@@ -102,7 +102,7 @@ Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
   double largest_length = 0, largest_turn = 0;
   int length_joint = 0, turn_joint = 0;
   for (int j = 0; j < model.joint_count(); ++j) {
-    // Where the root stands does not distort a mesh.
+    // The position of the root does not distort a mesh.
     if (model.parents[j] == Skeleton::kNoParent) continue;
     const Vec3 wanted = model.reference_local(j).position;
     const Vec3 found = nearest_place(motion, j, wanted);
@@ -117,7 +117,7 @@ Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
       turn_joint = j;
     }
   }
-  const std::string hint = "make the model for this motion's skeleton";
+  const std::string hint = "build the model for this motion's skeleton";
   Diagnostics result;
   if (largest_length > kPlaceTolerance) {
     const std::string& name = model.names[length_joint];
@@ -130,8 +130,8 @@ Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
   if (largest_turn > kPlaceTolerance) {
     const std::string& name = model.names[turn_joint];
     result.push_back(warning("skin-reference", name,
-                             fmt::format("the bone to {} points elsewhere in its parent's frame in "
-                                         "the motion than in the model, so the mesh is bent",
+                             fmt::format("the bone to {} points in different directions in the "
+                                         "motion and in the model, so the mesh is bent",
                                          name),
                              hint));
   }

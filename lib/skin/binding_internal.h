@@ -5,7 +5,7 @@
 #include "skin/skin.h"
 #include "skin/skin_job_internal.h"
 
-// What SkinBinding and SkinPose hold.
+// The data of SkinBinding and SkinPose.
 
 namespace krok::skin_detail {
 
@@ -17,7 +17,7 @@ struct Binding {
   SkinMethod method = SkinMethod::linear;
   std::size_t vertex_count = 0;
   std::vector<Transform> joint_to_world;      // in the reference pose
-  std::vector<Transform> reference_to_joint;  // its inverses
+  std::vector<Transform> reference_to_joint;  // inverses of joint_to_world
   std::vector<Block> blocks;
   std::vector<std::uint16_t> joints;
   std::vector<std::uint32_t> pair_indices;  // dual quaternions only

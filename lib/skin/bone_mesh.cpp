@@ -9,13 +9,13 @@ namespace krok {
 
 namespace {
 
-constexpr double kThickness = 0.08;     // half the width of a bone, as a part of its length
-constexpr double kMaxThickness = 0.03;  // as a part of the figure's size
-constexpr double kWaist = 0.2;          // where along its length a bone is thickest
-constexpr double kSmallest = 1e-3;      // the shortest bone shown, as a part of the figure's size
+constexpr double kThickness = 0.08;     // half-width of a bone, relative to its length
+constexpr double kMaxThickness = 0.03;  // relative to the skeleton's extent
+constexpr double kWaist = 0.2;          // position of the thickest point along a bone
+constexpr double kSmallest = 1e-3;      // shortest bone shown, relative to the skeleton's extent
 constexpr double kLoneSize = 0.1;       // metres
 
-// Appends a double pyramid from `base` to `tip`, eight triangles with corners of their own.
+// Appends an octahedron from `base` to `tip`: eight triangles without shared vertices.
 void add_bone(Model& model, int joint, const Vec3& base, const Vec3& tip, double half_width) {
   const Quat turn = shortest_arc(Vec3::UnitY(), tip - base);
   const Vec3 waist = base + kWaist * (tip - base);

@@ -4,10 +4,10 @@
 
 namespace krok {
 
-// A thin mesh that makes a skeleton visible: for each joint and each of its children a slender
-// double pyramid between them that moves with the joint, flat-shaded. Bones shorter than a
-// thousandth of the figure's size are left out. A skeleton without any bone gets a small double
-// pyramid at its first joint. Needs at least one joint.
+// A stick mesh that shows a skeleton: a thin flat-shaded octahedron from each joint to each of its
+// children, rigidly bound to the joint. Bones shorter than a thousandth of the skeleton's extent
+// are left out. A skeleton without any bone gets a small octahedron at its first joint. Requires at
+// least one joint.
 Model bone_mesh(const Skeleton& skeleton);
 
 }  // namespace krok

@@ -23,7 +23,7 @@ KeyShares one_key(std::size_t key) {
   return shares;
 }
 
-// Adds the share that a tangent at key `at` is worth: `share` times its velocity.
+// Adds the weights of a tangent at key `at`: `share` times its velocity.
 void add_velocity(std::span<const double> times, double tension, std::size_t at, double share,
                   std::size_t first, KeyShares& shares) {
   const std::size_t before = at == 0 ? 0 : at - 1;
@@ -48,7 +48,7 @@ KeyShares hermite_shares(std::span<const double> times, double tension, std::siz
   return shares;
 }
 
-// The weighted sum of one vertex of the keys' lists.
+// The weighted sum of one vertex over the keys.
 Vec3 sum_at(const std::vector<Vec3f>& values, std::size_t vertices, const KeyShares& shares,
             std::size_t vertex) {
   Vec3 sum = Vec3::Zero();
@@ -85,7 +85,7 @@ Status check(const KeyFrameMesh& mesh) {
   if (std::ranges::all_of(mesh.positions, finite) && std::ranges::all_of(mesh.normals, finite)) {
     return {};
   }
-  return Error("key-mesh-value", "a key has a number that is not finite");
+  return Error("key-mesh-value", "a key has a value that is not finite");
 }
 
 KeyShares shares_at(std::span<const double> times, ShapeJoin join, double tension, double time) {
@@ -117,7 +117,7 @@ void shape_at(const KeyFrameMesh& mesh, ShapeJoin join, double tension, double t
       const Vec3 sum = sum_at(mesh.normals, vertices, shares, v);
       const double length = sum.norm();
       const Vec3f& first = mesh.normals[static_cast<std::size_t>(shares.keys[0]) * vertices + v];
-      // A key by itself stays as it stands.
+      // A single key is copied exactly.
       out.normals[v] =
           shares.count > 1 && length >= 1e-15 ? Vec3f((sum / length).cast<float>()) : first;
     }

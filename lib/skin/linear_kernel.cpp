@@ -1,6 +1,6 @@
-// Fused arithmetic is part of the result, so targets without it are left out: such a machine takes
-// the static target below, which is the scalar reference. Nothing is compiled that
-// KROK_BEST_VERSION does not choose.
+// FMA affects the results, so targets without it are disabled: such a machine uses the static
+// target below, which is the scalar reference. Only targets that KROK_BEST_VERSION can choose are
+// compiled.
 #include <hwy/detect_targets.h>
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -13,7 +13,7 @@
 
 #include "core/simd.h"
 #include "skin/skin_job_internal.h"
-// Needs both.
+// Requires both.
 #include "skin/skin_lanes.inc"
 
 HWY_BEFORE_NAMESPACE();

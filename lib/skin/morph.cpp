@@ -20,7 +20,8 @@ struct Morphing {
   bool moves;  // whether any weight is not 0
 };
 
-// `mesh` plus the weighted differences of one kind of `target`, of which target(i) gives the whole.
+// `mesh` plus the weighted differences of target positions or normals; target(i) returns the values
+// of target i.
 template <class Target, class Finish>
 void morph_tile(const Morphing& morphing, std::span<const Vec3f> mesh, std::size_t begin,
                 std::size_t end, const Target& target, const Finish& finish) {

@@ -18,7 +18,7 @@ constexpr double kMinRate = 1e-3, kMaxRate = 1e6;
 
 Status check_rate(double rate) {
   if (rate >= kMinRate && rate <= kMaxRate) return {};
-  return Error("morph-rate", fmt::format("{} is no rate from 0.001 to 1000000", rate));
+  return Error("morph-rate", fmt::format("rate {} is not between 0.001 and 1000000", rate));
 }
 
 bool all_finite(const std::vector<double>& numbers) {
@@ -32,15 +32,15 @@ Status check_curve(const MorphCurve& curve, const std::string& name) {
   const std::size_t keys = curve.times.size();
   if (curve.weights.size() != keys ||
       (!curve.velocities.empty() && curve.velocities.size() != keys)) {
-    return fault("have other numbers of times than of values");
+    return fault("have different numbers of times and values");
   }
   if (!all_finite(curve.times) || !all_finite(curve.weights) || !all_finite(curve.velocities)) {
-    return fault("hold a number that is not finite");
+    return fault("contain a value that is not finite");
   }
-  if (keys > 0 && curve.times[0] < 0) return fault("begin before time 0");
+  if (keys > 0 && curve.times[0] < 0) return fault("start before time 0");
   const auto not_later = [](double before, double after) { return !(after > before); };
   if (std::ranges::adjacent_find(curve.times, not_later) != curve.times.end()) {
-    return fault("have times that do not rise");
+    return fault("have times that are not increasing");
   }
   return {};
 }
@@ -92,10 +92,10 @@ double weight_at(const MorphCurve& curve, double time) {
 Result<int> frames_of(const MorphCurves& curves, double rate) {
   if (Status status = check(curves); !status) return status.error();
   if (Status status = check_rate(rate); !status) return status.error();
-  // A last key that a product of floats puts just behind a frame is that frame's.
+  // Tolerates rounding that puts the last key just after a frame.
   const double frames = std::ceil(curves.duration() * rate - 1e-6) + 1;
   if (frames <= kMaxFrames) return static_cast<int>(frames);
-  return Error("morph-too-long", fmt::format("the weights last {} s, which makes {} frames",
+  return Error("morph-too-long", fmt::format("the weights last {} s, which is {} frames: too many",
                                              curves.duration(), frames));
 }
 
@@ -105,9 +105,8 @@ Result<MorphWeights> sample(const MorphCurves& curves, double rate, int frames) 
   if (Status status = check_rate(rate); !status) return status.error();
   const std::size_t targets = curves.names.size();
   if (static_cast<double>(frames) * static_cast<double>(targets) > kMaxWeights) {
-    return Error(
-        "morph-too-long",
-        fmt::format("{} frames of {} targets' weights are out of proportion", frames, targets));
+    return Error("morph-too-long",
+                 fmt::format("{} frames of {} target weights exceed the limit", frames, targets));
   }
   MorphWeights weights;
   weights.rate = rate;

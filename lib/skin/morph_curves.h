@@ -6,43 +6,42 @@
 #include "core/result.h"
 #include "scene/morph_set.h"
 
-// Weights of morph targets through keys at times of their own, a curve a target.
+// Morph weight animation: one keyed curve per target.
 
 namespace krok {
 
-// How a weight gets from one key to the next.
+// Interpolation between keys.
 enum class WeightJoin : unsigned char {
-  linear,    // straight and evenly
-  smooth,    // Hermite with a tension; may go beyond its keys
-  monotone,  // Hermite that never does: PCHIP, see math/hermite.h
+  linear,
+  smooth,    // Hermite with tension; may overshoot
+  monotone,  // Hermite without overshoot: PCHIP, see math/hermite.h
 };
 
 struct MorphCurve {
-  std::vector<double> times;       // [keys] seconds from 0, rising strictly
+  std::vector<double> times;       // [keys] seconds, >= 0, strictly increasing
   std::vector<double> weights;     // [keys]
-  std::vector<double> velocities;  // [keys] a second; none: straight between keys
+  std::vector<double> velocities;  // [keys] per second; empty: linear interpolation
 };
 
-// Fills in the velocities of a curve whose times and weights are right. `tension`, 0 to 1, is that
-// of tension_velocities() and for smooth joins alone.
+// Computes the velocities of a curve with valid times and weights. `tension`, 0 to 1, as in
+// tension_velocities(), is used by smooth joins only.
 void join_keys(MorphCurve& curve, WeightJoin join, double tension = 0);
 
 struct MorphCurves {
-  std::vector<std::string> names;  // [targets], a MorphSet's
-  std::vector<MorphCurve> curves;  // [targets]; one without keys is 0 all the time
+  std::vector<std::string> names;  // [targets] of a MorphSet
+  std::vector<MorphCurve> curves;  // [targets]; a curve without keys is constant 0
 
-  double duration() const;  // the time of the last key of all, in seconds; 0 without keys
+  double duration() const;  // time of the last key of all curves, seconds; 0 without keys
 };
 
-// Whether what the comments above promise holds, and all numbers are finite. Code morph-curve.
+// Checks the requirements above, and that all numbers are finite. Code morph-curve.
 Status check(const MorphCurves& curves);
 
-// Before its first key a curve has the first one's weight, after its last the last one's. At a
-// key's time exactly the key.
+// Constant before the first key and after the last; exact at key times.
 double weight_at(const MorphCurve& curve, double time);
 
-// How many frames at `rate` hold all of the curves: from 0 to the last key, and where that falls
-// between two frames one more. An Error (code morph-too-long) for more than 10 million.
+// The number of frames at `rate` that cover all curves from 0 to the last key, rounded up. An Error
+// (code morph-too-long) for more than 10 million.
 Result<int> frames_of(const MorphCurves& curves, double rate);
 
 // The weights at i / rate for i = 0 .. frames - 1. Codes: those of check(), morph-rate (not within

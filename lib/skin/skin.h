@@ -8,40 +8,39 @@
 #include "scene/model.h"
 #include "skin/palette.h"
 
-// Skinning on the CPU in three steps: a binding is made once for a model, a pose once a frame, and
-// the vertices of the mesh, or of a morphed one, are moved by both. Where memory is taken: in
-// binding and when a SkinPose is made, never in between.
+// CPU skinning in three steps: a SkinBinding once per model, a SkinPose once per frame, and skin()
+// to transform the vertices of the mesh, or of a morphed one. Only the constructors of SkinBinding
+// and SkinPose allocate memory, and skin() with more than one job.
 //
 // With the palette P_i = M_i C_i^-1 (palette.h), position v, normal n and tangent t:
 //
 //   rigid            v' = P_k v with k the strongest joint of the vertex
-//   linear           v' = B v, B = sum_i w_i P_i. Where joints twist the surface loses volume (the
-//                    candy wrapper: between two joints turned against each other by an angle a, a
-//                    radius r becomes r cos(a/2)). Source: Magnenat-Thalmann, Laperriere, Thalmann,
+//   linear           v' = B v, B = sum_i w_i P_i. Loses volume where joints twist (the candy
+//                    wrapper effect: half-way between two joints twisted by an angle a, a radius r
+//                    becomes r cos(a/2)). Source: Magnenat-Thalmann, Laperriere, Thalmann,
 //                    Joint-Dependent Local Deformations (Graphics Interface 1988).
-//   dual quaternion  P_i as the unit dual quaternion q_i, s_i = -1 where q_i and the vertex's first
-//                    joint's lie in different hemispheres (real parts' dot product < 0), else 1:
-//                    v' is v moved by sum_i s_i w_i q_i brought to length 1. A rigid motion, so
-//                    that twists keep the radius. Source: Kavan, Collins, Zara, O'Sullivan,
+//   dual quaternion  P_i as the unit dual quaternion q_i, s_i = -1 if q_i and that of the vertex's
+//                    first joint are in different hemispheres (dot product of the real parts < 0),
+//                    else 1: v' is v transformed by the normalised sum_i s_i w_i q_i. The blend is
+//                    rigid, so twists keep the radius. Source: Kavan, Collins, Zara, O'Sullivan,
 //                    Geometric Skinning with Approximate Dual Quaternion Blending (ACM TOG 27(4),
-//                    2008). Matrices that scale or shear are split (dual_quaternion.h): the
-//                    deformations are blended linearly and come first, the rigid motions second.
+//                    2008). Matrices with scale or shear are split (dual_quaternion.h): the
+//                    deformations are blended linearly and applied before the rigid transforms.
 //
-// Normals and tangents are moved by the same map without its translation and come out with length
-// 1. Where matrices of the palette are not rigid, normals follow the inverse transpose of what is
-// blended, so that they stay perpendicular to the surface as far as weights change slowly, and the
-// handedness of tangents turns round where it mirrors; for rigid palettes they follow B itself, as
-// is usual. One that has no length to speak of (under 1e-15: opposing influences, a zero normal) or
-// is not finite becomes what the vertex's first joint alone makes of it; failing that too, a normal
-// is +Y and a tangent +X.
+// Normals and tangents are transformed by the same map without its translation and normalised. If
+// the palette is not rigid, normals use the inverse transpose of the blended matrix, so that they
+// stay perpendicular to the surface as long as weights change slowly, and a reflection flips the
+// tangents' handedness; for rigid palettes they use B itself, as is usual. A result with length
+// below 1e-15 (opposing influences, a zero normal) or not finite is replaced by the transform of
+// the vertex's first joint alone; if that fails too, a normal is +Y and a tangent +X.
 //
-// The palette of the reference pose changes no bit of positions where it is exactly the identity
-// (rigid and dual quaternion for any weights, linear where the weights' sum in floats is 1).
-// A palette with NaN makes the positions of the vertices that it moves NaN, no others.
+// With palette matrices that are exactly the identity, positions are unchanged to the bit (rigid
+// and dual quaternion for any weights, linear if the float sum of the weights is 1). A palette
+// matrix with NaN makes only the vertices that it influences NaN.
 //
-// Every version gives the same bytes: the reference and the kernels, on AVX2 and AVX-512, and for
-// every number of threads. All do the same fused multiply-adds in the same order; a machine without
-// fused arithmetic runs the reference, which then has it done by the C library.
+// Results are bit-identical for the reference and the kernels, on AVX2 and AVX-512, and for any
+// number of threads: all do the same fused multiply-adds in the same order. A machine without FMA
+// runs the reference, with std::fma from the C library.
 
 namespace krok {
 
@@ -52,16 +51,16 @@ struct Binding;
 struct Posed;
 }  // namespace skin_detail
 
-// What of a model's skin stays the same in all poses, in the form that the kernels read: influences
-// without weight are left out, and for dual quaternions the pairs of a vertex's first joint and
-// another are numbered, so that the hemisphere rule is kept once a pair and not once a vertex.
-// Vertices stay in the model's order: sorted by their joints they would blend faster, but bringing
-// the result back into order costs more than that saves. May be shared between threads.
+// The pose-independent part of a model's skin, in the layout that the kernels read: influences with
+// zero weight are removed, and for dual quaternions each pair of a vertex's first joint and another
+// is numbered, so that the hemisphere test is done per pair and not per vertex. Vertices keep the
+// model's order: sorting them by joint would speed up blending, but restoring the order costs more
+// than that saves. Can be shared between threads.
 class SkinBinding {
  public:
-  // `model` is as check() wants it, but for the sums of weights: where a vertex's do not sum to 1,
-  // linear blend moves it by B as it stands, and the other methods do not notice. A negative weight
-  // or NaN counts as none. A vertex without any weight follows the first joint named for it.
+  // `model` must pass check(), except for the sums of weights: if they are not 1, linear blend uses
+  // B unnormalised, and the other methods do not depend on it. Negative and NaN weights count as 0.
+  // A vertex without weights follows its first listed joint.
   SkinBinding(const Model& model, SkinMethod method);
   SkinBinding(SkinBinding&&) noexcept;
   SkinBinding& operator=(SkinBinding&&) noexcept;
@@ -70,14 +69,14 @@ class SkinBinding {
   SkinMethod method() const;
   std::size_t vertex_count() const;
   std::size_t joint_count() const;
-  const skin_detail::Binding& data() const { return *data_; }  // for the library itself
+  const skin_detail::Binding& data() const { return *data_; }  // internal
 
  private:
   std::unique_ptr<const skin_detail::Binding> data_;
 };
 
-// A pose in the form that a binding's method needs. One for each thread that sets poses; needs the
-// binding no longer than it is set and used with it.
+// A pose in the layout of a binding's method. Use one per thread that sets poses; the binding must
+// be alive while it is set and used.
 class SkinPose {
  public:
   explicit SkinPose(const SkinBinding& binding);  // the reference pose
@@ -85,40 +84,40 @@ class SkinPose {
   SkinPose& operator=(SkinPose&&) noexcept;
   ~SkinPose();
 
-  // Both take [joints] elements and allocate nothing: the pose as a clip has it, or a palette with
-  // whatever matrices, whose last rows count as 0 0 0 1.
+  // Both take [joints] elements and allocate nothing: a pose of a clip, or a palette of arbitrary
+  // matrices; their last row is taken as 0 0 0 1.
   void set(std::span<const Transform> joint_to_world);
   void set_palette(std::span<const SkinMatrix> palette);
 
-  const skin_detail::Posed& data() const { return *data_; }  // for the library itself
+  const skin_detail::Posed& data() const { return *data_; }  // internal
 
  private:
   std::unique_ptr<skin_detail::Posed> data_;
 };
 
-// What is skinned, in the reference pose; nothing is owned. Normals and tangents may be empty.
+// The input surface, in the reference pose; non-owning. Normals and tangents may be empty.
 struct SkinSurface {
   std::span<const Vec3f> positions;  // [vertices], metres
   std::span<const Vec3f> normals;    // [vertices], any length
   std::span<const Vec4f> tangents;   // [vertices], xyz of any length, w = +1 or -1
 };
 
-// The surface of a model; views into it.
+// Views into the surface of a model.
 SkinSurface skin_surface(const Model& model);
 
-// Where the result goes: as many as the input has of each. Must not overlap the input.
+// The output surface: same sizes as the input. Must not overlap the input.
 struct SkinnedSurface {
   std::span<Vec3f> positions;
   std::span<Vec3f> normals;   // unit
   std::span<Vec4f> tangents;  // unit xyz
 };
 
-// Moves the vertices: the kernel for the best instruction set that the machine has, over tiles of
-// vertices on up to `jobs` threads (0: one a core; 1 allocates nothing).
+// Transforms the vertices with the kernel for the best instruction set of the machine, on up to
+// `jobs` threads (0: one per core; 1 allocates nothing).
 void skin(const SkinBinding& binding, const SkinPose& pose, const SkinSurface& in,
           const SkinnedSurface& out, int jobs = 1);
 
-// The same by the scalar reference, which the kernels are held against.
+// As skin(), by the scalar reference that the kernels are tested against.
 void skin_reference(const SkinBinding& binding, const SkinPose& pose, const SkinSurface& in,
                     const SkinnedSurface& out);
 

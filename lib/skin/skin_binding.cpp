@@ -10,7 +10,7 @@ namespace skin_detail {
 
 namespace {
 
-// Of one vertex, those with weight.
+// The influences of one vertex with non-zero weight.
 struct VertexInfluences {
   std::array<std::uint16_t, Model::kMaxInfluences> joints;
   std::array<float, Model::kMaxInfluences> weights;
@@ -42,7 +42,7 @@ VertexInfluences influences_of(const Model& model, std::size_t v, SkinMethod met
   return result;
 }
 
-// Numbers pairs in the order in which they turn up.
+// Numbers pairs in order of first use.
 class PairNumbers {
  public:
   explicit PairNumbers(std::vector<Pair>& pairs) : pairs_(pairs) {}
@@ -78,7 +78,7 @@ std::unique_ptr<const Binding> bind(const Model& model, SkinMethod method) {
     for (std::size_t i = 0; i < size; ++i) {
       const VertexInfluences& vertex = block[i];
       for (std::size_t k = 0; k < most; ++k) {
-        // Places to spare repeat the first joint with weight 0, which changes no bit.
+        // Padding repeats the first joint with weight 0, which does not change the result.
         const std::uint16_t joint = vertex.joints[k < vertex.count ? k : 0];
         binding->joints.push_back(joint);
         binding->weights.push_back(k < vertex.count ? vertex.weights[k] : 0.0f);

@@ -7,8 +7,8 @@
 namespace krok::skin_detail {
 
 void over_tiles(Kernel kernel, const Job& job, std::size_t count, int jobs) {
-  // A few tiles a thread, so that one that is held up leaves work to others; not more, for the
-  // memory's read-ahead begins anew with each. Small meshes are not worth a thread's while.
+  // A few tiles per thread, to balance load; not more, because each tile restarts the hardware
+  // prefetcher. Small meshes run on one thread.
   constexpr std::size_t kMin = 128 * kBlock;
   constexpr std::size_t kTilesAThread = 4;
   const std::size_t threads = static_cast<std::size_t>(thread_count(jobs));
@@ -30,7 +30,7 @@ Run run_from(const Influences& influences, std::size_t begin, std::size_t end) {
 
 namespace {
 
-// Items `begin` to `end` of what has `size` numbers an item, and the last one again up to kBlock.
+// Copies items `begin` to `end` of `size` numbers each to `to`, and repeats the last up to kBlock.
 template <class T>
 const T* padded(const T* from, std::size_t begin, std::size_t end, std::size_t size, T* to) {
   if (from == nullptr) return nullptr;

@@ -15,7 +15,7 @@ float real_dot(const DualQuaternion& a, const DualQuaternion& b) {
   return sum;
 }
 
-// The hemisphere rule: each pair's joint on the side of its first one.
+// Hemisphere test: negates each pair's quaternion if it opposes that of the first joint.
 void fill_pairs(Posed& pose) {
   for (std::size_t i = 0; i < pose.pair_motions.size(); ++i) {
     const skin_detail::Pair pair = pose.binding->pairs[i];

@@ -3,7 +3,7 @@
 
 #include "skin/skin_job_internal.h"
 
-// The references. Each operation stands in the order in which the kernels have it.
+// The scalar references. Operations are in the same order as in the kernels.
 
 namespace krok::skin_detail {
 
@@ -68,7 +68,7 @@ bool normalize(Vector& v) {
   return true;
 }
 
-// The columns of a palette's matrix, and what follows from them.
+// The columns of a palette matrix.
 struct Columns {
   Vector x, y, z, origin;
 
@@ -87,10 +87,10 @@ struct Columns {
   }
   Vector vector(const Vector& v) const { return combined(x, v.x, y, v.y, z, v.z); }
 
-  // +1 or -1: whether it mirrors.
+  // +1, or -1 for a reflection.
   float handedness() const { return std::copysign(1.0f, dot(x, cross(y, z))); }
 
-  // The inverse transpose times a positive factor: the cofactors and the determinant's sign.
+  // The inverse transpose times a positive factor: cofactors times the sign of the determinant.
   Vector normal(const Vector& n) const {
     const Vector c = combined(cross(y, z), n.x, cross(z, x), n.y, cross(x, y), n.z);
     const float sign = handedness();
@@ -119,7 +119,7 @@ struct Motion {
     return true;
   }
 
-  // r x v + w v; v moves by twice r x that.
+  // r x v + w v; the rotation adds 2 r x (this) to v.
   Vector half_way(const Vector& v) const {
     const Vector c = cross(r, v);
     return {std::fma(rw, v.x, c.x), std::fma(rw, v.y, c.y), std::fma(rw, v.z, c.z)};
@@ -147,7 +147,7 @@ void write(const Vector& v, float* to) {
   to[2] = v.z;
 }
 
-// `blended` and `first` map a normal or a tangent by all influences and by the first alone.
+// `blended` and `first` transform a normal or tangent by all influences and by the first only.
 template <class Blended, class First>
 void write_direction(const Vector& from, const Blended& blended, const First& first,
                      const Vector& last_resort, float* to) {
@@ -191,7 +191,7 @@ void linear_scalar(const Job& job, std::size_t begin, std::size_t end) {
 
 namespace {
 
-// The two phases of one vertex: a deformation, if there is one, and a motion.
+// The two phases of one vertex: an optional deformation and a rigid transform.
 struct TwoPhases {
   const Columns* deformation;
   Motion motion;

@@ -67,7 +67,7 @@ void moved_normals(std::span<const std::array<std::uint32_t, 3>> triangles,
     const Vec3 sum =
         normals[v].cast<double>() + (moved[v].cast<double>() - before[v].cast<double>());
     const double length = sum.norm();
-    // What the surface turns over entirely has no normal in between.
+    // Keeps the normal if the surface flips, where the sum is zero.
     if (moved[v] == before[v] || !(length > 1e-6)) {
       moved[v] = normals[v];
     } else {

@@ -10,7 +10,7 @@ BaseMotion::BaseMotion(const Timeline& timeline, std::span<const Source> sources
   const auto source_of = [&](std::size_t i) -> const Source& {
     return sources[static_cast<std::size_t>(items_[i].range.source)];
   };
-  players_.reserve(items_.size());  // transitions hold on to them
+  players_.reserve(items_.size());  // transitions keep references to them
   skeleton_ = &source_of(0).clip->skeleton;
   transitions_.resize(items_.size());
   on_feet_.resize(items_.size(), 0);

@@ -13,31 +13,30 @@
 
 namespace krok::timeline {
 
-// How one item goes over into the next, worked out.
+// A prepared transition from one item to the next.
 class Transition {
  public:
   virtual ~Transition() = default;
-  // The figure at a moment of the result within the transition.
+  // The pose at a result time within the transition.
   virtual ActorPose at(double time) const = 0;
 };
 
-// The two items that a transition lies between. The next one's player is put in its place by the
-// transition.
+// The two items of a transition. The transition positions the next item's player.
 struct TransitionSides {
   const ItemPlayer& previous;
   ItemPlayer& next;
   const ScheduledItem& previous_times;
   const ScheduledItem& next_times;
   const Change& change;
-  std::optional<GroundFrame> place;  // where the next one is told to stand
+  std::optional<GroundFrame> place;  // the ground frame requested for the next item
   double rate;                       // of the result
 };
 
-// None for a cut, which only puts the next one in its place. `on_feet` is set where feet that stand
-// in both were found and followed.
+// Null for a cut, which only positions the next item. Sets `on_feet` if feet in contact in both
+// motions were found and kept planted.
 std::unique_ptr<Transition> make_transition(const TransitionSides& sides, bool& on_feet);
 
-// The items of the base one after the other: what moves the whole figure.
+// The base items in sequence: full-body motion including the root.
 class BaseMotion {
  public:
   // `items` are those of schedule().
@@ -49,15 +48,15 @@ class BaseMotion {
   bool on_feet(std::size_t item) const { return on_feet_[item] != 0; }
   int carrier() const { return carrier_; }
 
-  // The item that is played at a moment, the one that is changed into included.
+  // The item played at a time; from the start of a transition on, the next item.
   std::size_t item_at(double time) const;
 
-  // joint_to_world at a moment.
+  // joint_to_world at a result time.
   void pose(double time, std::span<Transform> joint_to_world) const;
 
-  // The frame of a motion that is the pose at a moment, bit for bit.
+  // The source frame that equals the pose at a time bit for bit.
   struct Untouched {
-    const Clip* clip = nullptr;  // null where there is none
+    const Clip* clip = nullptr;  // null if there is none
     int frame = -1;
   };
   Untouched untouched(double time) const;
@@ -67,7 +66,7 @@ class BaseMotion {
   const Skeleton* skeleton_;
   std::vector<ScheduledItem> items_;
   std::vector<ItemPlayer> players_;
-  std::vector<std::unique_ptr<Transition>> transitions_;  // [items], null where there is none
+  std::vector<std::unique_ptr<Transition>> transitions_;  // [items], null if there is none
   std::vector<std::uint8_t> on_feet_;
 };
 

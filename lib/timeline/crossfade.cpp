@@ -48,7 +48,7 @@ class Crossfade : public Transition {
     return begin_ + (end_ - begin_) * static_cast<double>(node) / static_cast<double>(last);
   }
 
-  // The poses seen from the place, without one.
+  // The blended pose relative to the ground frame; `place` is not set.
   ActorPose mixed(double time, double weight_of_next) const {
     const ActorPose a = sides_.previous.actor(sides_.previous_times.play_time(time));
     const ActorPose b = sides_.next.actor(sides_.next_times.play_time(time));
@@ -65,8 +65,8 @@ class Crossfade : public Transition {
     return pose;
   }
 
-  // The way is the weighted sum of both ways, step by step in the figure's heading, or what keeps
-  // feet in place.
+  // Integrates root motion: the weighted sum of both motions' displacements relative to the
+  // character's heading, or the displacement that keeps feet planted.
   void walk(bool& on_feet) {
     const double wanted = std::ceil((end_ - begin_) * sides_.rate * 2);
     const auto last = static_cast<std::size_t>(std::clamp(wanted, 8.0, kMaxNodes));
@@ -103,14 +103,14 @@ class Crossfade : public Transition {
     }
   }
 
-  // x, z, turn in the heading that the figure had before.
+  // x, z and rotation, relative to the previous heading.
   static Vec3 way(const GroundFrame& from, const GroundFrame& to) {
     const Vec3 went = difference(from, to);
     const Vec3 seen = axis_rotation(Axis::y, -from.heading) * Vec3(went.x(), 0, went.y());
     return {seen.x(), seen.z(), went.z()};
   }
 
-  // As much as the motions' feet stand the way is the one with which they do not move.
+  // Replaces the displacement by the one that keeps feet planted, weighted by their contacts.
   bool keep_feet(const std::set<int>& joints, double time, double weight_of_next,
                  const std::vector<Vec3>& before, const std::vector<Vec3>& now, Vec3& step) const {
     const double previous = sides_.previous_times.play_time(time);

@@ -30,7 +30,7 @@ bool has_no_direction(Curve curve) {
   return curve == Curve::linear || curve == Curve::smooth || curve == Curve::smoother;
 }
 
-// A ball that falls: four parabolas, each half as long as the one before it.
+// Four parabolas, each half as wide as the previous one.
 double bounce_out(double u) {
   constexpr double kSteep = 7.5625, kPart = 2.75;
   if (u < 1 / kPart) return kSteep * u * u;
@@ -39,12 +39,12 @@ double bounce_out(double u) {
   return kSteep * (u - 2.625 / kPart) * (u - 2.625 / kPart) + 0.984375;
 }
 
-// Penner's swing with a period of `period`, which ends a quarter of it behind its last zero.
+// Penner's oscillation with the given period; it ends a quarter period after its last zero.
 double elastic_in(double u, double period) {
   return -std::exp2(10 * (u - 1)) * std::sin((u - 1 - period / 4) * 2 * kPi / period);
 }
 
-// The curve that begins slowly. In-out halves have constants of their own for back and elastic.
+// The ease-in curve. back and elastic use different constants in the halves of in-out.
 double eased_in(Curve curve, double u, bool half) {
   switch (curve) {
     case Curve::quad:

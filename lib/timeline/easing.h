@@ -5,39 +5,39 @@
 #include <string_view>
 #include <vector>
 
-// How something goes over from 0 to 1 in time: Penner's easing equations (Programming Macromedia
-// Flash MX, 2002, chapter 7), with his constants.
+// Easing from 0 to 1: Penner's easing equations (Programming Macromedia Flash MX, 2002, chapter 7),
+// with his constants.
 
 namespace krok::timeline {
 
 enum class Curve : unsigned char {
   linear,
-  smooth,    // 3u^2 - 2u^3: at rest at both ends
-  smoother,  // 6u^5 - 15u^4 + 10u^3: without acceleration there either
+  smooth,    // 3u^2 - 2u^3: zero velocity at both ends
+  smoother,  // 6u^5 - 15u^4 + 10u^3: zero velocity and acceleration at both ends
   quad,
   cubic,
   quart,
   sine,
   expo,
   circ,
-  back,     // goes beyond by a tenth and comes back
-  elastic,  // swings about the end
-  bounce    // falls on it and rebounds
+  back,     // overshoots by a tenth
+  elastic,  // oscillates around the end value
+  bounce    // bounces at the end value
 };
 
-// Slow at the beginning, at the end, or at both. linear, smooth and smoother are what they are.
+// Slow at the start, at the end, or at both. Ignored by linear, smooth and smoother.
 enum class Ease : unsigned char { in, out, in_out };
 
 struct Easing {
   Curve curve = Curve::smooth;
   Ease ease = Ease::in_out;
 
-  // 0 for u <= 0, 1 for u >= 1; 0 for what is not a number. Between them back and elastic leave
-  // [0, 1], all others rise or, bounce, stay within it.
+  // 0 for u <= 0, 1 for u >= 1, 0 for NaN. In between, back and elastic leave [0, 1], bounce stays
+  // within it, and all others are monotone.
   double at(double u) const;
 };
 
-// "linear", "sine-in", "cubic-out", "back-in-out"; a curve's name alone is its in-out.
+// "linear", "sine-in", "cubic-out", "back-in-out"; a curve name without a suffix means in-out.
 std::string easing_name(const Easing& easing);
 std::optional<Easing> parse_easing(std::string_view name);
 

@@ -9,16 +9,16 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr double kLongestStep = 10;  // seconds between keytimes that belong together
-constexpr int kParts = 256;          // of a crossfade
+constexpr double kLongestStep = 10;  // max seconds between matched keytimes
+constexpr int kParts = 256;          // per crossfade
 constexpr std::size_t kMaxKeys = 4000;
 
 struct Pairs {
-  std::vector<double> previous, next;  // play times of moments in common
+  std::vector<double> previous, next;  // play times of the shared keytimes
   std::size_t begin = 0;               // the crossfade begins after this one
 };
 
-// The moments in common around the keytimes `p` of the one and `n` of the other.
+// The shared keytimes around keytime `p` of the previous motion and `n` of the next.
 Pairs pairs_around(const std::vector<PlayedKey>& previous, std::size_t p,
                    const std::vector<PlayedKey>& next, std::size_t n) {
   Pairs pairs;
@@ -54,7 +54,7 @@ InStep integrate(const Pairs& pairs, double previous_play, double duration, cons
   result.previous.push_back(previous_play);
   result.next.push_back(result.skipped);
   const double step = duration / kParts;
-  // Generic time a second; a monotone cubic may come to rest at a keytime.
+  // Generic time per second; the slope of a monotone cubic may be 0 at a keytime.
   const auto speed = [&](double at, double part) {
     const double weight = std::clamp(easing.at(part / kParts), 0.0, 1.0);
     return 1 / std::max((1 - weight) * a.slope(at) + weight * b.slope(at), 1e-3);
@@ -91,7 +91,7 @@ std::optional<InStep> play_in_step(const StepSide& previous, const StepSide& nex
       after.size() > kMaxKeys) {
     return std::nullopt;
   }
-  // The last keytime with another behind it: a motion that ends with a step is in it.
+  // The last keytime with another after it: a motion that ends with a step is still within it.
   std::size_t p = 0;
   while (p + 2 < before.size() && before[p + 1].play_time <= previous_play) ++p;
   if (before[p].play_time > previous_play || before[p + 1].play_time < previous_play) {

@@ -6,9 +6,9 @@
 
 namespace krok::timeline {
 
-// Two motions played in step while one goes over into the other.
+// Time alignment of two motions during a crossfade.
 struct InStep {
-  double skipped = 0;                  // play time of the next one with which it begins
+  double skipped = 0;                  // play time at which the next motion starts
   std::vector<double> previous, next;  // play times, evenly spaced over the crossfade
 };
 
@@ -17,12 +17,11 @@ struct StepSide {
   const MotionKeys* keys;  // may be null
 };
 
-// `previous_play` is the play time of the previous motion where the crossfade begins. The next one
-// begins at its first moment that is as far between two keytimes as the previous one is between two
-// of the same names. Generic time then goes on at a speed that is the weighted mean of what both
-// would have alone (a second of generic time lasts the weighted sum of what it lasts in both, as in
-// lib/blend); where keytimes have no counterpart any more both go on by the clock. Nothing where no
-// such moment is found.
+// `previous_play` is the play time of the previous motion at the start of the crossfade. The next
+// motion starts at its first moment that has the same generic time between two keytimes of the same
+// names. During the crossfade an interval of generic time lasts the weighted sum of its durations
+// in both motions, as in lib/blend; after the last matching keytime both motions play at their own
+// speed. Returns nullopt if no such moment exists.
 std::optional<InStep> play_in_step(const StepSide& previous, const StepSide& next,
                                    double previous_play, double duration, const Easing& easing);
 

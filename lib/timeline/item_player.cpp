@@ -11,7 +11,7 @@ namespace krok::timeline {
 namespace {
 
 void sample_source(const Clip& clip, double time, std::span<Transform> joint_to_world) {
-  // One for each thread, so that nothing is allocated frame by frame.
+  // Per thread, to avoid an allocation per frame.
   thread_local std::vector<Transform> scratch;
   scratch.resize(3 * joint_to_world.size());
   sample(clip, time, joint_to_world, scratch);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNothing = 1e-9;
 
-// Of all rotation vectors of one rotation the one closest to `near`.
+// The rotation vector equivalent to v that is closest to `near`.
 Vec3 closest_vector(const Vec3& v, const Vec3& near) {
   const double angle = v.norm();
   if (angle < kNothing) return v;
@@ -19,7 +19,7 @@ Vec3 closest_vector(const Vec3& v, const Vec3& near) {
   return (other - near).squaredNorm() < (v - near).squaredNorm() ? other : v;
 }
 
-// Shortens the time and bends the acceleration so that the offset does not pass nothing.
+// Shortens the duration and limits the acceleration so that the offset does not pass zero.
 void keep_from_passing(const Vec3& value, Rates& rates, double& duration) {
   const double far = value.norm();
   const Vec3 away = far > kNothing ? Vec3(value / far) : Vec3(Vec3::Zero());
@@ -92,8 +92,8 @@ RotationOffset rotation_offset(const Quat& from, const Rates& from_rates, const 
     const Quat b = from_rotation_vector(to_rates.at(s)) * to;
     return rotation_vector(a * b.conjugate());
   };
-  // Central differences of what both become: the step is small against any movement of joints and
-  // large against rounding.
+  // Central differences: the step is small compared with joint motion and large compared with
+  // rounding errors.
   constexpr double kStep = 1e-3;
   RotationOffset offset;
   offset.value = offset_at(0);

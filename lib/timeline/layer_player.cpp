@@ -18,17 +18,17 @@ namespace {
 Status check_weight(const LayerItem& item, LayerMode mode) {
   const blend::WeightCurve& curve = item.weight;
   if (curve.weights.empty() || curve.weights.size() != curve.generic.size()) {
-    return Error("timeline-weight", "its weight has no points");
+    return Error("timeline-weight", "the weight curve has no points");
   }
   for (std::size_t i = 0; i < curve.weights.size(); ++i) {
     if (!std::isfinite(curve.weights[i]) || !std::isfinite(curve.generic[i]) ||
         (i > 0 && !(curve.generic[i] > curve.generic[i - 1]))) {
-      return Error("timeline-weight", "the times of its weight do not rise");
+      return Error("timeline-weight", "the times of the weight curve are not increasing");
     }
     if (mode != LayerMode::modifier && !(curve.weights[i] >= 0 && curve.weights[i] <= 1)) {
       return Error("timeline-weight",
-                   fmt::format("a weight of {} is not between 0 and 1", readable(curve.weights[i])),
-                   "a layer of mode \"modifier\" takes any");
+                   fmt::format("the weight {} is not between 0 and 1", readable(curve.weights[i])),
+                   "layers of mode \"modifier\" accept any weight");
     }
   }
   return {};
@@ -43,11 +43,11 @@ Result<LayerTimes> times_of(const LayerItem& item, std::span<const Source> sourc
   times.start = item.at.seconds(rate);
   if (!(times.start >= 0) || times.start > end + kTimeRounding) {
     return Error("timeline-time",
-                 fmt::format("it begins at {} s, outside the 0 to {} s of the base",
+                 fmt::format("starts at {} s, outside the base's range of 0 to {} s",
                              readable(times.start), readable(end)));
   }
   if (item.play.until && times.range.loops_if_ended) times.range.rounds = HUGE_VAL;
-  // A layer that goes on for ever goes on to the end of the base.
+  // An endless layer ends with the base.
   times.end = std::min(times.start + times.range.duration(), end);
   if (item.play.until) {
     const double until = item.play.until->seconds(rate);
@@ -55,26 +55,25 @@ Result<LayerTimes> times_of(const LayerItem& item, std::span<const Source> sourc
         until > times.start + times.range.duration() + kTimeRounding) {
       return Error(
           "timeline-time",
-          fmt::format("it ends at {} s, but can be played from {} to {} s", readable(until),
+          fmt::format("ends at {} s, but can only play from {} to {} s", readable(until),
                       readable(times.start), readable(times.start + times.range.duration())),
-          "\"loop\": true repeats it until its end");
+          "set \"loop\": true to repeat it until then");
     }
     times.end = std::min(until, times.end);
   }
   if (times.range.round > 0 && (times.end - times.start) / times.range.round > kMaxRounds) {
-    return Error("timeline-limit",
-                 fmt::format("it is played more than {} times", grouped(kMaxRounds)));
+    return Error("timeline-limit", fmt::format("repeats more than {} times", grouped(kMaxRounds)));
   }
   for (const Fade* fade : {&item.fade_in, &item.fade_out}) {
     if (fade->duration >= 0 && fade->duration <= times.end - times.start + kTimeRounding) continue;
     return Error("timeline-time",
-                 fmt::format("a fade of {} s is longer than the {} s that it lasts",
+                 fmt::format("a fade of {} s is negative or longer than the item's {} s",
                              readable(fade->duration), readable(times.end - times.start)));
   }
   return times;
 }
 
-// The moment of a source that a layer differs from.
+// The reference pose of an additive layer.
 Result<ActorPose> reference_of(const Layer& layer, const ItemPlayer& player, int carrier) {
   const Clip& clip = *player.source().clip;
   if (layer.reference_pose) return actor_pose(clip.skeleton, carrier, clip.skeleton.reference);
@@ -82,7 +81,7 @@ Result<ActorPose> reference_of(const Layer& layer, const ItemPlayer& player, int
   const double time = layer.reference->seconds(clip.rate);
   if (!(time >= 0) || time > clip.duration() + kTimeRounding) {
     Error error("timeline-time",
-                fmt::format("the reference at {} s is outside the 0 to {} s of {}", readable(time),
+                fmt::format("the reference time {} s is outside 0 to {} s of {}", readable(time),
                             readable(clip.duration()), shown(player.source().name)));
     error.where = layer.where;
     return error;
@@ -171,7 +170,8 @@ void LayerPlayer::override_pose(const ActorPose& layer, double weight, ActorPose
 }
 
 void LayerPlayer::override_in_model(const ActorPose& layer, double weight, ActorPose& pose) const {
-  std::vector<Quat> below(mask_.size()), above(mask_.size());  // joints' rotations to the place
+  // Joint rotations relative to the ground frame.
+  std::vector<Quat> below(mask_.size()), above(mask_.size());
   for (std::size_t j = 0; j < mask_.size(); ++j) {
     const int parent = skeleton_->parents[j];
     const auto p = static_cast<std::size_t>(std::max(parent, 0));

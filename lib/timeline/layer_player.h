@@ -10,30 +10,30 @@
 
 namespace krok::timeline {
 
-// When an item of a layer is seen.
+// When an item of a layer is active.
 struct LayerTimes {
   PlayedRange range;
   double start = 0, end = 0;
 };
 
-// Puts a layer's motions on poses. Used from several threads at once.
+// Applies a layer's motions to poses. Const members are safe to call from several threads.
 class LayerPlayer {
  public:
   // Codes timeline-mask, timeline-time, timeline-endless, timeline-weight and those of resolve(),
-  // with the place of what is wrong. `end` is the base's: items last until then at most.
+  // with the location of the error. `end` is the end of the base: items are cut there.
   static Result<LayerPlayer> create(const Layer& layer, std::span<const Source> sources,
                                     int carrier, double rate, double end);
 
   const std::vector<LayerTimes>& items() const { return items_; }
 
-  // The weight of an item at a moment, fades included.
+  // The weight of an item at a time, including fades.
   double weight(std::size_t item, double time) const;
   bool is_seen(double time) const;
 
-  // Joints that this layer moves, and those below them, [joints].
+  // 1 for joints that this layer moves and their descendants, [joints].
   const std::vector<std::uint8_t>& touched() const { return touched_; }
 
-  // Changes the joints of the mask.
+  // Changes the masked joints only.
   void apply(double time, ActorPose& pose) const;
 
  private:

@@ -10,11 +10,11 @@ namespace {
 
 Status check_rule(const MaskRule& rule) {
   if (!(rule.weight >= 0 && rule.weight <= 1)) {
-    return Error("timeline-mask", "a joint's weight is not between 0 and 1");
+    return Error("timeline-mask", "the weight of a mask rule is not between 0 and 1");
   }
-  if (rule.soft < 0) return Error("timeline-mask", "a soft edge has no negative number of joints");
+  if (rule.soft < 0) return Error("timeline-mask", "the soft edge of a mask rule is negative");
   if (rule.joints.empty() == rule.below.empty()) {
-    return Error("timeline-mask", "a rule is for joints by name or for those below one");
+    return Error("timeline-mask", "a mask rule needs either \"joints\" or \"below\"");
   }
   return {};
 }

@@ -9,8 +9,8 @@
 
 namespace krok::timeline {
 
-// How much each joint is moved, 0 to 1, shape [joints]. Code timeline-mask, with the rule's place:
-// a name or pattern that no joint has, a weight outside 0 to 1, a soft edge that is negative.
+// The weight of each joint, 0 to 1, shape [joints]. Code timeline-mask, with the rule's location:
+// a name or pattern that matches no joint, a weight outside 0 to 1, a negative soft edge.
 Result<std::vector<double>> mask_weights(const Skeleton& skeleton, std::span<const MaskRule> rules);
 
 }  // namespace krok::timeline

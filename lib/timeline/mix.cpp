@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kFramesAtOnce = 32;
 constexpr double kMaxEvents = 2e6;
 constexpr std::size_t kMaxLayerItems = 20'000;
-constexpr double kMaxWork = 2e9;  // frames or contacts, times items of layers
+constexpr double kMaxWork = 2e9;  // frames or events, times layer items
 
 Status check_sources(std::span<const Source> sources) {
   for (const Source& source : sources) {
@@ -32,9 +32,9 @@ Status check_sources(std::span<const Source> sources) {
         difference_in_structure(sources.front().clip->skeleton, source.clip->skeleton);
     if (!differs.empty()) {
       return Error("timeline-skeleton",
-                   fmt::format("{} and {} are not of one skeleton: {}", shown(sources.front().name),
-                               shown(source.name), differs),
-                   "krok-retarget brings one on the other's skeleton");
+                   fmt::format("{} and {} have different skeletons: {}",
+                               shown(sources.front().name), shown(source.name), differs),
+                   "use krok-retarget to transfer one to the other's skeleton");
     }
     if (source.keys == nullptr) continue;
     if (Status status = check(*source.keys, source.clip->skeleton, source.clip->duration());
@@ -45,7 +45,8 @@ Status check_sources(std::span<const Source> sources) {
   return {};
 }
 
-// Rounds are few, but each may have many keytimes and marks; and layers may be many.
+// Limits the amount of work: each round may have many keytimes and marks, and there may be many
+// layers.
 Status check_work(const Timeline& timeline, std::span<const Source> sources,
                   std::span<const ScheduledItem> items, std::span<const LayerPlayer> layers,
                   const Clip& clip) {
@@ -68,18 +69,19 @@ Status check_work(const Timeline& timeline, std::span<const Source> sources,
     }
   }
   if (events > kMaxEvents) {
-    return Error("timeline-limit", "more than two million keytimes, contacts and events would come",
-                 "let short motions repeat less often");
+    return Error("timeline-limit",
+                 "the result would have more than two million keytimes, contacts and events",
+                 "use fewer repetitions of short motions");
   }
   const double frames = clip.frame_count();
   if (std::max({frames * on_top, events * on_top, transforms}) > kMaxWork) {
-    return Error("timeline-limit", "too many items of layers on too many frames",
-                 "make it in several timelines");
+    return Error("timeline-limit", "too many layer items for the number of frames",
+                 "split the timeline");
   }
   return {};
 }
 
-// The frames of the base, and the layers on them.
+// Evaluates the base and applies the layers.
 void make_frames(const BaseMotion& base, std::span<const LayerPlayer> layers, int jobs,
                  Clip& clip) {
   const std::size_t joints = clip.skeleton.names.size();
@@ -127,17 +129,17 @@ void make_frames(const BaseMotion& base, std::span<const LayerPlayer> layers, in
 Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, const RoleMap& roles,
                   const MixOptions& options) {
   if (timeline.base.empty() || sources.empty()) {
-    return Error("timeline-empty", "there is nothing to play");
+    return Error("timeline-empty", "the timeline is empty");
   }
   if (Status status = check_sources(sources); !status) return status.error();
   double rate = timeline.rate;
   if (rate == 0) {
-    // Where there is no such motion schedule() says so.
+    // schedule() reports an invalid source index.
     const auto first = static_cast<std::size_t>(timeline.base.front().play.source);
     rate = sources[first < sources.size() ? first : 0].clip->rate;
   }
   if (!(rate > 0) || !std::isfinite(rate)) {
-    return Error("clip-rate", "the rate of a timeline is a positive number");
+    return Error("clip-rate", "the frame rate of a timeline must be positive");
   }
   auto items = schedule(timeline, sources, rate);
   if (!items) return items.error();
@@ -152,7 +154,7 @@ Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, con
     layer_items += layer.items.size();
     if (layer_items > kMaxLayerItems) {
       return Error("timeline-limit",
-                   fmt::format("layers have more than {} items in all", grouped(kMaxLayerItems)));
+                   fmt::format("layers have more than {} items in total", grouped(kMaxLayerItems)));
     }
     auto player = LayerPlayer::create(layer, sources, carrier, rate, end);
     if (!player) return player.error();

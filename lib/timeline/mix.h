@@ -8,12 +8,12 @@
 #include "roles/roles.h"
 #include "timeline/timeline.h"
 
-// The animation controller, played to its end: a timeline becomes one motion.
+// Evaluates a timeline into one motion.
 
 namespace krok::timeline {
 
 struct MixOptions {
-  int jobs = 0;  // threads; 0: as many as processors
+  int jobs = 0;  // threads; 0: one per processor
 };
 
 struct Event {
@@ -24,51 +24,52 @@ struct Event {
   std::string name;  // of a mark
   int layer = -1;    // -1: the base
   int index = 0;     // of the item in the base or the layer
-  int round = 0;     // that begins with a loop, from 1 on
+  int round = 0;     // of a loop: the round that begins, from 1 on
 };
 
 struct ItemFacts {
   std::string name;
   int layer = -1;
-  double start = 0, end = 0;  // of its own first and last moment, in the result
-  int rounds = 1;             // begun
-  double skipped = 0;         // seconds of play that it begins with, so as to be in step
+  double start = 0, end = 0;  // seconds of the result
+  int rounds = 1;             // rounds started
+  double skipped = 0;         // play time at its start, from time alignment, seconds
 };
 
 struct ChangeFacts {
-  int item = 0;  // that is changed into, from 1 on
+  int item = 0;  // index of the next item, from 1 on
   ChangeKind kind = ChangeKind::cut;
   double begin = 0, end = 0;
-  bool in_step = false;  // by keytimes
-  bool on_feet = false;  // feet that stand kept it in place
-  // The largest angle between rotations to the parent where it begins, from the one motion to the
-  // other: what has to be bridged. Radians.
+  bool in_step = false;  // time-aligned by keytimes
+  bool on_feet = false;  // positioned by feet in contact
+  // The largest angle between the local rotations of a joint in the two motions where the change
+  // begins, radians.
   double angle = 0;
   int angle_joint = 0;
-  // The fastest turn of a joint in its parent, from the frame before it to the frame behind it, and
-  // what 99 of 100 frames of both motions have for their fastest joint. Radians a second.
+  // The largest local angular velocity of a joint, from the frame before the change to the frame
+  // after it, and the 99th percentile, over the frames of a motion, of that of its fastest joint:
+  // the larger of the two motions. Radians per second.
   double fastest = 0, usual = 0;
   int fastest_joint = 0, fastest_frame = 0;
 
-  // One frame in a hundred of the motions is faster than usual, too.
+  // Allows 10 % because one frame in a hundred of the motions exceeds `usual` too.
   bool pops() const { return fastest > 1.1 * usual; }
 };
 
 struct Mixed {
   Clip clip;                     // without provenance
-  MotionKeys keys;               // where they are known
+  MotionKeys keys;               // where known
   std::vector<Event> events;     // by time
   std::vector<ItemFacts> items;  // base first, then layer by layer
   std::vector<ChangeFacts> changes;
-  Diagnostics warnings;  // seams of rounds that jump
+  Diagnostics warnings;  // loops with a jump, marks never reached
 };
 
-// A frame that shows one motion alone, where that motion stands where it was captured, is that
-// motion's frame bit for bit; joints that no layer moves are as if there were none. The keys are
-// the base's: keytimes where its motions have them (of two that cross-fade the one that weighs
-// more), contacts outside changes, and of joints that no layer moves meanwhile.
+// Outside changes, a frame of a motion that is not repositioned equals the source frame bit for
+// bit; layers do not change joints that they do not move. The keys are those of the base: keytimes
+// of its motions (in a crossfade, of the motion with the larger weight), and contacts outside
+// changes of joints that no layer moves at that time.
 //
-// Sources are of one skeleton: names, order and parents are the same. Codes: timeline-skeleton,
+// All sources need the same skeleton: names, order and parents. Codes: timeline-skeleton,
 // timeline-empty (no item, or a motion without frames), timeline-limit; those of schedule() and of
 // layers (timeline-source, -time, -endless, -sync, -mask, -weight); clip-rate, clip-too-long as
 // frames_within(); those of check(Clip) and check(MotionKeys).

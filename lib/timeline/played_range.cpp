@@ -12,9 +12,9 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr double kFrameRounding = 1e-3;  // of a frame, by which a moment may lie outside a motion
+constexpr double kFrameRounding = 1e-3;  // tolerance for times outside a motion, frames
 constexpr double kMinSpeed = 1e-3, kMaxSpeed = 1e3;
-constexpr double kSameKey = 0.05;  // seconds between the two ends of a seam
+constexpr double kSameKey = 0.05;  // seconds within which keytimes at a seam are the same
 
 Result<double> moment_of(const ClipTime& time, const Source& source, std::string_view which) {
   const Clip& clip = *source.clip;
@@ -25,7 +25,7 @@ Result<double> moment_of(const ClipTime& time, const Source& source, std::string
   }
   return Error(
       "timeline-time",
-      fmt::format("it plays {} {} s, outside the 0 to {} s ({}) of {}", which, readable(seconds),
+      fmt::format("plays {} {} s, outside 0 to {} s ({}) of {}", which, readable(seconds),
                   readable(last), counted(clip.frame_count(), "frame"), shown(source.name)));
 }
 
@@ -39,7 +39,7 @@ Result<const Part*> part_of(const Play& play, const Source& source) {
   }
   return Error("timeline-source",
                fmt::format("{} has no sequence '{}'", shown(source.name), shown(play.part)),
-               known.empty() ? "" : "known are " + known);
+               known.empty() ? "" : "known sequences: " + known);
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ PlayedRange::Moment PlayedRange::at(double play_time) const {
   if (!(round > 0)) return {0, from};
   const double into = std::clamp(play_time, 0.0, duration());
   int number = static_cast<int>(std::min(std::floor(into / round), kMaxRounds + 1.0));
-  // A play time that is a seam's up to rounding is the seam's.
+  // Within rounding of a seam: snap to the seam.
   if ((number + 1) * round - into < 1e-9 * round) ++number;
   if (number >= rounds) number = static_cast<int>(rounds) - 1;
   const double part = std::clamp(into - number * round, 0.0, round) * speed;
@@ -66,7 +66,7 @@ double PlayedRange::play_time(int number, double source_time) const {
 
 Result<PlayedRange> resolve(const Play& play, std::span<const Source> sources) {
   if (play.source < 0 || play.source >= static_cast<int>(sources.size())) {
-    return Error("timeline-source", "it plays a motion that is not there");
+    return Error("timeline-source", "the source does not exist");
   }
   const Source& source = sources[static_cast<std::size_t>(play.source)];
   PlayedRange range;
@@ -87,22 +87,22 @@ Result<PlayedRange> resolve(const Play& play, std::span<const Source> sources) {
   if (*end < *begin) {
     return Error(
         "timeline-time",
-        fmt::format("it plays to {} s, before it begins at {} s", readable(*end), readable(*begin)),
-        "a negative speed plays backwards");
+        fmt::format("plays to {} s, before its start at {} s", readable(*end), readable(*begin)),
+        "use a negative speed to play backwards");
   }
   range.from = *begin;
   range.to = *end;
   range.speed = play.speed.value_or(range.speed);
   if (!(std::abs(range.speed) >= kMinSpeed && std::abs(range.speed) <= kMaxSpeed)) {
     return Error("timeline-time",
-                 fmt::format("a speed of {} is not between 0.001 and 1000, forwards or backwards",
+                 fmt::format("the speed {} is not between 0.001 and 1000, forwards or backwards",
                              readable(range.speed)));
   }
   range.round = (range.to - range.from) / std::abs(range.speed);
   const int rounds = play.rounds.value_or(1);
   if (rounds < 0 || rounds > kMaxRounds) {
     return Error("timeline-limit",
-                 fmt::format("{} rounds are not between 0 and {}", rounds, grouped(kMaxRounds)));
+                 fmt::format("{} rounds: not between 0 and {}", rounds, grouped(kMaxRounds)));
   }
   range.rounds = rounds == 0 ? HUGE_VAL : rounds;
   return range;

@@ -13,7 +13,7 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr std::size_t kMaxFrames = 4000;  // of a motion that are looked at for what is usual
+constexpr std::size_t kMaxFrames = 4000;  // frames per motion sampled by usual_speed()
 constexpr double kUsual = 0.99;
 
 struct Angle {
@@ -30,7 +30,7 @@ Angle largest_angle(std::span<const Transform> a, std::span<const Transform> b) 
   return largest;
 }
 
-// How fast a motion's fastest joint turns in its parent in all but one of a hundred frames.
+// The 99th percentile over frames of the largest local angular velocity of a joint.
 double usual_speed(const Clip& clip, int jobs) {
   const int frames = clip.frame_count();
   if (frames < 2) return 0;
@@ -46,7 +46,7 @@ double usual_speed(const Clip& clip, int jobs) {
       world_to_local(clip.skeleton.parents, world, before);
       clip.get_pose(frame + 1, world);
       world_to_local(clip.skeleton.parents, world, after);
-      // The root's turn is the way the figure goes; it counts as well.
+      // The root rotation, which turns the character, is included.
       speeds[i] = largest_angle(before, after).angle * clip.rate;
     }
   });
@@ -69,7 +69,7 @@ class ChangeFinder {
   }
 
  private:
-  // At the speed at which an item plays it.
+  // usual_speed() of the source, scaled by the item's speed.
   double usual(std::size_t item) {
     const PlayedRange& range = parts_.base.items()[item].range;
     const auto [found, is_new] = usual_.try_emplace(range.source, 0.0);
@@ -121,7 +121,7 @@ class ChangeFinder {
     return facts;
   }
 
-  // A round that does not end as it begins.
+  // Warns if a loop jumps from its end to its start.
   void check_seams(std::size_t i) {
     const ScheduledItem& item = parts_.base.items()[i];
     if (item.range.at(item.play_time(item.end)).round == 0) return;
@@ -136,17 +136,17 @@ class ChangeFinder {
     seam.severity = Severity::warning;
     seam.code = "timeline-seam";
     seam.joint = parts_.clip.skeleton.names[static_cast<std::size_t>(jump.joint)];
-    seam.message = fmt::format(
-        "{}: its rounds do not end as they begin: {} jumps by {:.1f} degrees",
-        shown(parts_.timeline.base[i].name), seam.joint, jump.angle / kRadiansPerDegree);
-    seam.hint = "krok-edit --loop makes a motion that repeats without a seam";
+    seam.message = fmt::format("{}: the loop has a seam: {} jumps by {:.1f} degrees",
+                               shown(parts_.timeline.base[i].name), seam.joint,
+                               jump.angle / kRadiansPerDegree);
+    seam.hint = "use krok-edit --loop to make a seamless loop";
     seam.where = parts_.timeline.base[i].where;
     warnings_.push_back(std::move(seam));
   }
 
   const Parts& parts_;
   Diagnostics& warnings_;
-  std::map<int, double> usual_;  // of sources
+  std::map<int, double> usual_;  // by source
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace krok::timeline {
 
 namespace {
 
-// An item of the base or of a layer, as far as events go.
+// An item of the base or of a layer, reduced to what events need.
 struct Happening {
   const std::string& name;
   const std::vector<Mark>& marks;
@@ -20,7 +20,7 @@ struct Happening {
   const PlayedRange& range;
   int layer, index;
   double start, end, first_play, last_play;
-  std::function<double(double)> time_of;  // of a play time
+  std::function<double(double)> time_of;  // result time of a play time
 };
 
 class Events {
@@ -64,7 +64,7 @@ class Events {
         return {};
       }
       Error error("timeline-time",
-                  fmt::format("{}: the mark '{}' at {} s lies outside its {} s", shown(item.name),
+                  fmt::format("{}: the mark '{}' at {} s is outside its {} s", shown(item.name),
                               shown(mark.name), readable(mark.at.seconds(rate_)),
                               readable(item.end - item.start)));
       error.where = item.where;
@@ -87,7 +87,7 @@ class Events {
       never.severity = Severity::warning;
       never.code = "timeline-mark";
       never.message =
-          fmt::format("{}: the mark '{}' at {} s of {} is never passed", shown(item.name),
+          fmt::format("{}: the mark '{}' at {} s of {} is never reached", shown(item.name),
                       shown(mark.name), readable(moment), shown(source.name));
       never.where = item.where;
       warnings_.push_back(std::move(never));
@@ -101,7 +101,7 @@ class Events {
   std::vector<Event> events_;
 };
 
-// Begun before a play time; one that would begin at it is not.
+// Number of rounds that start before a play time.
 int rounds_until(const PlayedRange& range, double play_time) {
   return range.at(play_time - kTimeRounding).round + 1;
 }

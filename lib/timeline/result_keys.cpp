@@ -9,7 +9,7 @@ namespace krok::timeline {
 namespace {
 
 constexpr double kApart = 1e-4;      // seconds between keytimes
-constexpr double kSamePlace = 0.02;  // metres: a stay that goes on through the seam of two rounds
+constexpr double kSamePlace = 0.02;  // metres, for contacts that continue through a loop seam
 
 struct Span {
   double begin, end;
@@ -37,7 +37,7 @@ class KeyFinder {
   }
 
  private:
-  // Whether an item is what counts at a moment.
+  // Whether an item provides the keytimes at a time.
   bool counts(std::size_t i, double time) const {
     const ScheduledItem& item = items_[i];
     if (time < item.start || time > item.end) return false;
@@ -79,7 +79,7 @@ class KeyFinder {
     keys_.keytimes = std::move(kept);
   }
 
-  // Where an item is seen alone.
+  // When only this item is active.
   Span alone(std::size_t i) const {
     const double end = i + 1 < items_.size() ? items_[i + 1].begin : items_[i].end;
     return {items_[i].settled, std::min(end, parts_.clip.duration())};
@@ -95,7 +95,7 @@ class KeyFinder {
         const double from = std::max(contact.start, range.from);
         const double to = std::min(contact.end, range.to);
         if (from > to) continue;
-        Span stay = seen;  // a pose that is held stands all the time
+        Span stay = seen;  // in a held pose the contact lasts throughout
         if (range.round > 0) {
           const double a = item.time_of(range.play_time(round, from));
           const double b = item.time_of(range.play_time(round, to));
@@ -107,7 +107,7 @@ class KeyFinder {
     }
   }
 
-  // What stands at the end of one round stands on at the beginning of the next.
+  // Joins contacts that continue from the end of one round into the next.
   void merge_contacts() {
     std::ranges::stable_sort(keys_.contacts, [](const Contact& a, const Contact& b) {
       return a.joint != b.joint ? a.joint < b.joint : a.start < b.start;

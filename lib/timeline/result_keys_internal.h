@@ -7,7 +7,7 @@
 #include "timeline/layer_player.h"
 #include "timeline/mix.h"
 
-// Parts of mix() that tell what is in its result.
+// The parts of mix() that report on its result.
 
 namespace krok::timeline {
 
@@ -20,16 +20,16 @@ struct Parts {
   int jobs;
 };
 
-// Keytimes and contacts of the base where they still hold.
+// Keytimes and contacts of the base where they are still valid.
 MotionKeys result_keys(const Parts& parts);
 
-// By time, those of the base first. Code timeline-time for a mark outside its item; a mark of a
-// moment of the source that never comes is a warning.
+// By time, the base first. Code timeline-time for a mark outside its item; a source mark that is
+// never reached is a warning.
 Result<std::vector<Event>> result_events(const Parts& parts, Diagnostics& warnings);
 
 std::vector<ItemFacts> result_items(const Parts& parts);
 
-// Warns of seams between rounds where a joint jumps.
+// Warns about joints that jump at the seam of a loop.
 std::vector<ChangeFacts> result_changes(const Parts& parts, Diagnostics& warnings);
 
 }  // namespace krok::timeline

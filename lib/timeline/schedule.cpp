@@ -13,7 +13,7 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr double kLongest = 1e7;  // seconds; the number of frames is held to its limit by mix()
+constexpr double kLongest = 1e7;  // seconds; mix() limits the number of frames
 
 class Scheduler {
  public:
@@ -21,7 +21,7 @@ class Scheduler {
       : timeline_(timeline), sources_(sources), rate_(rate) {}
 
   Result<std::vector<ScheduledItem>> run() {
-    if (timeline_.base.empty()) return Error("timeline-empty", "there is nothing to play");
+    if (timeline_.base.empty()) return Error("timeline-empty", "the timeline is empty");
     for (std::size_t i = 0; i < timeline_.base.size(); ++i) {
       if (Status status = add(i); !status) return located(std::move(status).error(), i);
     }
@@ -29,9 +29,8 @@ class Scheduler {
     const auto end = natural_end(items_.size() - 1, false);
     if (!end) return located(end.error(), items_.size() - 1);
     if (!std::isfinite(*end)) {
-      return located(
-          Error("timeline-endless", "nothing ends it", "give it \"until\", or a number of rounds"),
-          items_.size() - 1);
+      return located(Error("timeline-endless", "never ends", "add \"until\" or a number of rounds"),
+                     items_.size() - 1);
     }
     last.end = *end;
     if (Status status = check_length(items_.size() - 1); !status) {
@@ -47,7 +46,7 @@ class Scheduler {
     return error;
   }
 
-  // When an item ends if nothing follows. `followed`: the next one has a time of its own.
+  // When an item ends if nothing follows. `followed`: the next item has an explicit start time.
   Result<double> natural_end(std::size_t i, bool followed) {
     ScheduledItem& item = items_[i];
     const BaseItem& told = timeline_.base[i];
@@ -57,14 +56,14 @@ class Scheduler {
     if (!told.play.until) return end;
     const double until = told.play.until->seconds(rate_);
     if (!std::isfinite(until) || until > kLongest || until < item.start - kTimeRounding) {
-      return Error("timeline-time", fmt::format("it ends at {} s, before it begins at {} s",
+      return Error("timeline-time", fmt::format("ends at {} s, before it starts at {} s",
                                                 readable(until), readable(item.start)));
     }
     if (until > end + kTimeRounding) {
       return Error(
           "timeline-time",
-          fmt::format("it is over at {} s, before its end at {} s", readable(end), readable(until)),
-          "\"loop\": true repeats it until then");
+          fmt::format("plays to {} s only, but \"until\" is {} s", readable(end), readable(until)),
+          "set \"loop\": true to repeat it until then");
     }
     return until;
   }
@@ -72,20 +71,20 @@ class Scheduler {
   Status check_change(const Change& change) const {
     if (change.kind == ChangeKind::cut) return {};
     if (change.duration > 0 && change.duration <= kLongest) return {};
-    return Error("timeline-time", "a change lasts more than 0 s");
+    return Error("timeline-time", "the duration of a change must be positive");
   }
 
   Status check_length(std::size_t i) const {
     const ScheduledItem& item = items_[i];
     if (item.end < item.settled - kTimeRounding) {
       return Error("timeline-time",
-                   fmt::format("it ends at {} s, before the change into it is over at {} s",
+                   fmt::format("ends at {} s, before the change into it ends at {} s",
                                readable(item.end), readable(item.settled)),
-                   "shorten the change, or let it play longer");
+                   "shorten the change, or play the item longer");
     }
     if (item.range.round > 0 && (item.end - item.start) / item.range.round > kMaxRounds) {
       return Error("timeline-limit",
-                   fmt::format("it is played more than {} times", grouped(kMaxRounds)));
+                   fmt::format("repeats more than {} times", grouped(kMaxRounds)));
     }
     return {};
   }
@@ -98,7 +97,7 @@ class Scheduler {
     item.range = *range;
     if (i == 0) {
       if (told.at && told.at->seconds(rate_) != 0) {
-        return Error("timeline-time", "the first item begins at 0");
+        return Error("timeline-time", "the first item must start at 0");
       }
     } else {
       if (Status status = check_change(told.change); !status) return status;
@@ -108,7 +107,7 @@ class Scheduler {
     return {};
   }
 
-  // Ends the item before and begins this one.
+  // Ends the previous item and starts this one.
   Status follow(std::size_t i, ScheduledItem& item) {
     const BaseItem& told = timeline_.base[i];
     const Change& change = told.change;
@@ -118,28 +117,28 @@ class Scheduler {
     const bool fades = change.kind == ChangeKind::crossfade;
     if (!told.at && !std::isfinite(*end)) {
       return Error("timeline-endless",
-                   fmt::format("nothing ends {}, so that it never begins",
+                   fmt::format("{} never ends, so this item never starts",
                                shown(timeline_.base[i - 1].name)),
-                   "give it \"at\", or the one before \"until\" or a number of rounds");
+                   "add \"at\", or \"until\" or a number of rounds to the previous item");
     }
     item.begin = told.at ? told.at->seconds(rate_) : *end - (fades ? change.duration : 0);
     if (!std::isfinite(item.begin) || item.begin > kLongest) {
-      return Error("timeline-time", "it begins at a time that is none");
+      return Error("timeline-time", "the start time is not valid");
     }
     if (item.begin < before.settled - kTimeRounding) {
-      return Error(
-          "timeline-time",
-          fmt::format("it begins at {} s, before {} is reached at {} s", readable(item.begin),
-                      shown(timeline_.base[i - 1].name), readable(before.settled)),
-          "one change is over before the next begins");
+      return Error("timeline-time",
+                   fmt::format("starts at {} s, before the change into {} ends at {} s",
+                               readable(item.begin), shown(timeline_.base[i - 1].name),
+                               readable(before.settled)),
+                   "changes must not overlap");
     }
     item.begin = std::max(item.begin, before.settled);
     const double needed = item.begin + (fades ? change.duration : 0);
     if (needed > *end + kTimeRounding) {
       return Error("timeline-time",
-                   fmt::format("{} is over at {} s, but is needed until {} s",
+                   fmt::format("{} ends at {} s, but is needed until {} s",
                                shown(timeline_.base[i - 1].name), readable(*end), readable(needed)),
-                   "let it play longer or loop, or begin the next one earlier");
+                   "play it longer or loop it, or start the next item earlier");
     }
     item.settled = item.begin + (change.kind == ChangeKind::cut ? 0 : change.duration);
     item.start = change.kind == ChangeKind::smooth ? item.settled : item.begin;
@@ -162,10 +161,10 @@ class Scheduler {
     if (!both || !(both->next.back() < item.range.duration())) {
       if (change.sync == Sync::automatic) return {};
       return Error("timeline-sync",
-                   both ? "in step it would be over before the change into it is"
-                        : "it has no keytimes of the same names, in the same order, as the "
-                          "motion before it has where the change begins",
-                   "krok-keys shows keytimes and sets them; \"sync\": \"clock\" goes without");
+                   both ? "with time alignment it would end before the change into it"
+                        : "has no keytimes with the same names and order as those of the previous "
+                          "motion where the change begins",
+                   "show or set keytimes with krok-keys, or use \"sync\": \"clock\"");
     }
     item.in_step = true;
     item.skipped = both->skipped;

@@ -10,7 +10,7 @@ namespace krok::timeline {
 
 namespace {
 
-constexpr double kCarriedOn = 0.35;  // seconds for which a velocity goes on
+constexpr double kCarriedOn = 0.35;  // max seconds for which a velocity is carried on
 
 class Smooth : public Transition {
  public:
@@ -20,7 +20,7 @@ class Smooth : public Transition {
         duration_(sides.change.duration),
         from_(state_before(sides)) {
     to_ = state_after(sides);
-    const Vec3 entered = heading_frame(to_);  // the motion is not in its place yet
+    const Vec3 entered = heading_frame(to_);  // the motion is not positioned yet
     GroundFrame place = from_.pose.place;
     if (sides.place) {
       place = *sides.place;
@@ -72,7 +72,8 @@ class Smooth : public Transition {
     return {seen.x(), seen.z(), v.z()};
   }
 
-  // How far a velocity of 1 goes on, and comes back: for a short time, however long the change is.
+  // Offset from carrying on a unit velocity: zero at both ends of a short window, whatever the
+  // duration of the change.
   double carried(double t) const {
     const double window = std::min(duration_, kCarriedOn);
     if (!(t > 0) || t >= window) return 0;

@@ -12,85 +12,85 @@
 #include "scene/motion_keys.h"
 #include "timeline/easing.h"
 
-// What an animation controller is told: motions one after the other and how one goes over into the
-// next, and layers of others on top, for parts of the body. mix() (mix.h) makes one motion of it.
+// A timeline: a sequence of motions with transitions between them, and layers on top for parts of
+// the body. mix() (mix.h) evaluates it into one motion.
 //
-// Times are seconds of the result unless something else is said; ClipTimes in frames count those of
-// the motion or of the result that they are a time of. A `where` is for messages.
+// Times are seconds of the result unless stated otherwise; a ClipTime in frames counts frames of
+// the motion or of the result that it refers to. `where` members are for messages.
 
 namespace krok::timeline {
 
-// Seconds by which moments that should be equal may differ.
+// Tolerance for times that should be equal, seconds.
 inline constexpr double kTimeRounding = 1e-6;
 
-// A named stretch of a motion; both ends belong to it.
+// A named range of a motion, both ends included.
 struct Part {
   std::string name;
   ClipTime from, to;  // of the motion
   double speed = 1;
-  bool loop = false;  // whether it is made to repeat
+  bool loop = false;  // whether it is meant to repeat
 };
 
 struct Source {
   std::string name;
-  const Clip* clip = nullptr;        // a frame or more
+  const Clip* clip = nullptr;        // at least one frame
   const MotionKeys* keys = nullptr;  // may be null
   std::vector<Part> parts;
 };
 
-// Which stretch of a motion is played, and how.
+// Which range of a motion is played, and how.
 struct Play {
   int source = 0;
-  std::string part;                  // of the source's; empty: by `from` and `to`
-  std::optional<ClipTime> from, to;  // of the source; left out, the part's or the motion's ends
-  // 2 is twice as fast, negative plays from `to` back to `from`; left out, the part's or 1.
+  std::string part;                  // name of a part of the source; empty: `from` and `to`
+  std::optional<ClipTime> from, to;  // of the source; default: the ends of the part or motion
+  // 2 is twice as fast, negative plays from `to` back to `from`; default: the part's speed or 1.
   std::optional<double> speed;
-  // How often it is played, each round going on where the one before left the figure. 0: until it
-  // is ended by `until` or by what follows. Left out: 0 for a part that loops where `until` or what
-  // follows ends it, otherwise 1.
+  // Number of loop rounds; each continues from where the previous one left the character. 0: until
+  // ended by `until` or the next item. Default: 0 for a looping part that `until` or the next item
+  // ends, otherwise 1.
   std::optional<int> rounds;
-  std::optional<ClipTime> until;  // when it ends, in the result
+  std::optional<ClipTime> until;  // end time in the result
 };
 
 struct Mark {
   std::string name;
-  ClipTime at;             // since the item began, or ...
-  bool of_source = false;  // ... of the source; each time it is passed
+  ClipTime at;             // since the start of the item, or
+  bool of_source = false;  // of the source: fires each time it is passed
 };
 
 enum class ChangeKind : unsigned char {
-  cut,        // the next one takes over
-  crossfade,  // both are played, the weight going over
-  smooth,     // a transition is put in between the last pose and the next one's first
-  inertial    // the next one takes over; what is missing to it decays
+  cut,        // switches to the next item
+  crossfade,  // blends both items
+  smooth,     // inserts a transition between the last pose and the next item's first pose
+  inertial    // switches to the next item; the offset between the two decays (inertialization)
 };
 
-// Whether a crossfade goes by keytimes, so that both motions are in step.
+// Whether a crossfade aligns both motions in time by their keytimes.
 enum class Sync : unsigned char { automatic, keytimes, clock };
 
-// What makes the figure go on where it is: its carrying joint, or the feet that stand by the
-// contacts of both motions; where none do, the carrying joint.
+// What positions the next motion: the carrying joint, or the feet that are in contact in both
+// motions (the carrying joint if there are none).
 enum class Align : unsigned char { root, stance };
 
 struct Change {
   ChangeKind kind = ChangeKind::cut;
-  double duration = 0;  // seconds, > 0 but for a cut
+  double duration = 0;  // seconds, > 0 except for a cut
   Easing easing;        // crossfade and smooth
   Sync sync = Sync::automatic;
   Align align = Align::stance;
-  bool guard = true;  // inertial: what is missing does not go beyond nothing
+  bool guard = true;  // inertial: prevents overshoot of the decaying offset
 };
 
-// A motion that moves the whole figure.
+// A full-body motion.
 struct BaseItem {
   std::string name;
   Play play;
-  Change change;  // from the item before; of no meaning for the first
-  // When the change into it begins. Left out: so that the one before is played to its end (a
-  // crossfade ends there, others begin there). The first begins at 0.
+  Change change;  // from the previous item; ignored for the first
+  // When the change into it begins. Default: the previous item plays to its end (a crossfade ends
+  // there, other changes begin there). The first item begins at 0.
   std::optional<ClipTime> at;
-  // Where the figure stands in its first frame; left out, where the item before left it, the first
-  // one where its motion has it.
+  // Ground frame in its first frame. Default: continues from the previous item; the first item
+  // keeps that of its motion.
   std::optional<GroundFrame> place;
   std::vector<Mark> marks;
   Location where;
@@ -106,32 +106,32 @@ struct LayerItem {
   Play play;
   ClipTime at;
   Fade fade_in, fade_out;
-  blend::WeightCurve weight = blend::WeightCurve::constant(1);  // by seconds since it began
+  blend::WeightCurve weight = blend::WeightCurve::constant(1);  // over seconds since its start
   std::vector<Mark> marks;
   Location where;
 };
 
-// Which joints a layer moves, and how much. Rules count in order, later ones over earlier ones.
+// Which joints a layer moves, and their weight. Later rules override earlier ones.
 struct MaskRule {
-  std::string joints;  // a name or a pattern with * and ?, or ...
-  std::string below;   // ... a joint with all joints below it
+  std::string joints;  // a name or a pattern with * and ?, or
+  std::string below;   // a joint with all its descendants
   double weight = 1;   // 0 to 1
-  // Of a sub-tree: over so many joints from its top the weight rises evenly, 1 / (soft + 1) of it
-  // at the first.
+  // For `below`: the weight ramps up linearly over this many joints from the top, starting with
+  // weight / (soft + 1).
   int soft = 0;
   Location where;
 };
 
 enum class LayerMode : unsigned char {
-  override,  // takes the place of what is below it
-  additive,  // what it differs by from its reference is put on top, weights 0 to 1
-  modifier   // the same with any weight
+  override,  // replaces the pose below it
+  additive,  // adds the difference from its reference, weights 0 to 1
+  modifier   // additive with any weight
 };
 
-// In what an overriding layer's rotations are kept.
+// The space in which an override layer's rotations are applied.
 enum class Space : unsigned char {
-  parent,  // relative to the parent: an arm goes along with the trunk
-  model    // relative to the figure's heading: a trunk stays upright whatever the hips do
+  parent,  // relative to the parent: an arm follows the trunk
+  model    // relative to the character's heading: a trunk stays upright whatever the hips do
 };
 
 struct Layer {
@@ -139,20 +139,20 @@ struct Layer {
   LayerMode mode = LayerMode::override;
   Space space = Space::parent;
   std::vector<MaskRule> mask;  // empty: all joints
-  // What additive layers differ from: a moment of each item's source; left out, its first.
+  // Reference of additive layers: a time of each item's source; default: the item's first pose.
   std::optional<ClipTime> reference;
-  bool reference_pose = false;  // the skeleton's reference pose instead
+  bool reference_pose = false;  // use the skeleton's reference pose instead
   std::vector<LayerItem> items;
   Location where;
 };
 
 struct Timeline {
-  double rate = 0;  // frames a second; 0: the first item's motion's
+  double rate = 0;  // frames per second; 0: that of the first item's motion
   std::vector<BaseItem> base;
   std::vector<Layer> layers;
 };
 
-// The word for people.
+// Name for display.
 std::string_view change_name(ChangeKind kind);
 
 }  // namespace krok::timeline

@@ -7,15 +7,13 @@ namespace krok::timeline {
 
 namespace {
 
-// How far apart frames are by which velocities are measured: those of the result, or of the motion
-// where it has fewer.
+// Frame spacing for measuring velocities: that of the result, or of the motion if it is coarser.
 double step_of(const ItemPlayer& player, double rate) {
   const double source_rate = player.source().clip->rate * std::abs(player.range().speed);
   return 1 / std::min(rate, source_rate);
 }
 
-// The figure where a motion is left or entered, and how it moves there: by what is played before,
-// or by what is played after.
+// Pose and derivatives where a motion is left or entered, from the frames before or after.
 ActorState state_at(const ItemPlayer& player, double play_time, double room, double step) {
   const int known =
       static_cast<int>(std::clamp(std::floor(room / std::abs(step) + 1e-6), 0.0, 2.0));

@@ -7,33 +7,33 @@
 #include "timeline/base_motion.h"
 #include "timeline/join_state.h"
 
-// What the kinds of transitions share.
+// Shared by all kinds of transitions.
 
 namespace krok::timeline {
 
-// Those of make_transition(), one kind each.
+// make_transition() for each kind.
 std::unique_ptr<Transition> make_crossfade(const TransitionSides& sides, bool& on_feet);
 std::unique_ptr<Transition> make_smooth(const TransitionSides& sides, bool& on_feet);
 std::unique_ptr<Transition> make_inertial(const TransitionSides& sides, bool& on_feet);
 
 const Skeleton& skeleton_of(const TransitionSides& sides);
 
-// Positions in the world.
+// World positions of the joints.
 std::vector<Vec3> places_of_joints(const Skeleton& skeleton, const ActorPose& pose);
 
-// Joints that contacts of either motion tell of.
+// Joints with contacts in either motion.
 std::set<int> contact_joints(const TransitionSides& sides);
 
-// Moves the place where the next figure stands so that the joints that stand in both poses, the
-// previous one's last and the next one's first, stay where they are. False where there are none.
+// Moves `place`, the ground frame of the next motion, so that joints in contact in both poses (the
+// previous motion's last and the next motion's first) stay planted. False if there are none.
 bool stand_on_feet(const TransitionSides& sides, const ActorPose& previous, const ActorPose& next,
                    GroundFrame& place);
 
-// Puts the next motion where the previous one leaves the figure.
+// Positions the next motion where the previous one leaves the character.
 void put_next(const TransitionSides& sides, const ActorPose& left, bool& on_feet);
 
-// The figure where the one motion is left and the other entered, and how it moves there: by what is
-// played before, and by what is played after.
+// Pose and derivatives at the end of the previous motion (from earlier frames) and at the start of
+// the next one (from later frames).
 ActorState state_before(const TransitionSides& sides);
 ActorState state_after(const TransitionSides& sides);
 

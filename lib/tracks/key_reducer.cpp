@@ -9,14 +9,14 @@ namespace krok::tracks_detail {
 
 namespace {
 
-// All frames are keys at first, and keys are taken out one by one as long as what hangs on the
-// joint stays where it was. Every second is tried first, then every second of what is left, and so
-// on, and all that with a part of the tolerance before the whole: so no track uses up what others
+// All frames start as keys, and keys are removed one by one while the joint's descendants stay
+// within the tolerance: first every second key, then every second of the remaining ones, and so on.
+// All that is done with fractions of the tolerance first, so that no track uses up what others
 // could share.
 constexpr std::array<double, 5> kParts = {0.125, 0.25, 0.5, 0.75, 1.0};
 
-// Then one key is put in the place of two where that does: up to a tenth goes so. A search from the
-// top, with keys put where the model is off most, finds about as few in thirty times the time.
+// Then pairs of keys are merged into one where possible, which removes up to a tenth. A top-down
+// search that inserts keys where the error is largest finds about as few in thirty times the time.
 constexpr int kMergePasses = 2;
 
 class Reducer {
@@ -70,7 +70,7 @@ class Reducer {
   double time(std::size_t f) const { return task_.times[begin_ + f]; }
   bool is_key(std::size_t track, std::size_t f) const { return is_key_[track * frames_ + f] != 0; }
 
-  // Joints at the ends of chains first: they have the least to move.
+  // Leaf joints first: they move the least.
   void take_out_at(std::size_t f) {
     for (std::size_t track = tracks_; track-- > 0;) {
       if (task_.keep[track] == Keep::needed && is_key(track, f)) take_out(track, f);
@@ -91,13 +91,13 @@ class Reducer {
 
   const ReductionTask& task_;
   std::size_t begin_, frames_, joints_, tracks_;
-  std::vector<Transform> world_;                    // of the original, [frames x joints]
-  std::vector<Transform> reduced_, reduced_world_;  // of what the keys make
+  std::vector<Transform> world_;                    // original motion, [frames x joints]
+  std::vector<Transform> reduced_, reduced_world_;  // motion given by the keys
   std::vector<std::uint8_t> is_key_;                // [tracks x frames]
   double tolerance_ = 0;
 };
 
-// The next key after or before a frame; there is one.
+// The next key after or before a frame; it must exist.
 std::size_t Reducer::neighbour(std::size_t track, std::size_t f, int step) const {
   do {
     f = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(f) + step);
@@ -105,7 +105,7 @@ std::size_t Reducer::neighbour(std::size_t track, std::size_t f, int step) const
   return f;
 }
 
-// Sets a track's value at frame f, a and b being the keys around it.
+// Interpolates a track at frame f between the keys a and b.
 void Reducer::interpolate(std::size_t track, std::size_t a, std::size_t b, std::size_t f) {
   const std::size_t joint = track / kTracksPerJoint;
   const Transform& from = original(a, joint);
@@ -142,8 +142,7 @@ double Reducer::error(std::size_t f, std::size_t joint) const {
   return shell_error(world_[at], reduced_world_[at], task_.options.shell_distance);
 }
 
-// Places all that hangs on a joint at a frame, up to the first that is off by more than the
-// tolerance.
+// Updates the joint's descendants at a frame, up to the first whose error exceeds the tolerance.
 bool Reducer::fits(std::size_t f, std::size_t joint) {
   return std::ranges::all_of(task_.below[joint], [&](int below) {
     const auto j = static_cast<std::size_t>(below);
@@ -152,7 +151,7 @@ bool Reducer::fits(std::size_t f, std::size_t joint) {
   });
 }
 
-// Takes a key out if the model allows it; otherwise all is as before.
+// Removes a key if the tolerance allows it; otherwise restores the previous state.
 void Reducer::take_out(std::size_t track, std::size_t f) {
   const std::size_t joint = track / kTracksPerJoint;
   const std::size_t a = neighbour(track, f, -1), b = neighbour(track, f, 1);
@@ -160,7 +159,7 @@ void Reducer::take_out(std::size_t track, std::size_t f) {
     interpolate(track, a, b, g);
     return fits(g, joint);
   };
-  // From the key outwards: most that fail do so at once.
+  // From the key outwards: most removals that fail do so near it.
   std::size_t low = f, high = f;
   bool fine = fits_at(f);
   while (fine && (low > a + 1 || high + 1 < b)) {
@@ -181,7 +180,7 @@ void Reducer::take_out(std::size_t track, std::size_t f) {
   }
 }
 
-// Sets a track between two keys by all keys between them.
+// Re-evaluates a track between frames a and b from the keys between them.
 void Reducer::set_segments(std::size_t track, std::size_t a, std::size_t b) {
   const std::size_t joint = track / kTracksPerJoint;
   for (std::size_t from = a; from < b;) {
@@ -198,7 +197,7 @@ void Reducer::set_segments(std::size_t track, std::size_t a, std::size_t b) {
   }
 }
 
-// Whether one key would do between two others; sets the frames between that were tried.
+// Whether one key is enough between two others; leaves the frames that were tried changed.
 bool Reducer::one_key_fits(std::size_t track, std::size_t a, std::size_t b, std::size_t key) {
   const std::size_t joint = track / kTracksPerJoint;
   const auto fits_at = [&](std::size_t f) {
@@ -209,7 +208,7 @@ bool Reducer::one_key_fits(std::size_t track, std::size_t a, std::size_t b, std:
     }
     return fits(f, joint);
   };
-  // The middles of both parts first: there it fails soonest.
+  // The middles of both segments first: they fail soonest.
   const std::size_t before = (a + key + 1) / 2, after = (key + b) / 2;
   if (!fits_at(before) || !fits_at(after)) return false;
   for (std::size_t f = a + 1; f < b; ++f) {
@@ -218,15 +217,15 @@ bool Reducer::one_key_fits(std::size_t track, std::size_t a, std::size_t b, std:
   return true;
 }
 
-// Puts one key in the place of two neighbours, at one of some places between them, if the model
-// allows it. Returns it, or nothing if all is as before.
+// Replaces two neighbouring keys by one, at one of several frames between them, if the tolerance
+// allows it. Returns it, or nullopt after restoring the previous state.
 std::optional<std::size_t> Reducer::merged(std::size_t track, std::size_t f, std::size_t g) {
   const std::size_t a = neighbour(track, f, -1), b = neighbour(track, g, 1);
   constexpr std::size_t kMaxPlaces = 9;
   const std::size_t places = std::min(g - f + 1, kMaxPlaces);
   std::uint8_t* keys = is_key_.data() + track * frames_;
   for (std::size_t i = 0; i < places; ++i) {
-    const std::size_t place = (i + places / 2) % places;  // from the middle on
+    const std::size_t place = (i + places / 2) % places;  // starting from the middle
     const std::size_t key = f + (g - f) * place / (places - 1);
     if (!one_key_fits(track, a, b, key)) continue;
     keys[f] = keys[g] = 0;
@@ -261,7 +260,7 @@ StretchResult Reducer::result() const {
   for (std::size_t f = 0; f < frames_; ++f) {
     for (std::size_t j = 0; j < joints_; ++j) {
       const double off = error(f, j);
-      if (!(off > result.largest_error)) continue;  // also what is not a number
+      if (!(off > result.largest_error)) continue;  // NaN too
       result.largest_error = off;
       result.worst_joint = static_cast<int>(j);
       result.worst_frame = static_cast<int>(begin_ + f);

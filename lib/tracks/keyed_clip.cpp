@@ -48,8 +48,8 @@ Status check_track(const Track& track, const char* what, const std::string& join
     const double time = track.times[k];
     if (!(time >= 0 && time <= duration) || (k > 0 && !(time > track.times[k - 1]))) {
       return in_joint(
-          Error("keyed-time", fmt::format("key {} of the {} of joint {} at {} s does not come "
-                                          "after the one before, or not within 0 and {} s",
+          Error("keyed-time", fmt::format("key {} of the {} of joint {} at {} s is not after "
+                                          "the previous key or not within 0 to {} s",
                                           k, what, joint, time, duration)),
           joint);
     }
@@ -125,7 +125,7 @@ KeyedClip keyed_clip(const Clip& clip) {
   for (int f = 0; f < clip.frame_count(); ++f) {
     clip.get_pose(f, world);
     world_to_local(clip.skeleton.parents, world, local);
-    // The last falls on the duration, however i / rate is rounded.
+    // The last time equals the duration, however i / rate is rounded.
     const double time = f + 1 == clip.frame_count() ? keyed.duration : f / clip.rate;
     for (std::size_t j = 0; j < local.size(); ++j) {
       auto& [position, rotation, scale] = keyed.joints[j];

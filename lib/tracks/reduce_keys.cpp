@@ -18,7 +18,7 @@ using tracks_detail::kTracksPerJoint;
 using tracks_detail::ReductionTask;
 using tracks_detail::StretchResult;
 
-// Long motions go in stretches of so many frames, which share their border frames.
+// Long motions are reduced in chunks of this many frames, which share their border frames.
 constexpr std::size_t kStretch = 1024;
 
 Status check(const ReduceOptions& options) {
@@ -27,8 +27,8 @@ Status check(const ReduceOptions& options) {
       !(options.most_kept >= 0)) {
     return Error(
         "reduce-tolerance",
-        fmt::format("a tolerance of {} m with a shell of {} m and at most {} kept, expected "
-                    "a positive number and two that are not negative",
+        fmt::format("tolerance {} m, shell distance {} m, max fraction kept {}; the first must "
+                    "be positive, the others must not be negative",
                     options.tolerance, options.shell_distance, options.most_kept));
   }
   return {};
@@ -44,8 +44,8 @@ std::vector<std::vector<int>> joints_below(std::span<const int> parents) {
   return below;
 }
 
-// Which tracks need more than the value of the first frame: those whose change, alone, would be
-// seen. What is left still may take a quarter of the tolerance on the longest chain.
+// Which tracks need more than the value of the first frame: those whose change alone would be
+// visible. Tracks kept constant may use up to a quarter of the tolerance on the longest chain.
 std::vector<tracks_detail::Keep> moving_tracks(const ReductionTask& task, std::size_t frames) {
   const std::size_t joints = task.parents.size();
   std::vector<std::size_t> depth(joints, 1);
@@ -54,7 +54,7 @@ std::vector<tracks_detail::Keep> moving_tracks(const ReductionTask& task, std::s
     if (task.parents[j] >= 0) depth[j] = depth[static_cast<std::size_t>(task.parents[j])] + 1;
     deepest = std::max(deepest, depth[j]);
   }
-  // The length of all bones below a joint is more than the reach of its rotation.
+  // Upper bound of the reach of a joint's rotation: the longest chain of bones below it.
   std::vector<double> reach(joints, task.options.shell_distance), longest(joints, 0);
   for (std::size_t f = 0; f < frames; ++f) {
     for (std::size_t j = 0; j < joints; ++j) {
@@ -83,7 +83,7 @@ std::vector<tracks_detail::Keep> moving_tracks(const ReductionTask& task, std::s
   return keep;
 }
 
-// Adds a stretch's keys to those of the stretches before it.
+// Appends the keys of a chunk to those of the chunks before it.
 void append(const StretchResult& stretch, Reduction& reduction) {
   for (std::size_t track = 0; track < stretch.keys.size(); ++track) {
     KeptFrames& joint = reduction.joints[track / kTracksPerJoint];
@@ -115,8 +115,8 @@ Reduction reduce_all(const ReductionTask& task, int jobs) {
   return reduction;
 }
 
-// Marks the tracks of which too many keys stay to be worth times of their own. Whether there are
-// any that were not yet.
+// Marks the tracks that keep too many keys to be worth separate times. Returns whether any was
+// newly marked.
 bool keep_all_where_few_go(const ReduceOptions& options, const Reduction& reduction,
                            ReductionTask& task) {
   const double most = options.most_kept * static_cast<double>(task.times.size());
@@ -158,8 +158,9 @@ Result<Reduction> choose_keys(std::span<const int> parents, std::span<const doub
   ReductionTask task{parents, times, joint_to_parent, {}, joints_below(parents), options};
   task.keep = moving_tracks(task, frames);
   Reduction reduction = reduce_all(task, jobs);
-  // Tracks that get all their keys back leave more room to the others, and take away what made up
-  // for an error of theirs: so all begins anew, and with the last round what comes out is right.
+  // Tracks that get all their keys back leave more tolerance to the others, and remove errors that
+  // others compensated for. So everything is reduced again, and the result of the last round is
+  // valid.
   constexpr int kRounds = 4;
   for (int round = 1; round < kRounds && keep_all_where_few_go(options, reduction, task); ++round) {
     reduction = reduce_all(task, jobs);

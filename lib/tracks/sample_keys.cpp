@@ -10,8 +10,8 @@ namespace krok {
 
 namespace {
 
-// A place between two keys; `part` 0 is the key itself, as it is before the first and after the
-// last.
+// A time between two keys; `part` is 0 at the key itself, and before the first and after the last
+// key.
 struct KeyInterval {
   std::size_t key = 0;
   double part = 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The walk between two walks, in step and out of step. README.md tells the same story.
+# Blends two walks with and without time alignment and compares the foot skate. See README.md.
 #
 #   run.sh [OUTPUT_FOLDER]
 #
@@ -15,14 +15,14 @@ enter_folder "${1:-out/blend_walks}"
 
 other() { awk -v w="$1" 'BEGIN { print 1 - w }'; }
 
-# slide MOTION: how fast its feet slide, in mm/s.
+# slide MOTION: its foot skate in mm/s.
 slide() {
   "$bin/krok-keys" -q --discard-edits --json=slide.json -- "$1" >slide.txt
   awk -F'[:,]' '/"slide_speed"/ { printf "%.1f", 1000 * $2 }' slide.json
   rm -f slide.json slide.txt
 }
 
-# strikes MOTION: name and time of each keytime, found in the motion itself.
+# strikes MOTION: name and time of each keytime, detected in the motion.
 strikes() {
   "$bin/krok-keys" -q --discard-edits -- "$1" | awk '$2 == "s" && NF == 3 { print $3, $1 }'
 }
@@ -35,26 +35,26 @@ for walk in slow quick; do
   "$bin/krok-keys" -o $walk.keys.json -- $walk.anim 2>&1 | sed 's/^/  /'
 done
 
-say "2. Half of each: in step, with feet kept in place, and by the clock"
+say "2. Blend with equal weights: time-aligned, with planted feet, and without alignment"
 "$bin/krok-blend" -q --warp pchip -o warped.anim -- slow.anim:0.5 quick.anim:0.5
 "$bin/krok-blend" -q --warp pchip --align stance -o stance.anim -- slow.anim:0.5 quick.anim:0.5
-# The clock runs as long as the shorter walk.
+# Both trimmed to the shorter walk.
 for walk in slow quick; do "$bin/krok-edit" -q --to 3.6s -o ${walk}_clock.anim -- $walk.anim; done
 "$bin/krok-blend" -q --keys none -o clock.anim -- slow_clock.anim:0.5 quick_clock.anim:0.5
 
-say "3. How fast the feet slide"
+say "3. Foot skate"
 {
-  echo "| blend | feet slide |"
+  echo "| blend | foot skate |"
   echo "|---|---|"
   echo "| in step (\`--warp pchip\`) | $(slide warped.anim) mm/s |"
-  echo "| in step, feet kept in place (\`--align stance\`) | $(slide stance.anim) mm/s |"
+  echo "| in step, planted feet (\`--align stance\`) | $(slide stance.anim) mm/s |"
   echo "| by the clock (\`--keys none\`) | $(slide clock.anim) mm/s |"
 } | tee slide.md
 
-say "4. When the feet strike, in seconds"
-# Times are counted from the strike that each motion begins with.
+say "4. Gait events, in seconds"
+# Times are relative to the first heel strike.
 {
-  echo "| keytime | slow | quick | half of each | found in the blend |"
+  echo "| keytime | slow | quick | mean | detected in the blend |"
   echo "|---|---|---|---|---|"
   paste -d' ' <(strikes slow.anim) <(strikes quick.anim) <(strikes warped.anim) |
     awk 'NR == 1 { slow = $2; quick = $4 }
@@ -62,7 +62,7 @@ say "4. When the feet strike, in seconds"
            0.5 * ($2 - slow + $4 - quick), $6 }' | sed -n '2,7p'
 } | tee strikes.md
 
-say "5. From one walk to the other"
+say "5. Sweep over the weight"
 echo "weight,blend,slide [mm/s]" >sweep.csv
 sheet=()
 for weight in "${weights[@]}"; do
@@ -78,7 +78,7 @@ rm -f clocked.anim clocked.keys.json
 "$bin/krok-plot" -q --x weight --by blend --style both -o slide.svg \
   --title "Sliding feet over the weight of the quick walk" -- sweep.csv
 "$bin/krok-plot" -q --sheet sweep.png --sides left --moments 6 --size 110 -- "${sheet[@]}"
-echo "  slide.svg   sliding over the weight"
-echo "  sweep.png   the walks from weight 0 (above) to weight 1 (below)"
+echo "  slide.svg   foot skate over the weight"
+echo "  sweep.png   the blends from weight 0 (top) to weight 1 (bottom)"
 
-say "Done. Play them with krok-view warped.anim clock.anim -o blend.html"
+say "Done. Play the blends with krok-view warped.anim clock.anim -o blend.html"

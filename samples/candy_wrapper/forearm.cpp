@@ -12,7 +12,7 @@ namespace {
 constexpr double kUpperEnd = -0.06, kHandEnd = kForearmLength + 0.16;
 const Vec3 kElbow(0, 1, 0);
 
-// Half axes of the section at a place along the arm.
+// Half-axes of the section at a position along the arm.
 struct Section {
   double x, height, width;
 };
@@ -32,7 +32,7 @@ Section section(double x) {
           (kForearmWidth + over * (0.055 - kForearmWidth)) * left};
 }
 
-// Where rings are, dense where the surface bends and where it is twisted; the ends are points.
+// Sections along the arm, dense where the surface curves or twists; both ends are points.
 std::vector<Section> rings() {
   std::vector<Section> result;
   constexpr int kCap = 16, kStretch = 120, kHand = 40;
@@ -59,7 +59,7 @@ void add_vertex(const Vec3& position, Model& model) {
   model.influence_weights.push_back(1 - weight);
 }
 
-// The sum of the triangles' normals about each vertex, in proportion to their areas.
+// Area-weighted vertex normals.
 void add_normals(Model& model) {
   std::vector<Vec3> sums(model.positions.size(), Vec3::Zero());
   const auto at = [&](std::uint32_t v) -> Vec3 { return model.positions[v].cast<double>(); };

@@ -21,10 +21,10 @@ Result<int> run(ToolContext& context, const std::string& model_path) {
   const auto write_clip = [&](OutputFile& file) { return anim::write(clip, {}, file); };
   if (Status status = outputs.add(context.output, write_clip); !status) return status.error();
   if (Status status = outputs.finish(); !status) return status.error();
-  context.say(fmt::format("{}: {} vertices, {} triangles", model_path, model.positions.size(),
+  context.log(fmt::format("{}: {} vertices, {} triangles", model_path, model.positions.size(),
                           model.triangles.size()));
-  context.say(
-      fmt::format("{}: the wrist twisted from 0 to 180 degrees, one a frame", context.output));
+  context.log(
+      fmt::format("{}: the wrist twists from 0 to 180 degrees, one per frame", context.output));
   return kExitDone;
 }
 
@@ -34,12 +34,12 @@ int main(int argc, char** argv) {
   std::string model_path;
   ToolSpec spec;
   spec.name = "make-forearm";
-  spec.summary = "Makes a forearm with a hand, and a motion that twists its wrist";
+  spec.summary = "Generates a forearm mesh and a motion that twists its wrist";
   spec.inputs = "";
   spec.examples = {{"make-forearm --model forearm.model -o twist.anim",
-                    "the mesh on two joints, and half a turn of the wrist in three seconds"}};
+                    "a mesh with two joints, and a 180-degree wrist twist in three seconds"}};
   spec.declare = [&](CommandOptions& command) {
-    command.add_option("--model", model_path, "Where the mesh goes")
+    command.add_option("--model", model_path, "Output file for the mesh")
         .type_name("OUT.model")
         .required()
         .group("Forearm");

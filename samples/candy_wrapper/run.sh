@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The candy wrapper: what linear blend does to a twisted forearm. README.md tells the same story.
+# The candy wrapper effect: volume loss of a twisted forearm by skinning method. See README.md.
 #
 #   run.sh [OUTPUT_FOLDER]
 #
@@ -17,18 +17,18 @@ enter_folder "${1:-out/candy_wrapper}"
 # with 96 corners. Litres.
 stretch=$(awk 'BEGIN { print 0.25 * 0.035 * 0.045 * 48 * sin(3.141592653589793 / 48) * 1000 }')
 
-# volume METHOD FRAME: litres within the mesh.
+# volume METHOD FRAME: volume of the mesh in litres.
 volume() {
   "$bin/krok-skin" -q --as pose --method "$1" --time "$2f" -o pose.glb -- forearm.model \
     twist.anim &&
     "$bin/krok-info" --json -- pose.glb | awk -F'[:,]' '/"volume":/ { printf "%.9f", 1000 * $2 }'
 }
 
-say "1. A forearm, and half a turn of its wrist"
+say "1. A forearm and a 180-degree twist"
 "$generators/make-forearm" -q --model forearm.model -o twist.anim
 "$bin/krok-info" -- forearm.model | grep -E '^  (mesh|volume) '
 
-say "2. Skinned by each method"
+say "2. Skin with each method"
 for method in "${methods[@]}"; do
   "$bin/krok-skin" -q --method "$method" --every 45 -o "$method.glb" -- forearm.model twist.anim
 done
@@ -36,8 +36,8 @@ done
   -- "${methods[@]/%/.glb}"
 echo "  twist.png   twisted by 0, 45, 90, 135 and 180 degrees"
 
-say "3. The volume lost between elbow and wrist"
-# A frame is a degree. What is lost of the whole arm is lost there: the rest moves as it is.
+say "3. Volume loss between elbow and wrist"
+# One degree per frame. The whole loss is there: the rest of the arm moves rigidly.
 whole=$(volume linear 0)
 echo "twist [deg],method,volume lost [percent]" >volume.csv
 for degrees in $(seq 0 15 180); do
@@ -63,4 +63,4 @@ lost() { awk -F, -v at="$1" -v by="$2" '$1 == at && $2 == by { print $3 " %" }' 
   done
 } | tee volume.md
 
-say "Done. linear.glb, dual-quaternion.glb and rigid.glb play in any viewer"
+say "Done. Open linear.glb, dual-quaternion.glb and rigid.glb in any glTF viewer."

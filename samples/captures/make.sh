@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the captures of this folder anew: make.sh [OUTPUT_FOLDER]. The program is found through
-# $MAKE_WALK or in build/samples.
+# Regenerates the captures in this folder: make.sh [OUTPUT_FOLDER]. Uses $MAKE_WALK, or make-walk in
+# build/samples.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 make_walk=${MAKE_WALK:-$here/../../build/samples/make-walk}

@@ -7,8 +7,8 @@ namespace krok::samples {
 namespace {
 
 // Heights above the floor and lengths as fractions of stature. Ankle, knee, hip, upper arm,
-// forearm, hand, foot and shoulder breadth are Drillis and Contini's; the places of the spine's
-// joints and of the ball of the foot within them are ours.
+// forearm, hand, foot and shoulder breadth are from Drillis and Contini; the positions of the spine
+// joints and of the ball of the foot are estimates.
 constexpr double kAnkleHeight = 0.039;
 constexpr double kKneeHeight = 0.285;
 constexpr double kHipHeight = 0.530;
@@ -29,7 +29,7 @@ struct Builder {
   Skeleton& skeleton;
   double stature;
 
-  // A joint at a place given in fractions of stature.
+  // Adds a joint; position in fractions of stature.
   int add(const std::string& name, int parent, double x, double y, double z,
           bool end_site = false) {
     return skeleton.add(name, parent, {Vec3(x, y, z) * stature, Quat::Identity()}, end_site);

@@ -4,8 +4,8 @@
 
 #include "scene/skeleton.h"
 
-// The human figure that walks: a skeleton of 24 joints and 5 end sites with MotionBuilder's names,
-// in a T-pose facing +Z on the ground, every reference orientation the identity.
+// The walking actor: a skeleton of 24 joints and 5 end sites with MotionBuilder names, in a T-pose
+// facing +Z on the ground; all reference orientations are the identity.
 
 namespace krok::samples {
 
@@ -36,16 +36,16 @@ struct Actor {
   double thigh = 0;  // metres, hip to knee
   double shank = 0;  // metres, knee to ankle
 
-  // Points of the sole, relative to the foot joint (the ankle) in the reference pose; the same for
-  // both feet, straight below and before the ankle.
+  // Points of the sole, relative to the foot joint (the ankle) in the reference pose; identical for
+  // both feet, in the sagittal plane of the ankle.
   Vec3 heel = Vec3::Zero();
   Vec3 ball = Vec3::Zero();  // below the toe joint
   Vec3 toe_tip = Vec3::Zero();
   Vec3 toe_joint = Vec3::Zero();  // LeftToeBase itself
 };
 
-// A figure of that stature (metres, > 0). Proportions as fractions of stature after Drillis and
-// Contini (1966) as given by Winter, "Biomechanics and Motor Control of Human Movement".
+// An actor of the given stature (metres, > 0). Proportions after Drillis and Contini (1966) as
+// given by Winter, "Biomechanics and Motor Control of Human Movement".
 Actor make_actor(double stature);
 
 }  // namespace krok::samples

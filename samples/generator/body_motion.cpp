@@ -12,13 +12,13 @@ namespace krok::samples {
 
 namespace {
 
-// A walking knee is never locked, and in steps that are longer than ordinary bent more, or it would
-// snap straight before each strike.
+// A walking knee is never fully extended, and more flexed in long steps, or it would snap straight
+// before each strike.
 double least_knee_flexion(double activity) {
   return (4 + 18 * std::max(0.0, activity - 1)) * kRadiansPerDegree;
 }
 constexpr double kStandingKneeFlexion = 6 * kRadiansPerDegree;
-constexpr double kHeightSpacing = 1.0 / 120.0;  // seconds between the keys of the height
+constexpr double kHeightSpacing = 1.0 / 120.0;  // seconds between height keys
 constexpr double kHeightSmoothing = 0.045;      // seconds, standard deviation
 
 template <typename T, typename Key>
@@ -30,12 +30,12 @@ Spline<T> over_prints(const FootPlan& plan, Key key) {
   return Spline<T>(std::move(keys), 0, plan.step_time);
 }
 
-// The rotation of the left side for the right one, mirrored in the plane x = 0.
+// Mirrors a rotation of the left side at the plane x = 0 if `side` is right.
 Quat on_side(Side side, const Quat& left) {
   return side == Side::left ? left : Quat(left.w(), left.x(), -left.y(), -left.z());
 }
 
-// How much of the body's weight a foot carries, 0 in swing, 1 while the other swings.
+// Fraction of body weight on a foot: 0 in swing, 1 in single support.
 double load(const Footprint& print, double stride, double time) {
   const double double_support = (kToeOff - 0.5) * stride;
   const double on = print.first_of_foot ? 1 : ease((time - print.strike) / double_support);
@@ -79,11 +79,11 @@ Transform BodyMotion::pelvis_without_height(double time) const {
   const double heading = heading_(time);
   const double stature = actor_.stature;
 
-  // Towards the foot that stands, most in the middle of its single support, phase 0.31.
+  // Sway towards the stance foot, largest at mid single support, phase 0.31.
   const double moving = std::min(1.0, 2.5 * activity);
   const double sway = 0.018 * stature / 1.75 * moving * std::cos(2 * kPi * (phase - 0.31));
-  // Before the ankles when standing, more so when walking: at a strike the leg behind reaches
-  // further than the one before. A little faster in double support than in single support.
+  // In front of the ankles: at a strike the trailing leg reaches further than the leading one.
+  // Slightly faster in double than in single support.
   const double ahead = 0.046 * stature + 0.006 * activity * std::sin(4 * kPi * (phase + 0.03));
   Transform pelvis;
   pelvis.position = path_(time) + left_of(heading) * sway + forward_of(heading) * ahead;
@@ -101,7 +101,7 @@ Transform BodyMotion::pelvis(double time) const {
   return pelvis;
 }
 
-// The height at which a hip is as far from its ankle as a leg of that knee flexion is long.
+// The hip height at which the distance from hip to ankle is `reach`, the length of the flexed leg.
 static double hip_height(const Vec3& hip, const Vec3& ankle, double reach) {
   const double across = Vec2(hip.x() - ankle.x(), hip.z() - ankle.z()).norm();
   return ankle.y() + std::sqrt(std::max(0.0, reach * reach - across * across));
@@ -118,7 +118,7 @@ double BodyMotion::level_height(double time) const {
     const Footprint& print = foot.print_at(time);
     const double carried = load(print, stride, time);
     if (carried <= 0) continue;
-    // Where in the stance; a foot that stands longer waits in the middle of it.
+    // Phase of the stance; a longer stance is extended in the middle.
     double phase =
         print.first_of_foot ? kHeelRise : std::min(kHeelRise, (time - print.strike) / stride);
     if (!print.last_of_foot) phase = std::max(phase, kToeOff - (print.off - time) / stride);
@@ -135,8 +135,7 @@ double BodyMotion::level_height(double time) const {
   return height / weight;
 }
 
-// On stairs the body rises evenly while the knee that leads extends, bent by as much as it is
-// ahead.
+// On stairs the body rises steadily while the leading knee, flexed according to its lead, extends.
 double BodyMotion::stairs_height(double time) const {
   const Vec3 hip = actor_.skeleton.reference_local(actor_.legs[0].upper).position;
   const double standing =
@@ -160,8 +159,8 @@ double BodyMotion::highest(double time) const {
   return height;
 }
 
-// The pelvis is carried by the leg that stands: its knee's flexion says how high. What comes out is
-// smoothed, and then lowered, smoothly, where a leg could not reach its foot.
+// The stance leg carries the pelvis: its knee flexion determines the height. The result is
+// smoothed, and then smoothly lowered where a leg could not reach its foot.
 void BodyMotion::plan_height() {
   const double margin = 1.0;
   const double start = plan_.first_time - margin;
@@ -203,7 +202,7 @@ void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
     world[index].position = world[parent] * actor_.skeleton.reference_local(joint).position;
     world[index].orientation = orientation;
   };
-  // The shoulders turn against the pelvis, a little later than it, and stay nearly level.
+  // The shoulders counter-rotate with a small delay relative to the pelvis, and stay nearly level.
   const double turn = activity * 5.5 * kRadiansPerDegree * std::cos(2 * kPi * (phase - 0.03));
   const double list = -0.35 * std::min(1.0, 2.5 * activity) * pelvis_list(phase);
   const double climb = plan_.ground == Ground::stairs ? plan_.rise / (0.1 * actor_.stature) : 0;
@@ -216,7 +215,7 @@ void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
   place(actor_.spine, slerp(hips, chest, 0.3));
   place(actor_.spine1, slerp(hips, chest, 0.65));
   place(actor_.spine2, chest);
-  // The head keeps level and looks where the walk goes next.
+  // The head stays level and looks ahead along the path.
   const double ahead = heading_(time + 0.35);
   const Quat head =
       axis_rotation(Axis::y, ahead + 0.15 * turn) *
@@ -242,8 +241,8 @@ void BodyMotion::pose_arm(Side side, double time, std::span<Transform> world) co
     world[index] = world[parent] * Transform{actor_.skeleton.reference_local(joint).position,
                                              on_side(side, left_local)};
   };
-  // In the left arm's own frame the bone runs along +X; hanging down, its +Y points away from the
-  // body and +Z forward.
+  // In the frame of the left arm the bone is along +X; hanging down, +Y points away from the body
+  // and +Z forward.
   set(arm.collar,
       axis_rotation(Axis::y, -0.12 * flexion) * axis_rotation(Axis::z, -3 * kRadiansPerDegree));
   set(arm.upper, axis_rotation(Axis::x, -flexion) *
@@ -264,7 +263,7 @@ void BodyMotion::pose_leg(Side side, double time, std::span<Transform> world) co
   const Transform& hips = world[static_cast<std::size_t>(actor_.hips)];
   const FootPose planned = feet_[static_cast<std::size_t>(side)].at(time);
 
-  // The knee points between where the pelvis and where the foot points, mostly the foot.
+  // The knee direction is between those of the pelvis and the foot, closer to the foot.
   const Vec3 foot_forward = (planned.foot * Vec3(Vec3::UnitX())).cross(Vec3(Vec3::UnitY()));
   const Vec3 hips_forward = (hips.orientation * Vec3(Vec3::UnitX())).cross(Vec3(Vec3::UnitY()));
   TwoBoneChain chain;

@@ -8,8 +8,8 @@
 #include "samples/generator/curves.h"
 #include "samples/generator/foot_motion.h"
 
-// The whole body over time: pelvis, trunk, head and arms after published gait curves, legs between
-// the pelvis and the feet by two-bone inverse kinematics.
+// Full-body motion: pelvis, trunk, head and arms from published gait curves, legs by two-bone
+// inverse kinematics between pelvis and feet.
 
 namespace krok::samples {
 
@@ -17,7 +17,7 @@ class BodyMotion {
  public:
   BodyMotion(const WalkOptions& options, const Actor& actor, const FootPlan& plan);
 
-  // joint_to_world of all joints of figure.skeleton, shape [joints].
+  // joint_to_world of all joints of actor.skeleton, shape [joints].
   void pose(double time, std::span<Transform> joint_to_world) const;
 
   const FootMotion& foot(Side side) const { return feet_[static_cast<std::size_t>(side)]; }
@@ -40,8 +40,8 @@ class BodyMotion {
   std::array<FootMotion, 2> feet_;  // [Side]
   Spline<Vec3> path_;               // the middle between the feet, along the walk
   Spline<double> heading_;
-  Spline<double> activity_;  // step length over an ordinary one, 0 when standing
-  Spline<double> height_;    // of the pelvis, worked out from the legs
+  Spline<double> activity_;  // step length relative to an ordinary step, 0 when standing
+  Spline<double> height_;    // of the pelvis, computed from the legs
 };
 
 }  // namespace krok::samples

@@ -5,11 +5,11 @@
 
 #include "math/types.h"
 
-// Smooth functions of time that the walk is made of. All are twice continuously differentiable.
+// Smooth functions of time used by the walk. All are twice continuously differentiable.
 
 namespace krok::samples {
 
-// 0 up to x = 0, 1 from x = 1, with no velocity and no acceleration at both ends.
+// 0 for x <= 0, 1 for x >= 1, with zero velocity and acceleration at both ends.
 double ease(double x);
 
 // The quintic through position, velocity and acceleration at both ends of a time interval.
@@ -49,8 +49,8 @@ class KnotCurve {
   std::vector<Knot> knots_;
 };
 
-// A curve of period 1, the Fourier series of evenly spaced samples (the first at 0) cut off after
-// `harmonics`.
+// A curve of period 1: the Fourier series of evenly spaced samples (the first at 0), truncated
+// after `harmonics`.
 class PeriodicCurve {
  public:
   PeriodicCurve(std::span<const double> samples, int harmonics);
@@ -61,8 +61,8 @@ class PeriodicCurve {
   std::vector<double> cosines_, sines_;
 };
 
-// A uniform cubic B-spline over evenly spaced keys: it passes near the keys, never overshoots them,
-// and is a straight line where they lie evenly on one. Constant beyond both ends.
+// A uniform cubic B-spline over evenly spaced keys: approximates the keys without overshoot, and
+// reproduces straight lines. Constant beyond both ends.
 template <typename T>
 class Spline {
  public:
@@ -93,7 +93,7 @@ class Spline {
   double first_time_, spacing_;
 };
 
-// Samples smoothed in place by a Gaussian of `sigma` samples, the ends continued as constants.
+// Smooths samples in place with a Gaussian of `sigma` samples; the ends are extended as constants.
 void smooth(std::vector<double>& samples, double sigma);
 
 }  // namespace krok::samples

@@ -10,17 +10,16 @@ namespace krok::samples {
 
 namespace {
 
-// The foot comes down still slowing: a jolt, as every heel strike is one. In steps over the swing's
-// time squared.
+// The foot is still decelerating at heel strike. In step lengths per squared swing time.
 constexpr double kLandingDeceleration = 2.5;
-// A foot that comes down flat, as in stepping on the spot, has no such jolt forward. It is set
-// down, slowing by four fifths of gravity; longer steps come down on the heel.
-constexpr double kSettingDown = 8;  // metres a second squared, for a stature of 1.75 m
-constexpr double kFlatPitch = 9 * kRadiansPerDegree;  // of strikes that are no flat ones
+// A flat foot strike, as in stepping in place, has no such forward jolt: the foot is set down with
+// a deceleration of four fifths of gravity.
+constexpr double kSettingDown = 8;                    // m/s^2, for a stature of 1.75 m
+constexpr double kFlatPitch = 9 * kRadiansPerDegree;  // of strikes that are not flat
 constexpr double kToesUpInSwing = 20 * kRadiansPerDegree;
 constexpr double kClearance = 0.012;  // metres under the sole in mid-swing, at least
 
-// Toes up is a turn about -X.
+// Toes up is a rotation about -X.
 Quat pitched(double angle) {
   return axis_rotation(Axis::x, -angle);
 }
@@ -40,18 +39,18 @@ double early_bump(double u) {
   return u * u * u * v * v * v * v * v * (16777216.0 / 84375.0);
 }
 
-// How a swing is lifted: on level ground early, when the toes need room.
+// Lift profile of a swing: early on level ground, when the toes need clearance.
 double lift_shape(double u, int climb) {
   return climb == 0 ? early_bump(u) : bump(u);
 }
 
-// How it is held back: upstairs early, while the foot has the next tread's edge before it;
-// downstairs late and the other way, until the heel is past the edge.
+// Hold-back profile: upstairs early, while the edge of the next tread is in front of the foot;
+// downstairs late and in the opposite direction, until the heel is past the edge.
 double hold_shape(double u, int climb) {
   return climb > 0 ? early_bump(u) * (1 - ease(u)) : -early_bump(1 - u) * ease(u);
 }
 
-// The heel, and later the ball, rise as the cube of time.
+// The heel, and later the ball, rise with the cube of time.
 State<double> cubic_rise(double start, double end, double angle) {
   const double duration = end - start;
   return {angle, 3 * angle / duration, 6 * angle / (duration * duration)};
@@ -74,12 +73,12 @@ KnotCurve::Knot knot(double time, const State<double>& state) {
   return {time, state.position, state.velocity, state.acceleration};
 }
 
-// A turning point shortly after (or before) a moment, about where the velocity there leads to.
+// A turning point shortly after (or before) a moment, extrapolated from the velocity there.
 KnotCurve::Knot turning_point(double from, const State<double>& state, double delay) {
   return {from + delay, state.position + 0.45 * state.velocity * delay, 0, 0};
 }
 
-// A vector of the foot's plane turned by a pitch over time, with its derivatives.
+// A vector in the sagittal plane of the foot rotated by a pitch over time, with derivatives.
 State<Vec3> turned(const Vec3& v, const State<double>& pitch) {
   const double c = std::cos(pitch.position), s = std::sin(pitch.position);
   const Vec3 value(0, v.y() * c + v.z() * s, -v.y() * s + v.z() * c);
@@ -113,7 +112,7 @@ FootMotion::FootMotion(Side side, const FootPlan& plan, const Actor& actor)
     pitch.push_back(knot(next.strike, strike_pitch(next)));
     pitch_.emplace_back(std::move(pitch));
 
-    // How far the toes are bent up against the foot; on the ground they lie flat.
+    // Toe extension relative to the foot; on the ground the toes are flat.
     const State<double> flat{0, 0, 0};
     const State<double> bent = off_toe_pitch(print) - off_pitch(print);
     const State<double> down = next.strike_pitch < 0 ? flat - strike_pitch(next) : flat;
@@ -129,7 +128,7 @@ FootMotion::FootMotion(Side side, const FootPlan& plan, const Actor& actor)
     if (plan.ground == Ground::stairs) swing.climb = (plan.rise > 0) - (plan.rise < 0);
     swing.direction = next.path_point - print.path_point;
     const double swing_time = next.strike - print.off;
-    // Along the ground: level, it would come out of a slope that leads down. A tread is level.
+    // Parallel to the ground: a horizontal swing would leave a downhill slope. Treads are level.
     if (plan.ground == Ground::stairs) swing.direction.y() = 0;
     swing.to.acceleration -= swing.direction * (kLandingDeceleration / (swing_time * swing_time));
     swing.direction.y() = 0;

@@ -5,7 +5,7 @@
 #include "samples/generator/curves.h"
 #include "samples/generator/foot_plan.h"
 
-// One foot over time: it rolls over its prints without sliding and swings from one to the next.
+// The motion of one foot: rolls over its footprints without skating and swings between them.
 
 namespace krok::samples {
 
@@ -15,17 +15,17 @@ struct FootPose {
   Quat toes = Quat::Identity();  // toes_to_world
 };
 
-// In stance the foot turns about the heel's contact point while its toes point up, about the toe
-// joint, the toes flat, while its heel is up, and at last rolls over the tip of the toes. The swing
-// takes the ankle on from toe-off to the next strike with continuous velocity and acceleration,
-// lifted and held back as far as it takes to clear the ground.
+// In stance the foot rotates about the heel contact point while its toes point up, about the toe
+// joint (with flat toes) while its heel is up, and finally about the tip of the toes. The swing
+// moves the ankle from toe-off to the next strike with continuous velocity and acceleration, lifted
+// and held back as far as ground clearance requires.
 class FootMotion {
  public:
   FootMotion(Side side, const FootPlan& plan, const Actor& actor);
 
   FootPose at(double time) const;
 
-  // The print the foot is on or has last left.
+  // The footprint that the foot is on or has left last.
   const Footprint& print_at(double time) const;
 
  private:

@@ -30,7 +30,7 @@ std::vector<Step> steps_of(const WalkOptions& options) {
   return steps;
 }
 
-// The roll of a foot over the ground, by how long its steps are and whether they climb.
+// Sets the foot pitch at strike and toe-off from the step lengths and the rise.
 void set_pitches(Footprint& print, double length_before, double length_after,
                  const WalkOptions& options) {
   const double nominal = kNominalStep * options.stature;
@@ -41,11 +41,11 @@ void set_pitches(Footprint& print, double length_before, double length_after,
   print.off_pitch = -(22 + 47 * after) * degree;
   print.off_toe_pitch = 0.45 * print.off_pitch;
   if (options.ground == Ground::stairs && options.rise != 0) {
-    // Up, the sole comes down flat; down, the ball comes first.
+    // Upstairs the foot strikes flat; downstairs the ball strikes first.
     const double climb = std::min(1.0, std::abs(options.rise) / (0.07 * options.stature));
     const double on_stairs = options.rise > 0 ? 0.0 : -16 * degree;
     print.strike_pitch += climb * (on_stairs - print.strike_pitch);
-    // The foot is lifted off rather than rolled off.
+    // The foot is lifted rather than rolled off.
     print.off_pitch += climb * (-24 * degree - print.off_pitch);
     print.off_toe_pitch *= 1 - climb;
   }
@@ -69,7 +69,7 @@ double FootPlan::ground_height(const Vec3& place) const {
     const Vec3 from_print = place - print.path_point;
     const double along = from_print.dot(forward_of(print.path_heading));
     const double distance = Vec2(from_print.x(), from_print.z()).norm();
-    // A path that turns comes back: only treads nearby count.
+    // A turning path may return to the same area: only nearby treads count.
     if (along >= -edge_behind_heel && distance < 1.5) height = print.path_point.y();
     if (distance < nearest_distance) {
       nearest_distance = distance;
@@ -84,14 +84,14 @@ double FootPlan::ground_height(const Vec3& place) const {
 FootPlan plan_feet(const WalkOptions& options, const Actor& actor) {
   const std::vector<Step> steps = steps_of(options);
   const int count = static_cast<int>(steps.size()) + 1;
-  // The print before the first step asked for.
+  // The print before the first requested step.
   const int origin = options.from_standing ? 1 : kPadding;
 
   FootPlan plan;
   plan.step_time = 60.0 / cadence_of(options);
   plan.rise = options.rise;
   plan.ground = options.ground;
-  // A foot stands in the middle of its tread.
+  // A foot is centred on its tread.
   const double foot_length = actor.toe_tip.z() - actor.heel.z();
   plan.edge_behind_heel = std::max(0.0, 0.5 * (options.step_length - foot_length));
   const double stride = 2 * plan.step_time;
@@ -123,7 +123,7 @@ FootPlan plan_feet(const WalkOptions& options, const Actor& actor) {
     print.ball_rise = print.strike + kBallRise * stride;
   }
 
-  // The origin is where the walk asked for starts, facing +Z there.
+  // The requested walk starts at the origin, facing +Z.
   const Footprint start = plan.prints[static_cast<std::size_t>(origin)];
   const Quat back(Eigen::AngleAxisd(-start.path_heading, Vec3::UnitY()));
   for (int i = 0; i < count; ++i) {
@@ -137,7 +137,7 @@ FootPlan plan_feet(const WalkOptions& options, const Actor& actor) {
       return index < count ? plan.prints[static_cast<std::size_t>(std::max(index, 0))].step_length
                            : 0.0;
     };
-    // The foot swings over its own step and the other foot's one before.
+    // The swing covers this step and the previous step of the other foot.
     set_pitches(print, 0.5 * (length_of(i) + length_of(i - 1)),
                 0.5 * (length_of(i + 1) + length_of(i + 2)), options);
   }

@@ -33,12 +33,12 @@ double elbow_flexion(double phase) {
 }
 
 double pelvis_rotation(double left_phase) {
-  // The side of the foot that strikes is forward.
+  // The side of the striking foot is forward.
   return -4.5 * kRadiansPerDegree * std::cos(2 * kPi * left_phase);
 }
 
 double pelvis_list(double left_phase) {
-  // The side whose foot leaves the ground drops, most shortly after.
+  // The side of the foot that leaves the ground drops, with the peak shortly after toe-off.
   return 3.5 * kRadiansPerDegree * std::sin(2 * kPi * (left_phase + 0.06));
 }
 

@@ -2,21 +2,20 @@
 
 #include "samples/generator/curves.h"
 
-// What people's joints do over a stride at a free walking speed. The phase runs from 0, the strike
-// of a foot, to 1, its next strike; angles are radians. The values are read off published mean
-// curves and rounded to the degree: they set the manner of the walk, while the legs' angles follow
-// from where the feet stand.
+// Joint angles over a stride at free walking speed. The phase runs from 0, the strike of a foot, to
+// 1, its next strike; angles in radians. The values are read from published mean curves and rounded
+// to the degree. They define the style of the walk; leg angles follow from the footprints.
 
 namespace krok::samples {
 
-// Moments of a stride, in phase (Perry and Burnfield, "Gait Analysis"; Winter).
+// Phases of gait events (Perry and Burnfield, "Gait Analysis"; Winter).
 inline constexpr double kFootFlat = 0.10;
 inline constexpr double kHeelRise = 0.31;
 inline constexpr double kBallRise = 0.48;
 inline constexpr double kToeOff = 0.62;
 
-// Flexion of the knee; one peak of 18 degrees as the leg takes the load, one of 61 in swing
-// (Winter, natural cadence).
+// Knee flexion; peaks of 18 degrees at loading response and 61 degrees in swing (Winter, natural
+// cadence).
 double knee_flexion(double phase);
 
 // Flexion of the shoulder and the elbow of the same side (Murray, Sepic and Barnard 1967).

@@ -16,10 +16,10 @@ namespace krok::samples {
 
 namespace {
 
-constexpr double kLifting = 0.7;  // seconds for an arm to go up, and as long to come down
-constexpr double kTurning = 0.5;  // seconds for a head to turn
+constexpr double kLifting = 0.7;  // seconds to raise an arm, and to lower it
+constexpr double kTurning = 0.5;  // seconds to turn the head
 constexpr double kWavesASecond = 1.4;
-constexpr double kStance = 0.62;  // of a stride that a leg stands
+constexpr double kStance = 0.62;  // stance fraction of a stride
 
 Status check_range(const char* what, double value, double least, double most) {
   if (value >= least && value <= most) return {};
@@ -27,13 +27,13 @@ Status check_range(const char* what, double value, double least, double most) {
                fmt::format("the {} of {:g} is outside {:g} .. {:g}", what, value, least, most));
 }
 
-// Up within `time` from the beginning and down again before the end.
+// Rises within `time` from the start and falls within `time` before the end.
 double up_and_down(double now, double duration, double time) {
   const double part = std::min(time, 0.5 * duration);
   return ease(now / part) * ease((duration - now) / part);
 }
 
-// A pose whose joints are turned one by one, from the root on.
+// A pose built by rotating joints one by one, starting at the root.
 class Posing {
  public:
   Posing(const Actor& actor, std::vector<Transform> joint_to_world)
@@ -44,11 +44,11 @@ class Posing {
     }
   }
 
-  // Turns a joint in its parent's frame on top of what it has.
+  // Adds a rotation of a joint, in its parent's frame.
   void turn(int joint, const Quat& rotation) {
     local_[at(joint)].orientation = rotation * local_[at(joint)].orientation;
   }
-  // Brings a joint part of the way to a rotation to its parent.
+  // Blends a joint's local rotation towards `joint_to_parent`.
   void bring(int joint, const Quat& joint_to_parent, double part) {
     local_[at(joint)].orientation = slerp(local_[at(joint)].orientation, joint_to_parent, part);
   }
@@ -66,7 +66,7 @@ class Posing {
   std::vector<Transform> local_;
 };
 
-// The frame whose x is `x` and whose y is as near to `y` as it can be.
+// The frame with x axis `x` and y axis as close to `y` as possible.
 Quat frame_of(const Vec3& x, const Vec3& y) {
   Mat3 axes;
   axes.col(0) = x.normalized();
@@ -75,8 +75,8 @@ Quat frame_of(const Vec3& x, const Vec3& y) {
   return Quat(axes);
 }
 
-// The arm goes out to the side and the forearm up, the palm to the front. In the reference pose an
-// arm runs along x, away from the body, and its elbow bends about y.
+// Upper arm to the side, forearm up, palm forward. In the reference pose an arm is along x, away
+// from the body, and the elbow flexes about y.
 void wave(const Actor& actor, const GestureOptions& options, double time, Posing& pose) {
   const double sign = side_sign(options.side);
   const ArmJoints& arm = actor.arms[at(static_cast<int>(options.side))];
@@ -97,7 +97,7 @@ void wave(const Actor& actor, const GestureOptions& options, double time, Posing
   pose.turn(actor.head, axis_rotation(Axis::y, sign * 12 * kRadiansPerDegree * up));
 }
 
-// As people spare an aching hip: the trunk over the leg that stands, the head kept level.
+// Gait with a painful hip: the trunk leans over the stance leg, the head stays level.
 void limp(const Actor& actor, const GestureOptions& options, double time, Posing& pose) {
   const double sign = side_sign(options.side);
   const double phase = std::clamp(time / options.duration / kStance, 0.0, 1.0);
@@ -142,7 +142,7 @@ Result<Clip> make_gesture(const GestureOptions& options) {
   clip.rate = options.rate;
   clip.resize(static_cast<int>(std::floor(options.duration * options.rate + 1e-6)) + 1);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
-    // The last frame is the end, whether or not the duration is a whole number of frames.
+    // The last frame is the end even if the duration is not a whole number of frames.
     const double time = options.duration * frame / std::max(1, clip.frame_count() - 1);
     Posing pose(actor, stance);
     switch (options.gesture) {

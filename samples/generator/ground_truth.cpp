@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// To a micrometre or a microsecond: what is printed beside it in a BVH is no finer.
+// To a micrometre or microsecond, the precision of the BVH file.
 double rounded(double value) {
   const double result = std::round(value * 1e6) * 1e-6;
   const double printed = std::round(result * 1e6) / 1e6;
@@ -71,7 +71,7 @@ Json times(const std::vector<double>& values) {
 
 Json footprints(const Walk& walk) {
   const double last = walk.clip.duration();
-  // A moment outside the clip is not in it to be measured.
+  // Null for events outside the clip, which cannot be measured.
   const auto moment = [&](double time, bool never) {
     return never || time < 0 || time > last ? Json(nullptr) : Json(rounded(time));
   };

@@ -6,7 +6,7 @@
 
 namespace krok::samples {
 
-// What is known of a walk as JSON (schema krok.walk/1, described in samples/captures/README.md):
+// Ground truth of a walk as JSON (schema krok.walk/1, described in samples/captures/README.md):
 // parameters, keytimes, footprints, contacts. Metres, seconds and degrees, in Krok's frame.
 std::string ground_truth_json(const Walk& walk, const std::string& capture_name);
 

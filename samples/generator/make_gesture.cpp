@@ -27,16 +27,16 @@ void declare(CommandOptions& command, Arguments& arguments) {
       .group("Gesture");
   command
       .add_option("--side", arguments.side,
-                  "The arm that waves, the leg that limps, where the head turns: left or right")
+                  "Side of the waving arm, the limping leg or the look: left or right")
       .transform(one_of_words({"left", "right"}))
       .type_name("SIDE")
       .capture_default_str()
       .group("Gesture");
-  command.add_option("--duration", arguments.duration, "How long it lasts; of a limp: a stride")
+  command.add_option("--duration", arguments.duration, "Duration; one stride for a limp")
       .type_name("TIME")
       .default_str("3s")
       .group("Gesture");
-  command.add_option("--rate", arguments.gesture.rate, "Frames a second")
+  command.add_option("--rate", arguments.gesture.rate, "Frames per second")
       .type_name("N")
       .capture_default_str()
       .group("Capture");
@@ -57,8 +57,8 @@ Result<int> run(ToolContext& context, Arguments& arguments) {
   if (!clip) return clip.error();
   const auto write = [&](OutputFile& file) { return bvh::write(*clip, {.decimals = 4}, file); };
   if (Status status = write_output(context, context.output, write); !status) return status.error();
-  context.say(fmt::format("{}: a {}, {} frames at {:g}/s, {:.1f} s", context.output, arguments.kind,
-                          clip->frame_count(), clip->rate, clip->duration()));
+  context.log(fmt::format("{}: a {}, {} frames at {:g} fps, {:.1f} s", context.output,
+                          arguments.kind, clip->frame_count(), clip->rate, clip->duration()));
   return kExitDone;
 }
 
@@ -68,12 +68,12 @@ int main(int argc, char** argv) {
   Arguments arguments;
   ToolSpec spec;
   spec.name = "make-gesture";
-  spec.summary = "Makes a capture of a gesture, to be laid over a walk of make-walk";
+  spec.summary = "Generates a capture of a gesture, to layer on a walk of make-walk";
   spec.inputs = "";
   spec.examples = {
-      {"make-gesture --kind wave -o wave.bvh", "a figure that stands lifts an arm and waves"},
+      {"make-gesture --kind wave -o wave.bvh", "a standing character raises an arm and waves"},
       {"make-gesture --kind limp --side left --duration 1.2s -o limp.bvh",
-       "how the trunk moves in a stride of a limping figure"},
+       "the trunk motion of one limping stride"},
   };
   spec.declare = [&](CommandOptions& command) { declare(command, arguments); };
   spec.run = [&](ToolContext& context) { return run(context, arguments); };

@@ -8,13 +8,13 @@
 #include "tools/common/one_of.h"
 #include "tools/common/tool.h"
 
-// make-walk: writes a generated walk as BVH, and what is known of it beside it.
+// make-walk: writes a generated walk as BVH, and its ground truth to a sidecar.
 
 namespace {
 
 using namespace krok;
 
-// A micrometre, and as much at the end of a leg.
+// A micrometre, also for rotations at the end of a leg.
 constexpr int kDecimals = 4;
 
 struct Arguments {
@@ -36,17 +36,18 @@ void declare(CommandOptions& command, Arguments& arguments) {
       .capture_default_str()
       .group("Walk");
   quantity("--step-length", arguments.step_length, "LENGTH", "0.7m",
-           "From heel to heel along the path");
-  quantity("--step-width", arguments.step_width, "LENGTH", "0.1m", "Between the heels");
-  quantity("--turn", arguments.turn, "ANGLE", "0deg", "Heading gained by each step, to the left");
-  quantity("--rise", arguments.rise, "LENGTH", "0m",
-           "Height gained by each step, negative downwards");
-  command.add_option("--ground", arguments.ground, "What a rise is made of: stairs or slope")
+           "Heel-to-heel distance along the path");
+  quantity("--step-width", arguments.step_width, "LENGTH", "0.1m",
+           "Distance between the heels across the path");
+  quantity("--turn", arguments.turn, "ANGLE", "0deg",
+           "Heading change per step, positive to the left");
+  quantity("--rise", arguments.rise, "LENGTH", "0m", "Height gained per step, negative downwards");
+  command.add_option("--ground", arguments.ground, "Ground of a rise: stairs or slope")
       .transform(one_of_words({"stairs", "slope"}))
       .type_name("KIND")
       .capture_default_str()
       .group("Walk");
-  command.add_option("--cadence", walk.cadence, "Steps a minute; 0 fits the step length")
+  command.add_option("--cadence", walk.cadence, "Steps per minute; 0: from the step length")
       .type_name("N")
       .capture_default_str()
       .group("Walk");
@@ -57,8 +58,8 @@ void declare(CommandOptions& command, Arguments& arguments) {
       .type_name("SIDE")
       .capture_default_str()
       .group("Walk");
-  quantity("--stature", arguments.stature, "LENGTH", "1.75m", "Height of the figure");
-  command.add_option("--rate", walk.rate, "Frames a second")
+  quantity("--stature", arguments.stature, "LENGTH", "1.75m", "Height of the actor");
+  command.add_option("--rate", walk.rate, "Frames per second")
       .type_name("N")
       .capture_default_str()
       .group("Capture");
@@ -67,16 +68,16 @@ void declare(CommandOptions& command, Arguments& arguments) {
     command.add_option(name, text, help).type_name(unit).default_str(fallback).group("Capture");
   };
   noise("--noise-angle", arguments.noise_angle, "ANGLE", "0deg",
-        "Deviation of the joints' rotations");
+        "Standard deviation of joint rotations");
   noise("--noise-position", arguments.noise_position, "LENGTH", "0mm",
-        "Deviation of the root's position");
-  command.add_option("--seed", walk.seed, "Of the noise")
+        "Standard deviation of the root position");
+  command.add_option("--seed", walk.seed, "Random seed of the noise")
       .type_name("N")
       .capture_default_str()
       .group("Capture");
   command
       .add_option("--contacts", arguments.contacts,
-                  "Where what is known of the walk goes; NAME.contacts.json beside the capture")
+                  "Output file for the ground truth; default: NAME.contacts.json")
       .type_name("FILE")
       .group("Capture");
 }
@@ -142,7 +143,7 @@ Result<int> run(ToolContext& context, Arguments& arguments) {
   }
   if (Status status = capture->commit(); !status) return std::move(status).error();
   context.wrote(context.output);
-  context.say(fmt::format("{}: {} steps, {} frames at {:g}/s, {:.1f} s", context.output,
+  context.log(fmt::format("{}: {} steps, {} frames at {:g} fps, {:.1f} s", context.output,
                           arguments.walk.steps, walk->clip.frame_count(), walk->clip.rate,
                           walk->clip.duration()));
   return kExitDone;
@@ -154,10 +155,10 @@ int main(int argc, char** argv) {
   Arguments arguments;
   ToolSpec spec;
   spec.name = "make-walk";
-  spec.summary = "Makes a capture of a walk, with its contacts known";
+  spec.summary = "Generates a capture of a walk, with ground-truth contacts";
   spec.inputs = "";
   spec.examples = {
-      {"make-walk -o walk.bvh", "eight ordinary steps, cut out of a steady walk"},
+      {"make-walk -o walk.bvh", "eight steps cut out of a steady walk"},
       {"make-walk --turn 15deg --steps 6 --step-length 60cm -o turn.bvh",
        "a quarter turn to the left"},
       {"make-walk --rise 16cm --step-length 30cm --from-standing -o stairs.bvh",

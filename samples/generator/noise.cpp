@@ -33,7 +33,7 @@ void add_noise(const WalkOptions& options, const Skeleton& skeleton, NoiseSource
   local[0].position += vector(options.noise_position);
   for (std::size_t joint = 0; joint < local.size(); ++joint) {
     if (skeleton.end_sites[joint]) continue;
-    // Each of the three components has the deviation asked for.
+    // Each of the three components has the requested deviation.
     local[joint].orientation =
         local[joint].orientation * from_rotation_vector(vector(options.noise_angle));
   }

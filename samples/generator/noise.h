@@ -7,8 +7,8 @@
 
 namespace krok::samples {
 
-// Gaussian numbers, the same on every machine for the same seed (SplitMix64 and Box-Muller; the
-// standard library's distributions differ between implementations).
+// Gaussian random numbers, identical on every machine for a given seed (SplitMix64 and Box-Muller;
+// standard library distributions differ between implementations).
 class NoiseSource {
  public:
   explicit NoiseSource(std::uint64_t seed) : state_(seed) {}
@@ -19,9 +19,8 @@ class NoiseSource {
   std::uint64_t state_;
 };
 
-// Adds the options' measuring noise to a pose (joint_to_world): each joint's rotation to its
-// parent, and the root's position. Bones keep their lengths. Without noise in the options nothing
-// changes.
+// Adds the measurement noise of the options to a pose (joint_to_world): to each joint's local
+// rotation and to the root position. Bone lengths are kept. Without noise the pose is unchanged.
 void add_noise(const WalkOptions& options, const Skeleton& skeleton, NoiseSource& noise,
                std::span<Transform> joint_to_world);
 

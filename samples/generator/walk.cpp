@@ -18,7 +18,7 @@ void add_contact(std::vector<Contact>& contacts, Contact contact, double last) {
   if (contact.to > contact.from) contacts.push_back(contact);
 }
 
-// What of the plan falls into the clip, on the clip's clock.
+// Records the contacts and footprints within the clip, in clip time.
 void record_contacts(const FootPlan& plan, const Actor& actor, Walk& walk) {
   const double last = plan.last_time - plan.first_time;
   for (Footprint print : plan.prints) {
@@ -69,7 +69,7 @@ Result<Walk> make_walk(const WalkOptions& options) {
   const double frames = std::floor((plan.last_time - plan.first_time) * options.rate + 1e-6) + 1;
   if (frames > 1e6) {
     return Error("walk-too-long", "the walk would have more than a million frames",
-                 "ask for fewer steps or a lower rate");
+                 "use fewer steps or a lower frame rate");
   }
   const BodyMotion body(options, walk.actor, plan);
   walk.clip.skeleton = walk.actor.skeleton;

@@ -6,12 +6,12 @@
 #include "samples/generator/foot_plan.h"
 #include "scene/clip.h"
 
-// A walk with everything known about it: later work holds what it measures against this.
+// A generated walk with its ground truth.
 
 namespace krok::samples {
 
-// A stay of one contact point on the ground: it does not move from `from` to `to`. Seconds from the
-// clip's start; the clip's range, where it began before or lasts beyond (`open_start`, `open_end`).
+// A ground contact of one contact point, which does not move from `from` to `to`. Seconds from the
+// clip's start; clamped to the clip if it extends beyond (`open_start`, `open_end`).
 struct Contact {
   int print = 0;  // index into Walk::prints
   double from = 0, to = 0;
@@ -20,9 +20,9 @@ struct Contact {
 };
 
 struct FootContacts {
-  std::vector<Contact> heel;          // the heel's point of the sole
-  std::vector<Contact> toe;           // the point of the sole below the tip of the toes
-  std::vector<double> strikes, offs;  // keytimes within the clip: first touch, last touch
+  std::vector<Contact> heel;          // the heel contact point
+  std::vector<Contact> toe;           // the contact point below the tip of the toes
+  std::vector<double> strikes, offs;  // keytimes within the clip: first and last contact
 };
 
 struct Walk {
@@ -30,11 +30,11 @@ struct Walk {
   Actor actor;
   WalkOptions options;
   double step_time = 0;
-  std::vector<Footprint> prints;     // all that touch the clip's range; times from the clip's start
+  std::vector<Footprint> prints;     // all that overlap the clip; times from the clip's start
   std::array<FootContacts, 2> feet;  // [Side]
 };
 
-// Fails with the codes of check(WalkOptions), and walk-too-long for more than a million frames.
+// Codes: those of check(WalkOptions), and walk-too-long for more than a million frames.
 Result<Walk> make_walk(const WalkOptions& options);
 
 }  // namespace krok::samples

@@ -20,10 +20,10 @@ Status check(const WalkOptions& options) {
       {"step width", options.step_width, 0.04, 0.5, " m"},
       {"turn", options.turn, -0.8, 0.8, " rad"},
       {"rise", options.rise, -0.14 * options.stature, 0.14 * options.stature, " m"},
-      {"cadence", options.cadence == 0 ? 100 : options.cadence, 40, 200, " steps a minute"},
-      {"rate", options.rate, 1, 1000, " frames a second"},
-      {"noise of angles", options.noise_angle, 0, 0.5, " rad"},
-      {"noise of positions", options.noise_position, 0, 0.5, " m"},
+      {"cadence", options.cadence == 0 ? 100 : options.cadence, 40, 200, " steps/min"},
+      {"rate", options.rate, 1, 1000, " fps"},
+      {"angle noise", options.noise_angle, 0, 0.5, " rad"},
+      {"position noise", options.noise_position, 0, 0.5, " m"},
   };
   for (const Range& range : ranges) {
     if (range.value >= range.lowest && range.value <= range.highest) continue;
@@ -37,7 +37,7 @@ Status check(const WalkOptions& options) {
         "walk-option",
         fmt::format("steps of {:.3g} m are too short to gain height: the foot needs {:.3g} m",
                     options.step_length, 0.165 * options.stature),
-        "make the steps longer, or the rise 0");
+        "use longer steps, or no rise");
   }
   return {};
 }

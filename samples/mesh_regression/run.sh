@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Golden files: characters that must not change unnoticed. README.md tells the same story.
+# Mesh regression testing with golden files. See README.md.
 #
 #   run.sh [OUTPUT_FOLDER]
 #
@@ -13,7 +13,7 @@ need_generators make-walk
 enter_folder "${1:-out/mesh_regression}"
 rm -rf golden out
 
-# make_assets CUTOFF: what the build of a game would do, from two captures to two characters in out/.
+# make_assets CUTOFF: a game's asset build, from two captures to two characters in out/.
 make_assets() {
   rm -rf out && mkdir out
   "$bin/krok-body" -q --detail low -o out/walker.model -- walk.anim
@@ -22,7 +22,7 @@ make_assets() {
   "$bin/krok-skin" -q --as rig -o out/turn.glb -- out/walker.model turn_filtered.anim
 }
 
-# differs NAME: compares, keeps what is said in NAME.txt and gives the exit code.
+# differs NAME: compares, writes the report to NAME.txt and returns the exit code.
 differs() {
   local code=0
   "$bin/krok-diff" golden out --tolerance 0.1mm --angle 0.5deg --keep-going --summary "$1.html" \
@@ -31,29 +31,29 @@ differs() {
   return $code
 }
 
-say "1. Two walks become two characters, and these the golden files"
+say "1. Make two characters and the golden files"
 "$generators/make-walk" -q --steps 4 -o walk.bvh
 "$generators/make-walk" -q --steps 4 --turn 20deg -o turn.bvh
 for walk in walk turn; do "$bin/krok-import" -q -o $walk.anim -- $walk.bvh; done
 make_assets 10Hz
 "$bin/krok-diff" golden out --update 2>&1 | sed 's/^/  /'
 
-say "2. The next build gives the same"
+say "2. An unchanged build passes"
 make_assets 10Hz
-differs same || fail "the same build gave something else"
+differs same || fail "the same build gave a different result"
 
-say "3. A change: the turn is filtered harder"
+say "3. A change: the turn is filtered at a lower cutoff"
 make_assets 3Hz
-if differs changed; then fail "the change was not found"; fi
+if differs changed; then fail "the change was not detected"; fi
 
-say "4. Where, and when"
+say "4. Inspect the difference"
 "$bin/krok-diff" -q golden/turn.glb out/turn.glb --tolerance 0.1mm --angle 0.5deg \
   --heatmap turn_heat.glb --plot turn.svg --sheet turn.png --sides left --moments 4 --size 150 || true
-echo "  turn_heat.glb   the character where it differs most, in colours"
-echo "  turn.svg        how far apart over time"
+echo "  turn_heat.glb   heat map on the character at the largest difference"
+echo "  turn.svg        difference over time"
 echo "  turn.png        both at several moments"
 
-say "5. It was meant: the golden files are updated, and the build passes"
+say "5. Accept the change: update the golden files, and the build passes"
 "$bin/krok-diff" golden out --tolerance 0.1mm --angle 0.5deg --update 2>&1 >updated.txt |
   sed 's/^/  /'
 differs same || fail "the update left a difference"

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# From a handful of walks to steps of any length and height between them. README.md tells the same
-# story.
+# Builds step libraries from walks and synthesises steps from them. See README.md.
 #
 #   run.sh [OUTPUT_FOLDER]
 #
@@ -13,7 +12,7 @@ need_tools fit synth plot
 need_generators make-walk
 enter_folder "${1:-out/step_library}"
 
-say "1. Nine walks: three lengths of step on three slopes; 27 that turn as well; 54 of two widths"
+say "1. Examples: 9 walks of three step lengths on three slopes, 27 with turns, 54 with two widths"
 for length in 50 65 80; do
   for rise in -12 0 12; do
     "$generators/make-walk" -q --steps 6 --step-length ${length}cm --rise ${rise}cm --ground slope \
@@ -31,15 +30,15 @@ done
 cp -- "$story"/library*.json .
 echo "  $(ls walk_*.bvh turn_*.bvh wide_*.bvh | wc -l) captures"
 
-say "2. Their left steps become a library: weights by length and height, then refined"
+say "2. A library of their left steps by length and height, refined"
 "$bin/krok-fit" library.json -o unrefined.steps --refine 0
 "$bin/krok-fit" library.json -o walking.steps --plots charts --json=fit.json
 
-say "3. With turns it has three parameters, with widths four"
+say "3. Libraries with three parameters (turn) and four (width)"
 "$bin/krok-fit" library_turns.json -o turning.steps --plots charts_turns --json=fit_turns.json
 "$bin/krok-fit" library_widths.json -o any.steps --plots charts_widths --json=fit_widths.json
 
-say "4. Steps that no one took"
+say "4. Synthesise steps"
 "$bin/krok-synth" walking.steps --set length=57cm --set height=3cm -o step.anim
 "$bin/krok-synth" walking.steps --set length=57cm --set height=3cm --correct --side right \
   -o step_right.anim
@@ -47,6 +46,6 @@ mkdir -p sheet
 "$bin/krok-synth" walking.steps --table "$story/points.csv" -o sheet/step.anim
 "$bin/krok-synth" turning.steps --set length=60cm --set height=0 --set turn=14deg -o bend.anim
 
-say "5. To look at"
+say "5. Images"
 "$bin/krok-plot" -q --sheet=steps.png --sides left --moments 5 --size 150 sheet/step_*.anim
 echo "  steps.png, charts/*.svg, charts_turns/*.svg, charts_widths/*.svg"

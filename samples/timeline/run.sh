@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A story out of six motions: sets off, walks and waves, turns, limps, stops, looks aside, waves
-# good-bye. README.md tells how.
+# Combines six motions: sets off, walks and waves, turns, limps, stops, looks aside, waves goodbye.
+# See README.md.
 #
 #   run.sh [OUTPUT_FOLDER]
 #
@@ -21,7 +21,7 @@ say "1. Six motions"
 "$generators/make-gesture" --kind limp --side left --duration 1.1s -o limp.bvh
 "$generators/make-gesture" --kind look --side left --duration 2.5s -o look.bvh
 
-say "2. One motion, as the timeline tells"
+say "2. One motion from the timeline"
 cp -- "$story/timeline.json" .
 "$bin/krok-mix" timeline.json -o story.anim --json=story.report.json
 
@@ -31,7 +31,7 @@ say "3. A body, and a camera that follows"
 "$bin/krok-skin" -q walker.model story.anim --as rig -o story.glb
 "$bin/krok-view" -q walker.model story.anim story.cam -o story.html
 
-say "4. To look at"
+say "4. Images"
 "$bin/krok-plot" -q story.anim --strip story.png --moments 16 --sides left --size 200
 "$bin/krok-plot" -q story.anim --sheet moments.png --sides front-left --size 170 \
   --moments 1.2s,3.6s,6.5s,10.9s,15s,19.5s,21.3s,23.5s

@@ -1,4 +1,4 @@
-"""Holds the house in order: who may include whom, what stands at the top, what public headers show.
+"""Checks the dependency rule: which folder may include which, top-level names, public headers.
 
 Usage: layers.py SOURCE_FOLDER. Prints what is wrong, exit code 1 if anything is.
 """
@@ -38,6 +38,10 @@ ALLOWED = {
     "lib/draw": BASE | {"lib/roles", "lib/motion", "lib/compare", "lib/retarget"},
     "lib/render": BASE,
     "formats/registry": {"lib/core"},
+    "formats/io": BASE | {"lib/roles", "lib/nodes", "lib/skin", "formats/acclaim", "formats/anim",
+                          "formats/assimp", "formats/bvh", "formats/character", "formats/gltf",
+                          "formats/material", "formats/model", "formats/morph_exr",
+                          "formats/registry", "formats/role_map"},
     "formats/json": {"lib/core"},
     "formats/role_map": BASE | {"lib/roles", "formats/json"},
     "formats/timeline": BASE | {"lib/motion", "lib/blend", "lib/timeline", "formats/json"},
@@ -66,7 +70,7 @@ ALLOWED = {
     "formats/morph_exr": BASE | {"formats/container"},
 }
 TOP = {
-    "CMakeLists.txt", "CMakePresets.json", "Makefile", "README.md", "LICENSE", "CHANGELOG.md",
+    "CMakeLists.txt", "CMakePresets.json", "Makefile", "README.md", "LICENSE", "CHANGELOG.md", "CONTRIBUTING.md",
     "tools", "lib", "formats", "tests", "samples",
 }
 # What a header of the library may show its user. Everything else stays in .cpp files.

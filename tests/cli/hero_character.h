@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cli/bent_body.h"
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 
 namespace krok::test {
 

@@ -32,7 +32,7 @@ class ReportAndFiles : public CliTest {
 
 TEST_F(ReportAndFiles, AResultNeverReplacesItsInput) {
   std::filesystem::create_symlink(path("in.bvh"), path("link.bvh"));
-  const std::string part = "in.bvh: error: is read and would be replaced";
+  const std::string part = "in.bvh: error: is an input and would be overwritten";
   expect_usage_error(run_tool("krok-import", {path("in.bvh"), "-o", path("in.bvh")}), part);
   expect_usage_error(
       run_tool("krok-import",
@@ -123,7 +123,7 @@ TEST_F(ReportAndFiles, MessagesNameTheFileConcerned) {
   EXPECT_NE(unit.err.find("--tolerance: "), std::string::npos) << unit.err;
   const ToolRun unwritable = run_tool("krok-import", {path("in.bvh"), "-o", "/proc/out.anim"});
   EXPECT_EQ(unwritable.exit_code, 2);
-  EXPECT_EQ(unwritable.err.find("no folder"), std::string::npos) << unwritable.err;
+  EXPECT_EQ(unwritable.err.find("does not exist"), std::string::npos) << unwritable.err;
 }
 
 TEST_F(ReportAndFiles, ReportsTellWhatWasWritten) {

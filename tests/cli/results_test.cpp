@@ -54,11 +54,11 @@ TEST_F(Results, ASequenceDoesNotReplaceTheInput) {
   const Names names = listing();
   expect_refused(
       tool("krok-edit", {"w_run.anim", "--sequences", "parts.json", "-o", "w_{sequence}.anim"}),
-      "w_run.anim: error: is read and would be replaced");
+      "w_run.anim: error: is an input and would be overwritten");
   fs::create_symlink("w_run.anim", path("x_run.anim"));
   expect_refused(
       tool("krok-edit", {"w_run.anim", "--sequences", "parts.json", "-o", "x_{sequence}.anim"}),
-      "w_run.anim: error: is read and would be replaced");
+      "w_run.anim: error: is an input and would be overwritten");
   fs::remove(path("x_run.anim"));
   EXPECT_EQ(get(path("w_run.anim")), before);
   EXPECT_EQ(listing(), names);
@@ -181,7 +181,7 @@ TEST_F(Results, AReportDoesNotReplaceWhatAGltfRefersTo) {
            {"krok-diff", {"rig.gltf", "rig.gltf", report}},
            {"krok-info", {"rig.gltf", report}},
            {"krok-import", {"rig.gltf", "-o", "rig.anim", report}}}) {
-    expect_refused(tool(name, arguments), "rig.bin: error: is read and would be replaced");
+    expect_refused(tool(name, arguments), "rig.bin: error: is an input and would be overwritten");
     EXPECT_TRUE(get(path("rig.bin")) == bytes) << name;
   }
   const ToolRun diff = tool("krok-diff", {"rig.gltf", "rig.gltf", "--json"});

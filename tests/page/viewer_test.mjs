@@ -182,7 +182,7 @@ async function differenceAgrees(page, one, other, rate) {
   }
   await drawn(page, () => page.evaluate((time) => krokView.setTime(time), frame / rate));
   const text = await page.locator('#difference').textContent();
-  const told = text.match(/up to ([\d.e+-]+) (mm|cm|m) at (.+); red is/);
+  const told = text.match(/max ([\d.e+-]+) (mm|cm|m) at (.+); red is/);
   expect(told !== null, `no difference is told: ${text}`);
   if (!told) return;
   const metres = Number(told[1]) * { mm: 1e-3, cm: 1e-2, m: 1 }[told[2]];
@@ -340,7 +340,7 @@ try {
   const frozen = join(source, 'tests/golden/v1');
   run('krok-view', join(frozen, 'motion.anim'), join(frozen, 'camera.cam'), '-o', made('camera.html'));
   const flown = await open('camera.html');
-  const fly = flown.getByRole('button', { name: /Fly .*camera/ });
+  const fly = flown.getByRole('button', { name: /View .*camera/ });
   const seen = async () => (await flown.locator('#view').screenshot()).toString('base64');
   const before = await seen();
   await drawn(flown, () => flown.keyboard.press('c'));

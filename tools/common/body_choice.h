@@ -8,8 +8,8 @@
 
 namespace krok {
 
-// --body, for tools that show motions: which body is made for one that comes without. What
-// automatic is depends on the tool.
+// --body, for tools that show motions: the generated body for a motion without one. The meaning of
+// automatic depends on the tool.
 enum class BodyChoice : unsigned char { automatic, none, low, medium, high };
 
 inline CommandOption add_body_option(CommandOptions& command, BodyChoice& choice,
@@ -24,7 +24,7 @@ inline CommandOption add_body_option(CommandOptions& command, BodyChoice& choice
       .default_str("auto");
 }
 
-// How the body is made; `choice` is low, medium or high.
+// Options for generating the body; `choice` is low, medium or high.
 inline BodyOptions body_options(BodyChoice choice, const ToolContext& context) {
   BodyOptions how;
   how.detail = choice == BodyChoice::low      ? BodyDetail::low

@@ -11,7 +11,7 @@ namespace krok {
 namespace {
 
 constexpr const char* kCommon = "Common options";
-constexpr const char* kMany = "Many files";
+constexpr const char* kMany = "Batch mode";
 
 bool type_begins(const CLI::Option& option, const char* word) {
   return option.get_type_name().rfind(word, 0) == 0;
@@ -51,7 +51,7 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
   for (CLI::Option* option : app_.get_options()) {
     if (!option->get_positional()) own_options_.push_back(option);
   }
-  // Here what is required may still come from a line of a manifest, or be on the command line.
+  // Required options may be given either by a manifest line or on the command line.
   if (form == Form::many || form == Form::own) {
     for (CLI::Option* option : app_.get_options()) option->required(false);
   }
@@ -73,7 +73,7 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
   }
 }
 
-// The last positional becomes a list.
+// Turns the last positional into a list.
 void CommandLine::take_many_inputs() {
   CLI::Option* last = nullptr;
   for (CLI::Option* option : app_.get_options()) {
@@ -86,25 +86,24 @@ void CommandLine::take_many_inputs() {
 }
 
 void CommandLine::declare_common(const ToolSpec& spec) {
-  app_.set_help_flag("-h,--help", "This text")->group(kCommon);
-  app_.set_version_flag("--version", fmt::format("{} {}", spec.name, version()), "The version")
+  app_.set_help_flag("-h,--help", "Print this help")->group(kCommon);
+  app_.set_version_flag("--version", fmt::format("{} {}", spec.name, version()),
+                        "Print the version")
       ->group(kCommon);
   if (spec.has_output) {
-    auto* option = app_.add_option("-o,--output", output, "Where the result goes")
-                       ->type_name("OUTPUT")
-                       ->group(kCommon);
+    auto* option =
+        app_.add_option("-o,--output", output, "Output file")->type_name("OUTPUT")->group(kCommon);
     if (spec.needs_output && form_ == Form::single) option->required();
-    app_.add_flag("--no-clobber", no_clobber, "Refuse to replace a file that exists")
-        ->group(kCommon);
+    app_.add_flag("--no-clobber", no_clobber, "Do not overwrite existing files")->group(kCommon);
   }
-  app_.add_flag("-q,--quiet", quiet, "Errors only")->group(kCommon);
-  app_.add_flag("-v,--verbose", verbose, "Notes too")->group(kCommon);
+  app_.add_flag("-q,--quiet", quiet, "Print only errors")->group(kCommon);
+  app_.add_flag("-v,--verbose", verbose, "Also print notes")->group(kCommon);
   const std::string& more_names = spec.report_name;
   app_.add_option(more_names.empty() ? "--json" : "--json," + more_names, json_path,
-                  "A report in JSON on standard output, or with --json=FILE in a file")
+                  "Write a JSON report to standard output, or to FILE with --json=FILE")
       ->type_name("[=FILE]")
       ->group(kCommon);
-  options_.add_option("--progress", style, "Progress: auto, bar, plain, json or none")
+  options_.add_option("--progress", style, "Progress display: auto, bar, plain, json or none")
       .type_name("STYLE")
       .transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
                                         {"bar", ProgressStyle::bar},
@@ -113,40 +112,38 @@ void CommandLine::declare_common(const ToolSpec& spec) {
                                         {"none", ProgressStyle::none}}))
       .default_str("auto")
       .group(kCommon);
-  add_whole(options_, "-j,--jobs", jobs, "Threads; 0 is one a core", 0, 1024)
+  add_whole(options_, "-j,--jobs", jobs, "Number of threads; 0: one per core", 0, 1024)
       .default_str("0")
       .group(kCommon);
 }
 
 void CommandLine::declare_for_many() {
   app_.add_option("--out-dir", out_dir,
-                  "Take many inputs: files, folders and patterns such as 'takes/**/*.bvh'; put the "
-                  "results into DIR, in the same sub-folders")
+                  "Process many inputs (files, folders, patterns such as 'takes/**/*.bvh'); write "
+                  "the outputs to DIR, in the same sub-folders")
       ->type_name("DIR")
       ->group(kMany);
   app_.add_option("--base", base,
-                  "Sub-folders are those below FOLDER, not those below a pattern's fixed part or "
-                  "what all named files share")
+                  "Keep sub-folders relative to FOLDER, not to a pattern's fixed part or the "
+                  "common folder of the named files")
       ->type_name("FOLDER")
       ->group(kMany);
-  app_.add_option(
-          "--manifest", manifest,
-          "The list of files: input, output and options a line, between tabs; - is standard "
-          "input")
+  app_.add_option("--manifest", manifest,
+                  "List of files, one per line: input, output and options, tab-separated; - is "
+                  "standard input")
       ->type_name("LIST.tsv")
       ->group(kMany);
-  app_.add_option("--shard", shard, "Do the Ith of N parts of the list only")
+  app_.add_option("--shard", shard, "Process only part I of N of the list")
       ->type_name("I/N")
       ->group(kMany);
   app_.add_flag("--keep-going", keep_going,
-                "Go on after a file that failed; otherwise the first one in the list ends the run")
+                "Continue after a file fails; by default, the first failure ends the run")
       ->group(kMany);
-  app_.add_flag("--force", force,
-                "Do files anew that stand already, made from the same input and options")
+  app_.add_flag("--force", force, "Rebuild outputs that are up to date (same input and options)")
       ->group(kMany);
 }
 
-// A transform that is added last sees the values first.
+// The transform added last sees the values first.
 void CommandLine::remember_values() {
   for (CLI::Option* option : own_options_) {
     if (is_flag(*option)) continue;
@@ -190,8 +187,8 @@ Status CommandLine::check_use_of_batch_options() const {
                             : force          ? "--force"
                                              : nullptr;
   if (form_ != Form::single || first == nullptr) return {};
-  return Error("usage", fmt::format("{} is for many files", first),
-               "say where the results go by --out-dir or --manifest");
+  return Error("usage", fmt::format("{} is for batch mode only", first),
+               "add --out-dir or --manifest");
 }
 
 Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arguments) {
@@ -209,7 +206,7 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
                           dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
     return Error("usage", error.what(),
                  fmt::format("see {} --help{}", tool_,
-                             too_many ? "; many files go into a folder, --out-dir DIR" : ""));
+                             too_many ? "; for several inputs, use --out-dir DIR" : ""));
   }
   if (Status status = check_use_of_batch_options(); !status) return status.error();
   note_given();

@@ -10,11 +10,11 @@
 #include "tools/common/console_progress.h"
 #include "tools/common/tool.h"
 
-// What is written on a command line, or on a line of a list of files, declared and parsed.
+// Declares and parses a command line or a manifest line.
 
 namespace krok {
 
-// An option that was given, as it was written. A flag's value is "true".
+// An option as the user wrote it. A flag's value is "true".
 struct GivenOption {
   std::string name;  // without dashes
   std::vector<std::string> values;
@@ -23,16 +23,16 @@ struct GivenOption {
   bool names_output = false;  // OUT... in the help
 };
 
-// The arguments that give these options again.
+// Arguments that parse to these options.
 std::vector<std::string> arguments_of(const std::vector<GivenOption>& options);
 
 class CommandLine {
  public:
   enum class Form {
     single,    // one input, one output
-    many,      // many inputs, --out-dir or --manifest
-    own,       // the tool's own options alone, none required: a line of a manifest
-    one_file,  // the tool's own options and positionals, and -o: one file of many
+    many,      // batch mode: --out-dir or --manifest
+    own,       // only the tool's own options, none required: a manifest line
+    one_file,  // the tool's own options and positionals, and -o: one file of a batch
   };
   enum class Wish { run, help, version };
 
@@ -40,19 +40,19 @@ class CommandLine {
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  // Can be called again with the same options and other values: what is not given then keeps its
-  // value. An Error has the code usage.
+  // May be called again with the same options and other values; options that are not given keep
+  // their value. Errors have the code usage.
   Result<Wish> parse(const std::vector<std::string>& arguments);
 
   std::string help() const;
 
-  // The tool's own options that were given, in the order of their declaration.
+  // The tool's own options that were given, in declaration order.
   const std::vector<GivenOption>& given() const { return given_; }
 
-  // A context with what was given; the names of the results are its destinations.
+  // A context with the given options; the output names are its destinations.
   ToolContext context() const;
 
-  // Form many: the last positional, again and again, and what stands before.
+  // Form many: all values of the last positional, and the positionals before it.
   std::vector<std::string> inputs;
   std::vector<std::string> fixed_positionals;
 
@@ -65,7 +65,7 @@ class CommandLine {
   bool quiet = false;
   bool verbose = false;
 
-  // The options for many files.
+  // Batch options.
   std::string out_dir;
   std::string base;
   std::string manifest;
@@ -82,14 +82,13 @@ class CommandLine {
   Status check_use_of_batch_options() const;
 
   Form form_;
-  // Keeps alive what the options of app_ write to.
+  // Keeps the variables alive that the options of app_ write to.
   std::function<void(CommandOptions&)> declare_;
   CLI::App app_;
   CommandOptions options_{app_};
   CLI::Option* inputs_option_ = nullptr;
   std::vector<CLI::Option*> own_options_;
-  // What the user gave for each option, before CLI11 replaces it ("xyzw") by what it stands for
-  // ("1").
+  // The value of each option as written ("xyzw"), before CLI11 transforms it ("1").
   std::map<const CLI::Option*, std::vector<std::string>> written_;
   std::vector<GivenOption> given_;
   std::string tool_;

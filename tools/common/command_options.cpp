@@ -7,7 +7,7 @@ namespace krok {
 
 namespace {
 
-// Without a description, which CLI11 would put beside the value's name in the help.
+// No description: CLI11 would print it beside the value name in the help.
 CLI::Validator validator(CheckValue check) {
   return CLI::Validator(std::move(check), "");
 }

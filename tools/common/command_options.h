@@ -6,8 +6,8 @@
 #include <type_traits>
 #include <vector>
 
-// The options of a command line as tools declare them. CLI11 parses them; its header is large and
-// is included by the sources of this folder alone.
+// Declares command-line options. CLI11 parses them; only the sources of this folder include its
+// large header.
 
 namespace CLI {
 class App;
@@ -16,28 +16,28 @@ class Option;
 
 namespace krok {
 
-// Looks at one value of an option and may replace it; gives what is wrong with it, or nothing.
+// Validates one option value and may replace it. Returns an error message, empty if valid.
 using CheckValue = std::function<std::string(std::string& value)>;
 
-// An option or positional that was declared. A handle, cheap to copy; the CommandOptions that gave
-// it must outlive it. The setters give the option back, so that calls can be chained.
+// Handle to a declared option or positional. Cheap to copy; the CommandOptions that created it must
+// outlive it. Setters return the option for chaining.
 class CommandOption {
  public:
   explicit CommandOption(CLI::Option* option) : option_(option) {}
 
-  CommandOption type_name(const std::string& name) const;    // of its value in the help
-  CommandOption default_str(const std::string& text) const;  // the default that the help names
-  CommandOption capture_default_str() const;                 // the variable's own value as that
-  CommandOption group(const std::string& name) const;        // its heading in the help
+  CommandOption type_name(const std::string& name) const;    // value name in the help
+  CommandOption default_str(const std::string& text) const;  // default shown in the help
+  CommandOption capture_default_str() const;                 // uses the variable's value
+  CommandOption group(const std::string& name) const;        // heading in the help
   CommandOption required() const;
-  CommandOption needs(const std::string& other) const;  // given alone it is an error
+  CommandOption needs(const std::string& other) const;  // an error without it
   CommandOption excludes(CommandOption other) const;
-  CommandOption check(CheckValue check) const;      // as the user wrote the value
-  CommandOption transform(CheckValue check) const;  // the same; its replacement is what is parsed
-  // Of an option with a list: one value each time that it is given, and it may be given again.
+  CommandOption check(CheckValue check) const;      // sees the value as written
+  CommandOption transform(CheckValue check) const;  // its replacement is parsed
+  // For list options: one value per occurrence; the option may be repeated.
   CommandOption one_each_time() const;
-  CommandOption delimiter(char between) const;         // that separates values in one argument
-  CommandOption allow_extra_args(bool allowed) const;  // more than one value at a time
+  CommandOption delimiter(char between) const;         // between values in one argument
+  CommandOption allow_extra_args(bool allowed) const;  // several values per occurrence
 
  private:
   CLI::Option* option_;
@@ -49,9 +49,9 @@ class CommandOptions {
   CommandOptions(const CommandOptions&) = delete;
   CommandOptions& operator=(const CommandOptions&) = delete;
 
-  // An option ("-o,--output") or, without dashes, a positional; `value` keeps what it had where the
+  // Adds an option ("-o,--output") or, without dashes, a positional. `value` is unchanged if the
   // option is not given, and must outlive this. Value is a std::string, a number, a std::optional
-  // of one, a std::vector of strings, or an enum, whose words transform(one_of(...)) gives.
+  // of one, a std::vector of strings, or an enum with transform(one_of(...)).
   template <typename Value>
   CommandOption add_option(const std::string& name, Value& value, const std::string& help) {
     if constexpr (std::is_enum_v<Value>) {
@@ -63,21 +63,22 @@ class CommandOptions {
   }
   CommandOption add_flag(const std::string& name, bool& value, const std::string& help);
 
-  // The same with a function that is called with what was given.
+  // Calls `take` with the given value.
   CommandOption add_option_function(const std::string& name,
                                     std::function<void(const std::string&)> take,
                                     const std::string& help);
   CommandOption add_flag_callback(const std::string& name, std::function<void()> take,
                                   const std::string& help);
-  // For a flag with two names, "--bones,!--no-bones": positive for the first.
+  // For a flag with a negated name, "--bones,!--no-bones": `take` gets a positive number for the
+  // first.
   CommandOption add_flag_function(const std::string& name, std::function<void(std::int64_t)> take,
                                   const std::string& help);
 
-  // One that was declared before.
+  // Returns a declared option.
   CommandOption get_option(const std::string& name);
-  // How often an option was given.
+  // Number of times an option was given.
   std::size_t count(const std::string& name) const;
-  // Puts the options that have no group of their own, without the positionals, into one.
+  // Puts all options without a group into this one; positionals are left alone.
   void group_remaining(const std::string& name);
 
  private:

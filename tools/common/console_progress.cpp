@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Nothing can be done about a message that nobody can be told of, so failures are passed over.
+// Failures are ignored: there is nowhere to report them.
 void put(const std::string& text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }

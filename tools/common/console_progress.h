@@ -9,19 +9,19 @@ namespace krok {
 
 enum class ProgressStyle { automatic, bar, plain, json, none };
 
-// Progress and messages on standard error, that do not get into each other's way.
+// Progress and messages on standard error, without garbling each other.
 class Console : public Progress {
  public:
-  // A text of whole lines; a bar that stands there is taken away first.
+  // Prints whole lines; clears a progress bar first.
   virtual void write(const std::string& text);
 };
 
-// `text` by `console`, or straight to standard error where that is null.
+// Writes `text` to `console`, or to standard error if null.
 void write_message(Console* console, const std::string& text);
 
-// A Console. automatic: a bar on a terminal, nothing elsewhere. plain: a line at
-// the start and at every tenth. json: {"progress": {"what", "done", "total"}} a line. A bar appears
-// after half a second only, so that short work leaves the terminal alone. NO_COLOR is honoured.
+// automatic: a bar on a terminal, otherwise nothing. plain: a line at the start and every 10 %.
+// json: one {"progress": {"what", "done", "total"}} per line. The bar appears after half a second,
+// so that short runs print nothing. NO_COLOR is honoured.
 std::unique_ptr<Console> console_progress(ProgressStyle style);
 
 }  // namespace krok

@@ -21,16 +21,12 @@ void ToolContext::put_message(const std::string& text) {
   }
 }
 
-void ToolContext::tell(Diagnostic diagnostic) {
+void ToolContext::diagnose(Diagnostic diagnostic) {
   if (diagnostic.where.file.empty() && !subject.file.empty()) diagnostic.where = subject;
   const bool shown = diagnostic.severity == Severity::error ||
                      (!quiet && (verbose || diagnostic.severity != Severity::note));
   if (shown) put_message(message_of(report.tool, diagnostic));
   report.issues.push_back(std::move(diagnostic));
-}
-
-void ToolContext::tell(const Diagnostics& diagnostics) {
-  for (const Diagnostic& diagnostic : diagnostics) tell(diagnostic);
 }
 
 void ToolContext::warn(std::string code, std::string message, std::string hint) {
@@ -39,17 +35,17 @@ void ToolContext::warn(std::string code, std::string message, std::string hint) 
   diagnostic.code = std::move(code);
   diagnostic.message = std::move(message);
   diagnostic.hint = std::move(hint);
-  tell(std::move(diagnostic));
+  diagnose(std::move(diagnostic));
 }
 
-void ToolContext::say(const std::string& line) {
+void ToolContext::log(const std::string& line) {
   const bool one_of_many = kept_messages != nullptr;
   if (!quiet && !report_on_standard_output && (verbose || !one_of_many)) put_message(line + "\n");
 }
 
 void ToolContext::print(const std::string& text) {
   if (report_on_standard_output) return;
-  // Nothing can be done about a failure here; it is checked once, at the end.
+  // Failures are checked once, at the end.
   (void)std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
@@ -70,7 +66,8 @@ Result<InputFile> ToolContext::open_long_input(const std::string& path) {
   }
   for (const Report::Input& input : report.inputs) {
     if (path == "-" && input.path == path) {
-      return Error("usage", "standard input can be read only once", "name a file for the other");
+      return Error("usage", "standard input can be read only once",
+                   "use a file for the other input");
     }
   }
   auto file = InputFile::open(path);
@@ -84,7 +81,7 @@ void ToolContext::note_checksum(const InputFile& input) {
   }
 }
 
-void ToolContext::chose_beside(const std::string& path, const std::string& ending) {
+void ToolContext::depends_on_neighbours(const std::string& path, const std::string& ending) {
   report.choices.push_back({std::filesystem::path(path).parent_path().string(), ending});
 }
 
@@ -117,7 +114,7 @@ void ToolContext::wrote(const std::string& path) {
   report.outputs.push_back(path);
 }
 
-// Formats hold their texts as UTF-8; names of files may be any bytes.
+// Formats store text as UTF-8; file names may be any bytes.
 Provenance ToolContext::provenance() const {
   Provenance provenance;
   provenance.tool = report.tool;
@@ -129,7 +126,7 @@ Provenance ToolContext::provenance() const {
     return value.is_string() ? to_utf8(value.get<std::string>()) : json_line(value);
   };
   for (const auto& [name, value] : result_options.items()) {
-    // An option that was repeated stands as often.
+    // Repeated options are listed once per occurrence.
     const Json values = value.is_array() ? value : Json::array({value});
     for (const Json& one : values) provenance.options.emplace_back(name, text_of(one));
   }

@@ -4,11 +4,11 @@
 
 namespace krok {
 
-// A name (of an animation, a shape) as the name of a file: without characters that separate folders
-// or that shells and other systems mind, not hidden, not an option, at most 100 bytes.
+// Turns a name (of an animation, a shape) into a file name: no path separators, no characters that
+// are special in shells or invalid on other systems, no leading dot or dash, at most 100 bytes.
 std::string file_name_of(const std::string& name);
 
-// An input as people are told of it: "walk.bvh" of its path, "standard input" for "-".
+// Display name of an input: the base name, "walk.bvh", or "standard input" for "-".
 std::string name_of_input(const std::string& path);
 
 }  // namespace krok

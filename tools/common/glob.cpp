@@ -11,12 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The end of the set that begins with '[' at `begin`, npos where none ends there; then '[' stands
-// for itself.
+// End of the set that starts with '[' at `begin`; npos if unclosed, and then '[' is literal.
 std::size_t end_of_set(std::string_view pattern, std::size_t begin) {
   std::size_t first = begin + 1;
   if (first < pattern.size() && (pattern[first] == '!' || pattern[first] == '^')) ++first;
-  return pattern.find(']', first + 1);  // a ']' at once is a member
+  return pattern.find(']', first + 1);  // a leading ']' is a member
 }
 
 bool in_set(std::string_view set, char c) {
@@ -46,7 +45,7 @@ std::vector<std::string> parts_of(const std::string& pattern) {
   return parts;
 }
 
-// "a" and "b" are "a/b", "" and "b" are "b".
+// "a", "b" -> "a/b"; "", "b" -> "b".
 std::string join(const std::string& folder, const std::string& name) {
   if (folder.empty() || folder.back() == '/') return folder + name;
   return folder + "/" + name;
@@ -84,7 +83,7 @@ class Search {
       }
     }
     if (trouble) {
-      return Error("file-unreadable", fmt::format("cannot be searched: {}", trouble.message()))
+      return Error("file-unreadable", fmt::format("cannot search folder: {}", trouble.message()))
           .in_file(folder.empty() ? "." : folder);
     }
     return {};
@@ -111,8 +110,7 @@ bool has_wildcards(std::string_view text) {
 
 bool matches(std::string_view pattern, std::string_view name) {
   if (!name.empty() && name[0] == '.' && (pattern.empty() || pattern[0] != '.')) return false;
-  // After a '*' whatever follows is tried at each place; only the last '*' needs to be gone back
-  // to.
+  // After a '*', the rest is tried at each position. Only the last '*' needs backtracking.
   std::size_t p = 0, n = 0, star = std::string_view::npos, star_name = 0;
   while (n < name.size()) {
     if (p < pattern.size() && pattern[p] == '*') {

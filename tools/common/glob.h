@@ -6,26 +6,26 @@
 
 #include "core/result.h"
 
-// Patterns of file names, as shells have them: * and ? stand for any characters but /, [a-z] and
-// [!a-z] for one of a set, ** as a whole part for any number of folders. Nothing stands for a dot
-// at the beginning of a name. ** does not follow symbolic links to folders.
+// File name patterns (globs) as in shells: * and ? match any characters except /, [a-z] and [!a-z]
+// match one of a set, and ** as a whole path component matches any number of folders. A leading dot
+// is never matched by a wildcard. ** does not follow symbolic links to folders.
 
 namespace krok {
 
 bool has_wildcards(std::string_view text);
 
-// Whether one part of a path, without /, fits one part of a pattern.
+// Whether a path component matches a pattern component.
 bool matches(std::string_view pattern, std::string_view name);
 
-// The folders of a pattern before its first part with a wildcard: "a/b" for "a/b/*/c.bvh", "" for
-// "*.bvh", "/" for "/*.bvh".
+// The folders of a pattern before its first component with a wildcard: "a/b" for "a/b/*/c.bvh", ""
+// for "*.bvh", "/" for "/*.bvh".
 std::string fixed_part(const std::string& pattern);
 
-// All files (no folders) that fit, as paths that begin as the pattern does, sorted by their bytes.
-// An Error (code file-unreadable) for a folder that cannot be read; none found is no error.
+// All matching files (not folders), sorted bytewise; paths start as the pattern does. Fails (code
+// file-unreadable) if a folder cannot be read. No match is not an error.
 Result<std::vector<std::string>> find_files(const std::string& pattern);
 
-// All files in a folder and the folders in it, as `folder/**` finds them.
+// All files in a folder and its sub-folders, as for `folder/**`.
 Result<std::vector<std::string>> find_files_below(const std::string& folder);
 
 }  // namespace krok

@@ -32,13 +32,13 @@ std::string footer(const ToolSpec& spec) {
   }
   text += fmt::format("\nExit codes:\n  0  {}\n", spec.exit_done);
   if (!spec.exit_no.empty()) text += fmt::format("  1  {}\n", spec.exit_no);
-  text += "  2  trouble: usage, input or output; nothing is left half-written\n";
+  text += "  2  error: usage, input or output; no partial output is left\n";
   if (!spec.exit_partly.empty()) text += fmt::format("  3  {}\n", spec.exit_partly);
-  if (spec.batch) text += "  3  with --keep-going: some of the files failed, the others are done\n";
+  if (spec.batch) text += "  3  with --keep-going: some files failed, all others were processed\n";
   return text;
 }
 
-// CLI11 neither breaks long lines nor keeps to one empty line between groups.
+// CLI11 neither wraps long lines nor limits empty lines between groups to one.
 std::string tidy_help(const std::string& help) {
   constexpr std::size_t kWidth = 100;
   std::string tidy;
@@ -49,7 +49,7 @@ std::string tidy_help(const std::string& help) {
     at = end + 1;
     if (line.empty() && empty_before) continue;
     empty_before = line.empty();
-    // Options continue under their text, everything else under itself.
+    // Option descriptions wrap to their column, all other lines to their own indentation.
     const bool option = line.size() > kHelpColumn && line[0] == ' ' &&
                         line.find_first_not_of(' ') == 2 && line[kHelpColumn - 1] == ' ';
     const std::size_t indent = option ? kHelpColumn : std::min(line.find_first_not_of(' '), kWidth);
@@ -76,7 +76,7 @@ class HelpFormatter : public CLI::Formatter {
     return app->get_description() + "\n\n";
   }
   std::string make_footer(const CLI::App* app) const override { return app->get_footer(); }
-  // Without "{false}" after a flag that takes one back.
+  // Removes "{false}" after a negated flag.
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
     std::string name = CLI::Formatter::make_option_name(option, is_positional);
     for (std::size_t at; (at = name.find('{')) != std::string::npos;) {
@@ -84,7 +84,7 @@ class HelpFormatter : public CLI::Formatter {
     }
     return name;
   }
-  // Only the value's name, and the default where it has one; types and "REQUIRED" would be noise.
+  // Only the value name and the default; no types and "REQUIRED".
   std::string make_option_opts(const CLI::Option* option) const override {
     std::string text;
     if (option->get_type_size() != 0) {

@@ -7,7 +7,7 @@
 
 namespace krok {
 
-// Gives the tool's --help its form: usage, options in groups, examples, exit codes.
+// Sets up the layout of --help: usage, option groups, examples, exit codes.
 void shape_help(CLI::App& app, const ToolSpec& spec);
 
 // The text of --help.

@@ -11,11 +11,11 @@
 
 namespace krok {
 
-// Does work(i) for i from 0 to count - 1 on up to `threads` threads, and gives each outcome to
-// take(i, outcome) in the order of i, one at a time, on any of the threads. Work is begun in order,
-// at most `window` items ahead of the first one not taken, so that few outcomes wait. Once take
-// gives false, no work is begun and nothing is taken any more; what was begun is finished. The same
-// after one of them throws, and the exception is thrown on.
+// Runs work(i) for i in [0, count) on up to `threads` threads and passes each outcome to take(i,
+// outcome) in order of i, one at a time, on any of the threads. Work starts in order, at most
+// `window` items ahead of the first one not taken, which bounds the outcomes in memory. Once take
+// returns false, no work is started and nothing is taken; running work finishes. The same holds
+// after an exception, which is rethrown.
 template <typename Outcome>
 void in_order(std::size_t count, int threads, std::size_t window,
               const std::function<Outcome(std::size_t)>& work,
@@ -26,7 +26,7 @@ void in_order(std::size_t count, int threads, std::size_t window,
   bool stopped = false, someone_takes = false;
   std::map<std::size_t, Outcome> waiting;
 
-  // Meanwhile others go on with their work, and leave what they have done to whoever takes.
+  // Other threads keep working meanwhile and leave their outcomes to the taking thread.
   const auto take_what_is_due = [&](std::unique_lock<std::mutex>& lock) {
     someone_takes = true;
     while (!stopped && !waiting.empty() && waiting.begin()->first == taken) {
@@ -55,7 +55,7 @@ void in_order(std::size_t count, int threads, std::size_t window,
       if (!someone_takes) take_what_is_due(lock);
     }
   };
-  // The others would wait for the item of one that throws.
+  // Otherwise the other threads would wait for the item whose work threw.
   const auto guarded = [&] {
     try {
       run();

@@ -4,7 +4,7 @@
 
 namespace krok {
 
-// The JSON of reports and journals: members keep the order in which they were put in.
+// JSON of reports and journals: members keep insertion order.
 using Json = nlohmann::ordered_json;
 
 }  // namespace krok

@@ -6,8 +6,8 @@
 
 namespace krok {
 
-// The JSON text of a value in one line without spaces, names in their order. Bytes that are no
-// UTF-8 are replaced (U+FFFD).
+// JSON text of a value on one line, without spaces, members in order. Invalid UTF-8 is replaced by
+// U+FFFD.
 std::string json_line(const Json& value);
 
 }  // namespace krok

@@ -6,8 +6,8 @@
 
 namespace krok {
 
-// An empty object with room for so many members. One without copies all that it holds, again and
-// again, while it grows.
+// An empty object with memory reserved for this many members; growing an object copies all its
+// members.
 inline Json object_for(std::size_t members) {
   Json object = Json::object();
   object.get_ref<Json::object_t&>().reserve(members);

@@ -17,15 +17,15 @@ CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice) {
       {{"auto", KeysChoice::automatic},
        {"sidecar", KeysChoice::sidecar},
        {"none", KeysChoice::none}},
-      "Keytimes: auto (the file NAME.keys.json beside a motion, otherwise "
-      "found as krok-keys does), sidecar (that file alone), none (beginnings "
-      "and ends)",
+      "Keytimes: auto (from NAME.keys.json beside a motion, otherwise detected as by krok-keys), "
+      "sidecar (only from that file), none (start and end only)",
       "WHICH", "auto");
 }
 
 Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::string& path,
                                               const std::string& name, const Clip& clip,
-                                              const FindRoles& find_roles, ToolContext& context) {
+                                              const io::FindRoles& find_roles,
+                                              ToolContext& context) {
   std::optional<MotionKeys> none;
   if (choice == KeysChoice::none) return none;
   auto sidecar = read_keys_beside(path, clip, context);
@@ -33,13 +33,13 @@ Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::stri
   if (*sidecar) return std::optional(std::move((*sidecar)->keys));
   if (choice == KeysChoice::sidecar) {
     return Error("keys-missing",
-                 fmt::format("{} stands not beside it", base_name(keys_sidecar_path(path))),
-                 "krok-keys makes it; --keys auto finds keytimes on the spot")
+                 fmt::format("{} is missing beside it", base_name(keys_sidecar_path(path))),
+                 "create it with krok-keys, or use --keys auto to detect keytimes")
         .in_file(path);
   }
   const auto roles = find_roles(clip.skeleton);
   if (!roles) return roles.error();
-  // What is doubtful is about this motion, of several.
+  // Warnings refer to this motion, one of several.
   const Location before = std::exchange(context.subject, Location{.file = path});
   auto found = find_keys(clip, *roles, context);
   context.subject = before;
@@ -60,9 +60,9 @@ Result<std::string> place_for_keys(const MotionKeys& keys, const Skeleton& skele
   if (!file) return file.error();
   const auto before = keys::read_sidecar(file->text(), path, skeleton, HUGE_VAL);
   if (before && !before->has_edits()) return path;
-  return Error("keys-edited", "holds what a person wrote, or no keytimes of such a motion",
-               "the keytimes of the result would go there: move it away, or name the result "
-               "otherwise")
+  return Error("keys-edited", "was edited by hand, or is not a keytime file for this motion",
+               "the result's keytimes would overwrite it: move it away, or choose another name for "
+               "the result")
       .in_file(path);
 }
 

@@ -20,17 +20,17 @@ Result<keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
   const auto input = context.open_input(path);
   if (!input) return input.error();
   auto sidecar = keys::read_sidecar(input->text(), path, clip.skeleton, clip.duration());
-  // Half a frame: more than rounding, less than any cut.
+  // Half a frame: more than rounding errors, less than any cut.
   if (sidecar && sidecar->duration > 0 &&
       std::abs(sidecar->duration - clip.duration()) > 0.5 / clip.rate) {
     Diagnostic stale;
     stale.severity = Severity::warning;
     stale.code = "keys-stale";
-    stale.message = fmt::format("made for a motion of {} s, this one lasts {} s",
+    stale.message = fmt::format("made for a motion of {} s, but this one has {} s",
                                 readable(sidecar->duration), readable(clip.duration()));
-    stale.hint = "was the motion cut or retimed since? krok-keys finds them anew";
+    stale.hint = "if the motion was cut or retimed, run krok-keys again";
     stale.where.file = path;
-    context.tell(std::move(stale));
+    context.diagnose(std::move(stale));
   }
   return sidecar;
 }
@@ -39,7 +39,7 @@ Result<std::optional<keys::Sidecar>> read_keys_beside(const std::string& motion_
                                                       const Clip& clip, ToolContext& context) {
   const std::string path = keys_sidecar_path(motion_path);
   if (path.empty()) return std::optional<keys::Sidecar>();
-  context.chose_beside(motion_path, base_name(path));
+  context.depends_on_neighbours(motion_path, base_name(path));
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return std::optional<keys::Sidecar>();
   auto sidecar = read_keys_file(path, clip, context);
@@ -50,9 +50,9 @@ Result<std::optional<keys::Sidecar>> read_keys_beside(const std::string& motion_
 Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext& context) {
   auto contacts = find_contacts(clip, roles);
   if (!contacts) return std::move(contacts).error();
-  context.tell(contacts->warnings);
+  context.diagnose(contacts->warnings);
   Gait gait = find_gait(clip, roles, *contacts);
-  context.tell(gait.warnings);
+  context.diagnose(gait.warnings);
   return MotionKeys{std::move(contacts->contacts), std::move(gait.keytimes)};
 }
 

@@ -9,26 +9,27 @@
 #include "scene/clip.h"
 #include "tools/common/tool.h"
 
-// The contacts and keytimes that stand beside a motion, in NAME.keys.json.
+// Sidecars: the contacts and keytimes of a motion, stored beside it as NAME.keys.json.
 
 namespace krok {
 
-// Where they stand: "takes/walk.keys.json" for "takes/walk.anim". Empty for standard input.
+// "takes/walk.keys.json" for "takes/walk.anim". Empty for standard input.
 std::string keys_sidecar_path(const std::string& motion_path);
 
-// Those in the file `path`, opened by context.open_input. Warns (code keys-stale) where the file
-// was made for a motion of another length.
+// Reads the file `path`, opened by context.open_input. Warns (code keys-stale) if the file was made
+// for a motion of another duration.
 Result<keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
                                      ToolContext& context);
 
-// Those beside a motion that was read from `motion_path`; nothing where no such file stands there.
+// Reads the sidecar of a motion read from `motion_path`; empty if there is none.
 Result<std::optional<keys::Sidecar>> read_keys_beside(const std::string& motion_path,
                                                       const Clip& clip, ToolContext& context);
 
-// Those of a motion as krok-keys finds them. What is doubtful is told. Code: contacts-feet.
+// Detects contacts and keytimes as krok-keys does, with warnings for doubtful results. Code:
+// contacts-feet.
 Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext& context);
 
-// Names and times, for the report.
+// Names and times for the report.
 Json to_json(std::span<const Keytime> keytimes);
 
 }  // namespace krok

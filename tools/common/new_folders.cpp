@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 NewFolders::~NewFolders() {
   std::error_code ignored;
-  // Those that are empty.
+  // Only empty folders are removed.
   for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
 }
 
@@ -26,8 +26,8 @@ Status NewFolders::make(const std::string& folder) {
     if (fs::create_directory(*path, trouble)) made_.push_back(path->string());
   }
   if (!trouble && fs::is_directory(folder, trouble)) return {};
-  return Error("file-unwritable", fmt::format("cannot be made a folder: {}",
-                                              trouble ? trouble.message() : "a file has its name"))
+  return Error("file-unwritable", fmt::format("cannot create folder: {}",
+                                              trouble ? trouble.message() : "a file has this name"))
       .in_file(folder);
 }
 

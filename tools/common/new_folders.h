@@ -7,7 +7,7 @@
 
 namespace krok {
 
-// Folders for results, which are gone again if the results do not come about.
+// Folders for outputs; removed again unless keep() is called.
 class NewFolders {
  public:
   NewFolders() = default;
@@ -15,14 +15,14 @@ class NewFolders {
   NewFolders& operator=(const NewFolders&) = delete;
   ~NewFolders();
 
-  // Makes a folder, and those that it lies in, where they are missing. Code file-unwritable.
+  // Creates a folder and its missing parents. Code file-unwritable.
   Status make(const std::string& folder);
 
-  // The results are in them.
+  // Keeps the folders: the outputs are in them.
   void keep() { made_.clear(); }
 
  private:
-  std::vector<std::string> made_;  // outer ones first
+  std::vector<std::string> made_;  // parents first
 };
 
 }  // namespace krok

@@ -10,8 +10,8 @@
 
 namespace krok {
 
-// For an option whose value is one of a list of words: add_option(...).transform(one_of(...)).
-// Words are as written here, in this order in the message for any other word.
+// For an option with a fixed list of values: add_option(...).transform(one_of(...)). Values are
+// case-sensitive; the error message lists them in this order.
 template <typename Value>
 CheckValue one_of(std::vector<std::pair<std::string, Value>> words) {
   static_assert(std::is_enum_v<Value>);
@@ -28,7 +28,7 @@ CheckValue one_of(std::vector<std::pair<std::string, Value>> words) {
   };
 }
 
-// The same for an option that keeps the word itself; letters in either case are the same.
+// The same for an option that stores the word itself; case-insensitive.
 inline CheckValue one_of_words(std::vector<std::string> words) {
   return [words = std::move(words)](std::string& text) {
     std::string list;

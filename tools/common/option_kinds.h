@@ -8,11 +8,11 @@
 #include "tools/common/command_options.h"
 #include "tools/common/one_of.h"
 
-// Kinds of options that several tools have.
+// Common kinds of options.
 
 namespace krok {
 
-// An option whose value is one of a list of words.
+// An option with a fixed list of values.
 template <typename T>
 CommandOption add_choice(CommandOptions& command, const std::string& name, T& value,
                          std::vector<std::pair<std::string, T>> words,
@@ -24,7 +24,7 @@ CommandOption add_choice(CommandOptions& command, const std::string& name, T& va
       .default_str(default_word);
 }
 
-// A whole decimal number from `low` to `high`. CLI11 alone takes "010" for 8 and "0x10" for 16.
+// A decimal integer from `low` to `high`. CLI11 itself reads "010" as 8 and "0x10" as 16.
 template <typename T>
 CommandOption add_whole(CommandOptions& command, const std::string& name, T& value,
                         const std::string& description, long long low, long long high) {
@@ -33,7 +33,7 @@ CommandOption add_whole(CommandOptions& command, const std::string& name, T& val
       .transform([low, high](std::string& text) {
         const auto number = parse_integer(text);
         if (!number || *number < low || *number > high) {
-          return "'" + text + "' is no whole number from " + std::to_string(low) + " to " +
+          return "'" + text + "' is not an integer from " + std::to_string(low) + " to " +
                  std::to_string(high);
         }
         text = std::to_string(*number);
@@ -41,16 +41,16 @@ CommandOption add_whole(CommandOptions& command, const std::string& name, T& val
       });
 }
 
-// A finite decimal number. CLI11 alone takes "nan", "0x10" and " 2".
+// A finite decimal number. CLI11 itself accepts "nan", "0x10" and " 2".
 template <typename T>
 CommandOption add_number(CommandOptions& command, const std::string& name, T& value,
                          const std::string& description) {
   return command.add_option(name, value, description).type_name("N").check([](std::string& text) {
-    return parse_finite(text) ? std::string() : "'" + text + "' is no number";
+    return parse_finite(text) ? std::string() : "'" + text + "' is not a number";
   });
 }
 
-// Frames a second: a positive finite number; CLI11 alone takes "1e999" and "nan".
+// A frame rate in frames per second, from 0.001 to 1000000. CLI11 itself accepts "1e999" and "nan".
 template <typename T>
 CommandOption add_rate(CommandOptions& command, const std::string& name, T& value,
                        const std::string& description) {
@@ -58,7 +58,7 @@ CommandOption add_rate(CommandOptions& command, const std::string& name, T& valu
     const auto rate = parse_finite(text);
     return rate && *rate >= 1e-3 && *rate <= 1e6
                ? std::string()
-               : "'" + text + "' is no rate from 0.001 to 1000000";
+               : "'" + text + "' is not a frame rate from 0.001 to 1000000";
   });
 }
 

@@ -6,14 +6,13 @@
 
 namespace krok {
 
-// --orientation, for tools that write one of Krok's own binary formats.
+// --orientation, for tools that write one of Krok's binary formats.
 inline CommandOption add_orientation_option(CommandOptions& command,
                                             OrientationEncoding& encoding) {
   return add_choice<OrientationEncoding>(
              command, "--orientation", encoding,
              {{"xyz", OrientationEncoding::xyz}, {"xyzw", OrientationEncoding::xyzw}},
-             "How orientations are stored: three numbers each (xyz) or four, exactly (xyzw)", "HOW",
-             "xyz")
+             "Quaternion storage: three components (xyz) or all four, exact (xyzw)", "HOW", "xyz")
       .group("Output");
 }
 

@@ -8,19 +8,19 @@ using registry::Kind;
 
 namespace {
 
-// Which tool makes a file of this kind; empty where none does.
+// Hint which tool creates files of this kind; empty if none does.
 std::string maker_of(Kind kind, Kind from) {
   switch (kind) {
     case Kind::glb:
     case Kind::gltf:
-      return from == Kind::anim ? "krok-export makes glTF of a .anim file"
-                                : "krok-skin makes glTF of a .model file and a .anim file";
+      return from == Kind::anim ? "krok-export converts .anim files to glTF"
+                                : "krok-skin creates glTF from a .model and a .anim file";
     case Kind::bvh:
-      return "krok-export makes BVH of a .anim file";
+      return "krok-export converts .anim files to BVH";
     case Kind::model:
-      return "krok-body makes a .model file for a .anim file";
+      return "krok-body creates a .model file for a .anim file";
     case Kind::anim:
-      return "krok-import makes a .anim file of a capture";
+      return "krok-import converts captures to .anim files";
     default:
       return {};
   }
@@ -34,9 +34,9 @@ Status check_output_kind(const std::string& path, const std::string& option, Kin
   const std::string_view own = registry::kind_name(written);
   const std::string maker = maker_of(named, written);
   return Error("usage",
-               fmt::format("{} {}: what is written there is a .{} file, not .{}", option, path, own,
+               fmt::format("{} {}: the output is a .{} file, not .{}", option, path, own,
                            registry::kind_name(named)),
-               fmt::format("call it .{}{}{}", own, maker.empty() ? "" : "; ", maker));
+               fmt::format("use the extension .{}{}{}", own, maker.empty() ? "" : "; ", maker));
 }
 
 }  // namespace krok

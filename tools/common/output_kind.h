@@ -7,9 +7,9 @@
 
 namespace krok {
 
-// Whether a file of kind `written` may be called `path`: an Error (code usage) where the extension
-// is that of another kind that Krok knows, whose readers would refuse it. Other extensions and none
-// are the user's choice. `option` is what the path was given with, "-o".
+// Fails (code usage) if the extension of `path` belongs to another known file kind than `written`,
+// whose readers would reject the file. Unknown extensions and none are allowed. `option` is the
+// option that gave the path, "-o".
 Status check_output_kind(const std::string& path, const std::string& option,
                          registry::Kind written);
 

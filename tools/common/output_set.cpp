@@ -43,7 +43,7 @@ Status OutputSet::add_all(const std::vector<std::string>& paths, int jobs,
                       [&](OutputFile& file) { return write(i, file); });
     if (!*made[i]) failed = true;
   });
-  // Files are begun in order, so that the first that failed is always among those begun.
+  // Files are started in order, so the first failing file is always among those started.
   for (std::size_t i = 0; i < made.size(); ++i) {
     if (made[i] && !*made[i]) return made[i]->error();
   }

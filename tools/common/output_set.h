@@ -11,27 +11,26 @@
 
 namespace krok {
 
-// The files that one run writes: all of them appear or none. Each is checked by
-// ToolContext::check_output before it is begun; an Error of writing gets the name of the file where
-// it has none.
+// The output files of one run, written atomically: all appear or none. Each path is checked by
+// ToolContext::check_output before writing starts. Write errors without a file name get the path.
 class OutputSet {
  public:
   explicit OutputSet(ToolContext& context) : context_(context) {}
 
-  // Writes a file beside its place; nothing for an empty path.
+  // Writes a file under a temporary name beside `path`. Does nothing if `path` is empty.
   Status add(const std::string& path, const std::function<Status(OutputFile&)>& write);
 
-  // The same for several files, by up to `jobs` threads at once; of several failures the one of the
-  // first file is told. write(i, file) writes the ith.
+  // The same for several files, on up to `jobs` threads. If several fail, the error of the first
+  // file in the list is returned. write(i, file) writes the ith file.
   Status add_all(const std::vector<std::string>& paths, int jobs,
                  const std::function<Status(std::size_t, OutputFile&)>& write);
 
-  // Puts all in place once each is safe on the disk, and notes them in the report. In a batch files
-  // with names that the command line does not tell are handed over to it, which puts them in place
-  // in the order of its list.
+  // Renames all files to their final names once each is safely on disk, and adds them to the
+  // report. In a batch, files whose names are not known from the command line are handed over to
+  // the batch, which renames them in list order.
   Status finish();
 
-  // The names so far, for people.
+  // The paths so far, for messages.
   std::string names() const;
 
  private:
@@ -41,7 +40,7 @@ class OutputSet {
   std::vector<OutputFile> files_;
 };
 
-// Writes a result that is one file.
+// Writes a single output file.
 Status write_output(ToolContext& context, const std::string& path,
                     const std::function<Status(OutputFile&)>& write);
 

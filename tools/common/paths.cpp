@@ -12,8 +12,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The folder without links; what of it does not exist stays as it is. Many files of a run stand in
-// one folder, and finding this takes a question to the system for each part of its name.
+// Resolves links in a folder's path; missing components are kept. Cached, as many files share a
+// folder and resolving takes a system call per path component.
 const std::string& real_folder(const std::string& folder) {
   thread_local std::string last, last_real;
   if (last != folder || last.empty()) {
@@ -25,7 +25,7 @@ const std::string& real_folder(const std::string& folder) {
   return last_real;
 }
 
-// Whether a path has no . or .. and no doubled slash, but maybe a slash at its beginning.
+// Whether a path has no ".", ".." or double slash; a leading slash is allowed.
 bool is_normal(std::string_view path) {
   for (std::size_t at = path.starts_with('/') ? 1 : 0;;) {
     const std::size_t end = std::min(path.find('/', at), path.size());
@@ -36,7 +36,7 @@ bool is_normal(std::string_view path) {
   }
 }
 
-// "/" and "b" are "/b", "/a" and "b" are "/a/b".
+// "/", "b" -> "/b"; "/a", "b" -> "/a/b".
 std::string joined(const std::string& folder, std::string_view name) {
   std::string path;
   path.reserve(folder.size() + 1 + name.size());
@@ -87,12 +87,12 @@ std::string place_of(const std::string& path) {
 }
 
 Error replaced_error(const std::string& path) {
-  return Error("usage", "is read and would be replaced by a result", "choose another name")
+  return Error("usage", "is an input and would be overwritten by an output", "choose another name")
       .in_file(path);
 }
 
 Error twice_error(const std::string& path) {
-  return Error("usage", path + " would be written twice", "give each result its own file");
+  return Error("usage", path + " would be written twice", "give each output its own file");
 }
 
 std::string below(const std::string& folder, const std::string& path) {
@@ -101,7 +101,7 @@ std::string below(const std::string& folder, const std::string& path) {
 
 std::string absolute_path(const std::string& path) {
   std::error_code unknown;
-  if (is_normal(path)) {  // most are, and a path that is taken apart takes longer
+  if (is_normal(path)) {  // fast path: most are
     if (path.starts_with('/')) return path;
     const std::string folder = fs::current_path(unknown).string();
     if (!unknown) return joined(folder, path);

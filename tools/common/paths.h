@@ -9,29 +9,28 @@
 
 namespace krok {
 
-// Whether two paths lead to one regular file, which need not exist yet. Devices and standard
-// streams can be read and written at once.
+// Whether two paths refer to the same regular file, which need not exist yet. False for devices and
+// standard streams, which can be read and written at once.
 bool same_file(const std::string& first, const std::string& second);
 
-// A regular file as the system numbers it, whatever it is called; nothing where there is none.
+// Device and inode number of a regular file; empty if there is none.
 using FileNumber = std::pair<std::uint64_t, std::uint64_t>;
 std::optional<FileNumber> file_number(const std::string& path);
 
-// The one name that all paths to a regular file lead to, through links; the file need not exist.
-// Empty for standard streams and devices.
+// Canonical path of a regular file, with links resolved; the file need not exist. Empty for
+// standard streams and devices.
 std::string place_of(const std::string& path);
 
-// An Error (code usage) that a result would replace this file.
+// Error (code usage): an output would overwrite this input.
 Error replaced_error(const std::string& path);
 
-// An Error (code usage) that two results would go there.
+// Error (code usage): two outputs have this path.
 Error twice_error(const std::string& path);
 
-// `path` itself where it is absolute, otherwise the file of that name below `folder`;
-// an empty folder is the current one.
+// `path` if absolute, otherwise `path` relative to `folder`; an empty folder is the current one.
 std::string below(const std::string& folder, const std::string& path);
 
-// An absolute path without . and .. and doubled slashes; links are not looked at.
+// Absolute path without ".", ".." and double slashes; links are not resolved.
 std::string absolute_path(const std::string& path);
 
 }  // namespace krok

@@ -4,8 +4,8 @@
 
 namespace krok {
 
-// `text`, which is UTF-8, with "?" for each control character, which a file may hold in its names
-// and which a terminal would obey.
+// Replaces control characters in UTF-8 `text` by "?". Names in files may contain terminal escape
+// sequences.
 std::string printable(const std::string& text);
 
 }  // namespace krok

@@ -8,8 +8,8 @@
 
 namespace krok {
 
-// What a tool did, gathered while it runs; written as JSON (schema krok.report/1) for scripts.
-// Nothing in it differs between two runs on the same input.
+// The report of a run, written as JSON (schema krok.report/1) for scripts. Identical for two runs
+// on the same input.
 struct Report {
   std::string tool;
   std::string version;
@@ -18,10 +18,10 @@ struct Report {
     std::string xxh3;
   };
   std::vector<Input> inputs;
-  // Where files were looked for in a folder; for the journal of a batch, not for the report.
+  // Folders that were searched for files; for the journal of a batch, not for the report.
   struct Choice {
     std::string folder;
-    std::string ending;  // ".asf", or a whole name
+    std::string ending;  // ".asf", or a full file name
   };
   std::vector<Choice> choices;
   Json options = Json::object();
@@ -36,15 +36,15 @@ Json to_json(const Diagnostic& diagnostic);
 Json to_json(const Diagnostics& diagnostics);
 Json to_json(const std::vector<Report::Input>& inputs);
 
-// Whether a report may be written to `path` though it is not known what else the name stands for,
-// as when a command line could not be parsed: nothing or a report stands there.
+// Whether `path` is free or holds a report. Only then may a report be written to it when the
+// command line could not be parsed, as `path` might be an input.
 bool only_a_report_stands_at(const std::string& path);
 
-// "walk.bvh:214:61: error: what is wrong [code]", and where there is one a second line with the
-// hint. Without a file the message stands alone after the severity.
+// "walk.bvh:214:61: error: message [code]", with a second line for the hint if any. Without a file
+// it starts at the severity.
 std::string to_text(const Diagnostic& diagnostic);
 
-// The same as a whole message, with line end; one about no file begins with the tool's name.
+// The same with a line end, and with the tool's name first if there is no file.
 std::string message_of(const std::string& tool, const Diagnostic& diagnostic);
 
 }  // namespace krok

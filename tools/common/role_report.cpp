@@ -13,12 +13,12 @@ namespace krok {
 
 namespace {
 
-// Whether a joint of this role is a part of the body.
+// Whether a joint with this role is part of the body.
 bool is_of_body(Role role) {
   return role != Role::none && role != Role::end && role != Role::helper;
 }
 
-// "upper_arm" in a row of the left arm.
+// "upper_arm" in the row of the left arm.
 std::string short_name(Role role) {
   std::string name(role_name(role));
   for (const char* side : {"left_", "right_"}) {
@@ -28,7 +28,7 @@ std::string short_name(Role role) {
   return name;
 }
 
-// "Neck Head", of more than a few "... and 7 more".
+// "Neck Head"; long lists end in "... and 7 more".
 std::string joints_of(const Skeleton& skeleton, const std::vector<int>& joints) {
   constexpr std::size_t kMax = 6;
   std::string text;
@@ -39,7 +39,7 @@ std::string joints_of(const Skeleton& skeleton, const std::vector<int>& joints) 
   return text;
 }
 
-// "hips Hip, spine LowerSpine MiddleSpine, chest Chest", nothing for none.
+// "hips Hip, spine LowerSpine MiddleSpine, chest Chest"; empty for none.
 std::string row_of(const Skeleton& skeleton, const RoleMap& map,
                    std::initializer_list<Role> roles) {
   std::string text;
@@ -52,7 +52,7 @@ std::string row_of(const Skeleton& skeleton, const RoleMap& map,
   return text;
 }
 
-// "thumb 3, index 3": how many joints each finger has; joints of no known finger as "others".
+// "thumb 3, index 3": joints per finger; joints of unknown fingers are "others".
 std::string fingers_of(const RoleMap& map, Role fingers) {
   std::string text;
   const std::vector<int> joints = map.joints(fingers);
@@ -90,7 +90,7 @@ void add_parts(const Skeleton& skeleton, const RoleMap& map, std::vector<RoleRow
       row({Role::right_upper_leg, Role::right_lower_leg, Role::right_foot, Role::right_toes}));
 }
 
-// Each role with its joint, or for roles of many with their joints.
+// Maps each role to its joint, or to a list for roles that several joints may have.
 Json joints_by_role(const Skeleton& skeleton, const RoleMap& map) {
   Json json = object_for(map.roles.size());
   for (std::size_t j = 0; j < map.roles.size(); ++j) {
@@ -108,7 +108,7 @@ Json joints_by_role(const Skeleton& skeleton, const RoleMap& map) {
   return json;
 }
 
-// Joints that nothing is known of.
+// Joints of unknown role.
 std::vector<int> unknown_joints(const RoleMap& map) {
   return map.joints(Role::none);
 }
@@ -137,14 +137,14 @@ std::string given_of(const Skeleton& skeleton, const RoleMap& map) {
 std::string actor_of(const RoleMap& map) {
   if (!map.humanoid) return "not recognised as a humanoid";
   const auto placed = std::count_if(map.roles.begin(), map.roles.end(), is_of_body);
-  return fmt::format("humanoid, {} with a role in the body", counted(placed, "joint"));
+  return fmt::format("humanoid, {} with a body role", counted(placed, "joint"));
 }
 
 }  // namespace
 
 std::vector<RoleRow> role_rows(const Skeleton& skeleton, const RoleMap& map) {
   std::vector<RoleRow> rows;
-  rows.push_back({"figure", actor_of(map)});
+  rows.push_back({"body", actor_of(map)});
   add_parts(skeleton, map, rows);
   std::string missing;
   for (const Role role : missing_roles(map)) {

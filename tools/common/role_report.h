@@ -7,7 +7,7 @@
 #include "scene/skeleton.h"
 #include "tools/common/report.h"
 
-// What the joints of a skeleton are, for people and for programs.
+// Joint roles of a skeleton, as text and as JSON.
 
 namespace krok {
 
@@ -16,13 +16,13 @@ struct RoleRow {
   std::string text;
 };
 
-// Whether it is a humanoid, the joints of its parts, what it lacks, which joints have no role, and
-// what the user gave. Long lists of joints are cut; names stand as the skeleton has them.
+// Whether the skeleton is a humanoid, the joints of each body part, missing roles, joints without a
+// role, and roles given by the user. Long lists of joints are truncated; joint names are unchanged.
 std::vector<RoleRow> role_rows(const Skeleton& skeleton, const RoleMap& map);
 
-// "humanoid"; "roles", each with its joint, or with the list of its joints where many may have it;
-// "missing_roles", of those that a humanoid must have; "unknown_joints", those without a role, end
-// sites apart; "given_roles", what the user gave: a role a joint, null where one was taken away.
+// "humanoid"; "roles", each with its joint, or a list of joints for roles that several may have;
+// "missing_roles", those required for a humanoid; "unknown_joints", those without a role, except
+// end sites; "given_roles", from the user: one role per joint, null where a role was removed.
 Json roles_json(const Skeleton& skeleton, const RoleMap& map);
 
 }  // namespace krok

@@ -23,15 +23,15 @@ namespace krok {
 
 namespace {
 
-// A program may be started with standard streams closed. The next file opened would take their
-// place, and messages would be written into it.
+// A program may be started with standard streams closed. The next opened file would get their
+// descriptor, and messages would be written into it.
 void open_missing_standard_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);
   }
 }
 
-// "--json" alone means standard output; CLI11 would take the next argument for its value.
+// "--json" alone means standard output; CLI11 would take the next argument as its value.
 std::vector<std::string> arguments_of(int argc, char** argv) {
   std::vector<std::string> arguments;
   bool options_end = false;
@@ -44,8 +44,7 @@ std::vector<std::string> arguments_of(int argc, char** argv) {
   return arguments;
 }
 
-// Where the report of a command line goes that could not be parsed: to a file only if no other
-// argument names the same.
+// Report path if the command line cannot be parsed: a file only if no other argument names it.
 std::string report_path(const std::vector<std::string>& arguments) {
   const std::string option = "--json=";
   std::string path;
@@ -59,7 +58,7 @@ std::string report_path(const std::vector<std::string>& arguments) {
   return path;
 }
 
-// Two results in one file would leave only the last.
+// Of two outputs in one file only the last would remain.
 Status check_destinations(const ToolContext& context) {
   const auto& paths = context.destinations;
   for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -72,7 +71,7 @@ Status check_destinations(const ToolContext& context) {
   return {};
 }
 
-// The report, begun before the work, so that nothing is written where it cannot be.
+// The report file, opened before the run, so that the run fails early if it cannot be written.
 using ReportFile = std::optional<OutputFile>;
 
 Status begin_report(const ToolContext& context, ReportFile& file) {
@@ -89,7 +88,7 @@ int finish(ToolContext& context, ReportFile& file, int exit_code) {
     if (same_file(input, context.report_path)) return kExitTrouble;
   }
   const std::string text = json_text(context.report.to_json(), 2) + "\n";
-  (void)file->write(text).ok();  // a failure is kept and told by commit()
+  (void)file->write(text).ok();  // errors are kept and returned by commit()
   if (const Status status = file->commit(); !status) {
     write_message(context.console, to_text(status.error()) + "\n");
     return kExitTrouble;
@@ -98,13 +97,13 @@ int finish(ToolContext& context, ReportFile& file, int exit_code) {
 }
 
 int fail(ToolContext& context, ReportFile& file, const Error& error) {
-  context.tell(error);
+  context.diagnose(error);
   return finish(context, file, kExitTrouble);
 }
 
-// What is told without a report.
+// Errors before the report exists.
 int fail(ToolContext& context, const Error& error) {
-  context.tell(error);
+  context.diagnose(error);
   return kExitTrouble;
 }
 
@@ -113,7 +112,8 @@ bool standard_output_written() {
 }
 
 Error standard_output_error() {
-  return Error("file-unwritable", "standard output cannot be written", "check where it goes");
+  return Error("file-unwritable", "cannot write to standard output",
+               "check where it is redirected to");
 }
 
 int run_single(const ToolSpec& spec, const CommandLine& line) {
@@ -138,7 +138,7 @@ int run_single(const ToolSpec& spec, const CommandLine& line) {
   return finish(context, report, *done);
 }
 
-// Of a command line that could not be parsed.
+// For a command line that cannot be parsed.
 int fail_usage(const ToolSpec& spec, const std::vector<std::string>& arguments, bool many,
                const Error& error) {
   ToolContext context;
@@ -148,7 +148,7 @@ int fail_usage(const ToolSpec& spec, const std::vector<std::string>& arguments, 
   const auto end = std::find(arguments.begin(), arguments.end(), "--");
   context.no_clobber = std::find(arguments.begin(), end, "--no-clobber") != end;
   if (many && !only_a_report_stands_at(context.report_path)) {
-    context.report_path.clear();  // a pattern may stand for it
+    context.report_path.clear();  // a pattern may match it
   }
   ReportFile report;
   const Status status = begin_report(context, report);
@@ -165,19 +165,19 @@ int run_arguments(const MakeToolSpec& make_spec, const std::vector<std::string>&
   if (*wish == CommandLine::Wish::version) {
     return print_and_end(spec.name, fmt::format("{} {}\n", spec.name, version()));
   }
-  // Without the changes for many files, whatever else was given.
+  // The help is that of single-file mode, whatever else was given.
   if (*wish == CommandLine::Wish::help) {
     return print_and_end(spec.name, CommandLine(spec, CommandLine::Form::single).help());
   }
   return many ? run_batch(make_spec, line) : run_single(spec, line);
 }
 
-// What was thrown, as an Error. For a catch clause.
+// Converts the current exception to an Error; call in a catch clause.
 Error error_of_exception(const std::string& tool) {
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    return Error("out-of-memory", "there is not enough memory");
+    return Error("out-of-memory", "out of memory");
   } catch (const std::exception& error) {
     return Error("internal", fmt::format("a bug in {}: {}", tool, error.what()),
                  "please report it with the input that caused it");
@@ -187,18 +187,18 @@ Error error_of_exception(const std::string& tool) {
 constexpr std::size_t kMaxName = 64;
 char name_when_ending[kMaxName] = "krok";
 
-// Where memory is at an end, even what lets go of memory may ask for some (the destructors of JSON
-// values do), and an exception may find no place for itself. Neither can be caught.
+// When memory is exhausted, destructors may throw (those of JSON values allocate) and exceptions
+// may fail to allocate. Neither can be caught.
 [[noreturn]] void exit_out_of_memory() {
   remove_temporaries();
-  for (const char* words : {static_cast<const char*>(name_when_ending),
-                            ": error: there is not enough memory [out-of-memory]\n"}) {
+  for (const char* words :
+       {static_cast<const char*>(name_when_ending), ": error: out of memory [out-of-memory]\n"}) {
     (void)!::write(STDERR_FILENO, words, std::strlen(words));
   }
   _exit(kExitTrouble);
 }
 
-// Ends the program when an exception cannot be caught.
+// Terminate handler, for exceptions that cannot be caught.
 void end_by_exception() {
   try {
     if (std::current_exception()) throw;

@@ -7,112 +7,112 @@
 #include <vector>
 
 #include "core/file.h"
-#include "core/progress.h"
 #include "core/result.h"
+#include "formats/io/inputs.h"
 #include "scene/provenance.h"
 #include "tools/common/command_options.h"
 #include "tools/common/report.h"
 
-// The frame that all tools share: options, help, messages, exit codes, the report, and the same
-// work on many files. A tool declares its own options in a function and does its work in another;
-// its main is one call of run_tool.
+// The framework of all tools: options, help, messages, exit codes, the report and batch mode. A
+// tool has one function that declares its options and one that does the work; its main() is a call
+// of run_tool.
 
 namespace krok {
 
 class Console;
 
-inline constexpr int kExitDone = 0;     // done, or "the same"
-inline constexpr int kExitNo = 1;       // the answer is no: a difference, a failed check
-inline constexpr int kExitTrouble = 2;  // usage, input, output
-inline constexpr int kExitPartly = 3;   // a batch ended with some files failed
+inline constexpr int kExitDone = 0;     // success, or "equal"
+inline constexpr int kExitNo = 1;       // negative result: a difference, a failed check
+inline constexpr int kExitTrouble = 2;  // usage, input or output error
+inline constexpr int kExitPartly = 3;   // batch finished, some files failed
 
-// What a tool's work is given: the common options, and the places for what it has to say.
-class ToolContext {
+// Passed to a tool's run function: the common options, messages and the report.
+class ToolContext : public io::Inputs {
  public:
-  int jobs = 0;             // -j; 0 is one thread a core
   bool no_clobber = false;  // --no-clobber
   bool quiet = false;       // -q
   bool verbose = false;     // -v
-  std::string output;       // -o, empty where none was given
-  Progress* progress = nullptr;
+  std::string output;       // -o, empty if not given
   Report report;
 
   // The files that this run writes: -o, --json=FILE and every option whose value is named OUT... in
-  // the help. open_input refuses to read one of them.
+  // the help. open_input rejects them.
   std::vector<std::string> destinations;
-  // Where the report goes: --json=FILE, "-", or empty.
+  // Report path: --json=FILE, "-", or empty.
   std::string report_path;
-  // Inputs that a result would have replaced. No report is written there either.
+  // Inputs that an output would have overwritten. The report must not overwrite them either.
   std::vector<std::string> refused_inputs;
 
-  // The options given that change the result, for provenance: without those that name outputs, and
-  // inputs (named IN... in the help) by base name, so that no folder gets into a result.
+  // The given options that affect the result, for provenance. Options that name outputs are left
+  // out; inputs (named IN... in the help) are reduced to base names, so that no folder gets into a
+  // result.
   Json result_options = Json::object();
 
-  // Prints a diagnostic in the common form on standard error (notes with -v only, with -q errors
-  // only), after the tool's name where it is about no file, and keeps it in the report.
-  void tell(Diagnostic diagnostic);
-  void tell(const Diagnostics& diagnostics);
+  // Prints a diagnostic on standard error (notes only with -v, only errors with -q), prefixed with
+  // the tool's name if it has no file, and adds it to the report.
+  void diagnose(Diagnostic diagnostic) override;
+  using io::Inputs::diagnose;
   void warn(std::string code, std::string message, std::string hint = {});
 
-  // A line for people about what was done, on standard error, not with -q or with --json to
-  // standard output. Of many files, with -v only.
-  void say(const std::string& line);
+  // Prints a status line on standard error; not with -q or with --json to standard output. In batch
+  // mode only with -v.
+  void log(const std::string& line);
 
-  // Data for people or pipes on standard output; suppressed where the report goes there.
+  // Prints data on standard output; suppressed if the report goes there.
   void print(const std::string& text);
 
-  // Opens an input and records its path and checksum in the report. Refuses (code usage) a file
-  // that this run writes too, for a capture would be lost, and standard input for the second time.
-  // Every file that the result depends on is to be opened by this: it is how a batch knows that
-  // nothing changed.
-  Result<InputFile> open_input(const std::string& path);
+  // Opens an input and records its path and checksum in the report. Fails (code usage) for a file
+  // that this run also writes, as that would destroy the input, and for standard input opened a
+  // second time. Open every file that the result depends on with this: a batch uses the record to
+  // detect changed inputs.
+  Result<InputFile> open_input(const std::string& path) override;
 
-  // The same for a long file that is read from front to back: its checksum is taken on the way
-  // rather than first, and is in the report only once note_checksum() was called; which must be
-  // before provenance() and the end of the run.
-  Result<InputFile> open_long_input(const std::string& path);
-  void note_checksum(const InputFile& input);
+  // The same for a long file that is read sequentially: its checksum is computed while reading and
+  // added to the report by note_checksum(), which must be called before provenance() and the end of
+  // the run.
+  Result<InputFile> open_long_input(const std::string& path) override;
+  void note_checksum(const InputFile& input) override;
 
-  // Notes that the result depends on which files with this ending, ".asf", or of this whole name,
-  // "walk.keys.json", stand beside `path`: when one comes or goes, a batch does the file anew.
-  void chose_beside(const std::string& path, const std::string& ending);
+  // Records that the result depends on which files with this suffix, ".asf", or of this full name,
+  // "walk.keys.json", exist beside `path`: a batch processes the file again if one is added or
+  // removed.
+  void depends_on_neighbours(const std::string& path, const std::string& ending) override;
 
-  // Whether a result may go to `path`: an Error (code usage) for a file that this run reads, its
-  // report, what it writes already and, in a batch, files that the batch reads or other files of it
-  // are to become. Results are written by write_output or an OutputSet (output_set.h), which ask.
+  // Whether an output may be written to `path`: fails (code usage) for an input of this run, its
+  // report, a path already written and, in a batch, for inputs of the batch and outputs of other
+  // files. Called by write_output and OutputSet (output_set.h), which write all outputs.
   Status check_output(const std::string& path);
-  // Whether `path` is one of the destinations, as written there: other results have names that the
-  // input or an option's file tells.
+  // Whether `path` is literally one of the destinations. Names of other outputs come from the input
+  // or from a file that an option names.
   bool is_destination(const std::string& path) const;
 
-  // The options for writing a file, and a note of it in the report; call before writing.
+  // Options for writing an output file.
   OutputFile::Options output_options() const {
     return {.no_clobber = no_clobber, .stored_later = kept_messages != nullptr};
   }
   void wrote(const std::string& path);
 
-  // Provenance of a result: this tool, its version, the inputs opened so far by base name, the
-  // options given that change the result, the warnings told so far.
+  // Provenance of a result: this tool, its version, base names of the inputs opened so far, the
+  // given options that affect the result, the warnings so far.
   Provenance provenance() const;
 
   bool report_on_standard_output = false;
-  Console* console = nullptr;  // where messages go; standard error if null
+  Console* console = nullptr;  // for messages; standard error if null
 
-  // One file of many: its messages are kept here, to be told in the order of the list, ...
+  // Batch mode: messages of this file are collected here, to be printed in list order, ...
   std::string* kept_messages = nullptr;
-  // ... and what is about no file in particular is about this one.
+  // ... and diagnostics without a file get this location.
   Location subject;
-  // What the batch says to a result that is no destination, and ...
+  // Batch mode: checks an output that is not a destination, and ...
   std::function<Status(const std::string& path)> check_unforeseen;
-  // ... those results, which the batch puts in place.
+  // ... those outputs, which the batch renames to their final names.
   std::vector<OutputFile> held_files;
   std::vector<std::string> held_paths;
 
  private:
   void put_message(const std::string& text);
 
-  std::set<std::string> written_;  // places that check_output let pass
+  std::set<std::string> written_;  // canonical paths that passed check_output
 };
 
 struct ToolSpec {
@@ -120,55 +120,54 @@ struct ToolSpec {
     std::string command;
     std::string does;
   };
-  // For a tool that makes one result of one input: it then takes many, see tools/common/batch.h.
-  // The input is the last positional; those before it, if any, are the same for all files.
+  // For a tool with one input and one output: enables batch mode, see tools/common/batch/batch.h.
+  // The input is the last positional; those before it, if any, are shared by all files.
   struct Batch {
-    // Extensions of the files that a folder given as input stands for: {".bvh", ".amc"}.
+    // Extensions of the files taken from an input folder: {".bvh", ".amc"}.
     std::vector<std::string> reads;
-    // How the name of a result ends where its input has an extension, ".anim" or "_{clip}.anim";
-    // asked once the options are parsed, and an Error (code
-    // usage) where they do not tell.
+    // Suffix of output names that replaces the input's extension, ".anim" or "_{clip}.anim". Called
+    // after the options are parsed; an Error (code usage) if they do not determine it.
     std::function<Result<std::string>()> ending;
   };
   std::string name;                // "krok-import"
-  std::string summary;             // a sentence without a full stop
+  std::string summary;             // one sentence, no full stop
   std::string inputs;              // for the usage line: "IN.bvh"
   std::vector<Example> examples;   // at least two
-  std::string exit_done = "done";  // what exit code 0 means here
-  std::string exit_no;             // what exit code 1 means here; empty where it does not happen
-  std::string exit_partly;         // what exit code 3 means to a tool without a Batch, or empty
-  std::string report_name;         // another name of --json, "--report", or empty
-  bool has_output = true;          // takes -o
-  bool needs_output = true;        // -o must be given
+  std::string exit_done = "done";  // meaning of exit code 0
+  std::string exit_no;             // meaning of exit code 1; empty if never returned
+  std::string exit_partly;         // meaning of exit code 3 without a Batch, or empty
+  std::string report_name;         // alias of --json, "--report", or empty
+  bool has_output = true;          // has -o
+  bool needs_output = true;        // -o is required
   std::optional<Batch> batch;
 
   // Adds the tool's own options and positionals.
   std::function<void(CommandOptions&)> declare;
-  // Whether the options, which are parsed, have values that fit some file or other; may be empty.
-  // Asked before any file is opened, of a batch once for each set of options.
+  // Checks the parsed options for values that are invalid for any file; may be empty. Called before
+  // any file is opened, in a batch once for each set of options.
   std::function<Status()> check;
-  // Does the work; the value is an exit code, an Error becomes a message and kExitTrouble.
+  // Does the work. Returns an exit code; an Error is printed and becomes kExitTrouble.
   std::function<Result<int>(ToolContext&)> run;
 };
 
-// Gives a ToolSpec whose functions share options of their own (a std::shared_ptr), so that each
-// file of a batch is parsed for and run by itself, several at once.
+// Creates a ToolSpec whose functions share their own options (a std::shared_ptr), so that the files
+// of a batch can be parsed and run independently and in parallel.
 using MakeToolSpec = std::function<ToolSpec()>;
 
-// A Batch's `ending` for a tool whose results all have the same one.
+// A Batch::ending that is the same for all outputs.
 std::function<Result<std::string>()> always(std::string ending);
 
-// Parses, runs, reports. Catches everything that is thrown (memory exhausted, a bug) and turns it
-// into a message and kExitTrouble.
+// Parses, runs, reports. Catches all exceptions (out of memory, bugs) and turns them into a message
+// and kExitTrouble.
 int run_tool(const MakeToolSpec& make_spec, int argc, char** argv);
-// For a tool that takes no batches.
+// For tools without batch mode.
 int run_tool(const ToolSpec& spec, int argc, char** argv);
 
-// Prints on standard output and gives the exit code: kExitTrouble with a message where it cannot be
-// written.
+// Prints on standard output and returns the exit code: kExitTrouble with a message if writing
+// fails.
 int print_and_end(const std::string& tool, const std::string& text);
 
-// The work alone, with whatever is thrown as an Error (out-of-memory, internal).
+// Calls spec.run and turns exceptions into Errors (out-of-memory, internal).
 Result<int> run_guarded(const ToolSpec& spec, ToolContext& context);
 
 // The version of the project, "0.1.0".

@@ -10,9 +10,9 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
+#include "formats/io/open_motion.h"
 #include "tools/common/file_name.h"
 #include "tools/common/keys_sidecar.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/option_kinds.h"
 #include "tools/common/orientation_option.h"
 #include "tools/common/output_kind.h"
@@ -36,13 +36,13 @@ struct Motion {
   blend::WeightCurve weight;
 };
 
-Result<std::vector<Motion>> read_motions(const Options& options, const FindRoles& find_roles,
+Result<std::vector<Motion>> read_motions(const Options& options, const io::FindRoles& find_roles,
                                          ToolContext& context) {
   std::vector<Motion> motions;
   for (const std::string& word : options.inputs) {
     const auto input = parse_weighted_input(word);
     if (!input) return input.error();
-    auto clip = read_motion(input->path, context);
+    auto clip = io::open_motion(input->path, context);
     if (!clip) return clip.error();
     Motion motion;
     motion.name = name_of_input(input->path);
@@ -64,7 +64,7 @@ Result<std::vector<Motion>> read_motions(const Options& options, const FindRoles
   return motions;
 }
 
-// The moments by keytimes, by shapes, or by beginnings and ends.
+// Corresponding times from keytimes, from poses (DTW), or from start and end.
 Result<Correspondence> find_moments(const Options& options, const std::vector<Motion>& motions,
                                     const RoleMap& roles, ToolContext& context) {
   if (options.warp == WarpChoice::dtw) {
@@ -84,7 +84,7 @@ Result<Correspondence> find_moments(const Options& options, const std::vector<Mo
     context.warn("blend-keys",
                  fmt::format("{} has no keytimes; the motions are matched from beginning to end",
                              motion.name),
-                 "--warp dtw matches them by their poses; krok-keys --set sets keytimes");
+                 "--warp dtw aligns them by their poses; krok-keys --set sets keytimes");
     return ends();
   }
   std::vector<blend::KeyedMotion> keyed;
@@ -92,11 +92,11 @@ Result<Correspondence> find_moments(const Options& options, const std::vector<Mo
     keyed.push_back({motion.name, motion.clip.duration(), &motion.keys, 2.1 / motion.clip.rate});
   }
   auto found = blend::match_keytimes(keyed);
-  if (found) context.tell(found->notes);
+  if (found) context.diagnose(found->notes);
   return found;
 }
 
-// The places of frames in all motions, as a table for people and krok-plot.
+// The source times of each frame in all motions, as a CSV table.
 std::string warp_table(const std::vector<Motion>& motions, const Blended& blended) {
   std::string text = "time [s],generic";
   for (const Motion& motion : motions) {
@@ -153,11 +153,11 @@ void warn_of_spread(const Blended& blended, ToolContext& context) {
   told.joint = blended.clip.skeleton.names[static_cast<std::size_t>(blended.spread_joint)];
   told.frame = blended.spread_frame;
   told.message = fmt::format(
-      "the motions turn {} up to {:.0f} degrees apart (frame {}); a sum of "
-      "rotations over 90 degrees apart means little",
+      "the motions' rotations of {} differ by up to {:.0f} degrees (frame {}); blending "
+      "rotations over 90 degrees apart is unreliable",
       told.joint, blended.widest_spread / kRadiansPerDegree, told.frame);
-  told.hint = "look at the result, or at whether the keytimes belong together";
-  context.tell(std::move(told));
+  told.hint = "check the result, and whether the keytimes correspond";
+  context.diagnose(std::move(told));
 }
 
 void report(const std::vector<Motion>& motions, const Correspondence& moments,
@@ -184,38 +184,40 @@ void report(const std::vector<Motion>& motions, const Correspondence& moments,
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("inputs", options.inputs,
-                  "Motions of one skeleton (.anim, or captures such as BVH), each with its weight: "
-                  "a number, or @FILE.csv with the columns generic and weight")
+      .add_option(
+          "inputs", options.inputs,
+          "Motions on the same skeleton (.anim, or captures such as BVH), each with a weight: "
+          "a number, or @FILE.csv with columns generic and weight")
       .type_name("IN:WEIGHT")
       .required();
   add_keys_option(command, options.keys).group("Time");
   add_choice<WarpChoice>(
       command, "--warp", options.warp,
       {{"pchip", WarpChoice::pchip}, {"linear", WarpChoice::linear}, {"dtw", WarpChoice::dtw}},
-      "Time between keytimes: pchip (speeds without jumps), linear, or dtw (no "
-      "keytimes, but moments whose poses are alike)",
+      "Time warp: pchip (between keytimes, continuous speed), linear (between keytimes), or dtw "
+      "(aligns similar poses, without keytimes)",
       "HOW", "pchip")
       .group("Time");
-  add_rate(command, "--rate", options.rate, "Frames a second; otherwise the first motion's")
+  add_rate(command, "--rate", options.rate, "Frames per second (default: the first motion's)")
       .group("Time");
-  add_choice<blend::Align>(command, "--align", options.align,
-                           {{"root", blend::Align::root},
-                            {"stance", blend::Align::stance},
-                            {"none", blend::Align::none}},
-                           "Ways: root (summed in the figure's heading, so that turns blend), "
-                           "stance (the same, and feet that stand are kept in place), none (poses "
-                           "are summed where they are)",
-                           "HOW", "root")
+  add_choice<blend::Align>(
+      command, "--align", options.align,
+      {{"root", blend::Align::root},
+       {"stance", blend::Align::stance},
+       {"none", blend::Align::none}},
+      "Root motion: root (blended relative to the heading, so that turns blend), "
+      "stance (the same, and planted feet are locked), none (root transforms "
+      "are blended in world space)",
+      "HOW", "root")
       .group("Space");
   command
       .add_flag("--modifier", options.modifier,
-                "Allow weights that do not sum to 1, for a motion put on top of another")
+                "Allow weights that do not sum to 1, for additive motions")
       .group("Space");
   add_map_option(command, options.map).group("Space");
   command
       .add_option("--save-warp", options.save_warp,
-                  "Write which moment of each motion every frame comes from")
+                  "Write the time warp: the source time in each motion for every frame")
       .type_name("OUT.csv")
       .group("Output");
   add_orientation_option(command, options.orientation);
@@ -232,7 +234,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
     return status.error();
   }
-  const auto find_roles = open_role_map(options.map, context);
+  const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
   const auto motions = read_motions(options, *find_roles, context);
   if (!motions) return motions.error();
@@ -249,9 +251,9 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto stands = [](const Motion& motion) { return !motion.keys.contacts.empty(); };
   if (options.align == blend::Align::stance && !std::ranges::all_of(*motions, stands)) {
     context.warn("blend-stance",
-                 fmt::format("{} has no contacts; what stands is not kept in place",
+                 fmt::format("{} has no contacts; its feet are not locked",
                              std::ranges::find_if_not(*motions, stands)->name),
-                 "krok-keys finds contacts, or sets them with --add-contact");
+                 "krok-keys finds contacts, and --add-contact adds them");
   }
   blend::BlendOptions how;
   how.warp = options.warp == WarpChoice::linear ? blend::Warp::linear : blend::Warp::pchip;
@@ -266,7 +268,7 @@ Result<int> run(const Options& options, ToolContext& context) {
     return status.error();
   }
   report(*motions, *moments, *blended, context);
-  context.say(fmt::format("{} -> {}: {} at {} /s ({} s), {} moments in common",
+  context.log(fmt::format("{} -> {}: {} at {} fps ({} s), {} matched times",
                           counted(static_cast<long long>(motions->size()), "motion"),
                           context.output, counted(blended->clip.frame_count(), "frame"),
                           readable(blended->clip.rate), readable(blended->clip.duration(), 4),

@@ -14,7 +14,7 @@ Result<WeightedInput> parse_weighted_input(const std::string& word) {
   const std::size_t colon = word.rfind(':');
   const auto wrong = [&](const std::string& what) {
     return Error("usage", what,
-                 "write a motion with its weight: walk.anim:0.5 or "
+                 "give each motion a weight: walk.anim:0.5 or "
                  "walk.anim:@weights.csv");
   };
   if (colon == std::string::npos || colon == 0) {
@@ -28,7 +28,7 @@ Result<WeightedInput> parse_weighted_input(const std::string& word) {
     return input;
   }
   input.weight = parse_finite(weight);
-  if (!input.weight) return wrong(fmt::format("'{}' is no weight", weight));
+  if (!input.weight) return wrong(fmt::format("invalid weight '{}'", weight));
   return input;
 }
 
@@ -53,9 +53,10 @@ Result<blend::WeightCurve> read_weight_curve(const std::string& path, ToolContex
                        (row == 0 || curve.generic[row] > curve.generic[row - 1]);
     if (sound) continue;
     return Error("weight-curve",
-                 fmt::format("row {} of the table does not follow the one before it, or has a gap",
-                             row + 1),
-                 "generic time rises from row to row, and each row has a weight")
+                 fmt::format(
+                     "row {} of the table is not after the previous one, or has a missing value",
+                     row + 1),
+                 "generic time must rise, and each row needs a weight")
         .in_file(path);
   }
   return curve;

@@ -13,14 +13,14 @@ namespace krok::blend_tool {
 struct WeightedInput {
   std::string path;
   std::optional<double> weight;
-  std::string curve;  // the table's path where the weight is no number
+  std::string curve;  // path of a weight curve; empty if the weight is a number
 };
 
-// Code usage for a word without a weight, or with one that is no number.
+// Code: usage for a word without a weight, or with an invalid one.
 Result<WeightedInput> parse_weighted_input(const std::string& word);
 
-// A table of two columns, "generic", rising, and "weight". Codes, by line and column: those of
-// csv::Table, and weight-curve for times that do not rise and gaps.
+// Reads a table with the columns "generic", rising, and "weight". Codes, with line and column:
+// those of csv::Table; weight-curve for missing values or times that do not rise.
 Result<blend::WeightCurve> read_weight_curve(const std::string& path, ToolContext& context);
 
 }  // namespace krok::blend_tool

@@ -9,13 +9,13 @@ krok::ToolSpec make_spec() {
   krok::ToolSpec spec;
   spec.name = "krok-body";
   spec.summary =
-      "Builds a smooth closed body around any skeleton, bound to its joints, so that a capture can "
-      "be looked at as a character";
+      "Generates a smooth closed body mesh around any skeleton, skinned to its joints, so that a "
+      "capture can be viewed as a character";
   spec.inputs = "IN.anim|IN.model";
   spec.examples = {{"krok-body walk.anim -o walker.model",
-                    "a body for the figure of a capture, about 10,000 vertices"},
+                    "a body for the actor of a capture, about 10,000 vertices"},
                    {"krok-body dog.anim --detail high -o dog.model",
-                    "any other skeleton is shaped by the lengths of its bones"}};
+                    "bodies of other skeletons follow the bone lengths"}};
   spec.batch = {{".anim"}, krok::always(".model")};
   spec.declare = [options](krok::CommandOptions& command) { declare(command, *options); };
   spec.check = [options] { return check(*options); };

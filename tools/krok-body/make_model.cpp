@@ -24,17 +24,16 @@ Result<BodyOptions> body_options(const Options& options) {
   }
   const auto frame = parse_integer(options.pose);
   if (!frame || *frame < 0 || *frame > 2'000'000'000) {
-    return Error(
-        "usage",
-        fmt::format("--pose {} is neither auto, reference nor a frame number", options.pose),
-        "frames count from 0");
+    return Error("usage",
+                 fmt::format("--pose {} is not auto, reference or a frame number", options.pose),
+                 "frames are numbered from 0");
   }
   result.pose = BodyPose::frame;
   result.frame = static_cast<int>(*frame);
   return result;
 }
 
-// A clip with the file's skeleton, and its motion if it has one.
+// A clip with the file's skeleton, and its motion if any.
 Result<Clip> read_skeleton(const InputFile& input) {
   switch (registry::kind_of_content(input.bytes())) {
     case registry::Kind::anim: {
@@ -54,7 +53,7 @@ Result<Clip> read_skeleton(const InputFile& input) {
   }
   const registry::Kind kind = registry::identify(input.path(), input.bytes());
   return Error("body-input",
-               fmt::format("expected a .anim or .model file, this is {}",
+               fmt::format("expected a .anim or .model file, but this is {}",
                            registry::describe_content(input.bytes())),
                registry::advice(kind, registry::Kind::anim))
       .in_file(input.path());
@@ -77,20 +76,18 @@ Json result_of(const Body& body) {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("input", options.input,
-                  "A motion or model; its skeleton is taken (- is standard input)")
+      .add_option("input", options.input, "Motion or model with the skeleton (- is standard input)")
       .type_name("IN")
       .required();
   add_choice<BodyDetail>(
       command, "--detail", options.detail,
       {{"low", BodyDetail::low}, {"medium", BodyDetail::medium}, {"high", BodyDetail::high}},
-      "Vertices: low (about 2,500), medium (10,000) or high (40,000)", "LEVEL", "medium")
+      "Number of vertices: low (about 2,500), medium (10,000) or high (40,000)", "LEVEL", "medium")
       .group("Body");
   command
-      .add_option(
-          "--pose", options.pose,
-          "The pose that the body stands in: reference (the skeleton's), the number of a frame, "
-          "or auto: the reference pose with limbs turned aside that are in the way")
+      .add_option("--pose", options.pose,
+                  "Bind pose of the body: reference (the skeleton's), a frame number, or auto (the "
+                  "reference pose, with overlapping limbs turned aside)")
       .type_name("POSE")
       .default_str("auto")
       .group("Body");
@@ -117,7 +114,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!clip) return clip.error();
   auto body = make_body(*clip, *how);
   if (!body) return std::move(body).error().in_file(input->path());
-  context.tell(body->diagnostics);
+  context.diagnose(body->diagnostics);
 
   Model& model = body->model;
   model.provenance = context.provenance();
@@ -128,7 +125,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!status) return status.error();
 
   context.report.result = result_of(*body);
-  context.say(fmt::format("body: {}, {}, {}, {} m3 -> {}",
+  context.log(fmt::format("body: {}, {}, {}, {} m3 -> {}",
                           counted(model.vertex_count(), "vertex", "vertices"),
                           counted(static_cast<long long>(model.triangles.size()), "triangle"),
                           counted(model.skeleton.joint_count() - 1, "bone"),

@@ -17,10 +17,10 @@ struct Options {
 
 void declare(CommandOptions& command, Options& options);
 
-// Whether the options have values that fit some file or other.
+// Checks the options for values that are invalid for any file.
 Status check(const Options& options);
 
-// Reads a skeleton, builds the body, writes it.
+// Reads a skeleton, generates the body and writes it.
 Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::body_tool

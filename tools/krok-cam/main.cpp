@@ -18,19 +18,18 @@ krok::ToolSpec make_spec() {
   krok::ToolSpec spec;
   spec.name = "krok-cam";
   spec.summary =
-      "Makes a camera: from keys, following a figure, going round it or standing still, as a .cam "
-      "file or in glTF, by itself or beside a character";
+      "Makes a camera from keys, or films a motion by following, orbiting or static "
+      "framing; writes a .cam file or glTF, separate or added to a character";
   spec.inputs = "IN.json|IN.cam|IN.glb|IN.anim|IN.bvh|IN.amc";
-  spec.examples = {
-      {"krok-cam shot.json -o shot.cam", "through keys that a person wrote"},
-      {"krok-cam walk.anim --follow hips -o shot.cam",
-       "goes along, with the whole figure in the picture in all frames"},
-      {"krok-cam walk.anim --orbit 20s --frame upper --into walk.glb -o film.glb",
-       "goes round the upper body, a turn in 20 seconds, put into the character's own file"},
-      {"krok-cam shot.cam --into walk.glb -o film.glb", "a camera that stands already, likewise"},
-      {"krok-cam film.glb -o shot.cam", "takes it out again"},
-      {"krok-cam captures/*.bvh --still --view left --out-dir cameras",
-       "one camera for each, which sees all of its motion from the left"}};
+  spec.examples = {{"krok-cam shot.json -o shot.cam", "a camera from hand-written keys"},
+                   {"krok-cam walk.anim --follow hips -o shot.cam",
+                    "follows the hips, with the whole character in every frame"},
+                   {"krok-cam walk.anim --orbit 20s --frame upper --into walk.glb -o film.glb",
+                    "orbits the upper body once in 20 seconds, added to the character's file"},
+                   {"krok-cam shot.cam --into walk.glb -o film.glb", "adds an existing camera"},
+                   {"krok-cam film.glb -o shot.cam", "extracts it"},
+                   {"krok-cam captures/*.bvh --still --view left --out-dir cameras",
+                    "one camera per file, framing the whole motion from the left"}};
   spec.batch = {{".anim", ".bvh", ".amc"},
                 [arguments]() -> krok::Result<std::string> { return ending(*arguments); }};
   spec.declare = [arguments](krok::CommandOptions& command) { declare(command, *arguments); };

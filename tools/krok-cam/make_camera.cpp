@@ -11,9 +11,9 @@
 #include "formats/cam/cam.h"
 #include "formats/camera_keys/camera_keys.h"
 #include "formats/gltf/add_camera.h"
+#include "formats/io/open_motion.h"
 #include "formats/registry/registry.h"
 #include "motion/ground_frame.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
 #include "tools/common/output_set.h"
 #include "tools/common/role_input.h"
@@ -25,7 +25,7 @@ namespace {
 
 using registry::Kind;
 
-// A camera, and what is to be said of how it came about.
+// A camera, and a summary of how it was made.
 struct Shot {
   CameraTrack track;
   std::vector<std::string> conversions;
@@ -42,7 +42,7 @@ bool is_keys(const InputFile& file, Kind kind) {
 Status refuse_film(const Options& options, const char* what) {
   if (!options.film) return {};
   return Error("usage",
-               fmt::format("--follow, --orbit and --still film a motion; this is {}", what))
+               fmt::format("--follow, --orbit and --still need a motion; this is {}", what))
       .in_file(options.input);
 }
 
@@ -87,16 +87,16 @@ Result<Shot> from_scene(const Options& options, const InputFile& file, ToolConte
   return shot;
 }
 
-// The joint of a name or a role.
+// Finds a joint by name or role.
 Result<int> find_joint(const std::string& name, const Skeleton& skeleton, const RoleMap& roles) {
   const int joint = skeleton.find(name);
   if (joint >= 0) return joint;
   const auto role = parse_role(name);
   if (role && roles.joint(*role) >= 0) return roles.joint(*role);
   return Error("cam-joint",
-               role ? fmt::format("--follow {}: no joint is known to be that", shown(name))
-                    : fmt::format("--follow {}: the motion has no such joint", shown(name)),
-               "krok-info -v lists its joints and their roles; --map tells roles");
+               role ? fmt::format("--follow {}: no joint has that role", shown(name))
+                    : fmt::format("--follow {}: the motion has no joint of that name", shown(name)),
+               "krok-info -v lists the joints and their roles; --map assigns roles");
 }
 
 void warn(ToolContext& context, const std::string& path, const char* code, std::string message,
@@ -108,26 +108,24 @@ void warn(ToolContext& context, const std::string& path, const char* code, std::
   told.hint = std::move(hint);
   told.where.file = path;
   told.frame = frame;
-  context.tell(std::move(told));
+  context.diagnose(std::move(told));
 }
 
 void report_faults(const ActorShot& shot, const std::string& path, ToolContext& context) {
   const int frames = shot.track.frame_count();
   if (shot.frames_shown < frames) {
-    warn(
-        context, path, "cam-cut",
-        fmt::format("in {} of {} frames part of what is framed is outside of the picture, first in "
-                    "frame {}",
-                    frames - shot.frames_shown, frames, shot.first_not_shown),
-        "leave out --distance, and it is far enough away", shot.first_not_shown);
+    warn(context, path, "cam-cut",
+         fmt::format("in {} of {} frames, joints to be framed are outside the image, first in "
+                     "frame {}",
+                     frames - shot.frames_shown, frames, shot.first_not_shown),
+         "omit --distance to choose it automatically", shot.first_not_shown);
   }
   if (shot.frames_inside > 0) {
-    warn(
-        context, path, "cam-inside",
-        fmt::format("in {} of {} frames the camera is within the figure or nearer to it than {} m, "
-                    "first in frame {}",
-                    shot.frames_inside, frames, readable(kClearance), shot.first_inside),
-        "leave out --distance, or give more", shot.first_inside);
+    warn(context, path, "cam-inside",
+         fmt::format("in {} of {} frames the camera is inside the body or closer to it than {} m, "
+                     "first in frame {}",
+                     shot.frames_inside, frames, readable(kClearance), shot.first_inside),
+         "omit --distance or increase it", shot.first_inside);
   }
 }
 
@@ -138,19 +136,18 @@ std::string_view part_name(Framing framing) {
     case Framing::head:
       return "head";
     default:
-      return "full figure";
+      return "full body";
   }
 }
 
 Result<Shot> from_motion(const Options& options, const InputFile& file, ToolContext& context) {
   if (!options.film) {
-    return Error("usage", "a motion can be filmed in several ways: which?",
-                 "say --follow hips, --orbit 20s or --still")
+    return Error("usage", "no camera mode given", "use --follow hips, --orbit 20s or --still")
         .in_file(file.path());
   }
-  const auto clip = read_motion(file, context);
+  const auto clip = io::open_motion(file, context);
   if (!clip) return clip.error();
-  const auto find_roles = open_role_map(options.map, context);
+  const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
   const auto roles = (*find_roles)(clip->skeleton);
   if (!roles) return roles.error();
@@ -214,12 +211,12 @@ Result<Shot> make_shot(const Options& options, ToolContext& context) {
                fmt::format("this is {}, expected keys, a camera, a scene with one, or a motion",
                            registry::describe_content(file->bytes())),
                registry::is_read_through_assimp(kind)
-                   ? "krok-import --cam shot.cam takes a camera out of such scenes"
+                   ? "krok-import --cam shot.cam extracts a camera from such scenes"
                    : "keys are JSON, see formats/camera_keys/SPEC.md")
       .in_file(file->path());
 }
 
-// What is written at `path`.
+// The format of the output at `path`.
 Result<Format> format_of(const Options& options, const std::string& path) {
   const std::string end = extension(path);
   if (!options.into.empty() || options.format == Format::glb || end == ".glb") {
@@ -231,7 +228,7 @@ Result<Format> format_of(const Options& options, const std::string& path) {
   return Format::cam;
 }
 
-// The bytes of a GLB with the camera in it.
+// The GLB file with the camera added.
 Result<gltf::WithCamera> glb_of(const Options& options, const CameraTrack& track,
                                 ToolContext& context) {
   gltf::CameraOptions how;
@@ -265,7 +262,7 @@ Status write(const Options& options, Format format, CameraTrack& track, ToolCont
   if (!made) return std::move(made).error();
   for (Diagnostic& diagnostic : made->diagnostics) {
     if (diagnostic.where.file.empty()) diagnostic.where.file = options.input;
-    context.tell(std::move(diagnostic));
+    context.diagnose(std::move(diagnostic));
   }
   return write_output(context, context.output,
                       [&](OutputFile& file) { return file.write(made->bytes); });
@@ -288,7 +285,7 @@ void report(const Shot& shot, ToolContext& context) {
   result["field_of_view"] = {{"least", motion.least_field_of_view / kRadiansPerDegree},
                              {"most", motion.most_field_of_view / kRadiansPerDegree}};
   context.report.result = std::move(result);
-  context.say(fmt::format("{}: {}, {} s{}{}; at most {} m/s and {} degrees/s", context.output,
+  context.log(fmt::format("{}: {}, {} s{}{}; max {} m/s and {} degrees/s", context.output,
                           counted(track.frame_count(), "frame"), readable(duration, 3),
                           shot.words.empty() ? "" : "; ", shot.words,
                           readable(motion.largest_speed, 3),
@@ -301,7 +298,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
   if (!format) return format.error();
   if (*format == Format::cam && options.aspect && !options.film) {
-    return Error("usage", "--aspect is for glTF and for filming a motion; a .cam file has none");
+    return Error("usage",
+                 "--aspect is for glTF and for filming a motion; a .cam file does not store it");
   }
   auto shot = make_shot(options, context);
   if (!shot) return shot.error();

@@ -5,8 +5,8 @@
 
 namespace krok::cam_tool {
 
-// Makes or reads the camera and writes it. Codes cam-input, cam-format, cam-joint, and those of
-// what it reads and calls.
+// Makes or reads the camera and writes it. Codes cam-input, cam-format, cam-joint, and those of the
+// functions it calls.
 Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cam_tool

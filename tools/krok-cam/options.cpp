@@ -19,24 +19,25 @@ constexpr double kSensorHeight = 24;  // millimetres
 constexpr double kUsualElevation = 10 * kRadiansPerDegree;
 
 void declare_subject(CommandOptions& command, Arguments& a) {
-  const char* group = "Of a motion, one of these";
+  const char* group = "Filming a motion";
   command
       .add_option("--follow", a.follow,
-                  "Go along with a joint, by its name or its role: hips, chest, head, left_hand")
+                  "Follow a joint, given by name or role: hips, chest, head, "
+                  "left_hand")
       .type_name("JOINT")
       .group(group);
   command
       .add_option("--orbit", a.orbit,
-                  "Go round the figure: 20s is the time of one turn, 1.5turns are so many over the "
-                  "whole motion")
+                  "Orbit the character: 20s is the time of one turn, 1.5turns is the "
+                  "number of turns over the whole motion")
       .type_name("TIME")
       .group(group);
-  command.add_flag("--still", a.still, "Stand still and show the whole motion").group(group);
+  command.add_flag("--still", a.still, "Static camera that shows the whole motion").group(group);
   add_map_option(command, a.map).group(group);
 }
 
 void declare_place(CommandOptions& command, Arguments& a) {
-  const char* group = "From where";
+  const char* group = "View direction";
   add_choice<View>(command, "--view", a.view,
                    {{"front", View::front},
                     {"three-quarter", View::three_quarter},
@@ -44,69 +45,67 @@ void declare_place(CommandOptions& command, Arguments& a) {
                     {"right", View::right},
                     {"back", View::back},
                     {"top", View::top}},
-                   "front, three-quarter (between the front and the figure's left), left, right, "
-                   "back or top; an orbit begins there",
+                   "front, three-quarter (between the character's front and left), "
+                   "left, right, back or top; an orbit starts there",
                    "VIEW", "three-quarter")
       .group(group);
   command
       .add_option("--azimuth", a.azimuth,
-                  "The same as an angle: 0 sees the figure's front, 90deg its left side")
+                  "The same as an angle: 0 sees the character's front, 90deg its left "
+                  "side")
       .type_name("ANGLE")
       .group(group);
   command
-      .add_option("--elevation", a.elevation,
-                  "How far from above; 90deg looks straight down [10deg]")
+      .add_option("--elevation", a.elevation, "Camera elevation; 90deg looks straight down [10deg]")
       .type_name("ANGLE")
       .group(group);
   add_choice<AzimuthFrom>(command, "--facing", a.facing,
                           {{"start", AzimuthFrom::start},
                            {"figure", AzimuthFrom::actor},
                            {"world", AzimuthFrom::world}},
-                          "What counts as the front: where the figure faces at the start, where it "
-                          "faces at each moment (figure), or +Z (world)",
+                          "What counts as the front: the facing at the start, the "
+                          "facing in each frame (figure), or +Z (world)",
                           "WHAT", "start")
       .group(group);
-  command.add_flag("--clockwise", a.clockwise, "Orbit the other way round, seen from above")
-      .group(group);
+  command.add_flag("--clockwise", a.clockwise, "Orbit clockwise, seen from above").group(group);
   command
       .add_flag("--fixed-centre", a.fixed_centre,
-                "Orbit about the middle of the whole motion; without it the centre goes with the "
-                "figure")
+                "Orbit around the middle of the whole motion; by default, the centre "
+                "moves with the character")
       .group(group);
 }
 
 void declare_image(CommandOptions& command, Arguments& a) {
-  const char* group = "Picture";
-  add_choice<Framing>(
-      command, "--frame", a.frame,
-      {{"full", Framing::full}, {"upper", Framing::upper}, {"head", Framing::head}},
-      "What is in the picture in all frames: the full figure, the upper body with the arms, the "
-      "head",
-      "PART", "full")
+  const char* group = "Framing";
+  add_choice<Framing>(command, "--frame", a.frame,
+                      {{"full", Framing::full}, {"upper", Framing::upper}, {"head", Framing::head}},
+                      "What to keep in the image in all frames: the full character, the upper body "
+                      "with the arms, or the head",
+                      "PART", "full")
       .group(group);
   add_number(command, "--margin", a.margin,
-             "The part of height and width left free at each edge, to 0.45")
+             "Fraction of height and width kept free at each edge, up to 0.45")
       .type_name("PART")
       .default_str("0.08")
       .group(group);
   command
       .add_option("--distance", a.distance,
-                  "From what it looks at; without it the least that frames the figure")
+                  "Distance from the point it looks at; default: the shortest that "
+                  "frames the character")
       .type_name("LENGTH")
       .group(group);
-  command.add_option("--fov", a.fov, "The field of view, vertically")
+  command.add_option("--fov", a.fov, "Vertical field of view")
       .type_name("ANGLE")
       .default_str(a.fov)
       .group(group);
   add_number(command, "--lens", a.lens,
-             "The same by the focal length in millimetres, for a picture 24 mm high")
+             "The same as a focal length in millimetres, for an image 24 mm high")
       .type_name("MM")
       .group(group);
   command
-      .add_option(
-          "--aspect", a.aspect,
-          "The picture's shape, width by height, which decides how much is in it; written into "
-          "glTF where a motion is filmed or it is given")
+      .add_option("--aspect", a.aspect,
+                  "Aspect ratio, width by height, used for framing; written to glTF when "
+                  "filming a motion or if given")
       .type_name("W:H")
       .default_str(a.aspect)
       .group(group);
@@ -116,23 +115,21 @@ void declare_movement(CommandOptions& command, Arguments& a) {
   const char* group = "Movement";
   command
       .add_option("--smooth", a.smooth,
-                  "How far before and after a moment the path of what is followed is smoothed; 0 "
-                  "not at all [0.5s, an orbit 1s]")
+                  "Smoothing time of the path and the facing; 0: no smoothing [0.5s, "
+                  "an orbit 1s]")
       .type_name("TIME")
       .group(group);
   command
       .add_option("--dead-zone", a.dead_zone,
-                  "So far what is followed may move without taking the camera along [0]")
+                  "Distance the followed joint may move before the camera follows [0]")
       .type_name("LENGTH")
       .group(group);
   const char* read = "Keys and scenes";
-  add_rate(
-      command, "--rate", a.rate,
-      "Frames a second of the result; otherwise as the keys' file says, or as a scene's keys come")
+  add_rate(command, "--rate", a.rate,
+           "Frame rate of the result; default: that of the keys' file or of the scene's "
+           "keys")
       .group(read);
-  command
-      .add_option("--camera", a.camera,
-                  "The camera of a scene that is taken, by its name or number")
+  command.add_option("--camera", a.camera, "Camera of a scene, by name or index")
       .type_name("NAME")
       .group(read);
 }
@@ -140,23 +137,23 @@ void declare_movement(CommandOptions& command, Arguments& a) {
 void declare_output(CommandOptions& command, Arguments& a) {
   const char* group = "Output";
   add_choice<Format>(command, "--format", a.format, {{"cam", Format::cam}, {"glb", Format::glb}},
-                     "cam or glb; without it the output's extension tells", "FORMAT", "")
+                     "cam or glb; default: from the output's extension", "FORMAT", "")
       .default_str("")
       .group(group);
   add_orientation_option(command, a.orientation).group(group);
   command
       .add_option("--into", a.into,
-                  "Write this glTF file with the camera added to its scene and its animation, as "
-                  "GLB")
+                  "Write this glTF file as GLB, with the camera added to its scene "
+                  "and animation")
       .type_name("IN.glb")
       .group(group);
-  command.add_option("--name", a.name, "glTF: the camera's name")
+  command.add_option("--name", a.name, "glTF: name of the camera")
       .type_name("NAME")
       .default_str(a.name)
       .group(group);
   add_whole(command, "--clip", a.clip,
-            "--into a file with several animations: the one that the camera moves in, from 0; "
-            "otherwise the first",
+            "--into a file with several animations: index of the one to add the "
+            "camera to; default: the first",
             0, 1000000)
       .group(group);
 }
@@ -177,20 +174,20 @@ Result<double> positive(Result<double> value, const std::string& text, const cha
                         bool or_zero = false) {
   value = named(std::move(value), option);
   if (!value || *value > 0 || (or_zero && *value == 0)) return value;
-  return usage(fmt::format("{} {} is not more than 0", option, text));
+  return usage(fmt::format("{} {} is not greater than 0", option, text));
 }
 
-// Seconds.
+// In seconds.
 Result<double> seconds(const std::string& text, const char* option, bool or_zero) {
   auto time = named(parse_clip_time(text), option);
   if (!time) return time.error();
   if (time->in_frames) {
-    return usage(fmt::format("{} {}: a time in seconds is needed", option, text));
+    return usage(fmt::format("{} {}: expected a time in seconds", option, text));
   }
   return positive(time->value, text, option, or_zero);
 }
 
-// Width by height from "16:9" or "1.78".
+// Aspect ratio from "16:9" or "1.78".
 Result<double> parse_aspect(const std::string& text) {
   const std::size_t colon = text.find(':');
   const auto width = parse_finite(text.substr(0, colon));
@@ -200,24 +197,24 @@ Result<double> parse_aspect(const std::string& text) {
       *width / *height <= 1e3) {
     return *width / *height;
   }
-  return usage(fmt::format("--aspect {}: no shape of a picture", text), "write 16:9 or 1.78");
+  return usage(fmt::format("--aspect {}: invalid aspect ratio", text), "write 16:9 or 1.78");
 }
 
 Status understand_view(const Arguments& a, ActorCamera& camera) {
-  // From the top the figure faces up in the picture.
+  // Seen from the top, the character faces up in the image.
   constexpr std::array kAzimuths = {0.0, 45.0, 90.0, -90.0, 180.0, 180.0};
   camera.azimuth = kAzimuths[static_cast<std::size_t>(a.view)] * kRadiansPerDegree;
   camera.elevation = a.view == View::top ? kPi / 2 : kUsualElevation;
   if (!a.azimuth.empty()) {
     if (a.given("--view") && a.view != View::top) {
-      return usage("--view and --azimuth both say from where; choose one");
+      return usage("--view and --azimuth cannot be combined");
     }
     const auto azimuth = named(parse_angle(a.azimuth), "--azimuth");
     if (!azimuth) return azimuth.error();
     camera.azimuth = *azimuth;
   }
   if (!a.elevation.empty()) {
-    if (a.view == View::top) return usage("--view top and --elevation both say how far from above");
+    if (a.view == View::top) return usage("--view top and --elevation cannot be combined");
     const auto elevation = named(parse_angle(a.elevation), "--elevation");
     if (!elevation) return elevation.error();
     if (std::abs(*elevation) > kPi / 2 + 1e-9) {
@@ -232,7 +229,7 @@ Status understand_view(const Arguments& a, ActorCamera& camera) {
 Status understand_image(const Arguments& a, ActorCamera& camera) {
   camera.framing = a.frame;
   if (!(a.margin >= 0 && a.margin <= 0.45)) {
-    return usage(fmt::format("--margin {} is not from 0 to 0.45", readable(a.margin)));
+    return usage(fmt::format("--margin {} is not in 0 to 0.45", readable(a.margin)));
   }
   camera.margin = a.margin;
   if (!a.distance.empty()) {
@@ -242,9 +239,9 @@ Status understand_image(const Arguments& a, ActorCamera& camera) {
     camera.distance = *distance;
   }
   if (a.lens) {
-    if (a.given("--fov")) return usage("--fov and --lens both give the field of view; choose one");
+    if (a.given("--fov")) return usage("--fov and --lens cannot be combined");
     if (!(*a.lens >= 0.1 && *a.lens <= 1e5)) {
-      return usage(fmt::format("--lens {} is not from 0.1 to 100000 mm", readable(*a.lens)));
+      return usage(fmt::format("--lens {} is not in 0.1 to 100000 mm", readable(*a.lens)));
     }
     camera.field_of_view = 2 * std::atan(kSensorHeight / 2 / *a.lens);
   } else {
@@ -272,14 +269,15 @@ Status understand_orbit(const Arguments& a, FilmOptions& film) {
   if (turns) {
     const auto count = parse_finite(text);
     if (!count || !(*count > 0 && *count <= 1e4)) {
-      return usage(fmt::format("--orbit {}: how many turns?", a.orbit), "write 20s or 1.5turns");
+      return usage(fmt::format("--orbit {}: invalid number of turns", a.orbit),
+                   "write 20s or 1.5turns");
     }
     film.turns = sign * *count;
     return {};
   }
   const auto period = seconds(a.orbit, "--orbit", false);
   if (!period) return period.error();
-  if (*period < 1e-3) return usage("--orbit: a turn takes a millisecond at least");
+  if (*period < 1e-3) return usage("--orbit: a turn must take at least 1 ms");
   film.camera.turning = sign * 2 * kPi / *period;
   return {};
 }
@@ -304,15 +302,15 @@ Status understand_movement(const Arguments& a, FilmOptions& film) {
   return {};
 }
 
-// Options that have no effect without another are mistakes.
+// Options that have no effect without another are errors.
 Status check_needs(const Arguments& a, bool films) {
   constexpr std::array kOfFilms = {"--view",  "--azimuth", "--elevation", "--facing",
                                    "--frame", "--margin",  "--distance",  "--fov",
                                    "--lens",  "--smooth",  "--dead-zone", "--map"};
   for (const char* option : kOfFilms) {
     if (!films && a.given(option)) {
-      return usage(fmt::format("{} says how a motion is filmed", option),
-                   "say --follow, --orbit or --still too");
+      return usage(fmt::format("{} is only for filming a motion", option),
+                   "add --follow, --orbit or --still");
     }
   }
   for (const char* option : {"--clockwise", "--fixed-centre"}) {
@@ -322,19 +320,18 @@ Status check_needs(const Arguments& a, bool films) {
   }
   for (const char* option : {"--smooth", "--dead-zone"}) {
     if (a.still && a.given(option)) {
-      return usage(fmt::format("{} is for a camera that moves", option));
+      return usage(fmt::format("{} is for a moving camera", option));
     }
   }
   if (a.still && a.facing == AzimuthFrom::actor) {
-    return usage("--facing figure is for a camera that moves");
+    return usage("--facing figure is for a moving camera");
   }
   if (a.into.empty() && a.given("--clip")) return usage("--clip is for --into");
   if (!a.into.empty() && a.format == Format::cam) {
-    return usage("--into makes a GLB, --format cam does not");
+    return usage("--into writes a GLB and cannot be combined with --format cam");
   }
   if (films && a.rate) {
-    return usage(
-        "--rate is for keys and scenes; a camera that films a motion has the motion's rate");
+    return usage("--rate is for keys and scenes; when filming, the camera has the motion's rate");
   }
   if (films && !a.camera.empty()) return usage("--camera is for scenes");
   return {};
@@ -344,10 +341,10 @@ Status check_needs(const Arguments& a, bool films) {
 
 void declare(CommandOptions& command, Arguments& arguments) {
   command
-      .add_option(
-          "input", arguments.input,
-          "Keys of a camera (.json, formats/camera_keys/SPEC.md), a .cam file, a glTF file with a "
-          "camera, or a motion: a .anim file or a capture as krok-import reads it by default")
+      .add_option("input", arguments.input,
+                  "Camera keys (.json, formats/camera_keys/SPEC.md), a .cam file, a glTF file "
+                  "with a camera, or a motion: a .anim file or a capture, read as by "
+                  "krok-import with default options")
       .type_name("IN")
       .required();
   declare_subject(command, arguments);
@@ -360,7 +357,7 @@ void declare(CommandOptions& command, Arguments& arguments) {
 
 Result<Options> understand(const Arguments& a) {
   const int ways = (a.follow.empty() ? 0 : 1) + (a.orbit.empty() ? 0 : 1) + (a.still ? 1 : 0);
-  if (ways > 1) return usage("--follow, --orbit and --still are three ways to film; choose one");
+  if (ways > 1) return usage("--follow, --orbit and --still cannot be combined");
   if (Status status = check_needs(a, ways == 1); !status) return status.error();
   Options options;
   options.input = a.input;

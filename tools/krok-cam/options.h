@@ -14,21 +14,21 @@ namespace krok::cam_tool {
 enum class Format { from_name, cam, glb };
 enum class View { front, three_quarter, left, right, back, top };
 
-// The options as they were typed.
+// The options as given on the command line.
 struct Arguments {
   std::string input;
   Format format = Format::from_name;
   OrientationEncoding orientation = OrientationEncoding::xyz;
   std::string map;
-  // What it films.
+  // What the camera films.
   std::string follow, orbit;
   bool still = false;
-  // From where.
+  // View direction.
   View view = View::three_quarter;
   std::string azimuth, elevation;
   AzimuthFrom facing = AzimuthFrom::start;
   bool clockwise = false, fixed_centre = false;
-  // The picture.
+  // Framing.
   Framing frame = Framing::full;
   double margin = 0.08;
   std::string distance;
@@ -44,38 +44,38 @@ struct Arguments {
   std::string name = "camera";
   std::optional<int> clip;
 
-  // Whether an option, "--fov", stands on the command line; set by declare().
+  // Whether an option such as "--fov" was given; set by declare().
   std::function<bool(const char* option)> given;
 };
 
-// What is made of a motion.
+// Options for filming a motion.
 struct FilmOptions {
-  std::string follow;         // a joint or a role; empty: the joint that carries the figure
+  std::string follow;         // a joint or a role; empty: the joint that carries the root motion
   ActorCamera camera;         // without its joint
-  bool moving_centre = true;  // otherwise the middle of the whole motion
-  double turns = 0;           // an orbit's, over the whole motion, where its turning is not given
+  bool moving_centre = true;  // false: the middle of the whole motion
+  double turns = 0;           // orbit turns over the whole motion, if no turning speed is given
 };
 
-// The same, understood.
+// The parsed options.
 struct Options {
   std::string input, map;
   Format format = Format::from_name;
   OrientationEncoding orientation = OrientationEncoding::xyz;
   std::optional<FilmOptions> film;
   std::optional<double> rate;
-  std::string camera;  // which of a scene's; empty: the first
+  std::string camera;  // which camera of a scene; empty: the first
   std::string into, name;
-  std::optional<double> aspect;  // where it was given
+  std::optional<double> aspect;  // if given
   std::optional<int> clip;
 };
 
-// `app` is kept by the arguments.
+// The arguments keep a reference to `command`.
 void declare(CommandOptions& command, Arguments& arguments);
 
-// Code usage, and those of quantities, with the option's name.
+// Code usage, and those of quantities; messages name the option.
 Result<Options> understand(const Arguments& arguments);
 
-// The ending of results that the options tell, ".cam" or ".glb".
+// The output extension that the options imply, ".cam" or ".glb".
 std::string ending(const Arguments& arguments);
 
 }  // namespace krok::cam_tool

@@ -5,18 +5,18 @@
 #include "character/motion.h"
 #include "character/sampling.h"
 #include "core/text.h"
+#include "formats/io/open_scene.h"
 #include "nodes/evaluate.h"
 #include "tools/common/gltf/camera_choice.h"
-#include "tools/common/gltf/gltf_input.h"
 
 namespace krok::cam_tool {
 
 namespace {
 
-void tell(Diagnostics& found, const std::string& path, ToolContext& context) {
+void report_all(Diagnostics& found, const std::string& path, ToolContext& context) {
   for (Diagnostic& diagnostic : found) {
     if (diagnostic.where.file.empty()) diagnostic.where.file = path;
-    context.tell(std::move(diagnostic));
+    context.diagnose(std::move(diagnostic));
   }
   found.clear();
 }
@@ -30,7 +30,7 @@ bool moves(const nodes::Scene& scene, const nodes::Animation& animation, int cam
   return false;
 }
 
-// The first animation that moves the camera, -1 for none.
+// The first animation that moves the camera; -1 if none.
 int find_animation(const nodes::Scene& scene, int camera, Diagnostics& found) {
   int first = -1, count = 0;
   for (std::size_t i = 0; i < scene.animations.size(); ++i) {
@@ -41,10 +41,9 @@ int find_animation(const nodes::Scene& scene, int camera, Diagnostics& found) {
   Diagnostic told;
   told.severity = Severity::warning;
   told.code = "cam-animations";
-  told.message =
-      fmt::format("{} animations move the camera; the first of them, {} ({}), is taken", count,
-                  first, shown(scene.animations[static_cast<std::size_t>(first)].name));
-  told.hint = "krok-import --cam takes another with --clip";
+  told.message = fmt::format("{} animations move the camera; using the first, {} ({})", count,
+                             first, shown(scene.animations[static_cast<std::size_t>(first)].name));
+  told.hint = "krok-import --cam selects another with --clip";
   found.push_back(std::move(told));
   return first;
 }
@@ -53,15 +52,15 @@ int find_animation(const nodes::Scene& scene, int camera, Diagnostics& found) {
 
 Result<CameraTrack> read_scene_camera(const InputFile& file, const std::string& wanted,
                                       std::optional<double> rate, ToolContext& context) {
-  const auto scene = read_gltf(file, context);
+  const auto scene = io::open_scene(file, context);
   if (!scene) return scene.error();
   Diagnostics found = scene->diagnostics;
   const auto evaluator = nodes::Evaluator::create(*scene);
   if (!evaluator) return Error(evaluator.error()).in_file(file.path());
   const std::vector<int> cameras = character::camera_nodes(*scene, *evaluator);
   if (cameras.empty()) {
-    return Error("cam-missing", "no camera is in the scene",
-                 "in glTF a camera must belong to a node of the scene")
+    return Error("cam-missing", "the scene has no camera",
+                 "in glTF a camera must be attached to a node of the scene")
         .in_file(file.path());
   }
   const auto camera = choose_camera(*scene, cameras, wanted, file.path(), context);
@@ -76,11 +75,11 @@ Result<CameraTrack> read_scene_camera(const InputFile& file, const std::string& 
     if (!chosen) return Error(chosen.error()).in_file(file.path());
     sampling = chosen->sampling;
   }
-  // glTF's metres and axes are Krok's.
+  // glTF uses the same units and axes as Krok.
   auto track = character::make_camera(*scene, *evaluator, *camera, Conversion(), Mat4::Identity(),
                                       animation, sampling, found);
   if (!track) return Error(track.error()).in_file(file.path());
-  tell(found, file.path(), context);
+  report_all(found, file.path(), context);
   return track;
 }
 

@@ -10,8 +10,8 @@
 
 namespace krok::cam_tool {
 
-// A camera of a glTF file in the first animation that moves it or a node above it, at the rate that
-// the keys come at or at `rate`; one frame where no animation does. `wanted` as in choose_camera.
+// A camera of a glTF file in the first animation that moves it or one of its parent nodes, at the
+// rate of the keys or at `rate`; one frame if no animation does. `wanted` as in choose_camera.
 // Codes: cam-missing, import-camera, and those of reading and sampling.
 Result<CameraTrack> read_scene_camera(const InputFile& file, const std::string& wanted,
                                       std::optional<double> rate, ToolContext& context);

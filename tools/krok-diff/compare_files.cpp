@@ -9,11 +9,11 @@ namespace krok::diff {
 
 namespace {
 
-// Whether files of two kinds can be held against each other as scenes.
+// Whether two file types can be compared as scenes.
 bool are_scenes(InputKind first, InputKind second) {
   const auto either = [&](InputKind kind) { return first == kind || second == kind; };
   if (either(InputKind::camera) || either(InputKind::morphs)) return false;
-  // A motion has joints over time alone, a model a mesh without a motion.
+  // A motion has only animated joints, a model only a static mesh.
   const bool joints_alone = either(InputKind::motion);
   return !(joints_alone && (either(InputKind::model) || either(InputKind::points)));
 }
@@ -24,23 +24,22 @@ Status check_drawings(const Options& options, InputKind first, InputKind second)
     return kind == InputKind::camera || kind == InputKind::morphs || kind == InputKind::model;
   };
   if (!options.plot.empty() && (stands(first) || stands(second))) {
-    return Error("usage", "--plot shows motions and glTF over time",
-                 "--sheet and --heatmap show models too");
+    return Error("usage", "--plot is for motions and glTF", "use --sheet or --heatmap for models");
   }
   const auto has_mesh = [](InputKind kind) {
     return kind == InputKind::gltf || kind == InputKind::model || kind == InputKind::points;
   };
   if (!options.heatmap.empty() && !(has_mesh(first) && has_mesh(second))) {
-    return Error("usage", "--heatmap colours the vertices of glTF, models and point caches",
-                 "--sheet shows motions");
+    return Error("usage", "--heatmap is for glTF, models and point caches",
+                 "use --sheet for motions");
   }
   if (options.sheet.path.empty()) return {};
   if (either(InputKind::camera)) {
-    return Error("usage", "--sheet shows figures, and cameras have none");
+    return Error("usage", "--sheet is not for cameras");
   }
   if (either(InputKind::morphs) || either(InputKind::points)) {
     return Error("usage",
-                 "--sheet shows figures, and morph targets and point caches have no triangles");
+                 "--sheet needs triangles, which morph targets and point caches do not have");
   }
   return {};
 }
@@ -57,10 +56,11 @@ Result<Outcome> compare_files(const Options& options, ToolContext& context) {
   const auto second_kind = kind_of(*second);
   if (!second_kind) return second_kind.error();
   if (*first_kind != *second_kind && !are_scenes(*first_kind, *second_kind)) {
-    return Error("diff-kinds",
-                 fmt::format("{} is {}, but {} is {}", options.first, description(*first_kind),
-                             options.second, description(*second_kind)),
-                 "compare two files of one kind, or glTF with a motion, a model or a point cache");
+    return Error(
+        "diff-kinds",
+        fmt::format("{} is {}, but {} is {}", options.first, description(*first_kind),
+                    options.second, description(*second_kind)),
+        "compare two files of the same type, or glTF with a motion, a model or a point cache");
   }
   if (Status status = check_drawings(options, *first_kind, *second_kind); !status)
     return status.error();

@@ -15,16 +15,16 @@ namespace krok::diff {
 struct Options {
   std::string first, second;  // paths
   compare::Matching matching = compare::Matching::automatic;
-  bool materials = false;  // whether other materials are a difference
+  bool materials = false;  // whether different materials count as a difference
   compare::Tolerance tolerance;
   SheetOptions sheet;
-  std::string plot;     // a path; empty for none
-  std::string heatmap;  // the same
+  std::string plot;     // path; empty for none
+  std::string heatmap;  // path; empty for none
   FolderOptions folders;
 };
 
-// Reads both files, compares them and draws what is wanted of the difference. Codes diff-kind (a
-// file of a kind that cannot be compared), diff-kinds (two kinds), and those of the readers.
+// Compares both files and writes the requested plots and images. Codes diff-kind (a file type that
+// cannot be compared), diff-kinds (two different types), and those of the readers.
 Result<Outcome> compare_files(const Options& options, ToolContext& context);
 
 }  // namespace krok::diff

@@ -24,9 +24,8 @@ Result<Outcome> compare_models(const InputFile& first, const InputFile& second,
   if (!status) return status.error();
   if (!options.heatmap.empty()) {
     const compare::SceneOptions how{options.tolerance, options.matching};
-    const Status status =
-        write_heatmap(models->first, models->second, how, options.heatmap, context);
-    if (!status) return status.error();
+    const Status step = write_heatmap(models->first, models->second, how, options.heatmap, context);
+    if (!step) return step.error();
   }
   Outcome outcome;
   outcome.kind = word_of(InputKind::model);

@@ -7,14 +7,14 @@
 #include "core/numbers.h"
 #include "difference_plot.h"
 #include "formats/cam/cam.h"
-#include "tools/common/motion_input.h"
+#include "formats/io/open_motion.h"
 
 namespace krok::diff {
 
 Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
                                 const Options& options, ToolContext& context) {
-  auto clips = read_both<Clip>(first, second,
-                               [&](const InputFile& file) { return read_motion(file, context); });
+  auto clips = read_both<Clip>(
+      first, second, [&](const InputFile& file) { return io::open_motion(file, context); });
   if (!clips) return clips.error();
   const auto found =
       compare::difference(clips->first, clips->second, options.tolerance, options.matching);
@@ -26,8 +26,8 @@ Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
     const auto [first_name, second_name] = image_names(options);
     const PlottedClip a{first_name, &clips->first};
     const PlottedClip b{second_name, &clips->second};
-    if (Status status = write_plot(a, b, *found, options.plot, context); !status) {
-      return status.error();
+    if (Status step = write_plot(a, b, *found, options.plot, context); !step) {
+      return step.error();
     }
   }
   Outcome outcome;

@@ -8,18 +8,18 @@
 #include "comparisons.h"
 #include "core/numbers.h"
 #include "difference_plot.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_scene.h"
 #include "formats/model/model_format.h"
 #include "gltf_scene.h"
 #include "heatmap.h"
 #include "other_scenes.h"
-#include "tools/common/gltf/gltf_input.h"
-#include "tools/common/motion_input.h"
 
 namespace krok::diff {
 
 namespace {
 
-// A file as a scene, with what the scene refers to.
+// A file as a scene, with the data that the scene refers to.
 struct Opened {
   InputKind kind = InputKind::gltf;
   std::optional<nodes::Scene> asset;
@@ -28,17 +28,17 @@ struct Opened {
   std::optional<pc2::PointCache> points;
   compare::Scene scene;
 
-  // What stands in the file, and the scene unless it depends on the partner's.
+  // Reads the file, and builds the scene unless it depends on the partner's.
   Status read(const InputFile& file, ToolContext& context);
   Status read_gltf_scene(const InputFile& file, ToolContext& context);
-  // Of a point cache, which says little of itself.
+  // Builds the scene of a point cache, which depends on the partner's.
   Status finish(const Opened& partner);
 };
 
 Status Opened::read_gltf_scene(const InputFile& file, ToolContext& context) {
-  auto read = read_gltf(file, context, true);
+  auto read = io::open_scene(file, context, true);
   if (!read) return std::move(read).error();
-  context.tell(read->diagnostics);
+  context.diagnose(read->diagnostics);
   asset = std::move(*read);
   auto made = scene_of(*asset);
   if (!made) return std::move(made).error();
@@ -55,7 +55,7 @@ Status Opened::read(const InputFile& file, ToolContext& context) {
     if (Status status = check(*model); !status) return status;
     scene = scene_of(*model);
   } else if (kind == InputKind::motion) {
-    auto read = read_motion(file, context);
+    auto read = io::open_motion(file, context);
     if (!read) return std::move(read).error();
     clip = std::move(*read);
     if (Status status = check(*clip); !status) return status;
@@ -100,7 +100,7 @@ std::vector<std::string> summary_lines(const Opened& first, const Opened& second
   std::vector<std::string> lines = {text(first)};
   if (text(second) != lines.front()) lines.push_back("against " + text(second));
   const bool moving = !first.scene.animations.empty() && !second.scene.animations.empty();
-  lines.push_back(moving ? fmt::format("compared at {}", counted(moments, "moment"))
+  lines.push_back(moving ? fmt::format("compared at {}", counted(moments, "time"))
                          : "compared without animation");
   return lines;
 }
@@ -123,7 +123,7 @@ Outcome outcome_of(const Opened& first, const Opened& second,
   outcome.add_row("morph targets' tangents", Unit::ratio, found.target_tangents);
   outcome.add_row("texture coordinates", Unit::ratio, found.texture_coordinates);
   outcome.add_row("weights", Unit::ratio, found.weights);
-  // Floats round key times; that is not worth a line.
+  // Key times are rounded to float; ignore such differences.
   if (found.times.largest > 1e-6) outcome.add_row("key times", Unit::time, found.times);
   outcome.add_parts(found.parts);
   outcome.add_joints(found.joints);
@@ -161,13 +161,13 @@ Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
   if (!options.plot.empty()) {
     const auto [first_name, second_name] = image_names(options);
     const PlottedScenes scenes{first_name, second_name, &a.scene, &*found};
-    if (Status status = write_plot(scenes, options.plot, context); !status) {
-      return status.error();
+    if (Status step = write_plot(scenes, options.plot, context); !step) {
+      return step.error();
     }
   }
   if (!options.heatmap.empty()) {
-    const Status status = write_heatmap(a.scene, *found, options.heatmap, context);
-    if (!status) return status.error();
+    const Status step = write_heatmap(a.scene, *found, options.heatmap, context);
+    if (!step) return step.error();
   }
   return outcome_of(a, b, *found);
 }

@@ -10,11 +10,11 @@
 #include "core/file.h"
 #include "core/result.h"
 
-// What the comparisons of files of all kinds share.
+// Shared by the comparisons of all file types.
 
 namespace krok::diff {
 
-// Both files read by the same reader, errors with the file's path.
+// Reads both files with the same reader; errors carry the file's path.
 template <typename T, typename Read>
 Result<std::pair<T, T>> read_both(const InputFile& first, const InputFile& second, Read read) {
   Result<T> a = read(first);
@@ -24,8 +24,7 @@ Result<std::pair<T, T>> read_both(const InputFile& first, const InputFile& secon
   return std::pair<T, T>(std::move(*a), std::move(*b));
 }
 
-// What the files are called in pictures: their base names or, where these are the same, with the
-// folder that each is in.
+// Display names of the two files: the base names, preceded by the folder if these are equal.
 inline std::pair<std::string, std::string> image_names(const Options& options) {
   const auto name = [](const std::string& path) {
     const std::string folder = std::filesystem::path(path).parent_path().filename().string();
@@ -36,7 +35,7 @@ inline std::pair<std::string, std::string> image_names(const Options& options) {
   return names;
 }
 
-// Draws the sheet of two things, where one is wanted.
+// Draws the sheet, if requested.
 inline Status draw_sheet(const Options& options, ToolContext& context,
                          const std::function<DifferenceSheet()>& make) {
   if (options.sheet.path.empty()) return {};

@@ -1,4 +1,4 @@
-// What a sheet shows of clips, models and scenes.
+// Contents of a sheet for clips, models and scenes.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ double in_unit(const ColourKey& key, double metres) {
   return key.unit == "mm" ? 1000 * metres : key.unit == "cm" ? 100 * metres : metres;
 }
 
-// Colours of points by their distances to others; the largest of these goes to `largest`.
+// Colours points by their distance to others; `largest` receives the max.
 template <typename Points, typename Others>
 std::vector<render::Colour> colours_of(const Points& points, const Others& others,
                                        const ColourKey& key, std::optional<double>& largest) {
@@ -40,7 +40,7 @@ void stand_at(const Vec3& place, Actor& actor) {
   actor.centre = Vec3(place.x(), 0, place.z());
 }
 
-// Two clips as bones.
+// Two clips drawn as bones.
 class ClipPair {
  public:
   ClipPair(const Clip& first, const Clip& second)
@@ -129,7 +129,7 @@ render::Surface surface_of(const Model& model) {
   return surface;
 }
 
-// A scene's meshes, or its joints where it has no triangles.
+// A scene's meshes, or its joints if it has no triangles.
 class ScenePart {
  public:
   explicit ScenePart(const compare::Scene& scene) : scene_(scene) {
@@ -214,7 +214,7 @@ class ScenePair {
 
   bool corresponds() const { return corresponds_; }
 
-  // How long both are animated; 0 where one is not.
+  // The duration that both are animated; 0 if one is not.
   double duration() const {
     double least = 0;
     for (const ScenePart* part : {&first_, &second_}) {

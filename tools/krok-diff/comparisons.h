@@ -7,12 +7,12 @@
 #include "outcome.h"
 #include "tools/common/tool.h"
 
-// The comparisons that compare_files() chooses from, each of two files of kinds that it takes. They
-// draw what is wanted of the difference.
+// The comparisons that compare_files() selects by file type. They write the requested plots and
+// images.
 
 namespace krok::diff {
 
-// Two motions, either of them a .anim file or a capture.
+// Compares two motions, each a .anim file or a capture.
 Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
                                 const Options& options, ToolContext& context);
 
@@ -25,7 +25,7 @@ Result<Outcome> compare_cameras(const InputFile& first, const InputFile& second,
 Result<Outcome> compare_morphs(const InputFile& first, const InputFile& second,
                                const Options& options);
 
-// Files of kinds that can be seen as scenes: glTF, models, motions, point caches.
+// Compares files that can be read as scenes: glTF, models, motions, point caches.
 Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
                                const InputFile& second, InputKind second_kind,
                                const Options& options, ToolContext& context);

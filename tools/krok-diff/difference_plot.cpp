@@ -25,19 +25,19 @@ Status not_drawn(const std::string& path, const std::string& why, ToolContext& c
   return {};
 }
 
-Status write_actor(const draw::Actor& actor, const std::string& path, ToolContext& context) {
-  const auto svg = draw::to_svg(actor);
+Status write_chart(const draw::Chart& chart, const std::string& path, ToolContext& context) {
+  const auto svg = draw::to_svg(chart);
   if (!svg) return svg.error();
   return write_output(context, path, [&](OutputFile& file) { return file.write(*svg); });
 }
 
-// Adds what the measure of all moments tells.
+// Adds the tolerance and the time of the max.
 void add_measure(const compare::Measure& measure, ChartedDifference& chart) {
   chart.tolerance = chart.is_angle ? measure.tolerance / kRadiansPerDegree : measure.tolerance;
   if (measure.largest > 0) chart.worst_moment = measure.where.time;
 }
 
-// One quantity of scenes.
+// A quantity compared between scenes.
 struct Quantity {
   const char* title;
   const char* of;
@@ -75,7 +75,7 @@ ChartedDifference chart_of(const Quantity& quantity, const Moments& moments,
   }
   const compare::Measure& measure = found.*quantity.measure;
   add_measure(measure, chart);
-  // The largest of all may be in another animation.
+  // The overall max may be in another animation.
   if (std::max(0, measure.where.animation) != std::max(0, moments.front()->animation)) {
     chart.worst_moment.reset();
   }
@@ -95,10 +95,8 @@ bool differs(const Moments& moments, const compare::SceneDifference& found) {
 Status check_plot_name(const std::string& path) {
   const std::string ending = extension(path);
   if (ending.empty() || ending == ".svg") return {};
-  return Error(
-      "usage",
-      fmt::format("--plot {}: what is written there is an SVG, not {}", path, shown(ending)),
-      "call it .svg");
+  return Error("usage", fmt::format("--plot {}: the output is SVG, not {}", path, shown(ending)),
+               "use the extension .svg");
 }
 
 Status write_plot(const PlottedClip& first, const PlottedClip& second,
@@ -112,15 +110,15 @@ Status write_plot(const PlottedClip& first, const PlottedClip& second,
   b.frames = {0, second.clip->frame_count() - 1};
   const auto difference = draw::difference_over_time(a, b, {});
   if (!difference) return not_drawn(path, difference.error().message, context);
-  draw::Actor actor;
-  actor.title = fmt::format("{} and {}", first.name, second.name);
+  draw::Chart chart;
+  chart.title = fmt::format("{} and {}", first.name, second.name);
   auto [distances, angles] = draw::difference_charts(*difference);
   add_measure(found.positions, distances);
   add_measure(found.orientations, angles);
-  for (const ChartedDifference* chart : {&distances, &angles}) {
-    actor.panels.push_back(draw::difference_panel(*chart, Scale::linear));
+  for (const ChartedDifference* charted : {&distances, &angles}) {
+    chart.panels.push_back(draw::difference_panel(*charted, Scale::linear));
   }
-  return write_actor(actor, path, context);
+  return write_chart(chart, path, context);
 }
 
 Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolContext& context) {
@@ -129,12 +127,12 @@ Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolCont
   for (const compare::MomentDifference& moment : found.moments) {
     if (moment.frame >= 0) animations[moment.animation].push_back(&moment);
   }
-  if (animations.empty()) return not_drawn(path, "nothing moves in both of the two", context);
+  if (animations.empty()) return not_drawn(path, "the two have no animation in common", context);
   const bool any = std::any_of(animations.begin(), animations.end(),
                                [&](const auto& one) { return differs(one.second, found); });
   const bool several = animations.size() > 1;
-  draw::Actor actor;
-  actor.title = fmt::format("{} and {}", scenes.first_name, scenes.second_name);
+  draw::Chart chart;
+  chart.title = fmt::format("{} and {}", scenes.first_name, scenes.second_name);
   std::size_t drawn = 0, left = 0;
   for (const auto& [animation, moments] : animations) {
     if (several && any && !differs(moments, found)) continue;
@@ -149,18 +147,18 @@ Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolCont
     if (name.empty()) name = fmt::format("animation {}", animation);
     for (const Quantity& quantity : kQuantities) {
       if ((found.*quantity.measure).count == 0) continue;
-      ChartedDifference chart = chart_of(quantity, moments, found);
-      if (several) chart.title = name + ": " + chart.title;
-      actor.panels.push_back(draw::difference_panel(chart, Scale::linear));
+      ChartedDifference charted = chart_of(quantity, moments, found);
+      if (several) charted.title = name + ": " + charted.title;
+      chart.panels.push_back(draw::difference_panel(charted, Scale::linear));
     }
   }
   if (left > 0) {
     context.warn("diff-plot", fmt::format("{} more animations that differ are not drawn", left));
   }
-  if (actor.panels.empty()) {
+  if (chart.panels.empty()) {
     return not_drawn(path, "the two have neither meshes nor joints in common", context);
   }
-  return write_actor(actor, path, context);
+  return write_chart(chart, path, context);
 }
 
 }  // namespace krok::diff

@@ -8,8 +8,8 @@
 #include "scene/clip.h"
 #include "tools/common/tool.h"
 
-// How far two motions or scenes are apart over time, as charts: the largest difference and the root
-// of the mean square, the tolerance, and where the difference is largest.
+// Charts of the differences of two motions or scenes over time: max and RMS, the tolerance, and the
+// time of the max.
 
 namespace krok::diff {
 
@@ -18,18 +18,18 @@ struct PlottedClip {
   const Clip* clip = nullptr;
 };
 
-// Whether charts may be called `path`: Error usage where the name promises another kind of file.
+// Error usage if the extension of `path` is not .svg.
 Status check_plot_name(const std::string& path);
 
-// Writes an SVG of joints' positions and orientations. Clips without a joint or a moment in common
-// have none: a warning, and no file.
+// Writes an SVG of the differences of joint positions and orientations. If the clips have no joint
+// or time in common: a warning, and no file.
 Status write_plot(const PlottedClip& first, const PlottedClip& second,
                   const compare::ClipDifference& found, const std::string& path,
                   ToolContext& context);
 
-// Writes an SVG of what two scenes have of positions, normals and tangents of vertices and of
-// positions and orientations of joints, at the moments that were compared; of several animations
-// those that differ, eight at most. Scenes that do not move have none: a warning, and no file.
+// Writes an SVG of the differences of vertex positions, normals and tangents and of joint positions
+// and orientations, at the times compared; for several animations, of those that differ, at most
+// eight. If the scenes are static: a warning, and no file.
 struct PlottedScenes {
   std::string first_name, second_name;
   const compare::Scene* first = nullptr;

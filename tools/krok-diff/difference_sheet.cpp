@@ -11,7 +11,7 @@ namespace krok::diff {
 
 namespace {
 
-constexpr double kPale = 0.35;  // the first figure's opacity where the difference is shown
+constexpr double kPale = 0.35;  // opacity of the first character where the difference is shown
 constexpr render::Colour kPaleColour = render::colour(0x8E99A5);
 
 struct LengthUnit {
@@ -36,23 +36,23 @@ Result<std::vector<ImageMoment>> moments_of(const DifferenceSheet& sheet,
   return moments;
 }
 
-// The figure without its own colours.
+// The character in grey.
 render::Actor in_grey(render::Actor actor) {
   for (render::Surface& surface : actor.surfaces) surface.colours = {kPaleColour};
   for (render::Bone& bone : actor.bones) bone.from_colour = bone.to_colour = kPaleColour;
   return actor;
 }
 
-// What is said of one moment's distances.
+// The note for the distances at one time.
 std::string note_of(const DifferenceSheet& sheet, const Compared& one, bool worst,
                     const LengthUnit& unit) {
   if (!one.largest) return {};
   if (*one.largest <= sheet.tolerance) return "the same";
-  return fmt::format("{} {} {}", worst ? "largest:" : "up to",
+  return fmt::format("{} {} {}", worst ? "largest:" : "max",
                      readable(*one.largest * unit.in_a_metre, 3), unit.name);
 }
 
-// The three rows that one side has.
+// Adds the three rows of one view direction.
 void add_rows(const DifferenceSheet& sheet, const ImageSide& side,
               const std::vector<ImageMoment>& moments, const std::vector<Compared>& compared,
               const std::vector<render::Actor>& pale, const LengthUnit& unit,
@@ -60,12 +60,12 @@ void add_rows(const DifferenceSheet& sheet, const ImageSide& side,
   render::SheetRow first, second, both;
   first.title = sheet.first_name;
   second.title = sheet.second_name;
-  both.title = "where they differ";
+  both.title = "difference";
   first.note = second.note = side.name;
-  both.note = sheet.measured ? side.name + ", the first pale"
+  both.note = sheet.measured ? side.name + ", first faint"
                              : side.name +
-                                   ", the first pale; they do not correspond point by "
-                                   "point, so no distances are shown";
+                                   ", first faint; points do not correspond, so no "
+                                   "distances are shown";
   for (render::SheetRow* row : {&first, &second, &both}) {
     row->yaw = sheet.heading + side.yaw;
     row->elevation = side.elevation;
@@ -74,7 +74,7 @@ void add_rows(const DifferenceSheet& sheet, const ImageSide& side,
   for (std::size_t i = 0; i < moments.size(); ++i) {
     const Compared& one = compared[i];
     render::SheetCell cell;
-    cell.centre = one.first.centre;  // one place for all three
+    cell.centre = one.first.centre;  // the same for all three
     if (moves) cell.label = moments[i].label();
     cell.marked = sheet.worst && moments[i].time == sheet.worst->time;
     cell.layers = {{&one.first}};
@@ -94,11 +94,11 @@ DistanceColours distance_colours(double tolerance, double largest) {
   const LengthUnit unit = unit_for(largest);
   DistanceColours colours;
   render::ColourKey& key = colours.key;
-  key.label = "distance between the two";
+  key.label = "distance";
   key.unit = unit.name;
   key.low = tolerance * unit.in_a_metre;
   key.high = largest * unit.in_a_metre;
-  // Two that are the same have a scale too.
+  // A non-empty range even if the two are equal.
   if (!(key.high > key.low)) key.high = key.low > 0 ? 2 * key.low : 1;
   colours.in_a_metre = unit.in_a_metre;
   return colours;

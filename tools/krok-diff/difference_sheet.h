@@ -14,7 +14,7 @@
 #include "tools/common/actors/image.h"
 #include "tools/common/tool.h"
 
-// A picture of two figures and of where they differ.
+// An image of two characters and their differences.
 
 namespace krok::diff {
 
@@ -25,32 +25,32 @@ struct SheetOptions {
   ImageOptions image;
 };
 
-// Both figures at one moment. In `coloured`, the second figure, each point has the colour of its
-// distance to the first one's; without a key, or where points do not correspond, its own.
+// Both characters at one time. `coloured` is the second, with points coloured by their distance to
+// the first; without a colour key, or if points do not correspond, in its own colours.
 struct Compared {
   render::Actor first, second, coloured;
-  std::optional<double> largest;  // metres, where distances were measured
+  std::optional<double> largest;  // metres, if distances were measured
 };
 
 struct DifferenceSheet {
   std::string first_name, second_name;
   ImageSpan span;
-  std::optional<ImageMoment> worst;  // where the difference is largest: shown in any case
+  std::optional<ImageMoment> worst;  // the time of the max difference; always shown
   double largest = 0;                // metres
   double tolerance = 0;              // metres
-  double heading = 0;                // where the first faces, radians about +Y
-  bool measured = true;              // whether distances can be told
+  double heading = 0;                // facing of the first, radians about +Y
+  bool measured = true;              // whether distances could be measured
   std::function<Compared(const ImageMoment& moment, const render::ColourKey& key)> at;
 };
 
-// What to draw of two clips, models or scenes, which must outlive it. `found` is the measured
+// The sheet of two clips, models or scenes, which must outlive it. `found` is the measured
 // difference of positions.
 DifferenceSheet sheet_of(const Clip& first, const Clip& second, const compare::Measure& found);
 DifferenceSheet sheet_of(const Model& first, const Model& second, const compare::Measure& found);
 DifferenceSheet sheet_of(const compare::Scene& first, const compare::Scene& second,
                          const compare::Measure& found, compare::Matching matching);
 
-// Colours of distances: grey up to the tolerance, then from blue over yellow to red at the largest.
+// Colours of distances: grey up to the tolerance, then from blue over yellow to red at the max.
 struct DistanceColours {
   render::ColourKey key;
   double in_a_metre = 1;  // of the key's unit
@@ -59,7 +59,7 @@ struct DistanceColours {
 };
 DistanceColours distance_colours(double tolerance, double largest);
 
-// Draws it, writes the picture and notes it in the report.
+// Draws the sheet, writes the image and adds it to the report.
 Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options, ToolContext& context);
 
 }  // namespace krok::diff

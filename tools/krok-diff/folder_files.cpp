@@ -49,7 +49,8 @@ class Walk {
         take(*entry, before + name, folders);
       }
       if (trouble) {
-        return Error("file-unreadable", fmt::format("cannot be searched: {}", trouble.message()))
+        return Error("file-unreadable",
+                     fmt::format("cannot read the folder: {}", trouble.message()))
             .in_file(path.string());
       }
     }
@@ -72,16 +73,16 @@ class Walk {
       return;
     }
     if (!filter_.takes(below)) return;
-    // A link that leads nowhere is taken, so that it is named when it cannot be read.
+    // A dangling link is kept, so that it is reported as unreadable.
     if (fs::exists(status) && !fs::is_regular_file(status)) {
-      leave_out(entry, "no regular file");
+      leave_out(entry, "not a regular file");
     } else if (written_.empty() || written_.count(place_of(entry.path().string())) == 0) {
       found_.paths.push_back(below);
     }
   }
 
   void leave_out(const fs::directory_entry& entry, const char* what) {
-    found_.notes.push_back(fmt::format("{} is left out: {}", entry.path().string(), what));
+    found_.notes.push_back(fmt::format("{} was skipped: {}", entry.path().string(), what));
   }
 
   const std::string& folder_;
@@ -95,7 +96,7 @@ class Walk {
 
 bool path_fits(std::string_view pattern, std::string_view path) {
   const auto wanted = parts_of(pattern), parts = parts_of(path);
-  // After each part of the pattern, how many parts of the path may have been used.
+  // After each pattern component: the possible numbers of path components consumed.
   std::vector<bool> used(parts.size() + 1, false);
   used[0] = true;
   for (const std::string_view part : wanted) {

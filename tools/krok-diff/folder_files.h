@@ -6,31 +6,31 @@
 
 #include "core/result.h"
 
-// Which files of a folder are compared.
+// Selects the files of a folder to compare.
 
 namespace krok::diff {
 
-// Patterns as a shell has them. One without a slash is held against names alone, "*.glb"; one with
-// a slash against the path below the folder, "walks/**/*.glb". No `include` is all files.
+// Shell patterns. Without a slash they match file names, "*.glb"; with a slash, paths relative to
+// the folder, "walks/**/*.glb". An empty `include` matches all files.
 struct PathFilter {
   std::vector<std::string> include, exclude;
 
   bool takes(const std::string& path) const;
 };
 
-// Whether a path fits a pattern; ** as a whole part stands for any number of folders.
+// Whether a path matches a pattern; ** as a path component matches any number of folders.
 bool path_fits(std::string_view pattern, std::string_view path);
 
 struct FolderFiles {
-  std::vector<std::string> paths;  // below the folder, sorted by their bytes
-  std::vector<std::string> notes;  // what was left out, sentences for people
+  std::vector<std::string> paths;  // relative to the folder, sorted bytewise
+  std::vector<std::string> notes;  // messages about skipped files
 };
 
-// The files in a folder and in its sub-folders. Left out are names that begin with a dot, journals
-// of batches (krok-import.journal.jsonl), what the filter does not take, the folder `other` and the
-// files `written` where they lie inside; with a note links to folders (so that loops end) and
-// devices and pipes (so that nothing waits). An Error (code file-unreadable) for a folder that
-// cannot be searched.
+// The files in a folder and its sub-folders. Skipped silently: names that begin with a dot, batch
+// journals (krok-import.journal.jsonl), files that the filter excludes, and the folder `other` and
+// the files `written` if they are inside. Skipped with a note: links to folders (which could form
+// loops), devices and pipes (which could block). Error (code file-unreadable) for a folder that
+// cannot be read.
 Result<FolderFiles> files_in(const std::string& folder, const PathFilter& filter,
                              const std::string& other, const std::vector<std::string>& written);
 

@@ -1,4 +1,4 @@
-// What is said of two folders: text, JSON, a page.
+// Reports on two folders: text, JSON, page.
 
 #include <fmt/format.h>
 
@@ -47,7 +47,7 @@ std::string title_of(const Options& options) {
   return fmt::format("{} against {}", safe(options.first), safe(options.second));
 }
 
-// What there is to count, with its number; statuses that no file has are left out but for `same`.
+// Labels and counts; counts of 0 are omitted except for `same`.
 std::vector<std::pair<std::string, std::size_t>> counts_of(const FolderOutcome& outcome,
                                                            const Options& options) {
   std::vector<std::pair<std::string, std::size_t>> counts;
@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, std::size_t>> counts_of(const FolderOutcome& 
   return counts;
 }
 
-// For HTML, and for cells of Markdown, which a bar would end.
+// For HTML, and for Markdown table cells, where a bar must be escaped.
 std::string escaped(const std::string& text) {
   std::string result = to_markup(safe(text));
   for (std::size_t at = 0; (at = result.find('|', at)) != std::string::npos;) {
@@ -69,7 +69,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-// The page's words on each file that has some.
+// Texts of a row of the page.
 struct PageRow {
   std::string status, path, what;
 };
@@ -207,9 +207,8 @@ Status check_summary_name(const std::string& path) {
   if (path.empty() || path == "-" || ending == ".html" || ending == ".htm" || ending == ".md") {
     return {};
   }
-  return Error("usage",
-               fmt::format("--summary {}: what is written there is HTML or Markdown", path),
-               "call it .html or .md");
+  return Error("usage", fmt::format("--summary {}: the output is HTML or Markdown", path),
+               "use the extension .html or .md");
 }
 
 Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,

@@ -1,4 +1,4 @@
-// The first folder made what the second is.
+// Updates the first folder to match the second.
 
 #include <fmt/format.h>
 
@@ -16,15 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Makes `folder` in the folder tree of `root`, where links are refused: what they lead to is not
-// compared either.
+// Creates `folder` below `root`. Links are rejected: their targets are not compared either.
 Status make_folder(const fs::path& folder, const fs::path& root, NewFolders& folders) {
   std::error_code unknown;
   if (folder != root) {
     if (Status status = make_folder(folder.parent_path(), root, folders); !status) return status;
     if (fs::is_symlink(fs::symlink_status(folder, unknown))) {
-      return Error("file-unwritable", "is a link, which is not followed here",
-                   "put a folder in its place")
+      return Error("file-unwritable", "is a link, and links are not followed",
+                   "replace it by a folder")
           .in_file(folder.string());
     }
   }
@@ -48,15 +47,15 @@ Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& o
   const bool prune = options.folders.prune;
   if (prune && outcome.count(FileStatus::only_in_first) == outcome.files.size()) {
     return Error("diff-empty",
-                 fmt::format("{} has no file, and --prune would remove all of {}", options.second,
+                 fmt::format("{} has no files, so --prune would remove all of {}", options.second,
                              options.first),
-                 "check that the files were made");
+                 "check that the files were written");
   }
   FolderUpdate update;
   NewFolders folders;
   std::vector<OutputFile> copies;
   std::set<std::string> places;
-  // Without a slash at its end, so that it is the parent of what is in it.
+  // Without a trailing slash, so that it is the parent of its entries.
   const fs::path root = fs::path(options.first).has_filename()
                             ? fs::path(options.first)
                             : fs::path(options.first).parent_path();
@@ -69,7 +68,7 @@ Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& o
     if (Status status = make_folder(target.parent_path(), root, folders); !status) {
       return status.error();
     }
-    // Two links to one file.
+    // Two links to the same file.
     if (!places.insert(place_of(target.string())).second) return twice_error(target.string());
     auto copy = copy_of(below(options.second, file.path), target.string());
     if (!copy) return std::move(copy.error()).in_file(target.string());
@@ -83,7 +82,7 @@ Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& o
   for (const std::string& path : update.removed) {
     std::error_code trouble;
     if (!fs::remove(root / path, trouble) && trouble) {
-      return Error("file-unwritable", fmt::format("cannot be removed: {}", trouble.message()))
+      return Error("file-unwritable", fmt::format("cannot remove the file: {}", trouble.message()))
           .in_file((root / path).string());
     }
   }

@@ -22,10 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// How far ahead of the first file that is not told of yet others may be compared.
+// How many files may be compared ahead of the first one not yet reported.
 constexpr std::size_t kWindow = 64;
 
-// One pair, and what is to be told of it.
+// One pair, and its messages.
 struct Compared {
   FileResult result;
   Diagnostics issues;
@@ -36,14 +36,14 @@ bool is_gltf_text(const std::string& path, const InputFile& file) {
   return registry::identify(path, file.bytes()) == registry::Kind::gltf;
 }
 
-// How two files differ that are compared byte by byte.
+// The difference of two files compared byte by byte.
 Outcome byte_outcome(const InputFile& first, const InputFile& second) {
   const auto a = first.bytes(), b = second.bytes();
   const auto apart = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin();
   Outcome outcome;
   outcome.kind = "bytes";
   outcome.summary = {"compared byte by byte"};
-  std::string sentence = fmt::format("byte {} is the first that differs", grouped(apart));
+  std::string sentence = fmt::format("first difference at byte {}", grouped(apart));
   if (a.size() != b.size()) {
     sentence = fmt::format("{} in the first, {} in the second; {}",
                            counted(static_cast<long long>(a.size()), "byte"),
@@ -59,7 +59,7 @@ class Comparison {
 
   Result<FolderOutcome> run() {
     if (Status status = list(); !status) return status.error();
-    // Files that a glTF refers to are compared with it; so those come first.
+    // Files that a glTF refers to are compared with it, so glTF files come first.
     std::vector<std::size_t> gltf, others;
     for (std::size_t i = 0; i < outcome_.files.size(); ++i) {
       if (outcome_.files[i].status != FileStatus::not_compared) continue;
@@ -88,7 +88,7 @@ class Comparison {
     const PathFilter& filter = options_.folders.filter;
     FolderFiles first, second;
     std::error_code unknown;
-    // Golden files that are yet to be made.
+    // With --update, the first folder need not exist.
     const bool begun = !options_.folders.update || fs::exists(options_.first, unknown);
     if (begun) {
       auto found = files_in(options_.first, filter, options_.second, context_.destinations);
@@ -101,10 +101,9 @@ class Comparison {
     if (first.paths.empty() && second.paths.empty()) {
       return Error(
           "diff-empty",
-          fmt::format("neither {} nor {} has a file to compare", options_.first, options_.second),
-          filter.include.empty() && filter.exclude.empty()
-              ? "check that the files were made"
-              : "see which files --include and --exclude leave");
+          fmt::format("neither {} nor {} has files to compare", options_.first, options_.second),
+          filter.include.empty() && filter.exclude.empty() ? "check that the files were written"
+                                                           : "check --include and --exclude");
     }
     outcome_.notes = std::move(first.notes);
     std::move(second.notes.begin(), second.notes.end(), std::back_inserter(outcome_.notes));
@@ -152,7 +151,7 @@ class Comparison {
 
   bool take(FileResult& file, Compared compared) {
     context_.progress->advance(1);
-    context_.tell(compared.issues);
+    context_.diagnose(compared.issues);
     for (std::size_t i = 0; i < compared.inputs.size(); ++i) {
       Report::Input& input = compared.inputs[i];
       if (input.path != first_path(file.path) && input.path != second_path(file.path)) {
@@ -173,7 +172,7 @@ class Comparison {
     one.first = first_path(path);
     one.second = second_path(path);
     one.folders = {};
-    std::string messages;  // told later, in order
+    std::string messages;  // printed later, in order
     Progress no_progress;
     ToolContext context;
     context.report.tool = context_.report.tool;
@@ -195,7 +194,8 @@ class Comparison {
       compared.result.status = FileStatus::differs;
       compared.result.what = worst_of(*outcome);
       if (!context_.report_path.empty()) {
-        // The tables of each joint would make a report of thousands of files too long to hold.
+        // Omit the per-joint and per-mesh tables, which would make reports of thousands of files
+        // too large.
         outcome->meshes.clear();
         outcome->joints.clear();
         compared.result.outcome = to_json(*outcome, options_.tolerance);
@@ -209,8 +209,8 @@ class Comparison {
     return compared;
   }
 
-  // Equal bytes are the same without a look at what they mean, but for glTF's text, which refers to
-  // other files. What is of no kind that can be compared is held against the other byte by byte.
+  // Identical files are the same without parsing, except .gltf, which refers to other files. File
+  // types that cannot be compared are compared byte by byte.
   static Result<Outcome> outcome_of(const Options& one, ToolContext& context) {
     const auto first = InputFile::open(one.first);
     if (!first) return first.error();
@@ -252,7 +252,7 @@ class Comparison {
   bool stopped_ = false;
 };
 
-// The error that a run ends with where files could not be read.
+// The final error if files could not be read.
 Error unreadable_error(const FolderOutcome& outcome, const FolderOptions& options) {
   constexpr std::size_t kNamed = 10;
   std::string names;
@@ -266,29 +266,29 @@ Error unreadable_error(const FolderOutcome& outcome, const FolderOptions& option
   const std::string end = options.update ? "; nothing was updated" : "";
   if (!options.keep_going) {
     return Error("batch-stopped",
-                 fmt::format("stopped at {}, the first file that cannot be read; {} left{}", names,
+                 fmt::format("stopped at {}: the file cannot be read; {} not compared{}", names,
                              outcome.count(FileStatus::not_compared), end),
-                 "--keep-going compares the others");
+                 "use --keep-going to compare the others");
   }
   return Error("batch-failed",
                fmt::format("{} cannot be read: {}{}", counted(static_cast<long long>(all), "file"),
                            names, end));
 }
 
-// The update, and what it says.
+// Runs the update and prints its results.
 Result<FolderUpdate> run_update(const Options& options, const FolderOutcome& outcome,
                                 ToolContext& context) {
   auto update = update_first(options, outcome, context);
   if (!update) return update;
   if (context.quiet) return update;
-  const auto tell = [&](const char* what, const std::vector<std::string>& paths) {
+  const auto report_list = [&](const char* what, const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
-      context.say(fmt::format("{} {}", what, below(options.first, path)));
+      context.log(fmt::format("{} {}", what, below(options.first, path)));
     }
   };
-  tell("replaced", update->replaced);
-  tell("added", update->added);
-  tell("removed", update->removed);
+  report_list("replaced", update->replaced);
+  report_list("added", update->added);
+  report_list("removed", update->removed);
   return update;
 }
 
@@ -306,27 +306,25 @@ void declare_folder_options(CommandOptions& command, FolderOptions& options) {
     command.add_option(name, list, help).type_name("PATTERN").one_each_time().group(kGroup);
   };
   patterns("--include", options.filter.include,
-           "Only files that fit, '*.glb' or 'walks/**/*.glb'; may be given again and again");
-  patterns("--exclude", options.filter.exclude, "Not files that fit; may be given again and again");
+           "Compare only files that match, '*.glb' or 'walks/**/*.glb'; repeatable");
+  patterns("--exclude", options.filter.exclude, "Skip files that match; repeatable");
   command
       .add_flag("--keep-going", options.keep_going,
-                "Go on after a file that cannot be read and end with exit code 3; otherwise the "
-                "first one ends the run")
+                "Continue after a file that cannot be read, and exit with code 3; by "
+                "default, the first one ends the run")
       .group(kGroup);
   command
-      .add_option(
-          "--summary", options.summary,
-          "A page with a row for each file that is not the same, as HTML or, called .md, as "
-          "Markdown")
+      .add_option("--summary", options.summary,
+                  "A page with a row for each file that is not the same, as HTML, or as "
+                  "Markdown if called .md")
       .type_name("OUT.html")
       .group(kGroup);
   command
-      .add_flag(
-          "--update", options.update,
-          "Copy what differs, or is new, from B over A; nothing where a file cannot be read. A "
-          "need not be there yet")
+      .add_flag("--update", options.update,
+                "Copy changed and new files from B to A; no file is copied if any cannot be "
+                "read. A need not exist")
       .group(kGroup);
-  command.add_flag("--prune", options.prune, "With --update: remove what only A has")
+  command.add_flag("--prune", options.prune, "With --update: remove files that only A has")
       .needs("--update")
       .group(kGroup);
 }
@@ -343,22 +341,22 @@ Result<bool> are_folders(const Options& options) {
         (fs::exists(options.first, unknown) && fs::exists(options.second, unknown))) {
       return Error("usage",
                    "--include, --exclude, --keep-going, --summary, --update and --prune "
-                   "are for folders, and these are none",
-                   "name two folders");
+                   "are for folders",
+                   "give two folders");
     }
-    return false;  // what is not there is told when it is opened
+    return false;  // a missing file is reported when it is opened
   }
   if (second && first_to_come) return true;
   if (first && second) return true;
   const std::string& folder = first ? options.first : options.second;
   const std::string& other = first ? options.second : options.first;
   if (!fs::exists(other, unknown)) {
-    return Error("file-missing", "there is no such folder",
-                 second ? "--update makes it, with all that is in the other" : "")
+    return Error("file-missing", "no such folder",
+                 second ? "--update creates it, with the contents of the other" : "")
         .in_file(other);
   }
-  return Error("diff-kinds", fmt::format("{} is a folder, but {} is none", folder, other),
-               "name two folders or two files");
+  return Error("diff-kinds", fmt::format("{} is a folder, but {} is not", folder, other),
+               "give two folders or two files");
 }
 
 Result<FolderOutcome> compare_folders(const Options& options, ToolContext& context) {
@@ -367,8 +365,8 @@ Result<FolderOutcome> compare_folders(const Options& options, ToolContext& conte
 
 Result<int> run_folders(const Options& options, ToolContext& context) {
   if (!options.sheet.path.empty() || !options.plot.empty() || !options.heatmap.empty()) {
-    return Error("usage", "--sheet, --plot and --heatmap show two files, not folders",
-                 "--summary gives a page of folders");
+    return Error("usage", "--sheet, --plot and --heatmap are for two files, not folders",
+                 "use --summary for folders");
   }
   const FolderOptions& folders = options.folders;
   const auto outcome = compare_folders(options, context);
@@ -391,7 +389,7 @@ Result<int> run_folders(const Options& options, ToolContext& context) {
     return status.error();
   }
   if (failed) {
-    context.tell(unreadable_error(*outcome, folders));
+    context.diagnose(unreadable_error(*outcome, folders));
     return kExitPartly;
   }
   const bool missing = some(FileStatus::only_in_first) && !(folders.update && folders.prune);

@@ -14,8 +14,8 @@ std::span<const T> view(const nodes::Shared<T>& values) {
   return values ? std::span<const T>(*values) : std::span<const T>();
 }
 
-// What people call the mesh: its node's name, or else its own; with the primitive where there are
-// several.
+// Display name of the mesh: the node's name, or else the mesh's; with the primitive index if there
+// are several.
 std::string name_of(const nodes::Scene& asset, const nodes::Instance& instance) {
   const nodes::Node& node = asset.nodes[static_cast<std::size_t>(instance.node)];
   const nodes::Mesh& mesh = asset.meshes[static_cast<std::size_t>(instance.mesh)];
@@ -26,7 +26,7 @@ std::string name_of(const nodes::Scene& asset, const nodes::Instance& instance) 
   return name;
 }
 
-// The scene's mesh; `joint_of_skin` receives the influences' joints as places in the scene's list.
+// The scene's mesh; `joint_of_skin` receives the influences' joints as indices in the scene's list.
 compare::SceneMesh mesh_of(const nodes::Scene& asset, const nodes::Instance& instance,
                            const nodes::Primitive& primitive,
                            const std::vector<int>& scene_joint_of_node,
@@ -57,14 +57,14 @@ compare::SceneMesh mesh_of(const nodes::Scene& asset, const nodes::Instance& ins
   return mesh;
 }
 
-// What the scene's evaluate function keeps.
+// The state of the scene's evaluate function.
 struct Player {
   const nodes::Scene* asset;
   nodes::Evaluator evaluator;
   std::vector<std::vector<std::uint16_t>> scene_joints;  // [instances]
 
   void evaluate(int animation, double time, compare::SceneState& state) const {
-    // Vectors of vertices move between the two so that their memory is used again.
+    // Swap the vertex arrays to reuse their memory.
     nodes::Evaluation evaluation;
     evaluation.positions = std::move(state.positions);
     evaluation.normals = std::move(state.normals);
@@ -100,7 +100,7 @@ Result<compare::Scene> scene_of(const nodes::Scene& asset) {
   }
   scene.joint_parents = from.joint_parents();
   if (from.joints().size() > 0xFFFF) {
-    return Error("gltf-too-large", fmt::format("{} joints are too many", from.joints().size()));
+    return Error("gltf-too-large", fmt::format("{} joints exceed the limit", from.joints().size()));
   }
 
   player->scene_joints.resize(from.instances().size());

@@ -9,7 +9,7 @@
 
 namespace krok::diff {
 
-// A glTF asset as lib/compare sees scenes. The scene refers to `asset`, which must outlive it.
+// A glTF asset as a scene of lib/compare. The scene refers to `asset`, which must outlive it.
 Result<compare::Scene> scene_of(const nodes::Scene& asset);
 
 // "1 mesh, 10,120 vertices, 20,236 triangles; 31 joints; 1 animation".

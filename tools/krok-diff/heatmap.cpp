@@ -18,7 +18,7 @@ namespace {
 
 constexpr render::Colour kNotCompared = render::colour(0x3A3F45);
 
-// glTF's colours are linear; pictures' and ours are not (IEC 61966-2-1).
+// glTF colours are linear; those of images and of this code are sRGB (IEC 61966-2-1).
 float linear(std::uint8_t channel) {
   const double value = channel / 255.0;
   return static_cast<float>(value <= 0.04045 ? value / 12.92
@@ -29,7 +29,7 @@ Vec3f linear(render::Colour colour) {
   return {linear(colour.red), linear(colour.green), linear(colour.blue)};
 }
 
-// The first scene at the moment of the largest distance, or at its beginning.
+// The first scene at the time of the max distance, or at its start.
 compare::SceneState pose_of(const compare::Scene& first, const compare::SceneDifference& found) {
   int animation = -1;
   double time = 0;
@@ -45,7 +45,7 @@ compare::SceneState pose_of(const compare::Scene& first, const compare::SceneDif
   return state;
 }
 
-// What one mesh's description refers to.
+// The data of one mesh.
 struct MeshColours {
   std::vector<Vec3f> positions, normals, colours;
 };
@@ -73,7 +73,7 @@ MeshColours colours_of(std::size_t mesh, const compare::SceneState& state,
 }
 
 std::string legend_of(const DistanceColours& scale, bool within, bool some_not_compared) {
-  // Each in the unit that suits it.
+  // Each in a suitable unit.
   const auto text = [&](double value) {
     const double metres = value / scale.in_a_metre;
     const DistanceColours own = distance_colours(0, metres);
@@ -91,8 +91,8 @@ std::string legend_of(const DistanceColours& scale, bool within, bool some_not_c
 Status check_heatmap_name(const std::string& path) {
   const std::string ending = extension(path);
   if (path.empty() || path == "-" || ending == ".glb" || ending == ".gltf") return {};
-  return Error("usage", fmt::format("--heatmap {}: what is written there is glTF", path),
-               "call it .glb");
+  return Error("usage", fmt::format("--heatmap {}: the output is glTF", path),
+               "use the extension .glb");
 }
 
 Status write_heatmap(const compare::Scene& first, const compare::SceneDifference& found,
@@ -100,8 +100,7 @@ Status write_heatmap(const compare::Scene& first, const compare::SceneDifference
   const bool compared = std::any_of(found.vertex_largest.begin(), found.vertex_largest.end(),
                                     [](const std::vector<float>& mesh) { return !mesh.empty(); });
   if (!compared) {
-    context.warn("diff-heatmap",
-                 fmt::format("{} is not written: no mesh of the two was compared", path));
+    context.warn("diff-heatmap", fmt::format("{} is not written: no mesh was compared", path));
     return {};
   }
   const DistanceColours scale =
@@ -127,7 +126,7 @@ Status write_heatmap(const compare::Scene& first, const compare::SceneDifference
   const Status status = write_output(context, path, [&](OutputFile& file) {
     return gltf::write_coloured(meshes, legend, options, file);
   });
-  if (status) context.say(fmt::format("{}: {}", path, legend));
+  if (status) context.log(fmt::format("{}: {}", path, legend));
   return status;
 }
 

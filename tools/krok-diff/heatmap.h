@@ -7,21 +7,20 @@
 #include "scene/model.h"
 #include "tools/common/tool.h"
 
-// Where meshes differ, as colours of the first one's vertices.
+// Mesh differences as vertex colours of the first mesh.
 
 namespace krok::diff {
 
-// Whether --heatmap may have this name: Error usage.
+// Error usage if the extension of --heatmap is not supported.
 Status check_heatmap_name(const std::string& path);
 
-// Writes the first scene's meshes, as they stand where the difference is largest, with each vertex
-// in the colour of its largest distance over all moments (`found` must have kept them), and says
-// what the colours stand for. Scenes without a mesh that was compared have none: a warning, and no
-// file.
+// Writes the first scene's meshes, in the pose of the max difference, with each vertex coloured by
+// its max distance over all times (`found` must have kept them), and prints the legend. If no mesh
+// was compared: a warning, and no file.
 Status write_heatmap(const compare::Scene& first, const compare::SceneDifference& found,
                      const std::string& path, ToolContext& context);
 
-// The same of two models in their reference poses.
+// The same for two models in their reference poses.
 Status write_heatmap(const Model& first, const Model& second, const compare::SceneOptions& options,
                      const std::string& path, ToolContext& context);
 

@@ -83,9 +83,10 @@ Result<InputKind> kind_of(const InputFile& file) {
       break;
   }
   return Error("diff-kind",
-               fmt::format("this is {}; motions (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, "
-                           ".pc2 and .exr files can be compared",
-                           registry::describe_content(bytes)),
+               fmt::format(
+                   "this is {}; expected a motion (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, "
+                   ".pc2 or .exr file",
+                   registry::describe_content(bytes)),
                registry::advice(kind, Kind::anim))
       .in_file(file.path());
 }

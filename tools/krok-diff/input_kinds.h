@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "core/result.h"
 
-// What krok-diff can compare.
+// File types that krok-diff can compare.
 
 namespace krok::diff {
 
@@ -13,7 +13,7 @@ enum class InputKind {
   motion,  // .anim, or a capture
   model,
   camera,
-  gltf,    // of both forms
+  gltf,    // .gltf and .glb
   points,  // a point cache, .pc2
   morphs,  // morph targets in an OpenEXR file
 };
@@ -21,10 +21,10 @@ enum class InputKind {
 // "a motion"
 std::string description(InputKind kind);
 
-// The word for it in reports: "anim", "model", "cam", "gltf", "pc2", "morphs".
+// The type's name in reports: "anim", "model", "cam", "gltf", "pc2", "morphs".
 const char* word_of(InputKind kind);
 
-// From the file's content, or its name where that shows nothing. Code diff-kind.
+// Detected from the content, or else from the file name. Code diff-kind.
 Result<InputKind> kind_of(const InputFile& file);
 
 }  // namespace krok::diff

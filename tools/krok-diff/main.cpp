@@ -10,7 +10,7 @@ namespace krok::diff {
 
 namespace {
 
-// The options as they were typed.
+// The options as given on the command line.
 struct Arguments {
   std::string first, second;
   ToleranceArguments tolerance;
@@ -49,17 +49,16 @@ void declare(CommandOptions& command, Arguments& arguments) {
       .type_name("")
       .required();
   command
-      .add_option(
-          "B", arguments.second,
-          "Another of the same kind (glTF goes with motions, models and point caches too), or "
-          "another folder")
+      .add_option("B", arguments.second,
+                  "A file of the same type (glTF can be compared with motions, models and "
+                  "point caches too), or a folder")
       .type_name("")
       .required();
   declare_tolerances(command, arguments.tolerance);
   command
       .add_option("--sheet", arguments.sheet.path,
-                  "A picture of both figures and of where they differ, as PNG; of motions, models "
-                  "and glTF")
+                  "PNG image of both characters and of their difference; for motions, "
+                  "models and glTF")
       .type_name("OUT.png");
   declare_image_options(command, arguments.sheet.image, kDifferenceMoments);
   for (const char* name : {"--moments", "--sides", "--elevation", "--size"}) {
@@ -67,12 +66,13 @@ void declare(CommandOptions& command, Arguments& arguments) {
   }
   command
       .add_option("--plot", arguments.plot,
-                  "Charts of the distances and angles over time, as SVG; of motions and glTF")
+                  "Charts of the distances and angles over time, as SVG; for motions "
+                  "and glTF")
       .type_name("OUT.svg");
   command
       .add_option("--heatmap", arguments.heatmap,
-                  "A's mesh, where the difference is largest in time, each vertex coloured by its "
-                  "largest distance of all times; of glTF and models")
+                  "A's mesh in the pose of the max difference, with each vertex "
+                  "coloured by its max distance over all times; for glTF and models")
       .type_name("OUT.glb");
   declare_folder_options(command, arguments.folders);
 }
@@ -99,28 +99,31 @@ int main(int argc, char** argv) {
   krok::ToolSpec spec;
   spec.name = "krok-diff";
   spec.summary =
-      "How far two motions, models, cameras or glTF files are apart, and where. glTF files are "
-      "compared by what a viewer shows: vertices and joints in world space at the key times of "
-      "both, whether skinned, morphed or moved by nodes";
+      "Measures the differences of two motions, models, cameras or glTF files. glTF "
+      "files are compared as displayed: vertices and joints in world space at the key "
+      "times of both, whether skinned, morphed or moved by nodes";
   spec.inputs = "A B";
-  spec.examples = {
-      {"krok-diff walk.anim walk_again.anim --tolerance 0.1mm --angle 0.1deg",
-       "Largest and RMS difference of joints, with joint and frame; exit code 1 if beyond."},
-      {"krok-diff walk_rig.glb walk_clip.glb --json=diff.json",
-       "A skinned rig against the same motion baked into morph targets; all figures as JSON."},
-      {"krok-diff golden.glb new.glb --match nearest --tolerance 0.1mm --normals 1deg",
-       "Meshes whose vertices stand in another order, or are split otherwise at seams."},
-      {"krok-diff raw.anim clean.anim --sheet change.png --plot change.svg",
-       "Both figures side by side and where they differ, and the distance over time."},
-      {"krok-diff golden out --tolerance 0.1mm --keep-going --summary diff.html",
-       "Each file in out against the one of its name in golden; --update makes them the golden "
-       "ones."}};
+  spec.examples = {{"krok-diff walk.anim walk_again.anim --tolerance 0.1mm --angle 0.1deg",
+                    "Max and RMS difference of joints, with joint and frame; exit code 1 if beyond "
+                    "tolerance."},
+                   {"krok-diff walk_rig.glb walk_clip.glb --json=diff.json",
+                    "A skinned rig against the same motion baked into morph targets; all metrics "
+                    "as JSON."},
+                   {"krok-diff golden.glb new.glb --match nearest --tolerance 0.1mm --normals 1deg",
+                    "Meshes with a different vertex order, or with different seams."},
+                   {"krok-diff raw.anim clean.anim --sheet change.png --plot change.svg",
+                    "Both characters side by side with their difference, and the distance over "
+                    "time."},
+                   {"krok-diff golden out --tolerance 0.1mm --keep-going --summary diff.html",
+                    "Compare each file in out with its namesake in golden; --update replaces the "
+                    "golden files."}};
   spec.exit_done = "the same within the tolerance";
   spec.exit_no =
-      "the files differ: beyond tolerance, or in skeleton, topology, frames or rate; of folders, a "
-      "file differs or is in one alone";
+      "the files differ: beyond tolerance, or in skeleton, topology, frames or rate; "
+      "for folders, a file differs or is in only one";
   spec.exit_partly =
-      "of folders, with --keep-going: some files cannot be read, the others were compared";
+      "for folders, with --keep-going: some files cannot be read, the others were "
+      "compared";
   spec.has_output = false;
   spec.declare = [&](krok::CommandOptions& command) { krok::diff::declare(command, arguments); };
   spec.run = [&](krok::ToolContext& context) { return krok::diff::run(arguments, context); };

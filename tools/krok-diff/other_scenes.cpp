@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSamplesPerSecond = 30;
 
-// A place between two keys: `share` of the way from `key` to the next.
+// A time between two keys: `share` is the weight of the next key.
 struct KeyInterval {
   std::size_t key = 0;
   double share = 0;
@@ -47,7 +47,7 @@ std::vector<To> in_doubles(std::span<const From> values) {
   return result;
 }
 
-// How many of the points belong to each mesh, and where they begin.
+// The range of points that belongs to each mesh.
 struct Run {
   std::size_t begin = 0, count = 0;
 };
@@ -118,7 +118,7 @@ compare::Scene scene_of(const Model& model) {
 
 Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Scene* partner) {
   const auto count = static_cast<std::size_t>(points.points());
-  if (points.samples() == 0) return Error("pc2-value", "it holds no samples");
+  if (points.samples() == 0) return Error("pc2-value", "the file has no samples");
   std::vector<Vec3f> sample(count);
   for (std::int64_t i = 0; i < points.samples(); ++i) {
     if (Status status = points.get(i, sample); !status) return status.error();
@@ -138,14 +138,14 @@ Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Sc
       partner->animations.front().key_times.size() == samples) {
     times = partner->animations.front().key_times;
   }
-  // One sample is a shape, not a motion.
+  // A single sample is a static shape.
   if (samples != 1 || (partner != nullptr && !partner->animations.empty())) {
     scene.animations.push_back({"", times});
   }
   scene.evaluate = [&points, runs, times, count](int, double time, compare::SceneState& state) {
     std::vector<Vec3f> one, next;
     const KeyInterval place = place_of(time, times);
-    // Never fails: all samples were looked at before.
+    // Cannot fail: all samples were validated before.
     const auto get = [&](std::size_t key, std::vector<Vec3f>& values) {
       values.resize(count);
       const Status status = points.get(static_cast<std::int64_t>(key), values);

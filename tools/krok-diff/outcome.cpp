@@ -26,7 +26,7 @@ std::string in_unit(double value, Unit unit) {
       return value < 1.0 ? readable(value * 1000, kDigits) + " ms"
                          : readable(value, kDigits) + " s";
     case Unit::side:
-      return value > 0 ? "turned round" : "equal";
+      return value > 0 ? "flipped" : "equal";
     case Unit::ratio:
       break;
   }
@@ -48,7 +48,7 @@ const char* unit_name(Unit unit) {
   return "1";
 }
 
-// The name at an index, empty where there is none.
+// The name at an index; empty if there is none.
 std::string name_at(const std::vector<std::string>& names, int index) {
   const auto i = static_cast<std::size_t>(index);
   return index >= 0 && i < names.size() ? names[i] : std::string();
@@ -65,7 +65,7 @@ const std::vector<std::string>& mesh_names(const compare::ValueLocation& place,
 }
 
 std::vector<std::string> target_names(const PlaceNames& names, int mesh) {
-  const auto i = static_cast<std::size_t>(std::max(mesh, 0));  // morph targets alone: no mesh
+  const auto i = static_cast<std::size_t>(std::max(mesh, 0));  // morph target files have no mesh
   return i < names.targets.size() ? names.targets[i] : std::vector<std::string>();
 }
 
@@ -157,7 +157,7 @@ Json to_json(const std::vector<Item>& items, const PlaceNames& names) {
   return list;
 }
 
-// How many times its tolerance the worst of an item is; 0 where all is within.
+// The largest ratio of difference to tolerance of an item; 0 if all are within tolerance.
 double excess_of(const Item& item) {
   double most = 0;
   for (const Row& row : item.rows) {
@@ -189,7 +189,7 @@ std::string to_text(const Item& item, const PlaceNames& names) {
   return text;
 }
 
-// The few that differ most, where there are several to choose from.
+// The worst items, if there are several.
 std::string worst_items(const std::vector<Item>& items, const char* title,
                         const PlaceNames& names) {
   constexpr std::size_t kShown = 5;
@@ -207,7 +207,7 @@ std::string worst_items(const std::vector<Item>& items, const char* title,
   return text;
 }
 
-// Only the tolerances that were needed.
+// Only the tolerances that were used.
 std::string tolerances(const Outcome& outcome, const compare::Tolerance& tolerance) {
   std::string text = fmt::format("{}, {}", in_unit(tolerance.length, Unit::length),
                                  in_unit(tolerance.angle, Unit::angle));

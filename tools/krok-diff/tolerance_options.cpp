@@ -12,7 +12,7 @@ namespace {
 
 using compare::Matching;
 
-// The value of an option, 0 or more.
+// The value of an option, which must not be negative.
 Result<double> not_negative(Result<double> value, const char* option, const std::string& text) {
   if (!value) {
     Error error = std::move(value).error();
@@ -20,8 +20,8 @@ Result<double> not_negative(Result<double> value, const char* option, const std:
     return error;
   }
   if (*value < 0) {
-    return Error("quantity-range", fmt::format("{} {} is less than 0", option, text),
-                 "a tolerance is 0 or more");
+    return Error("quantity-range", fmt::format("{} {} is negative", option, text),
+                 "a tolerance is at least 0");
   }
   return value;
 }
@@ -76,49 +76,51 @@ void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments) 
     words.emplace_back(word_of(matching), matching);
   }
   add_choice(command, "--match", arguments.matching, std::move(words),
-             "What belongs to what: order, meshes and joints by their place in the file; name, by "
-             "name, and those that only one has are named; auto, by name where all names are "
-             "unique and the same, else by place; nearest, each vertex with the nearest point of "
-             "the other surface, for meshes with other vertices, triangles or parts",
+             "How to match meshes and joints: order, by their index in the file; "
+             "name, by name, reporting those that only one has; auto, by name if all "
+             "names are unique and the same, else by index; nearest, each vertex with "
+             "the nearest point of the other surface, for meshes with different "
+             "vertices, triangles or parts",
              "HOW", "auto");
   command
       .add_option("--tolerance", arguments.length,
-                  "Distances up to this are the same: 0.1mm, 0.2cm; a bare number is metres")
+                  "Max distance that counts as the same: 0.1mm, 0.2cm; a bare number "
+                  "is metres")
       .type_name("LENGTH")
       .default_str(arguments.length);
   command
       .add_option("--angle", arguments.angle,
-                  "Angles up to this are the same: 0.1deg, 0.002rad; a bare number is degrees")
+                  "Max angle that counts as the same: 0.1deg, 0.002rad; a bare number "
+                  "is degrees")
       .type_name("ANGLE")
       .default_str(arguments.angle);
   command
       .add_option("--ratio", arguments.ratio,
-                  "Differences up to this are the same in what has no unit: weights, texture "
-                  "coordinates")
+                  "Max difference of unitless values that counts as the same: "
+                  "weights, texture coordinates")
       .type_name("NUMBER")
       .default_str(arguments.ratio);
   command
       .add_option("--normals", arguments.normals,
-                  "The same for normals and tangents alone (default: that of --angle). A tangent "
-                  "of the other handedness is a difference whatever the angle. Tangents that only "
-                  "one of two glTF files has are a difference where both have a normal texture, "
-                  "else they are told")
+                  "The same for normals and tangents only (default: that of --angle). "
+                  "A flipped tangent handedness is always a difference. Tangents that "
+                  "only one of two glTF files has are a difference if both have a "
+                  "normal texture, else they are only reported")
       .type_name("ANGLE");
   command
       .add_option("--joints", arguments.joints,
-                  "The same for joints alone, 1mm or 1mm,0.5deg (default: those of --tolerance and "
-                  "--angle)")
+                  "The same for joints only, 1mm or 1mm,0.5deg (default: those of "
+                  "--tolerance and --angle)")
       .type_name("LENGTH[,ANGLE]");
   command
       .add_option("--times", arguments.times,
-                  "Times up to this apart are one: key times of glTF, and frames of motions whose "
-                  "rates differ: 1ms, 0.02s")
+                  "Max difference of times that count as equal: key times of glTF, "
+                  "and frames of motions with different rates: 1ms, 0.02s")
       .type_name("TIME")
       .default_str(arguments.times);
-  command.add_flag(
-      "--materials", arguments.materials,
-      "Other materials, colours or textures are a difference; without it they are told, "
-      "and meshes that look otherwise are the same; of glTF");
+  command.add_flag("--materials", arguments.materials,
+                   "Count different materials, colours or textures as a difference; by default "
+                   "they are only reported; for glTF");
 }
 
 Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments) {

@@ -7,11 +7,11 @@
 #include "core/result.h"
 #include "tools/common/command_options.h"
 
-// The options that say what belongs together and what still counts as the same.
+// Options for matching and tolerances.
 
 namespace krok::diff {
 
-// As they were typed; empty: not given.
+// As given on the command line; empty: not given.
 struct ToleranceArguments {
   compare::Matching matching = compare::Matching::automatic;
   std::string length = "0.01mm";
@@ -27,7 +27,7 @@ void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments);
 // Codes quantity-number, quantity-unit, quantity-range.
 Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments);
 
-// The word of --match.
+// The value of --match.
 const char* word_of(compare::Matching matching);
 
 }  // namespace krok::diff

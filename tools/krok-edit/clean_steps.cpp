@@ -15,7 +15,7 @@ std::string in_millimetres(double metres) {
   return readable(metres * 1000, 3) + " mm";
 }
 
-// How far feet were moved from where they stood: what a filter costs in contact with the ground.
+// How far foot contacts moved: the error that a filter adds to ground contact.
 Json foot_change(const Clip& before, const Edit& edit, std::string& line) {
   const auto feet = foot_joints(edit.clip.skeleton, edit.roles);
   const Displacement change = largest_displacement(before, edit.clip, feet);
@@ -60,7 +60,7 @@ Status remove_spikes(const Options& options, ToolContext& context,
   Json list = Json::array();
   int frames = 0;
   for (const filter::Spike& spike : removal->spikes) {
-    context.tell(spike_note(spike, edit, options.input));
+    context.diagnose(spike_note(spike, edit, options.input));
     Json entry;
     entry["joint"] = edit.clip.skeleton.names[static_cast<std::size_t>(spike.joint)];
     entry["first_frame"] = spike.first_frame;
@@ -99,7 +99,7 @@ Status filter_jitter(const Options& options, ToolContext& context,
     metrics["kind"] = "butterworth";
     metrics["cutoff"] = low_pass->cutoff;
     metrics["order"] = low_pass->order;
-    line = fmt::format("filtered: Butterworth, {} Hz, order {} without shift",
+    line = fmt::format("filtered: Butterworth, {} Hz, order {}, zero phase",
                        readable(low_pass->cutoff), low_pass->order);
   } else {
     const auto& polynomial = std::get<filter::SavitzkyGolay>(*options.smoothing);

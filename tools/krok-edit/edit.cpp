@@ -9,10 +9,10 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/anim/anim.h"
+#include "formats/io/open_motion.h"
 #include "formats/sequences/sequences.h"
 #include "motion/ground_frame.h"
 #include "tools/common/file_name.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
 #include "tools/common/output_set.h"
 #include "tools/common/role_input.h"
@@ -39,11 +39,11 @@ Json summary_of(const Clip& clip) {
 }
 
 std::string summary_text(const Clip& clip) {
-  return fmt::format("{} at {} /s ({} s)", counted(clip.frame_count(), "frame"),
+  return fmt::format("{} at {} fps ({} s)", counted(clip.frame_count(), "frame"),
                      readable(clip.rate), readable(clip.duration(), 4));
 }
 
-// What the motion went through before stays on record, the newest last.
+// Keeps the provenance of earlier steps, newest last.
 Provenance extended(const Provenance& before, Provenance now,
                     const std::vector<std::string>& done) {
   std::vector<Provenance::Source> sources = before.sources;
@@ -97,13 +97,13 @@ Result<int> list_sequences(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
-// All inputs, each opened once.
+// Reads all inputs, each opened once.
 Result<Edit> read_inputs(const Options& options, ToolContext& context) {
   Edit edit;
-  auto clip = read_motion(options.input, context);
+  auto clip = io::open_motion(options.input, context);
   if (!clip) return clip.error();
   edit.clip = std::move(*clip);
-  const auto find_roles = open_role_map(options.map, context);
+  const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
   auto roles = (*find_roles)(edit.clip.skeleton);
   if (!roles) return roles.error();
@@ -116,24 +116,24 @@ Result<Edit> read_inputs(const Options& options, ToolContext& context) {
     edit.sequences = std::move(*file);
   }
   for (const std::string& path : options.append) {
-    auto next = read_motion(path, context);
+    auto next = io::open_motion(path, context);
     if (!next) return next.error();
     edit.appended.push_back(std::move(*next));
   }
   return edit;
 }
 
-// What became of one part of the input.
+// The result for one part of the input.
 struct Edited {
-  Json result;                     // what the report says of it
-  std::vector<std::string> lines;  // what people are told
+  Json result;                     // for the report
+  std::vector<std::string> lines;  // for display
 };
 
-// Does the steps and adds the result to the outputs.
+// Applies the steps and adds the result to the outputs.
 Result<Edited> edit_one(const Options& options, Edit edit, const std::string& output,
                         ToolContext& context, OutputSet& outputs) {
   const std::string before = summary_text(edit.clip);
-  // The order that the help promises.
+  // The order given in the help.
   for (const auto step : {clean, cut_out, mirror_sides, change_timing, append_motions, make_loop,
                           take_out_travel, change_size, change_place}) {
     if (Status status = step(options, context, edit); !status) {
@@ -156,14 +156,14 @@ Result<Edited> edit_one(const Options& options, Edit edit, const std::string& ou
   return edited;
 }
 
-// One file for each sequence; cleaning is done once for all.
+// One file per sequence; cleaning is done once for all.
 Result<Edited> edit_all_sequences(const Options& options, Edit source, ToolContext& context,
                                   OutputSet& outputs) {
   const std::string& pattern = context.output;
   const std::size_t place = pattern.rfind(kSequencePlace);
   if (place == std::string::npos) {
-    return Error("usage", "several sequences need names of their own",
-                 "choose one with --sequence NAME, or put {sequence} where their names go: -o "
+    return Error("usage", "several sequences need distinct names",
+                 "select one with --sequence NAME, or use {sequence} for their names: -o "
                  "'take_{sequence}.anim'");
   }
   if (Status status = check_sequences(options, source); !status) return status.error();
@@ -212,7 +212,7 @@ void Edit::note(const char* step, Json metrics, std::string line) {
 
 Result<int> run(const Options& options, ToolContext& context) {
   if (options.list_sequences) return list_sequences(options, context);
-  if (context.output.empty()) return Error("usage", "-o is missing: where shall the result go?");
+  if (context.output.empty()) return Error("usage", "no output given (-o)");
   if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
     return status.error();
   }
@@ -226,7 +226,7 @@ Result<int> run(const Options& options, ToolContext& context) {
                     : edit_one(options, std::move(*source), context.output, context, outputs);
   if (!edited) return edited.error();
   if (Status status = outputs.finish(); !status) return status.error();
-  for (const std::string& line : edited->lines) context.say(line);
+  for (const std::string& line : edited->lines) context.log(line);
   context.report.result = std::move(edited->result);
   context.report.result["input"] = input_summary;
   return kExitDone;
@@ -237,25 +237,26 @@ ToolSpec make_spec() {
   ToolSpec spec;
   spec.name = "krok-edit";
   spec.summary =
-      "Cleans, cuts, mirrors, retimes, joins, loops, scales and places a motion. Steps are done in "
-      "the order in which they stand here, whatever the order of the options";
+      "Cleans, cuts, mirrors, retimes, joins, loops, scales and positions a motion. Steps run in "
+      "the "
+      "order listed here, regardless of the order of the options";
   spec.inputs = "IN.anim|IN.bvh|IN.amc";
   spec.examples = {
       {"krok-edit take.anim -o clean.anim --spikes --filter butterworth --cutoff 8Hz",
-       "lost frames replaced and jitter taken out; nothing shifts in time"},
+       "replaces spikes and removes jitter without time shift"},
       {"krok-edit take.anim -o walk.anim --from 1.5s --to 187f --loop --treadmill",
-       "one cycle that repeats without a seam, on the spot"},
+       "a seamless walk cycle in place"},
       {"krok-edit take.anim -o 'take_{sequence}.anim' --sequences take.json",
-       "every part that a file names, at its speed, looped if the file says so"},
+       "every sequence listed in a file, at its speed, looped if the file says so"},
       {"krok-edit walk.anim -o both.anim --append turn.anim --blend 0.3s --at-origin --heading 0",
-       "one motion after the other, from the origin towards +Z"}};
+       "two motions in sequence, from the origin towards +Z"}};
   spec.needs_output = false;  // --list-sequences writes nothing
   spec.batch = {{".anim", ".bvh", ".amc"}, [arguments]() -> Result<std::string> {
                   if (arguments->list_sequences) {
-                    return Error("usage",
-                                 "--list-sequences makes no results, so --out-dir and "
-                                 "--manifest have none to name",
-                                 "give one input alone");
+                    return Error(
+                        "usage",
+                        "--list-sequences has no outputs; --out-dir and --manifest cannot be used",
+                        "give a single input");
                   }
                   const bool several = !arguments->sequences.empty() && arguments->sequence.empty();
                   return std::string(several ? "_{sequence}.anim" : ".anim");

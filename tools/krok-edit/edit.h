@@ -5,10 +5,10 @@
 
 namespace krok::edit {
 
-// Reads the motion, does what was asked for, step by step in the order of the help, and writes it.
+// Reads the motion, applies the requested steps in the order of the help, and writes it.
 Result<int> run(const Options& options, ToolContext& context);
 
-// The tool, with options of its own: each call's are independent of the others'.
+// The tool; each call has its own, independent options.
 ToolSpec make_spec();
 
 }  // namespace krok::edit

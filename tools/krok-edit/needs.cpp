@@ -4,7 +4,7 @@
 
 #include "tools/krok-edit/options.h"
 
-// Options that say how another one works, and that one.
+// Options that modify another option, and that option.
 
 namespace krok::edit {
 
@@ -25,12 +25,12 @@ bool cleans(const Arguments& a) {
 bool appends(const Arguments& a) {
   return !a.append.empty();
 }
-// A sequence loops where its file says so.
+// A sequence may loop if its file says so.
 bool may_loop(const Arguments& a) {
   return a.loop || !a.sequences.empty();
 }
 
-constexpr const char* kLoop = "--loop, or --sequences with one that loops";
+constexpr const char* kLoop = "--loop, or --sequences with a looped one";
 constexpr std::array kNeeds = {
     Need{"--spike-threshold", [](const Arguments& a) { return a.spikes; }, "--spikes"},
     Need{"--cutoff", [](const Arguments& a) { return a.filter == Arguments::Filter::butterworth; },

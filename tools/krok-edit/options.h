@@ -16,7 +16,7 @@
 
 namespace krok::edit {
 
-// The options as they were typed.
+// The options as given.
 struct Arguments {
   enum class Filter { none, butterworth, savgol };
 
@@ -50,23 +50,23 @@ struct Arguments {
   LoopTurn loop_turn = LoopTurn::automatic;
   LoopClimb loop_climb = LoopClimb::automatic;
   std::optional<int> rounds;
-  // 7. travel
+  // 7. root motion
   bool in_place = false, treadmill = false;
   // 8. size
   std::optional<double> scale;
   std::string height;
-  // 9. place
+  // 9. position
   bool at_origin = false, re_orient = false, ground = false;
   std::string heading, turn, move;
 
-  // Whether an option, "--blend", stands on the command line; set by declare().
+  // Whether an option, "--blend", was given; set by declare().
   std::function<bool(const char* option)> given;
 };
 
-// The same, understood.
+// The parsed options.
 struct Options {
   std::string input;
-  std::string map;  // a file that tells joints' roles, or empty
+  std::string map;  // role map file, or empty
   OrientationEncoding orientation = OrientationEncoding::xyz;
 
   std::optional<double> spike_threshold;
@@ -101,14 +101,13 @@ struct Options {
   Vec3 move = Vec3::Zero();
 };
 
-// `app` is kept by the arguments.
+// `arguments` keeps a reference to `command`.
 void declare(CommandOptions& command, Arguments& arguments);
 
-// Whether each option has an effect: an Error (code usage) for one that says how another works
-// which is not given.
+// Fails (code usage) for an option without effect because the option that it modifies is not given.
 Status check_needs(const Arguments& arguments);
 
-// Errors carry the option's name. Code usage for options that do not go together.
+// Errors name the option. Code usage for options that exclude each other.
 Result<Options> understand(const Arguments& arguments);
 
 }  // namespace krok::edit

@@ -23,9 +23,10 @@ Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
   Json metrics;
   metrics["removed"] = all ? "all" : "trend";
   metrics["way"] = way;
-  edit.note("travel", std::move(metrics),
-            fmt::format("{} of {} m from first to last frame taken out",
-                        all ? "all travel" : "the even part of a travel", readable(way, 3)));
+  edit.note(
+      "travel", std::move(metrics),
+      fmt::format("{} of {} m from first to last frame removed",
+                  all ? "all root motion" : "constant-velocity root motion", readable(way, 3)));
   return {};
 }
 
@@ -33,8 +34,7 @@ Status change_size(const Options& options, ToolContext&, Edit& edit) {
   if (!options.scale && !options.height) return {};
   const double height = reference_height(edit.clip.skeleton);
   if (options.height && !(height > 0)) {
-    return Error("motion-scale", "the reference pose has no height that could be scaled",
-                 "use --scale")
+    return Error("motion-scale", "the reference pose has no height to scale", "use --scale")
         .in_file(options.input);
   }
   const double factor = options.scale ? *options.scale : *options.height / height;
@@ -59,10 +59,10 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
     line += (line.empty() ? "" : ", ") + done;
   };
   const auto degrees = [](double angle) { return readable(angle / kRadiansPerDegree, 4); };
-  if (options.at_origin) apply(to_origin(clip, edit.carrier), "begins over the origin");
+  if (options.at_origin) apply(to_origin(clip, edit.carrier), "starts above the origin");
   if (options.heading) {
     apply(facing_at_start(clip, edit.carrier, *options.heading),
-          fmt::format("begins facing {} deg", degrees(*options.heading)));
+          fmt::format("starts facing {} deg", degrees(*options.heading)));
   }
   if (options.turn != 0) {
     apply(turned_about_start(clip, edit.carrier, options.turn),

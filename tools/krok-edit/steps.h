@@ -10,34 +10,33 @@
 #include "tools/common/tool.h"
 #include "tools/krok-edit/options.h"
 
-// The steps of an edit. Each does nothing where its options do not ask for it, and otherwise notes
-// what it did.
+// The steps of an edit. A step does nothing unless its options are given, and notes what it did.
 
 namespace krok::edit {
 
-// A motion on its way through the steps.
+// The state of an edit.
 struct Edit {
   Clip clip;
   RoleMap roles;
-  int carrier = 0;  // the joint that stands for the figure's place
-  // What its options speak of, read beforehand.
+  int carrier = 0;  // the joint whose position is the actor's position
+  // Inputs of options, read beforehand.
   std::optional<sequences::SequenceFile> sequences;
-  std::string sequence;        // the one to cut out, or empty
+  std::string sequence;        // to cut out, or empty
   std::vector<Clip> appended;  // in the order of Options::append
 
-  double speed = 1;   // asked for by options and sequence together
-  bool loop = false;  // likewise
+  double speed = 1;   // of options and sequence together
+  bool loop = false;  // of options or sequence
   Json steps = Json::array();
-  std::vector<std::string> lines;  // what was done, for people and for provenance
+  std::vector<std::string> lines;  // what was done, for display and provenance
 
-  // `figures` are put under the step's name into the report.
+  // Adds `metrics` to the report under the step's name.
   void note(const char* step, Json metrics, std::string line);
 };
 
 // "12.5 deg"; "0 deg" below 1e-4 degrees.
 std::string in_degrees(double radians);
 
-// Whether all parts that the sequences' file names lie within the motion.
+// Checks that all sequences of the sequences file are within the motion.
 Status check_sequences(const Options& options, const Edit& edit);
 
 Status clean(const Options& options, ToolContext& context, Edit& edit);

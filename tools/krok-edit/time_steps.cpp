@@ -30,22 +30,20 @@ std::string extent_of(const Clip& clip) {
 }
 
 struct Range {
-  double first = 0, last = 0;  // frames, perhaps between two
+  double first = 0, last = 0;  // frames, may be fractional
 };
 
-// The frames of a part that the sequences' file names.
+// The frame range of a sequence.
 Result<Range> range_of(const sequences::Sequence& sequence, const Options& options,
                        const Edit& edit) {
   const double file_rate = edit.sequences->rate;
   const double scale = file_rate > 0 ? edit.clip.rate / file_rate : 1;
   const Range range{sequence.first * scale, sequence.last * scale};
   if (range.last > edit.clip.frame_count() - 1 + 1e-3) {
-    return Error(
-               "edit-sequence",
-               fmt::format(
-                   "'{}' ends with frame {}{}, but {}", sequence.name, sequence.last,
-                   file_rate > 0 ? fmt::format(" at {} frames a second", readable(file_rate)) : "",
-                   extent_of(edit.clip)))
+    return Error("edit-sequence",
+                 fmt::format("'{}' ends at frame {}{}, but {}", sequence.name, sequence.last,
+                             file_rate > 0 ? fmt::format(" at {} fps", readable(file_rate)) : "",
+                             extent_of(edit.clip)))
         .in_file(options.sequences);
   }
   return range;
@@ -54,8 +52,8 @@ Result<Range> range_of(const sequences::Sequence& sequence, const Options& optio
 Result<Range> named_range(const Options& options, Edit& edit) {
   const sequences::Sequence* sequence = edit.sequences->find(edit.sequence);
   if (sequence == nullptr) {
-    return Error("edit-sequence", fmt::format("no sequence is called '{}'", edit.sequence),
-                 "--list-sequences shows which there are")
+    return Error("edit-sequence", fmt::format("there is no sequence '{}'", edit.sequence),
+                 "list them with --list-sequences")
         .in_file(options.sequences);
   }
   edit.speed *= sequence->speed;
@@ -71,16 +69,15 @@ Result<Range> typed_range(const Options& options, const Edit& edit) {
   const Range range{options.from ? frame_of(*options.from) : 0,
                     options.to ? frame_of(*options.to) : end};
   if (range.first > range.last) {
-    return Error(
-        "edit-range",
-        fmt::format("--from ({}) lies behind {} ({})", seconds(range.first / edit.clip.rate),
-                    options.to ? "--to" : "the end", seconds(range.last / edit.clip.rate)),
-        extent_of(edit.clip));
+    return Error("edit-range",
+                 fmt::format("--from ({}) is after {} ({})", seconds(range.first / edit.clip.rate),
+                             options.to ? "--to" : "the end", seconds(range.last / edit.clip.rate)),
+                 extent_of(edit.clip));
   }
-  // A printed duration may be a little longer than the real one.
+  // A printed duration may be rounded up.
   if (range.last >= end + 1) {
     return Error("edit-range",
-                 fmt::format("--to {} lies behind the end", seconds(range.last / edit.clip.rate)),
+                 fmt::format("--to {} is after the end", seconds(range.last / edit.clip.rate)),
                  extent_of(edit.clip));
   }
   return range;
@@ -98,11 +95,11 @@ Json seam_json(const Seam& seam, const Edit& edit) {
   return json;
 }
 
-// The pose's error goes to nothing; of the velocity's, what is usual within the motion stays.
+// The pose error vanishes; the velocity error is reduced to what is usual within the motion.
 std::string seam_text(const Looped& looped, const Edit& edit) {
   const Seam &before = looped.before, &after = looped.after;
   return fmt::format(
-      "; at the seam poses differed by at most {} ({}), now {}; velocities jumped by {}/s, now "
+      "; at the seam, poses differed by at most {} ({}), now {}; velocities jumped by {}/s, now "
       "{}/s ({}, usual {}/s)",
       in_degrees(before.angle), joint_name(edit, before.angle_joint), in_degrees(after.angle),
       in_degrees(before.angular_velocity), in_degrees(after.angular_velocity),
@@ -128,7 +125,7 @@ Json loop_json(const Looped& looped, const Edit& edit) {
 std::string loop_text(const Looped& looped, const Edit& edit) {
   const Vec3& way = looped.displacement.position;
   std::string line = fmt::format(
-      "looped: a round of {} ({}{}) moves by {} m", counted(looped.clip.frame_count() - 1, "frame"),
+      "looped: a cycle of {} ({}{}) moves by {} m", counted(looped.clip.frame_count() - 1, "frame"),
       seconds(looped.clip.duration()), looped.added_frames > 0 ? ", closing frame added" : "",
       readable(Vec2(way.x(), way.z()).norm(), 3));
   if (way.y() != 0) line += fmt::format(", climbs {} m", readable(way.y(), 3));
@@ -165,8 +162,7 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
   const int last = std::min(end, static_cast<int>(std::floor(range->last + kSameFrame)));
   if (first > last) {
     return Error("edit-range",
-                 fmt::format("no frame stands between {} and {}",
-                             seconds(range->first / edit.clip.rate),
+                 fmt::format("no frame between {} and {}", seconds(range->first / edit.clip.rate),
                              seconds(range->last / edit.clip.rate)),
                  extent_of(edit.clip))
         .in_file(options.input);
@@ -178,7 +174,7 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
   metrics["last_frame"] = last;
   metrics["frames_cut"] = end + 1 - edit.clip.frame_count();
   edit.note("cut", std::move(metrics),
-            fmt::format("cut: {}frames {} to {}, {} left out",
+            fmt::format("cut: {}frames {} to {}, {} removed",
                         named ? fmt::format("sequence '{}', ", edit.sequence) : "", first, last,
                         end + 1 - edit.clip.frame_count()));
   return {};
@@ -201,18 +197,18 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
     warning.code = "edit-unpaired";
     warning.where.file = options.input;
     warning.joint = joint_name(edit, j);
-    warning.message =
-        fmt::format("{} has no joint on the other side; it keeps to its parent", warning.joint);
-    context.tell(std::move(warning));
+    warning.message = fmt::format("{} has no counterpart on the other side; it follows its parent",
+                                  warning.joint);
+    context.diagnose(std::move(warning));
   }
   if (pair_list.empty()) {
-    context.warn("edit-unpaired",
-                 "no joints were recognised as left and right, so only the figure's way and its "
-                 "turns are mirrored",
-                 "krok-info shows which roles the joints have");
+    context.warn(
+        "edit-unpaired",
+        "no joints were recognised as left and right; only the path and heading are mirrored",
+        "list joint roles with krok-info");
   }
   edit.clip = mirror(edit.clip, pairs);
-  std::string line = fmt::format("mirrored: {}, {} of the middle",
+  std::string line = fmt::format("mirrored: {}, {} in the middle",
                                  counted(static_cast<long long>(pair_list.size()), "pair"),
                                  counted(static_cast<long long>(middle.size()), "joint"));
   Json metrics;
@@ -244,7 +240,7 @@ Status change_timing(const Options& options, ToolContext&, Edit& edit) {
                        seconds(edit.clip.duration()));
   }
   if (options.resample) {
-    line += fmt::format("{}resampled from {} to {} frames a second", line.empty() ? "" : ", ",
+    line += fmt::format("{}resampled from {} to {} fps", line.empty() ? "" : ", ",
                         readable(old_rate), readable(rate));
   }
   edit.note("timing", std::move(metrics), std::move(line));
@@ -276,7 +272,7 @@ Status append_motions(const Options& options, ToolContext&, Edit& edit) {
                       joint_name(edit, joined->largest_joint));
     }
     if (next.rate != edit.clip.rate) {
-      line += fmt::format(", resampled from {} frames a second", readable(next.rate));
+      line += fmt::format(", resampled from {} fps", readable(next.rate));
     }
     edit.note("append", std::move(metrics), std::move(line));
   }
@@ -286,7 +282,7 @@ Status append_motions(const Options& options, ToolContext&, Edit& edit) {
 Status make_loop(const Options& options, ToolContext&, Edit& edit) {
   if (!edit.loop) {
     if (!options.rounds) return {};
-    return Error("usage", "--rounds repeats a loop, and none is asked for", "add --loop");
+    return Error("usage", "--rounds needs a loop", "add --loop");
   }
   LoopOptions looping = options.looping;
   looping.blend = options.loop_blend.seconds(edit.clip.rate);
@@ -300,7 +296,7 @@ Status make_loop(const Options& options, ToolContext&, Edit& edit) {
     if (!all) return all.error();
     edit.clip = std::move(*all);
     metrics["rounds"] = *options.rounds;
-    line += fmt::format("; {}", counted(*options.rounds, "round"));
+    line += fmt::format("; {}", counted(*options.rounds, "cycle"));
   }
   edit.note("loop", std::move(metrics), std::move(line));
   return {};

@@ -12,8 +12,8 @@
 #include "formats/csv/csv_writer.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/gltf/reduce_tracks.h"
+#include "formats/io/open_motion.h"
 #include "skin/bone_mesh.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/output_set.h"
 
 namespace krok {
@@ -28,13 +28,13 @@ Result<ExportFormat> format_of(const ExportOptions& options, const std::string& 
   if (end == ".gltf") return ExportFormat::gltf;
   if (end == ".csv") return ExportFormat::csv;
   return Error("export-format",
-               end.empty() ? fmt::format("{} has no extension to tell the format by", output)
-                           : fmt::format("no format has the extension {}", end),
-               "known are .bvh, .glb, .gltf and .csv; or say --format bvh, glb, gltf or csv")
+               end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
+                           : fmt::format("unknown extension {}", end),
+               "use .bvh, .glb, .gltf or .csv; or --format bvh, glb, gltf or csv")
       .in_file(output);
 }
 
-// "ZXY", in any case; the option's check has seen it.
+// "ZXY", in any case; validated by the option's check.
 EulerOrder order_of(const std::string& letters) {
   EulerOrder order{};
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -58,7 +58,7 @@ Status write_as(ExportFormat format, const Clip& clip, const ExportOptions& opti
 Result<double> unit_of(const ExportOptions& options, ExportFormat format) {
   if (options.unit.empty()) return bvh::WriteOptions().unit_metres;
   if (format != ExportFormat::bvh) {
-    return Error("export-unit", "--unit is for BVH; the other formats hold metres");
+    return Error("export-unit", "--unit is for BVH; the other formats are in metres");
   }
   const auto unit = parse_unit(options.unit);
   if (!unit) return Error("usage", "--unit: " + unit.error().message, unit.error().hint);
@@ -72,12 +72,12 @@ Result<double> reduce_tolerance(const ExportOptions& options) {
     return Error("usage", "--reduce: " + tolerance.error().message, tolerance.error().hint);
   if (!(*tolerance > 0)) {
     return Error("usage", fmt::format("--reduce: {} is not a positive length", options.reduce),
-                 "say --reduce 1mm; without it all keys stay");
+                 "for example --reduce 1mm; without --reduce, all keys are kept");
   }
   return *tolerance;
 }
 
-// Whether the options are for this format.
+// Checks that the options apply to this format.
 Status check_for(ExportFormat format, const ExportOptions& options) {
   if (const auto unit = unit_of(options, format); !unit) return unit.error();
   if (format != ExportFormat::bvh && (options.digits || !options.order.empty())) {
@@ -88,14 +88,14 @@ Status check_for(ExportFormat format, const ExportOptions& options) {
   }
   if (!options.reduce.empty()) {
     if (format != ExportFormat::glb && format != ExportFormat::gltf) {
-      return Error("usage", "--reduce is for glTF; the other formats have values for each frame");
+      return Error("usage", "--reduce is for glTF; the other formats store every frame");
     }
     if (const auto tolerance = reduce_tolerance(options); !tolerance) return tolerance.error();
   }
   return {};
 }
 
-MotionFacts facts_of(const Clip& clip) {
+io::MotionSummary facts_of(const Clip& clip) {
   return {clip.skeleton, clip.rate, clip.frame_count(), clip.duration(), {}};
 }
 
@@ -103,7 +103,7 @@ Error empty_error(const std::string& path) {
   return Error("export-empty", "the motion has no joints").in_file(path);
 }
 
-// Leaves out keys if that is asked for.
+// Reduces keys if requested.
 Result<std::optional<Reduction>> reduce(const ExportOptions& options, const Skeleton& skeleton,
                                         int jobs, gltf::JointTracks& tracks) {
   if (options.reduce.empty()) return std::optional<Reduction>();
@@ -114,17 +114,18 @@ Result<std::optional<Reduction>> reduce(const ExportOptions& options, const Skel
   return std::optional(*std::move(reduction));
 }
 
-// Reads the motion, writes it, and tells what it was.
-Result<MotionFacts> export_gltf(bool binary, const ExportOptions& options, ToolContext& context,
-                                std::optional<Reduction>& reduction) {
+// Reads the motion, writes it, and returns its summary.
+Result<io::MotionSummary> export_gltf(bool binary, const ExportOptions& options,
+                                      ToolContext& context, std::optional<Reduction>& reduction) {
   std::optional<gltf::JointTracks> tracks;
-  const auto facts = use_motion(options.input, context, [&](const FrameSource& frames) -> Status {
-    if (frames.skeleton.empty()) return empty_error(options.input);
-    auto made = gltf::joint_tracks(frames.skeleton, frames, context.jobs);
-    if (!made) return made.error();
-    tracks = *std::move(made);
-    return {};
-  });
+  const auto facts =
+      io::stream_motion(options.input, context, [&](const FrameSource& frames) -> Status {
+        if (frames.skeleton.empty()) return empty_error(options.input);
+        auto made = gltf::joint_tracks(frames.skeleton, frames, context.jobs);
+        if (!made) return made.error();
+        tracks = *std::move(made);
+        return {};
+      });
   if (!facts) return facts.error();
   auto reduced = reduce(options, facts->skeleton, context.jobs, *tracks);
   if (!reduced) return reduced.error();
@@ -143,9 +144,9 @@ Result<MotionFacts> export_gltf(bool binary, const ExportOptions& options, ToolC
   return facts;
 }
 
-Result<MotionFacts> export_others(ExportFormat format, const ExportOptions& options,
-                                  double unit_metres, ToolContext& context) {
-  const auto clip = read_motion(options.input, context);
+Result<io::MotionSummary> export_others(ExportFormat format, const ExportOptions& options,
+                                        double unit_metres, ToolContext& context) {
+  const auto clip = io::open_motion(options.input, context);
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);
   const Status status = write_output(context, context.output, [&](OutputFile& file) {
@@ -155,7 +156,7 @@ Result<MotionFacts> export_others(ExportFormat format, const ExportOptions& opti
   return facts_of(*clip);
 }
 
-Json result_of(const MotionFacts& motion, const std::optional<Reduction>& reduction) {
+Json result_of(const io::MotionSummary& motion, const std::optional<Reduction>& reduction) {
   Json result;
   result["joints"] = motion.skeleton.joint_count();
   result["frames"] = motion.frame_count;
@@ -170,7 +171,7 @@ Json result_of(const MotionFacts& motion, const std::optional<Reduction>& reduct
 }
 
 std::string words_for(const Reduction& reduction) {
-  return fmt::format(", {} of {}, off by at most {} mm",
+  return fmt::format(", {} of {}, max error {} mm",
                      grouped(static_cast<long long>(reduction.keys_after)),
                      counted(static_cast<long long>(reduction.keys_before), "key"),
                      readable(1e3 * reduction.largest_error, 3));
@@ -191,11 +192,11 @@ Result<std::string> extension_of(ExportFormat format) {
     case ExportFormat::from_extension:
       break;
   }
-  return Error("usage", "no format is given for the results", "say --format bvh, glb, gltf or csv");
+  return Error("usage", "no output format given", "use --format bvh, glb, gltf or csv");
 }
 
 Status check_export(const ExportOptions& options) {
-  // Without a format the output's name tells it.
+  // Without a format, the output's extension determines it.
   if (options.format == ExportFormat::from_extension) return {};
   return check_for(options.format, options);
 }
@@ -213,7 +214,7 @@ Result<int> run_export(const ExportOptions& options, ToolContext& context) {
                           : export_others(*format, options, *unit_metres, context);
   if (!motion) return motion.error();
   context.report.result = result_of(*motion, reduction);
-  context.say(fmt::format("{}: {}, {}, {} s{}", context.output,
+  context.log(fmt::format("{}: {}, {}, {} s{}", context.output,
                           counted(motion->skeleton.joint_count(), "joint"),
                           counted(motion->frame_count, "frame"), readable(motion->duration, 3),
                           reduction ? words_for(*reduction) : ""));

@@ -6,7 +6,7 @@ namespace krok::fit_tool {
 
 namespace {
 
-// From hardly any to nearly planes.
+// From almost none to almost affine.
 constexpr double kSeries[] = {1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1, 3, 10};
 
 }  // namespace
@@ -24,7 +24,7 @@ Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& opt
     return choice;
   }
   if (input.all_steps.empty() || input.all_steps.size() > kMaxLeftOut) return choice;
-  // What cannot be fitted at all is told when it is fitted.
+  // A library that cannot be fitted is reported by fit_library().
   const auto exact = parametric::leave_one_out(input.library, options.kernel, 0, context.jobs);
   if (!exact) return choice;
   choice.exact = parametric::means_of(*exact);

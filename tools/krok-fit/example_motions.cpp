@@ -9,11 +9,11 @@
 
 #include "contacts/gait_keytimes.h"
 #include "core/numbers.h"
+#include "formats/io/open_motion.h"
 #include "motion/cut.h"
 #include "parametric/library.h"
 #include "tools/common/glob.h"
 #include "tools/common/keys_sidecar.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/paths.h"
 #include "tools/common/role_input.h"
 
@@ -43,7 +43,7 @@ class MotionReader {
     return below(std::filesystem::path(path_).parent_path().string(), name);
   }
 
-  // A clip that does not fit ends the run, or is told and left out.
+  // An unsuitable motion is an error, or with --keep-going a warning.
   Status refuse(const ExampleMotion& motion, Error error) {
     if (error.where.file.empty()) error.where.file = motion.path;
     if (!keep_going_) {
@@ -52,8 +52,8 @@ class MotionReader {
     }
     Diagnostic told = error;
     told.severity = Severity::warning;
-    told.hint = "it is left out";
-    context_.tell(std::move(told));
+    told.hint = "left out";
+    context_.diagnose(std::move(told));
     made_.refused.push_back({motion.path, std::move(error)});
     return {};
   }
@@ -65,10 +65,10 @@ class MotionReader {
         auto found = find_files(paths.front());
         if (!found) return found.error();
         paths = *std::move(found);
-        // The keytimes that stand beside motions are none.
+        // Patterns may also match keytime files beside the motions.
         std::erase_if(paths, [](const std::string& path) { return path.ends_with(".json"); });
         if (paths.empty()) {
-          return at_entry(Error("library-clip", fmt::format("no file fits '{}'", entry.clip),
+          return at_entry(Error("library-clip", fmt::format("no file matches '{}'", entry.clip),
                                 "paths are relative to this file"),
                           entry.place);
         }
@@ -86,16 +86,16 @@ class MotionReader {
       }
     }
     if (!made_.motions.empty()) return {};
-    return Error("library-examples", "no motion is left").in_file(path_);
+    return Error("library-examples", "no usable motions").in_file(path_);
   }
 
   Status read_clip(ExampleMotion& motion) {
-    // A jump from a rest pose is in no step that is found.
-    auto clip = read_motion(motion.path, context_,
-                            motion.entry->automatic ? RestFrameTold::note : RestFrameTold::warning);
+    // A jump from a rest pose is never part of a detected step.
+    auto clip =
+        io::open_motion(motion.path, context_, {.rest_frame_is_note = motion.entry->automatic});
     if (!clip) return clip.error();
     if (clip->frame_count() < 2) {
-      return Error("library-examples", fmt::format("{} has no motion in it", motion.name));
+      return Error("library-examples", fmt::format("{} contains no motion", motion.name));
     }
     const ExampleEntry& entry = *motion.entry;
     auto sidecar = read_sidecar(motion, *clip);
@@ -109,7 +109,7 @@ class MotionReader {
     const int first = frame_of(entry.from, 0), last = frame_of(entry.to, last_frame);
     if (first >= last) {
       return Error("library-examples",
-                   fmt::format("the part from {} s to {} s holds no motion",
+                   fmt::format("the range from {} s to {} s contains no motion",
                                readable(first / clip->rate), readable(last / clip->rate)));
     }
     if (*sidecar) {
@@ -120,12 +120,12 @@ class MotionReader {
     return {};
   }
 
-  // The skeleton that is named, or the one that most motions have; what has another one is refused.
+  // Uses the named skeleton or the most common one; refuses motions on others.
   Status keep_one_skeleton() {
     if (description_.skeleton.empty()) {
       made_.skeleton = most_common_skeleton();
     } else {
-      auto named = read_motion(place_of(description_.skeleton), context_);
+      auto named = io::open_motion(place_of(description_.skeleton), context_);
       if (!named) return named.error();
       made_.skeleton = std::move(named->skeleton);
     }
@@ -137,15 +137,15 @@ class MotionReader {
         continue;
       }
       Error error = std::move(status).error();
-      error.hint = "krok-retarget brings the motion on the library's skeleton";
-      if (Status status = refuse(motion, std::move(error)); !status) return status;
+      error.hint = "krok-retarget transfers the motion to the library's skeleton";
+      if (Status step = refuse(motion, std::move(error)); !step) return step;
     }
     made_.motions = std::move(kept);
     if (made_.motions.empty()) {
-      return Error("library-examples", "no motion is of the library's skeleton").in_file(path_);
+      return Error("library-examples", "no motion has the library's skeleton").in_file(path_);
     }
     const auto find_roles =
-        open_role_map(description_.map.empty() ? "" : place_of(description_.map), context_);
+        io::open_role_map(description_.map.empty() ? "" : place_of(description_.map), context_);
     if (!find_roles) return find_roles.error();
     auto roles = (*find_roles)(made_.skeleton);
     if (!roles) return roles.error();
@@ -192,12 +192,12 @@ class MotionReader {
     for (Diagnostic& warning : gait.warnings) {
       if (warning.where.file.empty()) warning.where.file = motion.path;
     }
-    context_.tell(gait.warnings);
+    context_.diagnose(gait.warnings);
     motion.keys = {motion.found->contacts, std::move(gait.keytimes)};
     return {};
   }
 
-  // Its times are those of the whole motion.
+  // Its times refer to the whole motion.
   Result<std::optional<keys::Sidecar>> read_sidecar(const ExampleMotion& motion,
                                                     const Clip& whole) {
     if (!motion.entry->keytimes.empty()) return std::optional<keys::Sidecar>();

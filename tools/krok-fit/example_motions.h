@@ -12,42 +12,42 @@
 #include "scene/motion_keys.h"
 #include "tools/common/tool.h"
 
-// The motions that the description of a library names, all of one skeleton, with their keys.
+// Loads the motions named in a library description, with their keys; all share one skeleton.
 
 namespace krok::fit_tool {
 
-// A motion of the list, with the entry that named it.
+// A motion and its entry in the description.
 struct ExampleMotion {
   const library::ExampleEntry* entry = nullptr;
   std::string path;
-  std::string name;  // for people
+  std::string name;  // for messages
   Clip clip;
-  bool has_keys = false;  // beside the motion, or named
+  bool has_keys = false;  // a keytime file exists beside the motion or is named
   MotionKeys keys;
   std::optional<FoundContacts> found;
 };
 
-// A motion that was left out, and why.
+// A motion that was left out, and the reason.
 struct RefusedClip {
   std::string path;
   Error error;
 };
 
 struct ExampleMotions {
-  std::vector<ExampleMotion> motions;  // one or more; the description must outlive them
-  Skeleton skeleton;                   // of all of them
+  std::vector<ExampleMotion> motions;  // at least one; the description must outlive them
+  Skeleton skeleton;                   // shared by all
   RoleMap roles;
   std::vector<RefusedClip> refused;
 };
 
-// Reads the motions of the description that is at `path`. Those of steps that are to be found get
-// contacts, and all without keytimes of their own the keys beside them or found. A motion that does
-// not fit is an Error, or with `keep_going` is told and left out. Codes: see read_library().
+// Reads the motions of the description at `path`. Motions for step detection get contacts; those
+// without keytimes of their own get the keys beside them or detected ones. An unsuitable motion is
+// an Error, or with `keep_going` a warning, and left out. Codes: see read_library().
 Result<ExampleMotions> read_example_motions(const library::LibraryDescription& description,
                                             const std::string& path, bool keep_going,
                                             ToolContext& context);
 
-// The error with the place in the description that it comes from, unless it has one.
+// Sets the error's location in the description, unless it has one.
 Error at_entry(Error error, const Location& place);
 
 }  // namespace krok::fit_tool

@@ -16,7 +16,7 @@ namespace krok::fit_tool {
 
 namespace {
 
-// The refinement of a library with the same examples.
+// The refinement state of a library with the same examples.
 Result<fit::Refined> resumed(const std::string& path, LibraryInput& input, ToolContext& context) {
   const auto file = context.open_input(path);
   if (!file) return file.error();
@@ -31,8 +31,8 @@ Result<fit::Refined> resumed(const std::string& path, LibraryInput& input, ToolC
     same = was.name == library.examples[i].name && was.parameters == library.examples[i].parameters;
   }
   if (!same) {
-    return Error("fit-resume", "it was made from other examples or for other parameters",
-                 "fit it anew, without --resume")
+    return Error("fit-resume", "made from other examples or for other parameters",
+                 "fit without --resume")
         .in_file(path);
   }
   auto refined = read_refinement(saved->report, input, *saved->weights);
@@ -56,7 +56,7 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
   std::error_code failed;
   std::filesystem::create_directories(options.plots, failed);
   if (failed) {
-    return Error("file-unwritable", "the folder for charts cannot be made: " + failed.message())
+    return Error("file-unwritable", "cannot create the folder for charts: " + failed.message())
         .in_file(options.plots);
   }
   for (const auto& [name, svg] : *charts) {

@@ -19,7 +19,7 @@ namespace {
 
 using parametric::Library;
 
-constexpr double kUsualGain = 20;  // where nobody says what is small enough
+constexpr double kUsualGain = 20;  // if no tolerance is given
 
 std::vector<double> parameters_of(const Library& library) {
   std::vector<double> points;
@@ -29,7 +29,7 @@ std::vector<double> parameters_of(const Library& library) {
   return points;
 }
 
-// The two examples that are nearest to each other, for a message.
+// The names of the two examples nearest to each other.
 std::string nearest_pair(const LibraryInput& input) {
   const auto& examples = input.library.examples;
   double least = INFINITY;
@@ -54,11 +54,11 @@ std::string nearest_pair(const LibraryInput& input) {
 Error explained(Error error, const LibraryInput& input) {
   if (error.code == "rbf-duplicate") {
     error.message = fmt::format("two examples have the same parameters: {}", nearest_pair(input));
-    error.hint = "leave one out, or let \"spacing\" do so";
+    error.hint = "leave one out, or set \"spacing\"";
   } else if (error.code == "rbf-examples" || error.code == "rbf-rank") {
     error.message += fmt::format("; the library has {} examples for {} parameters",
                                  input.library.examples.size(), input.library.dimensions());
-    error.hint = "add examples that differ in each parameter by itself, or leave a parameter out";
+    error.hint = "add examples that vary each parameter independently, or leave a parameter out";
   }
   return error;
 }
@@ -76,14 +76,14 @@ void warn_of_spread(const LibraryInput& input, const parametric::PackedExamples&
   told.code = "fit-spread";
   told.joint = library.skeleton.names[static_cast<std::size_t>(spread.joint)];
   told.message = fmt::format(
-      "'{}' and '{}' turn {} {:.0f} degrees apart; a sum of rotations over 90 degrees apart means "
-      "little",
+      "'{}' and '{}' differ in {} by {:.0f} degrees; blending rotations over 90 degrees apart is "
+      "unreliable",
       name(spread.first), name(spread.second), told.joint, spread.angle / kRadiansPerDegree);
-  told.hint = "look at both; one may be another motion, or have a wrong keytime";
-  context.tell(std::move(told));
+  told.hint = "check both; one may be another motion or have a wrong keytime";
+  context.diagnose(std::move(told));
 }
 
-// Whether somebody said what is small enough.
+// Whether the user gave a tolerance.
 bool has_own_tolerance(const LibraryInput& input, const Options& options) {
   const auto& parameters = input.description.parameters;
   return !options.until.empty() || std::ranges::any_of(parameters, [](const auto& entry) {
@@ -108,7 +108,7 @@ std::vector<double> tolerances_of(const Library& library, const Options& options
 rbf::Measure measure_of(const parametric::Measure& measure) {
   return [&measure](std::span<const double> weights, std::span<double> parameters,
                     std::span<double> jacobian) {
-    // A scratch for each thread and library that it works on.
+    // One scratch per thread and library.
     thread_local const parametric::Measure* owner = nullptr;
     thread_local parametric::Measure::Scratch scratch;
     if (owner != &measure) {
@@ -146,7 +146,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   };
   how.tolerance = fitted.tolerances;
   how.points = options.refine.value_or(0);
-  // No points at all: every error is small enough, and every weight high enough.
+  // Targets that are always met, so that no points are inserted.
   if (options.refine == 0) {
     how.tolerance.assign(how.tolerance.size(), INFINITY);
     how.lowest = -INFINITY;
@@ -159,7 +159,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   const auto begin = std::chrono::steady_clock::now();
   auto refined = fit::refine(fitted.start, measure_of(measure), how, *context.progress);
   if (!refined) {
-    // Weights that were saved and cannot be made again are no fault of the description.
+    // An error in the saved weights is not an error in the description.
     const bool saved = start != nullptr && refined.error().code.starts_with("rbf-");
     return std::move(refined).error().in_file(saved ? options.resume : options.library);
   }
@@ -180,7 +180,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
                               static_cast<double>(distances->size());
   }
   if (library.examples.size() <= kMaxLeftOut) {
-    // Without one of them some libraries cannot be fitted; that is no fault of this one.
+    // Some libraries cannot be fitted without one of the examples, which is not an error here.
     const rbf::WeightFunction& function = fitted.refined.function;
     if (auto left_out =
             parametric::leave_one_out(library, function.kernel, function.smoothing, context.jobs)) {

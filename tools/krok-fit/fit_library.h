@@ -12,23 +12,24 @@
 
 namespace krok::fit_tool {
 
-// The weight functions of a library, and what they were made from.
+// The weight functions of a library, and their inputs.
 struct FittedLibrary {
   parametric::PackedExamples packed;
-  std::vector<double> tolerances;  // [parameters], own units
-  fit::Refined start;              // without what this run inserted
+  std::vector<double> tolerances;  // [parameters], in parameter units
+  fit::Refined start;              // before this run's refinement
   fit::Refined refined;
-  double seconds = 0;  // that refinement took; no part of any file
+  double seconds = 0;  // time of refinement; not written to any file
   SmoothingChoice smoothing;
-  // Each example by the others alone, by unrefined weights; empty for over kMostLeftOut examples.
+  // Leave-one-out errors with unrefined weights; empty for more than kMaxLeftOut examples.
   std::vector<parametric::HeldOut> left_out;
-  double example_distance = 0;  // with smoothing: how far off examples come back, in the mean
+  double example_distance =
+      0;  // with smoothing: mean distance between examples and their reproduction
 };
 
-// Measures blends of the library; both arguments must outlive it. May be called by several threads.
+// Measures blends of the library; thread-safe. `measure` must outlive it.
 rbf::Measure measure_of(const parametric::Measure& measure);
 
-// Weights by the examples alone, or what `start` has, refined and polished as the options say.
+// Weights for the examples alone or from `start`, refined and polished according to the options.
 // Codes: those of rbf::WeightSolver, with the names of the examples, and of fit::refine.
 Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& options,
                                   SmoothingChoice smoothing, const fit::Refined* start,

@@ -24,8 +24,8 @@ using draw::Scale;
 using draw::Series;
 using draw::SeriesStyle;
 
-constexpr int kCells = 72;    // of a field, along and across
-constexpr int kSurfaces = 9;  // examples whose weights are shown
+constexpr int kCells = 72;    // of the weight maps, in each direction
+constexpr int kSurfaces = 9;  // examples with a weight map
 constexpr int kMeasuredPoints = 400;
 
 Series series_of(std::string name, SeriesStyle style, int colour = -1, bool faint = false) {
@@ -55,7 +55,7 @@ class Charts {
 
   Chart errors() const {
     Chart chart;
-    chart.title = "Error at points held out";
+    chart.title = "Error at held-out points";
     const auto& rounds = fitted_.refined.rounds;
     const auto rounds_before = fitted_.start.rounds.size();
     int sum = fitted_.start.function.inserted();
@@ -67,12 +67,12 @@ class Charts {
       inserted.push_back(sum);
       charts.push_back(&rounds[r].after);
     }
-    // A drop at the end.
+    // Shown as a drop at the end.
     if (fitted_.refined.polished) {
       inserted.push_back(sum);
       charts.push_back(&fitted_.refined.polished->after);
     }
-    // A logarithmic axis has no 0: the examples themselves count as points.
+    // A logarithmic axis has no 0, so the examples count as points.
     const auto examples = static_cast<double>(input_.library.examples.size());
     for (double& count : inserted) count += examples;
     for (std::size_t d = 0; d < dimensions_; ++d) {
@@ -82,7 +82,7 @@ class Charts {
       panel.x = axis_of("examples and inserted points", {}, Scale::logarithmic);
       panel.y = axis_of("error", unit.name, Scale::logarithmic);
       Series largest = series_of("largest", SeriesStyle::line_and_points);
-      Series most = series_of("95 % of points", SeriesStyle::line_and_points);
+      Series most = series_of("95th percentile", SeriesStyle::line_and_points);
       Series mean = series_of("mean", SeriesStyle::line_and_points);
       for (Series* series : {&largest, &most, &mean}) series->x = inserted;
       for (const fit::RefineMetrics* at : charts) {
@@ -107,7 +107,7 @@ class Charts {
     const auto count = static_cast<int>(input_.library.examples.size());
     const int shown = std::min(count, kSurfaces);
     for (int k = 0; k < shown; ++k) {
-      // Evenly through the list.
+      // Evenly spaced in the list.
       const int example = shown < 2 ? 0 : k * (count - 1) / (shown - 1);
       chart.panels.push_back(dimensions_ > 1 ? surface(*evaluator, example)
                                              : curve(*evaluator, example));
@@ -138,13 +138,13 @@ class Charts {
     const std::vector<double> errors_before = errors_at(points, *before);
     const std::vector<double> errors_after = errors_at(points, *after);
     Chart chart;
-    chart.title = "Measured less asked for";
+    chart.title = "Measured minus requested";
     for (std::size_t d = 0; d < dimensions_; ++d) {
       const ShownUnit unit = unit_for_values(input_.library.parameters[d]);
       const ShownUnit error_unit = unit_for_errors(input_.library.parameters[d]);
       Panel panel;
       panel.title = name(d);
-      panel.x = axis_of("asked for", unit.name);
+      panel.x = axis_of("requested", unit.name);
       panel.y = axis_of("error", error_unit.name);
       Series first = series_of("before refinement", SeriesStyle::points, 0, true);
       Series second = series_of("after", SeriesStyle::points, 1);
@@ -175,7 +175,7 @@ class Charts {
     return value * unit_for_values(input_.library.parameters[d]).factor;
   }
 
-  // Points between the ends of a parameter's range.
+  // Interpolates within a parameter's range.
   double between(std::size_t d, double part) const {
     return input_.lower[d] + part * (input_.upper[d] - input_.lower[d]);
   }
@@ -257,7 +257,7 @@ class Charts {
     return panel;
   }
 
-  // Measured less asked, [points x d]; NaN where it cannot be measured.
+  // Measured minus requested, [points x d]; NaN where it cannot be measured.
   std::vector<double> errors_at(std::span<const double> points,
                                 const rbf::WeightEvaluator& evaluator) const {
     const parametric::Measure measure(input_.library, fitted_.packed);
@@ -283,19 +283,19 @@ class Charts {
 
 }  // namespace
 
-Result<std::vector<Chart>> make_charts(const LibraryInput& input, const FittedLibrary& fitted) {
+Result<std::vector<ChartFile>> make_charts(const LibraryInput& input, const FittedLibrary& fitted) {
   const Charts charts(input, fitted);
   const auto weights = charts.weights();
   if (!weights) return weights.error();
   const auto measured = charts.measured();
   if (!measured) return measured.error();
-  std::vector<std::pair<std::string, Chart>> charts;
-  charts.emplace_back("errors.svg", charts.errors());
-  charts.emplace_back("weights.svg", *weights);
-  charts.emplace_back("parameters.svg", charts.parameters());
-  charts.emplace_back("measured.svg", *measured);
-  std::vector<Chart> files;
-  for (const auto& [name, chart] : charts) {
+  std::vector<std::pair<std::string, Chart>> named;
+  named.emplace_back("errors.svg", charts.errors());
+  named.emplace_back("weights.svg", *weights);
+  named.emplace_back("parameters.svg", charts.parameters());
+  named.emplace_back("measured.svg", *measured);
+  std::vector<ChartFile> files;
+  for (const auto& [name, chart] : named) {
     auto svg = draw::to_svg(chart);
     if (!svg) return svg.error();
     files.emplace_back(name, *std::move(svg));

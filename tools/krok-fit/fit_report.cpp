@@ -134,11 +134,11 @@ std::string range_text(const LibraryInput& input, std::size_t d) {
 std::string what_stopped(const fit::Refined& refined) {
   switch (refined.stop) {
     case fit::Stop::tolerance:
-      return "the tolerances are reached";
+      return "tolerances reached";
     case fit::Stop::points:
-      return "as many as were asked for";
+      return "requested number reached";
     case fit::Stop::stalled:
-      return "no further point helped";
+      return "no further improvement";
     default:
       return std::string(fit::stop_name(refined.stop));
   }
@@ -153,8 +153,7 @@ void say_polish(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
                         with_unit(last_found_metrics(fitted).within[d].largest, unit),
                         with_unit(last_found_metrics(fitted).within[d].mean, unit));
   }
-  context.say(
-      fmt::format("  inserted weights polished together; before that, errors were {}", text));
+  context.log(fmt::format("  polished together; before that, errors were {}", text));
 }
 
 void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolContext& context) {
@@ -165,19 +164,20 @@ void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolC
     if (!contradict_each_other(means)) return;
     return context.warn(
         "fit-contradictions",
-        fmt::format("steps that measure alike look different: one that is left out is made {} mm "
-                    "off by the others, {} mm by planes alone",
+        fmt::format("steps with similar parameters differ: leave-one-out error is {} mm with "
+                    "interpolation, {} mm with an affine fit",
                     readable(1e3 * means.weighted, 3), readable(1e3 * means.linear, 3)),
-        "--smooth auto averages them, and no step then comes back exactly");
+        "--smooth auto averages them; examples are then not reproduced exactly");
   }
-  std::string text = fmt::format("  smoothed by {}", readable(smoothing));
+  std::string text = fmt::format("  smoothing {}", readable(smoothing));
   if (fitted.smoothing.exact) {
-    text += fmt::format(", for examples contradict each other ({} mm off without)",
-                        readable(1e3 * fitted.smoothing.exact->weighted, 3));
+    text +=
+        fmt::format(", because examples contradict each other (leave-one-out error {} mm without)",
+                    readable(1e3 * fitted.smoothing.exact->weighted, 3));
   }
-  context.say(
-      fmt::format("{}: an example's own joints come back {} mm off in the mean; --smooth 0 "
-                  "brings them back",
+  context.log(
+      fmt::format("{}: mean error of the examples' joints is {} mm; --smooth 0 reproduces "
+                  "them exactly",
                   text, readable(1e3 * fitted.example_distance, 3)));
 }
 
@@ -238,15 +238,15 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   const auto dropped = static_cast<int>(input.dropped.size());
   std::string steps = fmt::format("{} ({} mirrored)", counted(kept, "example"), input.mirrored);
   if (input.found > kept) {
-    steps += fmt::format(", {} more too close to these", input.found - kept);
+    steps += fmt::format(", {} more thinned out", input.found - kept);
   }
   if (dropped > 0) steps += fmt::format(", {} dropped", dropped);
-  context.say(fmt::format("{}: {}", context.output, steps));
+  context.log(fmt::format("{}: {}", context.output, steps));
   const RefineMetrics& before = fitted.refined.before;
   const RefineMetrics& after = last_metrics(fitted);
   for (std::size_t d = 0; d < library.parameters.size(); ++d) {
     const ShownUnit unit = unit_for_errors(library.parameters[d]);
-    context.say(fmt::format("  {}, {}: error {} before, {} after (mean {}; held out)",
+    context.log(fmt::format("  {}, {}: error {} before, {} after (mean {}; held out)",
                             input.description.parameters[d].name, range_text(input, d),
                             with_unit(before.within[d].largest, unit),
                             with_unit(after.within[d].largest, unit),
@@ -254,15 +254,15 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   }
   if (const parametric::LeftOutMeans means = parametric::means_of(fitted.left_out);
       means.examples > 0) {
-    context.say(fmt::format(
-        "  {} made from the others: joints {} mm off in the mean; by planes alone {} mm, the "
-        "nearest other one {} mm",
-        counted(means.examples, "inner example"), readable(1e3 * means.weighted, 3),
-        readable(1e3 * means.linear, 3), readable(1e3 * means.nearest, 3)));
+    context.log(
+        fmt::format("  {} left out in turn: mean joint error {} mm; affine fit {} mm, "
+                    "nearest example {} mm",
+                    counted(means.examples, "inner example"), readable(1e3 * means.weighted, 3),
+                    readable(1e3 * means.linear, 3), readable(1e3 * means.nearest, 3)));
   }
   say_smoothing(input, fitted, context);
   say_polish(input, fitted, context);
-  context.say(fmt::format("  {} inserted in {} ({:.2g} s): {}; weights {} to {}",
+  context.log(fmt::format("  {} inserted in {} ({:.2g} s): {}; weights {} to {}",
                           counted(fitted.refined.function.inserted(), "point"),
                           counted(static_cast<long long>(fitted.refined.rounds.size()), "round"),
                           fitted.seconds, what_stopped(fitted.refined),

@@ -9,13 +9,13 @@
 
 namespace krok::fit_tool {
 
-// All of it as JSON, as --json prints it.
+// The report for --json.
 Json report_json(const LibraryInput& input, const FittedLibrary& fitted);
 
-// The same with what is needed to go on, see saved_fit.h; formats/steps keeps it in the file.
+// The same with the data needed to resume, see saved_fit.h; formats/steps stores it in the file.
 Json saved_json(const LibraryInput& input, const FittedLibrary& fitted);
 
-// A few lines for people: the examples, the errors before and after, how it ended.
+// Logs a short summary: the examples, errors before and after, why refinement stopped.
 void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolContext& context);
 
 }  // namespace krok::fit_tool

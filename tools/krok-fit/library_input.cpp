@@ -18,7 +18,7 @@ using parametric::Library;
 
 constexpr double kUsualSpacing = 0.15;
 constexpr double kSmoothedSpacing = 0.01;
-constexpr double kUsualTolerance = 0.1;  // of what a parameter's usually is: refining is cheap
+constexpr double kUsualTolerance = 0.1;  // relative to the usual tolerance: refining is cheap
 
 void thin_out(LibraryInput& input, double spacing) {
   std::vector<parametric::Example> chosen;
@@ -47,7 +47,7 @@ Status find_range(LibraryInput& input) {
     if (!(most > least)) {
       return at_entry(
           Error("library-examples", fmt::format("'{}' is the same in all examples", entry.name),
-                "leave the parameter out, or add examples in which it differs"),
+                "leave out the parameter, or add examples that vary it"),
           entry.place);
     }
     input.lower.push_back(entry.least.value_or(least));
@@ -56,7 +56,7 @@ Status find_range(LibraryInput& input) {
   return {};
 }
 
-// Where the keytimes of a step are in a walk.
+// The name of a step's keytime in a walk.
 std::string name_in_walk(const std::string& keytime, FootSide swing) {
   const bool stance = keytime.starts_with("stance_");
   const bool left = (swing == FootSide::left) != stance;
@@ -109,15 +109,15 @@ class Reader {
     return names;
   }
 
-  // Steps found in walks first, then what is one example a clip.
+  // Detected steps come first, then clips with one example each.
   Status make_library() {
     Library& library = input_.library;
     const bool any_steps =
         std::ranges::any_of(motions_, [](const ExampleMotion& m) { return m.entry->automatic; });
     if (any_steps) {
       if (!description().keytimes.empty()) {
-        return Error("library-keytimes", "steps that are found have keytimes of their own",
-                     "leave \"keytimes\" out, or \"steps\": \"auto\"")
+        return Error("library-keytimes", "detected steps have fixed keytimes",
+                     "leave out \"keytimes\" or \"steps\": \"auto\"")
             .in_file(path_);
       }
       if (Status status = cut_walks(); !status) return status;
@@ -173,7 +173,7 @@ class Reader {
     return {};
   }
 
-  // What is measured, errors by the place in the description.
+  // Parses the measured parameters; errors have their location in the description.
   Status take_parameters() {
     Library& library = input_.library;
     library.parameters.clear();
@@ -197,8 +197,8 @@ class Reader {
     return {};
   }
 
-  // As given by hand, or those of the motion's keys: by the library's names, or by the names that a
-  // step's have in a walk; each must be there once.
+  // Keytimes from the description or the motion's keys, by their names in the library or in a walk.
+  // Each must occur exactly once.
   Result<std::vector<double>> keytimes_of(const ExampleMotion& motion) const {
     std::vector<double> times;
     for (const std::string& name : input_.library.keytimes) {
@@ -213,11 +213,11 @@ class Reader {
       }
       if (found.size() != 1) {
         return at_entry(
-            Error("library-keytimes",
-                  fmt::format("{} has {} at {} moments, expected one", motion.name, name,
-                              found.size()),
-                  "give \"keytimes\" here, cut the motion with \"from\" and \"to\", or set them "
-                  "with krok-keys"),
+            Error(
+                "library-keytimes",
+                fmt::format("{} has {} at {} times, expected one", motion.name, name, found.size()),
+                "give \"keytimes\" here, cut the motion with \"from\" and \"to\", or set them "
+                "with krok-keys"),
             motion.entry->place);
       }
       times.push_back(found.front());
@@ -225,7 +225,7 @@ class Reader {
     return times;
   }
 
-  // Of steps that were found, those that are not too close to each other.
+  // Thins out the detected steps.
   Status choose() {
     Library& library = input_.library;
     input_.found = static_cast<int>(library.examples.size());
@@ -259,7 +259,7 @@ void take_all_steps(LibraryInput& input) {
   input.all_steps.clear();
   thin_out(input, kSmoothedSpacing);
   count_mirrored(input);
-  // Fewer steps had a range in each parameter already.
+  // Cannot fail: fewer steps already had a range in each parameter.
   (void)find_range(input).ok();
 }
 

@@ -10,7 +10,7 @@
 #include "tools/common/tool.h"
 #include "tools/krok-fit/example_motions.h"
 
-// From the description of a library and the motions that it names to the library.
+// Builds a library from its description and motions.
 
 namespace krok::fit_tool {
 
@@ -18,23 +18,22 @@ struct LibraryInput {
   library::LibraryDescription description;
   RoleMap roles;
   parametric::Library library;
-  std::vector<double> lower, upper;  // [parameters], the range that is asked for
+  std::vector<double> lower, upper;  // [parameters], the requested range
   std::vector<parametric::DroppedStep> dropped;
-  int found = 0;  // examples before those too close to others were left out
-  // All of these, where the library has steps that were found and the description tells no spacing.
+  int found = 0;  // examples before thinning out
+  // All detected steps, if the description gives no spacing.
   std::vector<parametric::Example> all_steps;
-  int mirrored = 0;  // examples that are mirrored steps
+  int mirrored = 0;  // number of mirrored examples
   std::vector<RefusedClip> refused;
 };
 
-// Reads the description at `path` and the motions below its folder. A motion that does not fit, for
-// its skeleton is another one than most have, is an Error, or with `keep_going` is told and left
-// out. Codes: those of library::read and of reading motions; library-clip for a pattern that fits
-// no file; library-keytimes, library-examples; those of parametric::cut_steps and make_example.
+// Reads the description at `path` and the motions, relative to its folder. An unsuitable motion,
+// such as one on another skeleton, is an Error, or with `keep_going` a warning, and left out.
+// Codes: those of library::read and of reading motions; library-clip for a pattern without matches;
+// library-keytimes, library-examples; those of parametric::cut_steps and make_example.
 Result<LibraryInput> read_library(const std::string& path, bool keep_going, ToolContext& context);
 
-// Makes examples of all steps, for weights that are smoothed; of such as measure the same one
-// stays.
+// Uses all detected steps as examples, for smoothed weights; of duplicates only one.
 void take_all_steps(LibraryInput& input);
 
 }  // namespace krok::fit_tool

@@ -5,17 +5,17 @@ int main(int argc, char** argv) {
   krok::ToolSpec spec;
   spec.name = "krok-fit";
   spec.summary =
-      "Makes a step library: from example motions the motion for any parameters between them, with "
-      "a known error";
+      "Fits a step library to example motions, so that krok-synth can make motions for any "
+      "parameters between them, with a measured error";
   spec.inputs = "LIBRARY.json";
   spec.examples = {
       {"krok-fit walking.json -o walking.steps",
-       "examples as the description tells, refined until the tolerances are reached"},
+       "uses the examples in the description and refines until the tolerances are met"},
       {"krok-fit walking.json -o walking.steps --refine 80 --until 0.5mm --plots charts",
-       "up to 80 points, until steps are half a millimetre right, and charts of how it went"},
+       "inserts up to 80 points until lengths are within 0.5 mm, and writes charts"},
       {"krok-fit walking.json --resume walking.steps --refine 160 -o better.steps",
-       "goes on where another run stopped"}};
-  spec.exit_partly = "with --keep-going: some motions were left out, the library is made";
+       "continues the refinement of an earlier run"}};
+  spec.exit_partly = "with --keep-going: some motions were left out, the library was written";
   spec.report_name = "--report";
   spec.declare = [&options](krok::CommandOptions& command) {
     krok::fit_tool::declare(command, options);

@@ -8,21 +8,19 @@ namespace krok::fit_tool {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("library", options.library,
-                  "What the library is made of: a library description (JSON)")
+      .add_option("library", options.library, "Library description (JSON): examples and parameters")
       .type_name("IN.json")
       .required();
-  command.add_flag(
-      "--keep-going", options.keep_going,
-      "Leave out motions that do not fit, for their skeleton is another one, and end with "
-      "exit code 3");
+  command.add_flag("--keep-going", options.keep_going,
+                   "Leave out unsuitable motions, such as those on another skeleton, and exit with "
+                   "code 3");
   add_choice<rbf::Kernel>(command, "--kernel", options.kernel,
                           {{"cubic", rbf::Kernel::cubic},
                            {"linear", rbf::Kernel::linear},
                            {"gaussian", rbf::Kernel::gaussian},
                            {"bspline", rbf::Kernel::bspline},
                            {"wendland", rbf::Kernel::wendland}},
-                          "What weights are made of between the examples: cubic, linear, gaussian, "
+                          "Radial basis function of the weights: cubic, linear, gaussian, "
                           "bspline or wendland",
                           "KERNEL", "cubic")
       .group("Fit");
@@ -32,9 +30,9 @@ void declare(CommandOptions& command, Options& options) {
           [&options](const std::string& text) {
             options.smooth = text == "auto" ? std::nullopt : parse_finite(text);
           },
-          "0: at an example's parameters the example comes back. More: examples that contradict "
-          "each other are averaged, 0.001 hardly, 10 nearly to planes. auto: 0, but for steps that "
-          "were found and that the others make much better so")
+          "Smoothing. 0: examples are reproduced exactly. More: contradictory examples "
+          "are averaged, from 0.001 (hardly) to 10 (almost affine). auto: 0, unless smoothing "
+          "clearly reduces the leave-one-out error of detected steps")
       .type_name("auto|N")
       .default_str("0")
       .check([](std::string& text) {
@@ -45,39 +43,39 @@ void declare(CommandOptions& command, Options& options) {
       })
       .group("Fit");
   add_whole(command, "--refine", options.refine,
-            "Points to insert at most, 0 for none; otherwise 40 for each parameter", 0, kMaxRefined)
+            "Max number of points to insert, 0 for none (default: 40 per parameter)", 0,
+            kMaxRefined)
       .group("Fit");
   command
       .add_option("--until", options.until,
-                  "The largest error of lengths that is small enough; otherwise each parameter's "
-                  "tolerance in the description")
+                  "Max accepted error of length parameters (default: each parameter's "
+                  "tolerance in the description)")
       .type_name("LENGTH")
       .group("Fit");
-  add_whole(
-      command, "--holdout", options.held_out,
-      "Points at which the error is measured and none is inserted; 0 chooses by the number of "
-      "parameters",
-      0, 100'000)
+  add_whole(command, "--holdout", options.held_out,
+            "Number of held-out points for measuring the error; 0: chosen by the number of "
+            "parameters",
+            0, 100'000)
       .group("Fit");
-  add_whole(command, "--seed", options.seed, "Of the points that are looked at", 0, 1'000'000'000)
+  add_whole(command, "--seed", options.seed, "Random seed of the sampled points", 0, 1'000'000'000)
       .default_str("1")
       .group("Fit");
   command
       .add_flag_callback(
           "--no-polish", [&options] { options.polish = false; },
-          "Leave the weights of inserted points as each was found, right at its own point; "
-          "otherwise "
-          "all are moved together to where the error between them is least, if that helps")
+          "Do not optimise the weights of inserted points jointly, which reduces the error "
+          "between them")
       .group("Fit");
   command
       .add_option("--resume", options.resume,
-                  "A library made from the same examples, whose refinement goes on")
+                  "Continue the refinement of a library made from the same examples")
       .type_name("IN.steps")
       .group("Fit");
   command
-      .add_option("--plots", options.plots,
-                  "A folder for charts (SVG): error by inserted points, weights, examples and "
-                  "inserted points, measured against asked")
+      .add_option(
+          "--plots", options.plots,
+          "Write charts (SVG) to this folder: error by inserted points, weights, examples and "
+          "inserted points, measured by requested parameters")
       .type_name("DIR")
       .group("Output");
 }
@@ -87,7 +85,7 @@ Status check(const Options& options) {
   const auto until = parse_length(options.until);
   if (!until) return until.error();
   if (*until > 0) return {};
-  return Error("usage", "--until: the error must be more than 0");
+  return Error("usage", "--until: the error must be greater than 0");
 }
 
 }  // namespace krok::fit_tool

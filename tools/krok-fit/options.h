@@ -11,24 +11,23 @@
 namespace krok::fit_tool {
 
 struct Options {
-  std::string library;  // the description's path
+  std::string library;  // path of the description
   bool keep_going = false;
   rbf::Kernel kernel = rbf::Kernel::cubic;
-  std::optional<int> refine;           // points to insert at most; nothing: 40 for each parameter
-  std::optional<double> smooth = 0.0;  // 0: weights meet the examples; nothing: chosen
-  std::string until;                   // a length: the error at which lengths are good enough
-  int held_out = 0;                    // 0: as refine() chooses
+  std::optional<int> refine;           // max points to insert; not set: 40 per parameter
+  std::optional<double> smooth = 0.0;  // 0: interpolate; not set: automatic
+  std::string until;                   // a length: accepted error of length parameters
+  int held_out = 0;                    // 0: default of refine()
   std::uint64_t seed = 1;
-  bool polish = true;  // inserted weights together, after refinement
-  std::string resume;  // a library to go on with
-  std::string plots;   // a folder
+  bool polish = true;  // optimise inserted weights jointly after refinement
+  std::string resume;  // a library to continue from
+  std::string plots;   // output folder
 };
 
-// Each example is made by the others alone for at most so many of them: it takes time with the
-// fourth power of their number.
+// Max examples for leave-one-out errors: the time grows with the fourth power of their number.
 inline constexpr std::size_t kMaxLeftOut = 128;
 
-// Points that --refine may ask for.
+// Max points for --refine.
 inline constexpr int kMaxRefined = 4000;
 
 void declare(CommandOptions& command, Options& options);

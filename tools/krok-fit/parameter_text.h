@@ -5,12 +5,12 @@
 #include "math/types.h"
 #include "parametric/parameter.h"
 
-// Parameters as people read them: lengths in millimetres or metres, angles in degrees, times in
+// Parameters in readable units: lengths in millimetres or metres, angles in degrees, times in
 // milliseconds or seconds.
 
 namespace krok::fit_tool {
 
-// A unit for values or for their errors, and what a value in the parameter's own unit is times.
+// A unit for values or errors, and the factor from the parameter's own unit.
 struct ShownUnit {
   std::string name;
   double factor = 1;

@@ -14,7 +14,7 @@ namespace {
 using fit::ParameterError;
 using fit::RefineMetrics;
 
-// Members are taken by name; one that is missing or of another kind throws, which is caught once.
+// Missing members or wrong types throw; read_refinement() catches all.
 std::vector<ParameterError> errors_of(const Json& json, const LibraryInput& input) {
   std::vector<ParameterError> errors;
   for (const library::ParameterEntry& entry : input.description.parameters) {
@@ -50,12 +50,12 @@ fit::Refusal refusal_named(const std::string& name) {
 
 int count_of(const Json& json) {
   const int count = json.get<int>();
-  if (count < 0) throw std::out_of_range("a number under 0");
+  if (count < 0) throw std::out_of_range("a negative number");
   return count;
 }
 
-// Whether the rounds come to the points that there are, as refinement counts them: what tells of
-// others may hold any number of points, each of which takes time.
+// Whether the rounds match the points, as refinement counts them. A forged report could otherwise
+// claim any number of points, each of which takes time.
 bool adds_up(const fit::Refined& refined) {
   std::int64_t inserted = 0, refused = 0;
   for (const fit::RefineRound& round : refined.rounds) {
@@ -111,10 +111,8 @@ Result<fit::Refined> read_refinement(const std::string& text, const LibraryInput
   try {
     return refinement_of(parse_ordered_json(text), input, function);
   } catch (const std::exception&) {
-    return Error(
-        "fit-resume",
-        "its report does not tell how it was refined, or not of these parameters and points",
-        "fit it anew, without --resume");
+    return Error("fit-resume", "the report has no refinement state for these parameters and points",
+                 "fit without --resume");
   }
 }
 

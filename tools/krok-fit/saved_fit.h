@@ -8,8 +8,8 @@
 
 namespace krok::fit_tool {
 
-// What a library that was fitted before says of its refinement, so that it can go on. `text` is the
-// file's report. Code fit-resume where it tells of no refinement, or of other parameters or points.
+// Reads the refinement state from a fitted library's report `text`, to resume it. Code fit-resume
+// if there is none, or it does not match the parameters or points.
 Result<fit::Refined> read_refinement(const std::string& text, const LibraryInput& input,
                                      const rbf::WeightFunction& function);
 

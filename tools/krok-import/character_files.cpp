@@ -18,11 +18,11 @@ namespace krok::import {
 
 namespace {
 
-// For pictures without a name, in the order of textures_of().
+// For images without a name, in the order of textures_of().
 constexpr std::array<const char*, 5> kTextureNames = {"color", "surface", "normal", "occlusion",
                                                       "emissive"};
 
-// As much of a name as is one, see is_name.
+// A valid name made from `name`, see is_name.
 std::string usable_name(const std::string& name, const std::string& fallback) {
   std::string text = name.substr(0, name.find('\0'));
   if (text.size() > kLongestName) text = to_utf8(text.substr(0, kLongestName / 2));
@@ -41,7 +41,7 @@ class Adder {
 
   Result<AddedCharacter> add() {
     name_parts();
-    // The model first: where its folder is missing, none is made for the pictures.
+    // The model first: if its folder is missing, this fails before the image folder is created.
     for (const auto step :
          {&Adder::add_model, &Adder::add_materials, &Adder::add_morphs, &Adder::add_character}) {
       if (Status status = (this->*step)(); !status) return status.error();
@@ -50,7 +50,7 @@ class Adder {
   }
 
  private:
-  // Each part a name of its own, so that the character can give each a material.
+  // Gives each part a unique name, so that the character can assign it a material.
   void name_parts() {
     std::vector<Model::Part>& parts = actor_.model.parts;
     UniqueNames names;
@@ -151,10 +151,10 @@ class Adder {
   character::Actor& actor_;
   OutputSet& outputs_;
   NewFolders& new_folders_;
-  std::string stem_, name_;  // of all files, with and without their folder
+  std::string stem_, name_;  // of all files, with and without folder
   ImageNames image_names_;
   std::map<const EncodedImage*, std::shared_ptr<const EncodedImage>>
-      images_;  // to those with paths
+      images_;  // -> images with paths
   AddedCharacter added_;
 };
 

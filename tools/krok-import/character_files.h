@@ -12,24 +12,24 @@
 
 namespace krok::import {
 
-// What --character hero.character writes, beside each other: hero.model, hero.material with its
-// pictures in hero_textures/, hero_morphs.exr, and hero.character, which names them. Files for
-// which the scene has nothing are left out.
+// Input of --character hero.character, which writes hero.model, hero.material with its images in
+// hero_textures/, hero_morphs.exr, and hero.character, which refers to them. Files without content
+// are not written.
 struct CharacterFiles {
   std::string path;  // of the .character file
   OrientationEncoding orientation = OrientationEncoding::xyz;
-  std::vector<float> weights;  // [targets] of the figure, at rest
-  Provenance provenance;       // of model and targets
+  std::vector<float> weights;  // [targets] of the actor, at rest
+  Provenance provenance;       // of model and morph targets
 };
 
-// What was added, for the report.
+// Summary for the report.
 struct AddedCharacter {
   Character character;
   std::size_t materials = 0, images = 0;
 };
 
-// Adds the files to `outputs`; `folder` is that of the pictures. The figure's parts get names of
-// their own, and the names of the scene's materials. Codes: those of the writers.
+// Adds the files to `outputs`; `folder` is for the images. Parts of the actor get unique names and
+// the names of the scene's materials. Codes: those of the writers.
 Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
                                      character::Actor& actor, OutputSet& outputs,
                                      NewFolders& folder);

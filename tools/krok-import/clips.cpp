@@ -47,7 +47,7 @@ Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const st
   if (clips.empty() && (wanted.empty() || wanted == "all")) return clips;
   if (clips.empty()) {
     return Error("import-missing",
-                 fmt::format("no animation is in it: there is no --clip {}", shown(wanted)))
+                 fmt::format("the file has no animations: --clip {} cannot be used", shown(wanted)))
         .in_file(file);
   }
   for (const ChosenClip& clip : clips) {
@@ -59,19 +59,19 @@ Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const st
     if (number && *number >= 0 && *number < static_cast<long long>(clips.size())) {
       return std::vector{clips[static_cast<std::size_t>(*number)]};
     }
-    return Error("import-clip", fmt::format("no animation is called {}", shown(wanted)),
-                 "it has " + list_of(clips))
+    return Error("import-clip", fmt::format("there is no animation {}", shown(wanted)),
+                 "available: " + list_of(clips))
         .in_file(file);
   }
   if (clips.size() > 1) {
     Diagnostic told;
     told.severity = Severity::warning;
     told.code = "import-clips";
-    told.message = fmt::format("of {} animations the first, {}, is taken; they are {}",
-                               clips.size(), shown(clips[0].name), list_of(clips));
-    told.hint = "--clip takes another by its name or number, --clip all takes all";
+    told.message = fmt::format("using the first of {} animations, {}; available: {}", clips.size(),
+                               shown(clips[0].name), list_of(clips));
+    told.hint = "select another with --clip NAME or NUMBER, or all with --clip all";
     told.where.file = file;
-    context.tell(std::move(told));
+    context.diagnose(std::move(told));
   }
   clips.resize(1);
   return clips;
@@ -82,7 +82,7 @@ Result<std::string> clip_path(const std::string& pattern, const std::string& opt
   if (pattern.empty() || pattern == "-") {
     if (several && pattern == "-") {
       return Error("usage",
-                   fmt::format("{} -: several clips do not go to standard output", option));
+                   fmt::format("{} -: several clips cannot go to standard output", option));
     }
     return pattern;
   }
@@ -96,8 +96,8 @@ Result<std::string> clip_path(const std::string& pattern, const std::string& opt
   if (place == std::string::npos) {
     if (!several) return path;
     return Error(
-        "usage", fmt::format("{} {}: several clips need names of their own", option, pattern),
-        fmt::format("put {{clip}} where the name goes: {} 'walk_{{clip}}{}'", option, extension));
+        "usage", fmt::format("{} {}: several clips need distinct names", option, pattern),
+        fmt::format("use {{clip}} for the clip's name: {} 'walk_{{clip}}{}'", option, extension));
   }
   return path.replace(place, kPlace.size(), clip.file_name);
 }

@@ -7,24 +7,24 @@
 #include "nodes/scene.h"
 #include "tools/common/tool.h"
 
-// Which of a scene's animations are imported, and under which file names.
+// Selects the animations of a scene to import, and their file names.
 
 namespace krok::import {
 
 struct ChosenClip {
   int animation = -1;
-  std::string name;       // the file's, or "animation 3"
-  std::string file_name;  // what {clip} stands for: without characters that paths mind, unique
+  std::string name;       // from the file, or "animation 3"
+  std::string file_name;  // value of {clip}: safe in paths, unique
 };
 
-// --clip: a name, a number from 0, "all", or empty, which is the first with a warning that lists
-// the others. None for a scene without animations. An Error (code import-clip) for a name that
-// none has.
+// `wanted` is the value of --clip: a name, an index, "all", or empty for the first, with a warning
+// that lists the others. Empty for a scene without animations. Fails (code import-clip) if there is
+// no match.
 Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const std::string& wanted,
                                              const std::string& file, ToolContext& context);
 
-// The path for one clip: {clip} stands for its name; a folder gets "{clip}" and `extension` added.
-// With `several` clips a path without {clip} is an Error (code usage).
+// Output path of a clip: replaces {clip} by its name; "{clip}" and `extension` are appended to a
+// folder. With `several` clips, a path without {clip} is an Error (code usage).
 Result<std::string> clip_path(const std::string& pattern, const std::string& option,
                               const ChosenClip& clip, bool several, const std::string& extension);
 

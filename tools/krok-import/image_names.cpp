@@ -10,7 +10,7 @@ namespace krok::import {
 
 namespace {
 
-// Without the ending of a picture's file.
+// Removes the extension of an image file.
 std::string without_ending(const std::string& name) {
   const std::string ending = extension(name);
   for (const char* known : {".png", ".jpg", ".jpeg", ".jpe", ".tga", ".bmp", ".tif", ".dds"}) {

@@ -7,12 +7,11 @@
 
 namespace krok::import {
 
-// Names for the files that pictures are written to, in a folder of their own.
+// Creates file names for images in their own folder.
 class ImageNames {
  public:
-  // A name as the picture has it, or as `fallback` ("Skin_normal") where it has none, with the
-  // ending of its kind. Whatever the names are, it is one that file systems take, and no two are
-  // the same in any case of letters.
+  // The image's name, or `fallback` ("Skin_normal") if it has none, with the extension of its kind.
+  // Always valid on common file systems and unique, ignoring case.
   std::string make(const EncodedImage& image, ImageKind kind, const std::string& fallback);
 
  private:

@@ -4,13 +4,13 @@
 
 #include "core/numbers.h"
 #include "formats/anim/anim.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_scene.h"
 #include "formats/model/model_format.h"
 #include "motion/sample.h"
 #include "scene/model.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
 #include "tools/common/output_set.h"
-#include "tools/common/scene/scene_input.h"
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_import.h"
 #include "tools/krok-import/source.h"
@@ -35,7 +35,7 @@ Status write_outputs(const Options& options, ToolContext& context, const Clip& c
   return status ? outputs.finish() : status;
 }
 
-// What only characters have.
+// Rejects options that are only for characters.
 Status check_capture_options(const Options& options, const std::string& path) {
   const auto missing = [&](const char* what, const char* option) {
     return Error("import-missing",
@@ -61,14 +61,14 @@ Result<int> import_capture(const InputFile& input, registry::Kind kind, const Op
   if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
     return status.error();
   }
-  context.tell(source->capture.diagnostics);
+  context.diagnose(source->capture.diagnostics);
 
   Clip& clip = source->capture.clip;
   auto conversions = std::move(clip.provenance.conversions);
   if (options.resample > 0) {
     auto resampled = resample(clip, options.resample);
     if (!resampled) return resampled.error();
-    conversions.push_back(fmt::format("resampled from {} to {} frames a second",
+    conversions.push_back(fmt::format("resampled from {} to {} frames per second",
                                       readable(clip.rate), readable(options.resample)));
     clip = std::move(*resampled);
   }
@@ -82,8 +82,8 @@ Result<int> import_capture(const InputFile& input, registry::Kind kind, const Op
   context.report.result = result_of(source->capture, frames, height, source->details);
   std::string outputs = context.output;
   if (!options.model.empty()) outputs += (outputs.empty() ? "" : ", ") + options.model;
-  context.say(fmt::format("{} -> {}", line_about(options.input, frames, height), outputs));
-  say_roles(clip.skeleton, source->capture.roles, context);
+  context.log(fmt::format("{} -> {}", line_about(options.input, frames, height), outputs));
+  log_roles(clip.skeleton, source->capture.roles, context);
   return kExitDone;
 }
 
@@ -92,8 +92,8 @@ Result<int> import_capture(const InputFile& input, registry::Kind kind, const Op
 Status check(const Options& options) {
   if (const auto how = read_options(options); !how) return how.error();
   if (!options.character.empty() && !(options.model.empty() && options.morphs.empty())) {
-    return Error("usage", "--character writes model and morph targets itself, beside the character",
-                 "leave --model and --morphs out");
+    return Error("usage", "--character already writes model and morph targets",
+                 "remove --model and --morphs");
   }
   if (Status status =
           check_output_kind(options.character, "--character", registry::Kind::character);
@@ -101,7 +101,7 @@ Status check(const Options& options) {
     return status;
   }
   if (options.character == "-") {
-    return Error("usage", "--character -: several files do not go to standard output");
+    return Error("usage", "--character -: several files cannot go to standard output");
   }
   return check_output_kind(options.model, "--model", registry::Kind::model);
 }
@@ -111,22 +111,22 @@ Result<int> run(const Options& given, ToolContext& context) {
   if (context.output.empty() && options.model.empty() && options.cam.empty() &&
       options.character.empty() && options.morphs.empty() && options.weights.empty()) {
     return Error("usage",
-                 "nothing to write: neither -o nor --model, --character, --cam, --morphs is given",
-                 "-o OUTPUT.anim takes the motion");
+                 "nothing to write: none of -o, --model, --character, --cam, --morphs is given",
+                 "write the motion with -o OUTPUT.anim");
   }
   if (!options.model.empty() && options.model == context.output) {
     return Error("usage", "-o and --model name the same file");
   }
   const auto input = context.open_long_input(options.input);
   if (!input) return input.error();
-  const ChecksumNoted noted(*input, context);
-  auto roles = open_role_map(options.map, context);
+  const io::ChecksumAtEnd noted(*input, context);
+  auto roles = io::open_role_map(options.map, context);
   if (!roles) return roles.error();
   if (!options.map.empty()) options.roles = *std::move(roles);
   const registry::Kind kind = registry::identify(input->path(), input->bytes());
-  if (!is_scene(kind)) return import_capture(*input, kind, options, context);
+  if (!io::is_scene(kind)) return import_capture(*input, kind, options, context);
   context.note_checksum(*input);
-  return import_scene(*input, kind, options, context);
+  return import_scene(*input, options, context);
 }
 
 }  // namespace krok::import

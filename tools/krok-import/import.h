@@ -6,10 +6,10 @@
 
 namespace krok::import {
 
-// Whether the options have values that fit some file or other.
+// Checks the options for values that are invalid for any file.
 Status check(const Options& options);
 
-// Reads the capture, writes the motion and, if asked for, the model; both appear or neither.
+// Reads the capture and writes the motion and, if requested, the model; both appear or neither.
 Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::import

@@ -8,27 +8,26 @@ krok::ToolSpec make_spec() {
   const auto options = std::make_shared<krok::import::Options>();
   krok::ToolSpec spec;
   spec.name = "krok-import";
-  spec.summary = "Brings captures and characters into Krok's own formats";
+  spec.summary = "Converts motion captures and characters to Krok's formats";
   spec.inputs = "IN";
-  spec.needs_output = false;  // --model or --cam alone will do
+  spec.needs_output = false;  // --model or --cam alone is enough
   spec.examples = {
-      {"krok-import walk.bvh -o walk.anim -v",
-       "works out unit and axes by itself and says what it chose"},
+      {"krok-import walk.bvh -o walk.anim -v", "detects unit and axes and prints them"},
       {"krok-import take7.bvh -o take7.anim --model actor.model --unit in --up z --forward -y",
        "a capture in inches with +Z up, and its skeleton as a model"},
       {"krok-import 01_01.amc --skeleton 01.asf -o walk.anim",
-       "an Acclaim motion with its skeleton, as the CMU collection has them"},
+       "an Acclaim motion with its skeleton, as in the CMU database"},
       {"krok-import hero.glb --clip Walk -o walk.anim --model hero.model --cam shot.cam",
-       "an animation of a character, its mesh and skin, and the camera"},
+       "one animation of a character, its mesh and skin, and the camera"},
       {"krok-import hero.glb --clip all -o 'hero_{clip}.anim' --morphs face.exr",
-       "all animations, a file each, and the morph targets"},
+       "all animations, one file each, and the morph targets"},
       {"krok-import hero.glb --character hero.character",
-       "the whole character: mesh, materials, textures and expressions, files beside each other"},
+       "the whole character: mesh, materials, textures and expressions"},
       {"krok-import broken.bvh -o broken.anim --repair --json",
-       "fills faulty frames and lists the repairs for a script"},
+       "repairs damaged frames and lists the repairs for a script"},
       {"krok-import captures --out-dir motions --keep-going",
-       "all captures in a folder; run again, it does what is new, changed or was left"}};
-  // Files that hold motion; an Acclaim skeleton or an MD5 mesh is taken by the motion beside it.
+       "all captures in a folder; run again, it processes only new, changed and failed files"}};
+  // Only files with motion; an Acclaim skeleton or an MD5 mesh is read with the motion beside it.
   spec.batch = {
       {".bvh", ".amc", ".glb", ".gltf", ".fbx", ".dae", ".smd", ".ms3d", ".ase", ".md5anim"},
       [options]() -> krok::Result<std::string> {

@@ -11,38 +11,38 @@
 
 namespace krok::import {
 
-// What stands on the command line, as text where the library says what it means.
+// Command-line options; as text if the library parses them.
 struct Options {
   std::string input;
-  std::string skeleton;   // --skeleton, empty where it is to be found
-  std::string map;        // --map, empty where none is given
-  std::string model;      // --model, empty where none is wanted
-  std::string character;  // --character, empty where none is wanted
-  std::string clip;       // --clip, empty for the first
-  std::string skin;       // --skin, empty for the largest skeleton
-  std::string cam;        // --cam, empty where none is wanted
-  std::string camera;     // --camera, empty for the first
-  std::string morphs;     // --morphs, empty where none are wanted
-  std::string weights;    // --morph-weights, likewise
+  std::string skeleton;   // --skeleton, empty: search for it
+  std::string map;        // --map, empty: none
+  std::string model;      // --model, empty: none
+  std::string character;  // --character, empty: none
+  std::string clip;       // --clip, empty: the first
+  std::string skin;       // --skin, empty: the largest skeleton
+  std::string cam;        // --cam, empty: none
+  std::string camera;     // --camera, empty: the first
+  std::string morphs;     // --morphs, empty: none
+  std::string weights;    // --morph-weights, empty: none
   std::string unit = "auto";
   std::string up = "auto";
   std::string forward = "auto";
   bvh::Positions positions = bvh::Positions::automatic;
   bvh::Angles angles = bvh::Angles::degrees;
   RestFrame rest_frame = RestFrame::keep;
-  double fps = 0;       // 0: what the file says
-  double resample = 0;  // 0: not at all
+  double fps = 0;       // 0: from the file
+  double resample = 0;  // 0: no resampling
   OrientationEncoding orientation = OrientationEncoding::xyz;
   bool strict = false;
   bool repair = false;
 
-  // What joints are, as --map has it; set once that is open.
-  FindRoles roles;
+  // Finds joint roles, with --map if given; set when the map is open.
+  io::FindRoles roles;
 };
 
 void declare_options(CommandOptions& command, Options& options);
 
-// The options that all readers share; an Error for a unit or an axis that is none.
+// Options common to all readers; an Error for an invalid unit or axis.
 Result<CaptureOptions> read_options(const Options& options);
 
 }  // namespace krok::import

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "character/space.h"
+#include "formats/io/open_scene.h"
 #include "nodes/evaluate.h"
-#include "tools/common/scene/scene_input.h"
 #include "tools/krok-import/scene_importer.h"
 
 namespace krok::import {
@@ -23,14 +23,14 @@ Status check_options(const Options& options) {
   return {};
 }
 
-// With --strict what the reader warned of is a fault.
+// With --strict, reader warnings are errors.
 Status check_strict(const Options& options, const nodes::Scene& scene) {
   if (!options.strict) return {};
   for (const Diagnostic& diagnostic : scene.diagnostics) {
     if (diagnostic.severity != Severity::warning) continue;
     Error error(diagnostic);
     error.severity = Severity::error;
-    error.hint = "without --strict it is a warning";
+    error.hint = "without --strict this is a warning";
     return error;
   }
   return {};
@@ -38,18 +38,17 @@ Status check_strict(const Options& options, const nodes::Scene& scene) {
 
 }  // namespace
 
-Result<int> import_scene(const InputFile& input, registry::Kind kind, const Options& options,
-                         ToolContext& context) {
+Result<int> import_scene(const InputFile& input, const Options& options, ToolContext& context) {
   if (Status status = check_options(options); !status) return status.error();
   auto how = read_options(options);
   if (!how) return how.error();
-  auto scene = read_scene(input, kind, context, !options.character.empty());
+  auto scene = io::open_scene(input, context, !options.character.empty());
   if (!scene) return scene.error();
   if (Status status = check_strict(options, *scene); !status) {
     return std::move(status.error()).in_file(input.path());
   }
-  context.tell(scene->diagnostics);
-  // Axes that the user names take the place of an odd rotation that the file names.
+  context.diagnose(scene->diagnostics);
+  // Axes from the user replace a rotation given by the file.
   if ((how->up || how->forward) && character::rotation_to_apply(scene->space) != Mat4::Identity()) {
     scene->space.file_to_krok.reset();
   }

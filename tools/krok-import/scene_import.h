@@ -8,10 +8,9 @@
 
 namespace krok::import {
 
-// Reads a scene and writes what is asked for: the motion of one or all of its animations, the
-// character as a model, a camera, morph targets and their weights. All files appear or none. An
-// Error (code import-missing) for something that the file does not hold.
-Result<int> import_scene(const InputFile& input, registry::Kind kind, const Options& options,
-                         ToolContext& context);
+// Reads a scene and writes the requested parts: the motion of one or all of its animations, the
+// character as a model, a camera, morph targets and their weights. All files appear or none. Fails
+// (code import-missing) for parts that the file does not have.
+Result<int> import_scene(const InputFile& input, const Options& options, ToolContext& context);
 
 }  // namespace krok::import

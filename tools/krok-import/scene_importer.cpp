@@ -22,15 +22,15 @@ Result<int> SceneImporter::run() {
   if (Status status = outputs_.finish(); !status) return status.error();
   textures_.keep();
   report();
-  context_.say(fmt::format("{} -> {}", line_, written));
-  if (rig_) say_roles(rig_->skeleton, roles_, context_);
+  context_.log(fmt::format("{} -> {}", line_, written));
+  if (rig_) log_roles(rig_->skeleton, roles_, context_);
   return kExitDone;
 }
 
-void SceneImporter::tell(Diagnostics& found) {
+void SceneImporter::report_all(Diagnostics& found) {
   for (Diagnostic& diagnostic : found) {
     diagnostic.where.file = path_;
-    context_.tell(std::move(diagnostic));
+    context_.diagnose(std::move(diagnostic));
   }
   found.clear();
 }
@@ -43,17 +43,18 @@ void SceneImporter::warn(const char* code, std::string message, std::string hint
   told.message = std::move(message);
   told.hint = std::move(hint);
   told.where.file = path_;
-  context_.tell(std::move(told));
+  context_.diagnose(std::move(told));
 }
 
 Error SceneImporter::missing(const std::string& what, const std::string& option, std::string hint) {
-  return Error("import-missing", fmt::format("no {} is in it: {} cannot be written", what, option),
+  return Error("import-missing",
+               fmt::format("the file has no {}: {} cannot be written", what, option),
                std::move(hint));
 }
 
 Status SceneImporter::choose_camera() {
   if (cameras_.empty()) {
-    return missing("camera", "--cam", "in glTF a camera must belong to a node of the scene");
+    return missing("camera", "--cam", "in glTF, a camera must be used by a node of the scene");
   }
   const auto chosen = krok::choose_camera(scene_, cameras_, options_.camera, path_, context_);
   if (!chosen) return chosen.error();
@@ -69,11 +70,12 @@ Status SceneImporter::choose() {
   auto clips = choose_clips(scene_, options_.clip, path_, context_);
   if (!clips) return clips.error();
   clips_ = std::move(*clips);
-  // In a batch nobody asked for the motion of this very file.
+  // In a batch, the motion of this particular file was not requested.
   still_ = clips_.empty() && context_.kept_messages != nullptr &&
            (wants_model() || wants_character() || wants_camera() || wants_morphs());
   if (wants_motion() && clips_.empty()) {
-    return missing("animation", "-o", "--model alone takes the character, --cam alone a camera");
+    return missing("animation", "-o",
+                   "use --model without -o for the character, or --cam for a camera");
   }
   return {};
 }
@@ -84,12 +86,12 @@ Status SceneImporter::find_rig() {
   if (!needed && known) return {};
   Diagnostics found;
   auto joints = character::choose_joints(scene_, evaluator_, options_.skin, found);
-  if (!joints && !needed) return {};  // a camera alone can do without
+  if (!joints && !needed) return {};  // a camera needs no skeleton
   if (!joints) return joints.error();
   auto rig = character::make_rig(scene_, evaluator_, std::move(*joints), found);
   if (!rig) return rig.error();
   rig_ = std::move(*rig);
-  if (needed) tell(found);
+  if (needed) report_all(found);
   auto roles = roles_of(rig_->skeleton, how_);
   if (!roles) return roles.error();
   roles_ = *std::move(roles);
@@ -106,7 +108,7 @@ Status SceneImporter::find_space() {
   if (!conversion) return conversion.error();
   conversion_ = *conversion;
   conversions_ = describe_conversions(conventions_, how_);
-  GivenConventions said = how_;  // by the user or the file
+  GivenConventions said = how_;  // from the user or the file
   if (scene_.space.metres) said.unit = conventions_.unit;
   if (scene_.space.file_to_krok) {
     said.up = conventions_.up;
@@ -114,19 +116,19 @@ Status SceneImporter::find_space() {
   }
   Diagnostics found;
   report_conventions(conventions_, said, "scene", path_, found);
-  tell(found);
+  report_all(found);
   if (!rig_) return {};
   auto skeleton = character::skeleton_in_krok(*rig_, conversion_);
   if (!skeleton) return skeleton.error();
   if (said.unit) character::check_size(*skeleton, roles_, found);
   if (said.complete()) character::check_actor(*skeleton, roles_, found);
-  tell(found);
+  report_all(found);
   return {};
 }
 
-// What the file holds beyond what was asked for, so that nobody looks for it elsewhere.
+// Lists contents of the file that were not requested.
 void SceneImporter::report_what_else_is_there() {
-  if (still_) warn("import-missing", "no animation is in it: no motion is written");
+  if (still_) warn("import-missing", "the file has no animations: no motion is written");
   std::vector<std::string> more;
   const auto has = [&](std::size_t count, const char* one, const char* option) {
     if (count > 0) {
@@ -140,13 +142,13 @@ void SceneImporter::report_what_else_is_there() {
   if (!wants_camera()) has(cameras_.size(), "camera", "--cam");
   if (!wants_morphs() && !wants_character()) has(targets, "morph target", "--morphs");
   if (more.empty()) return;
-  warn("import-more", fmt::format("the file also holds {}", fmt::join(more, ", ")), "",
+  warn("import-more", fmt::format("the file also has {}", fmt::join(more, ", ")), "",
        Severity::note);
 }
 
 void SceneImporter::report() {
   Json result = Json::object();
-  // One clip's facts stand where those of a capture do.
+  // The facts of a single clip go where those of a capture do.
   if (clip_facts_.size() == 1) result.update(clip_facts_[0]);
   if (rig_) result.update(roles_json(rig_->skeleton, roles_));
   result.update(facts_of(conventions_));

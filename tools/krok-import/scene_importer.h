@@ -18,7 +18,7 @@
 
 namespace krok::import {
 
-// A scene on its way into Krok's form.
+// Converts a scene to Krok's formats.
 class SceneImporter {
  public:
   SceneImporter(const InputFile& input, const Options& options, const CaptureOptions& how,
@@ -31,7 +31,7 @@ class SceneImporter {
         evaluator_(evaluator),
         outputs_(context) {}
 
-  // Does all the work; nothing is left behind if any of it fails.
+  // Runs the import; no outputs are left if it fails.
   Result<int> run();
 
  private:
@@ -40,19 +40,19 @@ class SceneImporter {
   bool wants_character() const { return !options_.character.empty(); }
   bool wants_camera() const { return !options_.cam.empty(); }
   bool wants_morphs() const { return !options_.morphs.empty() || !options_.weights.empty(); }
-  // Tells what the library found, as said of this file.
-  void tell(Diagnostics& found);
+  // Prints diagnostics of the library with this file as location.
+  void report_all(Diagnostics& found);
   void warn(const char* code, std::string message, std::string hint = {},
             Severity severity = Severity::warning);
   static Error missing(const std::string& what, const std::string& option, std::string hint);
 
-  // What is taken of the file, and in which unit and axes it is (scene_importer.cpp).
+  // Selects the parts to import; determines unit and axes (scene_importer.cpp).
   Status choose();
   Status choose_camera();
   Status find_rig();
   Status find_space();
 
-  // What is written (scene_outputs.cpp).
+  // Writes the outputs (scene_outputs.cpp).
   Status add_actor();
   Status add_model();
   void report_model();
@@ -72,13 +72,13 @@ class SceneImporter {
   ToolContext& context_;
   const nodes::Scene& scene_;
   const nodes::Evaluator& evaluator_;
-  NewFolders textures_;  // before what is in it
+  NewFolders textures_;  // declared before the files in it
   OutputSet outputs_;
 
   std::vector<ChosenClip> clips_;
   std::vector<int> cameras_;  // nodes
-  bool still_ = false;        // a file of a batch without the animation that others have
-  int camera_ = -1;           // the node that is written
+  bool still_ = false;        // in a batch: a file without animations
+  int camera_ = -1;           // node of the camera to write
   std::optional<character::Rig> rig_;
   RoleMap roles_;  // of the rig's joints
   character::Actor actor_;

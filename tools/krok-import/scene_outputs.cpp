@@ -13,7 +13,7 @@
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_importer.h"
 
-// What an import of a scene writes: the figure, its motions, a camera.
+// Outputs of a scene import: the actor, its motions, a camera.
 
 namespace krok::import {
 
@@ -25,7 +25,7 @@ Status SceneImporter::add_actor() {
   auto actor = character::make_actor(scene_, evaluator_, *rig_, conversion_,
                                      {.with_morphs = wants_morphs() || wants_character()}, found);
   if (!actor) return actor.error();
-  tell(found);
+  report_all(found);
   actor_ = std::move(*actor);
   if (Status status = add_model(); !status) return status;
   if (wants_character()) {
@@ -105,7 +105,7 @@ Status SceneImporter::add_weights(const ChosenClip& clip,
 }
 
 Status SceneImporter::add_clips() {
-  if (clips_.empty()) {  // a camera that stands still
+  if (clips_.empty()) {  // a static camera
     const character::ChosenSampling still;
     if (Status status = add_weights({}, still); !status) return status;
     return wants_camera() ? add_camera({}, still) : Status();
@@ -129,19 +129,20 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
   facts["clip"] = {{"name", chosen.name}, {"number", chosen.animation}};
   if (wants_motion()) {
     if (!character::moves_rig(scene_, *rig_, chosen.animation)) {
-      warn("import-still", fmt::format("{} moves no joint of the skeleton", shown(chosen.name)));
+      warn("import-still",
+           fmt::format("{} does not move any joint of the skeleton", shown(chosen.name)));
     }
     auto clip = character::make_clip(evaluator_, *rig_, conversion_, chosen.animation,
                                      sampling->sampling, context_.jobs, context_.progress, found);
     if (!clip) return clip.error();
-    tell(found);
+    report_all(found);
     if (const RestPose rest = find_rest_pose(*clip, roles_); rest.first_frame_is_rest) {
-      warn("import-rest-frame", rest.reason + "; it was kept", "krok-edit --from 1f leaves it out");
+      warn("import-rest-frame", rest.reason + "; it was kept", "drop it with krok-edit --from 1f");
     }
     clip->provenance = context_.provenance();
     clip->provenance.conversions = conversions_;
     clip->provenance.conversions.push_back(
-        fmt::format("keys sampled at {} frames a second from {} s on",
+        fmt::format("keys sampled at {} frames per second from {} s on",
                     readable(1 / sampling->sampling.step), readable(sampling->keys_from)));
     const auto path = clip_path(context_.output, "-o", chosen, clips_.size() > 1, ".anim");
     if (!path) return path.error();
@@ -156,7 +157,7 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     facts["output"] = *path;
     line_ = line_about(path_, frames, height);
   }
-  tell(found);
+  report_all(found);
   facts["source_rate"] = to_json(sampling->rate);
   facts["keys"] = {{"from", sampling->keys_from}, {"to", sampling->keys_to}};
   clip_facts_.push_back(std::move(facts));
@@ -171,7 +172,7 @@ Status SceneImporter::add_camera(const ChosenClip& clip,
                                       character::rotation_to_apply(scene_.space), clip.animation,
                                       sampling.sampling, found);
   if (!track) return track.error();
-  tell(found);
+  report_all(found);
   track->provenance = context_.provenance();
   track->provenance.conversions = conversions_;
   const auto path = clip_path(options_.cam, "--cam", clip, clips_.size() > 1, ".cam");
@@ -183,7 +184,7 @@ Status SceneImporter::add_camera(const ChosenClip& clip,
       {"rate", track->rate},
       {"field_of_view", static_cast<double>(track->fields_of_view.front()) / kRadiansPerDegree}};
   if (line_.empty()) {
-    line_ = fmt::format("{}: camera {}, {} at {} /s", base_name(path_),
+    line_ = fmt::format("{}: camera {}, {} at {} fps", base_name(path_),
                         shown(scene_.nodes[static_cast<std::size_t>(camera_)].name),
                         counted(track->frame_count(), "frame"), readable(track->rate));
   }

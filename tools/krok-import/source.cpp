@@ -22,7 +22,7 @@ Result<Source> read_bvh(const InputFile& input, const Options& options, const Ca
   return source;
 }
 
-// What the report says of a first frame that may be no part of the motion.
+// Report entry for a first frame that may not be part of the motion.
 template <typename Capture>
 Json rest_frame_of(const Capture& capture) {
   return {{"found", capture.rest_frame_found}, {"left_out", capture.rest_frame_dropped}};
@@ -44,16 +44,15 @@ Result<Source> read_acclaim(const InputFile& skeleton, const InputFile* motion,
   return source;
 }
 
-// The path of the skeleton for a motion: as given, or found beside it, with a note.
+// Path of a motion's skeleton: as given, or found beside it, with a note.
 Result<std::string> skeleton_for(const std::string& motion, const Options& options,
                                  ToolContext& context) {
   if (!options.skeleton.empty()) return options.skeleton;
-  constexpr const char* kHint = "name it with --skeleton FILE.asf";
+  constexpr const char* kHint = "use --skeleton FILE.asf";
   if (options.input == "-") {
-    return Error("acclaim-skeleton", "a motion in Acclaim's format needs its skeleton", kHint)
-        .in_file(motion);
+    return Error("acclaim-skeleton", "an Acclaim motion needs its skeleton", kHint).in_file(motion);
   }
-  context.chose_beside(motion, ".asf");
+  context.depends_on_neighbours(motion, ".asf");
   auto found = acclaim::find_skeleton(motion);
   if (!found) {
     Error error = std::move(found).error();
@@ -63,10 +62,10 @@ Result<std::string> skeleton_for(const std::string& motion, const Options& optio
   Diagnostic note;
   note.severity = Severity::note;
   note.code = "acclaim-skeleton";
-  note.message = fmt::format("{} is taken as its skeleton: {}", found->path, found->reason);
-  note.hint = "--skeleton FILE.asf names another";
+  note.message = fmt::format("{} is used as the skeleton: {}", found->path, found->reason);
+  note.hint = "select another with --skeleton FILE.asf";
   note.where.file = motion;
-  context.tell(std::move(note));
+  context.diagnose(std::move(note));
   return found->path;
 }
 
@@ -77,7 +76,7 @@ Status check_options(const Options& options, bool is_bvh, bool is_motion) {
   }
   if (is_bvh) return {};
   if (options.positions != bvh::Positions::automatic) {
-    return Error("usage", "--positions is for BVH; Acclaim's format leaves no choice");
+    return Error("usage", "--positions is for BVH; the Acclaim format has no such choice");
   }
   if (options.angles != bvh::Angles::degrees) return Error("usage", "--angles is for BVH");
   return {};
@@ -110,7 +109,7 @@ Result<Source> read_source(const InputFile& input, Kind kind, const Options& opt
   how->jobs = context.jobs;
   how->progress = context.progress;
   const bool is_motion = kind == Kind::amc;
-  const bool is_bvh = !is_motion && kind != Kind::asf;  // what is neither, the BVH reader refuses
+  const bool is_bvh = !is_motion && kind != Kind::asf;  // the BVH reader rejects unknown formats
   if (Status status = check_options(options, is_bvh, is_motion); !status) return status.error();
   if (is_bvh) return read_bvh(input, options, *how);
   if (!is_motion) return read_acclaim(input, nullptr, options, *how);

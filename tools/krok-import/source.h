@@ -10,18 +10,18 @@
 
 namespace krok::import {
 
-// A capture of any format, and what the report says of it beyond what all have.
+// A capture of any format, and the format-specific part of its report.
 struct Source {
   Capture capture;
   Json details = Json::object();
 };
 
-// What the report says of a BVH file beyond what all captures have, and how one is read.
+// The BVH-specific part of the report, and the options for reading BVH.
 Json details_of(const bvh::Capture& capture);
 bvh::ReadOptions bvh_options(const Options& options, const CaptureOptions& how);
 
-// Reads a capture, whichever of the formats it is in; an AMC with its skeleton, given or found.
-// What is none is refused as the BVH reader refuses it.
+// Reads a capture of any format; an AMC with its skeleton, given or found beside it. Unknown
+// formats get the error of the BVH reader.
 Result<Source> read_source(const InputFile& input, registry::Kind kind, const Options& options,
                            ToolContext& context);
 

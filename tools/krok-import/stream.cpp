@@ -6,9 +6,9 @@
 
 #include "formats/anim/anim.h"
 #include "formats/bvh/bvh_reader.h"
+#include "formats/io/open_motion.h"
 #include "formats/model/model_format.h"
 #include "scene/model.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/output_kind.h"
 #include "tools/common/output_set.h"
 #include "tools/krok-import/facts.h"
@@ -33,10 +33,10 @@ std::optional<Result<int>> stream_capture(const InputFile& input, registry::Kind
 
   std::atomic<bool> faulty = false;
   HeightWatch height(capture->frames);
-  const FrameSource frames = height.watched(watched(capture->frames, faulty));
+  const FrameSource frames = height.watched(io::watched(capture->frames, faulty));
   Provenance provenance;
   const auto last_words = [&] {
-    context.tell(capture->diagnostics);
+    context.diagnose(capture->diagnostics);
     context.note_checksum(input);
     provenance = context.provenance();
     provenance.conversions = capture->clip.provenance.conversions;
@@ -60,9 +60,9 @@ std::optional<Result<int>> stream_capture(const InputFile& input, registry::Kind
   if (!status) return Result<int>(status.error());
 
   context.report.result = result_of(*capture, frames, height.height(), details_of(*capture));
-  context.say(
+  context.log(
       fmt::format("{} -> {}", line_about(options.input, frames, height.height()), outputs.names()));
-  say_roles(frames.skeleton, capture->roles, context);
+  log_roles(frames.skeleton, capture->roles, context);
   return Result<int>(kExitDone);
 }
 

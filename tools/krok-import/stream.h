@@ -10,9 +10,9 @@
 
 namespace krok::import {
 
-// Imports a BVH file without holding its motion in memory as a whole. Nothing where that cannot be
-// done: another format, an option that needs all frames at once, a file with some fault. Nothing
-// was told or written then, and the way over read_source, which tells faults, is to be taken.
+// Imports a BVH file without holding the whole motion in memory. Returns nothing if that is
+// impossible: another format, an option that needs all frames at once, a damaged file. Nothing was
+// printed or written then; use read_source, which reports the damage.
 std::optional<Result<int>> stream_capture(const InputFile& input, registry::Kind kind,
                                           const Options& options, ToolContext& context);
 

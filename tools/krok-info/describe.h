@@ -10,8 +10,8 @@
 #include "scene/model.h"
 #include "tools/common/tool.h"
 
-// One function a kind of file. Each reads the whole file, so that what is described is also known
-// to be sound; a reader's warnings are told to the context.
+// One function per kind of file. Each reads the whole file, so that the file is also validated;
+// reader warnings go to the context.
 
 namespace krok::info {
 
@@ -22,22 +22,22 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
 Result<Description> describe_cam(const InputFile& file, ToolContext& context);
 Result<Description> describe_steps(const InputFile& file, ToolContext& context);
 Result<Description> describe_material(const InputFile& file, ToolContext& context);
-// A character with the files that it names; what its joints are is as it says, unless `how` has a
-// role map.
+// A character with the files that it refers to; joint roles are its own unless `how` has a role
+// map.
 Result<Description> describe_character(const InputFile& file, const SkeletonOptions& how,
                                        ToolContext& context);
 Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& how,
                                  ToolContext& context);
-// A skeleton, or a motion with the skeleton that stands beside it.
+// A skeleton, or a motion with the skeleton beside it.
 Result<Description> describe_acclaim(const InputFile& file, const SkeletonOptions& how,
                                      ToolContext& context);
-// glTF, and what is read through Assimp.
+// glTF, and formats read through Assimp.
 Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
                                    const SkeletonOptions& how, ToolContext& context);
 
 // The parts of a mesh and their materials.
 void add_parts(const Model& model, Description& out);
-// How large the mesh is, or the skeleton where there is none, and its volume.
+// Size of the mesh, or of the skeleton without a mesh, and volume.
 void add_mesh_size(const Model& model, Description& out);
 
 }  // namespace krok::info

@@ -11,7 +11,7 @@ namespace krok::info {
 
 namespace {
 
-// What all captures have. `measured` says of what pose the size is.
+// Facts common to all captures. `measured` names the pose that the size is measured in.
 Status add_capture(const Capture& capture, const std::string& measured, const SkeletonOptions& how,
                    Description& out) {
   const Clip& clip = capture.clip;
@@ -32,9 +32,9 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
   options.progress = context.progress;
   const auto capture = bvh::read(file.text(), file.path(), options);
   if (!capture) return capture.error();
-  context.tell(capture->diagnostics);
+  context.diagnose(capture->diagnostics);
   Description out;
-  out.what = "a capture (BVH), as krok-import takes it";
+  out.what = "a capture (BVH), as read by krok-import";
   out.json["kind"] = "bvh";
   add_timing(capture->clip.frame_count(), capture->clip.rate, out);
   out.json["frames_announced"] = capture->frames_announced;
@@ -43,7 +43,7 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
     return status.error();
   add_choice("positions", capture->positions, out);
   out.json["rest_frame"] = capture->rest_frame_found;
-  if (capture->rest_frame_found) out.add("rest pose", "frame 0, no part of the motion");
+  if (capture->rest_frame_found) out.add("rest pose", "frame 0, not part of the motion");
   return out;
 }
 
@@ -65,17 +65,17 @@ Result<Description> describe_acclaim(const InputFile& file, const SkeletonOption
     const auto skeleton = context.open_input(found->path);
     if (!skeleton) return skeleton.error();
     capture = acclaim::read(skeleton->text(), skeleton->path(), file.text(), file.path(), options);
-    out.what = "a capture (AMC), as krok-import takes it";
+    out.what = "a capture (AMC), as read by krok-import";
     out.json["kind"] = "amc";
     out.add("skeleton", fmt::format("{} ({})", found->path, found->reason));
     out.json["skeleton_file"] = found->path;
   } else {
     capture = acclaim::read(file.text(), file.path(), {}, {}, options);
-    out.what = "a skeleton (ASF), as krok-import takes it";
+    out.what = "a skeleton (ASF), as read by krok-import";
     out.json["kind"] = "asf";
   }
   if (!capture) return capture.error();
-  context.tell(capture->diagnostics);
+  context.diagnose(capture->diagnostics);
   if (is_motion) add_timing(capture->clip.frame_count(), capture->clip.rate, out);
   if (Status status = add_capture(*capture, "joints in the reference pose", how, out); !status)
     return status.error();

@@ -6,8 +6,8 @@
 #include "core/path_inside.h"
 #include "core/text.h"
 #include "describe.h"
+#include "formats/io/open_character.h"
 #include "formats/material/material_format.h"
-#include "tools/common/character/character_input.h"
 
 // Materials and characters.
 
@@ -15,12 +15,12 @@ namespace krok::info {
 
 namespace {
 
-// The pictures of a file that can be used; the others are warned of.
+// Sizes of the usable images of a file; warns about the others.
 class ImageSizes {
  public:
   ImageSizes(std::string path, ToolContext& context) : path_(std::move(path)), context_(context) {}
 
-  // "1024 x 512 PNG", or why it cannot be used.
+  // "1024 x 512 PNG", or why it is unusable.
   const std::string& of(const EncodedImage& image) {
     const auto [place, added] = known_.try_emplace(image.path);
     if (added) place->second = look_at(image.path);
@@ -37,7 +37,7 @@ class ImageSizes {
     Diagnostic warning = facts.error();
     warning.severity = Severity::warning;
     const std::string why = warning.message;
-    context_.tell(std::move(warning));
+    context_.diagnose(std::move(warning));
     return why;
   }
 
@@ -94,7 +94,7 @@ std::string kind_of(const Material& material) {
 constexpr std::array<const char*, 5> kTextureNames = {"base colour", "metallic-roughness", "normal",
                                                       "occlusion", "emissive"};
 
-// Its colour and kind, and a line for each of its textures.
+// Colour and kind, and one line per texture.
 template <typename SizeOf>
 void add_material(const Material& material, SizeOf size_of, Description& out, Json& list) {
   std::vector<std::string> lines = {fmt::format("{}: colour {}; {}", shown(material.name),
@@ -120,7 +120,7 @@ void add_material(const Material& material, SizeOf size_of, Description& out, Js
                   {"textures", std::move(textures)}});
 }
 
-// Of a character, with the sizes of pictures that were read.
+// For a character, with the sizes of images that were read.
 void add_materials(std::span<const Material> materials, Description& out) {
   Json list = Json::array();
   const auto size_of = [](const EncodedImage& image) {
@@ -143,7 +143,7 @@ void add_eyes(const Character& character, Description& out) {
   out.json["eyes"] = std::move(list);
 }
 
-void add_expressions(const LoadedCharacter& loaded, Description& out) {
+void add_expressions(const io::LoadedCharacter& loaded, Description& out) {
   Json list = Json::array();
   std::vector<std::string> texts;
   for (std::size_t t = 0; t < loaded.morphs.names.size(); ++t) {
@@ -182,7 +182,7 @@ Result<Description> describe_material(const InputFile& file, ToolContext& contex
 
 Result<Description> describe_character(const InputFile& file, const SkeletonOptions& how,
                                        ToolContext& context) {
-  auto loaded = load_character(file, context);
+  auto loaded = io::open_character(file, context);
   if (!loaded) return loaded.error();
   const Character& character = loaded->character;
   const Model& model = loaded->model;
@@ -206,7 +206,7 @@ Result<Description> describe_character(const InputFile& file, const SkeletonOpti
   add_eyes(character, out);
   add_expressions(*loaded, out);
   add_materials(loaded->materials, out);
-  take_rest_shape(*loaded);
+  io::apply_rest_weights(*loaded);
   add_mesh_size(model, out);
   return out;
 }

@@ -22,7 +22,7 @@ void add_reference_size(const Skeleton& skeleton, Description& out) {
 
 void add_orientations(const InputFile& file, Description& out) {
   const bool four = stored_orientation(file.bytes()) == OrientationEncoding::xyzw;
-  out.add("orientations", four ? "x, y, z, w" : "x, y, z; w is rebuilt");
+  out.add("orientations", four ? "x, y, z, w" : "x, y, z; w is reconstructed");
   out.json["orientations"] = four ? "xyzw" : "xyz";
 }
 
@@ -82,13 +82,13 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
   if (!model->normals.empty()) with.emplace_back("normals");
   if (!model->texture_coordinates.empty()) with.emplace_back("texture coordinates");
   if (!model->tangents.empty()) with.emplace_back("tangents");
-  out.add("mesh", vertices == 0 ? std::string("none, a skeleton alone")
+  out.add("mesh", vertices == 0 ? std::string("none, skeleton only")
                                 : fmt::format("{}, {}", count_of(vertices, "vertex", "vertices"),
                                               count_of(triangles, "triangle")));
   out.add("with", with.empty() ? std::vector<std::string>()
                                : std::vector{fmt::format("{}", fmt::join(with, ", "))});
   if (vertices > 0) {
-    out.add("influences", fmt::format("up to {} a vertex", model->influences_per_vertex));
+    out.add("influences", fmt::format("up to {} per vertex", model->influences_per_vertex));
   }
   out.json["vertices"] = vertices;
   out.json["triangles"] = triangles;

@@ -8,9 +8,9 @@
 #include "character/space.h"
 #include "core/numbers.h"
 #include "describe.h"
+#include "formats/io/open_scene.h"
 #include "nodes/evaluate.h"
 #include "tools/common/scene/scene_conventions.h"
-#include "tools/common/scene/scene_input.h"
 #include "volumes.h"
 
 namespace krok::info {
@@ -93,7 +93,7 @@ void add_animations(const nodes::Scene& scene, Description& out) {
   out.add("animations", std::move(lines));
 }
 
-// The cameras at nodes of the scene that is shown.
+// The cameras at nodes of the default scene.
 void add_cameras(const nodes::Scene& scene, Description& out) {
   std::vector<std::string> lines;
   out.json["cameras"] = Json::array();
@@ -112,7 +112,7 @@ void add_cameras(const nodes::Scene& scene, Description& out) {
   out.add("cameras", std::move(lines));
 }
 
-// Whether an animation moves nodes, and not only the shapes of their meshes.
+// Whether an animation moves nodes, not only morph targets.
 bool moves_nodes(const nodes::Scene& scene) {
   const auto moves = [](const nodes::Channel& channel) {
     return channel.path != nodes::Path::weights;
@@ -122,8 +122,8 @@ bool moves_nodes(const nodes::Scene& scene) {
   });
 }
 
-// The skeleton that krok-import takes; nothing where a scene has neither skins nor nodes that move,
-// for then any node might be a joint.
+// The skeleton that krok-import uses; empty if a scene has neither skins nor animated nodes, as
+// then any node might be a joint.
 Result<std::optional<character::Rig>> find_rig(const nodes::Scene& scene,
                                                const nodes::Evaluator& evaluator,
                                                Diagnostics& found) {
@@ -137,8 +137,8 @@ Result<std::optional<character::Rig>> find_rig(const nodes::Scene& scene,
   return std::optional(*std::move(rig));
 }
 
-// The meshes' volumes; `positions` as an Evaluation has them, but in metres. The primitives of a
-// mesh at a node are one body.
+// Volumes of the meshes; `positions` as in an Evaluation, but in metres. The primitives of a mesh
+// at a node are one volume.
 void add_volumes(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
                  const std::vector<std::vector<Vec3>>& positions, Description& out) {
   std::vector<NamedVolume> volumes;
@@ -161,7 +161,7 @@ void add_volumes(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
   add_volumes(volumes, out);
 }
 
-// What a viewer shows before it plays an animation, in metres.
+// Size as displayed by a viewer before an animation plays, in metres.
 Status add_shown_size(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
                       const Conventions& conventions, Description& out) {
   const auto conversion = Conversion::make(conventions);
@@ -193,7 +193,7 @@ Status add_shown_size(const nodes::Scene& scene, const nodes::Evaluator& evaluat
   return {};
 }
 
-// The skeleton with its roles, unit and axes, and the size.
+// The skeleton with roles, unit, axes and size.
 Status add_actor(const nodes::Scene& scene, const std::string& path, const SkeletonOptions& how,
                  ToolContext& context, Description& out) {
   const auto evaluator = nodes::Evaluator::create(scene);
@@ -203,7 +203,7 @@ Status add_actor(const nodes::Scene& scene, const std::string& path, const Skele
   if (!rig) return rig.error();
   for (Diagnostic& diagnostic : found) {
     diagnostic.where.file = path;
-    context.tell(std::move(diagnostic));
+    context.diagnose(std::move(diagnostic));
   }
   RoleMap roles;
   if (*rig) {
@@ -233,9 +233,9 @@ std::string name_of(registry::Kind kind, const InputFile& file) {
 
 Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
                                    const SkeletonOptions& how, ToolContext& context) {
-  const auto scene = read_scene(file, kind, context);
+  const auto scene = io::open_scene(file, context);
   if (!scene) return scene.error();
-  context.tell(scene->diagnostics);
+  context.diagnose(scene->diagnostics);
   Description out;
   out.what = name_of(kind, file);
   out.json["kind"] = registry::is_read_through_assimp(kind) ? registry::kind_name(kind) : "gltf";

@@ -6,18 +6,17 @@
 
 namespace krok::info {
 
-// How what the joints are is to be found out and shown.
+// How joint roles are found and printed.
 struct SkeletonOptions {
-  FindRoles roles;
+  io::FindRoles roles;
   bool mapped = false;   // by a role map that the user gave
   bool verbose = false;  // list every joint
 };
 
-// Joints, end sites, which parts of a body they are, and which of a humanoid's are missing; each
-// joint with its role in JSON, and with `verbose` in the text too. An Error where the map does not
-// fit the skeleton.
+// Joints, end sites, body parts and missing humanoid roles. Lists each joint with its role in JSON,
+// and with `verbose` also in the text. An Error if the map does not match the skeleton.
 Status add_skeleton(const Skeleton& skeleton, const SkeletonOptions& options, Description& out);
-// The same of a skeleton whose roles are known.
+// The same for known roles.
 void add_skeleton(const Skeleton& skeleton, const RoleMap& map, bool verbose, Description& out);
 
 }  // namespace krok::info

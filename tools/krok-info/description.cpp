@@ -95,7 +95,7 @@ void add_provenance(const Provenance& provenance, Description& out) {
   out.json["provenance"] = std::move(json);
 
   if (provenance.tool.empty()) {
-    out.add("made by", "unknown, the file does not say");
+    out.add("made by", "unknown, not stored in the file");
   } else {
     out.add("made by", fmt::format("{} {}", provenance.tool, provenance.version));
   }

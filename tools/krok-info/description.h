@@ -11,12 +11,11 @@
 #include "scene/provenance.h"
 #include "tools/common/report.h"
 
-// What is said of a file, once for people and once for programs, and the parts of it that several
-// kinds of files share.
+// The description of a file as text and as JSON, and parts common to several kinds of files.
 
 namespace krok::info {
 
-// Rows of a label and one or more lines.
+// Rows with a label and one or more lines.
 struct Description {
   std::string what;  // "a motion (.anim)"
   struct Row {
@@ -30,16 +29,16 @@ struct Description {
   void add(std::string label, std::vector<std::string> lines);  // nothing for no lines
 };
 
-// Labels in one column, values in the next; printable.
+// Labels in one column, values in the next; control characters are replaced.
 std::string to_text(const std::string& path, const Description& description);
 
-// "52 joints", "1 joint", "12,345 vertices"; `plural` where an s is not enough.
+// "52 joints", "1 joint", "12,345 vertices"; `plural` for irregular plurals.
 inline std::string count_of(std::size_t count, std::string_view noun,
                             std::string_view plural = {}) {
   return counted(static_cast<long long>(count), noun, plural);
 }
 
-// What was chosen for want of a word in the file, how sure that is, and why.
+// A detected convention that the file does not state, with confidence and reason.
 void add_choice(const std::string& key, const Choice& choice, Description& out);
 
 // Unit, up and forward.
@@ -48,8 +47,8 @@ void add_conventions(const Conventions& conventions, Description& out);
 // Frames, rate and duration.
 void add_timing(int frames, double rate, Description& out);
 
-// Extents over the axes, and as the height that on Y. `measured` says of what: "joints in the
-// reference pose". Nothing for no points.
+// Extent along each axis; height is that along Y. `measured` says what: "joints in the reference
+// pose". Adds nothing without points.
 template <typename Point>
 void add_size(std::span<const Point> points, const std::string& measured, Description& out);
 void add_size(const Eigen::AlignedBox3d& box, const std::string& measured, Description& out);

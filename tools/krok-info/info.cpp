@@ -1,8 +1,8 @@
 #include "info.h"
 
 #include "describe.h"
+#include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
-#include "tools/common/scene/scene_input.h"
 
 namespace krok::info {
 
@@ -12,7 +12,7 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
                              ToolContext& context) {
   using registry::Kind;
   const Kind kind = registry::identify(file.path(), file.bytes());
-  if (is_scene(kind)) return describe_scene(file, kind, how, context);
+  if (io::is_scene(kind)) return describe_scene(file, kind, how, context);
   switch (kind) {
     case Kind::anim:
       return describe_anim(file, how, context);
@@ -34,13 +34,13 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
     default:
       break;
   }
-  return Error("info-kind",
-               "is " + std::string(registry::describe_content(file.bytes())) +
-                   ", which krok-info does not read",
-               "it reads .anim, .model, .cam, .steps, .material, .character, .bvh, .asf, .amc, "
-               ".glb and .gltf files, and "
-               "characters in "
-               ".fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and .md5anim files");
+  return Error(
+      "info-kind",
+      "is " + std::string(registry::describe_content(file.bytes())) +
+          ", which krok-info cannot read",
+      "supported are .anim, .model, .cam, .steps, .material, .character, .bvh, .asf, .amc, "
+      ".glb and .gltf files, and characters in .fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and "
+      ".md5anim files");
 }
 
 Result<Description> describe_path(const std::string& path, const SkeletonOptions& how,
@@ -56,7 +56,7 @@ Result<Description> describe_path(const std::string& path, const SkeletonOptions
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  auto roles = open_role_map(options.map, context);
+  auto roles = io::open_role_map(options.map, context);
   if (!roles) return roles.error();
   const SkeletonOptions how{*std::move(roles), !options.map.empty(), context.verbose};
   Json files = Json::array();
@@ -72,7 +72,7 @@ Result<int> run(const Options& options, ToolContext& context) {
     } else {
       failed = true;
       entry["error"] = description.error().code;
-      context.tell(std::move(description).error());
+      context.diagnose(std::move(description).error());
     }
     files.push_back(std::move(entry));
   }

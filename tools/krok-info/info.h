@@ -12,8 +12,8 @@ struct Options {
   std::string map;  // a role map; empty: none
 };
 
-// Describes each file on standard output and in the report. A file that cannot be read gets its
-// message and the next one is taken; the exit code is then kExitTrouble.
+// Describes each file on standard output and in the report. Continues after a file that cannot be
+// read; the exit code is then kExitTrouble.
 Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::info

@@ -6,18 +6,18 @@ int main(int argc, char** argv) {
   krok::ToolSpec spec;
   spec.name = "krok-info";
   spec.summary =
-      "What is in a file: motions (.anim), models (.model), cameras (.cam), step libraries "
+      "Prints the contents of files: motions (.anim), models (.model), cameras (.cam), step "
+      "libraries "
       "(.steps), materials (.material), characters (.character; glTF, FBX, COLLADA, SMD, MS3D, "
       "3DS, ASE, MD5), captures (.bvh, .asf, .amc)";
   spec.inputs = "FILE...";
-  spec.examples = {{"krok-info walk.anim",
-                    "Frames, rate, duration, size, provenance, and what the joints are in a body."},
-                   {"krok-info -v capture.bvh",
-                    "Also each joint with its role in the body, and the reader's notes."},
-                   {"krok-info --json *.model > models.json", "The same for programs."}};
+  spec.examples = {
+      {"krok-info walk.anim", "frames, rate, duration, size, provenance and joint roles"},
+      {"krok-info -v capture.bvh", "also each joint with its role, and the reader's notes"},
+      {"krok-info --json *.model > models.json", "the same as JSON for scripts"}};
   spec.has_output = false;
   spec.declare = [&](krok::CommandOptions& command) {
-    command.add_option("FILE", options.files, "Files of any of these kinds; - is standard input")
+    command.add_option("FILE", options.files, "Files of these kinds; - is standard input")
         .type_name("")
         .required();
     krok::add_map_option(command, options.map);

@@ -7,7 +7,7 @@
 namespace krok::info {
 
 void add_volumes(const std::vector<NamedVolume>& volumes, Description& out) {
-  constexpr double kLitres = 1000;  // in a cubic metre
+  constexpr double kLitres = 1000;  // per cubic metre
   std::vector<std::string> lines;
   out.json["volumes"] = Json::array();
   for (const auto& [mesh, measured] : volumes) {

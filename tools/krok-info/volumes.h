@@ -9,12 +9,12 @@
 namespace krok::info {
 
 struct NamedVolume {
-  std::string mesh;  // empty where there is but one
+  std::string mesh;  // empty if there is only one
   MeshVolume measured;
 };
 
-// Volumes of the meshes that are closed, in litres, and in JSON volume (cubic metres; null where
-// the mesh is open) and area (square metres) of all.
+// Text: volumes of the closed meshes in litres. JSON: volume (cubic metres; null for open meshes)
+// and area (square metres) of all meshes.
 void add_volumes(const std::vector<NamedVolume>& volumes, Description& out);
 
 }  // namespace krok::info

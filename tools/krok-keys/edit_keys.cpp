@@ -68,7 +68,7 @@ bool overlap(const Contact& a, const Contact& b) {
   return a.joint == b.joint && a.start <= b.end && b.start <= a.end;
 }
 
-// The keytime of that name nearest to `time`, within reach.
+// The keytime of that name nearest to `time`, within kSameKeytime.
 std::vector<MarkedKeytime>::iterator nearest(std::vector<MarkedKeytime>& list,
                                              const std::string& name, double time) {
   auto best = list.end();
@@ -83,7 +83,7 @@ std::vector<MarkedKeytime>::iterator nearest(std::vector<MarkedKeytime>& list,
 Result<double> seconds_of(const ClipTime& time, const Clip& clip) {
   const double seconds = time.seconds(clip.rate);
   if (seconds >= 0 && seconds <= clip.duration() + 1e-9) return std::min(seconds, clip.duration());
-  return Error("keys-time", fmt::format("{} s is outside the motion's 0 to {} s", readable(seconds),
+  return Error("keys-time", fmt::format("{} s is outside the motion, 0 to {} s", readable(seconds),
                                         readable(clip.duration())));
 }
 
@@ -126,8 +126,8 @@ Status set_keytimes(const Changes& changes, const Clip& clip, keys::Sidecar& sid
           std::erase_if(list, [&](const MarkedKeytime& k) { return k.key.name == change.name; });
     }
     if (removed == 0) {
-      return Error("keys-none", fmt::format("there is no keytime '{}' to take out", change.name),
-                   "run without --remove to see which there are");
+      return Error("keys-none", fmt::format("no keytime '{}' to remove", change.name),
+                   "run without --remove to list the keytimes");
     }
     sidecar.edited = true;
   }
@@ -145,7 +145,7 @@ Status set_keytimes(const Changes& changes, const Clip& clip, keys::Sidecar& sid
     return Error(
         "keys-time",
         fmt::format("'{}' and '{}' would both be at {} s", a.name, b.name, readable(b.time)),
-        "keytimes follow one another; put them at least 2 microseconds apart");
+        "keytimes must be at least 2 microseconds apart");
   }
   return {};
 }
@@ -163,7 +163,7 @@ Status set_contacts(const Changes& changes, const Clip& clip, keys::Sidecar& sid
     if (removed == 0) {
       return Error("keys-none",
                    fmt::format("'{}' has no contact at {} s", change.joint, readable(*time)),
-                   "run without --remove-contact to see which there are");
+                   "run without --remove-contact to list the contacts");
     }
     sidecar.edited = true;
   }
@@ -175,7 +175,7 @@ Status set_contacts(const Changes& changes, const Clip& clip, keys::Sidecar& sid
     const auto to = seconds_of(change.to, clip);
     if (!to) return to.error();
     if (*to < *from) {
-      return Error("keys-time", fmt::format("--add-contact {}: it ends at {} s, before it starts "
+      return Error("keys-time", fmt::format("--add-contact {}: ends at {} s, before it starts "
                                             "at {} s",
                                             change.joint, readable(*to), readable(*from)));
     }

@@ -6,12 +6,11 @@
 
 namespace krok::keys_tool {
 
-// What was found, with what a person set before: found keytimes of the same name within 0.15 s and
-// found contacts of the same joint that overlap give way.
+// Merges detected keys with manual edits: detected keytimes of the same name within 0.15 s and
+// detected contacts of the same joint that overlap are replaced.
 keys::Sidecar with_edits(MotionKeys found, const keys::Sidecar& before);
 
-// Does what the options ask for. Codes: keys-none (nothing there to take out), keys-joint,
-// keys-time.
+// Applies the edits from the options. Codes: keys-none (nothing to remove), keys-joint, keys-time.
 Status change(const Changes& changes, const Clip& clip, keys::Sidecar& sidecar);
 
 }  // namespace krok::keys_tool

@@ -10,7 +10,7 @@ namespace krok::keys_tool {
 
 namespace {
 
-// The points of a foot that stand on a joint's contacts, in lanes from below: heel, ball, tip.
+// Lane of a contact by the foot point on that joint, from the bottom: heel, ball, tip.
 int lane_of(const FoundContacts& found, FootSide side, int joint) {
   for (const PointTrack& track : found.tracks) {
     if (track.point.side == side && track.point.joint == joint) {
@@ -20,7 +20,7 @@ int lane_of(const FoundContacts& found, FootSide side, int joint) {
   return -1;
 }
 
-// Left_strike and the like belong to a foot, other names to both.
+// left_strike and the like belong to one foot, other names to both.
 bool concerns(FootSide side, const std::string& name) {
   const char* other = name_of(side == FootSide::left ? FootSide::right : FootSide::left);
   return !name.starts_with(other);
@@ -30,7 +30,7 @@ draw::Panel panel_of(const Clip& clip, const FoundContacts& found, const MotionK
                      FootSide side, bool heights) {
   draw::Panel panel;
   panel.title =
-      fmt::format("{} foot: {}", name_of(side), heights ? "height over its support" : "speed");
+      fmt::format("{} foot: {}", name_of(side), heights ? "height above support" : "speed");
   panel.x = {"time", "s"};
   panel.x.low = 0;
   panel.x.high = std::max(clip.duration(), 1 / clip.rate);

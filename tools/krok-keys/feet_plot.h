@@ -8,8 +8,8 @@
 
 namespace krok::keys_tool {
 
-// Heights over the support and speeds of the points of each foot over time, contacts as bars,
-// keytimes as lines across, as SVG.
+// SVG plot of height above the support and speed of each foot's points over time, with contacts as
+// bars and keytimes as vertical lines.
 Result<std::string> feet_plot(const std::string& title, const Clip& clip,
                               const FoundContacts& found, const MotionKeys& keys);
 

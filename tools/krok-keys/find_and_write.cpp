@@ -8,10 +8,10 @@
 #include "contacts/gait_metrics.h"
 #include "contacts/slide_speed.h"
 #include "core/numbers.h"
+#include "formats/io/open_motion.h"
 #include "formats/keys/keys.h"
 #include "tools/common/file_name.h"
 #include "tools/common/keys_sidecar.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/output_set.h"
 #include "tools/common/role_input.h"
 #include "tools/krok-keys/edit_keys.h"
@@ -26,8 +26,7 @@ bool stands(const std::string& path) {
   return !path.empty() && path != "-" && std::filesystem::is_regular_file(path, ignored);
 }
 
-// The file that -o names is an output, which is read beforehand all the same, for what a person
-// wrote into it is to be kept.
+// The output file is also read first, to keep manual edits in it.
 Result<std::optional<keys::Sidecar>> read_before(const Options& options, const Clip& clip,
                                                  ToolContext& context) {
   if (options.discard_edits) return std::optional<keys::Sidecar>();
@@ -43,14 +42,14 @@ Result<std::optional<keys::Sidecar>> read_before(const Options& options, const C
   auto sidecar = keys::read_sidecar(file->text(), context.output, clip.skeleton, clip.duration());
   if (!sidecar) {
     Error error = std::move(sidecar).error();
-    if (error.hint.empty()) error.hint = "--discard-edits replaces the file as it stands";
+    if (error.hint.empty()) error.hint = "--discard-edits replaces the file";
     return error;
   }
   return std::optional<keys::Sidecar>(std::move(*sidecar));
 }
 
 struct Found {
-  std::optional<FoundContacts> contacts;  // where feet are known
+  std::optional<FoundContacts> contacts;  // if the feet are known
   MotionKeys keys;
 };
 
@@ -58,24 +57,24 @@ Result<Found> find(const Clip& clip, const RoleMap& roles, ToolContext& context)
   auto contacts = find_contacts(clip, roles);
   if (!contacts) return std::move(contacts).error();
   Gait gait = find_gait(clip, roles, *contacts);
-  context.tell(contacts->warnings);
-  context.tell(gait.warnings);
+  context.diagnose(contacts->warnings);
+  context.diagnose(gait.warnings);
   Found found;
   found.keys = {contacts->contacts, std::move(gait.keytimes)};
   found.contacts = std::move(*contacts);
   return found;
 }
 
-// Whether steps are looked for, or why that cannot be.
+// Whether to detect steps; an Error if that would discard unmarked edits.
 Result<bool> is_to_find(const Options& options, const std::optional<keys::Sidecar>& before) {
   if (options.find == Find::none) return false;
   if (!before || !before->has_edits()) return true;
   if (options.find == Find::automatic) return false;
   if (!before->edited) return true;
   return Error("keys-edited",
-               "the file with the keys was edited in places that have no mark, which finding steps "
-               "anew would undo",
-               "mark them with \"by\": \"hand\", or give --discard-edits");
+               "the keytime file has unmarked edits, which finding steps again "
+               "would discard",
+               "mark them with \"by\": \"hand\", or use --discard-edits");
 }
 
 std::string as_table(const keys::Sidecar& sidecar, const Skeleton& skeleton) {
@@ -131,10 +130,10 @@ Json as_json(const keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitM
 std::string gait_text(const GaitMetrics& gait, double slide) {
   if (gait.cycles == 0) return {};
   std::string text =
-      fmt::format("; {:.0f} steps a minute, feet down {:.0f} % and {:.0f} % of a cycle",
+      fmt::format("; {:.0f} steps per minute, stance {:.0f} % and {:.0f} % of a cycle",
                   gait.cadence, 100 * gait.stance[0], 100 * gait.stance[1]);
-  // In a run both feet fly at times, which is no sliding.
-  if (gait.double_support > 0) text += fmt::format(", sliding {:.1f} mm/s", 1e3 * slide);
+  // In a run, flight phases would count as skating.
+  if (gait.double_support > 0) text += fmt::format(", foot skate {:.1f} mm/s", 1e3 * slide);
   return text;
 }
 
@@ -170,13 +169,13 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!changes) return changes.error();
   if (!changes->empty() && context.output.empty()) {
     return Error(
-        "usage", "-o is missing: where shall the changed keys go?",
-        fmt::format("-o {} puts them beside the motion",
+        "usage", "edits need an output file, -o",
+        fmt::format("use -o {} to write beside the motion",
                     options.input == "-" ? "NAME.keys.json" : keys_sidecar_path(options.input)));
   }
-  const auto clip = read_motion(options.input, context);
+  const auto clip = io::open_motion(options.input, context);
   if (!clip) return clip.error();
-  const auto find_roles = open_role_map(options.map, context);
+  const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
   const auto roles = (*find_roles)(clip->skeleton);
   if (!roles) return roles.error();
@@ -193,7 +192,7 @@ Result<int> run(const Options& options, ToolContext& context) {
     sidecar = with_edits(std::move(found->keys), sidecar);
     contacts = std::move(found->contacts);
   } else if (*before && (*before)->has_edits()) {
-    context.say("the keys were edited by hand and are kept; --find steps finds the rest anew");
+    context.log("the keys were edited by hand and are kept; --find steps detects the rest again");
   }
   sidecar.duration = clip->duration();
   if (Status status = change(*changes, *clip, sidecar); !status) return status.error();
@@ -212,7 +211,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (context.output.empty() && options.plot.empty()) {
     context.print(as_table(sidecar, clip->skeleton));
   }
-  context.say(fmt::format("{}: {}, {}{}", name_of_input(options.input),
+  context.log(fmt::format("{}: {}, {}{}", name_of_input(options.input),
                           counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
                           counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
                           gait_text(gait, slide)));

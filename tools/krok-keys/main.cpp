@@ -10,17 +10,17 @@ krok::ToolSpec make_spec() {
   krok::ToolSpec spec;
   spec.name = "krok-keys";
   spec.summary =
-      "Finds when the feet stand and the keytimes of a gait, shows them, and keeps them in a file "
-      "beside the motion, which people may edit";
+      "Detects foot contacts and gait keytimes, shows them, and writes them to an editable file "
+      "beside the motion";
   spec.inputs = "IN.anim|IN.bvh|IN.amc";
   spec.examples = {
-      {"krok-keys walk.anim", "shows what is found, or what stands in walk.keys.json if edited"},
+      {"krok-keys walk.anim", "prints what is detected, or walk.keys.json if that was edited"},
       {"krok-keys walk.anim -o walk.keys.json --plot walk.svg",
-       "writes the file beside the motion, and a plot of the feet to judge it by"},
+       "writes the file beside the motion, and a plot of the feet for checking"},
       {"krok-keys walk.anim -o walk.keys.json --set left_strike=1.25s,right_off=1.31s",
-       "moves two keytimes; they stay when the file is made anew"},
-      {"krok-keys motions --out-dir motions", "for every motion of a folder, beside it"}};
-  spec.exit_no = "--find steps was asked for and no step was found";
+       "moves two keytimes; they are kept when the file is rebuilt"},
+      {"krok-keys motions --out-dir motions", "for all motions of a folder, beside them"}};
+  spec.exit_no = "--find steps was given and no step was found";
   spec.needs_output = false;
   spec.batch = {{".anim", ".bvh", ".amc"}, krok::always(".keys.json")};
   spec.declare = [options](krok::CommandOptions& command) { declare(command, *options); };

@@ -13,7 +13,7 @@ Error usage(std::string message, std::string hint) {
   return Error("usage", std::move(message), std::move(hint));
 }
 
-// What stands before the last `mark` and after it.
+// The text before and after the last `mark`.
 struct Halves {
   std::string before, after;
   bool split = false;
@@ -36,8 +36,8 @@ Result<KeytimeChange> parse_keytime(const std::string& text, const std::string& 
                                     const std::string& option, bool needs_time) {
   const Halves halves = halves_at(text, mark);
   if (halves.before.empty() || (needs_time && !halves.split)) {
-    return usage(fmt::format("{}: '{}' does not say what and when", option, text),
-                 fmt::format("write {} left_strike{}1.25s", option, mark));
+    return usage(fmt::format("{}: '{}' needs a name and a time", option, text),
+                 fmt::format("for example {} left_strike{}1.25s", option, mark));
   }
   KeytimeChange change{halves.before, {}};
   if (!halves.split) return change;
@@ -51,8 +51,8 @@ Result<ContactChange> parse_contact(const std::string& text) {
   const Halves parts = halves_at(text, "=");
   const Halves times = halves_at(parts.after, "..");
   if (parts.before.empty() || !times.split) {
-    return usage(fmt::format("--add-contact: '{}' does not say which joint and when", text),
-                 "write --add-contact LeftFoot=1.2s..1.8s");
+    return usage(fmt::format("--add-contact: '{}' needs a joint and a time range", text),
+                 "for example --add-contact LeftFoot=1.2s..1.8s");
   }
   const auto from = time_of(times.before, "--add-contact");
   if (!from) return from.error();
@@ -66,30 +66,31 @@ Result<ContactChange> parse_contact(const std::string& text) {
 void declare(CommandOptions& command, Options& options) {
   command
       .add_option("input", options.input,
-                  "The motion: a .anim file, or a capture as krok-import reads it by default")
+                  "Motion: a .anim file, or a capture, read with the defaults of krok-import")
       .type_name("IN")
       .required();
   add_map_option(command, options.map);
   command
       .add_option("--find", options.find,
-                  "steps (find contacts and keytimes; what was set by hand stays), none (take the "
-                  "file as it is), or auto: none where a person edited the file, otherwise steps")
+                  "steps (detect contacts and keytimes, keep manual edits), none (use the "
+                  "existing file), or auto: none if the file was edited by hand, otherwise steps")
       .type_name("WHAT")
       .transform(
           one_of<Find>({{"auto", Find::automatic}, {"steps", Find::steps}, {"none", Find::none}}))
       .default_str("auto");
   command
       .add_option("--keys", options.keys,
-                  "The file to begin with; otherwise the one that -o names, or else the one beside "
-                  "the motion")
+                  "Initial keytime file (default: the one given by -o, or else the one beside "
+                  "the motion)")
       .type_name("IN.json");
   command.add_flag("--discard-edits", options.discard_edits,
-                   "Find all anew, whatever a person changed before");
+                   "Detect everything again and discard manual edits");
   command
-      .add_option("--plot", options.plot,
-                  "Heights and speeds of the feet over time with contacts and keytimes, as SVG")
+      .add_option(
+          "--plot", options.plot,
+          "Plot (SVG) of heights and speeds of the feet over time, with contacts and keytimes")
       .type_name("OUT.svg");
-  const char* group = "By hand";
+  const char* group = "Manual edits";
   const auto list = [&](const char* name, std::vector<std::string>& values, const char* help,
                         const char* type) {
     command.add_option(name, values, help)
@@ -99,16 +100,16 @@ void declare(CommandOptions& command, Options& options) {
         .group(group);
   };
   list("--set", options.set,
-       "Move the keytime of that name that is within 0.15 s there, or else add one; several with "
-       "commas, or repeated. Times: 1.25s, 250ms, or 120f for a frame",
+       "Move the keytime of that name within 0.15 s to this time, or add one; several separated by "
+       "commas, or repeat the option. Times: 1.25s, 250ms, or 120f (frame)",
        "NAME=TIME");
-  list("--remove", options.remove, "Take out a keytime, or all of a name", "NAME[@TIME]");
+  list("--remove", options.remove, "Remove a keytime, or all with that name", "NAME[@TIME]");
   list("--add-contact", options.add_contact,
-       "Add a contact of a joint, in place of those it overlaps; its place is where the joint is "
-       "meanwhile",
+       "Add a contact of a joint, replacing those it overlaps; its position is that of the joint "
+       "during that time",
        "JOINT=TIME..TIME");
-  list("--remove-contact", options.remove_contact,
-       "Take out the contact that a joint has at that time", "JOINT@TIME");
+  list("--remove-contact", options.remove_contact, "Remove a joint's contact at that time",
+       "JOINT@TIME");
 }
 
 Result<Changes> changes_of(const Options& options) {
@@ -140,7 +141,7 @@ Status check(const Options& options) {
   const auto changes = changes_of(options);
   if (!changes) return changes.error();
   if (options.discard_edits && options.find == Find::none) {
-    return usage("--discard-edits and --find none leave nothing", "choose one of them");
+    return usage("--discard-edits and --find none exclude each other", "choose one of them");
   }
   return {};
 }

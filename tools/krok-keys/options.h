@@ -14,22 +14,22 @@ enum class Find : unsigned char { automatic, steps, none };
 
 struct Options {
   std::string input;
-  std::string map;   // a file that tells joints' roles, or empty
-  std::string keys;  // a file to begin with, or empty
+  std::string map;   // path of a role map, or empty
+  std::string keys;  // path of the initial keytime file, or empty
   Find find = Find::automatic;
   bool discard_edits = false;
-  std::vector<std::string> set, remove, add_contact, remove_contact;  // as typed
+  std::vector<std::string> set, remove, add_contact, remove_contact;  // unparsed
   std::string plot;
 };
 
-// Changes by hand, understood.
+// Parsed manual edits.
 struct KeytimeChange {
   std::string name;
-  std::optional<ClipTime> time;  // of one to be removed: nothing is all of that name
+  std::optional<ClipTime> time;  // if not set in a removal: all keytimes of that name
 };
 struct ContactChange {
   std::string joint;
-  ClipTime from, to;  // of one to be removed: both a moment within it
+  ClipTime from, to;  // in a removal both are a time within it
 };
 struct Changes {
   std::vector<KeytimeChange> set, remove;
@@ -42,7 +42,7 @@ struct Changes {
 
 void declare(CommandOptions& command, Options& options);
 
-// Code usage, or those of parse_clip_time, with the option's name.
+// Code: usage, or those of parse_clip_time, with the option's name.
 Result<Changes> changes_of(const Options& options);
 Status check(const Options& options);
 

@@ -9,7 +9,8 @@ krok::ToolSpec make_spec() {
   krok::ToolSpec spec;
   spec.name = "krok-mix";
   spec.summary =
-      "Plays a timeline: motions one after the other, changes between them, layers on top";
+      "Bakes a timeline to a motion: a sequence of motions, transitions between them, layers on "
+      "top";
   spec.inputs = "IN.json";
   spec.examples = {
       {"krok-mix story.json -o story.anim --json=story.report.json",
@@ -17,9 +18,9 @@ krok::ToolSpec make_spec() {
        "\"run\": \"run.anim\"}, \"base\": [{\"source\": \"walk\", \"loop\": 2}, {\"source\": "
        "\"run\", \"change\": {\"kind\": \"crossfade\", \"duration\": \"0.4s\"}}]}"},
       {"krok-mix wave.json -o wave.anim",
-       "wave.json has besides: \"layers\": [{\"mask\": [{\"below\": \"LeftShoulder\", \"soft\": "
+       "wave.json adds: \"layers\": [{\"mask\": [{\"below\": \"LeftShoulder\", \"soft\": "
        "2}], \"items\": [{\"source\": \"wave\", \"at\": \"1s\", \"fade_in\": \"0.3s\"}]}]"},
-      {"krok-mix 'stories/scene_*.json' --out-dir out", "all timelines that a pattern names"}};
+      {"krok-mix 'stories/scene_*.json' --out-dir out", "all timelines matching a pattern"}};
   spec.batch = {{".json"}, krok::always(".anim")};
   spec.declare = [options](krok::CommandOptions& command) { declare(command, *options); };
   spec.run = [options](krok::ToolContext& context) { return run(*options, context); };

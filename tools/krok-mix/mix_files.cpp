@@ -44,16 +44,15 @@ void warn_of_pops(const timeline::Timeline& timeline, const Mixed& mixed, ToolCo
     told.joint = joint_name(mixed, change.fastest_joint);
     told.frame = change.fastest_frame;
     told.message = fmt::format(
-        "the change ({}) into {} turns {} at {:.0f} degrees a second (frame {}); 99 of 100 frames "
-        "of the "
-        "motions stay below {:.0f}",
+        "the change ({}) into {} rotates {} at {:.0f} degrees per second (frame {}); 99 % of the "
+        "frames of the motions stay below {:.0f}",
         timeline::change_name(change.kind), shown(item.name), told.joint,
         change.fastest / kRadiansPerDegree, change.fastest_frame, change.usual / kRadiansPerDegree);
     told.hint = change.kind == timeline::ChangeKind::cut
-                    ? "a change of kind inertial or crossfade goes over smoothly"
-                    : "a longer duration, or another moment, is gentler";
+                    ? "a change of kind inertial or crossfade is smooth"
+                    : "use a longer duration or another time";
     told.where = item.where;
-    context.tell(std::move(told));
+    context.diagnose(std::move(told));
   }
 }
 
@@ -150,8 +149,8 @@ void report(const timeline::Timeline& timeline, const Mixed& mixed, ToolContext&
 void declare(CommandOptions& command, Options& options) {
   command
       .add_option("input", options.input,
-                  "A timeline (JSON): motions one after the other, changes between them, layers; "
-                  "formats/timeline/SPEC.md describes it")
+                  "Timeline (JSON): a sequence of motions, transitions, layers; "
+                  "see formats/timeline/SPEC.md")
       .type_name("IN.json")
       .required();
   add_keys_option(command, options.keys).group("Time");
@@ -163,7 +162,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
     return status.error();
   }
-  const auto find_roles = open_role_map(options.map, context);
+  const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
   const auto document = read_timeline(options, context);
   if (!document) return document.error();
@@ -171,19 +170,19 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto motions = read_sources(*document, options.input, options, *find_roles, context);
   if (!motions) return motions.error();
   if (motions->sources.empty()) {
-    return Error("timeline-empty", "names no motion").in_file(options.input);
+    return Error("timeline-empty", "has no motions").in_file(options.input);
   }
   const auto roles = (*find_roles)(motions->sources.front().clip->skeleton);
   if (!roles) return roles.error();
   auto mixed = timeline::mix(timeline, motions->sources, *roles, {.jobs = context.jobs});
   if (!mixed) return Error(mixed.error()).in_file(options.input);
-  context.tell(mixed->warnings);
+  context.diagnose(mixed->warnings);
   warn_of_pops(timeline, *mixed, context);
   if (Status status = write_results(options, *motions, *mixed, context); !status) {
     return status.error();
   }
   report(timeline, *mixed, context);
-  context.say(fmt::format("{} -> {}: {} and {} on {}, {} at {} /s ({} s)", options.input,
+  context.log(fmt::format("{} -> {}: {} and {} on {}, {} at {} fps ({} s)", options.input,
                           context.output,
                           counted(static_cast<long long>(timeline.base.size()), "item"),
                           counted(static_cast<long long>(timeline.layers.size()), "layer"),

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <set>
 
+#include "formats/io/open_motion.h"
 #include "formats/sequences/sequences.h"
-#include "tools/common/motion_input.h"
 
 namespace krok::mix_tool {
 
@@ -39,14 +39,14 @@ Result<std::vector<timeline::Part>> read_parts(const std::string& path, double r
 
 Result<TimelineSources> read_sources(const timeline_file::Document& document,
                                      const std::string& path, const Options& options,
-                                     const FindRoles& find_roles, ToolContext& context) {
+                                     const io::FindRoles& find_roles, ToolContext& context) {
   std::set<int> in_base;
   for (const timeline::BaseItem& item : document.timeline.base) in_base.insert(item.play.source);
   TimelineSources read;
   for (std::size_t i = 0; i < document.sources.size(); ++i) {
     const timeline_file::SourceFile& source = document.sources[i];
     const std::string motion_path = beside(path, source.path);
-    auto clip = read_motion(motion_path, context);
+    auto clip = io::open_motion(motion_path, context);
     if (!clip) return clip.error();
     auto& motion = read.motions.emplace_back();
     motion.clip = std::move(*clip);

@@ -8,7 +8,7 @@
 
 namespace krok::mix_tool {
 
-// What a timeline's motions are, read; the sources point into it.
+// The motions of a timeline; the sources point into it.
 struct TimelineSources {
   struct Motion {
     Clip clip;
@@ -18,10 +18,10 @@ struct TimelineSources {
   std::vector<timeline::Source> sources;
 };
 
-// Reads the motions, relative to the folder of the timeline at `path`, their named parts and, of
-// those that the base plays, their keys.
+// Reads the motions, relative to the folder of the timeline at `path`, their named parts, and the
+// keys of those in the base track.
 Result<TimelineSources> read_sources(const timeline_file::Document& document,
                                      const std::string& path, const Options& options,
-                                     const FindRoles& find_roles, ToolContext& context);
+                                     const io::FindRoles& find_roles, ToolContext& context);
 
 }  // namespace krok::mix_tool

@@ -6,9 +6,9 @@
 
 namespace krok::morph {
 
-// What the tool does, one function an action; the options have been checked. Codes, beside those of
-// what is read and written: morph-input, morph-empty, morph-vertices, morph-triangles, morph-name,
-// morph-target, morph-format, morph-clip-too-long, morph-too-large.
+// One function per action; the options have been checked. Codes, besides those of readers and
+// writers: morph-input, morph-empty, morph-vertices, morph-triangles, morph-name, morph-target,
+// morph-format, morph-clip-too-long, morph-too-large.
 Result<int> pack(const Options& options, ToolContext& context);
 Result<int> unpack(const Options& options, ToolContext& context);
 Result<int> info(const Options& options, ToolContext& context);

@@ -8,7 +8,7 @@
 #include "tools/krok-morph/shape_file.h"
 #include "tools/krok-morph/target_file.h"
 
-// Morph targets over time.
+// Bakes animated morph targets.
 
 namespace krok::morph {
 
@@ -33,10 +33,10 @@ Status check_as(const Options& options, MotionFormat format) {
   if (options.as != As::targets || format == MotionFormat::glb || format == MotionFormat::gltf) {
     return {};
   }
-  return Error("usage", "--as targets is for glTF; a point cache holds whole shapes");
+  return Error("usage", "--as targets is for glTF; a point cache has baked shapes");
 }
 
-// A weight that never leaves 0 is most likely one that was forgotten, or misspelt in a table.
+// A weight that is always 0 was most likely forgotten, or misspelt in a table.
 void report(const MorphWeights& weights, ToolContext& context) {
   const std::size_t targets = weights.names.size();
   Json list = Json::array();
@@ -80,9 +80,9 @@ Result<int> bake(const Options& options, ToolContext& context) {
                             : add_baked(base->model, motion_of(base->model, morphs, *weights),
                                         *format, outputs, context);
   if (!status) return status.error();
-  if (Status status = outputs.finish(); !status) return status.error();
+  if (Status step = outputs.finish(); !step) return step.error();
   report(*weights, context);
-  context.say(fmt::format("{}: {} at {} /s, {}", context.output,
+  context.log(fmt::format("{}: {} at {} fps, {}", context.output,
                           counted(weights->frame_count(), "frame"), readable(weights->rate),
                           counted(morphs.target_count(), "target")));
   return kExitDone;

@@ -10,7 +10,7 @@
 #include "tools/krok-morph/key_shapes_input.h"
 #include "tools/krok-morph/motion_file.h"
 
-// A key-frame mesh: shapes at times, and what is between them.
+// Key-frame meshes: interpolates shapes over time.
 
 namespace krok::morph {
 
@@ -25,11 +25,11 @@ Result<int> frame_count(const KeyShapes& keys) {
       frames * static_cast<double>(keys.shapes.names.size()) <= kMaxWeights) {
     return static_cast<int>(frames);
   }
-  return Error("morph-too-large", fmt::format("{} s at {} frames a second are too many frames",
+  return Error("morph-too-large", fmt::format("{} s at {} fps are too many frames",
                                               readable(keys.times.back()), readable(keys.rate)));
 }
 
-// How much of each shape shows in each frame; the shares of a frame sum to 1.
+// The weight of each shape in each frame; the weights of a frame sum to 1.
 MorphWeights shares_of(const KeyShapes& keys, int frames) {
   MorphWeights weights;
   weights.rate = keys.rate;
@@ -47,7 +47,7 @@ MorphWeights shares_of(const KeyShapes& keys, int frames) {
   return weights;
 }
 
-// The key-frame mesh with a shape a key.
+// The key-frame mesh with one shape per key.
 KeyFrameMesh mesh_of(const KeyShapes& keys) {
   KeyFrameMesh mesh;
   mesh.times = keys.times;
@@ -61,7 +61,7 @@ KeyFrameMesh mesh_of(const KeyShapes& keys) {
   return mesh;
 }
 
-// The shapes after the first one, which is the mesh itself, and their weights.
+// Removes the first shape, which is the mesh itself, and its weights.
 void leave_out_first(MorphSet& shapes, MorphWeights& weights) {
   const auto vertices = static_cast<std::ptrdiff_t>(shapes.vertex_count);
   const std::size_t targets = weights.names.size();
@@ -109,7 +109,7 @@ void report(const KeyShapes& keys, int frames, ToolContext& context) {
   result["frames"] = frames;
   result["rate"] = keys.rate;
   context.report.result = std::move(result);
-  context.say(fmt::format("{}: {}, {} at {} /s", context.output,
+  context.log(fmt::format("{}: {}, {} at {} fps", context.output,
                           counted(static_cast<long long>(keys.times.size()), "key"),
                           counted(frames, "frame"), readable(keys.rate)));
 }
@@ -137,7 +137,7 @@ Result<int> frames(const Options& options, ToolContext& context) {
   }
   const Status status = add_motion(*keys, *count, *format, options.as, outputs, context);
   if (!status) return status.error();
-  if (Status status = outputs.finish(); !status) return status.error();
+  if (Status step = outputs.finish(); !step) return step.error();
   report(*keys, *count, context);
   return kExitDone;
 }

@@ -10,7 +10,7 @@
 #include "tools/krok-morph/shape_file.h"
 #include "tools/krok-morph/target_file.h"
 
-// What is in an .exr of morph targets.
+// Describes an .exr of morph targets.
 
 namespace krok::morph {
 
@@ -41,10 +41,9 @@ Result<int> info(const Options& options, ToolContext& context) {
   std::string text = fmt::format("{} of {}, {}\n", counted(morphs.target_count(), "target"),
                                  counted(morphs.vertex_count, "vertex", "vertices"),
                                  normals ? "with normals" : "without normals");
-  text +=
-      fmt::format("a picture of {} x {} texels: positions in rows 0 to {}, {} in rows {} to {}\n",
-                  size->width, size->height, size->height / 2 - 1, normals ? "normals" : "zeros",
-                  size->height / 2, size->height - 1);
+  text += fmt::format("image of {} x {} texels: positions in rows 0 to {}, {} in rows {} to {}\n",
+                      size->width, size->height, size->height / 2 - 1,
+                      normals ? "normals" : "zeros", size->height / 2, size->height - 1);
   Json list = Json::array();
   for (int t = 0; t < morphs.target_count(); ++t) {
     Json one;

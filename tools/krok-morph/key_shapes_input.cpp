@@ -26,8 +26,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// A run of digits, or one other character, from the beginning of a name; taken off it. Runs compare
-// by their length without zeros in front, then by what they are.
+// Removes a run of digits, or one other character, from the start of a name. Runs compare by length
+// without leading zeros, then by digits.
 std::tuple<bool, std::size_t, std::string_view> take_piece(std::string_view& name) {
   std::size_t size = 0;
   while (size < name.size() && is_digit(name[size])) ++size;
@@ -68,7 +68,7 @@ Result<std::vector<std::string>> shapes_in(const std::string& folder) {
   }
   if (failed) return Error("file-unreadable", failed.message()).in_file(folder);
   if (names.empty()) {
-    return Error("morph-empty", "no .obj, .glb, .gltf or .model file is in the folder")
+    return Error("morph-empty", "the folder has no .obj, .glb, .gltf or .model file")
         .in_file(folder);
   }
   std::ranges::sort(names, by_number);
@@ -92,13 +92,13 @@ Result<key_shapes::KeyShapeFile> keys_of_folder(const std::string& folder, doubl
 Result<key_shapes::KeyShapeFile> keys_of_file(const Options& options, ToolContext& context) {
   const std::string& path = options.files[0];
   if (!options.spacing.empty()) {
-    return Error("usage", "--spacing is for a folder; the file of keys tells their times");
+    return Error("usage", "--spacing is for a folder; a key file has its own times");
   }
   const auto file = context.open_input(path);
   if (!file) return file.error();
   if (extension(path) == ".obj") {
-    return Error("morph-input", "this is one shape, expected a file of keys or a folder of shapes",
-                 "keys are JSON, see formats/key_shapes/SPEC.md")
+    return Error("morph-input", "this is a single shape, expected a key file or a folder of shapes",
+                 "key files are JSON, see formats/key_shapes/SPEC.md")
         .in_file(path);
   }
   auto keys = key_shapes::read(file->text());
@@ -110,7 +110,7 @@ Status add_shape(ShapeFile shape, const Options& options, KeyShapes& keys) {
   MorphSet& shapes = keys.shapes;
   const std::vector<Vec3f>& positions = shape.model.positions;
   if (shapes.positions.size() + positions.size() > kMaxShapeVertices) {
-    return Error("morph-too-large", fmt::format("the shapes have more than {} vertices together",
+    return Error("morph-too-large", fmt::format("the shapes have more than {} vertices in total",
                                                 grouped(kMaxShapeVertices)))
         .in_file(shape.path);
   }

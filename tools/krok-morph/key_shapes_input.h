@@ -10,19 +10,19 @@
 
 namespace krok::morph {
 
-// Shapes at times, with all files read.
+// Key shapes with times; all files have been read.
 struct KeyShapes {
-  ShapeFile base;             // the shape of the first key
-  MorphSet shapes;            // each file's once, the first key's too
-  std::vector<double> times;  // [keys] seconds, rising
-  std::vector<int> shape_of;  // [keys] which of the shapes
+  ShapeFile base;             // shape of the first key
+  MorphSet shapes;            // one per file, including the first key's
+  std::vector<double> times;  // [keys] seconds, ascending
+  std::vector<int> shape_of;  // [keys] index into shapes
   ShapeJoin join = ShapeJoin::linear;
   double tension = 0;
   double rate = 30;
 };
 
-// What the action frames is given: a file of keys, or a folder with a shape a file, taken in the
-// order of their names ("2" before "10"). Options go before what the file says.
+// Input of the action frames: a key file, or a folder with one shape per file, in natural name
+// order ("2" before "10"). Options override the file.
 Result<KeyShapes> read_key_shapes(const Options& options, ToolContext& context);
 
 }  // namespace krok::morph

@@ -16,7 +16,7 @@ Result<int> run(const Options& options, ToolContext& context) {
     case Action::frames:
       return frames(options, context);
   }
-  return Error("internal", "no such action");
+  return Error("internal", "unknown action");
 }
 
 }  // namespace krok::morph
@@ -26,20 +26,19 @@ int main(int argc, char** argv) {
   krok::ToolSpec spec;
   spec.name = "krok-morph";
   spec.summary =
-      "Morph targets: shapes of one mesh packed into a float texture, taken out again, and shown "
-      "over time; and key-frame meshes, whose shapes come at times";
+      "Packs morph targets into a float texture, unpacks and animates them; bakes key-frame meshes";
   spec.inputs = "pack|unpack|info|bake|frames IN...";
   spec.examples = {
       {"krok-morph pack face.obj smile.obj blink.obj -o face.exr",
-       "two targets, called smile and blink, of the mesh in face.obj"},
-      {"krok-morph pack hero.glb -o hero.exr", "the targets that a glTF character brings"},
-      {"krok-morph info face.exr face.obj", "what they are, and how far each moves the mesh"},
+       "two targets, smile and blink, of the mesh in face.obj"},
+      {"krok-morph pack hero.glb -o hero.exr", "the targets of a glTF character"},
+      {"krok-morph info face.exr face.obj", "lists the targets and how far each moves the mesh"},
       {"krok-morph unpack face.exr face.obj --out-dir shapes", "back to shapes/smile.obj, ..."},
       {"krok-morph bake face.exr face.obj --weights talk.json -o talk.glb",
-       "the face over time, by keys that a person wrote"},
-      {"krok-morph frames flag.json -o flag.glb", "shapes at times, and what is between them"},
+       "animates the face with hand-written keys"},
+      {"krok-morph frames flag.json -o flag.glb", "a key-frame mesh, interpolated between shapes"},
       {"krok-morph frames flag_shapes --spacing 0.5s --between hermite -o flag.pc2",
-       "a folder of them, half a second apart, on curves, as a point cache"}};
+       "a folder of shapes every 0.5 s, cubic interpolation, as a point cache"}};
   spec.needs_output = false;
   spec.declare = [&options](krok::CommandOptions& command) {
     krok::morph::declare(command, options);

@@ -11,7 +11,7 @@ namespace krok::morph {
 
 namespace {
 
-// A baked file above this is refused.
+// Larger baked files are an error.
 constexpr std::uint64_t kMaxBakedBytes = std::uint64_t{1} << 30;
 
 gltf::WriteOptions gltf_options(MotionFormat format, const ToolContext& context) {
@@ -26,12 +26,12 @@ Status check_bakeable(const Model& model, int frames, const std::string& path) {
   const std::uint64_t bytes = gltf::baked_bytes(model, frames);
   if (frames - 1 <= gltf::kMaxMorphTargets && bytes <= kMaxBakedBytes) return {};
   return Error("morph-clip-too-long",
-               fmt::format("{} of {} make {} morph targets and {} MB; viewers hold at most {}, and "
-                           "{} MB is the limit here",
+               fmt::format("{} of {} need {} morph targets and {} MB; viewers support at most {}, "
+                           "and the limit is {} MB",
                            counted(frames, "frame"),
                            counted(model.vertex_count(), "vertex", "vertices"), frames - 1,
                            (bytes >> 20) + 1, gltf::kMaxMorphTargets, kMaxBakedBytes >> 20),
-               "--as targets holds any length, as does a .pc2 file; or a smaller --rate")
+               "use --as targets or a .pc2 file for any length, or a lower --rate")
       .in_file(path);
 }
 
@@ -44,9 +44,9 @@ Result<MotionFormat> motion_format(const std::string& path, bool exr) {
   if (end == ".pc2") return MotionFormat::pc2;
   if (end == ".exr" && exr) return MotionFormat::exr;
   return Error("morph-format",
-               end.empty() ? fmt::format("{} has no ending to tell the format by", path)
-                           : fmt::format("this is not written as {}", end),
-               exr ? "known are .glb, .gltf, .pc2 and .exr" : "known are .glb, .gltf and .pc2")
+               end.empty() ? fmt::format("{} has no extension; cannot determine the format", path)
+                           : fmt::format("unsupported extension {}", end),
+               exr ? "use .glb, .gltf, .pc2 or .exr" : "use .glb, .gltf or .pc2")
       .in_file(path);
 }
 

@@ -11,18 +11,18 @@
 
 namespace krok::morph {
 
-// What a mesh in motion is written as, by the ending of its file.
+// Output format of an animated mesh, by extension.
 enum class MotionFormat { glb, gltf, pc2, exr };
 
-// An Error (code morph-format) for other endings; `exr` says whether .exr is one.
+// An Error (code morph-format) for other extensions; `exr`: whether .exr is allowed.
 Result<MotionFormat> motion_format(const std::string& path, bool exr);
 
-// Adds the motion as whole shapes to the outputs: glTF or a PC2 point cache. An Error (code
-// morph-clip-too-long) for glTF that no viewer would show.
+// Adds the motion as baked shapes to the outputs: glTF or a PC2 point cache. An Error (code
+// morph-clip-too-long) for glTF beyond the limits of viewers.
 Status add_baked(const Model& model, const MeshMotion& motion, MotionFormat format,
                  OutputSet& outputs, ToolContext& context);
 
-// Adds glTF with morph targets and keys for their weights, one a frame.
+// Adds glTF with morph targets and weight keys, one per frame.
 Status add_targets(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
                    MotionFormat format, OutputSet& outputs, ToolContext& context);
 

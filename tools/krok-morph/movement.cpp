@@ -40,8 +40,8 @@ Json to_json(const Movement& movement) {
 }
 
 std::string describe(const Movement& movement) {
-  if (movement.moved == 0) return "moves nothing";
-  return fmt::format("moves {}, at most {} mm (vertex {}), {} mm in the mean",
+  if (movement.moved == 0) return "no displacement";
+  return fmt::format("moves {}, max {} mm (vertex {}), mean {} mm",
                      counted(movement.moved, "vertex", "vertices"),
                      readable(movement.largest * kMillimetres, 3), movement.vertex,
                      readable(movement.mean * kMillimetres, 3));

@@ -8,12 +8,12 @@
 
 namespace krok::morph {
 
-// How far a target moves a mesh; metres.
+// How far a target displaces a mesh, in metres.
 struct Movement {
-  int moved = 0;       // vertices, by more than a thousandth of a millimetre
+  int moved = 0;       // vertices displaced by more than 1e-6 m
   double largest = 0;  // of all vertices
-  int vertex = -1;     // the one that moves farthest; -1 where none moves
-  double mean = 0;     // over those that move
+  int vertex = -1;     // with the largest displacement; -1 if none moves
+  double mean = 0;     // over moved vertices
 };
 
 Movement movement_of(std::span<const Vec3f> base, std::span<const Vec3f> target);
@@ -21,7 +21,7 @@ Movement movement_of(std::span<const Vec3f> base, std::span<const Vec3f> target)
 // For reports: "vertices_moved", "largest_mm", "vertex", "mean_mm".
 Json to_json(const Movement& movement);
 
-// "moves 312 vertices, at most 12.3 mm (vertex 88), 3.1 mm in the mean".
+// "moves 312 vertices, max 12.3 mm (vertex 88), mean 3.1 mm".
 std::string describe(const Movement& movement);
 
 }  // namespace krok::morph

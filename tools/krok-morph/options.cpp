@@ -23,7 +23,7 @@ constexpr unsigned kPack = bit(Action::pack), kUnpack = bit(Action::unpack),
 struct ActionFacts {
   Action action;
   const char* name;
-  std::size_t least, most;  // how many files it takes
+  std::size_t least, most;  // number of files
   const char* files;
 };
 constexpr std::array kActions = {
@@ -31,10 +31,10 @@ constexpr std::array kActions = {
     ActionFacts{Action::unpack, "unpack", 2, 2, "TARGETS.exr BASE"},
     ActionFacts{Action::info, "info", 1, 2, "TARGETS.exr [BASE]"},
     ActionFacts{Action::bake, "bake", 2, 2, "TARGETS.exr BASE"},
-    ActionFacts{Action::frames, "frames", 1, 1, "KEYS.json, or FOLDER"},
+    ActionFacts{Action::frames, "frames", 1, 1, "KEYS.json or FOLDER"},
 };
 
-// What each option is for.
+// The actions that an option applies to.
 struct OptionUse {
   const char* option;
   unsigned actions;
@@ -84,7 +84,7 @@ void declare_shapes(CommandOptions& command, Options& options) {
             const auto unit = parse_unit(text);
             if (unit) options.metres_per_unit = unit->metres;
           },
-          "What one unit of OBJ files is: m, cm, mm, in, ft or a length such as 5.64cm")
+          "Length unit of OBJ files: m, cm, mm, in, ft or a length such as 5.64cm")
       .type_name("UNIT")
       .default_str("m")
       .check([](std::string& text) {
@@ -93,27 +93,25 @@ void declare_shapes(CommandOptions& command, Options& options) {
       })
       .group("Shapes");
   add_choice<Up>(command, "--up", options.up, {{"y", Up::y}, {"z", Up::z}},
-                 "Which axis points up in OBJ files: y, the figure facing +Z, or z, the figure "
-                 "facing -Y",
-                 "AXIS", "y")
+                 "Up axis of OBJ files: y (character faces +Z) or z (character faces -Y)", "AXIS",
+                 "y")
       .group("Shapes");
   command
       .add_flag("--by-order", options.by_order,
-                "Take vertices to correspond by their order alone; otherwise shapes must have the "
-                "triangles of the first too")
+                "Match vertices by order only; by default shapes must also have the triangles of "
+                "the first")
       .group("Shapes");
   command
-      .add_option(
-          "--name", options.names,
-          "pack: what a target is called, once for each TARGET in their order; otherwise as "
-          "its file without the ending")
+      .add_option("--name", options.names,
+                  "pack: name of a target, once per TARGET in order; default: its file name "
+                  "without extension")
       .type_name("NAME")
       .allow_extra_args(false)
       .group("Shapes");
 }
 
 void declare_unpack(CommandOptions& command, Options& options) {
-  command.add_option("--out-dir", options.out_dir, "unpack: where the shapes go, a file each")
+  command.add_option("--out-dir", options.out_dir, "unpack: folder for the shapes, one file each")
       .type_name("DIR")
       .group("Unpack");
   add_choice<ShapeFormat>(command, "--format", options.format,
@@ -121,12 +119,12 @@ void declare_unpack(CommandOptions& command, Options& options) {
                            {"obj", ShapeFormat::obj},
                            {"glb", ShapeFormat::glb},
                            {"model", ShapeFormat::model}},
-                          "unpack: what the files are: obj, glb, model, or base: as BASE is",
-                          "FORMAT", "base")
+                          "unpack: file format: obj, glb, model, or base: as BASE", "FORMAT",
+                          "base")
       .group("Unpack");
   command
       .add_option("--target", options.targets,
-                  "unpack: this target only, by its name; may be repeated")
+                  "unpack: only the target with this name; may be repeated")
       .type_name("NAME")
       .allow_extra_args(false)
       .group("Unpack");
@@ -135,38 +133,38 @@ void declare_unpack(CommandOptions& command, Options& options) {
 void declare_motion(CommandOptions& command, Options& options) {
   command
       .add_option("--weights", options.weights,
-                  "bake: how much of each target shows over time: a table as krok-import "
-                  "--morph-weights writes it, or keys (formats/weights/SPEC.md)")
+                  "bake: target weights over time: a table as written by krok-import "
+                  "--morph-weights, or keys (formats/weights/SPEC.md)")
       .type_name("IN.csv|IN.json")
       .group("Motion");
-  add_choice<As>(command, "--as", options.as, {{"clip", As::clip}, {"targets", As::targets}},
-                 "For glTF. clip: the motion baked, a shape a frame. targets: the shapes once, and "
-                 "keys for their weights",
-                 "WHAT", "clip")
+  add_choice<As>(
+      command, "--as", options.as, {{"clip", As::clip}, {"targets", As::targets}},
+      "For glTF. clip: baked, one shape per frame. targets: the shapes and keys for their weights",
+      "WHAT", "clip")
       .group("Motion");
   add_rate(command, "--rate", options.rate,
-           "Frames a second; otherwise as the weights or keys say, or else 30")
+           "Frames per second; default: from the weights or keys, or else 30")
       .group("Motion");
-  add_choice<Between>(command, "--between", options.between,
-                      {{"linear", Between::linear}, {"hermite", Between::hermite}},
-                      "frames: how a shape becomes the next: linear, or hermite, a curve through "
-                      "all; otherwise as the keys say, or else linear",
-                      "HOW", "")
+  add_choice<Between>(
+      command, "--between", options.between,
+      {{"linear", Between::linear}, {"hermite", Between::hermite}},
+      "frames: interpolation: linear or hermite (cubic); default: from the keys, or else linear",
+      "HOW", "")
       .group("Motion");
   add_number(command, "--tension", options.tension,
-             "frames, hermite: 0 goes evenly through the keys, 1 rests at each; otherwise as the "
-             "keys say, or else 0")
+             "frames, hermite: 0 passes smoothly through the keys, 1 stops at each; default: from "
+             "the keys, or else 0")
       .group("Motion");
   command
       .add_option("--spacing", options.spacing,
-                  "frames of a folder: the time from shape to shape, as 0.5s, 250ms or 1f")
+                  "frames of a folder: time between shapes, such as 0.5s, 250ms or 1f")
       .type_name("T")
       .default_str("1f")
       .group("Motion");
   command
       .add_option("--save-weights", options.save_weights,
-                  "frames: how much of each key's shape shows in each frame, as a table that bake "
-                  "and krok-skin take beside an .exr of the keys")
+                  "frames: weight of each key's shape in each frame, as a table for bake and "
+                  "krok-skin with an .exr of the keys")
       .type_name("OUT.csv")
       .group("Motion");
 }
@@ -177,7 +175,7 @@ Status check_uses(const Options& options) {
     const std::string option = std::string_view(use.option) == "--output" ? "-o" : use.option;
     return usage(fmt::format("{} is for {}", option, words_for(use.actions)),
                  options.action == Action::unpack && option == "-o"
-                     ? "say with --out-dir where the shapes go"
+                     ? "use --out-dir for the folder of the shapes"
                      : "");
   }
   return {};
@@ -187,7 +185,7 @@ Status check_files(const Options& options) {
   const ActionFacts& facts = facts_of(options.action);
   const std::size_t count = options.files.size();
   if (count >= facts.least && count <= facts.most) return {};
-  return usage(fmt::format("{} takes {}; here are {}", facts.name, facts.files,
+  return usage(fmt::format("{} takes {}, but {} given", facts.name, facts.files,
                            counted(static_cast<long long>(count), "file")));
 }
 
@@ -201,9 +199,9 @@ Status check_needs(const Options& options) {
     case Action::pack:
       return needs("--output", "such as -o face.exr");
     case Action::unpack:
-      return needs("--out-dir", "the folder that the shapes go to");
+      return needs("--out-dir", "the folder for the shapes");
     case Action::bake:
-      if (Status status = needs("--weights", "how much of each target shows over time"); !status) {
+      if (Status status = needs("--weights", "the target weights over time"); !status) {
         return status;
       }
       return needs("--output", "such as -o face.glb");
@@ -218,22 +216,22 @@ Status check_needs(const Options& options) {
 }  // namespace
 
 void declare(CommandOptions& command, Options& options) {
-  add_choice<Action>(command, "action", options.action,
-                     {{"pack", Action::pack},
-                      {"unpack", Action::unpack},
-                      {"info", Action::info},
-                      {"bake", Action::bake},
-                      {"frames", Action::frames}},
-                     "pack: shapes to an .exr of morph targets. unpack: back to a file a shape. "
-                     "info: what is in an .exr, and with BASE how far each target moves it. bake: "
-                     "the shape over time. frames: shapes at times, a key-frame mesh, over time",
-                     "ACTION", "")
+  add_choice<Action>(
+      command, "action", options.action,
+      {{"pack", Action::pack},
+       {"unpack", Action::unpack},
+       {"info", Action::info},
+       {"bake", Action::bake},
+       {"frames", Action::frames}},
+      "pack: write shapes to an .exr of morph targets. unpack: write one file per shape. info: "
+      "describe an .exr, and with BASE how far each target moves it. bake: animate targets over "
+      "time. frames: interpolate shapes at given times (key-frame mesh)",
+      "ACTION", "")
       .required();
   command
-      .add_option(
-          "files", options.files,
-          "What it is done with. BASE and TARGETs: .obj, .glb, .gltf or .model, of the same "
-          "vertices; pack takes the targets within a glTF BASE too")
+      .add_option("files", options.files,
+                  "Files of the action. BASE and TARGETs: .obj, .glb, .gltf or .model, with the "
+                  "same vertices; pack also takes the targets in a glTF BASE")
       .type_name("IN")
       .required();
   declare_shapes(command, options);
@@ -251,10 +249,10 @@ Status check(const Options& options) {
     return usage(
         fmt::format("{} for {}", counted(static_cast<long long>(options.names.size()), "--name"),
                     counted(static_cast<long long>(options.files.size()) - 1, "target file")),
-        "give one for each, in their order");
+        "give one for each target, in order");
   }
   if (options.tension && !(*options.tension >= 0 && *options.tension <= 1)) {
-    return usage(fmt::format("--tension {} is not within 0 to 1", readable(*options.tension)));
+    return usage(fmt::format("--tension {} is not between 0 and 1", readable(*options.tension)));
   }
   if (options.tension && options.between == Between::linear) {
     return usage("--tension is for --between hermite");
@@ -263,7 +261,7 @@ Status check(const Options& options) {
   const auto spacing = parse_clip_time(options.spacing);
   if (!spacing) return usage("--spacing: " + spacing.error().message, spacing.error().hint);
   if (spacing->value > 0) return {};
-  return usage("--spacing is not more than 0");
+  return usage("--spacing is not greater than 0");
 }
 
 }  // namespace krok::morph

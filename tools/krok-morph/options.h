@@ -16,36 +16,36 @@ enum class ShapeFormat { as_base, obj, glb, model };
 enum class Up { y, z };
 enum class Between { as_given, linear, hermite };
 
-// What stands on the command line.
+// Command-line options.
 struct Options {
   Action action = Action::info;
   std::vector<std::string> files;
 
-  // How OBJ files are read.
+  // OBJ conventions.
   double metres_per_unit = 1;
   Up up = Up::y;
-  bool by_order = false;  // triangles need not agree
+  bool by_order = false;  // triangles need not match
 
   std::vector<std::string> names;  // pack
   std::string out_dir;             // unpack
   ShapeFormat format = ShapeFormat::as_base;
-  std::vector<std::string> targets;  // of all, those to unpack
+  std::vector<std::string> targets;  // to unpack; empty: all
   std::string weights;               // bake
   As as = As::clip;                  // bake, frames
   std::optional<double> rate;
   Between between = Between::as_given;  // frames
   std::optional<double> tension;
-  std::string spacing;  // between the shapes of a folder; a ClipTime
+  std::string spacing;  // time between shapes of a folder; a ClipTime
   std::string save_weights;
 
-  // Whether an option, "--rate", stands on the command line; set by declare().
+  // Whether an option, "--rate", was given; set by declare().
   std::function<bool(const char* option)> given;
 };
 
-// `app` is kept by the options.
+// `options` keeps a reference to `command`.
 void declare(CommandOptions& command, Options& options);
 
-// Whether the options fit what is to be done, and each other. Code usage.
+// Checks that the options are valid for the action and consistent. Code usage.
 Status check(const Options& options);
 
 }  // namespace krok::morph

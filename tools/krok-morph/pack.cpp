@@ -8,7 +8,7 @@
 #include "tools/krok-morph/movement.h"
 #include "tools/krok-morph/shape_file.h"
 
-// Shapes to an .exr of morph targets.
+// Packs shapes into an .exr of morph targets.
 
 namespace krok::morph {
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxTargetVertices = 50'000'000;  // of all targets together
 
-// "shapes/smile.obj" is called smile.
+// "smile" for "shapes/smile.obj".
 std::string name_of(const std::string& path) {
   const std::string name = base_name(path);
   return to_utf8(name.substr(0, name.size() - extension(name).size()));
@@ -24,12 +24,12 @@ std::string name_of(const std::string& path) {
 
 Status check_name(const std::string& name, const MorphSet& morphs, const std::string& path) {
   if (name.empty() || !is_utf8(name)) {
-    return Error("morph-name", "a target's name is empty or not UTF-8", "--name gives it another")
+    return Error("morph-name", "a target's name is empty or not UTF-8", "set another with --name")
         .in_file(path);
   }
   if (morphs.find(name) < 0) return {};
-  return Error("morph-name", fmt::format("there are two targets called {}", shown(name)),
-               "--name gives each target another name")
+  return Error("morph-name", fmt::format("duplicate target name {}", shown(name)),
+               "give each target its own --name")
       .in_file(path);
 }
 
@@ -41,7 +41,7 @@ Status add_target(const ShapeFile& base, const std::string& path, const std::str
   if (Status status = check_name(name, morphs, path); !status) return status;
   const std::vector<Vec3f>& positions = shape->model.positions;
   if (morphs.positions.size() + positions.size() > kMaxTargetVertices) {
-    return Error("morph-too-large", fmt::format("the targets have more than {} vertices together",
+    return Error("morph-too-large", fmt::format("the targets have more than {} vertices in total",
                                                 grouped(kMaxTargetVertices)))
         .in_file(path);
   }
@@ -61,9 +61,9 @@ Json report_targets(const ShapeFile& base, const MorphSet& morphs, ToolContext& 
     one["name"] = name;
     one.update(to_json(movement));
     list.push_back(std::move(one));
-    context.say(fmt::format("  {}: {}", shown(name), describe(movement)));
+    context.log(fmt::format("  {}: {}", shown(name), describe(movement)));
     if (movement.moved > 0) continue;
-    context.warn("morph-still", fmt::format("the target {} is the base's own shape", shown(name)));
+    context.warn("morph-still", fmt::format("target {} is identical to the base", shown(name)));
   }
   return list;
 }
@@ -82,9 +82,9 @@ Result<int> pack(const Options& options, ToolContext& context) {
   morphs.vertex_count = base->model.vertex_count();
   if (alone && morphs.names.empty()) {
     return Error("morph-target",
-                 base->source == Source::gltf ? "it has no morph targets"
-                                              : "such files have no targets within",
-                 "name the files of the targets after it")
+                 base->source == Source::gltf ? "the file has no morph targets"
+                                              : "such files cannot have targets",
+                 "add the target files after it")
         .in_file(base->path);
   }
   for (std::size_t i = 1; i < options.files.size(); ++i) {
@@ -98,7 +98,7 @@ Result<int> pack(const Options& options, ToolContext& context) {
   const Status status = write_output(
       context, context.output, [&](OutputFile& file) { return morph_exr::write(morphs, file); });
   if (!status) return status.error();
-  context.say(fmt::format("{}: {} of {}", context.output, counted(morphs.target_count(), "target"),
+  context.log(fmt::format("{}: {} of {}", context.output, counted(morphs.target_count(), "target"),
                           counted(morphs.vertex_count, "vertex", "vertices")));
   Json result;
   result["vertices"] = morphs.vertex_count;

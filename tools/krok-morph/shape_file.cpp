@@ -7,11 +7,11 @@
 #include "character/mesh.h"
 #include "character/rig.h"
 #include "core/numbers.h"
+#include "formats/io/open_scene.h"
 #include "formats/model/model_format.h"
 #include "formats/obj/obj_reader.h"
 #include "formats/registry/registry.h"
 #include "skin/surface_normals.h"
-#include "tools/common/gltf/gltf_input.h"
 
 namespace krok::morph {
 
@@ -20,10 +20,10 @@ namespace {
 using registry::Kind;
 using Triangle = std::array<std::uint32_t, 3>;
 
-void tell(Diagnostics found, const std::string& path, ToolContext& context) {
+void report_all(Diagnostics found, const std::string& path, ToolContext& context) {
   for (Diagnostic& diagnostic : found) {
     if (diagnostic.where.file.empty()) diagnostic.where.file = path;
-    context.tell(std::move(diagnostic));
+    context.diagnose(std::move(diagnostic));
   }
 }
 
@@ -35,7 +35,7 @@ void turn_up(std::vector<Vec3f>& vectors) {
 Result<ShapeFile> read_obj(const InputFile& file, const Options& options, ToolContext& context) {
   auto read = obj::read(file.text(), file.path(), {.metres_per_unit = options.metres_per_unit});
   if (!read) return read.error();
-  tell(std::move(read->diagnostics), file.path(), context);
+  report_all(std::move(read->diagnostics), file.path(), context);
   ShapeFile shape;
   shape.source = Source::obj;
   shape.model = std::move(read->model);
@@ -47,9 +47,9 @@ Result<ShapeFile> read_obj(const InputFile& file, const Options& options, ToolCo
 }
 
 Result<ShapeFile> read_scene(const InputFile& file, ToolContext& context, bool with_morphs) {
-  const auto scene = read_gltf(file, context);
+  const auto scene = io::open_scene(file, context);
   if (!scene) return scene.error();
-  tell(scene->diagnostics, file.path(), context);
+  report_all(scene->diagnostics, file.path(), context);
   const auto evaluator = nodes::Evaluator::create(*scene);
   if (!evaluator) return evaluator.error();
   Diagnostics found;
@@ -57,11 +57,11 @@ Result<ShapeFile> read_scene(const InputFile& file, ToolContext& context, bool w
   if (!joints) return joints.error();
   const auto rig = character::make_rig(*scene, *evaluator, std::move(*joints), found);
   if (!rig) return rig.error();
-  // glTF's metres and axes are Krok's.
+  // glTF has Krok's unit and axes.
   auto actor = character::make_actor(*scene, *evaluator, *rig, Conversion(),
                                      {.with_morphs = with_morphs}, found);
   if (!actor) return actor.error();
-  tell(std::move(found), file.path(), context);
+  report_all(std::move(found), file.path(), context);
   ShapeFile shape;
   shape.source = Source::gltf;
   shape.model = std::move(actor->model);
@@ -87,17 +87,17 @@ Result<ShapeFile> read_any(const InputFile& file, const Options& options, ToolCo
                fmt::format("this is {}, expected .obj, .glb, .gltf or .model",
                            registry::describe_content(file.bytes())),
                registry::is_read_through_assimp(kind)
-                   ? "krok-import --model makes a .model of such characters"
+                   ? "convert such characters to .model with krok-import --model"
                    : "");
 }
 
-// From its smallest corner on.
+// Rotated to start at the smallest index.
 Triangle canonical(Triangle one) {
   std::rotate(one.begin(), std::min_element(one.begin(), one.end()), one.end());
   return one;
 }
 
-// Each so, in rising order.
+// All triangles canonical and sorted.
 std::vector<Triangle> canonical(const std::vector<Triangle>& triangles) {
   std::vector<Triangle> result = triangles;
   for (Triangle& one : result) one = canonical(one);
@@ -120,7 +120,7 @@ Result<ShapeFile> read_shape(const std::string& path, const Options& options, To
   shape->path = path;
   Model& model = shape->model;
   if (model.triangles.empty()) {
-    return Error("morph-empty", "there are no triangles in it").in_file(path);
+    return Error("morph-empty", "the file has no triangles").in_file(path);
   }
   shape->has_normals = !model.normals.empty();
   if (!shape->has_normals) {
@@ -139,19 +139,19 @@ Status check_same_mesh(const ShapeFile& base, const ShapeFile& shape, const Opti
                "morph-vertices",
                fmt::format("{}, but {} has {}", counted(other.vertex_count(), "vertex", "vertices"),
                            base_name(base.path), grouped(first.vertex_count())),
-               "shapes of one mesh have the same vertices in the same order; programs that cut "
-               "a mesh along seams may add some")
+               "shapes of a mesh need the same vertices in the same order; exporters may split "
+               "vertices along seams")
         .in_file(shape.path);
   }
   if (options.by_order || first.triangles == other.triangles) return {};
   const std::vector<Triangle> known = canonical(first.triangles);
   const std::vector<Triangle> found = canonical(other.triangles);
   if (known == found) return {};
-  const char* hint = "--by-order takes vertices to correspond whatever the triangles are";
+  const char* hint = "use --by-order to match vertices by order only";
   for (std::size_t t = 0; t < other.triangles.size(); ++t) {
     if (std::ranges::binary_search(known, canonical(other.triangles[t]))) continue;
     return Error("morph-triangles",
-                 fmt::format("triangle {} joins the vertices {}, which no triangle of {} does", t,
+                 fmt::format("triangle {} (vertices {}) is not in {}", t,
                              corners(other.triangles[t]), base_name(base.path)),
                  hint)
         .in_file(shape.path);
@@ -159,13 +159,13 @@ Status check_same_mesh(const ShapeFile& base, const ShapeFile& shape, const Opti
   for (std::size_t t = 0; t < first.triangles.size(); ++t) {
     if (std::ranges::binary_search(found, canonical(first.triangles[t]))) continue;
     return Error("morph-triangles",
-                 fmt::format("triangle {} of {}, which joins the vertices {}, is missing", t,
-                             base_name(base.path), corners(first.triangles[t])),
+                 fmt::format("triangle {} of {} (vertices {}) is missing", t, base_name(base.path),
+                             corners(first.triangles[t])),
                  hint)
         .in_file(shape.path);
   }
   return Error("morph-triangles",
-               fmt::format("{}, but {} has {}; some are there twice",
+               fmt::format("{}, but {} has {}; some are duplicates",
                            counted(static_cast<long long>(found.size()), "triangle"),
                            base_name(base.path), known.size()),
                hint)
@@ -178,7 +178,7 @@ Status check_vertices(const ShapeFile& base, const MorphSet& morphs, const std::
                fmt::format("the targets have {}, but {} has {}",
                            counted(morphs.vertex_count, "vertex", "vertices"), base_name(base.path),
                            grouped(base.model.vertex_count())),
-               "BASE is the mesh that the targets were packed with")
+               "BASE must be the mesh that the targets were packed with")
       .in_file(path);
 }
 

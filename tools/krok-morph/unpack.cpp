@@ -17,7 +17,7 @@
 #include "tools/krok-morph/shape_file.h"
 #include "tools/krok-morph/target_file.h"
 
-// Morph targets to a file each.
+// Unpacks morph targets, one file each.
 
 namespace krok::morph {
 
@@ -30,7 +30,7 @@ Result<std::vector<int>> chosen_targets(const Options& options, const MorphSet& 
     if (target < 0) {
       const std::string nearest = nearest_name(name, morphs.names);
       return Error("morph-target", fmt::format("there is no target '{}'", shown(name)),
-                   nearest.empty() ? "krok-morph info lists them"
+                   nearest.empty() ? "list them with krok-morph info"
                                    : fmt::format("did you mean '{}'?", shown(nearest)))
           .in_file(options.files[0]);
     }
@@ -79,7 +79,7 @@ Model model_of(const ShapeFile& base, const MorphSet& morphs, int target) {
   return model;
 }
 
-// Back into the unit and axes that OBJ files are read in.
+// Converts back to the unit and axes of OBJ files.
 void to_obj_space(const Options& options, Model& model) {
   const auto turned = [&](const Vec3f& vector) -> Vec3f {
     return options.up == Up::z ? Vec3f(vector.x(), -vector.z(), vector.y()) : vector;
@@ -102,7 +102,7 @@ Status write_shape(Model model, const std::string& name, ShapeFormat format, con
     writing.name = name;
     return obj::write(model, {model.positions, model.normals, {}}, writing, file);
   }
-  // Readers take each primitive for vertices of its own; one keeps them one list.
+  // Readers treat each primitive as separate vertices; a single one keeps one list.
   model.parts = {{name, {}, 0, static_cast<std::uint32_t>(model.triangles.size())}};
   gltf::WriteOptions writing;
   writing.provenance = model.provenance;
@@ -126,7 +126,7 @@ Result<int> unpack(const Options& options, ToolContext& context) {
   std::error_code failed;
   std::filesystem::create_directories(options.out_dir, failed);
   if (failed) {
-    return Error("file-unwritable", "the folder cannot be made: " + failed.message())
+    return Error("file-unwritable", "cannot create folder: " + failed.message())
         .in_file(options.out_dir);
   }
   const ShapeFormat format = format_of(options, *base);
@@ -152,7 +152,7 @@ Result<int> unpack(const Options& options, ToolContext& context) {
         {{"name", morphs.names[static_cast<std::size_t>((*chosen)[i])]}, {"file", paths[i]}});
   }
   context.report.result["targets"] = std::move(list);
-  context.say(fmt::format("{}: {} of {}", options.out_dir,
+  context.log(fmt::format("{}: {} of {}", options.out_dir,
                           counted(static_cast<long long>(paths.size()), "shape"),
                           counted(morphs.vertex_count, "vertex", "vertices")));
   return kExitDone;

@@ -18,15 +18,15 @@ namespace {
 using draw::ChartedMotion;
 using draw::Panel;
 
-// Joints that are shown of a figure whose angles nobody named, without --joint.
+// Number of joints shown by default for a skeleton without body angles.
 constexpr int kTurningJoints = 6;
 
 void append(std::vector<Panel>& panels, std::vector<Panel> more) {
   std::move(more.begin(), more.end(), std::back_inserter(panels));
 }
 
-// The names of joints that a pattern selects in any of the motions, in the order in which they are
-// found. motion-joint for a pattern that selects none.
+// The names of joints that a pattern matches in any of the motions, in the order found. Code
+// motion-joint for a pattern that matches none.
 Result<std::vector<std::string>> chosen_joints(const Motions& motions,
                                                const std::vector<std::string>& patterns) {
   std::vector<std::string> names;
@@ -50,7 +50,7 @@ Result<std::vector<std::string>> chosen_joints(const Motions& motions,
   return names;
 }
 
-// Charts on their way into a figure.
+// Assembles the charts.
 class MotionChart {
  public:
   MotionChart(const Motions& motions, const Options& options, ToolContext& context)
@@ -104,8 +104,8 @@ class MotionChart {
 
   void add_sided(std::vector<Panel> panels, ChartKind chart, const char* what) {
     if (panels.empty() && asked_for(chart)) {
-      context_.warn("plot-roles", fmt::format("no joint is known for {}", what),
-                    "--map says what joints are; --joint NAME shows any joint");
+      context_.warn("plot-roles", fmt::format("no joint has a role for the {}", what),
+                    "--map assigns joint roles; --joint NAME shows any joint");
     }
     sides_ = sides_ || !panels.empty();
     append(chart_.panels, std::move(panels));
@@ -116,7 +116,7 @@ class MotionChart {
     if (joints_.empty()) {
       auto panels = draw::body_angle_panels(motions);
       if (!panels.empty() || asked_for(ChartKind::angles)) {
-        add_sided(std::move(panels), ChartKind::angles, "angles of a body");
+        add_sided(std::move(panels), ChartKind::angles, "body angles");
       } else {
         add_most_turning();
       }
@@ -127,7 +127,7 @@ class MotionChart {
                               : draw::turn_panels(motions, joints_));
   }
 
-  // For figures that are no people.
+  // For skeletons without a human body.
   void add_most_turning() {
     const auto joints = draw::most_turning_joints(motions_.charted.front(), kTurningJoints);
     append(chart_.panels, draw::position_panels(motions_.charted, joints_or_carriers()));
@@ -147,8 +147,8 @@ class MotionChart {
 
   Status add_difference() {
     if (motions_.charted.size() != 2) {
-      return Error("usage", fmt::format("a difference is between two motions, not {}",
-                                        motions_.charted.size()));
+      return Error("usage",
+                   fmt::format("a difference needs two motions, not {}", motions_.charted.size()));
     }
     const ChartedMotion& first = motions_.charted[0];
     const ChartedMotion& second = motions_.charted[1];
@@ -180,9 +180,8 @@ class MotionChart {
     json["orientations"] = measure(difference.orientations);  // radians
     context_.report.result["difference"] = std::move(json);
     const compare::Measure& positions = difference.positions;
-    context_.say(fmt::format(
-        "difference: {} mm at most{}, {} mm root mean square",
-        readable(positions.largest * 1000, 4),
+    context_.log(fmt::format(
+        "difference: max {} mm{}, RMS {} mm", readable(positions.largest * 1000, 4),
         positions.where.joint < 0
             ? ""
             : fmt::format(" ({} at {} s)",
@@ -192,8 +191,8 @@ class MotionChart {
   }
 
   Error nothing_to_show() const {
-    return Error("plot-roles", "the figure has none of what --show asks for",
-                 "--map says what joints are; --joint NAME shows any joint")
+    return Error("plot-roles", "the skeleton has no joints for any of the charts in --show",
+                 "--map assigns joint roles; --joint NAME shows any joint")
         .in_file(motions_.files.front().path);
   }
 

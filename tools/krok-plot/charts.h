@@ -10,9 +10,8 @@
 
 namespace krok::plot {
 
-// The charts that the options ask for, or that fit the motions where they ask for none. What a
-// motion has not is told, and an Error where nothing is left. Puts figures of a difference into the
-// report.
+// The requested charts, or by default those that fit the motions. Warns about charts that a motion
+// has no data for; an Error if none is left. Adds the metrics of a difference to the report.
 Result<draw::Chart> chart_motions(const Motions& motions, const Options& options,
                                   ToolContext& context);
 

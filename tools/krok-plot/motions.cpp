@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/numbers.h"
+#include "formats/io/open_motion.h"
 #include "tools/common/file_name.h"
 #include "tools/common/keys_sidecar.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/role_input.h"
 
 namespace krok::plot {
@@ -21,7 +21,7 @@ Result<draw::FrameRange> frames_of(const Clip& clip, const MotionOptions& option
   if (clip.frame_count() == 0) {
     return Error("plot-range", "the motion has no frames");
   }
-  // Clamped before they become whole numbers, for a moment may be as far away as a double can say.
+  // Clamped before rounding, because a time can be anywhere in the range of double.
   const double end = clip.frame_count() - 1;
   const double from = options.from ? options.from->seconds(clip.rate) * clip.rate : 0.0;
   const double to = options.to ? options.to->seconds(clip.rate) * clip.rate : end;
@@ -29,7 +29,7 @@ Result<draw::FrameRange> frames_of(const Clip& clip, const MotionOptions& option
   const double last = std::floor(std::min(to, end) + kSameFrame);
   if (first > last) {
     return Error("plot-range",
-                 fmt::format("no frame stands between {} s and {} s", readable(from / clip.rate),
+                 fmt::format("no frame lies between {} s and {} s", readable(from / clip.rate),
                              readable(to / clip.rate)),
                  fmt::format("the motion has {}, {} s", counted(clip.frame_count(), "frame"),
                              readable(clip.duration())));
@@ -48,7 +48,7 @@ Result<MotionKeys> read_keys(const std::string& option, const std::string& motio
   auto beside = read_keys_beside(motion, clip, context);
   if (!beside) {
     if (beside.error().hint.empty()) {
-      beside.error().hint = "it was found beside the motion; --keys none leaves it";
+      beside.error().hint = "it was found next to the motion; --keys none ignores it";
     }
     return beside.error();
   }
@@ -60,14 +60,14 @@ Result<MotionKeys> read_keys(const std::string& option, const std::string& motio
 Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
                              ToolContext& context) {
   if (options.keys != "auto" && options.keys != "none" && inputs.size() > 1) {
-    return Error("usage", "--keys names one file, and there are several motions",
-                 "--keys auto takes the file beside each");
+    return Error("usage", "--keys takes one file, but there are several motions",
+                 "--keys auto uses the file next to each motion");
   }
-  const auto find_roles_of = open_role_map(options.map, context);
+  const auto find_roles_of = io::open_role_map(options.map, context);
   if (!find_roles_of) return find_roles_of.error();
   Motions motions;
   for (const std::string& path : inputs) {
-    auto clip = read_motion(path, context);
+    auto clip = io::open_motion(path, context);
     if (!clip) return std::move(clip).error().in_file(path);
     auto roles = (*find_roles_of)(clip->skeleton);
     if (!roles) return roles.error();

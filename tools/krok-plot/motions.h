@@ -13,7 +13,7 @@
 
 namespace krok::plot {
 
-// The motions of the input files, kept for as long as charts are made of them.
+// The motions of the input files, which must outlive charts made from them.
 struct Motions {
   struct Motion {
     std::string path;
@@ -21,10 +21,10 @@ struct Motions {
     RoleMap roles;
   };
   std::deque<Motion> files;
-  std::vector<draw::ChartedMotion> charted;  // of `files`, in their order
+  std::vector<draw::ChartedMotion> charted;  // one per entry of `files`, in the same order
 };
 
-// Reads the motions with what lies beside them, and works out which frames to show.
+// Reads the motions with their sidecars and determines which frames to show.
 Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
                              ToolContext& context);
 

@@ -38,38 +38,40 @@ CommandOption add_list(CommandOptions& command, const std::string& name,
 void declare_motions(CommandOptions& command, Arguments& a) {
   const char* group = "Motions";
   add_list(command, "--show", a.show,
-           "Which charts, in which order: path (from above), feet (height, speed), angles (of "
-           "hips, knees, ankles, shoulders, elbows), positions, difference; several between "
-           "commas. Without it path, feet and angles, or what the figure has of them")
+           "Charts to draw, in order: path (from above), feet (height, speed), angles "
+           "(of hips, knees, ankles, shoulders, elbows), positions, difference; "
+           "comma-separated. Default: path, feet and angles, as far as the skeleton "
+           "has them")
       .type_name("CHARTS")
       .group(group);
   add_list(command, "--joint", a.joints,
-           "Show this joint: where it is, and how far it is turned from the reference pose against "
-           "its parent; with --show positions or angles one of the two. * stands for any "
-           "characters; may be repeated")
+           "Show this joint: its position, and its rotation from the reference pose "
+           "relative to its parent; with --show positions or angles, one of the two. "
+           "* matches any characters; repeatable")
       .type_name("NAME")
       .group(group);
   command
       .add_option("--euler", a.euler,
-                  "Show turns of joints as Euler angles in this order: ZXY is R = Rz Rx Ry")
+                  "Show joint rotations as Euler angles in this order: ZXY is R = Rz "
+                  "Rx Ry")
       .type_name("ORDER")
       .group(group);
   command
       .add_option("--from", a.from,
-                  "The first moment shown: 1.5s, 250ms, or 120f for a frame; a bare number is "
+                  "Start time: 1.5s, 250ms, or 120f for a frame; a bare number is "
                   "seconds")
       .type_name("TIME")
       .group(group);
-  command.add_option("--to", a.to, "The last moment shown").type_name("TIME").group(group);
+  command.add_option("--to", a.to, "End time").type_name("TIME").group(group);
   command
       .add_flag("--difference", a.difference,
-                "How far the joints of two motions are apart: the same as --show difference")
+                "Distances between the joints of two motions: the same as --show "
+                "difference")
       .group(group);
   command
-      .add_option(
-          "--keys", a.keys,
-          "Contacts and keytimes to draw: a file, none, or auto, which takes NAME.keys.json "
-          "beside the motion if there is one")
+      .add_option("--keys", a.keys,
+                  "Contacts and keytimes to draw: a file, none, or auto, which uses "
+                  "NAME.keys.json next to the motion if it exists")
       .type_name("IN.json|auto|none")
       .default_str(a.keys)
       .group(group);
@@ -79,28 +81,30 @@ void declare_motions(CommandOptions& command, Arguments& a) {
 void declare_tables(CommandOptions& command, Arguments& a) {
   const char* group = "Tables";
   command
-      .add_flag(
-          "--table", a.table,
-          "The inputs are tables (CSV), which files called .csv or .tsv are without it. Units "
-          "are read from column names: time [s], time (s), time_s")
+      .add_flag("--table", a.table,
+                "The inputs are tables (CSV); implied for .csv and .tsv files. Units are "
+                "read from column names: time [s], time (s), time_s")
       .group(group);
-  command.add_option("--x", a.x, "The column to go along; otherwise the one for time, or the first")
+  command
+      .add_option("--x", a.x,
+                  "The x column; default: the time column, or the "
+                  "first")
       .type_name("COLUMN")
       .group(group);
   add_list(command, "--y", a.y,
-           "What to draw: a column, or several for one panel, between commas; may be repeated for "
-           "more panels. Otherwise all columns of numbers, a panel for each unit")
+           "Columns to draw: one, or several for one panel, comma-separated; repeat "
+           "for more panels. Default: all numeric columns, a panel per unit")
       .type_name("COLUMNS")
       .group(group);
   command
       .add_option("--by", a.by,
-                  "A line for each value of this column; otherwise of the only column of words, if "
-                  "there is one")
+                  "Draw a line per value of this column; default: the only text "
+                  "column, if there is one")
       .type_name("COLUMN")
       .group(group);
   add_list(command, "--where", a.where,
-           "Only rows in which the column has this value; of several values of one column any; may "
-           "be repeated")
+           "Use only rows with this value in the column; repeat for another column, "
+           "or for alternative values of the same column")
       .type_name("COLUMN=VALUE")
       .group(group);
   command.add_option("--style", a.style, "line, points or both")
@@ -110,7 +114,7 @@ void declare_tables(CommandOptions& command, Arguments& a) {
                                             {"both", draw::SeriesStyle::line_and_points}}))
       .default_str("line")
       .group(group);
-  command.add_flag("--log-x", a.log_x, "A logarithmic x axis").group(group);
+  command.add_flag("--log-x", a.log_x, "Logarithmic x axis").group(group);
 }
 
 Result<std::vector<ChartKind>> parse_charts(const std::vector<std::string>& lists) {
@@ -123,8 +127,8 @@ Result<std::vector<ChartKind>> parse_charts(const std::vector<std::string>& list
       const auto found = std::find_if(kCharts.begin(), kCharts.end(),
                                       [&](const ChartName& name) { return name.name == word; });
       if (found == kCharts.end()) {
-        return usage(fmt::format("--show: '{}' is not path, feet, angles, positions or difference",
-                                 shown(word)));
+        return usage(fmt::format(
+            "--show: '{}' is not one of path, feet, angles, positions, difference", shown(word)));
       }
       if (std::find(charts.begin(), charts.end(), found->chart) == charts.end()) {
         charts.push_back(found->chart);
@@ -146,8 +150,7 @@ Result<EulerOrder> parse_order(const std::string& text) {
     order[i] = static_cast<krok::Axis>(axis);
   }
   if (good) return order;
-  return usage(
-      fmt::format("--euler: '{}' is no order of the three axes, such as ZXY", shown(text)));
+  return usage(fmt::format("--euler: '{}' is not an axis order such as ZXY", shown(text)));
 }
 
 Result<std::optional<ClipTime>> parse_moment(const std::string& text, const char* option) {
@@ -157,7 +160,7 @@ Result<std::optional<ClipTime>> parse_moment(const std::string& text, const char
     time.error().message = fmt::format("{}: {}", option, time.error().message);
     return time.error();
   }
-  if (time->value < 0) return usage(fmt::format("{} {} is less than 0", option, text));
+  if (time->value < 0) return usage(fmt::format("{} {} is negative", option, text));
   return std::optional<ClipTime>(*time);
 }
 
@@ -171,7 +174,7 @@ Result<MotionOptions> understand_motions(const Arguments& a) {
     options.charts.push_back(ChartKind::difference);
   options.joints = a.joints;
   if (!a.euler.empty()) {
-    if (a.joints.empty()) return usage("--euler shows turns of joints; name them with --joint");
+    if (a.joints.empty()) return usage("--euler needs --joint");
     auto order = parse_order(a.euler);
     if (!order) return order.error();
     options.euler = *order;
@@ -195,8 +198,8 @@ Result<TableOptions> understand_tables(const Arguments& a) {
   for (const std::string& condition : a.where) {
     const std::size_t equals = condition.find('=');
     if (equals == std::string::npos || equals == 0) {
-      return usage(fmt::format("--where {}: a column and its value are needed, as in joint=Hips",
-                               shown(condition)));
+      return usage(
+          fmt::format("--where {}: expected COLUMN=VALUE, such as joint=Hips", shown(condition)));
     }
     options.where.emplace_back(condition.substr(0, equals), condition.substr(equals + 1));
   }
@@ -206,7 +209,7 @@ Result<TableOptions> understand_tables(const Arguments& a) {
   return options;
 }
 
-// A length in pixels that a panel can have; 0 for anything else.
+// A panel length in pixels; 0 if invalid.
 double parse_pixels(std::string_view text) {
   const double length = parse_finite(text).value_or(0);
   return length >= 80 && length <= 10000 ? length : 0;
@@ -219,12 +222,12 @@ Result<std::pair<double, double>> parse_panel(const std::string& text) {
   const double height = parse_pixels(whole.substr(middle + 1));
   if (width > 0 && height > 0) return std::pair(width, height);
   return usage(
-      fmt::format("--panel {}: width and height in pixels are needed, from 80 to 10000, "
+      fmt::format("--panel {}: expected width and height from 80 to 10000 pixels, "
                   "such as 340x170",
                   shown(text)));
 }
 
-// Whether all inputs are tables; an Error where only some are.
+// Whether all inputs are tables; an Error if only some are.
 Result<bool> are_tables(const Arguments& a) {
   const auto is_table = [&](const std::string& path) {
     const std::string ending = extension(path);
@@ -233,10 +236,10 @@ Result<bool> are_tables(const Arguments& a) {
   const auto count = std::count_if(a.inputs.begin(), a.inputs.end(), is_table);
   if (count == 0) return false;
   if (static_cast<std::size_t>(count) == a.inputs.size()) return true;
-  return usage("motions and tables do not go into one figure", "plot them one after the other");
+  return usage("motions and tables cannot share a chart", "plot them separately");
 }
 
-// An option of the other kind of input is a misunderstanding.
+// Options for the other kind of input are errors.
 Status check_fit(const Arguments& a, bool table) {
   const char* wrong = nullptr;
   if (table) {
@@ -259,17 +262,17 @@ Status check_fit(const Arguments& a, bool table) {
                                                  : nullptr;
   }
   if (wrong == nullptr) return {};
-  return usage(fmt::format("{} is for {}, and {} was given", wrong, table ? "motions" : "tables",
+  return usage(fmt::format("{} is for {}, but the input is {}", wrong, table ? "motions" : "tables",
                            table ? "a table" : "a motion"),
-               table ? "see krok-plot --help" : "--table says that the input is a table");
+               table ? "see krok-plot --help" : "--table reads the input as a table");
 }
 
 void declare_images(CommandOptions& command, Arguments& a) {
   declare_sheet(command, a.sheet);
-  command.group_remaining("Pictures");
+  command.group_remaining("Images");
 }
 
-// Whether something was asked for that only pictures have.
+// Whether an option that only applies to images was given.
 bool has_image_options(const SheetOptions& options) {
   const SheetOptions usual;
   return options.image.moments != usual.image.moments || options.image.sides != usual.image.sides ||
@@ -283,26 +286,31 @@ bool has_image_options(const SheetOptions& options) {
 void declare(CommandOptions& command, Arguments& arguments) {
   command
       .add_option("inputs", arguments.inputs,
-                  "Motions (.anim, or a capture such as BVH) or tables (.csv); several go into the "
-                  "same panels. For pictures also models and characters (.model, .character, moved "
-                  "by the motions of their skeleton) and glTF")
+                  "Motions (.anim, or a capture such as BVH) or tables (.csv); "
+                  "several share the same panels. For images also models and "
+                  "characters (.model, .character, animated by the motions of their "
+                  "skeleton) and glTF")
       .type_name("IN")
       .required();
   declare_motions(command, arguments);
   declare_tables(command, arguments);
-  const char* group = "Figure";
+  const char* group = "Chart";
   command
       .add_flag("--log-y", arguments.log_y,
-                "A logarithmic y axis; of motions for speeds and differences")
+                "Logarithmic y axis; for motions, of speeds and differences")
       .group(group);
-  command.add_option("--title", arguments.title, "Otherwise the name of the input")
+  command
+      .add_option("--title", arguments.title,
+                  "Title; default: the name of the "
+                  "input")
       .type_name("WORDS")
       .group(group);
-  add_whole(command, "--columns", arguments.columns, "Panels side by side; otherwise 2", 1, 20)
+  add_whole(command, "--columns", arguments.columns, "Number of panels per row; default: 2", 1, 20)
       .group(group);
   command
       .add_option("--panel", arguments.panel,
-                  "The size of each panel in pixels, 96 to the inch [340x170, one alone 640x260]")
+                  "Size of each panel in pixels, at 96 dpi [340x170, a single one "
+                  "640x260]")
       .type_name("WIDTHxHEIGHT")
       .group(group);
   declare_images(command, arguments);
@@ -346,7 +354,7 @@ Result<Options> understand(const Arguments& arguments) {
         "--strip");
   }
   if (options.table && options.sheet.wanted()) {
-    return usage("--sheet and --strip show figures, and a table was given");
+    return usage("--sheet and --strip show characters, but the input is a table");
   }
   return options;
 }

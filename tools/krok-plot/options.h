@@ -16,7 +16,7 @@ namespace krok::plot {
 
 enum class ChartKind : unsigned char { path, feet, angles, positions, difference };
 
-// The options as they were typed.
+// The options as given on the command line.
 struct Arguments {
   std::vector<std::string> inputs;
   // motions
@@ -35,18 +35,18 @@ struct Arguments {
   std::vector<std::string> where;
   draw::SeriesStyle style = draw::SeriesStyle::line;
   bool log_x = false;
-  // the figure
+  // chart
   bool log_y = false;
   std::string title;
   std::optional<int> columns;
   std::string panel;
-  // pictures
+  // images
   SheetOptions sheet;
 };
 
-// What is asked of motions.
+// Options for motions.
 struct MotionOptions {
-  std::vector<ChartKind> charts;    // in order, each once; empty for those that fit the motion
+  std::vector<ChartKind> charts;    // in order, each once; empty for the default charts
   std::vector<std::string> joints;  // patterns
   std::optional<EulerOrder> euler;
   std::optional<ClipTime> from, to;
@@ -54,10 +54,10 @@ struct MotionOptions {
   std::string map;
 };
 
-// What is asked of tables.
+// Options for tables.
 struct TableOptions {
   std::string x;
-  std::vector<std::string> y;  // one panel each: a column, or several between commas
+  std::vector<std::string> y;  // one panel each: a column, or several separated by commas
   std::string by;
   std::vector<std::pair<std::string, std::string>> where;  // column, value
   draw::SeriesStyle style = draw::SeriesStyle::line;
@@ -78,10 +78,10 @@ struct Options {
 
 void declare(CommandOptions& command, Arguments& arguments);
 
-// What can be said of the options alone, whatever the inputs are.
+// Checks the options alone, independently of the inputs.
 Status check(const Arguments& arguments);
 
-// Errors carry the option's name. Code usage for options that do not go together.
+// Errors name the option. Code usage for options that cannot be combined.
 Result<Options> understand(const Arguments& arguments);
 
 }  // namespace krok::plot

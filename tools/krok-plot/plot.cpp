@@ -20,7 +20,7 @@ namespace krok::plot {
 
 namespace {
 
-// Sizes at which text is legible on A4 paper, two panels side by side.
+// Sizes at which text is legible on A4 paper with two panels per row.
 constexpr double kPanelWidth = 340, kPanelHeight = 170;
 constexpr double kSingleWidth = 640, kSingleHeight = 260;
 
@@ -29,18 +29,18 @@ Status check_output(const std::string& path) {
   const bool other = registry::kind_of_name(path) != registry::Kind::unknown || ending == ".png" ||
                      ending == ".pdf" || ending == ".csv" || ending == ".html";
   if (!other) return {};
-  return Error("usage", fmt::format("-o {}: what is written there is an SVG, not {}", path, ending),
-               "call it .svg");
+  return Error("usage", fmt::format("-o {}: the output is SVG, not {}", path, ending),
+               "use the extension .svg");
 }
 
-void lay_out(const Options& options, draw::Actor& actor) {
-  const bool single = actor.panels.size() == 1;
-  actor.columns = options.columns.value_or(single ? 1 : 2);
-  actor.panel_width = single ? kSingleWidth : kPanelWidth;
-  actor.panel_height = single ? kSingleHeight : kPanelHeight;
+void lay_out(const Options& options, draw::Chart& chart) {
+  const bool single = chart.panels.size() == 1;
+  chart.columns = options.columns.value_or(single ? 1 : 2);
+  chart.panel_width = single ? kSingleWidth : kPanelWidth;
+  chart.panel_height = single ? kSingleHeight : kPanelHeight;
   if (options.panel) {
-    actor.panel_width = options.panel->first;
-    actor.panel_height = options.panel->second;
+    chart.panel_width = options.panel->first;
+    chart.panel_height = options.panel->second;
   }
 }
 
@@ -58,10 +58,10 @@ Json axis_json(const draw::Axis& axis) {
   return json;
 }
 
-// What can be read from the figure: for each line how many values it has and between which limits.
-Json summary_of(const draw::Actor& actor) {
+// The chart's contents for the report: for each line, the number of values and their range.
+Json summary_of(const draw::Chart& chart) {
   Json panels = Json::array();
-  for (const draw::Panel& panel : actor.panels) {
+  for (const draw::Panel& panel : chart.panels) {
     Json lines = Json::array();
     for (const draw::Series& series : panel.series) {
       if (series.name.empty()) continue;
@@ -90,7 +90,7 @@ Json summary_of(const draw::Actor& actor) {
   return panels;
 }
 
-Result<draw::Actor> make_actor(const Options& options, ToolContext& context) {
+Result<draw::Chart> make_chart(const Options& options, ToolContext& context) {
   if (options.table) return chart_tables(options, context);
   const auto motions = read_motions(options.inputs, options.motion, context);
   if (!motions) return motions.error();
@@ -99,18 +99,18 @@ Result<draw::Actor> make_actor(const Options& options, ToolContext& context) {
 
 Status write_charts(const Options& options, ToolContext& context) {
   if (Status status = check_output(context.output); !status) return status;
-  auto actor = make_actor(options, context);
-  if (!actor) return actor.error();
-  actor->title = options.title.empty() ? usual_title(options.inputs) : options.title;
-  lay_out(options, *actor);
-  const auto svg = draw::to_svg(*actor);
+  auto chart = make_chart(options, context);
+  if (!chart) return chart.error();
+  chart->title = options.title.empty() ? usual_title(options.inputs) : options.title;
+  lay_out(options, *chart);
+  const auto svg = draw::to_svg(*chart);
   if (!svg) return svg.error();
   const Status status =
       write_output(context, context.output, [&](OutputFile& file) { return file.write(*svg); });
   if (!status) return status;
-  context.report.result["panels"] = summary_of(*actor);
-  context.say(fmt::format("{}: {}", context.output == "-" ? "standard output" : context.output,
-                          counted(static_cast<long long>(actor->panels.size()), "panel")));
+  context.report.result["panels"] = summary_of(*chart);
+  context.log(fmt::format("{}: {}", context.output == "-" ? "standard output" : context.output,
+                          counted(static_cast<long long>(chart->panels.size()), "panel")));
   return {};
 }
 
@@ -125,10 +125,10 @@ Result<int> run_typed(const Arguments& arguments, ToolContext& context) {
 Result<int> run(const Options& options, ToolContext& context) {
   const bool images = options.sheet.wanted();
   if (context.output.empty() && !images) {
-    return Error("usage", "-o is missing: where shall the charts go?", "see krok-plot --help");
+    return Error("usage", "-o is missing", "see krok-plot --help");
   }
   if (images && context.kept_messages != nullptr) {
-    return Error("usage", "--sheet and --strip make one picture, not one of each of many files");
+    return Error("usage", "--sheet and --strip cannot be used in batch mode");
   }
   if (images) {
     if (Status status = make_sheets(options.inputs, options.sheet, context); !status) {
@@ -144,24 +144,24 @@ ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec;
   spec.name = "krok-plot";
-  spec.summary = "Draws motions and tables of numbers as charts, in one SVG";
+  spec.summary = "Plots motions and numeric tables as charts in one SVG";
   spec.inputs = "IN...";
   spec.examples = {
       {"krok-plot walk.bvh -o walk.svg",
-       "path from above, heights and speeds of the feet, angles of legs and arms"},
+       "path from above, foot heights and speeds, leg and arm angles"},
       {"krok-plot raw.anim clean.anim --show angles,difference --from 1s --to 3s -o clean.svg",
-       "two motions in the same panels, and how far apart they are"},
+       "two motions in the same panels, and the distance between them"},
       {"krok-plot take.bvh --joint LeftHand --euler ZXY -o hand.svg",
-       "where a joint is, and how it is turned"},
+       "position and rotation of a joint"},
       {"krok-plot walk.csv --where joint=LeftFoot --where joint=RightFoot --y y -o heights.svg",
-       "one column of a table, a line for each of two joints"},
+       "one column of a table, with a line for each of two joints"},
       {"krok-plot fit.csv --x examples --y error_mm --log-y --style both -o fit.svg",
        "any table of numbers; the unit is read from the column's name"},
-      {"krok-plot walk.bvh --sheet walk.png", "pictures of the figure at eight moments"},
+      {"krok-plot walk.bvh --sheet walk.png", "images of the character at eight times"},
       {"krok-plot hero.character walk.anim --strip hero.png",
-       "a character with the colours and textures of its materials, moved; without a motion it "
-       "stands"}};
-  spec.needs_output = false;  // --sheet and --strip name files of their own
+       "an animated character with the colours and textures of its materials; without "
+       "a motion, in its reference pose"}};
+  spec.needs_output = false;  // --sheet and --strip have their own output files
   spec.batch = {{".anim", ".bvh", ".amc"}, always(".svg")};
   spec.declare = [arguments](CommandOptions& command) { declare(command, *arguments); };
   spec.check = [arguments] { return check(*arguments); };

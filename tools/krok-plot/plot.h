@@ -5,10 +5,10 @@
 
 namespace krok::plot {
 
-// Reads motions or tables and writes one figure of them.
+// Reads motions or tables and writes one chart of them.
 Result<int> run(const Options& options, ToolContext& context);
 
-// The tool, with options of its own: each call's are independent of the others'.
+// A new tool with its own options, independent of those of other calls.
 ToolSpec make_spec();
 
 }  // namespace krok::plot

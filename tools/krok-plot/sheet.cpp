@@ -22,7 +22,7 @@ constexpr int kStripMoments = 10;
 constexpr int kStripWidth = 2400;
 constexpr int kPathPoints = 400;
 
-// A figure at the moments that are shown of it.
+// A character at the times shown.
 struct Shown {
   const MovingActor* source = nullptr;
   ImageSpan span;
@@ -126,8 +126,8 @@ render::Sheet contact_sheet(const ShownActors& all, const std::vector<ImageSide>
   return sheet;
 }
 
-// From where a strip is looked at: if the figure moves on, so that it goes from left to right;
-// otherwise from its front. A side that was asked for goes before.
+// The view direction of a strip: from the side, moving left to right, if the character travels;
+// otherwise from its front. An explicit --sides takes precedence.
 ImageSide strip_side(const Shown& shown, const std::vector<ImageSide>& sides,
                      const SheetOptions& options) {
   ImageSide side = sides[0];
@@ -137,12 +137,12 @@ ImageSide strip_side(const Shown& shown, const std::vector<ImageSide>& sides,
   const render::Bounds box = render::bounds(shown.actors.front());
   if (way.norm() > 0.3 * box.extent()) {
     side.yaw = std::atan2(-way.z(), way.x());
-    side.name = "going to the right";
+    side.name = "moving right";
   }
   return side;
 }
 
-// The way of the hips over the whole span.
+// The path of the hips over the whole range.
 std::vector<Vec3> path_of(const Shown& shown) {
   std::vector<Vec3> path;
   for (int i = 0; i <= kPathPoints; ++i) {
@@ -188,7 +188,7 @@ Status write(const render::Sheet& sheet, const render::SheetOptions& options,
   if (!image) return image.error();
   if (Status status = write_image(image->image, path, context); !status) return status;
   context.report.result[name] = report_of(*image, all, sheet.rows.size() / all.size());
-  context.say(fmt::format("{}: {} x {} pixels, {} in a metre", path, image->image.width,
+  context.log(fmt::format("{}: {} x {} pixels, {} per metre", path, image->image.width,
                           image->image.height, readable(image->pixels_per_metre, 3)));
   return {};
 }
@@ -237,32 +237,31 @@ Status make_strip(const std::vector<MovingActor>& actors, const std::vector<Imag
 
 void declare_sheet(CommandOptions& command, SheetOptions& options) {
   command
-      .add_option(
-          "--sheet", options.sheet,
-          "A contact sheet as PNG: the figures at several moments, in rows by file and side; "
-          "materials with their base colours and textures (PNG, JPEG), which cut out where "
-          "alpha is below their cutoff, blended ones below a half")
+      .add_option("--sheet", options.sheet,
+                  "Contact sheet as PNG: characters at several times, in rows by file and "
+                  "side; materials with base colours and textures (PNG, JPEG), cut out where "
+                  "alpha is below their cutoff, or below one half for blended ones")
       .type_name("OUT.png");
   command
-      .add_option(
-          "--strip", options.strip,
-          "A motion strip as PNG: each figure at several moments in one picture, the earlier "
-          "ones paler")
+      .add_option("--strip", options.strip,
+                  "Motion strip as PNG: a character at several times in one image, earlier "
+                  "ones fainter")
       .type_name("OUT.png");
   declare_image_options(command, options.image, kSheetMoments);
   command
       .add_option("--front", options.front,
-                  "What the front is: where the figure faces at the first moment (figure), or +Z, "
-                  "where figures face in their reference pose (world)")
+                  "What counts as the front: the facing at the first time (figure), "
+                  "or +Z, the facing in the reference pose (world)")
       .type_name("WHAT")
       .transform(one_of<Front>({{"figure", Front::actor}, {"world", Front::world}}))
       .default_str("figure");
   add_body_option(command, options.body,
-                  "A body for motions without a model: low (2,500 vertices), medium (10,000), high "
-                  "(40,000), auto: low for more than two files, else medium; none: all as bones");
+                  "Body for motions without a model: low (2,500 vertices), medium "
+                  "(10,000), high (40,000), auto: low for more than two files, else "
+                  "medium; none: bones only");
   add_skin_method(command, options.method,
-                  "How motions move their bodies: linear, as viewers do it, dual-quaternion, which "
-                  "keeps the volume where a joint twists, or rigid; not of glTF files");
+                  "Skinning method: linear, as viewers use it, dual-quaternion, which "
+                  "keeps the volume of twisted joints, or rigid; not for glTF files");
 }
 
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
@@ -273,7 +272,7 @@ Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& o
        {std::pair("--sheet", options.sheet), std::pair("--strip", options.strip)}) {
     if (Status status = check_image_name(path, option); !status) return status;
   }
-  const auto actors = read_metrics(inputs, options.body, options.method, context);
+  const auto actors = read_actors(inputs, options.body, options.method, context);
   if (!actors) return actors.error();
   if (!options.sheet.empty()) {
     if (Status status = make_sheet(*actors, *sides, options, context); !status) return status;

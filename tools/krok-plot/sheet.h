@@ -8,14 +8,14 @@
 #include "tools/common/actors/moving_actor.h"
 #include "tools/common/tool.h"
 
-// Pictures of the figures themselves: contact sheets and motion strips.
+// Rendered images: contact sheets and motion strips.
 
 namespace krok::plot {
 
-// What "front" is.
+// What counts as the front.
 enum class Front : unsigned char {
-  actor,  // where the figure faces at the first moment shown
-  world   // +Z, where figures face in their reference pose
+  actor,  // the facing at the first time shown
+  world   // +Z, the facing in the reference pose
 };
 
 struct SheetOptions {
@@ -29,11 +29,10 @@ struct SheetOptions {
   bool wanted() const { return !sheet.empty() || !strip.empty(); }
 };
 
-// --sheet, --strip and what belongs to them, but --from and --to.
+// Declares --sheet, --strip and their options, except --from and --to.
 void declare_sheet(CommandOptions& command, SheetOptions& options);
 
-// Draws the figures of all inputs into the pictures that are wanted, writes these and notes them in
-// the report.
+// Renders the characters of all inputs, writes the requested images and adds them to the report.
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
                    ToolContext& context);
 

@@ -18,23 +18,22 @@ namespace {
 using csv::ColumnName;
 using csv::Table;
 
-constexpr std::size_t kMaxLines = 60;  // in a panel: more cannot be told apart
+constexpr std::size_t kMaxLines = 60;  // per panel: more cannot be distinguished
 
-// What of a table is drawn.
+// The columns of a table to draw.
 struct Choice {
-  std::optional<std::size_t> x;                  // nothing for the row's number
+  std::optional<std::size_t> x;                  // empty for the row number
   std::vector<std::vector<std::size_t>> panels;  // columns
   std::optional<std::size_t> by;
 };
 
-// Whether a column counts rows or time rather than being something to look at.
+// Whether a column is a frame or time counter rather than data.
 bool is_counter(const ColumnName& name) {
   return same_word(name.label, "frame") || same_word(name.label, "time") ||
          same_word(name.label, "t");
 }
 
-// A column as people would name it in words: its label, and the unit that krok-export's tables have
-// without writing it.
+// A column's label and unit, including the unit that krok-export's tables leave out.
 ColumnName understood(const Table& table, std::size_t column) {
   ColumnName name = table.columns()[column];
   const auto& columns = table.columns();
@@ -57,7 +56,7 @@ std::optional<std::size_t> usual_x(const Table& table) {
   return std::nullopt;
 }
 
-// All columns of numbers but the x axis, a panel for each unit.
+// All numeric columns except x, one panel per unit.
 std::vector<std::vector<std::size_t>> usual_panels(const Table& table,
                                                    std::optional<std::size_t> x) {
   std::vector<std::string> units;
@@ -76,7 +75,7 @@ std::vector<std::vector<std::size_t>> usual_panels(const Table& table,
   return panels;
 }
 
-// A name as it stands, or else several between commas.
+// One column whose name is the whole text, or else comma-separated names.
 Result<std::vector<std::size_t>> find_columns(const Table& table, const std::string& names) {
   if (const auto whole = table.find(names)) return std::vector<std::size_t>{*whole};
   std::vector<std::size_t> columns;
@@ -116,7 +115,7 @@ Result<Choice> choose(const Table& table, const TableOptions& options) {
   return choice;
 }
 
-// The rows that all conditions hold for.
+// The rows that satisfy all conditions.
 Result<std::vector<std::size_t>> chosen_rows(const Table& table, const TableOptions& options) {
   std::map<std::size_t, std::set<std::string>> wanted;
   for (const auto& [name, value] : options.where) {
@@ -135,11 +134,11 @@ Result<std::vector<std::size_t>> chosen_rows(const Table& table, const TableOpti
   for (std::size_t row = 0; row < chosen.size(); ++row) {
     if (chosen[row] != 0) rows.push_back(row);
   }
-  if (rows.empty()) return Error("plot-where", "--where leaves no row of the table");
+  if (rows.empty()) return Error("plot-where", "no row of the table matches --where");
   return rows;
 }
 
-// Rows that make a line, by what stands in the column `by`, in the order in which values come up.
+// The rows of one line: those with the same value in the column `by`, in order of appearance.
 struct Group {
   std::string name;
   std::vector<std::size_t> rows;
@@ -160,13 +159,13 @@ Result<std::vector<Group>> group(const Table& table, const std::vector<std::size
                    fmt::format("the column '{}' has more than {} values, each of which would be a "
                                "line",
                                shown(table.columns()[*by].header), kMaxLines),
-                   "--where COLUMN=VALUE chooses some, --by another column");
+                   "--where COLUMN=VALUE selects rows; --by selects another column");
     }
   }
   return groups;
 }
 
-// What a panel's y axis says: the name if it is one column, the unit if all share it.
+// The label of a panel's y axis: the column name if there is one column, and the common unit.
 draw::Axis y_axis(const Table& table, const std::vector<std::size_t>& columns) {
   draw::Axis axis;
   const ColumnName first = understood(table, columns.front());
@@ -184,13 +183,13 @@ draw::Axis x_axis(const Table& table, std::optional<std::size_t> x) {
   return {name.label, name.unit};
 }
 
-// One file's lines on their way into the panels.
+// Adds the lines of one file to the panels.
 class TableLines {
  public:
   TableLines(const Table& table, const Choice& choice, const TableOptions& options)
       : table_(table), choice_(choice), options_(options) {}
 
-  // `file` is put before the names of lines unless it is empty.
+  // `file` is prepended to the names of lines unless it is empty.
   Status add_to(std::vector<draw::Panel>& panels, const std::string& file) {
     const auto rows = chosen_rows(table_, options_);
     if (!rows) return rows.error();
@@ -241,9 +240,9 @@ class TableLines {
 
   static Error too_many(std::size_t columns, std::size_t groups) {
     return Error("plot-lines",
-                 fmt::format("a panel would have {} lines, {} at most can be told apart",
+                 fmt::format("a panel would have {} lines, the limit is {}",
                              grouped(static_cast<long long>(columns * groups)), kMaxLines),
-                 "--y chooses columns, --where COLUMN=VALUE rows");
+                 "--y selects columns, --where COLUMN=VALUE rows");
   }
 
   const Table& table_;
@@ -257,20 +256,20 @@ void report_choice(const Table& table, const Choice& choice, const TableOptions&
   const auto add = [&](std::string words) { chosen += (chosen.empty() ? "" : ", ") + words; };
   if (options.x.empty()) {
     add(choice.x ? fmt::format("x is '{}'", shown(table.columns()[*choice.x].header))
-                 : "x is the row's number");
+                 : "x is the row number");
   }
   if (options.by.empty() && choice.by) {
-    add(fmt::format("a line for each '{}'", shown(table.columns()[*choice.by].header)));
+    add(fmt::format("one line per '{}'", shown(table.columns()[*choice.by].header)));
   }
-  if (options.y.empty()) add("all columns of numbers are drawn");
+  if (options.y.empty()) add("all numeric columns are drawn");
   if (chosen.empty()) return;
   Diagnostic note;
   note.severity = Severity::note;
   note.code = "plot-columns";
   note.message = std::move(chosen);
-  note.hint = "--x, --y and --by choose others";
+  note.hint = "use --x, --y and --by to change this";
   note.where.file = path;
-  context.tell(std::move(note));
+  context.diagnose(std::move(note));
 }
 
 Status add_table(const std::string& path, const Options& options, ToolContext& context,
@@ -283,7 +282,7 @@ Status add_table(const std::string& path, const Options& options, ToolContext& c
   const auto choice = choose(*table, wanted);
   if (!choice) return choice.error();
   if (choice->panels.empty()) {
-    return Error("plot-columns", "the table has no column of numbers to draw");
+    return Error("plot-columns", "the table has no numeric column to draw");
   }
   report_choice(*table, *choice, wanted, path, context);
   if (chart.panels.empty()) {
@@ -298,12 +297,12 @@ Status add_table(const std::string& path, const Options& options, ToolContext& c
   }
   if (chart.panels.size() != choice->panels.size()) {
     return Error("plot-columns", "the tables do not have the same columns",
-                 "choose with --x and --y");
+                 "select columns with --x and --y");
   }
   const bool several = options.inputs.size() > 1;
   Status status = TableLines(*table, *choice, wanted)
                       .add_to(chart.panels, several ? name_of_input(path) : std::string());
-  // What one line is stands beside its axis.
+  // A single line is labelled by its axis.
   for (draw::Panel& panel : chart.panels) panel.legend = panel.series.size() > 1;
   return status;
 }

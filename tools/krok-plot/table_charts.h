@@ -7,7 +7,7 @@
 
 namespace krok::plot {
 
-// A figure of the tables in the input files. What was chosen for want of options is told.
+// A chart of the tables in the input files. Reports what was chosen by default.
 Result<draw::Chart> chart_tables(const Options& options, ToolContext& context);
 
 }  // namespace krok::plot

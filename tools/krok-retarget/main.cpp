@@ -8,13 +8,13 @@ krok::ToolSpec make_spec() {
   const auto options = std::make_shared<krok::retarget_tool::Options>();
   krok::ToolSpec spec;
   spec.name = "krok-retarget";
-  spec.summary = "Brings a motion onto another skeleton";
+  spec.summary = "Retargets a motion to another skeleton";
   spec.inputs = "--onto IN.model|IN.anim IN.anim";
   spec.examples = {{"krok-retarget --onto hero.model walk.anim -o hero_walk.anim -v",
-                    "joints by what they are in a human body; -v tells which went where"},
+                    "joints are mapped by role; -v prints the mapping"},
                    {"krok-retarget --map rig.json --onto hero.model take.anim -o hero_take.anim",
-                    "rig.json says what joints are that have names of their own: {\"joints\": "
-                    "{\"Bone_012\": \"left_hand\"}}"},
+                    "rig.json gives the roles of unusual joint names: {\"joints\": {\"Bone_012\": "
+                    "\"left_hand\"}}"},
                    {"krok-retarget --onto hero.model motions --out-dir hero_motions",
                     "all motions in a folder"}};
   spec.batch = {{".anim", ".bvh", ".amc"}, krok::always(".anim")};

@@ -40,7 +40,7 @@ std::string names_of(const Skeleton& skeleton, const std::vector<int>& joints) {
   return text;
 }
 
-// The source's joints that had a role and lent nothing: what people may miss.
+// Source joints that have a role but are not used; likely of interest to the user.
 std::vector<int> with_a_role(const std::vector<int>& joints, const RoleMap& roles) {
   std::vector<int> found;
   for (const int joint : joints) {
@@ -79,12 +79,13 @@ std::string summary(const Outcome& outcome) {
   if (left || right) {
     const double left_most = left ? left->largest_correction : 0;
     const double right_most = right ? right->largest_correction : 0;
-    text += fmt::format(", feet moved by up to {}", millimetres(std::max(left_most, right_most)));
+    text +=
+        fmt::format(", feet corrected by up to {}", millimetres(std::max(left_most, right_most)));
     const double miss = std::max(left ? left->largest_miss : 0, right ? right->largest_miss : 0);
     if (report.largest_drop > 0.001) {
       text += fmt::format(", hips lowered by up to {}", millimetres(report.largest_drop));
     }
-    if (miss > 0.005) text += fmt::format(" (legs too short for it by {})", millimetres(miss));
+    if (miss > 0.005) text += fmt::format(" (legs too short by {})", millimetres(miss));
   }
   return text;
 }
@@ -103,7 +104,7 @@ std::string table(const Outcome& outcome) {
                         role_width, outcome.target.names[at(joint.target)], target_width,
                         source_text(outcome, joint));
     if (joint.alignment > 0.5 * kRadiansPerDegree) {
-      text += fmt::format(", reference pose turned {} deg",
+      text += fmt::format(", reference pose rotated by {} deg",
                           readable(joint.alignment / kRadiansPerDegree, 2));
     }
     text += "\n";
@@ -113,8 +114,8 @@ std::string table(const Outcome& outcome) {
                         names_of(outcome.target, report.following_target));
   }
   if (!report.unused_source.empty()) {
-    text += fmt::format("  not used of the input: {}\n",
-                        names_of(outcome.source, report.unused_source));
+    text +=
+        fmt::format("  unused input joints: {}\n", names_of(outcome.source, report.unused_source));
   }
   return text;
 }

@@ -7,7 +7,7 @@
 
 namespace krok::retarget_tool {
 
-// What is told of a finished transfer: names for the indices in its report.
+// The outcome of a retarget, with names for the indices in its report.
 struct Outcome {
   const Skeleton& source;
   const RoleMap& source_roles;
@@ -16,10 +16,10 @@ struct Outcome {
   const retarget::Report& report;
 };
 
-// A line or two on what was done, for people.
+// One or two lines for display.
 std::string summary(const Outcome& outcome);
 
-// Each joint of the target with the joints it takes its rotation from, and what has no partner.
+// Table of the target's joints with their source joints, and of unmapped joints.
 std::string table(const Outcome& outcome);
 
 Json to_json(const Outcome& outcome);

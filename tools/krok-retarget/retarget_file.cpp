@@ -6,9 +6,9 @@
 
 #include "core/numbers.h"
 #include "formats/anim/anim.h"
+#include "formats/io/open_motion.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
-#include "tools/common/motion_input.h"
 #include "tools/common/orientation_option.h"
 #include "tools/common/output_kind.h"
 #include "tools/common/output_set.h"
@@ -19,7 +19,7 @@ namespace krok::retarget_tool {
 
 namespace {
 
-// What is moved: a skeleton, and the floor that its mesh stands on if it has one.
+// The target: a skeleton, and the floor height below its mesh, if any.
 struct Target {
   Clip clip;  // without frames if it is a model
   std::optional<double> floor;
@@ -40,7 +40,7 @@ Result<Target> read_target(const std::string& path, ToolContext& context) {
     target.clip.skeleton = std::move(model->skeleton);
     return target;
   }
-  auto clip = read_motion(*file, context);
+  auto clip = io::open_motion(*file, context);
   if (!clip) return clip.error();
   target.clip = std::move(*clip);
   return target;
@@ -48,7 +48,7 @@ Result<Target> read_target(const std::string& path, ToolContext& context) {
 
 Result<RoleMap> roles_of(const Skeleton& skeleton, const std::string& map_path,
                          ToolContext& context) {
-  const auto roles = open_role_map(map_path, context);
+  const auto roles = io::open_role_map(map_path, context);
   if (!roles) return roles.error();
   return (*roles)(skeleton);
 }
@@ -57,8 +57,8 @@ Result<std::optional<int>> parse_frame(const char* option, const std::string& te
   if (text == "auto") return std::optional<int>();
   const auto frame = parse_integer(text);
   if (!frame || *frame < 0 || *frame > 2'000'000'000) {
-    return Error("usage", fmt::format("{} {} is neither auto nor a frame number", option, text),
-                 "frames count from 0");
+    return Error("usage", fmt::format("{} {} is not auto or a frame number", option, text),
+                 "frames are numbered from 0");
   }
   return std::optional<int>(static_cast<int>(*frame));
 }
@@ -69,7 +69,8 @@ Result<retarget::Options> parse(const Options& options) {
   if (!options.scale.empty()) {
     const auto scale = parse_finite(options.scale);
     if (!scale || !(*scale > 0)) {
-      return Error("usage", fmt::format("--scale {} is not a number over 0", options.scale));
+      return Error("usage",
+                   fmt::format("--scale {} is not a number greater than 0", options.scale));
     }
     parsed.scale = *scale;
   }
@@ -82,7 +83,7 @@ Result<retarget::Options> parse(const Options& options) {
   return parsed;
 }
 
-// A mesh far above or below the feet stands on no floor of theirs.
+// A mesh bottom far above or below the feet is not their floor.
 std::optional<double> believable_floor(const Target& target, const RoleMap& roles) {
   if (!target.floor || !roles.humanoid) return std::nullopt;
   double lowest = 0;
@@ -104,21 +105,21 @@ void report_choices(const Outcome& outcome, ToolContext& context) {
     diagnostic.severity = Severity::note;
     diagnostic.code = std::move(code);
     diagnostic.message = std::move(message);
-    context.tell(std::move(diagnostic));
+    context.diagnose(std::move(diagnostic));
   };
   const auto note_frame = [&](const std::optional<int>& frame, const char* whose) {
     if (!frame) return;
     note("retarget-reference",
-         fmt::format("frame {} of the {} serves as its reference pose", *frame, whose));
+         fmt::format("frame {} of the {} is used as its reference pose", *frame, whose));
   };
   note_frame(report.source_frame, "input");
   note_frame(report.target_frame, "target");
   if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
     note("retarget-fingers",
-         "the input's fingers never move; the target's keep their reference pose on the hand");
+         "the input's fingers never move; the target's fingers keep their reference pose");
   }
   if (report.method == retarget::Method::names) {
-    note("retarget-names", "joints were mapped by their names; feet were left free");
+    note("retarget-names", "joints were mapped by name; foot contacts are not preserved");
   }
 }
 
@@ -127,24 +128,25 @@ void report_choices(const Outcome& outcome, ToolContext& context) {
 void declare(CommandOptions& command, Options& options) {
   command
       .add_option("input", options.input,
-                  "The motion, or a capture as krok-import takes it (- is standard input)")
+                  "Motion, or a capture read as by krok-import (- is standard input)")
       .type_name("IN.anim")
       .required();
   command
       .add_option("--onto", options.onto,
-                  "The skeleton to move: a model, or any motion or capture of it")
+                  "Target skeleton: a model, or any motion or capture of it")
       .type_name("IN.model|IN.anim")
       .required();
   add_map_option(command, options.map, "--map",
-                 "What the input's joints are, where their names do not tell: a role map (JSON)")
+                 "Role map (JSON) for input joints whose names do not identify them")
       .group("Joints");
   add_map_option(command, options.onto_map, "--onto-map", "The same for the target's joints")
       .group("Joints");
   command
-      .add_option("--reference-pose", options.reference_pose,
-                  "The input's pose that is set beside the target's reference pose: a frame, or "
-                  "auto: its own reference pose, or if that does not stand, the frame nearest to a "
-                  "T-pose")
+      .add_option(
+          "--reference-pose", options.reference_pose,
+          "Pose of the input that matches the target's reference pose: a frame number, or auto: "
+          "its own reference pose or, if that is not a standing pose, the frame nearest to a "
+          "T-pose")
       .type_name("POSE")
       .default_str("auto")
       .group("Joints");
@@ -154,16 +156,15 @@ void declare(CommandOptions& command, Options& options) {
       .type_name("POSE")
       .default_str("auto")
       .group("Joints");
-  add_choice<retarget::Feet>(
-      command, "--feet", options.feet,
-      {{"keep", retarget::Feet::keep}, {"free", retarget::Feet::free}},
-      "keep: feet stand where the input's stand, scaled, and not in the floor; free: as the legs' "
-      "rotations bring them",
-      "HOW", "keep")
+  add_choice<retarget::Feet>(command, "--feet", options.feet,
+                             {{"keep", retarget::Feet::keep}, {"free", retarget::Feet::free}},
+                             "keep: foot positions follow the input's, scaled, and stay above the "
+                             "floor; free: from the leg rotations only",
+                             "HOW", "keep")
       .group("Motion");
   command
       .add_option("--scale", options.scale,
-                  "How much larger the motion's ways become; by default the ratio of the legs")
+                  "Scale of the root motion; default: ratio of leg lengths")
       .type_name("NUMBER")
       .group("Motion");
   add_orientation_option(command, options.orientation);
@@ -182,7 +183,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
     return status.error();
   }
-  const auto source = read_motion(options.input, context);
+  const auto source = io::open_motion(options.input, context);
   if (!source) return source.error();
   const auto target = read_target(options.onto, context);
   if (!target) return target.error();
@@ -210,8 +211,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!status) return status.error();
 
   context.report.result = to_json(outcome);
-  context.say(fmt::format("{}: {}", context.output, summary(outcome)));
-  if (context.verbose) context.say(table(outcome));
+  context.log(fmt::format("{}: {}", context.output, summary(outcome)));
+  if (context.verbose) context.log(table(outcome));
   return kExitDone;
 }
 

@@ -8,14 +8,14 @@
 
 namespace krok::retarget_tool {
 
-// The options as they were typed.
+// The options as given.
 struct Options {
   std::string input;
   std::string onto;
   std::string map;       // of the input's joints; empty: none
-  std::string onto_map;  // of the target's
+  std::string onto_map;  // of the target's joints
   retarget::Feet feet = retarget::Feet::keep;
-  std::string scale;                    // empty: by the legs
+  std::string scale;                    // empty: ratio of leg lengths
   std::string reference_pose = "auto";  // auto, or a frame
   std::string onto_reference_pose = "auto";
   OrientationEncoding orientation = OrientationEncoding::xyz;
@@ -23,11 +23,11 @@ struct Options {
 
 void declare(CommandOptions& command, Options& options);
 
-// Whether the options have values that fit some file or other.
+// Checks the options for values that are invalid for any file.
 Status check(const Options& options);
 
-// Reads the motion and the target, writes the motion on the target's skeleton. Codes: those of the
-// readers, of formats/role_map and of lib/retarget.
+// Reads the motion and the target, and writes the motion on the target's skeleton. Codes: those of
+// the readers, of formats/role_map and of lib/retarget.
 Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::retarget_tool

@@ -10,12 +10,13 @@ krok::ToolSpec make_spec() {
   krok::ToolSpec spec;
   spec.name = "krok-skin";
   spec.summary =
-      "Moves a mesh by a skeleton's motion and writes it as glTF, a point cache or OBJ files";
+      "Skins a mesh with a skeleton's motion and writes glTF, a point cache or OBJ files";
   spec.inputs = "IN.model IN.anim";
   spec.examples = {
-      {"krok-skin body.model walk.anim -o walk.glb", "the motion baked, for viewers without skins"},
+      {"krok-skin body.model walk.anim -o walk.glb",
+       "baked vertex animation, for viewers without skinning"},
       {"krok-skin body.model walk.anim --as rig -o walk.glb", "a rig for a game engine or Blender"},
-      {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one moment"},
+      {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one pose"},
       {"krok-skin hero.character walk.anim --weights smile.csv --as rig -o hero.glb",
        "a character with its materials, eyes and expressions"},
       {"krok-skin body.model walk.anim -o walk.pc2", "a point cache for Blender or 3ds Max"}};

@@ -18,7 +18,7 @@ Error at_option(const char* option, Error error) {
   return error;
 }
 
-// The frame nearest to a moment given on the command line.
+// The frame nearest to a time given on the command line.
 Result<int> frame_at(const char* option, const std::string& text, const Clip& clip, int fallback) {
   if (text.empty()) return fallback;
   const auto time = parse_clip_time(text);
@@ -26,8 +26,8 @@ Result<int> frame_at(const char* option, const std::string& text, const Clip& cl
   const double frame = std::round(time->in_frames ? time->value : time->value * clip.rate);
   if (!(frame >= 0 && frame < clip.frame_count())) {
     return Error("skin-time",
-                 fmt::format("{} {} lies outside the motion, which has frames 0 to {} ({} s)",
-                             option, text, clip.frame_count() - 1, readable(clip.duration())));
+                 fmt::format("{} {} is outside the motion, which has frames 0 to {} ({} s)", option,
+                             text, clip.frame_count() - 1, readable(clip.duration())));
   }
   return static_cast<int>(frame);
 }
@@ -49,53 +49,52 @@ bool is_character(const std::string& path) {
 void declare_options(CommandOptions& command, Options& options) {
   command
       .add_option("subject", options.subject,
-                  "The skinned mesh: a .model, or a .character with its materials and expressions")
+                  "Skinned mesh: a .model, or a .character with its materials and expressions")
       .type_name("IN.model")
       .required();
   command
       .add_option("motion", options.motion,
-                  "The motion: .anim, or a capture as krok-import reads it; without one the mesh "
-                  "stands in its reference pose")
+                  "Motion: .anim, or a capture read as by krok-import; without it, the mesh is in "
+                  "its reference pose")
       .type_name("IN.anim");
   add_choice(command, "--as", options.as,
              {{"clip", As::clip}, {"pose", As::pose}, {"rig", As::rig}, {"frames", As::frames}},
-             "What to write. clip: the motion baked, into glTF as a morph target a frame, or as a "
-             "point cache (.pc2). pose: one mesh. rig: joints, weights and the animation, for the "
-             "viewer's own skinning. frames: one file a frame, OUT_0000.glb, OUT_0001.glb, ... for "
-             "-o OUT.glb. A mesh goes into .glb, .gltf or .obj",
+             "What to write. clip: the baked motion, as glTF with one morph target per frame or as "
+             "a point cache (.pc2). pose: one mesh. rig: joints, weights and the animation, for "
+             "skinning in the viewer. frames: one file per frame, OUT_0000.glb, OUT_0001.glb, ... "
+             "for -o OUT.glb. Meshes can be .glb, .gltf or .obj",
              "WHAT", "clip");
-  command.add_option("--time", options.time, "For --as pose: when, as 1.5s, 250ms or 120f")
+  command.add_option("--time", options.time, "For --as pose: the time, such as 1.5s, 250ms or 120f")
       .type_name("T")
       .default_str("0");
   command
       .add_option("--from", options.from,
-                  "Where the part to write begins, as for --time; not for pose")
+                  "Start of the range to write, as for --time; not for pose")
       .type_name("T");
-  command.add_option("--to", options.to, "Where it ends, that frame included").type_name("T");
-  add_whole(command, "--every", options.every, "Take every Nth frame only", 1, 1000000)
+  command.add_option("--to", options.to, "End of the range, inclusive").type_name("T");
+  add_whole(command, "--every", options.every, "Use only every Nth frame", 1, 1000000)
       .default_str("1");
   add_skin_method(command, options.method,
-                  "How vertices follow the joints. linear: linear blend, as viewers do it; thins "
-                  "out where a joint twists. dual-quaternion: keeps the volume there. rigid: each "
-                  "its strongest joint alone");
+                  "Skinning method. linear: linear blend skinning, as in viewers; loses volume at "
+                  "twisted joints. dual-quaternion: preserves volume. rigid: each vertex follows "
+                  "only its strongest joint");
   command
-      .add_option(
-          "--morph", options.morphs,
-          "Morph targets (OpenEXR, of krok-morph or krok-import) that change the mesh before "
-          "the skeleton moves it; a character brings its own")
+      .add_option("--morph", options.morphs,
+                  "Morph targets (OpenEXR, from krok-morph or krok-import), applied before "
+                  "skinning; a character has its own")
       .type_name("IN.exr");
   command
       .add_option("--weights", options.weights,
-                  "How much of each target shows over time: a table (CSV) or keys (JSON); from the "
-                  "motion's beginning on")
+                  "Morph target weights over time: a table (CSV) or keys (JSON); from the start of "
+                  "the motion")
       .type_name("IN");
   add_choice(command, "--up", options.up, {{"y", pc2::Up::y}, {"z", pc2::Up::z}},
-             "The axis that points up in a point cache: y as in the OBJ and glTF files here, or z, "
-             "as Blender and 3ds Max keep a mesh",
+             "Up axis of a point cache: y as in the written OBJ and glTF files, or z as in Blender "
+             "and 3ds Max",
              "AXIS", "y");
 }
 
-// An option that the rest of the command line makes void is a mistake to be told of.
+// Options without effect are errors.
 Status check(const Options& options) {
   for (const auto& [option, text] :
        {std::pair{"--time", &options.time}, {"--from", &options.from}, {"--to", &options.to}}) {
@@ -103,26 +102,27 @@ Status check(const Options& options) {
   }
   const bool pose = options.as == As::pose;
   if (!pose && !options.time.empty()) {
-    return Error("usage", "--time is for --as pose", "--from and --to choose a part of the motion");
+    return Error("usage", "--time is for --as pose",
+                 "use --from and --to for a range of the motion");
   }
   if (!options.weights.empty() && options.morphs.empty() && !is_character(options.subject)) {
-    return Error("usage", "--weights are those of morph targets, and none are given",
-                 "--morph IN.exr names them; a .character has its own");
+    return Error("usage", "--weights needs morph targets",
+                 "add --morph IN.exr; a .character has its own");
   }
   if (!options.morphs.empty() && is_character(options.subject)) {
-    return Error("usage", "--morph is for a model; a character names its targets itself",
+    return Error("usage", "--morph is for a model; a character has its own targets",
                  "edit \"morphs\" in the .character file");
   }
   if (!options.morphs.empty() && options.weights.empty() && options.as != As::rig) {
-    return Error("usage", "--morph changes nothing without --weights",
-                 "--as rig passes the targets on without any");
+    return Error("usage", "--morph has no effect without --weights",
+                 "only --as rig writes targets without weights");
   }
   if (options.as == As::rig && options.method != SkinMethod::linear) {
     return Error("usage", "--method is not for --as rig, which leaves skinning to the viewer",
-                 "--as clip writes the mesh as the method moves it");
+                 "use --as clip to bake the mesh with this method");
   }
   if (pose && !(options.from.empty() && options.to.empty() && options.every == 1)) {
-    return Error("usage", "--from, --to and --every are not for --as pose", "--time says when");
+    return Error("usage", "--from, --to and --every are not for --as pose", "use --time");
   }
   return {};
 }
@@ -133,16 +133,14 @@ Result<std::optional<Range>> chosen_range(const Options& options, const Clip& cl
     return std::optional<Range>();
   }
   if (frames == 0) {
-    return Error("skin-no-frames",
-                 "the motion has no frames to choose from by --from, --to, --every");
+    return Error("skin-no-frames", "the motion has no frames for --from, --to, --every");
   }
   const auto first = frame_at("--from", options.from, clip, 0);
   if (!first) return first.error();
   const auto last = frame_at("--to", options.to, clip, frames - 1);
   if (!last) return last.error();
   if (*last < *first) {
-    return Error("skin-time",
-                 fmt::format("--from {} lies after --to {}", options.from, options.to));
+    return Error("skin-time", fmt::format("--from {} is after --to {}", options.from, options.to));
   }
   return std::optional<Range>(Range{*first, *last, options.every});
 }
@@ -153,7 +151,7 @@ Result<double> pose_time(const Options& options, const Clip& clip) {
   if (!time) return at_option("--time", time.error());
   const double seconds = time->seconds(clip.rate);
   if (seconds < 0 || seconds > clip.duration() * (1 + 1e-9)) {
-    return Error("skin-time", fmt::format("--time {} lies outside the motion, which lasts {} s",
+    return Error("skin-time", fmt::format("--time {} is outside the motion, which is {} s long",
                                           options.time, readable(clip.duration())))
         .in_file(options.motion);
   }

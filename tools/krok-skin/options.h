@@ -13,35 +13,35 @@ namespace krok::skinning {
 
 enum class As { clip, pose, rig, frames };
 
-// What stands on the command line.
+// Command-line options.
 struct Options {
   std::string subject;  // a model or a character
   std::string motion;   // empty: the reference pose
-  std::string morphs;   // --morph, empty where none is given
-  std::string weights;  // --weights, likewise
+  std::string morphs;   // --morph, empty: none
+  std::string weights;  // --weights, empty: none
   As as = As::clip;
-  SkinMethod method = SkinMethod::linear;  // --as rig has no other
-  std::string time;                        // --as pose; a ClipTime, empty for the start
-  std::string from, to;     // the part of the motion; ClipTimes, empty for its ends; not --as pose
-  int every = 1;            // of the frames; not --as pose
-  pc2::Up up = pc2::Up::y;  // of a point cache
+  SkinMethod method = SkinMethod::linear;  // always for --as rig
+  std::string time;                        // --as pose; a ClipTime, empty: the start
+  std::string from, to;                    // time range; ClipTimes, empty: the ends; not --as pose
+  int every = 1;                           // frame step; not --as pose
+  pc2::Up up = pc2::Up::y;                 // of a point cache
 };
 
-// Whether a path names a character and no model.
+// Whether a path is a character, not a model.
 bool is_character(const std::string& path);
 
 void declare_options(CommandOptions& command, Options& options);
 
-// Whether the options have values that fit some file or other.
+// Checks the options for values that are invalid for any file.
 Status check(const Options& options);
 
-// Which frames --from, --to and --every choose of a motion; codes skin-no-frames, skin-time.
+// The frames of a motion selected by --from, --to and --every; codes skin-no-frames, skin-time.
 struct Range {
   int first = 0, last = 0, every = 1;
 };
 Result<std::optional<Range>> chosen_range(const Options& options, const Clip& clip);
 
-// The moment of --as pose in seconds; code skin-time.
+// The time of --as pose in seconds; code skin-time.
 Result<double> pose_time(const Options& options, const Clip& clip);
 
 }  // namespace krok::skinning

@@ -18,9 +18,9 @@ namespace krok::skinning {
 
 namespace {
 
-// More morph targets than this fit in no browser on common hardware, or only just.
+// Browsers on common hardware fail at about this number of morph targets.
 constexpr int kManyMorphTargets = 1000;
-// The default name of what is written, for viewers' lists of objects.
+// Default mesh name, for object lists of viewers.
 constexpr const char* kMeshName = "body";
 
 gltf::WriteOptions write_options(const Subject& subject, const ToolContext& context) {
@@ -36,7 +36,7 @@ obj::WriteOptions obj_options(const ToolContext& context) {
   return {.provenance = context.provenance(), .name = kMeshName};
 }
 
-// The places of a mesh's vertices in one pose.
+// Vertex positions of a mesh in one pose.
 struct Vertices {
   std::vector<Vec3f> positions, normals;
   std::vector<Vec4f> tangents;
@@ -49,7 +49,7 @@ struct Vertices {
   MeshShape shape() const { return {positions, normals, tangents}; }
 };
 
-// Writes meshes of one model, each to a file of its own; from several threads at once.
+// Writes meshes of one model, each to its own file. Thread-safe.
 using WriteMesh = std::function<Status(const MeshShape& shape, OutputFile& file)>;
 
 Result<WriteMesh> mesh_writer(const Subject& subject, const ToolContext& context) {
@@ -66,7 +66,7 @@ Result<WriteMesh> mesh_writer(const Subject& subject, const ToolContext& context
   });
 }
 
-// The smallest --every that brings a motion within the limits; 0 if none does.
+// The smallest --every that keeps a motion within the limits; 0 if none does.
 int fitting_step(const Model& model, std::span<const Material> materials, int frames) {
   for (int step = 2; step < frames; ++step) {
     const int kept = (frames - 1) / step + 1;
@@ -86,24 +86,24 @@ Status check_bakeable(const Subject& subject, ToolContext& context) {
     const int step = fitting_step(subject.model, subject.materials, frames);
     return Error(
         "skin-clip-too-long",
-        fmt::format("{} frames of {} vertices make {} morph targets and {} MB; viewers hold at "
-                    "most {} targets, and {} MB is the most that glTF holds",
+        fmt::format("{} frames of {} vertices need {} morph targets and {} MB; viewers support at "
+                    "most {} targets, and glTF at most {} MB",
                     frames, subject.model.vertex_count(), frames - 1, megabytes,
                     gltf::kMaxMorphTargets, gltf::kMaxDataBytes >> 20),
-        step > 0 ? fmt::format("--as rig holds any length; or --every {}, or a part by --from and "
-                               "--to",
-                               step * subject.every)
-                 : "--as rig and -o OUT.pc2 hold any number of vertices and frames");
+        step > 0 ? fmt::format(
+                       "use --as rig for any length, --every {}, or a range with --from and --to",
+                       step * subject.every)
+                 : "use --as rig or -o OUT.pc2 for any number of vertices and frames");
   }
   if (frames - 1 > kManyMorphTargets) {
     context.warn("skin-many-targets",
-                 fmt::format("{} morph targets are more than some viewers show", frames - 1),
-                 "--as rig, or --every 2");
+                 fmt::format("{} morph targets are more than some viewers support", frames - 1),
+                 "use --as rig or --every 2");
   }
   return {};
 }
 
-// "walk.glb" and frame 7 of 1500 give "walk_0007.glb".
+// "walk_0007.glb" for "walk.glb" and frame 7 of 1500.
 std::string frame_path(const std::string& output, int frame, int last_frame) {
   const std::size_t digits = std::max<std::size_t>(4, fmt::format("{}", last_frame).size());
   const std::string end = extension(output);
@@ -116,27 +116,26 @@ std::string frame_path(const std::string& output, int frame, int last_frame) {
 Status check_output(As as, const std::string& output) {
   const std::string end = extension(output);
   if (as == As::frames && output == "-") {
-    return Error("skin-output", "--as frames writes many files, which standard output cannot take",
-                 "give -o OUT.glb for OUT_0000.glb, OUT_0001.glb, ...");
+    return Error("skin-output", "--as frames writes many files, not standard output",
+                 "use -o OUT.glb for OUT_0000.glb, OUT_0001.glb, ...");
   }
   if (output == "-" || end == ".glb" || end == ".gltf") return {};
   if (end == ".pc2") {
     if (as == As::clip) return {};
-    return Error("skin-format",
-                 "a point cache (.pc2) holds a whole motion's vertices, nothing else",
-                 "--as clip, and the mesh by --as pose -o OUT.obj")
+    return Error("skin-format", "a point cache (.pc2) can only hold the vertices of a whole motion",
+                 "use --as clip; write the mesh with --as pose -o OUT.obj")
         .in_file(output);
   }
   if (end == ".obj") {
     if (as == As::pose || as == As::frames) return {};
-    return Error("skin-format", "an OBJ file holds one mesh that does not move",
-                 "--as frames writes one a frame, --as pose that of one moment")
+    return Error("skin-format", "an OBJ file holds one static mesh",
+                 "use --as frames for one file per frame, --as pose for one pose")
         .in_file(output);
   }
   return Error("skin-format",
-               end.empty() ? fmt::format("{} has no extension to tell the format by", output)
-                           : fmt::format("no format of this tool has the extension {}", end),
-               "known are .glb, .gltf, .pc2 and .obj")
+               end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
+                           : fmt::format("unsupported extension {}", end),
+               "use .glb, .gltf, .pc2 or .obj")
       .in_file(output);
 }
 

@@ -7,19 +7,19 @@
 
 namespace krok::skinning {
 
-// The subject's mesh at moments of its motion: its shape first, then the skeleton. Owns the working
-// memory, so that each thread needs one of its own; subject and binding must outlive it.
+// The subject's mesh at times of its motion: morph targets first, then skinning. Owns working
+// memory: use one per thread. Subject and binding must outlive it.
 class PosedMesh {
  public:
   PosedMesh(const Subject& subject, const SkinBinding& binding, int jobs);
 
-  // `out` has a place for each vertex, of normals and tangents where the model has them or none.
+  // `out` has one element per vertex; normals and tangents if the model has them, or empty.
   void at_frame(int frame, const SkinnedSurface& out);
   void at_time(double seconds, const SkinnedSurface& out);
 
  private:
   void skin(double frame, const SkinnedSurface& out);
-  // What the skeleton moves: the model's own surface or, where its shape changes, that of `frame`.
+  // The surface before skinning: the model's or, with morph targets, that of `frame`.
   SkinSurface shape_at(double frame, const SkinnedSurface& out);
 
   const Subject& subject_;

@@ -21,11 +21,11 @@ Json result_of(const Subject& subject, int frames) {
   return result;
 }
 
-// Writes what is wanted; gives the outputs' names for people.
+// Writes the output; returns its names for display.
 Result<std::string> write(const Options& options, const Subject& subject, ToolContext& context) {
   if (options.as == As::rig) {
     if (subject.clip.frame_count() == 0) {
-      context.warn("skin-no-frames", "the motion has no frames, so the rig does not move");
+      context.warn("skin-no-frames", "the motion has no frames; the rig is not animated");
     }
     if (Status status = write_rig(subject, context); !status) return status.error();
     return context.output;
@@ -53,14 +53,15 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!subject) return subject.error();
   const bool every_frame = options.as == As::clip || options.as == As::frames;
   if (subject->clip.frame_count() == 0 && every_frame) {
-    return Error("skin-no-frames", "the motion has no frames", "--as pose gives the reference pose")
+    return Error("skin-no-frames", "the motion has no frames",
+                 "use --as pose for the reference pose")
         .in_file(options.motion);
   }
   const int frames = options.as == As::pose ? 1 : subject->clip.frame_count();
   context.report.result = result_of(*subject, frames);
   const auto written = write(options, *subject, context);
   if (!written) return written.error();
-  context.say(options.as == As::frames
+  context.log(options.as == As::frames
                   ? fmt::format("{}: {}", *written, counted(frames, "file"))
                   : fmt::format("{}: {}, {}", *written,
                                 counted(subject->model.vertex_count(), "vertex", "vertices"),

@@ -6,7 +6,7 @@
 
 namespace krok::skinning {
 
-// Reads what is to be skinned and its motion, skins, and writes what is wanted.
+// Reads the subject and its motion, skins it, and writes the output.
 Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::skinning

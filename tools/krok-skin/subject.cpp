@@ -6,20 +6,20 @@
 #include <optional>
 
 #include "core/numbers.h"
+#include "formats/io/open_character.h"
+#include "formats/io/open_motion.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "formats/weights/weights.h"
 #include "motion/cut.h"
 #include "scene/tangents.h"
 #include "skin/bind.h"
-#include "tools/common/character/character_input.h"
-#include "tools/common/motion_input.h"
 
 namespace krok::skinning {
 
 namespace {
 
-constexpr double kStillRate = 30.0;  // frames a second, where neither motion nor weights tell
+constexpr double kStillRate = 30.0;  // frames per second, if neither motion nor weights have a rate
 
 class Loader {
  public:
@@ -40,7 +40,7 @@ class Loader {
     }
     if (!subject_.model.triangles.empty()) return {};
     return Error("skin-empty-model", "the model has no triangles",
-                 "krok-body makes a model with a mesh")
+                 "create a model with a mesh with krok-body")
         .in_file(options_.subject);
   }
 
@@ -54,7 +54,7 @@ class Loader {
   }
 
   Status read_character() {
-    auto loaded = load_character(options_.subject, context_);
+    auto loaded = io::open_character(options_.subject, context_);
     if (!loaded) return loaded.error();
     subject_.model = std::move(loaded->model);
     subject_.materials = std::move(loaded->materials);
@@ -77,10 +77,10 @@ class Loader {
     if (!morphs) return std::move(morphs.error()).in_file(options_.morphs);
     if (morphs->vertex_count != subject_.model.vertex_count()) {
       return Error("skin-morphs",
-                   fmt::format("the targets are of a mesh with {}, the model has {}",
+                   fmt::format("the targets are for a mesh with {}, but the model has {}",
                                counted(morphs->vertex_count, "vertex", "vertices"),
                                subject_.model.vertex_count()),
-                   "krok-import --model --morphs writes both of one file")
+                   "write both from one file with krok-import --model --morphs")
           .in_file(options_.morphs);
     }
     subject_.morphs = std::move(*morphs);
@@ -95,7 +95,7 @@ class Loader {
       if (!weights) return weights.error();
       weights_ = std::move(*weights);
     }
-    // What the weights leave out stays as the character has it.
+    // Targets without weights keep the character's default weights.
     for (std::size_t t = 0; t < rest_weights_.size(); ++t) {
       if (rest_weights_[t] == 0.0f) continue;
       if (!weights_) {
@@ -118,23 +118,23 @@ class Loader {
       clip.set_pose(0, clip.skeleton.reference);
       return {};
     }
-    auto read = read_motion(options_.motion, context_);
+    auto read = io::open_motion(options_.motion, context_);
     if (!read) return read.error();
     clip = std::move(*read);
     auto bound = bind_to(std::move(subject_.model), clip.skeleton);
     if (!bound) return std::move(bound.error()).in_file(options_.motion);
     subject_.model = std::move(*bound);
-    std::erase_if(subject_.eyes, [&](const Character::Eye& eye) {  // those of joints left out
+    std::erase_if(subject_.eyes, [&](const Character::Eye& eye) {  // whose joints were removed
       return subject_.model.skeleton.find(eye.joint) < 0;
     });
     for (Diagnostic difference : reference_differences(subject_.model.skeleton, clip)) {
       difference.where.file = options_.motion;
-      context_.tell(std::move(difference));
+      context_.diagnose(std::move(difference));
     }
     return {};
   }
 
-  // The weights at the frames of the motion; a pose that stands still is held as long as they last.
+  // Samples the weights at the frames of the motion; a static pose is held for their duration.
   Status take_weights() {
     if (!weights_) return {};
     Clip& clip = subject_.clip;
@@ -144,9 +144,9 @@ class Loader {
       clip = hold(clip, *needed);
     } else if (const double over = weights_->curves.duration() - clip.duration();
                over > 1 / clip.rate) {
-      context_.tell(
+      context_.diagnose(
           warning("skin-weights-longer",
-                  fmt::format("the weights last {} s, the motion {} s; what is over is left out",
+                  fmt::format("the weights last {} s, the motion {} s; the rest is ignored",
                               readable(weights_->curves.duration()), readable(clip.duration()))));
     }
     auto weights = sample(weights_->curves, clip.rate, std::max(1, clip.frame_count()));
@@ -196,7 +196,7 @@ class Loader {
   const Options& options_;
   ToolContext& context_;
   Subject subject_;
-  std::vector<float> rest_weights_;  // [targets], of a character
+  std::vector<float> rest_weights_;  // [targets], for characters
   std::optional<weights::WeightFile> weights_;
 };
 

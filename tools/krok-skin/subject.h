@@ -11,23 +11,23 @@
 
 namespace krok::skinning {
 
-// What is skinned: a mesh and the motion that moves it, on one skeleton, and how its shape changes.
+// The input of skinning: a mesh and a motion on one skeleton, with morph targets.
 struct Subject {
   Model model;                     // on the motion's skeleton, with triangles
-  Clip clip;                       // the part that is wanted
-  int first_frame = 0, every = 1;  // of the motion as read, for names of files
+  Clip clip;                       // the selected range
+  int first_frame = 0, every = 1;  // of the motion as read, for file names
 
-  std::vector<Material> materials;   // of the model's parts; of a character
-  std::vector<Character::Eye> eyes;  // at joints of the model; of a character
+  std::vector<Material> materials;   // of the model's parts; for characters
+  std::vector<Character::Eye> eyes;  // at joints of the model; for characters
 
-  MorphSet morphs;       // without targets where there are none
-  MorphWeights weights;  // at the frames of `clip`, for the targets of `morphs`; or none
+  MorphSet morphs;       // may have no targets
+  MorphWeights weights;  // at the frames of `clip`, for the targets of `morphs`; or empty
 
   bool changes_shape() const { return !weights.values.empty(); }
 };
 
-// Reads the files that the options name. Codes: those of their readers, of bind_to() and
-// chosen_range(), skin-empty-model, skin-morphs.
+// Reads the input files. Codes: those of their readers, of bind_to() and chosen_range(),
+// skin-empty-model, skin-morphs.
 Result<Subject> load(const Options& options, ToolContext& context);
 
 }  // namespace krok::skinning

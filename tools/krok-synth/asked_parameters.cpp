@@ -23,15 +23,15 @@ Result<double> parse_value(std::string_view text, std::string_view unit) {
   if (unit == "rad") return parse_angle(text);
   const auto time = parse_clip_time(text);
   if (!time) return time.error();
-  if (time->in_frames) return Error("quantity-unit", "frames are no unit here", "use s or ms");
+  if (time->in_frames) return Error("quantity-unit", "the unit cannot be frames", "use s or ms");
   return time->value;
 }
 
 Error usage(std::string message, const std::vector<NamedParameter>& parameters) {
-  return {"usage", std::move(message), "the library takes " + in_words(parameters)};
+  return {"usage", std::move(message), "the library has the parameters " + in_words(parameters)};
 }
 
-// By its name, or by what it measures.
+// By name, or by what it measures.
 std::optional<std::size_t> find(std::string_view name,
                                 const std::vector<NamedParameter>& parameters) {
   for (std::size_t d = 0; d < parameters.size(); ++d) {
@@ -81,10 +81,11 @@ Result<std::vector<double>> parse_settings(const std::vector<std::string>& words
     }
     const auto d = find(word.substr(0, sign), parameters);
     if (!d) {
-      return usage(fmt::format("--set: there is no '{}'", shown(word.substr(0, sign))), parameters);
+      return usage(fmt::format("--set: unknown parameter '{}'", shown(word.substr(0, sign))),
+                   parameters);
     }
     if (values[*d]) {
-      return usage(fmt::format("--set: {} is given twice", parameters[*d].name), parameters);
+      return usage(fmt::format("--set: {} is set twice", parameters[*d].name), parameters);
     }
     const auto value = parse_value(word.substr(sign + 1), parameters[*d].unit);
     if (!value) {
@@ -97,7 +98,7 @@ Result<std::vector<double>> parse_settings(const std::vector<std::string>& words
   for (std::size_t d = 0; d < values.size(); ++d) {
     if (!values[d]) {
       return usage(
-          fmt::format("nothing is asked for {}: --set {}=", parameters[d].name, parameters[d].name),
+          fmt::format("no value for {}: --set {}=", parameters[d].name, parameters[d].name),
           parameters);
     }
     point.push_back(*values[d]);

@@ -4,15 +4,14 @@ int main(int argc, char** argv) {
   krok::synth_tool::Options options;
   krok::ToolSpec spec;
   spec.name = "krok-synth";
-  spec.summary = "Makes a motion with the parameters that are asked for, from a step library";
+  spec.summary = "Makes a motion with given parameters from a step library";
   spec.inputs = "IN.steps";
-  spec.examples = {
-      {"krok-synth walking.steps --set length=70cm --set turn=15deg -o step.anim",
-       "one step of that length and turn; what it really measures is told"},
-      {"krok-synth walking.steps --set length=0.7 --correct --side right -o step.anim",
-       "the mirror image, corrected until it is right to a hundredth of the tolerance"},
-      {"krok-synth walking.steps --table points.csv -o steps/step.anim",
-       "a motion for each row of a table with a column for each parameter: step_1.anim, ..."}};
+  spec.examples = {{"krok-synth walking.steps --set length=70cm --set turn=15deg -o step.anim",
+                    "one step of that length and turn; prints its measured parameters"},
+                   {"krok-synth walking.steps --set length=0.7 --correct --side right -o step.anim",
+                    "a step of the right foot, corrected to within a hundredth of the tolerance"},
+                   {"krok-synth walking.steps --table points.csv -o steps/step.anim",
+                    "one motion per row of a table with a column per parameter: step_1.anim, ..."}};
   spec.declare = [&options](krok::CommandOptions& command) {
     krok::synth_tool::declare(command, options);
   };

@@ -25,7 +25,7 @@ namespace krok::synth_tool {
 
 namespace {
 
-constexpr int kCorrections = 4;  // two are enough near the library; far out it may take more
+constexpr int kCorrections = 4;  // two are enough near the library; far outside more are needed
 
 struct Motion {
   std::string path;
@@ -53,7 +53,7 @@ Result<steps::StepsFile> read_steps(const Options& options, ToolContext& context
   return steps;
 }
 
-// "steps/step_12.anim" for the twelfth of "steps/step.anim", as wide as the last number.
+// "steps/step_12.anim" for number 12 of "steps/step.anim", zero-padded to the width of the last.
 std::string numbered(const std::string& path, std::size_t number, std::size_t count) {
   const std::filesystem::path whole(path);
   const std::string name = fmt::format("{}_{:0{}}{}", whole.stem().string(), number,
@@ -92,7 +92,7 @@ Status make_all(const parametric::Synthesiser& synthesiser, const Options& optio
     if (done[i]) continue;
     Error error = std::move(done[i]).error();
     if (motions.size() > 1) error.message = fmt::format("row {}: {}", i + 1, error.message);
-    if (error.code == "parametric-bounds") error.hint += "; --extrapolate goes beyond";
+    if (error.code == "parametric-bounds") error.hint += "; --extrapolate allows this";
     return error;
   }
   return {};
@@ -147,7 +147,7 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
     entry["duration"] = motion.made.clip.duration();
     entry["frames"] = motion.made.clip.frame_count();
     list.push_back(std::move(entry));
-    context.say(line);
+    context.log(line);
   }
   context.report.result["motions"] = std::move(list);
 }
@@ -155,44 +155,46 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
 }  // namespace
 
 void declare(CommandOptions& command, Options& options) {
-  command.add_option("library", options.library, "The library that krok-fit made")
+  command.add_option("library", options.library, "Step library made by krok-fit")
       .type_name("IN.steps")
       .required();
   command
       .add_option("--set", options.set,
-                  "What is asked for, a parameter each: length=70cm, turn=15deg, duration=0.6s")
+                  "Value of a parameter: length=70cm, turn=15deg, duration=0.6s")
       .type_name("NAME=VALUE")
       .group("Parameters");
   command
       .add_option("--table", options.table,
-                  "A table (CSV) with a column for each parameter: a motion for each row, named as "
-                  "-o with the row's number")
+                  "Table (CSV) with a column per parameter; makes one motion per row, named as "
+                  "-o plus the row number")
       .type_name("IN.csv")
       .group("Parameters");
   command
       .add_flag("--extrapolate", options.extrapolate,
-                "Allow parameters outside what the examples span; their error is not known")
+                "Allow parameters outside the range of the examples, where the error is unknown")
       .group("Parameters");
   add_choice<SideChoice>(
       command, "--side", options.side,
       {{"library", SideChoice::library}, {"left", SideChoice::left}, {"right", SideChoice::right}},
-      "The foot that steps: library (the one that the library has), left or "
+      "Swing foot: library (as in the library), left or "
       "right",
       "SIDE", "library")
       .group("Motion");
   command
       .add_flag("--correct", options.correct,
-                "Correct the weights until the motion has what is asked for")
+                "Correct the weights until the measured parameters match")
       .group("Motion");
-  add_rate(command, "--rate", options.rate, "Frames a second; otherwise the library's")
+  add_rate(command, "--rate", options.rate, "Frames per second (default: the library's)")
       .group("Motion");
   add_orientation_option(command, options.orientation);
 }
 
 Status check(const Options& options) {
   if (options.set.empty() == options.table.empty()) {
-    return Error("usage", options.set.empty() ? "nothing is asked for" : "both --set and --table",
-                 "give each parameter with --set NAME=VALUE, or many with --table IN.csv");
+    return Error(
+        "usage",
+        options.set.empty() ? "no parameters given" : "--set and --table exclude each other",
+        "give each parameter with --set NAME=VALUE, or a table with --table IN.csv");
   }
   return {};
 }

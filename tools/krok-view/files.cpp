@@ -12,12 +12,12 @@
 #include "formats/cam/cam.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/pack_glb.h"
+#include "formats/io/open_character.h"
+#include "formats/io/open_motion.h"
 #include "formats/registry/registry.h"
-#include "tools/common/character/character_input.h"
 #include "tools/common/file_name.h"
 #include "tools/common/glob.h"
 #include "tools/common/keys_sidecar.h"
-#include "tools/common/motion_input.h"
 
 namespace krok::view {
 
@@ -26,14 +26,14 @@ namespace {
 namespace fs = std::filesystem;
 using registry::Kind;
 
-// Standard input has none.
+// Empty for standard input.
 std::string folder_of(const std::string& path) {
   if (path == "-") return {};
   const std::string folder = fs::path(path).parent_path().string();
   return folder.empty() ? "." : folder;
 }
 
-// The motions and characters in a folder and the folders in it, by name.
+// The motions and characters in a folder and its sub-folders, by name.
 Result<std::vector<std::string>> files_in(const std::string& folder) {
   auto found = find_files_below(folder);
   if (!found) return found.error();
@@ -44,12 +44,12 @@ Result<std::vector<std::string>> files_in(const std::string& folder) {
     return std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end();
   });
   if (!found->empty()) return found;
-  return Error("view-input", "no motion or character is in this folder",
-               "it may hold .anim, .bvh, .amc, .glb, .gltf and .character files")
+  return Error("view-input", "the folder contains no motion or character",
+               "supported: .anim, .bvh, .amc, .glb, .gltf and .character files")
       .in_file(folder);
 }
 
-// Contacts and keytimes: those in the file beside the motion, or found.
+// Contacts and keytimes: from the sidecar of the motion, or detected.
 Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice choice,
                            ToolContext& context) {
   if (choice == KeysChoice::none) return MotionKeys();
@@ -65,8 +65,8 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
   auto input = context.open_input(path);
   if (!input) return input.error();
   const Kind kind = registry::identify(input->path(), input->bytes());
-  if (is_shown_model(kind)) {
-    auto shown = load_shown_model(*input, kind, context);
+  if (io::is_shown_model(kind)) {
+    auto shown = io::open_shown_model(*input, context);
     if (!shown) return shown.error();
     files.models.push_back({path, name_of_input(path), *std::move(shown), false});
     return {};
@@ -79,7 +79,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       return {};
     }
     case Kind::glb: {
-      // Read for its faults alone; the page shows the file as it is.
+      // Parsed only for its errors; the page contains the file itself.
       if (auto scene = gltf::read(input->bytes()); !scene) {
         return std::move(scene).error().in_file(path);
       }
@@ -88,10 +88,10 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       return {};
     }
     case Kind::gltf: {
-      // A page cannot open the files beside it; they are packed with it.
+      // A page cannot open external files, so buffers and images are packed.
       auto packed = gltf::pack_glb(input->bytes(), {.folder = folder_of(path)});
       if (!packed) return std::move(packed).error().in_file(path);
-      for (Diagnostic& told : packed->diagnostics) context.tell(std::move(told));
+      for (Diagnostic& told : packed->diagnostics) context.diagnose(std::move(told));
       for (const std::string& beside : packed->files) {
         if (auto opened = context.open_input(beside); !opened) return opened.error();
       }
@@ -99,7 +99,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       return {};
     }
     default: {
-      auto clip = read_motion(*input, context);
+      auto clip = io::open_motion(*input, context);
       if (!clip) return std::move(clip).error().in_file(path);
       auto keys = keys_of(path, *clip, choice, context);
       if (!keys) return std::move(keys).error().in_file(path);

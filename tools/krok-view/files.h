@@ -7,22 +7,22 @@
 
 #include "core/result.h"
 #include "draw/viewer_page.h"
+#include "formats/io/open_character.h"
 #include "scene/camera_track.h"
 #include "scene/clip.h"
 #include "scene/material.h"
 #include "scene/model.h"
-#include "tools/common/character/character_input.h"
 #include "tools/common/tool.h"
 #include "tools/krok-view/view.h"
 
 namespace krok::view {
 
-// What the input files hold, kept for as long as the page is made of it.
+// The contents of the input files, which must outlive the page made from them.
 struct Files {
   struct Motion {
     std::string path, name;
     Clip clip;
-    const Model* body = nullptr;  // of `models` or `bodies`
+    const Model* body = nullptr;  // points into `models` or `bodies`
     std::span<const Material> materials;
     MotionKeys keys;
   };
@@ -36,7 +36,7 @@ struct Files {
   };
   struct Character {
     std::string path, name;
-    ShownModel shown;
+    io::ShownModel shown;
     bool used = false;
   };
   std::deque<Motion> motions;
@@ -46,9 +46,9 @@ struct Files {
   std::deque<Camera> cameras;
 };
 
-// Reads all inputs, gives each model and character to the motions of its skeleton, and builds
-// bodies for motions that have none. A model that no motion moves stands in its reference pose.
-// Faces are as their character has them at rest.
+// Reads all inputs, assigns models and characters to the motions of their skeletons, and builds
+// bodies for motions without one. A model without a motion is shown in its reference pose. Faces
+// have their character's default expression.
 Result<Files> read_files(const Options& options, ToolContext& context);
 
 }  // namespace krok::view

@@ -4,15 +4,17 @@ int main(int argc, char** argv) {
   krok::view::Options options;
   krok::ToolSpec spec;
   spec.name = "krok-view";
-  spec.summary = "Makes a page that plays motions in any browser, from disk, without a network";
+  spec.summary = "Makes an HTML page that plays motions offline in any browser";
   spec.inputs = "IN...";
-  spec.examples = {{"krok-view walk.bvh -o walk.html", "a capture, with a body made for it"},
+  spec.examples = {{"krok-view walk.bvh -o walk.html", "a capture, with a generated body"},
                    {"krok-view before.anim after.anim --difference -o change.html",
-                    "two motions in one place, joints coloured by how far apart they are"},
+                    "two motions at the same position, joints coloured by their "
+                    "distance"},
                    {"krok-view hero.model walk.anim shot.cam -o shot.html",
-                    "a model, moved, seen by the recorded camera"},
+                    "an animated model, viewed through a recorded camera"},
                    {"krok-view hero.character walk.anim -o hero.html",
-                    "a character with its materials, moved; without a motion it stands"}};
+                    "an animated character with its materials; without a motion, in "
+                    "its reference pose"}};
   spec.declare = [&options](krok::CommandOptions& command) {
     krok::view::declare(command, options);
   };

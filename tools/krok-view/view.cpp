@@ -16,16 +16,15 @@ namespace {
 
 std::string facts_of(const Clip& clip) {
   if (clip.frame_count() == 0) return fmt::format("{} joints, no motion", clip.joint_count());
-  return fmt::format("{} joints, {} frames, {} a second, {} s", clip.joint_count(),
-                     clip.frame_count(), readable(clip.rate),
-                     fmt::format("{:.2f}", clip.duration()));
+  return fmt::format("{} joints, {} frames, {} fps, {} s", clip.joint_count(), clip.frame_count(),
+                     readable(clip.rate), fmt::format("{:.2f}", clip.duration()));
 }
 
 draw::ViewerPage page_of(const Files& files, const Options& options, Layout layout) {
   draw::ViewerPage page;
   page.apart = layout == Layout::apart;
   page.difference = options.difference;
-  // In a list one file is shown at a time, the first to begin with.
+  // In a list one file is visible at a time, initially the first.
   const auto visible = [&](std::size_t place) { return layout != Layout::list || place == 0; };
   for (const Files::Motion& motion : files.motions) {
     draw::ViewedMotion viewed;
@@ -46,10 +45,10 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
     page.files.push_back(std::move(viewed));
   }
   for (const Files::Camera& camera : files.cameras) {
-    page.cameras.push_back({camera.name,
-                            fmt::format("{} frames, {} a second", camera.track.frame_count(),
-                                        readable(camera.track.rate)),
-                            &camera.track});
+    page.cameras.push_back(
+        {camera.name,
+         fmt::format("{} frames, {} fps", camera.track.frame_count(), readable(camera.track.rate)),
+         &camera.track});
   }
   page.title = options.title;
   if (page.title.empty()) {
@@ -67,40 +66,39 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
 void declare(CommandOptions& command, Options& options) {
   command
       .add_option("inputs", options.inputs,
-                  "Motions (.anim, or a capture such as BVH), models and characters (.model, "
-                  ".character, moved by the motions of their skeleton), cameras (.cam), glTF; of a "
-                  "folder all motions, characters and glTF")
+                  "Motions (.anim, or a capture such as BVH), models and characters "
+                  "(.model, .character, animated by the motions of their skeleton), "
+                  "cameras (.cam), glTF; for a folder, all motions, characters and "
+                  "glTF in it")
       .type_name("IN")
       .required();
   command
       .add_option("--layout", options.layout,
-                  "Several figures: apart (side by side), together (each where its file puts it), "
-                  "list (one at a time), or auto: apart up to four, a list of more")
+                  "Layout of several characters: apart (side by side), together (at "
+                  "their own positions), list (one at a time), or auto: apart for up "
+                  "to four, otherwise list")
       .type_name("HOW")
       .transform(one_of<Layout>({{"auto", Layout::automatic},
                                  {"apart", Layout::apart},
                                  {"together", Layout::together},
                                  {"list", Layout::list}}))
       .default_str("auto");
-  command.add_flag(
-      "--difference", options.difference,
-      "Put the first two figures together and colour their joints by how far apart those "
-      "of the same name are");
-  add_body_option(
-      command, options.body,
-      "A body for motions without a model: none, low (2,500 vertices), medium (10,000), "
-      "high (40,000), or auto: fewer for more files, none for more than four");
+  command.add_flag("--difference", options.difference,
+                   "Show the first two characters together and colour joints of the same name by "
+                   "their distance");
+  add_body_option(command, options.body,
+                  "Body for motions without a model: none, low (2,500 vertices), medium (10,000), "
+                  "high (40,000), or auto: lower detail for more files, none for more than four");
   command
-      .add_option(
-          "--keys", options.keys,
-          "Contacts, coloured, and keytimes, marked on the time line: auto (those in the "
-          "file NAME.keys.json beside a motion), find (found anew, as krok-keys does), none")
+      .add_option("--keys", options.keys,
+                  "Contacts and keytimes to mark on the timeline: auto (from the sidecar "
+                  "NAME.keys.json), find (detected as in krok-keys), none")
       .type_name("WHICH")
       .transform(one_of<KeysChoice>({{"auto", KeysChoice::automatic},
                                      {"find", KeysChoice::find},
                                      {"none", KeysChoice::none}}))
       .default_str("auto");
-  command.add_option("--title", options.title, "The page's title; otherwise the first file's name")
+  command.add_option("--title", options.title, "The page's title; default: the first file's name")
       .type_name("WORDS");
 }
 
@@ -137,8 +135,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   context.report.result["files"] = files->glbs.size();
   context.report.result["cameras"] = files->cameras.size();
   context.report.result["bytes"] = html->size();
-  context.say(fmt::format("{}: {}, {:.1f} MB; open it in a browser", context.output,
-                          actors == 1 ? "1 figure" : fmt::format("{} figures", actors),
+  context.log(fmt::format("{}: {}, {:.1f} MB; open it in a browser", context.output,
+                          actors == 1 ? "1 character" : fmt::format("{} characters", actors),
                           static_cast<double>(html->size()) / 1e6));
   return kExitDone;
 }

@@ -23,7 +23,7 @@ struct Options {
 
 void declare(CommandOptions& command, Options& options);
 
-// Reads the files and writes one page that shows them.
+// Reads the files and writes one viewer page.
 Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::view

@@ -12,7 +12,7 @@
 
 #include "tools/common/tool.h"
 
-// krok VERB ... runs krok-VERB ..., the one beside this program or else the one on the PATH.
+// krok VERB ... runs krok-VERB ... from this program's folder, or else from the PATH.
 
 namespace {
 
@@ -22,35 +22,35 @@ struct Verb {
 };
 
 constexpr std::array kVerbs = {
-    Verb{"import", "captures to .anim and .model"},
-    Verb{"export", ".anim to BVH, glTF/GLB or CSV of world positions"},
-    Verb{"info", "what is in a file"},
-    Verb{"body", "a smooth skinned body for any skeleton"},
-    Verb{"skin", "a model and a motion to glTF: a rig, a baked clip, a pose"},
-    Verb{"morph", "morph targets: packed, taken out, over time; key-frame meshes"},
-    Verb{"retarget", "a motion on another skeleton"},
-    Verb{"edit", "cut, clean, mirror, loop, join, scale and place a motion"},
-    Verb{"keys", "contacts of the feet and keytimes of a gait, found, shown, edited"},
-    Verb{"blend", "the motion between motions, by weights and keytimes"},
-    Verb{"mix", "a timeline: motions one after the other, changes between them, layers"},
-    Verb{"cam", "cameras: from keys, following, orbiting, still"},
-    Verb{"fit", "a step library from example motions"},
-    Verb{"synth", "the motion for given parameters, from a step library"},
-    Verb{"view", "a page that plays motions in a browser"},
-    Verb{"plot", "charts of motions and tables"},
-    Verb{"diff", "how far two files are apart, and where"},
+    Verb{"import", "import captures and characters"},
+    Verb{"export", "export .anim to BVH, glTF/GLB or CSV of world positions"},
+    Verb{"info", "print the contents of a file"},
+    Verb{"body", "generate a smooth skinned body for any skeleton"},
+    Verb{"skin", "combine a model and a motion into glTF: a rig, a baked clip, a pose"},
+    Verb{"morph", "pack, unpack and animate morph targets; key-frame meshes"},
+    Verb{"retarget", "retarget a motion to another skeleton"},
+    Verb{"edit", "cut, clean, mirror, loop, join, scale and place motions"},
+    Verb{"keys", "detect, print and edit foot contacts and gait keytimes"},
+    Verb{"blend", "blend motions by weights and keytimes"},
+    Verb{"mix", "mix a timeline of motions, transitions and layers"},
+    Verb{"cam", "create cameras: keyframed, following, orbiting, static"},
+    Verb{"fit", "fit a step library to example motions"},
+    Verb{"synth", "synthesise motions from a step library for given parameters"},
+    Verb{"view", "create a web page that plays motions"},
+    Verb{"plot", "plot charts of motions and tables"},
+    Verb{"diff", "compare two files: differences and where they are"},
 };
 
 std::string help() {
   std::string text =
       "Usage: krok VERB [options] ...\n       krok VERB --help\n\n"
-      "Motion captures to character animation, one verb a job.\n\nVerbs:\n";
+      "Motion processing, from motion capture to character animation.\n\nVerbs:\n";
   for (const Verb& verb : kVerbs) text += fmt::format("  {:<10}{}\n", verb.name, verb.does);
   text +=
       "\nExamples:\n"
-      "  krok import walk.bvh -o walk.anim\n      a capture to Krok's own format\n"
-      "  krok skin hero.model walk.anim -o walk.glb --as rig\n      a character that moves\n"
-      "\nExit codes:\n  those of the verb; 2 for a verb that does not exist\n";
+      "  krok import walk.bvh -o walk.anim\n      converts a capture to Krok's format\n"
+      "  krok skin hero.model walk.anim -o walk.glb --as rig\n      an animated character\n"
+      "\nExit codes:\n  those of the verb; 2 for an unknown verb\n";
   return text;
 }
 
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
   }
   if (!is_verb(verb)) {
     fmt::print(stderr, "krok: error: {} [usage]\n  hint: see krok --help\n",
-               verb.empty() ? "no verb given" : fmt::format("'{}' is no verb of krok", verb));
+               verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb));
     return krok::kExitTrouble;
   }
   const std::string program = "krok-" + verb;
@@ -89,8 +89,8 @@ int main(int argc, char** argv) {
   }
   execvp(program.c_str(), arguments.data());
   fmt::print(stderr,
-             "krok: error: {} cannot be run: {} [usage]\n  hint: the tools belong into the folder "
-             "of krok\n",
+             "krok: error: cannot run {}: {} [usage]\n  hint: the tools must be in the same folder "
+             "as krok\n",
              program, std::strerror(errno));
   return krok::kExitTrouble;
 }

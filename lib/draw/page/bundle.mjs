@@ -1,4 +1,4 @@
-// Bundles the page into one HTML text and writes it as a C++ source file, or as it is:
+// Bundles the page into one HTML text and writes it as a C++ source file or as HTML:
 //   node bundle.mjs SOURCE_FOLDER OUT.cpp|OUT.html
 import { build } from 'esbuild';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -16,7 +16,7 @@ const shared = {
   minify: true,
   write: false,
   logLevel: 'warning',
-  // The sources stand elsewhere than the packages when the project is built.
+  // In a build, the sources are in a different folder than the packages.
   nodePaths: [join(dirname(fileURLToPath(import.meta.url)), 'node_modules')],
 };
 const script = await build({
@@ -28,16 +28,16 @@ const script = await build({
 });
 const style = await build({ ...shared, entryPoints: [join(source, 'style.css')] });
 
-// A script element ends at the first "</script", wherever it stands.
+// A script element ends at the first "</script", even inside a string.
 const code = script.outputFiles[0].text.replaceAll('</script', '<\\/script');
 const page = readFileSync(join(source, 'page.html'), 'utf8')
   .replace('/*krok-style*/', () => style.outputFiles[0].text.trim())
   .replace('/*krok-script*/', () => code.trim());
 if (page.split('<!--krok-data-->').length !== 2) {
-  throw new Error('the page must have one place for its data');
+  throw new Error('page.html must contain the data marker exactly once');
 }
 
-// Bytes outside printable ASCII as three octal digits, which cannot run into what follows.
+// Bytes outside printable ASCII as three octal digits, which cannot merge with the next character.
 function literal(bytes) {
   let text = '';
   for (const byte of bytes) {

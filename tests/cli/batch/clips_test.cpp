@@ -55,7 +55,7 @@ TEST_F(BatchClips, AClipDoesNotTakeTheNameThatAnotherLineHas) {
   put("list.tsv", "a.glb\ta_{clip}.anim\t--clip all\nb.glb\ta_walk.anim\n");
   const ToolRun run = import({"--manifest", "list.tsv", "--keep-going"});
   EXPECT_EQ(run.exit_code, 3) << run.err;
-  EXPECT_NE(run.err.find("a_walk.anim would be written here too, by b.glb"), std::string::npos)
+  EXPECT_NE(run.err.find("a_walk.anim would also be written by b.glb"), std::string::npos)
       << run.err;
 }
 
@@ -82,7 +82,8 @@ TEST_F(BatchClips, ASequenceDoesNotReplaceAnotherInput) {
   const ToolRun run = tool("krok-edit", {"in/w.anim", "in/w_run.anim", "--sequences", "parts.json",
                                          "--out-dir", "in", "--json"});
   EXPECT_EQ(run.exit_code, 2) << run.err;
-  EXPECT_NE(run.err.find("in/w_run.anim: error: is read and would be replaced"), std::string::npos)
+  EXPECT_NE(run.err.find("in/w_run.anim: error: is an input and would be overwritten"),
+            std::string::npos)
       << run.err;
   EXPECT_TRUE(get(path("in/w_run.anim")) == before);
   EXPECT_EQ(Json::parse(run.out)["files"][0]["outputs"], Json::array());
@@ -93,7 +94,7 @@ TEST_F(BatchClips, ACharacterWithoutAnAnimationGivesItsModel) {
   put_character("in/still.glb", {});
   const ToolRun run = import({"in", "--out-dir", "out", "--model", "{name}.model"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.err.find("in/still.glb: warning: no animation is in it"), std::string::npos)
+  EXPECT_NE(run.err.find("in/still.glb: warning: the file has no animations"), std::string::npos)
       << run.err;
   EXPECT_EQ(files_below("out"), (Names{"moves.anim", "moves.model", "still.model"}));
   // As a run of its own does it.

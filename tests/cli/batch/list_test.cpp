@@ -55,7 +55,7 @@ TEST_F(BatchList, FilesNamedOneByOneKeepTheFoldersThatTheyDoNotShare) {
   ASSERT_EQ(import({"takes/a/x.bvh", "--out-dir", "based", "--base", "takes/"}).exit_code, 0);
   EXPECT_EQ(files_below("based"), Names{"a/x.anim"});
   expect_usage_error(import({"takes/a/x.bvh", "--out-dir", "q", "--base", "takes/b"}),
-                     "takes/a/x.bvh: error: is not below takes/b");
+                     "takes/a/x.bvh: error: is not inside takes/b");
 }
 
 TEST_F(BatchList, AFolderStandsForTheFilesThatTheToolReads) {
@@ -65,7 +65,7 @@ TEST_F(BatchList, AFolderStandsForTheFilesThatTheToolReads) {
   ASSERT_EQ(import({"takes", "--out-dir", "out"}).exit_code, 0);
   EXPECT_EQ(files_below("out"), (Names{"Y.anim", "a/x.anim"}));
   std::filesystem::create_directory(path("empty"));
-  expect_usage_error(import({"empty", "--out-dir", "out"}), "empty: error: no .bvh");
+  expect_usage_error(import({"empty", "--out-dir", "out"}), "empty: error: the folder has no .bvh");
 }
 
 TEST_F(BatchList, AFileGivenTwiceIsDoneOnce) {
@@ -77,10 +77,11 @@ TEST_F(BatchList, AFileGivenTwiceIsDoneOnce) {
 
 TEST_F(BatchList, WhatIsMissingOrDoesNotFitIsSaid) {
   put_capture("x.bvh");
-  expect_usage_error(import({"none/*.bvh", "--out-dir", "out"}), "none/*.bvh: error: no file fits");
+  expect_usage_error(import({"none/*.bvh", "--out-dir", "out"}),
+                     "none/*.bvh: error: no file matches");
   expect_usage_error(import({"--out-dir", "out"}), "no input");
   expect_usage_error(import({"-", "--out-dir", "out"}), "standard input");
-  expect_usage_error(import({"x.bvh", "--out-dir", "out", "-o", "y.anim"}), "-o names one");
+  expect_usage_error(import({"x.bvh", "--out-dir", "out", "-o", "y.anim"}), "-o is for one output");
   expect_usage_error(import({"x.bvh", "--out-dir", "out", "--skeleton", "-"}), "only once");
   expect_usage_error(import({"x.bvh", "--keep-going", "-o", "y.anim"}), "--keep-going");
   expect_usage_error(import({"x.bvh", "x.bvh", "-o", "y.anim"}), "--out-dir DIR");
@@ -95,7 +96,7 @@ TEST_F(BatchList, TwoResultsOfOneNameAreRefused) {
   expect_usage_error(import({"a/*.bvh", "b/*.bvh", "--out-dir", "out"}),
                      "a/x.bvh and b/x.bvh would both be written to out/x.anim");
   expect_usage_error(import({"a", "b", "--base", ".", "--out-dir", "out", "--model", "m.model"}),
-                     "put {name} into it");
+                     "use {name}, which is replaced");
   EXPECT_EQ(listing(), (Names{"a", "b"}));
 }
 
@@ -103,13 +104,13 @@ TEST_F(BatchList, ResultsNeverReplaceInputs) {
   put_capture("a.bvh", 4);
   put_capture("b.bvh", 5);
   put("list.tsv", "a.bvh\tc.anim\nb.bvh\ta.bvh\n");
-  expect_usage_error(import({"--manifest", "list.tsv"}), "list.tsv:2:1: error: a.bvh is read");
+  expect_usage_error(import({"--manifest", "list.tsv"}), "list.tsv:2:1: error: a.bvh is an input");
   std::filesystem::create_hard_link(path("a.bvh"), path("linked.anim"));
   put("list.tsv", "a.bvh\tlinked.anim\n");
-  expect_usage_error(import({"--manifest", "list.tsv"}), "a.bvh is read");
+  expect_usage_error(import({"--manifest", "list.tsv"}), "a.bvh is an input");
   put("list.tsv", "a.bvh\tlist.tsv\n");
-  expect_usage_error(import({"--manifest", "list.tsv"}), "list.tsv is read");
-  expect_usage_error(import({"*.bvh", "--out-dir", "out", "--json=a.bvh"}), "a.bvh is read");
+  expect_usage_error(import({"--manifest", "list.tsv"}), "list.tsv is an input");
+  expect_usage_error(import({"*.bvh", "--out-dir", "out", "--json=a.bvh"}), "a.bvh is an input");
   EXPECT_EQ(import({"*.bvh", "--nonsense", "--out-dir", "out", "--json=a.bvh"}).exit_code, 2);
   EXPECT_EQ(import({"*.none", "--out-dir", "out", "--json=a.bvh"}).exit_code, 2);
   EXPECT_EQ(get(path("a.bvh")), capture(4));
@@ -157,20 +158,20 @@ TEST_F(BatchList, AManifestNamesInputsOutputsAndOptions) {
 TEST_F(BatchList, FaultsOfAManifestAreToldByLineAndColumn) {
   put_capture("x.bvh");
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"x.bvh\ta.anim\t--fps 60\tmore", "list.tsv:1:23: error: there are more than three fields"},
-      {"\n\tb.anim", "list.tsv:2:1: error: there is no input"},
-      {"x.bvh", "list.tsv:1:1: error: there is no output"},
-      {"-\tb.anim", "list.tsv:1:1: error: a list of files does not take standard"},
-      {"x.bvh\t-", "list.tsv:1:7: error: a list of files does not take standard"},
+      {"x.bvh\ta.anim\t--fps 60\tmore", "list.tsv:1:23: error: more than three fields"},
+      {"\n\tb.anim", "list.tsv:2:1: error: no input given"},
+      {"x.bvh", "list.tsv:1:1: error: no output given"},
+      {"-\tb.anim", "list.tsv:1:1: error: standard streams cannot be used"},
+      {"x.bvh\t-", "list.tsv:1:7: error: standard streams cannot be used"},
       {"x.bvh\tb.anim\t--strict  --repair", "list.tsv:1:24: error: --strict excludes --repair"},
       {"x.bvh\tb.anim\t--strict --fps fast", "list.tsv:1:23: error: --fps: 'fast'"},
       {"x.bvh\tb.anim\t--fps", "list.tsv:1:14: error: --fps"},
       {"x.bvh\tb.anim\t--jobs 3", "list.tsv:1:14: error: "},
       {"x.bvh\tb.anim\tword", "list.tsv:1:14: error: "},
-      {"x.bvh\tb.anim\t--up \"y", "list.tsv:1:19: error: the quote \" is not closed"},
+      {"x.bvh\tb.anim\t--up \"y", "list.tsv:1:19: error: unclosed quote \""},
       {"x.bvh\tb.anim\t--unit furlong", "list.tsv:1:14: error: --unit: 'furlong'"},
       {"x.bvh\tb.anim\nx.bvh\t./b.anim", "list.tsv:2:1: error: x.bvh and x.bvh would both"},
-      {"# nothing\n", "list.tsv: error: the list holds no file"}};
+      {"# nothing\n", "list.tsv: error: the list has no files"}};
   for (const auto& [text, message] : cases) {
     put("list.tsv", text);
     const ToolRun run = import({"--manifest", "list.tsv"});

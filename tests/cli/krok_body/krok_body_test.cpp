@@ -69,8 +69,8 @@ TEST_F(KrokBody, AMissingFile) {
 TEST_F(KrokBody, ACaptureIsToBeImportedFirst) {
   const ToolRun run = build({put("walk.bvh", capture(3))});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("walk.bvh: error: expected a .anim or .model file, this is a BVH "
-                                 "text file [body-input]"));
+  EXPECT_THAT(run.err, HasSubstr("walk.bvh: error: expected a .anim or .model file, but this is a "
+                                 "BVH text file [body-input]"));
   EXPECT_THAT(run.err, HasSubstr("hint: import it with krok-import"));
   EXPECT_THAT(listing(), ElementsAre("walk.bvh"));
 }
@@ -110,7 +110,7 @@ TEST_F(KrokBody, UsageErrors) {
       {{kMotion, "--detail", "huge", "-o", out},
        "krok-body: error: --detail: 'huge' is not low, medium or high [usage]"},
       {{kMotion, "--pose", "soon", "-o", out},
-       "--pose soon is neither auto, reference nor a frame number [usage]"},
+       "--pose soon is not auto, reference or a frame number [usage]"},
       {{kMotion, "--pose", "-1", "-o", out}, "[usage]"},
       {{kMotion}, "--output is required [usage]"},
       {{"-o", out}, "[usage]"},
@@ -128,7 +128,7 @@ TEST_F(KrokBody, UsageErrors) {
 TEST_F(KrokBody, AFrameThatIsNotThere) {
   const ToolRun run = build({kMotion, "--pose", "99"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("motion.anim: error: there is no frame 99, the clip has 2"));
+  EXPECT_THAT(run.err, HasSubstr("motion.anim: error: frame 99 is out of range, the clip has 2"));
   EXPECT_THAT(run.err, HasSubstr("[body-frame]"));
   EXPECT_EQ(build({kMotion, "--pose", "1"}).exit_code, 0);
 }

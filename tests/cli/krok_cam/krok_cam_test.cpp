@@ -96,7 +96,7 @@ TEST_F(KrokCam, FollowsWithTheActorInTheImage) {
   const json result = result_of({walk_, "--follow", "hips", "-o", path("a.cam")});
   EXPECT_EQ(result["frames_shown"], result["frames"]);
   EXPECT_EQ(result["frames_inside"], 0);
-  EXPECT_EQ(result["framed"], "full figure");
+  EXPECT_EQ(result["framed"], "full body");
   EXPECT_EQ(result["follows"], "Hips");
   // By its name it is the same joint.
   ASSERT_EQ(cam({walk_, "--follow", "Hips", "-o", path("b.cam")}).exit_code, 0);

@@ -8,7 +8,7 @@
 #include "cli/kept_files.h"
 #include "formats/anim/anim.h"
 #include "math/quaternion.h"
-#include "support/picture.h"
+#include "support/image.h"
 
 namespace krok::test {
 namespace {
@@ -68,25 +68,25 @@ TEST_F(KrokDiffImages, TheMomentThatDiffersIsShownAndTheJointIsRed) {
   const ToolRun run = diff(
       {write("a.anim", clip()), changed(), "--sides", "front", "--moments", "0f", "--size", "200"});
   EXPECT_EQ(run.exit_code, 1) << run.err;
-  const auto image = image();
+  const auto drawn = image();
   // Two columns: frame 0, which was asked for, and frame 3; three rows and the key. The joint that
   // moved is to the right in the second column of the last row.
-  const int key = image.height - 70;
+  const int key = drawn.height - 70;
   const int row = key * 2 / 3;
-  const int middle = 62 + (image.width - 62 - 16) / 2;
-  const int moved = red_pixels(image, middle, image.width, row, key);
+  const int middle = 62 + (drawn.width - 62 - 16) / 2;
+  const int moved = red_pixels(drawn, middle, drawn.width, row, key);
   EXPECT_GT(moved, 15);
-  EXPECT_EQ(red_pixels(image, 62, middle, row + 40, key - 40), 0) << "frame 0 is the same";
-  const int arm = middle + (image.width - 16 - middle) * 6 / 10;
-  EXPECT_EQ(red_pixels(image, middle, arm, row + 30, key - 45), 0) << "the rest did not move";
+  EXPECT_EQ(red_pixels(drawn, 62, middle, row + 40, key - 40), 0) << "frame 0 is the same";
+  const int arm = middle + (drawn.width - 16 - middle) * 6 / 10;
+  EXPECT_EQ(red_pixels(drawn, middle, arm, row + 30, key - 45), 0) << "the rest did not move";
 }
 
 TEST_F(KrokDiffImages, TheSameIsGreyAndExitCodeZero) {
   const std::string a = write("a.anim", clip());
   const ToolRun run = diff({a, a, "--sides", "front", "--size", "200"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  const auto image = image();
-  EXPECT_EQ(red_pixels(image, 62, image.width, image.height / 3 + 40, image.height - 80), 0);
+  const auto drawn = image();
+  EXPECT_EQ(red_pixels(drawn, 62, drawn.width, drawn.height / 3 + 40, drawn.height - 80), 0);
 }
 
 TEST_F(KrokDiffImages, DrawsModelsToo) {

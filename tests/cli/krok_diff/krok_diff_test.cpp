@@ -139,7 +139,7 @@ TEST_F(KrokDiff, ARigEqualsItsBakedMotion) {
   write("clip.glb", test::baked_rig());
   const Outcome done = run("rig.glb clip.glb");
   EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
-  EXPECT_THAT(done.out, HasSubstr("compared at 3 moments"));
+  EXPECT_THAT(done.out, HasSubstr("compared at 3 times"));
   EXPECT_THAT(done.out, HasSubstr("the same within"));
 }
 

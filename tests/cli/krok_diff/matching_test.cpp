@@ -91,7 +91,7 @@ TEST_F(KrokDiffMatching, AVertexMovedByATenthOfAMillimetreInFrame37Of600IsFoundA
   EXPECT_EQ(diff({"golden.glb", "golden.glb"}).exit_code, 0);
   const auto done = diff({"golden.glb", "changed.glb"});
   EXPECT_EQ(done.exit_code, 1) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("compared at 600 moments"));
+  EXPECT_THAT(done.out, HasSubstr("compared at 600 times"));
   EXPECT_THAT(done.out,
               HasSubstr("positions: largest 0.1 mm at vertex 3 of mesh Body, frame 37 (0.6167 s)"));
   EXPECT_THAT(done.out, HasSubstr("over tolerance in 1 of 2,400"));
@@ -236,7 +236,7 @@ TEST_F(KrokDiffMatching, AMotionIsHeldAgainstItsBvhAndItsGlb) {
   const auto glb = diff({"walk.anim", "walk.glb"});
   EXPECT_EQ(glb.exit_code, 0) << glb.out << glb.err;
   EXPECT_THAT(glb.out, HasSubstr("joint positions: equal in all 1,800"));
-  EXPECT_THAT(glb.out, HasSubstr("compared at 600 moments"));
+  EXPECT_THAT(glb.out, HasSubstr("compared at 600 times"));
   Clip moved = three_joint_clip();
   moved.frame_positions(37)[2].x() += 1e-3F;
   write("moved.anim", moved);

@@ -118,7 +118,7 @@ TEST_F(DiffTangents, TheOtherHandednessIsNamed) {
   for (const auto& [match, found] : {std::pair{"auto", "60 of 240"}, {"nearest", "120 of 480"}}) {
     const ToolRun done = diff("flipped.glb", {"--match", match, "--normals", "180deg"});
     EXPECT_EQ(done.exit_code, 1) << done.err;
-    EXPECT_THAT(done.out, HasSubstr("handedness of tangents: turned round at vertex 3 of mesh "
+    EXPECT_THAT(done.out, HasSubstr("handedness of tangents: flipped at vertex 3 of mesh "
                                     "Body, frame 0 (0 s); in " +
                                     std::string(found) + "\n"));
     EXPECT_THAT(done.out, HasSubstr("  tangents: equal in all "));
@@ -135,14 +135,14 @@ TEST_F(DiffTangents, TheOtherHandednessIsNamed) {
   ToolOptions here;
   here.folder = folder_.string();
   EXPECT_THAT(run_tool("krok-diff", {"a", "b"}, here).out,
-              HasSubstr("handedness of tangents turned round at vertex 3 of mesh Body"));
+              HasSubstr("handedness of tangents flipped at vertex 3 of mesh Body"));
 }
 
 TEST_F(DiffTangents, ATangentThatIsZeroIsFoundAndTheOthersAreStillCompared) {
   write("zero.glb", baked({.vertex = 1, .zero = true}));
   const ToolRun done = diff("zero.glb");
   EXPECT_EQ(done.exit_code, 1);
-  EXPECT_THAT(done.err, HasSubstr("1 of 4 tangents are zero, the first that of vertex 1"));
+  EXPECT_THAT(done.err, HasSubstr("1 of 4 tangents are zero, the first at vertex 1"));
   EXPECT_THAT(done.out, HasSubstr("tangents: largest 180 deg at vertex 1 of mesh Body, frame 0"));
 }
 

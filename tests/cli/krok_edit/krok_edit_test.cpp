@@ -83,7 +83,7 @@ TEST_F(KrokEdit, CutsBySecondsAndFramesEndsIncluded) {
   const Clip whole = read("walk.anim");
   const Clip part = edited({"--from", "1.5s", "--to", "120f"});
   EXPECT_EQ(part.positions, cut(whole, 90, 120).positions);
-  EXPECT_THAT(last_message_, HasSubstr("cut: frames 90 to 120, 210 left out"));
+  EXPECT_THAT(last_message_, HasSubstr("cut: frames 90 to 120, 210 removed"));
   EXPECT_EQ(edited({"--from", "239f"}).frame_count(), 2);
   EXPECT_EQ(edited({"--to", "500ms"}).frame_count(), 31);
   EXPECT_EQ(edited({"--from", "2", "--to", "2"}).frame_count(), 1);
@@ -102,8 +102,7 @@ TEST_F(KrokEdit, RangesThatCannotBeAreErrors) {
     EXPECT_FALSE(std::filesystem::exists(path("out.anim")));
     return done.err;
   };
-  EXPECT_THAT(refused({"--from", "2s", "--to", "1s"}, "edit-range"),
-              HasSubstr("behind --to (1 s)"));
+  EXPECT_THAT(refused({"--from", "2s", "--to", "1s"}, "edit-range"), HasSubstr("after --to (1 s)"));
   EXPECT_THAT(refused({"--from", "9s"}, "edit-range"), HasSubstr("241 frames, 0 to 240, 4 s"));
   refused({"--to", "300f"}, "edit-range");
   refused({"--from", "1.001s", "--to", "1.002s"}, "edit-range");
@@ -125,12 +124,12 @@ TEST_F(KrokEdit, NamedSequencesWithSpeedAndLoop) {
   EXPECT_EQ(cycle.frame_count(), 31);
   EXPECT_EQ(cycle.rate, 60);
   EXPECT_THAT(last_message_, HasSubstr("cut: sequence 'cycle', frames 20 to 80"));
-  EXPECT_THAT(last_message_, HasSubstr("looped: a round of 30 frames (0.5 s) moves by 1.4 m"));
+  EXPECT_THAT(last_message_, HasSubstr("looped: a cycle of 30 frames (0.5 s) moves by 1.4 m"));
   EXPECT_EQ(edited({"--sequences", "take.json", "--sequence", "rest"}).frame_count(), 21);
   const auto unknown =
       edit({"walk.anim", "-o", "x.anim", "--sequences", "take.json", "--sequence", "run"});
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("take.json: error: no sequence is called 'run'"));
+  EXPECT_THAT(unknown.err, HasSubstr("take.json: error: there is no sequence 'run'"));
 }
 
 TEST_F(KrokEdit, MistakesInSequencesHaveAPlace) {
@@ -141,7 +140,7 @@ TEST_F(KrokEdit, MistakesInSequencesHaveAPlace) {
   const auto bad =
       edit({"walk.anim", "-o", "x.anim", "--sequences", "take.json", "--sequence", "a"});
   EXPECT_EQ(bad.exit_code, 2);
-  EXPECT_THAT(bad.err, HasSubstr("take.json:2:50: error: 'a' ends with frame 3, before"));
+  EXPECT_THAT(bad.err, HasSubstr("take.json:2:50: error: 'a' ends at frame 3, before"));
   put("late.json",
       "{\"schema\": \"krok.sequences/1\", \"sequences\": [{\"name\": \"a\", "
       "\"first\": 9, \"last\": 241}]}");
@@ -219,7 +218,7 @@ TEST_F(KrokEdit, MirrorsAndNamesWhatHasNoPartner) {
   write("walk.anim", clip);
   const Clip twice = [&] {
     edited({"--mirror"});
-    EXPECT_THAT(last_message_, HasSubstr("mirrored: 11 pairs, 7 joints of the middle"));
+    EXPECT_THAT(last_message_, HasSubstr("mirrored: 11 pairs, 7 joints in the middle"));
     std::filesystem::rename(path("out.anim"), path("once.anim"));
     EXPECT_EQ(edit({"once.anim", "-o", "out.anim", "--mirror"}).exit_code, 0);
     return read("out.anim");
@@ -235,7 +234,7 @@ TEST_F(KrokEdit, MirrorsAndNamesWhatHasNoPartner) {
   write("odd.anim", small);
   const auto done = edit({"odd.anim", "-o", "out.anim", "--mirror"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.err, HasSubstr("warning: LeftArm has no joint on the other side"));
+  EXPECT_THAT(done.err, HasSubstr("warning: LeftArm has no counterpart on the other side"));
 }
 
 TEST_F(KrokEdit, AppendsOnlyTheSameSkeleton) {
@@ -316,8 +315,8 @@ TEST_F(KrokEdit, KeepsAndExtendsProvenance) {
   EXPECT_EQ(made.sources[1].name, "walk.anim");
   EXPECT_THAT(made.conversions,
               testing::ElementsAre("unit: cm", "made by krok-import 0.0.9 --unit cm --strict",
-                                   "cut: frames 60 to 240, 60 left out",
-                                   "mirrored: 11 pairs, 7 joints of the middle"));
+                                   "cut: frames 60 to 240, 60 removed",
+                                   "mirrored: 11 pairs, 7 joints in the middle"));
   EXPECT_THAT(made.warnings, testing::ElementsAre("a warning [code]"));
 }
 

@@ -37,7 +37,7 @@ TEST_F(ExportReduced, IsTheSameMotionWithinTheTolerance) {
   ASSERT_EQ(export_as("all.glb", {}).exit_code, 0);
   const ToolRun reduced = export_as("reduced.glb", {"--reduce", "1mm"});
   ASSERT_EQ(reduced.exit_code, 0) << reduced.err;
-  EXPECT_NE(reduced.err.find(" keys, off by at most "), std::string::npos) << reduced.err;
+  EXPECT_NE(reduced.err.find(" keys, max error "), std::string::npos) << reduced.err;
   EXPECT_LT(get(path("reduced.glb")).size(), get(path("all.glb")).size());
   // A turn by two degrees moves points 3 cm away by a millimetre.
   const ToolRun same = run({tool("krok-diff"), path("all.glb"), path("reduced.glb"), "--tolerance",

@@ -52,7 +52,7 @@ TEST_F(AcclaimImport, TheSkeletonBesideIsFoundAndNamed) {
   const ToolRun run =
       run_tool("krok-import", {path("01_03.amc"), "-o", path("out.anim"), "-v", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("01.asf is taken as its skeleton"));
+  EXPECT_THAT(run.err, HasSubstr("01.asf is used as the skeleton"));
   EXPECT_TRUE(has_code(run.err, "acclaim-skeleton"));
   const PlainJson report = PlainJson::parse(run.out);
   EXPECT_EQ(report["result"]["frames"], 3);

@@ -11,7 +11,7 @@
 #include "formats/morph_exr/morph_exr.h"
 #include "imported.h"
 #include "support/glb_builder.h"
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 
 namespace krok::test {
 namespace {

@@ -108,8 +108,7 @@ TEST_F(RoleMapImport, VerboseShowsTheRoles) {
   verbose.insert(verbose.end(), {"-v", "--map", put("m.json", R"({"joints": {"Neck": "none"}})")});
   const ToolRun run = run_tool("krok-import", verbose);
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err,
-              HasSubstr("\n  figure         humanoid, 21 joints with a role in the body\n"));
+  EXPECT_THAT(run.err, HasSubstr("\n  body           humanoid, 21 joints with a body role\n"));
   EXPECT_THAT(run.err, HasSubstr("\n  trunk          hips Hips, spine Spine Spine1, chest Spine2, "
                                  "head Head\n"));
   EXPECT_THAT(run.err, HasSubstr("\n  no role        2 joints: Neck Gizmo\n"));

@@ -75,8 +75,9 @@ TEST_F(KrokInfo, TellsWhatIsInAMotion) {
        {"a motion (.anim)", "2 at 29.97 frames/s", "0.033367 s", "3, 1 of them end sites",
         "1 m (top minus bottom on Y; joints in the "
         "reference pose)",
-        "x, y, z; w is rebuilt", "krok-import 0.1.0", "walk \"1\".bvh (xxh3 0123456789abcdef)",
-        "--unit cm", "--repair", "up: z to y", "2 frames were cut short [bvh-frame-count]"}) {
+        "x, y, z; w is reconstructed", "krok-import 0.1.0",
+        "walk \"1\".bvh (xxh3 0123456789abcdef)", "--unit cm", "--repair", "up: z to y",
+        "2 frames were cut short [bvh-frame-count]"}) {
     EXPECT_THAT(result.out, HasSubstr(text));
   }
 }
@@ -91,7 +92,7 @@ TEST_F(KrokInfo, TellsWhatIsInAModel) {
   const Outcome result = run(kFrozen + "full.model");
   EXPECT_EQ(result.exit_code, 0);
   for (const char* text :
-       {"4 vertices, 2 triangles", "normals, texture coordinates, tangents", "up to 3 a vertex",
+       {"4 vertices, 2 triangles", "normals, texture coordinates, tangents", "up to 3 per vertex",
         "body, 1 triangle, material skin", "1 x 1 x 0.5 m (X, Y, Z; mesh in the reference pose)"}) {
     EXPECT_THAT(result.out, HasSubstr(text));
   }

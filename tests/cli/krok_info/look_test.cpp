@@ -7,7 +7,7 @@
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "golden/samples/samples.h"
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 
 namespace krok::test {
 namespace {

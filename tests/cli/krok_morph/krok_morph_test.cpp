@@ -347,7 +347,7 @@ TEST_F(KrokMorph, ShapesOfOtherMeshesAreRefused) {
   other.replace(face, 6, "f 3 5 ");
   const std::string odd = put("odd.obj", other);
   refused({"pack", base_, odd, "-o", path("out.exr")}, "morph-triangles",
-          "odd.obj: error: triangle 4 joins the vertices 2, 4, 15");
+          "odd.obj: error: triangle 4 (vertices 2, 4, 15");
   EXPECT_EQ(morph({"pack", base_, odd, "--by-order", "-o", path("fine.exr")}).exit_code, 0);
   refused({"bake", packed(), small, "--weights", put("w.json", kWeights), "-o", path("out.glb")},
           "morph-vertices",
@@ -366,8 +366,9 @@ TEST_F(KrokMorph, FacesInAnotherOrderAreTheSameMesh) {
 
 TEST_F(KrokMorph, MistakesAreToldWithWhatToDo) {
   const std::string exr = packed();
-  refused({"pack", base_, "-o", path("out.exr")}, "morph-target", "no targets within");
-  refused({"pack", base_, bump_, bump_, "-o", path("out.exr")}, "morph-name", "two targets");
+  refused({"pack", base_, "-o", path("out.exr")}, "morph-target", "cannot have targets");
+  refused({"pack", base_, bump_, bump_, "-o", path("out.exr")}, "morph-name",
+          "duplicate target name");
   refused({"pack", base_, bump_, "--name", "a", "--name", "b", "-o", path("out.exr")}, "usage",
           "2 --names for 1 target file");
   refused({"pack", base_, bump_, "-o", path("out.glb")}, "morph-format", "writes .exr");
@@ -388,7 +389,7 @@ TEST_F(KrokMorph, MistakesAreToldWithWhatToDo) {
   refused(
       {"bake", exr, base_, "--weights", path("w.json"), "--rate", "100000", "-o", path("out.glb")},
       "morph-clip-too-long", "--as targets");
-  refused({"frames", base_, "-o", path("out.glb")}, "morph-input", "one shape");
+  refused({"frames", base_, "-o", path("out.glb")}, "morph-input", "single shape");
   refused({"frames", put("k.json", R"({"schema": "krok.key-shapes/1",
 "keys": [{"time": 0, "shape": "base.obj"}, {"time": 0, "shape": "bump.obj"}]})"),
            "-o", path("out.glb")},

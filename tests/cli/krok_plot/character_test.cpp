@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/hero_character.h"
-#include "support/picture.h"
+#include "support/image.h"
 
 namespace krok::test {
 namespace {

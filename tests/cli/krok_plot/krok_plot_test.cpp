@@ -92,7 +92,7 @@ TEST_F(KrokPlot, ShowsTheChartsAskedForInTheirOrder) {
 TEST_F(KrokPlot, ShowsAPartOfTheTime) {
   ASSERT_EQ(plot({kWalk, "--show", "positions", "--from", "0.5s", "--to", "60f"}).exit_code, 0);
   EXPECT_EQ(panels()[0]["lines"][0]["values"], 31);  // frames 30 to 60
-  expect_trouble({kWalk, "--from", "9s"}, "plot-range", "no frame stands between 9 s");
+  expect_trouble({kWalk, "--from", "9s"}, "plot-range", "no frame lies between 9 s");
   expect_trouble({kWalk, "--from", "2s", "--to", "1s"}, "plot-range", "264 frames");
   expect_trouble({kWalk, "--from", "soon"}, "quantity-number", "--from");
 }
@@ -129,7 +129,7 @@ TEST_F(KrokPlot, ShowsHowFarTwoMotionsAreApart) {
   EXPECT_EQ(difference["positions"]["frame"], 1);
   EXPECT_NEAR(difference["positions"]["rms"].get<double>(), 0.02 / std::sqrt(20), 1e-6);
   EXPECT_EQ(difference["orientations"]["largest"], 0.0);
-  expect_trouble({a, "--difference"}, "usage", "between two motions, not 1");
+  expect_trouble({a, "--difference"}, "usage", "needs two motions, not 1");
 }
 
 TEST_F(KrokPlot, DrawsContactsThatStandBesideTheMotion) {
@@ -153,10 +153,10 @@ TEST_F(KrokPlot, ShowsAActorThatIsNoPerson) {
   const std::string chain = put("chain.bvh", capture(30));
   ASSERT_EQ(plot({chain}).exit_code, 0);
   EXPECT_THAT(titles(), ElementsAre("Path from above, a dot every 0.1 s", "Hips",
-                                    "Turn from the reference pose"));
+                                    "Rotation from the reference pose"));
   const ToolRun run = plot({chain, "--show", "feet,path"});
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_THAT(run.err, HasSubstr("no joint is known for feet"));
+  EXPECT_THAT(run.err, HasSubstr("no joint has a role for the feet"));
   expect_trouble({chain, "--show", "feet"}, "plot-roles", "--map");
 }
 
@@ -213,24 +213,24 @@ TEST_F(KrokPlot, SaysWhatIsWrongWithATable) {
   const std::string words = put("words.csv", "t,v\n0,1\n1,fast\n");
   expect_trouble({words, "--y", "v"}, "csv-number",
                  "words.csv:3:3: error: 'fast' in the column 'v'");
-  expect_trouble({words, "--y", "w"}, "csv-column", "there are t, v");
+  expect_trouble({words, "--y", "w"}, "csv-column", "columns are t, v");
   expect_trouble({words, "--y", "t", "--where", "v=slow"}, "plot-where", "no row");
   expect_trouble({words, "--where", "v"}, "usage", "joint=Hips");
   expect_trouble({put("empty.csv", "")}, "csv-empty", "empty.csv");
   expect_trouble({words, "--joint", "Hips"}, "usage", "--joint is for motions");
   expect_trouble({kWalk, "--y", "v"}, "usage", "--y is for tables");
-  expect_trouble({kWalk, words}, "usage", "do not go into one figure");
+  expect_trouble({kWalk, words}, "usage", "cannot share a chart");
   std::string wide = "a";
   for (int i = 0; i < 100; ++i) wide += ",b" + std::to_string(i);
   wide += "\n1";
   for (int i = 0; i < 100; ++i) wide += ",1";
-  expect_trouble({put("wide.csv", wide)}, "plot-lines", "--y chooses columns");
+  expect_trouble({put("wide.csv", wide)}, "plot-lines", "--y selects columns");
 }
 
 TEST_F(KrokPlot, RefusesNamesOfOtherKindsOfFiles) {
   const ToolRun run = run_tool("krok-plot", {kWalk, "-o", path("out.png")});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("an SVG"));
+  EXPECT_THAT(run.err, HasSubstr("the output is SVG"));
   EXPECT_THAT(listing(), IsEmpty());
   const ToolRun none = run_tool("krok-plot", {kWalk});
   EXPECT_EQ(none.exit_code, 2);
@@ -243,7 +243,7 @@ TEST_F(KrokPlot, FitsThePaper) {
   EXPECT_THAT(svg(), HasSubstr(">A &amp; B<"));
   expect_trouble({kWalk, "--panel", "400"}, "usage", "340x170");
   expect_trouble({kWalk, "--panel", "0x100"}, "usage", "340x170");
-  expect_trouble({kWalk, "--show", "toes"}, "usage", "'toes' is not path, feet");
+  expect_trouble({kWalk, "--show", "toes"}, "usage", "'toes' is not one of path, feet");
   expect_trouble({kWalk, "--moments", "3"}, "usage", "for --sheet and --strip");
 }
 

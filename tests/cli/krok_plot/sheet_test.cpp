@@ -9,7 +9,7 @@
 
 #include "cli/fixture.h"
 #include "cli/kept_files.h"
-#include "support/picture.h"
+#include "support/image.h"
 
 namespace krok::test {
 namespace {
@@ -68,16 +68,16 @@ TEST_F(KrokPlotSheet, EveryJointsPixelIsWhereTheJointIs) {
                 .exit_code,
             0);
   const auto frames = exported(kWalk);
-  const auto image = image("s.png");
+  const auto drawn = image("s.png");
   const json sheet = report()["sheet"];
-  ASSERT_EQ(sheet["width"], image.width);
+  ASSERT_EQ(sheet["width"], drawn.width);
   ASSERT_EQ(sheet["cells"].size(), 16U);
   int joints = 0;
   for (const json& cell : sheet["cells"]) {
     for (const Vec3& joint : frames.at(cell["moments"][0]["frame"])) {
       const Vec2 at = place_in(cell, sheet["pixels_per_metre"], joint);
       const render::Colour colour =
-          image.at(static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y())));
+          drawn.at(static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y())));
       // Darker than the lightest of the background, whatever colour the limb has.
       EXPECT_LT(std::min({colour.red, colour.green, colour.blue}), 200)
           << cell << " " << joint.transpose();
@@ -90,12 +90,12 @@ TEST_F(KrokPlotSheet, EveryJointsPixelIsWhereTheJointIs) {
 TEST_F(KrokPlotSheet, TheBodyStandsOnTheGroundAndIsAsTallAsTheActor) {
   ASSERT_EQ(plot({kWalk, "--sheet", path("s.png"), "--moments", "3"}).exit_code, 0);
   const auto frames = exported(kWalk);
-  const auto image = image("s.png");
+  const auto drawn = image("s.png");
   const json sheet = report()["sheet"];
   ASSERT_EQ(sheet["cells"].size(), 6U);
   const double per_metre = sheet["pixels_per_metre"];
   for (const json& cell : sheet["cells"]) {
-    const Silhouette actor = silhouette(image, cell, 16);
+    const Silhouette actor = silhouette(drawn, cell, 16);
     const double ground = cell["target_pixel"][1];
     EXPECT_NEAR((ground - actor.bottom) / per_metre, 0.0, 0.03);
     double top = 0;
@@ -109,11 +109,11 @@ TEST_F(KrokPlotSheet, TheLeftIsBlueAndToTheRightOfWhoeverLooksAtTheFront) {
   ASSERT_EQ(
       plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides", "front,back"}).exit_code,
       0);
-  const auto image = image("s.png");
+  const auto drawn = image("s.png");
   const json cells = report()["sheet"]["cells"];
   ASSERT_EQ(cells.size(), 16U);
   for (const json& cell : cells) {
-    const Silhouette actor = silhouette(image, cell);
+    const Silhouette actor = silhouette(drawn, cell);
     if (cell["row"] == 0) {
       EXPECT_GT(actor.blue_x, actor.orange_x + 10);
     } else {
@@ -156,7 +156,7 @@ TEST_F(KrokPlotSheet, AStripGoesFromLeftToRight) {
   const json cell = strip["cells"][0];
   ASSERT_EQ(cell["moments"].size(), 5U);
   const auto frames = exported(kWalk);
-  const auto image = image("s.png");
+  const auto drawn = image("s.png");
   double before = -1;
   for (const json& moment : cell["moments"]) {
     const Vec3 hips = frames.at(moment["frame"])[0];
@@ -167,7 +167,7 @@ TEST_F(KrokPlotSheet, AStripGoesFromLeftToRight) {
   // The last figure's hips are drawn in full where they project.
   const auto last =
       place_in(cell, strip["pixels_per_metre"], frames.at(cell["moments"][4]["frame"])[0]);
-  const render::Colour colour = image.at(static_cast<int>(last.x()), static_cast<int>(last.y()));
+  const render::Colour colour = drawn.at(static_cast<int>(last.x()), static_cast<int>(last.y()));
   EXPECT_LT(std::min({colour.red, colour.green, colour.blue}), 150);
 }
 

@@ -5,8 +5,8 @@
 
 #include "cli/fixture.h"
 #include "support/glb_builder.h"
-#include "support/picture.h"
-#include "support/small_pictures.h"
+#include "support/image.h"
+#include "support/small_images.h"
 
 namespace krok::test {
 namespace {

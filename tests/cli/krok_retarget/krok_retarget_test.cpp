@@ -92,7 +92,7 @@ TEST_F(KrokRetarget, OntoAModelItTellsWhatItDid) {
   const auto run = retarget({"walk.anim", "--onto", "hero.model", "-o", "out.anim", "-v"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "");
-  for (const char* text : {"out.anim: ", "mapped by roles, scale 0.6", "feet moved by up to ",
+  for (const char* text : {"out.anim: ", "mapped by roles, scale 0.6", "feet corrected by up to ",
                            "left_upper_arm", "LeftForeArm"}) {
     EXPECT_THAT(run.err, HasSubstr(text));
   }

@@ -35,7 +35,7 @@ TEST_F(KrokView, ShowsAMotionWithABodyMadeForIt) {
   const ToolRun run = view({kMotion});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "");
-  EXPECT_THAT(run.err, HasSubstr("1 figure"));
+  EXPECT_THAT(run.err, HasSubstr("1 character"));
   EXPECT_THAT(listing(), ElementsAre("page.html"));
   const json shown = data();
   EXPECT_EQ(shown["schema"], "krok.view/1");

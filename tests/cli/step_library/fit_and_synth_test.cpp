@@ -127,12 +127,12 @@ TEST_F(StepLibrary, OutsideTheExamplesIsRefusedWithTheNearestInside) {
 TEST_F(StepLibrary, WhatIsAskedWronglyIsToldWithWhatTheLibraryTakes) {
   fit_well();
   const std::pair<std::vector<std::string>, const char*> mistakes[] = {
-      {{"--set", "length=60cm"}, "nothing is asked for height"},
-      {{"--set", "width=60cm"}, "there is no 'width'"},
+      {{"--set", "length=60cm"}, "no value for height"},
+      {{"--set", "width=60cm"}, "unknown parameter 'width'"},
       {{"--set", "length"}, "NAME=VALUE"},
       {{"--set", "length=1m", "--set", "length=2m"}, "twice"},
       {{"--set", "length=60deg", "--set", "height=0"}, "'deg'"},
-      {{}, "nothing is asked for"}};
+      {{}, "no parameters given"}};
   for (const auto& [arguments, says] : mistakes) {
     const ToolRun run = synth(arguments);
     EXPECT_EQ(run.exit_code, 2);
@@ -273,7 +273,7 @@ TEST_F(StepLibrary, AnotherSkeletonIsRefused) {
 
 TEST_F(StepLibrary, MistakesInTheDescriptionHaveTheirPlace) {
   const std::pair<const char*, const char*> mistakes[] = {
-      {R"("examples": [{"clip": "none_*.bvh"}])", "library.json:3:15: error: no file fits"},
+      {R"("examples": [{"clip": "none_*.bvh"}])", "library.json:3:15: error: no file matches"},
       {R"("examples": [{"clip": "walk_50_0.bvh"}])", "2 examples for 2 parameters"},
       {R"("examples": [{"clip": "walk_*.bvh"}], "keytimes": ["a", "b"])", "library-keytimes"},
       {R"("examples": [{"clip": "nothere.bvh"}])", "nothere.bvh: error: no such file"}};

@@ -1,5 +1,6 @@
 #include <krok/core/file.h>
 #include <krok/formats/anim/anim.h>
+#include <krok/formats/io/open_motion.h>
 #include <krok/motion/sample.h>
 #include <krok/skin/palette.h>
 
@@ -20,9 +21,8 @@ int main() {
 
   auto file = krok::OutputFile::create("consumer.anim");
   if (!file || !krok::anim::write(clip, {}, *file) || !file->commit()) return 1;
-  const auto input = krok::InputFile::open("consumer.anim");
-  if (!input) return 1;
-  const auto back = krok::anim::read(input->bytes());
+  krok::io::PlainInputs inputs;
+  const auto back = krok::io::open_motion("consumer.anim", inputs);
   if (!back || back->joint_count() != 2) return 1;
 
   std::vector<krok::Transform> pose(2), scratch(6);

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
-#include "support/picture.h"
+#include "support/image.h"
 
 namespace krok::test {
 namespace {

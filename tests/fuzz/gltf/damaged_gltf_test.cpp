@@ -9,7 +9,7 @@
 #include "formats/gltf/gltf_reader.h"
 #include "nodes/evaluate.h"
 #include "support/glb_builder.h"
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 
 namespace krok {
 namespace {

@@ -7,7 +7,7 @@
 #include "formats/gltf/gltf_writer.h"
 #include "golden/gltf/judges.h"
 #include "support/mesh_motions.h"
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 #include "support/test_scenes.h"
 
 namespace krok {

@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(
         Faulty{"same_name", with(kAsf, "name tip", "name tail"), kAmc, "acclaim-bone", 48, 10,
                "second bone is named tail"},
         Faulty{"no_end", with(kAsf, "  end\n  begin\n    id 2", "  begin\n    id 2"), kAmc,
-               "acclaim-syntax", 27, 3, "the end of the bone thigh is missing"},
+               "acclaim-syntax", 27, 3, "'end' of the bone thigh is missing"},
         Faulty{"order", with(kAsf, "axis 0 90 0 XYZ", "axis 0 90 0 XXZ"), kAmc, "acclaim-syntax",
                33, 17, "'XXZ'"},
         Faulty{"unknown_child", with(kAsf, "thigh shin", "thigh shim"), kAmc, "acclaim-hierarchy",
@@ -91,7 +91,7 @@ TEST(AcclaimReader, repair_leaves_out_lines_that_cannot_be_read_and_lists_them) 
   ASSERT_TRUE(capture.ok()) << capture.error().message;
   EXPECT_EQ(capture->clip.frame_count(), 3);
   ASSERT_EQ(capture->repairs.size(), 2u);
-  EXPECT_THAT(capture->repairs[0], HasSubstr("line 11 left out: '9o'"));
+  EXPECT_THAT(capture->repairs[0], HasSubstr("line 11 skipped: '9o'"));
   expect_near(position(*capture, 1, "shin"), {1, 5, 0});
 }
 

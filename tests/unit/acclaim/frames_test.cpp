@@ -32,7 +32,7 @@ TEST(AcclaimReader, the_rate_is_given_or_read_or_120_with_a_warning) {
   auto capture = read(kAsf, kAmc);
   ASSERT_TRUE(capture.ok());
   EXPECT_EQ(capture->clip.rate, 120.0);
-  EXPECT_TRUE(told(*capture, "acclaim-rate", "120 frames a second")) << all(*capture);
+  EXPECT_TRUE(told(*capture, "acclaim-rate", "120 frames per second")) << all(*capture);
   capture = read(kAsf, with(kAmc, ":DEGREES", ":SAMPLES-PER-SECOND 60\n:DEGREES"));
   ASSERT_TRUE(capture.ok());
   EXPECT_EQ(capture->clip.rate, 60.0);
@@ -54,7 +54,7 @@ TEST(AcclaimReader, numbers_of_frames_may_begin_anywhere_and_go_up_by_a_step) {
   EXPECT_EQ(capture->first_frame_number, 101);
   EXPECT_EQ(capture->clip.frame_count(), 3);
   EXPECT_EQ(capture->clip.rate, 30.0);
-  EXPECT_TRUE(told(*capture, "acclaim-rate", "go up by 4")) << all(*capture);
+  EXPECT_TRUE(told(*capture, "acclaim-rate", "increase by 4")) << all(*capture);
 }
 
 TEST(AcclaimReader, a_rest_frame_before_the_motion_is_told_and_left_out_where_asked) {

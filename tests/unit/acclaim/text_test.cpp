@@ -85,7 +85,7 @@ TEST(AcclaimReader, bones_that_do_not_hang_on_the_root_are_left_out) {
   const auto capture = read(with(kAsf, "root thigh tail", "root thigh"), kAmc);
   ASSERT_TRUE(capture.ok()) << capture.error().message;
   EXPECT_EQ(capture->clip.joint_count(), 4);
-  EXPECT_TRUE(told(*capture, "acclaim-hierarchy", "2 bones do not hang")) << all(*capture);
+  EXPECT_TRUE(told(*capture, "acclaim-hierarchy", "2 bones are not connected")) << all(*capture);
   const auto ring = read(with(kAsf, "root thigh tail", "root thigh\n tip tail"), kAmc);
   ASSERT_TRUE(ring.ok()) << ring.error().message;
   EXPECT_EQ(ring->clip.joint_count(), 4);

@@ -186,7 +186,7 @@ TEST(Anim, ReaderRefusesBadNamesAndParents) {
   EXPECT_EQ(utf8.code, "container-section");
   EXPECT_THAT(utf8.message, HasSubstr("UTF-8"));
   const auto split = changed([](Bytes& f) { f[section_offset(f, 2) + 1] = std::byte{0}; });
-  EXPECT_THAT(split.message, HasSubstr("holds 4 texts, expected 3"));
+  EXPECT_THAT(split.message, HasSubstr("has 4 texts, expected 3"));
   const auto empty = changed([](Bytes& f) {
     // The first name's end moves to its start: an empty name and still three zeros.
     f[section_offset(f, 2)] = std::byte{0};

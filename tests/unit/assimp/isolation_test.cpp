@@ -63,7 +63,7 @@ TEST(Isolation, WhatAssimpRefusesIsToldInItsWords) {
       assimp::read_file(folder.add("bad.fbx", "; FBX 7.4.0 project file\nObjects: {"));
   ASSERT_FALSE(scene.ok());
   EXPECT_EQ(scene.error().code, "assimp-refused");
-  EXPECT_NE(scene.error().message.find("Assimp says: "), std::string::npos);
+  EXPECT_NE(scene.error().message.find("Assimp reports: "), std::string::npos);
 }
 
 TEST(Isolation, WhatAssimpWouldSearchForEverIsRefusedAtOnce) {

@@ -5,7 +5,7 @@
 
 #include "reading.h"
 #include "sample_fbx.h"
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 
 namespace krok::test {
 namespace {
@@ -184,7 +184,7 @@ TEST(AssimpMaterials, WhereTheImageIsLostTheColourRemains) {
 
 TEST(AssimpMaterials, FbxHoldsImagesItself) {
   const Folder folder;
-  // The picture of small_pictures.h, in base64.
+  // The picture of small_images.h, in base64.
   const std::string video =
       "Video: 8002, \"Video::Map\", \"Clip\" {\nType: \"Clip\"\n"
       "FileName: \"C:\\Users\\someone\\maps\\skin.png\"\n"

@@ -59,7 +59,7 @@ TEST(FrameRate, AWholeRateIsTakenWhereTheDigitsLeaveBoth) {
 
 TEST(FrameRate, RatesThatNoCaptureIsMadeAtAreUnusual) {
   EXPECT_TRUE(rate_of("30").unusual);
-  EXPECT_NE(rate_of("30").reason.find("frames a second"), std::string::npos);
+  EXPECT_NE(rate_of("30").reason.find("frames per second"), std::string::npos);
   EXPECT_TRUE(rate_of("120.0").unusual);
   EXPECT_TRUE(rate_of("33.3333").unusual);
   EXPECT_NE(rate_of("33.3333").reason.find("milliseconds"), std::string::npos);

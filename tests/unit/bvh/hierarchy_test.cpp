@@ -175,7 +175,7 @@ TEST(Hierarchy, FaultsThatAHandCanMendComeWithAHint) {
   EXPECT_NE(hint(kArm + motion(1, kRow, "-0.1")).find("--fps"), std::string::npos);
   for (const std::string channels : {"x", "2 Xrotation", "1 Xrotation Yrotation"}) {
     EXPECT_NE(hint("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS " + channels + "\n}\n" + rest)
-                  .find("how many channel names"),
+                  .find("the number of channels"),
               std::string::npos)
         << channels;
   }

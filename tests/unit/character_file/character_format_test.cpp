@@ -49,18 +49,18 @@ TEST(CharacterFile, AModelAloneIsEnough) {
 TEST(CharacterFile, FaultsAreToldWithTheirPlace) {
   const test::Mistake faults[] = {
       {"\"morphs\"", "\"morps\"", "character-structure 7:3", "did you mean 'morphs'?"},
-      {"\"model\": \"hero.model\",", "", "character-structure 1:1", "lacks \"model\""},
+      {"\"model\": \"hero.model\",", "", "character-structure 1:1", "is missing \"model\""},
       {"hero.model", "../hero.model", "character-path 3:12", "leaves the folder"},
       {"hero.material", "a/../../b", "character-path 4:17", "leaves the folder"},
-      {"\"hero.material\"", "3", "character-value 4:17", "expected the path"},
+      {"\"hero.material\"", "3", "character-value 4:17", "expected a file path"},
       {"\"material\": \"Skin\"", "\"materal\": \"Skin\"", "character-structure 5:30",
        "did you mean 'material'?"},
-      {"\"Skin\"", "null", "character-value 5:42", "expected a text"},
-      {"\"Head\"", "\"\"", "character-value 6:38", "no name"},
+      {"\"Skin\"", "null", "character-value 5:42", "expected a string"},
+      {"\"Head\"", "\"\"", "character-value 6:38", "is not a name"},
       {"[0.03, 1.7, 0.1]", "[0.03, 1.7]", "character-value 6:58", "three numbers"},
       {"1.7", "1e9", "character-value 6:58", "three numbers"},
       {"0.5", "1e9", "character-value 8:47", "expected -1000 to 1000"},
-      {"\"blink\"", "\"smile\"", "character-value 9:28", "as one before"},
+      {"\"blink\"", "\"smile\"", "character-value 9:28", "already used"},
       {"  \"morphs\": \"hero.exr\",\n", "", "character-value 7:18", "no \"morphs\""}};
   test::expect_told(kGood, faults, [](const std::string& text) { return read(text); });
 }

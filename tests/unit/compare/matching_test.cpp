@@ -122,8 +122,8 @@ TEST(MorphDifference, TargetsInAnotherOrderAreTheSameAndMissingOnesAreNamed) {
   other.names[0] = "wink";
   const auto found = difference(two_targets(), other, {});
   ASSERT_EQ(found->structure.size(), 2u);
-  EXPECT_EQ(found->structure[0], "the target frown is only in the first");
-  EXPECT_EQ(found->structure[1], "the target wink is only in the second");
+  EXPECT_EQ(found->structure[0], "target frown is only in the first");
+  EXPECT_EQ(found->structure[1], "target wink is only in the second");
   EXPECT_EQ(found->compared_targets, 1);
 }
 

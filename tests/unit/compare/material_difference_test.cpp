@@ -8,7 +8,7 @@
 
 #include <limits>
 
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 
 namespace krok::compare {
 namespace {
@@ -67,7 +67,7 @@ TEST(MaterialDifferences, EachIsTold) {
   EXPECT_THAT(told([](Material& m) { m.normal_texture = m.base_color_texture; }),
               ElementsAre("another normal texture"));
   EXPECT_THAT(told([](Material& m) { m.normal_texture.wrap_v = Texture::Wrap::mirror; }),
-              ElementsAre("the normal texture is wrapped or smoothed otherwise"));
+              ElementsAre("the normal texture has another sampler"));
   EXPECT_THAT(told([](Material& m) {
                 m.metallic = 1;
                 m.unlit = true;

@@ -128,7 +128,7 @@ TEST(Container, SaysThatAFileIsCut) {
   Bytes file = two_sections();
   file.resize(150);
   EXPECT_EQ(error_of(file).code, "container-truncated");
-  EXPECT_THAT(error_of(file).message, HasSubstr("has 150 bytes, its header says 197"));
+  EXPECT_THAT(error_of(file).message, HasSubstr("has 150 bytes, expected 197"));
   file.resize(20);
   EXPECT_EQ(error_of(file).code, "container-truncated");
 }
@@ -155,16 +155,16 @@ TEST(Container, RefusesTablesThatDoNotHold) {
   EXPECT_EQ(unaligned.code, "container-table");
   EXPECT_EQ(unaligned.where.byte_offset, 96) << "the entry";
   const auto overlapping = changed([](Bytes& file) { set<std::uint64_t>(file, 80, 65); });
-  EXPECT_THAT(overlapping.message, HasSubstr("inside what stands before it"));
+  EXPECT_THAT(overlapping.message, HasSubstr("overlaps what is before it"));
   const auto in_table = changed([](Bytes& file) { set<std::uint64_t>(file, 72, 64); });
-  EXPECT_THAT(in_table.message, HasSubstr("inside what stands before it"));
+  EXPECT_THAT(in_table.message, HasSubstr("overlaps what is before it"));
   const auto outside = changed([](Bytes& file) { set<std::uint64_t>(file, 112, 6); });
-  EXPECT_THAT(outside.message, HasSubstr("past the end"));
+  EXPECT_THAT(outside.message, HasSubstr("exceeds the file"));
   const auto overflowing =
       changed([](Bytes& file) { set<std::uint64_t>(file, 112, 0xFFFFFFFFFFFFFF40); });
-  EXPECT_THAT(overflowing.message, HasSubstr("past the end"));
+  EXPECT_THAT(overflowing.message, HasSubstr("exceeds the file"));
   const auto twice = changed([](Bytes& file) { std::memcpy(&file[96], "FIRST\0\0\0", 8); });
-  EXPECT_THAT(twice.message, HasSubstr("two sections FIRST"));
+  EXPECT_THAT(twice.message, HasSubstr("section FIRST appears twice"));
   const auto nameless = changed([](Bytes& file) { file[64] = std::byte{0}; });
   EXPECT_EQ(nameless.code, "container-table");
 }

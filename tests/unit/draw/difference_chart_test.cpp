@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "compare/clip_difference.h"
-#include "unit/draw/moving_figures.h"
+#include "unit/draw/moving_actors.h"
 
 namespace krok::draw {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "unit/draw/moving_figures.h"
+#include "unit/draw/moving_actors.h"
 
 namespace krok::draw {
 namespace {
@@ -77,9 +77,9 @@ TEST(BodyAngle, OfABoneWithoutLengthIsNoNumberAndLeavesAGap) {
       body_angle(shown.clip, shown.roles, BodyAngle::knee, Side::left, shown.charted.frames);
   ASSERT_THAT(values, SizeIs(3));
   EXPECT_TRUE(std::isnan(values[1]));
-  Actor actor;
-  actor.panels = body_angle_panels({&shown.charted, 1});
-  const auto svg = to_svg(actor);
+  Chart chart;
+  chart.panels = body_angle_panels({&shown.charted, 1});
+  const auto svg = to_svg(chart);
   ASSERT_TRUE(svg.ok());
   EXPECT_THAT(*svg, Not(HasSubstr("nan")));
 }

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "unit/draw/moving_figures.h"
+#include "unit/draw/moving_actors.h"
 #include "unit/draw/svg_reading.h"
 
 namespace krok::draw {
@@ -22,9 +22,9 @@ using testing::Not;
 using testing::SizeIs;
 
 std::string svg_of(std::vector<Panel> panels) {
-  Actor actor;
-  actor.panels = std::move(panels);
-  const auto svg = to_svg(actor);
+  Chart chart;
+  chart.panels = std::move(panels);
+  const auto svg = to_svg(chart);
   EXPECT_TRUE(svg.ok());
   return svg.ok() ? *svg : std::string();
 }

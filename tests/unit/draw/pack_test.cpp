@@ -9,7 +9,7 @@
 #include "draw/pack_motion_internal.h"
 #include "draw/viewer_page.h"
 #include "math/quaternion.h"
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 #include "support/test_scenes.h"
 
 namespace krok::draw {

@@ -114,9 +114,8 @@ TEST(GltfReader, ReadsTangentsOfLengthOne) {
   EXPECT_EQ((*kept)[2], Vec4f(0, 1, 0, -1));
   ASSERT_EQ(asset->diagnostics.size(), 1u);
   EXPECT_EQ(asset->diagnostics[0].code, "gltf-mesh-tangents");
-  EXPECT_NE(
-      asset->diagnostics[0].message.find("1 of 4 tangents are zero, the first that of vertex 1"),
-      std::string::npos)
+  EXPECT_NE(asset->diagnostics[0].message.find("1 of 4 tangents are zero, the first at vertex 1"),
+            std::string::npos)
       << asset->diagnostics[0].message;
   tangents[5] = std::numeric_limits<float>::quiet_NaN();
   attributes["TANGENT"] = builder.add(tangents, "VEC4");

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "render/png.h"
-#include "support/small_pictures.h"
-#include "unit/picture/made_pictures.h"
+#include "support/small_images.h"
+#include "unit/image/made_images.h"
 
 namespace krok::image {
 namespace {

@@ -172,12 +172,12 @@ TEST(Keys, EveryMistakeIsToldWithItsPlace) {
       {"-1]", "1e300]", "keys-value 6:63", "three numbers"},
       {"\"place\"", "\"at\"", "keys-structure 6:54", "at"},
       {"\"time\": 0.1", "\"time\": 3", "keys-time 9:37", "outside"},
-      {"\"left_strike\"", "\"\"", "keys-value 9:14", "no name"},
-      {"left_strike", "left\\nstrike", "keys-value 9:14", "no name"},
+      {"\"left_strike\"", "\"\"", "keys-value 9:14", "not a valid keytime name"},
+      {"left_strike", "left\\nstrike", "keys-value 9:14", "not a valid keytime name"},
       {"\"time\": 0.75", "\"time\": 0.1", "keys-time 10:5", "both at 0.1"},
       {"\"hand\"", "\"foot\"", "keys-value 10:46", "foot"},
       {"[\n    {\"name\"", "{\n    {\"name\"", "json-syntax 9:5", ""},
-      {"\"keytimes\": [", "\"contacts\": [", "json-syntax 8:3", "twice"},
+      {"\"keytimes\": [", "\"contacts\": [", "json-syntax 8:3", "duplicate"},
   };
   test::expect_told(
       good, mistakes, [](const std::string& text) { return read(text, "p.keys.json", feet(), 2); },

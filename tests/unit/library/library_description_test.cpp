@@ -125,12 +125,12 @@ TEST(LibraryDescription, EveryMistakeIsToldWithItsPlace) {
       {"\"spacing\": 0.05", "\"spacing\": 2", "library-value 5:39", "0 to 1"},
       {"\"1mm\"", "\"1kg\"", "library-value 7:64", "use one of"},
       {"\"1mm\"", "\"0mm\"", "library-value 7:64", "not positive"},
-      {"\"1mm\"", "true", "library-value 7:64", "a text with a unit"},
+      {"\"1mm\"", "true", "library-value 7:64", "a string with a unit"},
       {", \"to\": 0.8", "", "library-value 7:5", "one end"},
       {"\"to\": 0.8", "\"to\": 0.1", "library-value 7:93", "empty"},
       {"\"to\": 0.8", "\"too\": 0.8", "library-structure 7:87", "too"},
       {"\"stride\"", "\"a=b\"", "library-value 7:5", "="},
-      {"\"stride\"", "\"turn\"", "library-value 8:5", "two parameters"},
+      {"\"stride\"", "\"turn\"", "library-value 8:5", "duplicate parameter"},
       {"\"measures\": \"step.turn\", ", "", "library-structure 8:5", "measures"},
       {"\"5ms\"", "\"5f\"", "library-value 9:43", "frames"},
       {"\"auto\"", "\"all\"", "library-value 11:12", "auto or one"},
@@ -140,7 +140,7 @@ TEST(LibraryDescription, EveryMistakeIsToldWithItsPlace) {
       {"\"1.5s\"", "\"-1s\"", "library-value 13:37", "before 0"},
       {"\"1.5s\"", "null", "library-value 13:37", "expected a time"},
       {"\"begin\": 0", "\"begin\": -1", "library-value 15:28", "before 0"},
-      {"\"one\", \"keys\"", "\"auto\", \"keys\"", "library-value 15:18", "takes no keytimes"},
+      {"\"one\", \"keys\"", "\"auto\", \"keys\"", "library-value 15:18", "cannot have keytimes"},
       {"\"name\": \"slow\",", "\"name\": \"slow\"", "json-syntax 14:41", "JSON"},
   };
   test::expect_told(

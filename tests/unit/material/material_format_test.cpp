@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "support/folder_test.h"
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 #include "support/told_mistakes.h"
 
 namespace krok::material {
@@ -76,13 +76,13 @@ TEST(MaterialFile, FaultsAreToldWithTheirPlace) {
       {"krok.material/1", "krok.material/2", "material-structure 2:13", "krok.material/1"},
       {"0.5", "1.5", "material-value 4:60", "expected 0 to 1"},
       {"0.5", "\"x\"", "material-value 4:60", "expected a number"},
-      {"#FF8000", "#FF80", "material-value 4:36", "no colour"},
-      {"#FF8000", "#GG8000", "material-value 4:36", "no colour"},
-      {"0.4]", "1.4]", "material-value 6:37", "no colour"},
-      {"[0.1, 0.2, 0.3, 0.4]", "[0.1, 0.2]", "material-value 6:37", "no colour"},
+      {"#FF8000", "#FF80", "material-value 4:36", "not a colour"},
+      {"#FF8000", "#GG8000", "material-value 4:36", "not a colour"},
+      {"0.4]", "1.4]", "material-value 6:37", "not a colour"},
+      {"[0.1, 0.2, 0.3, 0.4]", "[0.1, 0.2]", "material-value 6:37", "not a colour"},
       {"\"mask\"", "\"maks\"", "material-value 5:46", "did you mean 'mask'?"},
       {"\"clamp\"", "\"clip\"", "material-value 7:59", "did you mean 'clamp'?"},
-      {"\"Glass\"", "\"Skin\"", "material-name 6:14", "as material 0 is"},
+      {"\"Glass\"", "\"Skin\"", "material-name 6:14", "of material 0"},
       {"\"Glass\"", "\"\"", "material-value 6:14", "empty"},
       {"tex/n.png\", \"a", "../n.png\", \"a", "material-path 5:24", "leaves the folder"},
       {"tex/n.png\", \"a", "/etc/n.png\", \"a", "material-path 5:24", "not a relative path"},
@@ -90,7 +90,7 @@ TEST(MaterialFile, FaultsAreToldWithTheirPlace) {
       {"\"tex/n.png\", \"a", "7, \"a", "material-structure 5:24", "expected an object"},
       {"\"smooth\"", "\"smoth\"", "material-structure 7:68", "did you mean 'smooth'?"},
       {"[\"glass.frag\"]", "[1]", "material-value 8:38", "list of names"},
-      {"\"name\": \"Skin\", ", "", "material-structure 4:5", "lacks \"name\""},
+      {"\"name\": \"Skin\", ", "", "material-structure 4:5", "is missing \"name\""},
       {"]\n}", "]", "json-syntax 9:4", ""}};
   test::expect_told(kGood, faults, [](const std::string& text) { return read(text); });
 }

@@ -57,15 +57,15 @@ TEST(Parameter, SaysWhatIsNotThere) {
     EXPECT_EQ(parameter.error().code, "parametric-parameter");
     return parameter.error().message;
   };
-  EXPECT_THAT(message("step.depth"), HasSubstr("no parameter is called step.depth"));
-  EXPECT_THAT(message(""), HasSubstr("no parameter"));
-  EXPECT_THAT(message("@"), HasSubstr("no parameter"));
+  EXPECT_THAT(message("step.depth"), HasSubstr("unknown parameter step.depth"));
+  EXPECT_THAT(message(""), HasSubstr("unknown parameter"));
+  EXPECT_THAT(message("@"), HasSubstr("unknown parameter"));
   EXPECT_THAT(message("Head.up@swing_off"), HasSubstr("no joint Head"));
   EXPECT_THAT(message(".up@swing_off"), HasSubstr("no joint"));
-  EXPECT_THAT(message("Hips.up"), HasSubstr("names no keytime"));
-  EXPECT_THAT(message("Hips.up@strike"), HasSubstr("names no keytime"));
-  EXPECT_THAT(message("step.length@strike"), HasSubstr("names no keytime"));
-  EXPECT_THAT(message("duration@swing_off"), HasSubstr("names no keytime"));
+  EXPECT_THAT(message("Hips.up"), HasSubstr("has no valid keytime"));
+  EXPECT_THAT(message("Hips.up@strike"), HasSubstr("has no valid keytime"));
+  EXPECT_THAT(message("step.length@strike"), HasSubstr("has no valid keytime"));
+  EXPECT_THAT(message("duration@swing_off"), HasSubstr("has no valid keytime"));
 }
 
 TEST(Parameter, CheckFindsWhatMeasuresNothing) {

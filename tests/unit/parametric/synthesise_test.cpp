@@ -121,7 +121,7 @@ TEST(Synthesise, OutsideTheExamplesItSaysWhereTheyEnd) {
   ASSERT_FALSE(found.ok());
   EXPECT_EQ(found.error().code, "parametric-bounds");
   EXPECT_THAT(found.error().message, HasSubstr("step.length 1.4 m"));
-  EXPECT_THAT(found.error().hint, HasSubstr("the nearest inside is step.length 0.7"));
+  EXPECT_THAT(found.error().hint, HasSubstr("the nearest parameters inside are step.length 0.7"));
   EXPECT_TRUE(made.weights(outside(made.bounds(), far).nearest).ok());
   const auto beyond = made.weights(std::vector{0.85, 0.0}, {.extrapolate = true});
   ASSERT_TRUE(beyond.ok());

@@ -119,7 +119,7 @@ TEST(Registry, ContentOutweighsTheName) {
 TEST(Registry, ForeignFilesAreDescribed) {
   EXPECT_EQ(describe_content({}), "an empty file");
   EXPECT_EQ(describe_content(bytes_of("Kaydara FBX Binary  ")), "an FBX file");
-  EXPECT_EQ(describe_content(bytes_of("\x89PNG\r\n")), "a PNG picture");
+  EXPECT_EQ(describe_content(bytes_of("\x89PNG\r\n")), "a PNG image");
   EXPECT_EQ(describe_content(bytes_of("<?xml version")), "an XML text file");
   EXPECT_EQ(describe_content(bytes_of(std::string_view("POINTCACHE2", 12))),
             "a point cache (.pc2)");

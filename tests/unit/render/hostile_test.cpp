@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "unit/render/figures.h"
+#include "unit/render/actors.h"
 
 namespace krok::render {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "unit/render/figures.h"
+#include "unit/render/actors.h"
 
 namespace krok::render {
 namespace {

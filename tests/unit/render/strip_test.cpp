@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "unit/render/figures.h"
+#include "unit/render/actors.h"
 
 namespace krok::render {
 namespace {

@@ -9,7 +9,7 @@
 #include <functional>
 #include <limits>
 
-#include "unit/render/figures.h"
+#include "unit/render/actors.h"
 
 namespace krok::render {
 namespace {

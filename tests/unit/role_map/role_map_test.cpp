@@ -35,7 +35,7 @@ TEST_P(RoleMapFault, IsToldWithItsPlace) {
 
 const Fault kFaults[] = {
     {"no_json", "{\"joints\": ]}", "json-syntax", 1, 12, ""},
-    {"not_an_object", "[1]", "role-map-shape", 1, 1, "a list"},
+    {"not_an_object", "[1]", "role-map-shape", 1, 1, "an array"},
     {"no_joints", "{\n}", "role-map-shape", 1, 1, "joints"},
     {"joints_no_object", "{\n \"joints\": 3}", "role-map-shape", 2, 12, "joints"},
     {"other_schema", "{\"schema\": \"krok.role-map/9\", \"joints\": {}}", "role-map-shape", 1, 12,

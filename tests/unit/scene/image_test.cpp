@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 
 namespace krok {
 namespace {

@@ -139,11 +139,11 @@ TEST(MakeShapes, GivesTheFirstErrorWhateverTheThreads) {
         [&](int frame, ShapeRoom&) { return frame < 9 ? Status() : refuse(frame); }, take_all);
     ASSERT_FALSE(status.ok());
     EXPECT_EQ(status.error().message, "9");
-    const Status status =
+    const Status taken =
         make_shapes(numbered(30), {0, 30, 2, false}, jobs, nothing,
                     [&](int first, auto) { return first < 16 ? Status() : refuse(first); });
-    ASSERT_FALSE(status.ok());
-    EXPECT_EQ(status.error().message, "16");
+    ASSERT_FALSE(taken.ok());
+    EXPECT_EQ(taken.error().message, "16");
   }
 }
 

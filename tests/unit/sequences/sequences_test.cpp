@@ -40,7 +40,7 @@ TEST(Sequences, EveryMistakeIsToldWithItsPlace) {
   const test::Mistake mistakes[] = {
       {"sequences/1", "sequences/2", "sequences-structure 2:13", "krok.sequences/2"},
       {"\"rate\": 60", "\"rate\": 0", "sequences-value 3:11", "rate"},
-      {"\"rate\": 60", "\"rate\": \"60\"", "sequences-value 3:11", "a text"},
+      {"\"rate\": 60", "\"rate\": \"60\"", "sequences-value 3:11", "a string"},
       {"\"rate\"", "\"rates\"", "sequences-structure 3:3", "rates"},
       {"\"loop\": true", "\"lop\": true", "sequences-structure 5:49", "lop"},
       {"\"loop\": true", "\"loop\": 1", "sequences-value 5:57", "true or false"},

@@ -167,13 +167,13 @@ TEST(TimelineFile, MistakesAreToldWithTheirPlace) {
       {base("{\"source\": \"walk\", \"change\": \"cut\"}"), value, "first item"},
       {item("\"sped\": 1"), structure, "'sped'"},
       {item("\"speed\": \"fast\""), value, "'fast'"},
-      {item("\"loop\": 0"), value, "whole number from 1"},
+      {item("\"loop\": 0"), value, "an integer from 1"},
       {item("\"loop\": 2.5"), value, "2.5"},
-      {item("\"loop\": 1e9"), value, "whole number"},
+      {item("\"loop\": 1e9"), value, "an integer"},
       {item("\"from\": \"1.5 parsecs\""), value, "parsecs"},
       {item("\"from\": \"\""), value, "number"},
-      {item("\"from\": 1e300"), value, "sensible"},
-      {item("\"from\": \"1e300s\""), value, "sensible"},
+      {item("\"from\": 1e300"), value, "a number within"},
+      {item("\"from\": \"1e300s\""), value, "a time within"},
       {item("\"from\": null"), value, "null"},
       {item("\"sequence\": \"a\", \"to\": 1"), value, "own"},
       {item("\"sequence\": \"\""), value, "1 to 200 bytes"},
@@ -206,12 +206,12 @@ TEST(TimelineFile, MistakesAreToldWithTheirPlace) {
       {layer("\"mask\": [{\"below\": \"a\", \"joints\": \"b\"}]"), value, "either"},
       {layer("\"mask\": [{\"below\": \"a\", \"weight\": 2}]"), value, "0 to 1"},
       {layer("\"mask\": [{\"joints\": \"a\", \"soft\": 2}]"), value, "below"},
-      {layer("\"mask\": [{\"below\": \"a\", \"soft\": -1}]"), value, "whole number"},
+      {layer("\"mask\": [{\"below\": \"a\", \"soft\": -1}]"), value, "an integer"},
       {on_top("\"fade_in\": -1"), value, "0 s or more"},
       {on_top("\"fade_in\": {\"dur\": 1}"), structure, "'dur'"},
       {on_top("\"weight\": []"), value, "points"},
       {on_top("\"weight\": [[0, 1, 2]]"), value, "[time, weight]"},
-      {on_top("\"weight\": [[0, 1], [0, 2]]"), value, "after the one before"},
+      {on_top("\"weight\": [[0, 1], [0, 2]]"), value, "after the previous one"},
       {on_top("\"change\": \"cut\""), structure, "'change'"},
       {"{\"schema\": \"krok.timeline/1\", \"rate\": 0}", value, "0.001"},
       {"{\"schema\": \"krok.timeline/1\", \"sources\": {\"\": \"a\"}, \"base\": []}", value,
@@ -248,7 +248,7 @@ TEST(TimelineFile, NearMissesAreGuessed) {
       bad(base("{\"source\": \"walk\"}, {\"source\": \"walk\", \"change\": {\"kind\": \"smooth\", "
                "\"duration\": 1, \"easing\": \"sinus-in\"}}"));
   EXPECT_EQ(easing.hint, "did you mean 'sine-in'?");
-  EXPECT_NE(bad(base("{\"source\": \"xyzzy\"}")).hint.find("known are walk, run"),
+  EXPECT_NE(bad(base("{\"source\": \"xyzzy\"}")).hint.find("expected one of walk, run"),
             std::string::npos);
 }
 

@@ -43,7 +43,7 @@ class MemoryTest : public test::FolderTest {
 };
 
 using Names = std::vector<std::string>;
-const std::string kMessage = "krok-test: error: there is not enough memory [out-of-memory]\n";
+const std::string kMessage = "krok-test: error: out of memory [out-of-memory]\n";
 
 [[noreturn]] void run_out() {
   throw std::bad_alloc();

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/small_pictures.h"
+#include "support/small_images.h"
 #include "tools/common/actors/drawn_body.h"
 
 namespace krok {

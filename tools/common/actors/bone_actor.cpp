@@ -8,10 +8,10 @@ namespace krok {
 
 namespace {
 
-constexpr double kRadius = 0.011;     // of the figure's size
-constexpr float kThinning = 0.22F;    // of a bone's length: what its radius is at most
-constexpr float kJointToBone = 1.0F;  // a bone where it begins ...
-constexpr float kTip = 0.6F;          // ... and where it ends
+constexpr double kRadius = 0.011;     // of the actor's size
+constexpr float kThinning = 0.22F;    // max radius, of the bone's length
+constexpr float kJointToBone = 1.0F;  // radius at the start of a bone ...
+constexpr float kTip = 0.6F;          // ... and at its end, of its thickness
 
 BodySide side_of(Role role) {
   if (role >= Role::left_collar && role <= Role::left_fingers) return BodySide::left;
@@ -28,7 +28,7 @@ std::vector<BodySide> body_sides(const Skeleton& skeleton) {
   std::vector<BodySide> sides;
   for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
     BodySide side = side_of(roles.roles[j]);
-    // What hangs on a limb is on its side.
+    // Descendants of a limb are on its side.
     const int parent = skeleton.parents[j];
     if (side == BodySide::middle && parent >= 0) side = sides[static_cast<std::size_t>(parent)];
     sides.push_back(side);
@@ -62,7 +62,7 @@ BoneStyle bone_style(const Skeleton& skeleton) {
 render::Actor bone_actor(const BoneStyle& style, std::span<const Vec3f> positions) {
   render::Actor actor;
   const auto radius = static_cast<float>(style.radius);
-  // A joint is as thick as the thickest bone that meets in it.
+  // A joint is as thick as its thickest bone.
   std::vector<float> thickness(positions.size(), 0.0F);
   std::vector<int> meeting(positions.size(), 0);
   for (std::size_t j = 0; j < positions.size(); ++j) {

@@ -10,31 +10,31 @@ namespace krok {
 
 enum class BodySide : unsigned char { middle, left, right };
 
-// On which side of the body each joint is, by the joints' roles; middle where they do not tell.
+// The side of the body of each joint, from joint roles; middle if unknown.
 std::vector<BodySide> body_sides(const Skeleton& skeleton);
 
-// Blue for the left, orange for the right, grey for the middle.
+// Blue for left, orange for right, grey for middle.
 render::Colour side_colour(BodySide side);
 
-// The colour of bodies.
+// Default colour of bodies.
 inline constexpr render::Colour kBodyColour = render::colour(0xC9B49E);
 
-// The radius of joints that suits a figure of this extent, metres; that of no extent gets 1 cm.
+// The radius of joints that suits an actor of this size, in metres; 1 cm for extent 0.
 double bone_radius(double extent);
 
-// How a skeleton is drawn.
+// Drawing style of a skeleton.
 struct BoneStyle {
   std::vector<int> parents;             // [joints], -1 for none
-  std::vector<render::Colour> colours;  // [joints]; a bone has that of its far end
-  bool blended = false;                 // a bone goes over from its parent's colour
-  double radius = 0.01;                 // metres, of the joints
+  std::vector<render::Colour> colours;  // [joints]; a bone has the colour of its child joint
+  bool blended = false;                 // bone colours blend from parent to child
+  double radius = 0.01;                 // of joints, metres
 };
 
-// With the colours of the sides and a radius that suits the skeleton's size.
+// Coloured by side, with a radius that suits the skeleton's size.
 BoneStyle bone_style(const Skeleton& skeleton);
 
-// A bar from each joint to its parent, thinner towards the far end, and a ball at each joint.
-// Short bones are thinner, so that fingers can be told apart. `positions` has [joints] elements.
+// A tapered bar from each parent to its child joint and a ball at each joint. Short bones are
+// thinner, so that fingers stay distinguishable. `positions`: [joints].
 render::Actor bone_actor(const BoneStyle& style, std::span<const Vec3f> positions);
 
 }  // namespace krok

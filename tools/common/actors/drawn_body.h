@@ -13,20 +13,20 @@
 
 namespace krok {
 
-// A model as pictures show it. Without materials it has the colour of bodies. With materials its
-// parts look as look_of() says, light grey where none of the materials is theirs. A model of parts
-// that are all left out is drawn as if without materials.
+// A model prepared for rendering. Without materials it has the default body colour. With materials,
+// parts are drawn as look_of() returns, light grey if their material is missing. If look_of() drops
+// all parts, the model is drawn as if without materials.
 class DrawnBody {
  public:
   DrawnBody(std::shared_ptr<const Model> model, std::span<const Material> materials,
             SkinMethod method, const DecodedImages& images = {});
 
-  // Its surfaces in a pose of the model's joints. May be called by several threads.
+  // Surfaces for a pose of the model's joints. Thread-safe.
   std::vector<render::Surface> at(std::span<const Transform> pose) const;
 
  private:
   struct Part {
-    std::vector<std::uint32_t> vertices;                 // of the model, that it has; empty for all
+    std::vector<std::uint32_t> vertices;                 // indices into the model; empty: all
     std::shared_ptr<const render::Triangles> triangles;  // of these
     SurfaceLook look;
   };
@@ -35,8 +35,8 @@ class DrawnBody {
 
   std::shared_ptr<const Model> model_;
   SkinBinding binding_;
-  std::vector<Part> parts_;                             // none: all in the colour of bodies
-  std::shared_ptr<const render::Triangles> triangles_;  // where there are no parts
+  std::vector<Part> parts_;                             // none: all in the default body colour
+  std::shared_ptr<const render::Triangles> triangles_;  // if there are no parts
 };
 
 }  // namespace krok

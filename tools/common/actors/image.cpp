@@ -51,29 +51,29 @@ Result<ImageMoment> parse_moment(std::string_view word, const ImageSpan& span) {
   const auto time = parse_clip_time(word);
   if (!time) {
     return Error("usage", fmt::format("--moments: {}", time.error().message),
-                 "a number of moments, or moments as 0s,1.5s,120f");
+                 "give a number of images, or times as in 0s,1.5s,120f");
   }
   constexpr double kTolerance = 1e-6;
   if (span.rate > 0) {
     const double frame = std::round(time->in_frames ? time->value : time->value * span.rate);
     if (!(frame >= span.first && frame <= span.last)) {
-      return Error("usage", fmt::format("--moments {}: frames {} to {} are to be shown", word,
+      return Error("usage", fmt::format("--moments {}: not in the shown frames {} to {}", word,
                                         span.first, span.last));
     }
     return ImageMoment{frame / span.rate, static_cast<int>(frame)};
   }
   if (time->in_frames) {
-    return Error("usage", fmt::format("--moments {}: the file has no frames, only seconds", word));
+    return Error("usage", fmt::format("--moments {}: the file has no frames; give seconds", word));
   }
   if (!(time->value >= span.start - kTolerance && time->value <= span.end + kTolerance)) {
-    return Error("usage", fmt::format("--moments {}: {} s to {} s are to be shown", word,
+    return Error("usage", fmt::format("--moments {}: not in the shown range {} s to {} s", word,
                                       readable(span.start), readable(span.end)));
   }
   return ImageMoment{std::clamp(time->value, span.start, span.end), -1};
 }
 
 Error too_many() {
-  return Error("usage", fmt::format("--moments: from 1 to {} are shown", kMaxMoments));
+  return Error("usage", fmt::format("--moments: the number must be from 1 to {}", kMaxMoments));
 }
 
 const std::vector<ImageSide>& known_sides() {
@@ -96,25 +96,22 @@ const std::vector<ImageSide>& known_sides() {
 void declare_image_options(CommandOptions& command, ImageOptions& options, int by_default) {
   command
       .add_option("--moments", options.moments,
-                  fmt::format("Which moments: how many, spread evenly (default: {}), or which: "
-                              "0s,1.5s,120f",
+                  fmt::format("Times to show: a number of evenly spaced times (default: {}), or a "
+                              "list: 0s,1.5s,120f",
                               by_default))
       .type_name("LIST");
   command
       .add_option("--sides", options.sides,
-                  "The sides to look from, a row each: front, left, back, right, front-left, ..., "
-                  "top")
+                  "View directions, one row each: front, left, back, right, front-left, ..., top")
       .type_name("LIST")
       .default_str(options.sides);
   command
-      .add_option(
-          "--elevation", options.elevation,
-          "How far the camera is raised; level, heights can be read off, raised, the ground "
-          "is a grid of squares with shadows")
+      .add_option("--elevation", options.elevation,
+                  "Camera elevation; at 0, heights can be measured; above, the ground is a grid "
+                  "with shadows")
       .type_name("ANGLE")
       .default_str(options.elevation);
-  command
-      .add_option("--size", options.size, "How tall a figure is drawn at most, pixels: 32 to 4000")
+  command.add_option("--size", options.size, "Max height of an actor in pixels: 32 to 4000")
       .type_name("PIXELS")
       .default_str(std::to_string(options.size));
 }
@@ -148,7 +145,7 @@ Result<std::vector<ImageMoment>> choose_moments(const std::string& moments, int 
 Result<std::vector<ImageSide>> parse_sides(const ImageOptions& options) {
   const auto elevation = parse_angle(options.elevation);
   if (!elevation || std::abs(*elevation) > 0.5 * kPi) {
-    return Error("usage", fmt::format("--elevation {} is no angle from -90 to 90 degrees",
+    return Error("usage", fmt::format("--elevation {} is not an angle from -90 to 90 degrees",
                                       options.elevation));
   }
   std::vector<ImageSide> sides;
@@ -157,7 +154,7 @@ Result<std::vector<ImageSide>> parse_sides(const ImageOptions& options) {
     const auto found = std::find_if(known.begin(), known.end(),
                                     [word](const ImageSide& side) { return side.name == word; });
     if (found == known.end()) {
-      return Error("usage", fmt::format("--sides: '{}' is no side", shown(word)),
+      return Error("usage", fmt::format("--sides: unknown side '{}'", shown(word)),
                    "front, left, back, right, front-left, front-right, back-left, back-right or "
                    "top");
     }
@@ -165,7 +162,7 @@ Result<std::vector<ImageSide>> parse_sides(const ImageOptions& options) {
     if (found->elevation == 0) sides.back().elevation = *elevation;
   }
   if (sides.size() > known_sides().size()) {
-    return Error("usage", "--sides: no more sides than there are");
+    return Error("usage", "--sides: too many sides");
   }
   return sides;
 }
@@ -174,8 +171,7 @@ Status check_image_name(const std::string& path, const std::string& option) {
   const std::string ending = extension(path);
   if (ending.empty() || ending == ".png") return {};
   return Error("usage",
-               fmt::format("{} {}: what is written there is a PNG picture, not {}", option, path,
-                           shown(ending)),
+               fmt::format("{} {}: the output is a PNG image, not {}", option, path, shown(ending)),
                "call it .png");
 }
 

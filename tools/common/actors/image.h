@@ -7,22 +7,22 @@
 #include "render/sheet.h"
 #include "tools/common/tool.h"
 
-// What tools that make pictures of figures have in common: which moments, from which sides, how
-// large.
+// Options of tools that render images of actors: times, sides and size.
 
 namespace krok {
 
 struct ImageOptions {
-  std::string moments;  // "8", or "0s,1.5s,120f"; empty: the tool's own number
+  std::string moments;  // "8", or "0s,1.5s,120f"; empty: the tool's default
   std::string sides = "front,left";
   std::string elevation = "0deg";
   int size = 280;  // pixels
 };
 
-// --moments, --sides, --elevation, --size. `by_default` is the number of moments, for the help.
+// --moments, --sides, --elevation, --size. `by_default` is the default number of moments, for the
+// help.
 void declare_image_options(CommandOptions& command, ImageOptions& options, int by_default);
 
-// A moment of a figure; `frame` is -1 where it has no frames.
+// A time in an actor's motion; `frame` is -1 without frames.
 struct ImageMoment {
   double time = 0;
   int frame = -1;
@@ -31,21 +31,21 @@ struct ImageMoment {
   std::string note() const;   // "0.40 s", or empty
 };
 
-// What there is to choose from: with frames, those from `first` to `last`, at frame / rate;
-// without (rate 0) the seconds from `start` to `end`.
+// The range to choose from: frames `first` to `last`, at frame / rate seconds; without frames (rate
+// 0), `start` to `end` seconds.
 struct ImageSpan {
   double rate = 0;
   int first = 0, last = 0;
   double start = 0, end = 0;
 };
 
-// The moments that `moments` names (see PictureOptions; empty: `by_default` of them, spread evenly
-// from the first to the last; fewer where there are not as many frames), each once, in order.
-// Code usage for a text that names none, or one beyond the span.
+// Parses `moments` (see ImageOptions) into times, sorted and without duplicates. Empty:
+// `by_default` of them, evenly spaced from the first to the last, or fewer if there are fewer
+// frames. Code usage for invalid text and for times outside the span.
 Result<std::vector<ImageMoment>> choose_moments(const std::string& moments, int by_default,
                                                 const ImageSpan& span);
 
-// A side to look from: `yaw` is added to where the figure faces.
+// A view direction: `yaw` is relative to the actor's heading.
 struct ImageSide {
   std::string name;
   double yaw = 0, elevation = 0;  // radians
@@ -55,14 +55,13 @@ struct ImageSide {
 // commas. Code usage.
 Result<std::vector<ImageSide>> parse_sides(const ImageOptions& options);
 
-// Whether a picture may be called `path`: Error usage where the name promises another kind of file.
+// Fails (code usage) if the extension of `path` is that of another kind of file.
 Status check_image_name(const std::string& path, const std::string& option);
 
-// Writes the picture as PNG to `path` and notes it in the report.
+// Writes the image as PNG to `path` and adds it to the report.
 Status write_image(const render::Image& image, const std::string& path, ToolContext& context);
 
-// Where cells are and what camera shows them, for the report: whoever measures in a picture needs
-// it.
+// Position and camera of a cell, for the report; needed for measuring in images.
 Json to_json(const render::CellLayout& cell);
 
 }  // namespace krok

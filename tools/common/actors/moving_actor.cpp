@@ -10,15 +10,15 @@
 
 #include "body/body.h"
 #include "core/numbers.h"
+#include "formats/io/open_character.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
 #include "motion/ground_frame.h"
 #include "nodes/evaluate.h"
 #include "tools/common/actors/bone_actor.h"
 #include "tools/common/actors/drawn_body.h"
-#include "tools/common/character/character_input.h"
 #include "tools/common/file_name.h"
-#include "tools/common/gltf/gltf_input.h"
-#include "tools/common/motion_input.h"
 
 namespace krok {
 
@@ -26,13 +26,13 @@ namespace {
 
 using registry::Kind;
 
-// What a motion moves: a mesh, or none, and how it looks where a character tells.
+// The body of a motion: a mesh or none, with materials if from a character.
 struct Body {
   std::shared_ptr<const Model> model;
   std::vector<Material> materials;
 };
 
-// A clip and, if it has one, its body, with what drawing them at any moment needs.
+// A clip with its body, if any, prepared for drawing at any time.
 class ClipActor {
  public:
   ClipActor(Clip clip, const Body& body, SkinMethod method, const DecodedImages& images)
@@ -95,8 +95,8 @@ MovingActor actor_of(const std::string& path, Clip clip, const Body& body, SkinM
   actor.duration = clip.duration();
   actor.facts = counted(clip.joint_count(), "joint");
   if (actor.frame_count > 0) {
-    actor.facts += fmt::format(", {}, {} a second", counted(actor.frame_count, "frame"),
-                               readable(clip.rate, 4));
+    actor.facts +=
+        fmt::format(", {}, {} fps", counted(actor.frame_count, "frame"), readable(clip.rate, 4));
   }
   const auto source = std::make_shared<const ClipActor>(std::move(clip), body, method, images);
   actor.at = [source](double time) { return source->at(time); };
@@ -105,10 +105,10 @@ MovingActor actor_of(const std::string& path, Clip clip, const Body& body, SkinM
   return actor;
 }
 
-// A scene of nodes, as its meshes show it or as its joints.
+// A node scene, drawn as its meshes or as its joints.
 class SceneActor {
  public:
-  // With the pictures of its materials; where there are none, it has the colour of bodies.
+  // Textured; without images in its materials, in the default body colour.
   static Result<std::shared_ptr<const SceneActor>> create(nodes::Scene scene, bool bones,
                                                           const DecodedImages& images) {
     auto actor = std::make_shared<SceneActor>(std::move(scene));
@@ -124,7 +124,7 @@ class SceneActor {
                                          [](const auto& triangles) { return !triangles->empty(); });
     actor->bones_ = !from.joints().empty() && (bones || !has_surface);
     if (!actor->bones_ && !has_surface) {
-      return Error("figure-input", "the file has neither meshes nor joints to be seen");
+      return Error("figure-input", "the file has neither meshes nor joints");
     }
     actor->set_style();
     actor->set_looks(images);
@@ -212,7 +212,7 @@ class SceneActor {
     if (!painted || !drawn) looks_.assign(triangles_.size(), SurfaceLook{kBodyColour, nullptr});
   }
 
-  // The joints' colours by their names, which need not be unique here.
+  // Joint colours by name; names need not be unique here.
   void set_style() {
     Skeleton skeleton;
     nodes::Evaluation still;
@@ -235,16 +235,16 @@ class SceneActor {
   nodes::Scene scene_;
   std::unique_ptr<nodes::Evaluator> evaluator_;
   std::vector<std::shared_ptr<const render::Triangles>> triangles_;  // [instances]
-  std::vector<std::optional<SurfaceLook>> looks_;  // [instances]; nothing for what is left out
+  std::vector<std::optional<SurfaceLook>> looks_;  // [instances]; empty: not drawn
   BoneStyle style_;
   bool bones_ = false;
   double duration_ = 0;
 };
 
-// The files, read and not yet put together.
+// The files that were read, before bodies and motions are matched.
 struct Read {
   struct Motion {
-    std::size_t place;  // among the inputs
+    std::size_t place;  // input index
     std::string path;
     Clip clip;
     Body body;
@@ -257,17 +257,17 @@ struct Read {
   };
   std::vector<Motion> motions;
   std::vector<Character> models;
-  std::map<std::size_t, MovingActor> actors;  // by their place among the inputs
+  std::map<std::size_t, MovingActor> actors;  // keyed by input index
   DecodedImages images;                       // of all of them
 };
 
-// What is odd about materials matters where one has a picture: without any, they are not shown.
+// Warnings about materials matter only if one has an image; otherwise materials are not drawn.
 void report_scene(const nodes::Scene& scene, ToolContext& context) {
   const bool pictured = std::ranges::any_of(scene.materials, [](const Material& material) {
     return static_cast<bool>(material.base_color_texture);
   });
   for (const Diagnostic& diagnostic : scene.diagnostics) {
-    if (pictured || diagnostic.code != "gltf-material") context.tell(diagnostic);
+    if (pictured || diagnostic.code != "gltf-material") context.diagnose(diagnostic);
   }
 }
 
@@ -276,8 +276,8 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
   auto input = context.open_input(path);
   if (!input) return input.error();
   const Kind kind = registry::identify(input->path(), input->bytes());
-  if (is_shown_model(kind)) {
-    auto shown = load_shown_model(*input, kind, context);
+  if (io::is_shown_model(kind)) {
+    auto shown = io::open_shown_model(*input, context);
     if (!shown) return shown.error();
     if (!bones && !shown->model.texture_coordinates.empty()) {
       decode_base_colours(shown->materials, path, context, read.images);
@@ -289,7 +289,7 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
   switch (kind) {
     case Kind::glb:
     case Kind::gltf: {
-      auto scene = read_gltf(*input, context, !bones);
+      auto scene = io::open_scene(*input, context, !bones);
       if (!scene) return scene.error();
       decode_base_colours(scene->materials, path, context, read.images);
       report_scene(*scene, context);
@@ -308,11 +308,11 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
       return {};
     }
     case Kind::cam:
-      return Error("figure-input", "a camera shows no figure",
+      return Error("figure-input", "a camera has no actor",
                    "give a motion, model, character or glTF file")
           .in_file(path);
     default: {
-      auto clip = read_motion(*input, context);
+      auto clip = io::open_motion(*input, context);
       if (!clip) return std::move(clip).error().in_file(path);
       read.motions.push_back({place, path, std::move(*clip), {}});
       return {};
@@ -320,7 +320,7 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
   }
 }
 
-// Each model to the motions of its skeleton; one that no motion moves stands still.
+// Assigns each model to the motions of its skeleton; models without a motion are static.
 void share_models(bool bones, SkinMethod method, Read& read) {
   for (Read::Character& character : read.models) {
     for (Read::Motion& motion : read.motions) {
@@ -361,9 +361,8 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
 
 }  // namespace
 
-Result<std::vector<MovingActor>> read_metrics(const std::vector<std::string>& paths,
-                                              BodyChoice body, SkinMethod method,
-                                              ToolContext& context) {
+Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths, BodyChoice body,
+                                             SkinMethod method, ToolContext& context) {
   Read read;
   const bool bones = body == BodyChoice::none;
   for (std::size_t place = 0; place < paths.size(); ++place) {

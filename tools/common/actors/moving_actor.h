@@ -11,35 +11,34 @@
 #include "tools/common/body_choice.h"
 #include "tools/common/tool.h"
 
-// What input files hold as figures that pictures can be made of.
+// Reads input files as actors that can be rendered.
 
 namespace krok {
 
 struct MovingActor {
-  std::string path, name;  // the name is for people
-  std::string facts;       // "31 joints, 264 frames", for people
-  int frame_count = 0;     // 0 where it has no frames: a model, a scene with keys
-  double rate = 0;         // frames a second, where it has frames
-  double duration = 0;     // seconds; 0 for what does not move
-  bool has_body = false;   // drawn with a surface, not as bones
+  std::string path, name;  // the name is for display
+  std::string facts;       // "31 joints, 264 frames", for display
+  int frame_count = 0;     // 0 without frames: a model, a scene with keyframes
+  double rate = 0;         // frames per second, if it has frames
+  double duration = 0;     // seconds; 0 if static
+  bool has_body = false;   // drawn as a surface, not as bones
 
-  // The figure at a time; with frames at the frame nearest to it. May be called by several threads.
+  // The actor at a time; with frames, at the nearest frame. Thread-safe.
   std::function<render::Actor(double time)> at;
-  // Where its hips are then, or what else carries it; world, metres.
+  // World position of the hips, or of whatever node carries the actor, in metres.
   std::function<Vec3(double time)> carrier;
-  // Where it faces then: radians about +Y, 0 is +Z, a quarter turn +X.
+  // Heading: radians about +Y; 0 is +Z, pi/2 is +X.
   std::function<double(double time)> heading;
 };
 
-// Motions (captures, .anim), models and characters (.model, .character, moved by the motions of
-// their skeleton or standing alone, faces as they are at rest) and glTF files, in the order of
-// `paths`. With BodyChoice::none motions are drawn as bones, and so are models and glTF files that
-// have joints; glTF files show their materials where one of them has a picture, see look_of(),
-// otherwise they have the colour of bodies; automatic is low for more than two motions that come
-// without a body, otherwise medium. `method` is how motions move their bodies; glTF files are
-// skinned as viewers do it. Code figure-input for a file that shows no figure.
-Result<std::vector<MovingActor>> read_metrics(const std::vector<std::string>& paths,
-                                              BodyChoice body, SkinMethod method,
-                                              ToolContext& context);
+// Reads motions (captures, .anim), models and characters (.model, .character; animated by the
+// motions of their skeleton or static, faces at rest) and glTF files, in the order of `paths`. With
+// BodyChoice::none, motions, models and glTF files with joints are drawn as bones. glTF files are
+// drawn with their materials if one of them has an image, see look_of(), otherwise in the default
+// body colour. BodyChoice::automatic is low for more than two motions without a body, otherwise
+// medium. `method` is the skinning method for motions; glTF files are skinned as in viewers. Code
+// figure-input for a file without an actor.
+Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths, BodyChoice body,
+                                             SkinMethod method, ToolContext& context);
 
 }  // namespace krok

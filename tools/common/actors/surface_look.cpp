@@ -11,7 +11,7 @@ namespace krok {
 
 namespace {
 
-constexpr float kSeenThrough = 0.5F;  // alpha below which nothing is drawn
+constexpr float kSeenThrough = 0.5F;  // not drawn below this alpha
 constexpr std::size_t kMaxPixels = std::size_t{1} << 28;
 
 std::size_t pixels_of(const DecodedImages& images) {
@@ -25,14 +25,14 @@ std::size_t pixels_of(const DecodedImages& images) {
 std::string words_for(const Material& material, const EncodedImage& image) {
   const std::string& called = image.path.empty() ? image.name : image.path;
   const std::string name = called.empty() ? std::string() : fmt::format(" '{}'", shown(called));
-  return fmt::format("picture{} of the material '{}'", name, shown(material.name));
+  return fmt::format("image{} of material '{}'", name, shown(material.name));
 }
 
 void warn(Error error, const std::string& message, const std::string& path, ToolContext& context) {
   Diagnostic warning = std::move(error).in_file(path);
   warning.severity = Severity::warning;
   warning.message = message;
-  context.tell(std::move(warning));
+  context.diagnose(std::move(warning));
 }
 
 std::shared_ptr<const render::Mipmap> decoded(const Material& material, const std::string& path,
@@ -42,7 +42,7 @@ std::shared_ptr<const render::Mipmap> decoded(const Material& material, const st
   auto pixels = image::decode(image.bytes, std::min(most_pixels, image::kMaxPixels));
   if (!pixels) {
     warn(pixels.error(),
-         fmt::format("{}: {}; the plain colour shows", words, pixels.error().message), path,
+         fmt::format("{}: {}; the plain colour is used", words, pixels.error().message), path,
          context);
     return nullptr;
   }
@@ -64,7 +64,7 @@ void decode_base_colours(std::span<const Material> materials, const std::string&
     const Texture& texture = material.base_color_texture;
     if (!texture || known.contains(texture.image.get())) continue;
     const std::size_t left = kMaxPixels - std::min(pixels_of(known), kMaxPixels);
-    // Null too, so that each is warned of once.
+    // Also null, so that each image is warned about once.
     known[texture.image.get()] = decoded(material, path, left, context);
   }
 }

@@ -31,20 +31,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// How far ahead of the first file that is not told of yet others may be done.
+// How many files may be processed ahead of the first whose messages are not printed yet.
 constexpr std::size_t kWindow = 256;
 
-// What became of one file.
+// The outcome of one file.
 struct Outcome {
   FileState state = FileState::failed;
   std::string messages;
   Json report;
   Status journal;
-  // Results whose names the list does not tell, "hero_{clip}.anim": which of two files they belong
-  // to is decided in the order of the list.
+  // Outputs whose names are not known from the list, "hero_{clip}.anim": if two files write the
+  // same one, the first in list order gets it.
   std::vector<std::string> unforeseen;
-  std::vector<OutputFile> held_files;  // those of them that are to be put in place
-  std::optional<Json> record;          // for the journal, once they are
+  std::vector<OutputFile> held_files;  // those to be renamed to their final names
+  std::optional<Json> record;          // for the journal, after renaming
   ToolContext context;
 };
 
@@ -79,8 +79,8 @@ class Batch {
 
   int run() {
     if (!line_.output.empty()) {
-      return stop({Error("usage", "-o names one result, and here are many",
-                         "--out-dir names the folder for them")});
+      return stop({Error("usage", "-o is for one output, but there are several inputs",
+                         "use --out-dir DIR")});
     }
     Diagnostics errors;
     list_ = list_files(line_, make_spec_, errors);
@@ -98,16 +98,16 @@ class Batch {
                          context_.report.version, options_of_batch(line_));
   }
 
-  // Ends a batch of which no file was begun.
+  // Ends a batch before any file is started.
   int stop(const Diagnostics& errors) {
-    context_.tell(errors);
+    context_.diagnose(errors);
     if (only_a_report_stands_at(line_.json_path) && begin_report()) {
       (void)report_.end(context_.report.issues, tally_.result()).ok();
     }
     return kExitTrouble;
   }
 
-  // Folders, and what killed runs left in them.
+  // Creates folders and removes temporary files of killed runs.
   Status prepare() {
     std::set<std::string> folders = {line_.out_dir,
                                      fs::path(line_.json_path).parent_path().string()};
@@ -119,7 +119,7 @@ class Batch {
     std::error_code trouble;
     if (!line_.out_dir.empty()) fs::create_directories(line_.out_dir, trouble);
     if (trouble) {
-      return Error("file-unwritable", fmt::format("cannot be made: {}", trouble.message()))
+      return Error("file-unwritable", fmt::format("cannot create folder: {}", trouble.message()))
           .in_file(line_.out_dir);
     }
     for (const std::string& folder : folders) {
@@ -148,11 +148,11 @@ class Batch {
     try {
       run_file(file, outcome.context, outcome);
     } catch (const std::bad_alloc&) {
-      fail(file, Error("out-of-memory", "there is not enough memory"), outcome);
+      fail(file, Error("out-of-memory", "out of memory"), outcome);
     } catch (const std::exception& error) {
       fail(file, Error("internal", error.what()), outcome);
     }
-    // What no report tells goes here: memory costs less where the thread that took it lets it go.
+    // Free data that no report needs on the thread that allocated it, which is cheaper.
     if (!report_.is_wanted()) outcome.context.report.issues = {};
     return outcome;
   }
@@ -180,7 +180,7 @@ class Batch {
         return note_unchanged(file, std::move(*record), outcome);
       }
     }
-    std::error_code known_later;  // when the file is created
+    std::error_code known_later;  // noticed when the file is created
     for (const std::string& path : context.destinations) {
       fs::create_directories(fs::path(path).parent_path(), known_later);
     }
@@ -196,7 +196,7 @@ class Batch {
     outcome.held_files = std::move(context.held_files);
     auto record = journal_record(line_.out_dir, file.key, digest, file.input, context.report,
                                  places_of(outcome));
-    // What is gone again or no regular file cannot be known later.
+    // Outputs that are gone or not regular files cannot be checked by later runs.
     if (!record) return;
     if (outcome.held_files.empty()) {
       outcome.journal = journal_->add(*record);
@@ -205,7 +205,7 @@ class Batch {
     }
   }
 
-  // Where the bytes of results stand that are not in place yet.
+  // Temporary names of outputs that are not renamed yet.
   static std::map<std::string, std::string> places_of(const Outcome& outcome) {
     std::map<std::string, std::string> places;
     for (std::size_t i = 0; i < outcome.held_files.size(); ++i) {
@@ -214,7 +214,7 @@ class Batch {
     return places;
   }
 
-  // In the order of the list: the results that have waited for it get their place.
+  // In list order: renames held outputs to their final names.
   Status place(const BatchFile& file, Outcome& outcome) {
     if (Status status = names_.claim(outcome.unforeseen, file.input); !status) return status;
     if (Status status = OutputFile::place_all(outcome.held_files); !status) return status;
@@ -222,7 +222,7 @@ class Batch {
     return {};
   }
 
-  // Its part of the report of the batch.
+  // Adds a file to the batch report.
   void note_report(const BatchFile& file, Outcome& outcome) const {
     if (!report_.is_wanted()) return;
     const ToolContext& context = outcome.context;
@@ -255,13 +255,13 @@ class Batch {
 
   void fail(const BatchFile& file, Error error, Outcome& outcome) const {
     ToolContext& context = outcome.context;
-    // A word of a manifest is at fault, or else the file.
+    // The location is a manifest word, or else the file.
     const bool of_line = error.code == "usage" && !list_.option_sets[file.options].options.empty();
     if (error.where.file.empty() && of_line && !file.line.file.empty()) error.where = file.line;
     context.report.tool = context_.report.tool;
     context.kept_messages = &outcome.messages;
     context.subject.file = file.input;
-    context.tell(error);
+    context.diagnose(error);
     outcome.state = FileState::failed;
     outcome.held_files.clear();
     context.report.outputs.clear();
@@ -269,7 +269,7 @@ class Batch {
     note_report(file, outcome);
   }
 
-  // Tells what became of a file; whether to go on.
+  // Reports the outcome of a file. Returns whether to continue.
   bool take(const BatchFile& file, Outcome outcome) {
     if (outcome.state != FileState::failed) {
       if (const Status status = place(file, outcome); !status) fail(file, status.error(), outcome);
@@ -289,39 +289,39 @@ class Batch {
     return outcome.state != FileState::failed || line_.keep_going;
   }
 
-  // What was written without waiting for the disk is on it, or it is said.
+  // Waits until everything written is on disk; warns on failure.
   Status store() const {
     std::set<dev_t> stored;
     std::set<std::string> folders = written_folders_;
-    if (!folders.empty()) folders.insert(line_.out_dir);  // where the journal is
+    if (!folders.empty()) folders.insert(line_.out_dir);  // for the journal
     for (const std::string& folder : folders) {
       const std::string path = folder.empty() ? "." : folder;
       struct stat status {};
       if (stat(path.c_str(), &status) != 0 || !stored.insert(status.st_dev).second) continue;
-      if (Status status = store_files(path); !status) return status;
+      if (Status step = store_files(path); !step) return step;
     }
     return {};
   }
 
   int finish() {
-    // The journal first, so that the disk is waited for once. What it tells may get there before
-    // what it tells of, for it is not believed.
+    // The journal first, so that one wait covers all. It may reach the disk before the outputs that
+    // it lists, as it is verified when used.
     Status status = journal_->tidy();
     const Status stored = store();
-    if (!stored) context_.tell(stored.error());
+    if (!stored) context_.diagnose(stored.error());
     if (!journal_trouble_) status = journal_trouble_;
     if (!status) {
       Diagnostic warning = status.error();
       warning.severity = Severity::warning;
-      context_.tell(std::move(warning));
+      context_.diagnose(std::move(warning));
     }
-    if (tally_.failed() > 0) context_.tell(tally_.failure(line_.keep_going));
+    if (tally_.failed() > 0) context_.diagnose(tally_.failure(line_.keep_going));
     const std::string part =
         line_.shard.empty() ? "" : fmt::format(" of {} (part {})", list_.total, line_.shard);
-    context_.say(fmt::format("{}: {}", context_.report.tool, tally_.summary(part)));
-    const Status status = report_.end(context_.report.issues, tally_.result());
-    if (!status) {
-      context_.tell(status.error());
+    context_.log(fmt::format("{}: {}", context_.report.tool, tally_.summary(part)));
+    const Status reported = report_.end(context_.report.issues, tally_.result());
+    if (!reported) {
+      context_.diagnose(reported.error());
       return kExitTrouble;
     }
     if (!stored) return kExitTrouble;
@@ -331,7 +331,7 @@ class Batch {
 
   const MakeToolSpec& make_spec_;
   const CommandLine& line_;
-  ToolContext context_;  // of the batch as a whole
+  ToolContext context_;  // of the whole batch
   std::unique_ptr<Console> console_;
   Progress no_progress_;
   BatchList list_;

@@ -21,7 +21,7 @@ class Check {
 
   std::map<FileNumber, std::string> run() {
     const std::size_t count = list_.files.size();
-    // To ask the system takes longest.
+    // System calls take most of the time.
     std::vector<std::optional<FileNumber>> inputs(count), outputs(count);
     parallel_for(count, 64, line_.jobs, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -48,7 +48,7 @@ class Check {
         if (!option.names_output) continue;
         for (const std::string& value : option.values) {
           if (value == "-") {
-            fail(i, fmt::format("--{} -: the results of many files cannot go to standard output",
+            fail(i, fmt::format("--{} -: standard output is not available in batch mode",
                                 option.name));
             continue;
           }
@@ -79,8 +79,8 @@ class Check {
     if (path.empty()) return;
     if (path == "-") {
       errors_.push_back(Error("usage",
-                              "standard input can be read only once, and here are many files",
-                              "name a file for what all of them take"));
+                              "standard input can be read only once, but there are several inputs",
+                              "use a file for the shared input"));
       return;
     }
     if (number) read_.emplace(*number, path);
@@ -91,9 +91,9 @@ class Check {
     if (number) {
       if (const auto found = read_.find(*number); found != read_.end()) {
         return fail(who,
-                    fmt::format("{} is read and would be replaced by the result of {}",
+                    fmt::format("{} is an input and would be overwritten by the output of {}",
                                 found->second, name_of(who)),
-                    "choose another folder or name");
+                    "choose another folder or file name");
       }
     }
     auto [first, is_new] = written_.emplace(absolute_path(path), who);
@@ -108,8 +108,9 @@ class Check {
     fail(who,
          fmt::format("{} and {} would both be written to {}", name_of(first->second), name_of(who),
                      path),
-         lacks_placeholder ? "put {name} into it, which stands for the name of each result"
-                           : "--base keeps more of their folders; a --manifest names each result");
+         lacks_placeholder
+             ? "use {name}, which is replaced by the name of each output"
+             : "use --base to keep more sub-folders, or a --manifest to name each output");
   }
 
   const CommandLine& line_;

@@ -6,9 +6,9 @@
 
 namespace krok {
 
-// Whether the files of a batch can be done side by side: no two results (outputs, and outputs that
-// options name) share a file, and none replaces an input, the manifest or the report. What is wrong
-// is added to `errors` (code usage). Fills in list.read_files.
+// Checks that no two outputs of a batch (including those that options name) are the same file, and
+// that none overwrites an input, the manifest or the report. Adds problems to `errors` (code
+// usage). Fills in list.read_files.
 void check_batch(const CommandLine& line, BatchList& list, Diagnostics& errors);
 
 }  // namespace krok

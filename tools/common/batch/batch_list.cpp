@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxErrors = 20;
 
-// An input, and the folder below which its sub-folders are kept; none yet for files that were named
-// one by one.
+// An input, and the base folder of the sub-folders to keep; not known yet for files named
+// individually.
 struct Found {
   std::string input;
   std::optional<std::string> base;
@@ -43,11 +43,11 @@ Result<Shard> parse_shard(const std::string& text) {
       return Shard{*index, *count};
     }
   }
-  return Error("usage", fmt::format("--shard: '{}' is no part of a list", text),
-               "write 1/4, 2/4, 3/4 and 4/4 for the four quarters");
+  return Error("usage", fmt::format("--shard: '{}' is not of the form I/N", text),
+               "for four parts, use 1/4, 2/4, 3/4 and 4/4");
 }
 
-// The longest path of folders that all absolute paths begin with.
+// The longest common folder of absolute paths.
 std::string common_folder(const std::vector<std::string>& paths) {
   std::optional<fs::path> common;
   for (const std::string& path : paths) {
@@ -97,7 +97,7 @@ class Lister {
     if (errors_.empty()) check_batch(line_, list_, errors_);
     if (errors_.size() > kMaxErrors) shorten_errors();
     if (!errors_.empty()) return {};
-    // By name, so that a file stays in its shard when others come and go.
+    // By name, so that a file stays in its shard when other files are added or removed.
     std::erase_if(list_.files, [&](const BatchFile& file) {
       const auto hash = xxh3(std::as_bytes(std::span(file.key)));
       return hash % static_cast<std::uint64_t>(shard->count) !=
@@ -120,7 +120,7 @@ class Lister {
     if (!set) return fail(set.error());
     if (!sets_.all()[*set].ending) return fail(sets_.all()[*set].ending.error());
     if (line_.inputs.empty()) {
-      return fail(Error("usage", "no input is given", "name files, folders or patterns"));
+      return fail(Error("usage", "no input given", "give files, folders or patterns"));
     }
     std::unordered_set<std::string> known;
     for (const std::string& argument : line_.inputs) {
@@ -136,7 +136,7 @@ class Lister {
 
   std::vector<Found> find(const std::string& argument) {
     if (argument == "-") {
-      fail(Error("usage", "standard input is one file, not many", "use -o, or name files"));
+      fail(Error("usage", "standard input cannot be used in batch mode", "use -o, or give files"));
       return {};
     }
     std::error_code missing;
@@ -150,12 +150,12 @@ class Lister {
         std::erase_if(*paths,
                       [&](const auto& path) { return !has_extension(path, spec_.batch->reads); });
       }
-      nothing = fmt::format("no {} file is in this folder", words(spec_.batch->reads));
+      nothing = fmt::format("the folder has no {} file", words(spec_.batch->reads));
     } else if (has_wildcards(argument) && !fs::exists(argument, missing)) {
       paths = find_files(argument);
       base = fixed_part(argument);
       if (paths) leave_out_results(base, *paths);
-      nothing = "no file fits this pattern";
+      nothing = "no file matches this pattern";
     } else if (fs::exists(argument, missing)) {
       return {{argument, std::nullopt}};
     } else {
@@ -173,7 +173,7 @@ class Lister {
     return found;
   }
 
-  // Where the results go into a folder inside the one that is read, they are not read again.
+  // If the output folder is inside the input folder, outputs must not become inputs.
   void leave_out_results(const std::string& folder, std::vector<std::string>& paths) const {
     std::error_code unknown;
     const fs::path read = fs::weakly_canonical(folder.empty() ? "." : folder, unknown);
@@ -187,7 +187,7 @@ class Lister {
 
   void from_manifest() {
     if (!line_.inputs.empty()) {
-      return fail(Error("usage", "inputs are given and a --manifest too", "use one of them"));
+      return fail(Error("usage", "inputs cannot be combined with --manifest", "use one of them"));
     }
     const auto file = InputFile::open(line_.manifest);
     if (!file) return fail(file.error());
@@ -197,13 +197,13 @@ class Lister {
       const auto set = sets_.find(line.options);
       if (!set) {
         fail(Error(set.error()).in_file(line_.manifest));
-        if (line.options.empty()) return;  // wrong on the command line, for all
+        if (line.options.empty()) return;  // the command line itself is invalid
         continue;
       }
-      // The place of the options, for messages about them.
+      // Location of the options, for messages.
       const Location place = line.options.empty() ? line.input.where : line.options[0].where;
       if (line.output.text.empty() && line_.out_dir.empty()) {
-        fail(Error("manifest-line", "there is no output", "name one, or give --out-dir")
+        fail(Error("manifest-line", "no output given", "add an output, or use --out-dir")
                  .in_file(line_.manifest)
                  .at_line(place.line, line.input.where.column));
         continue;
@@ -215,13 +215,13 @@ class Lister {
     std::stable_sort(errors_.begin(), errors_.end(),
                      [](const auto& a, const auto& b) { return a.where.line < b.where.line; });
     if (manifest.lines.empty() && errors_.empty()) {
-      fail(Error("manifest-line", "the list holds no file").in_file(line_.manifest));
+      fail(Error("manifest-line", "the list has no files").in_file(line_.manifest));
     }
   }
 
-  // Fills in keys that are missing, and outputs.
+  // Fills in missing keys and output paths.
   void name_outputs() {
-    std::vector<std::string> named;  // one by one
+    std::vector<std::string> named;  // individually
     for (std::size_t i = 0; i < list_.files.size(); ++i) {
       if (list_.files[i].key.empty() && !bases_[i]) named.push_back(absolute_[i]);
     }
@@ -241,7 +241,7 @@ class Lister {
     }
   }
 
-  // The absolute path of a base with a slash at its end. Many files in a row have the same.
+  // Absolute path of a base, with a trailing slash. Cached: consecutive files often share a base.
   const std::string& folder_of(const std::string& base) {
     if (folder_.empty() || base != base_of_folder_) {
       base_of_folder_ = base;
@@ -254,8 +254,8 @@ class Lister {
   void name_output(BatchFile& file, const std::string& absolute, const std::string& base) {
     const std::string& folder = folder_of(base);
     if (!absolute.starts_with(folder) || absolute.size() == folder.size()) {
-      return fail(Error("usage", fmt::format("is not below {}", base),
-                        "--base is a folder that all inputs are in")
+      return fail(Error("usage", fmt::format("is not inside {}", base),
+                        "--base must be a folder that contains all inputs")
                       .in_file(file.input));
     }
     const auto& ending = sets_.all()[file.options].ending;
@@ -275,7 +275,7 @@ class Lister {
   BatchList list_;
   std::vector<std::string> absolute_;              // the input of each file
   std::vector<std::optional<std::string>> bases_;  // of each file
-  std::string base_of_folder_, folder_;            // the last that folder_of() was asked for
+  std::string base_of_folder_, folder_;            // last call of folder_of()
 };
 
 }  // namespace

@@ -15,31 +15,31 @@ namespace krok {
 // One file of a batch.
 struct BatchFile {
   std::string input;
-  std::string name;         // what {name} stands for, "a/walk"
-  std::string key;          // the output below the output folder, "a/walk.anim"
-  std::string output;       // the output as a path
-  std::size_t options = 0;  // which of BatchList::option_sets
-  Location line;            // in the manifest; no file where there is none
+  std::string name;         // value of {name}, "a/walk"
+  std::string key;          // output relative to the output folder, "a/walk.anim"
+  std::string output;       // output path
+  std::size_t options = 0;  // index into BatchList::option_sets
+  Location line;            // in the manifest; no file without one
 };
 
 struct BatchList {
   std::vector<OptionSet> option_sets;
-  std::vector<BatchFile> files;                  // those of this shard
+  std::vector<BatchFile> files;                  // of this shard
   std::size_t total = 0;                         // in all shards
   std::map<FileNumber, std::string> read_files;  // inputs of all shards, maps, the list itself
 };
 
-// The path in an option that names an output: "{name}" in it stands for the file's output below the
-// output folder without its ending, and a relative path is below the output folder too.
+// Expands the path in an option that names an output: "{name}" is replaced by BatchFile::name, and
+// relative paths are relative to the output folder.
 std::string expanded(const std::string& value, const BatchFile& file, const std::string& out_dir);
 
-// A file's options with the names of outputs expanded.
+// A file's options with output paths expanded.
 std::vector<GivenOption> options_of(const BatchFile& file, const BatchList& list,
                                     const std::string& out_dir);
 
-// The list of files that the command line asks for, checked as a whole: no two results share a
-// file, none replaces an input. What is wrong is added to `errors`, and then the list is of no use.
-// Reads the manifest and looks for files; opens none of them.
+// Builds the list of files of a command line and checks it: no two outputs are the same file, none
+// overwrites an input. Problems are added to `errors`; the list is then unusable. Reads the
+// manifest and searches for files, but opens none of them.
 BatchList list_files(const CommandLine& line, const MakeToolSpec& make_spec, Diagnostics& errors);
 
 }  // namespace krok

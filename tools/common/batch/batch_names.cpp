@@ -8,7 +8,7 @@ namespace krok {
 
 namespace {
 
-constexpr const char* kHint = "a --manifest names each result";
+constexpr const char* kHint = "use a --manifest to name each output";
 
 }  // namespace
 
@@ -35,8 +35,7 @@ Status BatchNames::check(const std::string& path) {
   });
   const auto listed = listed_.find(place_of(path));
   if (listed == listed_.end()) return {};
-  return Error("usage", fmt::format("{} would be written here too, by {}", path, listed->second),
-               kHint);
+  return Error("usage", fmt::format("{} would also be written by {}", path, listed->second), kHint);
 }
 
 Status BatchNames::claim(const std::vector<std::string>& paths, const std::string& input) {

@@ -18,7 +18,7 @@ Status BatchReport::begin(const std::string& path, OutputFile::Options how, cons
                   json_line(tool), json_line(version), json_line(options)));
 }
 
-// A failure to write is kept by the file and told at the end.
+// The file keeps write errors; end() returns them.
 void BatchReport::add(const Json& file) {
   if (!file_) return;
   (void)file_->write((first_ ? "\n    " : ",\n    ") + json_line(file)).ok();

@@ -8,18 +8,18 @@
 
 namespace krok {
 
-// The report of a batch as JSON (schema krok.batch/1), written while files are done, for there may
-// be any number of them:
+// The report of a batch as JSON (schema krok.batch/1), streamed while files are processed to bound
+// memory:
 //
 //   {"schema", "tool", "version", "options",
 //    "files": [{"input", "output", "status", "options", "inputs", "outputs", "issues", "result"}],
 //    "issues": [], "result": {"files", "done", "unchanged", "failed", "left"}}
 //
-// A file a line, in the order of the list, whatever the number of threads; its status is done,
-// unchanged or failed. "issues" are those of the batch as a whole, in the form of krok.report/1.
+// One file per line, in list order for any number of threads; the status is done, unchanged or
+// failed. The last "issues" are those of the batch as a whole, as in krok.report/1.
 class BatchReport {
  public:
-  // An empty path is for no report.
+  // No report if `path` is empty.
   Status begin(const std::string& path, OutputFile::Options how, const std::string& tool,
                const std::string& version, const Json& options);
   bool is_wanted() const { return file_.has_value(); }

@@ -8,7 +8,7 @@ namespace krok {
 
 namespace {
 
-// How many failed files are named.
+// Max number of failed files that are named.
 constexpr std::size_t kNamed = 10;
 
 std::string counted_files(std::size_t count) {
@@ -66,7 +66,7 @@ Error BatchTally::failure(bool kept_going) const {
   if (!kept_going) {
     return Error("batch-stopped",
                  fmt::format("stopped at {}, the first file that failed; {} left", names, left()),
-                 "--keep-going does the others; what is done is not done again");
+                 "use --keep-going to process the others; finished files are not processed again");
   }
   const std::size_t more = failed() - failed_.size();
   if (more > 0) names += fmt::format(" and {} more", more);

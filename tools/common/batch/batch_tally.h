@@ -10,13 +10,13 @@
 
 namespace krok {
 
-// What became of one file of a batch.
+// Status of a processed file of a batch.
 enum class FileState { done, unchanged, failed };
 
 // "done", "unchanged", "failed".
 const char* name_of(FileState state);
 
-// How many files of a batch became what.
+// Counts the files of a batch by status.
 class BatchTally {
  public:
   explicit BatchTally(std::size_t files = 0) : files_(files) {}
@@ -26,9 +26,9 @@ class BatchTally {
   std::size_t failed() const { return count(FileState::failed); }
   // {"files", "done", "unchanged", "failed", "left"}
   Json result() const;
-  // "12 files{of_what}, 10 done, 2 failed": what is none is left out.
+  // "12 files{of_what}, 10 done, 2 failed"; zero counts are omitted.
   std::string summary(const std::string& of_what) const;
-  // Names the files that failed, the first of them. Without `kept_going` the first ended the batch.
+  // Error that names the first failed files. Without `kept_going`, the first ended the batch.
   Error failure(bool kept_going) const;
 
  private:
@@ -37,7 +37,7 @@ class BatchTally {
 
   std::size_t files_;
   std::array<std::size_t, 3> counts_{};
-  std::vector<std::string> failed_;  // the first names
+  std::vector<std::string> failed_;  // names, the first few
 };
 
 }  // namespace krok

@@ -53,7 +53,7 @@ const Json& array_of(const Json& record, const char* key) {
   return found != record.end() && found->is_array() ? *found : empty;
 }
 
-// A path for a journal in `folder`: below it, or as it is.
+// A path for a journal in `folder`: relative if inside it, otherwise unchanged.
 std::string from_folder(const std::string& folder, const std::string& path) {
   if (folder.empty() || fs::path(path).is_absolute() != fs::path(folder).is_absolute()) return path;
   const fs::path relative =
@@ -61,7 +61,8 @@ std::string from_folder(const std::string& folder, const std::string& path) {
   return relative.empty() ? path : relative.string();
 }
 
-// Of the names and sizes of the files with an ending, ".asf", in a folder, or of the one of a name.
+// Checksum of the names and sizes of the files in a folder with this suffix, ".asf", or of this
+// name.
 std::string names_checksum(const std::string& folder, const std::string& ending) {
   std::vector<std::string> names;
   const auto add = [&](const fs::directory_entry& entry) {
@@ -86,8 +87,8 @@ std::string names_checksum(const std::string& folder, const std::string& ending)
 }
 
 Error unwritable_error(const std::string& why, const std::string& path) {
-  return Error("journal-unwritable", fmt::format("cannot be written: {}", why),
-               "the next run will do these files again")
+  return Error("journal-unwritable", fmt::format("cannot write: {}", why),
+               "the next run will process these files again")
       .in_file(path);
 }
 
@@ -119,7 +120,7 @@ void Journal::read(const std::string& path) {
   const std::string_view text = files_.back().text();
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = text.find('\n', at);
-    if (end == std::string_view::npos) break;  // a line that a killed run did not finish
+    if (end == std::string_view::npos) break;  // incomplete line of a killed run
     const std::string_view whole = text.substr(at, end - at);
     if (const std::string output = output_of(whole); !output.empty()) {
       index_[output].push_back({files_.size() - 1, at, whole.size()});
@@ -128,9 +129,9 @@ void Journal::read(const std::string& path) {
   }
 }
 
-// Empty for what is no record.
+// Empty if the line is not a record.
 std::string Journal::output_of(std::string_view line) const {
-  // Lines of this run need not be read again.
+  // Lines of this run need no parsing.
   const auto added = added_outputs_.find(checksum_of_line(line));
   if (added != added_outputs_.end()) return added->second;
   const Json record = parse_ordered_json(line);
@@ -164,7 +165,7 @@ std::optional<Json> Journal::unchanged(const std::string& output, const std::str
   const auto found = index_.find(output);
   if (found == index_.end()) return std::nullopt;
   std::string input_checksum;
-  // The newest first.
+  // Newest first.
   for (auto place = found->second.rbegin(); place != found->second.rend(); ++place) {
     Json record = parse_ordered_json(line(*place));
     if (!record.is_object() || text_of(record, "made_with") != made_with) continue;
@@ -211,7 +212,7 @@ Status Journal::add(const Json& record) {
   if (descriptor_ < 0) {
     descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor_ < 0) return fail();
-    // After a line that a killed run did not finish, a new one begins.
+    // Start a new line after an incomplete line of a killed run.
     const off_t size = lseek(descriptor_, 0, SEEK_END);
     char last = '\n';
     if (size > 0 && pread(descriptor_, &last, 1, size - 1) == 1 && last != '\n') text = "\n" + text;
@@ -236,10 +237,10 @@ Status Journal::tidy() {
   std::vector<std::string> outputs;
   for (const auto& [output, places] : index_) outputs.push_back(output);
   std::sort(outputs.begin(), outputs.end());
-  // As a new file, which need not wait for the disk, under a name that no journal has.
+  // Written to a new file without waiting for the disk, under a name that is not a journal's.
   const std::string anew = path_ + ".new";
   std::error_code trouble;
-  fs::remove(anew, trouble);  // of a killed run
+  fs::remove(anew, trouble);  // from a killed run
   auto file = OutputFile::create(anew, {.stored_later = true});
   if (!file) return file.error();
   for (const std::string& output : outputs) {
@@ -248,7 +249,7 @@ Status Journal::tidy() {
   }
   if (Status status = file->commit(); !status) return status;
   fs::rename(anew, path_, trouble);
-  // What it was before goes, before the system has brought that to the disk too.
+  // Close the replaced journal, so that the system need not write it to disk.
   files_.clear();
   index_.clear();
   if (!trouble) return {};

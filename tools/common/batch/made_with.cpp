@@ -13,9 +13,9 @@ std::string made_with(const BatchFile& file, const BatchList& list,
   Json all = object_for(6);
   all["tool"] = context.report.tool;
   all["version"] = context.report.version;
-  all["input"] = base_name(file.input);  // it stands in the result's provenance
+  all["input"] = base_name(file.input);  // it is in the result's provenance
   all["options"] = context.result_options;
-  // Other inputs by their whole paths, for the journal knows the content of those that it names.
+  // Other inputs by full path: the journal has checksums of their content under these paths.
   all["inputs"] = fixed_positionals;
   for (const GivenOption& option : options) {
     if (!option.names_input) continue;

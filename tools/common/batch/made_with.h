@@ -7,9 +7,9 @@
 
 namespace krok {
 
-// A checksum of all that makes a result of a batch besides the bytes of its inputs, for the
-// journal: tool, version and options, the names of inputs and results. `context` is of the file,
-// before it is done; `fixed_positionals` are the inputs that all files share.
+// Checksum for the journal of everything except the inputs' bytes that determines an output: tool,
+// version, options, names of inputs and outputs. `context` is that of the file before it is
+// processed; `fixed_positionals` are the inputs shared by all files.
 std::string made_with(const BatchFile& file, const BatchList& list,
                       const std::vector<std::string>& fixed_positionals,
                       const ToolContext& context);

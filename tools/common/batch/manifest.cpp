@@ -33,20 +33,20 @@ class LineParser {
   Result<ManifestLine> parse() {
     const auto fields = fields_of(line_);
     if (fields.size() > 3) {
-      return error(fields[3].column, "there are more than three fields",
-                   "input, output and options stand between tabs");
+      return error(fields[3].column, "more than three fields",
+                   "input, output and options are separated by tabs");
     }
     ManifestLine result;
     result.input = word(fields[0].text, fields[0].column);
-    if (result.input.text.empty()) return error(1, "there is no input");
+    if (result.input.text.empty()) return error(1, "no input given");
     if (fields.size() > 1) result.output = word(fields[1].text, fields[1].column);
     for (const ManifestWord& path : {result.input, result.output}) {
       if (path.text == "-") {
-        return error(path.where.column, "a list of files does not take standard streams",
-                     "name a file");
+        return error(path.where.column, "standard streams cannot be used in a list of files",
+                     "give a file");
       }
       if (path.text.find('\0') != std::string::npos) {
-        return error(path.where.column, "a zero byte stands in a name");
+        return error(path.where.column, "file name with a zero byte");
       }
     }
     if (fields.size() > 2) {
@@ -88,7 +88,7 @@ class LineParser {
         }
         const std::size_t end = field.text.find(c, at + 1);
         if (end == std::string_view::npos) {
-          return error(column(at), fmt::format("the quote {} is not closed", c));
+          return error(column(at), fmt::format("unclosed quote {}", c));
         }
         next.text += field.text.substr(at + 1, end - at - 1);
         at = end + 1;

@@ -6,10 +6,10 @@
 
 #include "core/result.h"
 
-// A list of files for a batch, as text: a file a line, with input, output and options between tabs.
-// Output and options may be left out. Empty lines and lines that begin with # say nothing, and a
-// first line of these three words is a heading. In the options, words stand apart by spaces;
-// quotes, single or double, hold a word together.
+// A manifest lists the files of a batch: one file per line, with tab-separated fields input, output
+// and options. Output and options are optional. Empty lines and lines that begin with # are
+// ignored, as is a header line of the three field names. Options are separated by spaces; single or
+// double quotes enclose an option with spaces.
 
 namespace krok {
 
@@ -20,13 +20,13 @@ struct ManifestWord {
 
 struct ManifestLine {
   ManifestWord input;
-  ManifestWord output;  // empty text where there is none
+  ManifestWord output;  // empty text if missing
   std::vector<ManifestWord> options;
 };
 
 struct Manifest {
   std::vector<ManifestLine> lines;
-  Diagnostics errors;  // each with its place; code manifest-line
+  Diagnostics errors;  // each with its location; code manifest-line
 };
 
 Manifest parse_manifest(std::string_view text, const std::string& file_name);

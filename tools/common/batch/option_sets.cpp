@@ -34,7 +34,7 @@ Result<OptionSet> OptionSets::parse(const std::vector<std::string>& words) const
   }
   set.options.insert(set.options.end(), line.given().begin(), line.given().end());
 
-  // Both together, as each file will be parsed.
+  // Merged, as they will be parsed for each file.
   const ToolSpec spec = make_spec_();
   CommandLine file(spec, CommandLine::Form::one_file);
   const auto parsed =
@@ -57,15 +57,14 @@ Result<std::size_t> OptionSets::find(const std::vector<ManifestWord>& words) {
     return known_[texts] = sets_.size() - 1;
   }
   if (words.empty()) return std::move(set).error();
-  // The fault is in the word after the longest beginning that is right.
+  // The invalid word follows the longest valid prefix.
   std::size_t right = words.size() - 1;
   while (right > 0 && !parse({texts.begin(), texts.begin() + static_cast<std::ptrdiff_t>(right)})) {
     --right;
   }
   Error error = std::move(set).error();
   error.where = words[right].where;
-  error.hint =
-      "a line takes the tool's own options; those of the whole batch stand on the command line";
+  error.hint = "lines take the tool's own options; batch options go on the command line";
   return error;
 }
 

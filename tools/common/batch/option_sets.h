@@ -11,20 +11,20 @@
 
 namespace krok {
 
-// The options that files of a batch are done with.
+// A set of options shared by files of a batch.
 struct OptionSet {
   std::vector<GivenOption> options;
-  Result<std::string> ending = std::string();  // of a result's name, or why it is not known
+  Result<std::string> ending = std::string();  // suffix of output names, or why it is unknown
 };
 
-// The options of the whole batch, and those of lines of a manifest: what a line gives goes before
-// what the command line gave. Each set is parsed once, however many lines have it.
+// The options of the command line merged with those of manifest lines, which override them. Each
+// distinct set is parsed once.
 class OptionSets {
  public:
   OptionSets(MakeToolSpec make_spec, const CommandLine& whole);
 
-  // Where the set of these words is. An Error has the place of the word that is at fault, or is
-  // about no file where there are no words.
+  // Index of the set for these manifest words. An Error has the location of the invalid word, or no
+  // file if there are no words.
   Result<std::size_t> find(const std::vector<ManifestWord>& words);
 
   std::vector<OptionSet> take() && { return std::move(sets_); }

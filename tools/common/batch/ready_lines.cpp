@@ -19,7 +19,7 @@ std::unique_ptr<ReadyLine> ReadyLines::take(std::size_t set) {
 }
 
 void ReadyLines::put_back(std::size_t set, std::unique_ptr<ReadyLine> ready) {
-  Kept oldest;  // let go of without the mutex
+  Kept oldest;  // destroyed after the mutex is released
   const std::lock_guard lock(mutex_);
   if (kept_.size() >= most_) {
     oldest = std::move(kept_.front());

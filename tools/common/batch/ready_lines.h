@@ -10,7 +10,7 @@
 
 namespace krok {
 
-// The tool and its options, declared and ready to be parsed for one file of a batch.
+// A tool and its declared options, ready to parse one file of a batch.
 struct ReadyLine {
   explicit ReadyLine(const MakeToolSpec& make_spec)
       : spec(make_spec()), line(spec, CommandLine::Form::one_file) {}
@@ -19,16 +19,16 @@ struct ReadyLine {
   CommandLine line;
 };
 
-// To declare a tool's options takes longer than to parse them, so files with the same options are
-// parsed for by the same lines, one after the other. Only these: an option that a file lacks would
-// keep the value that it had for the file before. Running a tool does not change its options.
+// Pool of ReadyLines. Declaring options is slower than parsing them, so files with the same option
+// set reuse a line. Sets must not be mixed: an option that is not given keeps its previous value.
+// Running a tool does not change its options.
 class ReadyLines {
  public:
-  // Keeps at most `most`, one a thread, however many sets of options there are.
+  // Keeps at most `most` lines, one per thread, for any number of option sets.
   ReadyLines(MakeToolSpec make_spec, std::size_t most)
       : make_spec_(std::move(make_spec)), most_(most) {}
 
-  // A line for the files of a set of options. Can be called from several threads, as put_back().
+  // Takes a line for an option set. Thread-safe, as is put_back().
   std::unique_ptr<ReadyLine> take(std::size_t set);
   void put_back(std::size_t set, std::unique_ptr<ReadyLine> ready);
 
@@ -40,7 +40,7 @@ class ReadyLines {
   MakeToolSpec make_spec_;
   std::size_t most_;
   std::mutex mutex_;
-  std::vector<Kept> kept_;  // the one put back last at the end
+  std::vector<Kept> kept_;  // most recently returned last
 };
 
 }  // namespace krok

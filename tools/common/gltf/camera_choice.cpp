@@ -41,11 +41,11 @@ Result<int> choose_camera(const nodes::Scene& scene, std::span<const int> camera
     Diagnostic told;
     told.severity = Severity::warning;
     told.code = "import-cameras";
-    told.message = fmt::format("of {} cameras the first is taken; they are {}", cameras.size(),
-                               list_of(scene, cameras));
-    told.hint = "--camera takes another by its name or number";
+    told.message =
+        fmt::format("using the first of {} cameras: {}", cameras.size(), list_of(scene, cameras));
+    told.hint = "select another with --camera NAME or NUMBER";
     told.where.file = path;
-    context.tell(std::move(told));
+    context.diagnose(std::move(told));
     return cameras[0];
   }
   for (const int camera : cameras) {
@@ -56,8 +56,8 @@ Result<int> choose_camera(const nodes::Scene& scene, std::span<const int> camera
   if (number && *number >= 0 && *number < static_cast<long long>(cameras.size())) {
     return cameras[static_cast<std::size_t>(*number)];
   }
-  return Error("import-camera", fmt::format("no camera is called {}", shown(wanted)),
-               "it has " + list_of(scene, cameras));
+  return Error("import-camera", fmt::format("there is no camera {}", shown(wanted)),
+               "available: " + list_of(scene, cameras));
 }
 
 }  // namespace krok

@@ -7,8 +7,8 @@
 
 namespace krok {
 
-// The unit and axes of a scene as character::find_conventions has them, with moments of one of its
-// animations for samples (-1: none). `rig` may be null; `roles` are those of its joints.
+// Unit and axes of a scene from character::find_conventions, sampling the given animation (-1:
+// none). `rig` may be null; `roles` are those of its joints.
 Result<Conventions> scene_conventions(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
                                       const character::Rig* rig, const RoleMap& roles,
                                       int animation, const GivenConventions& given);

@@ -1,4 +1,4 @@
-// What is drawn of a motion: bones and joints, a skinned body, trails.
+// Draws a motion: bones and joints, a skinned body, trails.
 
 import {
   Bone,
@@ -29,7 +29,7 @@ export const CONTACT_COLOUR = '#e8412c';
 
 const UP = new Vector3(0, 1, 0);
 
-// Blue, yellow, red for 0, 1/2, 1.
+// Maps 0, 1/2, 1 to blue, yellow, red.
 function ramp(share) {
   const stops = [new Color('#2a78d6'), new Color('#e8c84a'), new Color('#d03b3b')];
   const at = Math.min(Math.max(share, 0), 1) * 2;
@@ -80,7 +80,8 @@ export class Figure {
     if (item.body) this.makeBody(item.body, bytes);
   }
 
-  // The figure's extent in its reference pose or first frame, for sizes of bones and joints.
+  // The character's extent in its reference pose or first frame, which sets the size of bones and
+  // joints.
   measure() {
     const low = new Vector3(Infinity, Infinity, Infinity);
     const high = new Vector3(-Infinity, -Infinity, -Infinity);
@@ -119,7 +120,7 @@ export class Figure {
     this.refreshColours();
   }
 
-  // Colours bones and joints by a share from 0 to 1 for each joint; null keeps the plain colour.
+  // Colours bones and joints by a value from 0 to 1 per joint; null restores the plain colour.
   paint(shareOf) {
     this.motion.names.forEach((_, joint) => {
       const share = shareOf(joint);
@@ -172,7 +173,7 @@ export class Figure {
     geometry.computeBoundingBox();
     this.reach = reachBeyond(joints, geometry.boundingBox);
     this.body = new SkinnedMesh(geometry, material);
-    // The bones are placed in the figure's own space, which the group then moves.
+    // Bones are in the character's own space, which the group then offsets.
     this.body.bind(new Skeleton(this.bodyBones, inverses), new Matrix4());
     this.body.bindMode = 'detached';
     this.body.frustumCulled = false;
@@ -180,7 +181,7 @@ export class Figure {
     this.group.add(this.body);
   }
 
-  // Gives the body its own materials in place of the figure's colour, where it has any.
+  // Replaces the character's plain colour by the body's materials, if it has any.
   async dress(bytes) {
     const look = this.item.body?.look;
     if (!look) return;
@@ -208,13 +209,14 @@ export class Figure {
     return this.motion.positions[joint];
   }
 
-  // What the joints take up as they are now, and the body around them, in the group's space.
+  // Bounds of the joints in their current pose, extended by the body around them, in the group's
+  // space.
   boxNow() {
     const box = new Box3().setFromPoints(this.motion.positions);
     return this.reach ? widen(box, this.reach) : box;
   }
 
-  // Whether bones, joints, body are drawn. A figure without a body always has its skeleton.
+  // Shows or hides bones, joints and body. Without a body, the skeleton is always shown.
   show({ skeleton, body }) {
     const hasBody = Boolean(this.body);
     this.skeleton.visible = skeleton || !hasBody;
@@ -224,7 +226,7 @@ export class Figure {
     }
   }
 
-  // The skeleton shows through the body, which is otherwise as its material says.
+  // Makes the body translucent while the skeleton is visible, otherwise restores its material.
   letThrough(material) {
     const { transparent, opacity, depthWrite } = material.userData.own ??= {
       transparent: material.transparent,
@@ -232,7 +234,7 @@ export class Figure {
       depthWrite: material.depthWrite,
     };
     const through = this.skeleton.visible;
-    // Whether a material lets through is part of its shader.
+    // Transparency is compiled into a material's shader.
     material.needsUpdate = material.transparent !== (through || transparent);
     material.transparent = through || transparent;
     material.opacity = through ? 0.45 * opacity : opacity;

@@ -1,4 +1,4 @@
-// A glTF file as it is: its own meshes, played by three.js's mixer.
+// A glTF file with its own meshes, played by three.js's AnimationMixer.
 
 import { AnimationMixer, Box3, Group, SkeletonHelper, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
@@ -20,7 +20,7 @@ export class GltfFigure {
     file.scene.traverse((node) => {
       if (node.isMesh) {
         node.castShadow = true;
-        node.frustumCulled = false; // animated meshes leave the bounds of their rest pose
+        node.frustumCulled = false; // animated meshes leave their rest pose bounds
       }
       if (node.isBone) this.bonesOf.push(node);
     });
@@ -40,7 +40,7 @@ export class GltfFigure {
     return this.item.rate ?? 60;
   }
 
-  // The first joint, or the file's own origin.
+  // The first joint, or the file's origin.
   root(into = new Vector3()) {
     return this.bonesOf.length > 0 ? this.jointPosition(0, into) : into.set(0, 0, 0);
   }
@@ -74,7 +74,7 @@ export class GltfFigure {
     this.group.updateMatrixWorld(true);
   }
 
-  // In the group's space; the group itself is only moved.
+  // In the group's space: without the group's offset.
   jointPosition(joint, into = new Vector3()) {
     return this.bonesOf[joint].getWorldPosition(into).sub(this.group.position);
   }

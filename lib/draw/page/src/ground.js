@@ -1,4 +1,4 @@
-// The ground: a grid of metres, every fifth line stronger, and the shadows on it.
+// The ground: a metre grid, every fifth line thicker, and the shadows on it.
 
 import { Color, Mesh, PlaneGeometry, ShadowMaterial } from 'three';
 
@@ -6,11 +6,11 @@ const SIZE = 400; // metres
 const HALF_WIDTHS = [1 / 128, 2.5 / 128]; // of a line and a fifth line, metres
 const STRENGTHS = [0.28, 0.55];
 const SHADOW = 0.28;
-const SHARPEST = 1 / 128; // metres; seen from near, an edge is as soft as this
+const SHARPEST = 1 / 128; // metres; min width of a blurred edge
 
-// How much of a pixel's footprint the lines take up, worked out instead of looked up: a texture
-// would have to be read at many places to stay clear far away. Per axis, so that a footprint long
-// in one direction does not blur the other. A footprint is taken as a box.
+// Analytic anti-aliasing: the fraction of a pixel's footprint that the lines cover. A texture would
+// need many samples to stay sharp at a distance. Filtered per axis, so that a footprint stretched
+// in one direction does not blur the other. A footprint is treated as a box.
 const COVERAGE = `
 uniform vec3 ink;
 varying vec2 vGround;
@@ -39,13 +39,13 @@ vec4 grid() {
 }
 `;
 
-// The grid, and over it the shadow, which is black. Most of the ground has neither.
+// The grid with the shadow, which is black, on top. Most of the ground has neither.
 const COMPOSE = `
   vec4 lines = grid();
   float lit = 1.0 - opacity * ( 1.0 - getShadowMask() );
   float cover = 1.0 - lit * ( 1.0 - lines.a );
   gl_FragColor = vec4( color, cover );
-  if ( lines.a > 1e-4 ) { // less is not seen, and dividing by it may not be safe
+  if ( lines.a > 1e-4 ) { // less is invisible, and dividing by it is unsafe
     gl_FragColor.rgb = linearToOutputTexel( vec4( lines.rgb, 1.0 ) ).rgb * lit * lines.a / cover;
   }
 `;

@@ -1,4 +1,4 @@
-// The time line's lanes: contacts as bars, keytimes as marks.
+// The lanes of the timeline: contacts as bars, keytimes as marks.
 
 const LANE = 9; // CSS pixels
 
@@ -27,7 +27,7 @@ export class Lanes {
     canvas.height = height * ratio;
     const pen = canvas.getContext('2d');
     pen.scale(ratio, ratio);
-    // The slider's knob keeps half its width from both ends.
+    // The slider's thumb stays half its width away from both ends.
     const margin = 8;
     const at = (time) => margin + (time / this.duration) * (width - 2 * margin);
     pen.fillStyle = getComputedStyle(canvas).color;

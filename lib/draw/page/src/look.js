@@ -1,4 +1,4 @@
-// How a body looks: materials with their pictures, as glTF means them.
+// The appearance of a body: materials and textures with glTF semantics.
 
 import {
   ClampToEdgeWrapping,
@@ -16,7 +16,7 @@ import {
 
 const WRAPS = { repeat: RepeatWrapping, clamp: ClampToEdgeWrapping, mirror: MirroredRepeatWrapping };
 
-// A picture's file, decoded; null for one whose pixels are damaged, which is then left out.
+// Decodes an image file; null if it is damaged, and the texture is then skipped.
 async function decode(bytes, { offset, count, type }) {
   const file = new Blob([bytes.subarray(offset, offset + count)], { type });
   try {
@@ -28,7 +28,7 @@ async function decode(bytes, { offset, count, type }) {
 
 function makeTexture(image, described, colour) {
   const texture = new Texture(image);
-  texture.flipY = false; // v points down, as rows do
+  texture.flipY = false; // v points down, like image rows
   texture.wrapS = WRAPS[described.wrapU];
   texture.wrapT = WRAPS[described.wrapV];
   if (!described.smooth) texture.magFilter = NearestFilter;
@@ -57,7 +57,8 @@ function makeMaterial(described, textureOf) {
   material.metalnessMap = textureOf('metallicRoughness');
   material.roughnessMap = material.metalnessMap;
   material.normalMap = textureOf('normal');
-  // The frame is worked out of the picture's slope on the screen, where v points the other way.
+  // three.js derives the tangent frame from screen-space derivatives of the texture, where v is
+  // flipped.
   material.normalScale.set(described.normalScale, -described.normalScale);
   material.aoMap = textureOf('occlusion');
   material.aoMapIntensity = described.occlusion;
@@ -66,7 +67,7 @@ function makeMaterial(described, textureOf) {
   return material;
 }
 
-// The materials of a body, in the order in which its parts name them.
+// The materials of a body, in the order of its parts' indices.
 export async function makeMaterials(look, bytes) {
   const images = await Promise.all(look.pictures.map((picture) => decode(bytes, picture)));
   return look.materials.map((described) => makeMaterial(described, (name, colour = false) => {

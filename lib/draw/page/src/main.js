@@ -1,4 +1,4 @@
-// Puts the page together: reads the data, makes figures and cameras, runs the clock, serves the
+// Entry point: reads the data, creates characters and cameras, runs the clock, handles the
 // controls.
 
 import { Box3, CameraHelper, PerspectiveCamera, Vector3 } from 'three';
@@ -13,7 +13,7 @@ const PLAY_ICON = 'M4 2.5 13 8l-9 5.5z';
 const PAUSE_ICON = 'M3.5 2.5h3.2v11H3.5zM9.3 2.5h3.2v11H9.3z';
 const find = (id) => document.getElementById(id);
 
-// What stands in the room: figures under one interface, whatever file they came from.
+// The contents of the scene: characters with one interface for all file formats.
 class Player {
   constructor(stage, items) {
     this.stage = stage;
@@ -61,7 +61,7 @@ class Player {
     this.setTime(time);
   }
 
-  // Figures beside each other along X, from where they begin, or each where its own file puts it.
+  // Places characters side by side along X, by their start positions, or at their own positions.
   arrange() {
     const figures = this.figures();
     const slot = Math.max(0.8, ...figures.map(({ spread }) => spread)) * 1.25;
@@ -97,7 +97,7 @@ class Player {
     this.changed?.();
   }
 
-  // Where the visible figures are on the ground, on average.
+  // The mean ground position of the visible characters.
   root() {
     const middle = new Vector3();
     const figures = this.figures();
@@ -114,7 +114,7 @@ class Player {
     this.lastRoot = root;
   }
 
-  // Joints of the first two figures that have the same name, coloured by how far apart they are.
+  // Colours joints of the same name in the first two characters by their distance.
   colourDifference() {
     const [a, b] = this.figures().map(({ figure }) => figure).filter(({ motion }) => motion);
     if (!a || !b) return null;
@@ -174,7 +174,7 @@ async function makeItem(item, index, stage) {
   return made;
 }
 
-// What a figure takes up, over at most sixty moments, in its group's space.
+// Bounds of a character over at most sixty frames, in its group's space.
 function boxOverTime(figure) {
   const box = new Box3();
   const count = figure.duration > 0 ? 60 : 1;
@@ -270,7 +270,7 @@ class Interface {
     });
   }
 
-  // Shows the next or previous file of a list alone.
+  // Shows only the next or previous file of a list.
   turnPage(step) {
     const { items } = this.player;
     const at = items.findIndex(({ visible }) => visible);
@@ -351,7 +351,7 @@ class Interface {
 
   fillTrails() {
     const select = find('trail-joint');
-    select.replaceChildren(new Option('Choose a joint', ''));
+    select.replaceChildren(new Option('Select a joint', ''));
     let any = false;
     this.player.items.forEach(({ figure, name, visible }, item) => {
       if (!figure?.motion || !visible) return;
@@ -400,10 +400,10 @@ class Interface {
       place.append(button);
       return button;
     };
-    add('See all (h)', () => this.frame());
+    add('Frame all (h)', () => this.frame());
     this.tracks = this.player.items.filter(({ camera }) => camera);
     this.tracks.forEach((made, i) => {
-      made.button = add(`Fly ${made.name}${i === 0 ? ' (c)' : ''}`, () => this.fly(made));
+      made.button = add(`View ${made.name}${i === 0 ? ' (c)' : ''}`, () => this.fly(made));
       made.button.setAttribute('aria-pressed', 'false');
     });
   }
@@ -426,7 +426,7 @@ class Interface {
       whole.union(box.clone().translate(figure.group.position));
       now.union(figure.boxNow().translate(figure.group.position));
     }
-    // A long way is followed, for from where all of it is seen the figures are dots.
+    // For a long path, follow the character: framing the whole path would make it tiny.
     const reach = ({ x, y, z }) => Math.max(x, z) / Math.max(y, 1e-3);
     const all = whole.getSize(new Vector3());
     const here = now.getSize(new Vector3());
@@ -459,22 +459,22 @@ class Interface {
     const { player } = this;
     const keys = [
       [' ', 'Space', 'play, pause', () => this.togglePlay()],
-      ['ArrowLeft', '← →', 'a frame back, on (Shift: ten)', (e) => player.step(e.shiftKey ? -10 : -1)],
+      ['ArrowLeft', '← →', 'step one frame back, forward (Shift: ten)', (e) => player.step(e.shiftKey ? -10 : -1)],
       ['ArrowRight', null, null, (e) => player.step(e.shiftKey ? 10 : 1)],
-      ['Home', 'Home End', 'to the start, the end', () => player.setTime(0)],
+      ['Home', 'Home End', 'go to start, end', () => player.setTime(0)],
       ['End', null, null, () => player.setTime(player.duration)],
       ['-', '− +', 'slower, faster', () => this.changeSpeed(-1)],
       ['+', null, null, () => this.changeSpeed(1)],
       ['=', null, null, () => this.changeSpeed(1)],
-      ['h', 'h', 'see all', () => this.frame()],
-      ['s', 's b a d f g', 'the switches above', () => this.flip('skeleton')],
+      ['h', 'h', 'frame all', () => this.frame()],
+      ['s', 's b a d f g', 'toggle the options above', () => this.flip('skeleton')],
       ['b', null, null, () => this.flip('body')],
       ['a', null, null, () => this.flip('apart')],
       ['d', null, null, () => this.flip('difference')],
       ['f', null, null, () => this.flip('follow')],
       ['g', null, null, () => this.flip('grid')],
-      ['c', 'c', 'fly the recorded camera', () => this.tracks[0] && this.fly(this.tracks[0])],
-      ['PageDown', 'PgUp PgDn', 'the previous, the next file alone', () => this.turnPage(1)],
+      ['c', 'c', 'view through the recorded camera', () => this.tracks[0] && this.fly(this.tracks[0])],
+      ['PageDown', 'PgUp PgDn', 'previous, next file', () => this.turnPage(1)],
       ['PageUp', null, null, () => this.turnPage(-1)],
     ];
     for (const [, shown, does] of keys) {
@@ -488,7 +488,7 @@ class Interface {
     document.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       const { target } = event;
-      // Lists, buttons and boxes keep the keys that they answer to themselves.
+      // Lists, buttons and checkboxes handle these keys themselves.
       if (target instanceof HTMLSelectElement) return;
       const own = target instanceof HTMLButtonElement || target instanceof HTMLElement && target.tagName === 'SUMMARY'
         || (target instanceof HTMLInputElement && target.type === 'checkbox');
@@ -500,7 +500,7 @@ class Interface {
     });
   }
 
-  // The name of the joint nearest to the pointer.
+  // Shows the name of the joint nearest to the pointer.
   watchPointer() {
     const tag = find('name-tag');
     const canvas = this.stage.canvas;
@@ -558,8 +558,8 @@ class Interface {
     if (player.shown.difference) {
       const d = player.difference;
       find('difference').textContent = d
-        ? d.name ? `now up to ${lengthText(d.distance)} at ${d.name}; red is ${lengthText(d.scale)}` : 'none'
-        : 'No joints of the same name in two visible figures.';
+        ? d.name ? `max ${lengthText(d.distance)} at ${d.name}; red is ${lengthText(d.scale)}` : 'none'
+        : 'No joints with the same name in two visible characters.';
     }
   }
 }
@@ -574,7 +574,7 @@ async function main() {
   controls.rearrange();
   controls.frame();
   player.setTime(data.time ?? 0);
-  // It moves at once, but for those who asked their system for stillness.
+  // Plays at once, unless the system is set to reduced motion.
   if (player.duration > 0 && !matchMedia('(prefers-reduced-motion: reduce)').matches) controls.togglePlay();
 
   let last = null;
@@ -587,7 +587,7 @@ async function main() {
   };
   requestAnimationFrame(tick);
 
-  // For tests and for scripts in the page's console: where everything is.
+  // For tests and scripts in the browser's console.
   globalThis.krokView = {
     ready: true,
     get time() { return player.time; },
@@ -595,7 +595,7 @@ async function main() {
     get playing() { return player.playing; },
     get drawn() { return drawn; },
     setTime: (time) => player.setTime(time),
-    // World positions of a file's joints, without the shift of side by side.
+    // World positions of a file's joints, without the side-by-side offset.
     joints: (item = 0) => {
       const { figure } = items[item];
       const names = figure.motion?.names ?? figure.names;
@@ -608,7 +608,7 @@ main().catch((error) => {
   const trouble = find('trouble');
   trouble.hidden = false;
   trouble.textContent = /webgl/i.test(error.message)
-    ? 'This browser cannot draw in 3D: WebGL is off or missing.'
-    : `The page could not be shown: ${error.message}`;
+    ? 'WebGL is not available in this browser.'
+    : `Cannot show the page: ${error.message}`;
   console.error(error);
 });

@@ -1,26 +1,26 @@
-// A motion as the page holds it: packed local rotations, sampled at any time.
+// A motion stored in the page: packed local rotations, sampled at any time.
 
 import { Matrix4, Quaternion, Vector3 } from 'three';
 
-const ROTATION_WORDS = 3; // of 16 bits a joint and frame
-const COMPONENT_LIMIT = Math.SQRT1_2; // the three smaller components of a unit quaternion stay below
+const ROTATION_WORDS = 3; // 16-bit words per joint and frame
+const COMPONENT_LIMIT = Math.SQRT1_2; // bound of the three smaller quaternion components
 
-// The bytes of a script element that holds base64.
+// Decodes a base64 script element.
 export function blobBytes(id) {
   const element = document.getElementById(id);
   const text = atob(element.textContent.trim());
-  element.textContent = ''; // or the page would hold the data twice
+  element.textContent = ''; // frees the text, so that the data is not held twice
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
   return bytes;
 }
 
-// Arrays lie in a blob at multiples of four.
+// Arrays in a blob are 4-byte aligned.
 export const view = (bytes, Type, place) =>
   new Type(bytes.buffer, bytes.byteOffset + place.offset, place.count);
 
-// Unpacks 48 bits: 2 bits tell which component is left out (the largest, taken as positive), 15
-// bits each of the others in the order x, y, z, w.
+// Unpacks 48 bits: 2 bits are the index of the dropped component (the largest, made positive), the
+// others take 15 bits each in the order x, y, z, w.
 export function unpackRotation(words, at, into) {
   const a = words[at];
   const b = words[at + 1];
@@ -47,10 +47,10 @@ export class Motion {
     this.frames = item.frames;
     this.offsets = view(bytes, Float32Array, item.offsets);
     this.referenceRotations = view(bytes, Float32Array, item.referenceRotations);
-    // Joints whose rotation changes, in the order of the packed rotations.
+    // Joints with a changing rotation, in the order of the packed rotations.
     this.turning = item.turning;
     this.rotations = view(bytes, Uint16Array, item.rotations);
-    // Joints whose place in their parent changes, the root first.
+    // Joints with a changing local translation, the root first.
     this.moving = item.moving;
     this.translations = view(bytes, Float32Array, item.translations);
 
@@ -70,7 +70,7 @@ export class Motion {
     return this.frames > 1 ? (this.frames - 1) / this.rate : 0;
   }
 
-  // Places all joints as they are at `time` seconds: positions and orientations in the world.
+  // Computes all joints' world positions and orientations at `time` seconds.
   pose(time) {
     if (this.frames > 0) this.readFrames(time);
     for (let joint = 0; joint < this.names.length; ++joint) {
@@ -91,7 +91,7 @@ export class Motion {
 
   readFrames(time) {
     const at = Math.min(Math.max(time * this.rate, 0), this.frames - 1);
-    // A time that was worked out from a frame's number is that frame.
+    // A time computed from a frame index gives exactly that frame.
     const frame = Math.min(Math.floor(at + 1e-6), this.frames - 1);
     const fraction = Math.max(at - frame, 0);
     const next = Math.min(frame + 1, this.frames - 1);
@@ -114,7 +114,7 @@ export class Motion {
     });
   }
 
-  // Where one joint is at each of the frames, three numbers a frame.
+  // World positions of one joint, three numbers per frame.
   path(joint) {
     const chain = [];
     for (let at = joint; at >= 0; at = this.parents[at]) chain.push(at);

@@ -1,9 +1,9 @@
-// How far meshes reach beyond the joints that move them. To skin them takes long, so that one moment
-// stands for all.
+// How far meshes extend beyond the joints that move them. Skinning all frames would be slow, so one
+// frame is used as an estimate for all.
 
 import { Vector3 } from 'three';
 
-// Of two boxes at that moment; nothing where there is no mesh.
+// Takes the boxes of joints and meshes in that frame; zero if there is no mesh.
 export function reachBeyond(joints, meshes) {
   const none = new Vector3();
   if (meshes.isEmpty()) return { min: none, max: none };

@@ -1,4 +1,4 @@
-// The room in which figures stand: light, ground, camera, drawing.
+// The scene: light, ground, camera, rendering.
 
 import {
   AmbientLight,
@@ -36,7 +36,7 @@ export class Stage {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener('change', () => this.redraw());
-    this.flown = null; // a recorded camera that is looked through
+    this.flown = null; // the recorded camera in use, or null
 
     this.ground = new Ground();
     this.scene.add(this.ground);
@@ -69,7 +69,7 @@ export class Stage {
     this.stale = true;
   }
 
-  // Puts the camera where it sees `box` from the front, a little from the figure's left and above.
+  // Frames `box` from the front, slightly from the character's left and from above.
   frame(box) {
     const centre = box.getCenter(new Vector3());
     const size = box.getSize(new Vector3());
@@ -99,7 +99,7 @@ export class Stage {
     this.sun.shadow.camera.updateProjectionMatrix();
   }
 
-  // Moves camera and light along with the figure.
+  // Moves camera and light by the same step as the character.
   follow(step) {
     this.controls.target.add(step);
     this.camera.position.add(step);
@@ -109,7 +109,7 @@ export class Stage {
     this.redraw();
   }
 
-  // Looks through a recorded camera, or with null through one's own again.
+  // Switches to a recorded camera, or with null back to the free camera.
   fly(track) {
     this.flown = track;
     this.controls.enabled = !track;
@@ -138,7 +138,7 @@ export class Stage {
     return true;
   }
 
-  // Where a point of the world is on the canvas, in CSS pixels; null behind the camera.
+  // Projects a world point to the canvas, in CSS pixels; null behind the camera.
   project(point) {
     const seen = point.clone().project(this.camera);
     if (seen.z > 1) return null;

@@ -1,4 +1,4 @@
-#include "tools/common/character/character_input.h"
+#include "formats/io/open_character.h"
 
 #include <fmt/format.h>
 
@@ -9,26 +9,27 @@
 #include "core/path_inside.h"
 #include "core/text.h"
 #include "formats/character/character_format.h"
+#include "formats/io/open_role_map.h"
+#include "formats/io/readers_internal.h"
 #include "formats/material/material_format.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "skin/morph.h"
-#include "tools/common/role_input.h"
 
-namespace krok {
+namespace krok::io {
 
 namespace {
 
 class Loader {
  public:
-  Loader(const InputFile& input, ToolContext& context)
-      : path_(input.path()), text_(input.text()), context_(context) {}
+  Loader(const InputFile& input, Inputs& inputs)
+      : path_(input.path()), text_(input.text()), inputs_(inputs) {}
 
   Result<LoadedCharacter> load() {
     auto character = character_file::read(text_);
     if (!character) return std::move(character.error()).in_file(path_);
     loaded_.character = *std::move(character);
-    for (const auto part : {&Loader::load_model, &Loader::load_materials, &Loader::dress_parts,
+    for (const auto part : {&Loader::load_model, &Loader::load_materials, &Loader::assign_materials,
                             &Loader::load_morphs, &Loader::check_eyes, &Loader::load_roles}) {
       if (Status status = (this->*part)(); !status) return std::move(status.error()).in_file(path_);
     }
@@ -36,11 +37,11 @@ class Loader {
   }
 
  private:
-  // A file that `from` names.
+  // Opens a file that `from` names.
   Result<InputFile> open(const std::string& from, const std::string& path) {
-    auto place = path_inside(folder_of(from), path);
-    if (!place) return std::move(place.error()).in_file(from);
-    return context_.open_input(*place);
+    auto inside = path_inside(folder_of(from), path);
+    if (!inside) return std::move(inside.error()).in_file(from);
+    return inputs_.open_input(*inside);
   }
 
   Status load_model() {
@@ -71,8 +72,8 @@ class Loader {
     return {};
   }
 
-  // Gives the model's parts their materials, and lets go of materials that none has.
-  Status dress_parts() {
+  // Assigns materials to the model's parts and drops materials that no part uses.
+  Status assign_materials() {
     Model& model = loaded_.model;
     std::vector<std::string> names, materials;
     for (const Model::Part& part : model.parts) names.push_back(part.name);
@@ -98,13 +99,13 @@ class Loader {
     return load_images();
   }
 
-  // Of the model's own; a character without materials is no fault.
+  // For the model's own material names; a character without material files is valid.
   void report_missing_materials() {
-    std::set<std::string> told;
+    std::set<std::string> reported;
     for (const Model::Part& part : loaded_.model.parts) {
       if (loaded_.materials.empty() || part.material.empty()) continue;
       if (find_material(loaded_.materials, part.material) != nullptr) continue;
-      if (!told.insert(part.material).second) continue;
+      if (!reported.insert(part.material).second) continue;
       Diagnostic warning = Error(
           "character-material",
           fmt::format("the material '{}' of part '{}' is in none of its material files; it is "
@@ -112,14 +113,14 @@ class Loader {
                       shown(part.material), shown(part.name)));
       warning.severity = Severity::warning;
       warning.where.file = path_;
-      context_.tell(std::move(warning));
+      inputs_.diagnose(std::move(warning));
     }
   }
 
   Status load_images() {
     std::vector<Material> used;
     for (std::size_t m = 0; m < loaded_.materials.size();) {
-      // Materials of one file share their pictures.
+      // Materials of one file share their images.
       const std::string& from = files_[m];
       const std::size_t begin = used.size();
       for (; m < loaded_.materials.size() && files_[m] == from; ++m) {
@@ -148,7 +149,7 @@ class Loader {
     if (!morphs) return std::move(morphs.error()).in_file(file->path());
     if (morphs->vertex_count != loaded_.model.vertex_count()) {
       return Error("character-morphs",
-                   fmt::format("the morph targets are of {} vertices, the model has {}",
+                   fmt::format("the morph targets have {} vertices, the model has {}",
                                morphs->vertex_count, loaded_.model.vertex_count()))
           .in_file(file->path());
     }
@@ -184,7 +185,7 @@ class Loader {
     for (const Character::Eye& eye : loaded_.character.eyes) {
       if (std::ranges::find(joints, eye.joint) != joints.end()) continue;
       return Error("character-joint",
-                   fmt::format("eye '{}' moves with the joint '{}', which the model has not",
+                   fmt::format("eye '{}' moves with the joint '{}', which the model does not have",
                                shown(eye.name), shown(eye.joint)),
                    nearest_hint(eye.joint, joints));
     }
@@ -194,11 +195,11 @@ class Loader {
   Status load_roles() {
     std::string path;
     if (!loaded_.character.role_map.empty()) {
-      auto place = path_inside(folder_of(path_), loaded_.character.role_map);
-      if (!place) return place.error();
-      path = *std::move(place);
+      auto inside = path_inside(folder_of(path_), loaded_.character.role_map);
+      if (!inside) return inside.error();
+      path = *std::move(inside);
     }
-    const auto find_roles = open_role_map(path, context_);
+    const auto find_roles = open_role_map(path, inputs_);
     if (!find_roles) return find_roles.error();
     auto roles = (*find_roles)(loaded_.model.skeleton);
     if (!roles) return std::move(roles.error()).in_file(path);
@@ -208,24 +209,24 @@ class Loader {
 
   const std::string path_;
   std::string_view text_;
-  ToolContext& context_;
+  Inputs& inputs_;
   std::vector<std::string> files_;  // [materials] the file that each is from
   LoadedCharacter loaded_;
 };
 
 }  // namespace
 
-Result<LoadedCharacter> load_character(const InputFile& input, ToolContext& context) {
-  return Loader(input, context).load();
+Result<LoadedCharacter> open_character(const InputFile& input, Inputs& inputs) {
+  return Loader(input, inputs).load();
 }
 
-Result<LoadedCharacter> load_character(const std::string& path, ToolContext& context) {
-  const auto input = context.open_input(path);
+Result<LoadedCharacter> open_character(const std::string& path, Inputs& inputs) {
+  const auto input = inputs.open_input(path);
   if (!input) return input.error();
-  return load_character(*input, context);
+  return open_character(*input, inputs);
 }
 
-void take_rest_shape(LoadedCharacter& loaded) {
+void apply_rest_weights(LoadedCharacter& loaded) {
   Model& model = loaded.model;
   std::vector<Vec3f> positions(model.positions.size()), normals(model.normals.size());
   apply_morphs(loaded.morphs, loaded.weights, {model.positions, model.normals},
@@ -236,21 +237,29 @@ void take_rest_shape(LoadedCharacter& loaded) {
   loaded.weights.clear();
 }
 
-bool is_shown_model(registry::Kind kind) {
-  return kind == registry::Kind::model || kind == registry::Kind::character;
-}
-
-Result<ShownModel> load_shown_model(const InputFile& input, registry::Kind kind,
-                                    ToolContext& context) {
-  if (kind == registry::Kind::character) {
-    auto loaded = load_character(input, context);
-    if (!loaded) return loaded.error();
-    take_rest_shape(*loaded);
-    return ShownModel{std::move(loaded->model), std::move(loaded->materials)};
-  }
-  auto model = model::read(input.bytes());
-  if (!model) return std::move(model.error()).in_file(input.path());
+Result<ShownModel> read_model(const InputFile& file, Inputs& /*inputs*/) {
+  auto model = model::read(file.bytes());
+  if (!model) return std::move(model.error()).in_file(file.path());
   return ShownModel{*std::move(model), {}};
 }
 
-}  // namespace krok
+Result<ShownModel> read_character(const InputFile& file, Inputs& inputs) {
+  auto loaded = open_character(file, inputs);
+  if (!loaded) return loaded.error();
+  apply_rest_weights(*loaded);
+  return ShownModel{std::move(loaded->model), std::move(loaded->materials)};
+}
+
+bool is_shown_model(registry::Kind kind) {
+  return format_of(kind).read_model != nullptr;
+}
+
+Result<ShownModel> open_shown_model(const InputFile& file, Inputs& inputs) {
+  const Format& format = format_of(file);
+  if (format.read_model == nullptr) {
+    return Error("shown-model-kind", "is neither a model nor a character").in_file(file.path());
+  }
+  return format.read_model(file, inputs);
+}
+
+}  // namespace krok::io

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "formats/io/inputs.h"
+#include "formats/io/open_character.h"
+#include "formats/io/open_motion.h"
+#include "formats/registry/registry.h"
+#include "nodes/scene.h"
+#include "scene/clip.h"
+
+// The table of what can be read: one row per format, with what it can hold and how that is read.
+// open_motion(), open_scene() and open_model() choose by it. How formats are recognised is in
+// formats/registry.
+
+namespace krok::io {
+
+struct Format {
+  registry::Kind kind = registry::Kind::unknown;
+
+  // Null for what the format cannot hold. The file is open already and of this kind.
+  Result<Clip> (*read_motion)(const InputFile& file, Inputs& inputs,
+                              const MotionOptions& options) = nullptr;
+  // The same without holding all frames in memory; nothing for a file that has to be read whole.
+  std::optional<MotionStream> (*stream_motion)(const InputFile& file, Inputs& inputs) = nullptr;
+  Result<nodes::Scene> (*read_scene)(const InputFile& file, Inputs& inputs,
+                                     bool with_materials) = nullptr;
+  Result<ShownModel> (*read_model)(const InputFile& file, Inputs& inputs) = nullptr;
+};
+
+std::span<const Format> formats();
+
+// The row of a kind; one without any function for kinds that are not in the table.
+const Format& format_of(registry::Kind kind);
+
+// The format of an open file, by its content, else by its name.
+const Format& format_of(const InputFile& file);
+
+}  // namespace krok::io

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "formats/io/inputs.h"
+#include "scene/clip.h"
+#include "scene/frame_source.h"
+
+// Motions from any file that holds one: .anim, BVH, AMC with the ASF beside it. Captures are read
+// with their conventions detected, as krok-import reads them without options; what was detected or
+// looks wrong is reported to `inputs`. The clip's provenance has the conversions.
+//
+// Errors: those of the format's reader; usage for an ASF alone; what is in no known format is
+// refused as the .anim reader refuses it.
+
+namespace krok::io {
+
+struct MotionOptions {
+  // That the first frame looks like a rest pose is a note rather than a warning: for callers that
+  // use only a part of the motion, which it is not in.
+  bool rest_frame_is_note = false;
+};
+
+Result<Clip> open_motion(const std::string& path, Inputs& inputs,
+                         const MotionOptions& options = {});
+// The same of a file that is open already.
+Result<Clip> open_motion(const InputFile& file, Inputs& inputs, const MotionOptions& options = {});
+
+// A motion whose frames are read when they are asked for. The file must outlive it.
+struct MotionStream {
+  FrameSource frames;
+  std::vector<std::string> conversions;  // those of reading a capture
+  Diagnostics diagnostics;               // of the reader; to be reported once the frames are read
+};
+
+// What is known of a motion once its frames were used.
+struct MotionSummary {
+  Skeleton skeleton;
+  double rate = 30.0;  // frames per second
+  int frame_count = 0;
+  double duration = 0;                   // seconds
+  std::vector<std::string> conversions;  // those of reading a capture
+};
+
+// Passes the frames of a motion to `use`, without holding a long capture in memory. `use` is called
+// a second time where a capture proves damaged on the way, then with what can be read of the file,
+// and has to discard what it did before. The error of `use` is passed on.
+Result<MotionSummary> stream_motion(const std::string& path, Inputs& inputs,
+                                    const std::function<Status(const FrameSource& frames)>& use);
+
+// Takes the checksum of a file opened by open_long_input() at the end of the scope. Both arguments
+// must outlive it.
+class ChecksumAtEnd {
+ public:
+  ChecksumAtEnd(const InputFile& input, Inputs& inputs) : input_(input), inputs_(inputs) {}
+  ~ChecksumAtEnd();
+  ChecksumAtEnd(const ChecksumAtEnd&) = delete;
+
+ private:
+  const InputFile& input_;
+  Inputs& inputs_;
+};
+
+// The same frames; `faulty` becomes true when one cannot be read, whatever their user makes of
+// that. Both arguments must outlive what is returned.
+FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty);
+
+}  // namespace krok::io

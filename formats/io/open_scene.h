@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "formats/io/inputs.h"
+#include "formats/registry/registry.h"
+#include "nodes/scene.h"
+
+// Scenes of nodes with characters, cameras and animations: glTF, and what is read through Assimp.
+
+namespace krok::io {
+
+bool is_scene(registry::Kind kind);
+
+// Reads a scene, with materials and images on request. The other files that were read (buffers,
+// images, companions) are opened by `inputs` too. The scene's diagnostics are left to the caller;
+// they name the file. Standard input has no folder to find other files in.
+//
+// Errors: those of the reader; assimp-kind for standard input that is read through Assimp;
+// scene-kind for a file that is not a scene.
+Result<nodes::Scene> open_scene(const InputFile& file, Inputs& inputs, bool with_materials = false);
+
+}  // namespace krok::io

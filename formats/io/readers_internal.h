@@ -1,0 +1,21 @@
+#pragma once
+
+#include "formats/io/formats.h"
+
+// The functions of the table of formats.
+
+namespace krok::io {
+
+Result<Clip> read_anim(const InputFile& file, Inputs& inputs, const MotionOptions& options);
+Result<Clip> read_bvh(const InputFile& file, Inputs& inputs, const MotionOptions& options);
+std::optional<MotionStream> stream_bvh(const InputFile& file, Inputs& inputs);
+Result<Clip> read_amc(const InputFile& file, Inputs& inputs, const MotionOptions& options);
+
+Result<nodes::Scene> read_gltf(const InputFile& file, Inputs& inputs, bool with_materials);
+Result<nodes::Scene> read_through_assimp(const InputFile& file, Inputs& inputs,
+                                         bool with_materials);
+
+Result<ShownModel> read_model(const InputFile& file, Inputs& inputs);
+Result<ShownModel> read_character(const InputFile& file, Inputs& inputs);
+
+}  // namespace krok::io
