@@ -27,7 +27,7 @@ struct JsonTexts {
     static const Json kNothing = Json::array();
     const auto found = object.find(key);
     if (found == object.end()) return kNothing;
-    if (!found->is_array()) return note(fmt::format("\"{}\" is not a list", key)), kNothing;
+    if (!found->is_array()) return note(fmt::format("\"{}\" is not an array", key)), kNothing;
     return *found;
   }
 

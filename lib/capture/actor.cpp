@@ -20,7 +20,7 @@ Vec3 middle_of_feet(Positions pose, const Landmarks& marks) {
   return 0.5 * (at(pose, marks.left_foot) + at(pose, marks.right_foot));
 }
 
-// From the right side to the left, by hips and shoulders.
+// Unit vector from right to left, from hips and shoulders.
 std::optional<Vec3> side_axis(Positions pose, const Landmarks& marks) {
   Vec3 sum = Vec3::Zero();
   const auto add = [&](int right, int left) {
@@ -32,8 +32,8 @@ std::optional<Vec3> side_axis(Positions pose, const Landmarks& marks) {
   return direction_between(Vec3::Zero(), sum);
 }
 
-// How the reference pose stands: the axis of trunk and legs together, or nothing where they fold
-// (zero rotations are no natural pose in some rigs).
+// The up axis of an upright pose, from trunk and legs; empty if the body is bent at the hips or not
+// along one axis.
 std::optional<NearestAxis> standing_axis(Positions pose, const Landmarks& marks) {
   if (!marks.upright_known()) return std::nullopt;
   const auto trunk = direction_between(at(pose, marks.hips), at(pose, marks.head));
@@ -44,7 +44,8 @@ std::optional<NearestAxis> standing_axis(Positions pose, const Landmarks& marks)
   return axis;
 }
 
-// The sum of the bones' lengths from `top` down the tree to `joint`; 0 where one is missing.
+// Sum of bone lengths from `top` down to `joint`; 0 if either is missing or `joint` is not below
+// `top`.
 double path_length(const Evidence& evidence, Positions pose, int top, int joint) {
   double length = 0;
   if (top < 0) return 0;
@@ -119,7 +120,7 @@ std::optional<Vec3> facing(Positions pose, const Landmarks& marks, Direction up)
   const auto side = side_axis(pose, marks);
   if (!side) return std::nullopt;
   const Vec3 forward = side->cross(direction_vector(up));
-  if (!(forward.norm() > 0.2)) return std::nullopt;  // the figure lies on its side
+  if (!(forward.norm() > 0.2)) return std::nullopt;  // the body lies on its side
   return forward.normalized();
 }
 
@@ -144,9 +145,9 @@ Evidence::Evidence(const Skeleton& s, const RoleMap& r, std::span<const Vec3> sa
   reference_stands = standing_axis(reference, marks);
 }
 
-// Shares of the height after Winter, Biomechanics and Motor Control of Human Movement (leg to the
-// ankle 0.49, arm to the wrist 0.33); the spine from the hips to the joint of the head is about
-// 0.37.
+// Segment lengths over body height after Winter, Biomechanics and Motor Control of Human Movement
+// (leg to the ankle 0.49, arm to the wrist 0.33); the spine from the hips to the head joint is
+// about 0.37.
 double height_in(const Evidence& evidence, Positions pose) {
   constexpr double kLeg = 0.49;
   constexpr double kArm = 0.33;

@@ -9,14 +9,14 @@
 #include "roles/roles.h"
 #include "scene/skeleton.h"
 
-// What the detection of conventions measures on a figure: directions of the body, its height, and
-// where its lowest joint is, in a file's own unit and axes.
+// Body measurements used to detect conventions: body directions, height, and the height of the
+// lowest joint, all in the file's unit and axes.
 
 namespace krok::actor {
 
 using Positions = std::span<const Vec3>;  // [joints]
 
-// The signed axis nearest to a vector, and how near: the cosine of the angle between them.
+// The signed axis nearest to a vector, and the cosine of the angle between the two.
 struct NearestAxis {
   Direction direction = Direction::plus_y;
   double cosine = 0;
@@ -29,10 +29,11 @@ bool on_one_axis(Direction a, Direction b);
 // "+y", "-y".
 std::string signed_name(Direction d);
 
-// The unit vector from one place to another, nothing where they are one.
+// Unit vector between two points; empty if they coincide or are not finite.
 std::optional<Vec3> direction_between(const Vec3& from, const Vec3& to);
 
-// The joints that tell up from down and left from right; -1 where the figure has none.
+// The joints that define up and down, left and right; -1 if missing. The neck replaces a missing
+// head, a foot's end site missing toes.
 struct Landmarks {
   int hips, head, left_foot, right_foot, left_toes, right_toes;
   int left_leg, right_leg, left_arm, right_arm;
@@ -43,7 +44,7 @@ struct Landmarks {
   bool feet_known() const { return left_foot >= 0 && right_foot >= 0; }
   bool upright_known() const { return trunk_known() && feet_known(); }
 
-  // What body_axis() begins at.
+  // The start of body_axis(), for messages.
   const char* lower_end() const { return feet_known() ? "feet" : "hips"; }
 };
 
@@ -51,20 +52,21 @@ inline const Vec3& at(Positions pose, int joint) {
   return pose[static_cast<std::size_t>(joint)];
 }
 
-// From the feet, or from the hips where there are no two feet, to the head.
+// Unit vector from the midpoint of the feet to the head; from the hips unless both feet are known.
 std::optional<Vec3> body_axis(Positions pose, const Landmarks& marks);
 
-// The cosine of the angle between legs and trunk, from the feet to the hips and from there to the
-// head: 1 for a figure that stands, near 0 for one on all fours.
+// Cosine of the angle between the legs (feet to hips) and the trunk (hips to head): 1 when
+// standing, near 0 on all fours.
 std::optional<double> stretch(Positions pose, const Landmarks& marks);
 
-// Where the figure faces by its left and right side, at right angles to `up`.
+// Facing direction derived from hips and shoulders, perpendicular to `up`; empty if these are
+// missing or the body lies on its side.
 std::optional<Vec3> facing(Positions pose, const Landmarks& marks, Direction up);
 
-// Where the toes point, at right angles to `up`; nothing where they point down or there are none.
+// Direction of the toes, perpendicular to `up`; empty if they point up or down or are missing.
 std::optional<Vec3> toes_direction(Positions pose, const Landmarks& marks, Direction up);
 
-// A skeleton, its roles and its sample frames, with what all detections need of them.
+// A skeleton, its roles and its sample frames: the input of all detections.
 struct Evidence {
   const Skeleton& skeleton;
   const RoleMap& roles;
@@ -73,8 +75,8 @@ struct Evidence {
   std::span<const Vec3> samples;  // [samples x joints]
   std::size_t sample_count = 0;
 
-  // How the reference pose stands: the axis of trunk and legs together, or nothing where they fold
-  // (zero rotations are no natural pose in some rigs).
+  // The up axis of the reference pose, from trunk and legs; empty if it is not upright (in some
+  // rigs zero rotations are not a natural pose).
   std::optional<NearestAxis> reference_stands;
 
   Evidence(const Skeleton& s, const RoleMap& r, std::span<const Vec3> sample_positions);
@@ -84,26 +86,26 @@ struct Evidence {
   }
 };
 
-// How tall the figure is, from the lengths of its bones, so that the pose does not matter; 0 where
-// legs, arms and spine are missing.
+// Body height computed from bone lengths, so independent of the pose; 0 if neither leg nor arm is
+// known.
 double height_in(const Evidence& evidence, Positions pose);
 
-// The height in the reference pose, or in the first sample where that one has none.
+// Height from the reference pose; if that is 0, from the first sample.
 double height_of(const Evidence& evidence);
 
-// Where the figure is along `up`, as shares of its height; places are those of the median sample.
+// Positions along `up` in body heights; `lowest` and `hips` are medians over the samples.
 struct Heights {
-  double lowest = 0;  // the lowest joint: 0 for a figure on the ground of its world
-  double hips = 0;    // from the lowest joint
-  // Between which the lowest joint is in four of five samples: little along the true vertical, for
-  // figures on a floor, however far they travel.
+  double lowest = 0;  // the lowest joint; 0 if on the ground of the file's world
+  double hips = 0;    // the hips above the lowest joint
+  // 10th to 90th percentile range of the lowest joint: small along the true up axis on a flat
+  // floor, however far the character travels.
   double spread = 0;
 };
 
-// Nothing without samples, hips or a height.
+// Empty without samples, hips or a height.
 std::optional<Heights> heights_along(const Evidence& evidence, Direction up);
 
-// The detections; each fills in its part of `found`, up first.
+// The detections. Each sets its part of `found`; detect_up must come first.
 void detect_up(const Evidence& evidence, Conventions& found);
 void detect_forward(const Evidence& evidence, Conventions& found);
 void detect_reference_axes(const Evidence& evidence, Conventions& found);

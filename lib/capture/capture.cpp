@@ -12,7 +12,7 @@ Result<RoleMap> roles_of(const Skeleton& skeleton, const CaptureOptions& options
 
 Status check_rate(const std::optional<double>& rate, const std::string& code) {
   if (!rate || (*rate > 0 && std::isfinite(*rate))) return {};
-  return Error(code, fmt::format("a rate of {} frames a second is not positive", *rate));
+  return Error(code, fmt::format("a frame rate of {} fps is not positive and finite", *rate));
 }
 
 }  // namespace krok

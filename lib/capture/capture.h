@@ -12,61 +12,60 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 
-// What readers of motion captures have in common, whatever the format.
+// Types and functions shared by all readers of motion captures.
 
 namespace krok {
 
-// What to do with a file that is not quite right. normal: what can be read without a doubt is, and
-// the rest is left out with a warning, or is an error. strict: whatever would be a fault in the
-// data is an error. repair: faults are left out or filled from their neighbours; each repair is
-// listed. The reader of a format says what that means there.
+// How to handle a damaged file. normal: unambiguous data is read; the rest is dropped with a
+// warning, or is an error. strict: any defect in the data is an error. repair: damaged data is
+// dropped or filled from its neighbours, and each repair is listed. The reader of each format
+// documents the details.
 enum class Strictness { normal, strict, repair };
 
-// What the file is written in, where the user says so, and how to read it.
+// Conventions given by the user, and how to read the file.
 struct CaptureOptions : GivenConventions {
   Strictness strictness = Strictness::normal;
 
-  // What the joints are, where the user says so. Called with the skeleton as the file has it, whose
-  // names are those of the result; its Error is the reader's. Empty: find_roles.
+  // Joint roles given by the user. Called with the skeleton in the file's unit and axes, with the
+  // same joint names as the result. An Error is passed on by the reader. Empty: find_roles.
   std::function<Result<RoleMap>(const Skeleton& skeleton)> roles;
 
-  // Frames a second, whatever the file says.
+  // Frames per second; overrides the file's rate.
   std::optional<double> rate;
 
-  int jobs = 0;  // threads, as in parallel_for; the result does not depend on it
+  int jobs = 0;  // threads, as in parallel_for; does not affect the result
   Progress* progress = nullptr;
 
-  // Limits against files that are made to exhaust memory.
+  // Limits against files crafted to exhaust memory.
   int max_joints = 65536;
-  // The largest ratio of the memory for the motion to the size of its text; real files stay
-  // under 15.
+  // Max ratio of the motion's memory to the size of its text; real files stay below 15.
   double max_expansion = 64.0;
 };
 
 struct Capture {
-  // In Krok's frame; what the joints are, the reader of the format says. In the reference pose the
-  // figure stands upright and faces +Z, also where the file's axes for it are not the motion's.
-  // provenance.conversions tells unit and axes; the rest of it is left to the caller.
+  // In Krok's frame; each format's reader documents its joints. The reference pose is upright and
+  // faces +Z, even if its axes in the file differ from the motion's. provenance.conversions holds
+  // unit and axes; the caller sets the rest of the provenance.
   Clip clip;
 
-  // Notes and warnings: every choice, every oddity, every repair.
+  // Notes and warnings: every choice, anomaly and repair.
   Diagnostics diagnostics;
 
-  // What the joints are, as the conventions were worked out by.
+  // The joint roles from which the conventions were detected.
   RoleMap roles;
 
-  // What the file was taken to be written in.
+  // The conventions the file was read with.
   Conventions conventions;
 
-  Choice exporter;                   // which program wrote the file; empty where none is known
-  Choice rate;                       // where the rate comes from
-  std::vector<std::string> repairs;  // what was left out or filled, a line each
+  Choice exporter;                   // the program that wrote the file; empty if unknown
+  Choice rate;                       // where the frame rate comes from
+  std::vector<std::string> repairs;  // what was dropped or filled, one line each
 };
 
-// The roles that a reader goes by: as the options have them, otherwise as find_roles has them.
+// The roles a reader uses: those of the options, otherwise from find_roles.
 Result<RoleMap> roles_of(const Skeleton& skeleton, const CaptureOptions& options);
 
-// Whether `rate`, if given, is positive and finite; an Error with `code` otherwise.
+// An Error with `code` if `rate` is given but not positive and finite.
 Status check_rate(const std::optional<double>& rate, const std::string& code);
 
 }  // namespace krok

@@ -48,13 +48,13 @@ void apply_given(const GivenConventions& given, Conventions& conventions) {
     conventions.forward = along_z ? Direction::minus_y : Direction::plus_z;
     conventions.reference_forward = conventions.forward;
     conventions.forward_confidence = Confidence::guess;
-    conventions.forward_reason = "what the data show lies along the axis given as up";
+    conventions.forward_reason = "the detected axis is parallel to the given up axis";
   } else if (given.forward) {
     const bool along_y = parallel(*given.forward, Direction::plus_y);
     conventions.up = along_y ? Direction::plus_z : Direction::plus_y;
     conventions.reference_up = conventions.up;
     conventions.up_confidence = Confidence::guess;
-    conventions.up_reason = "what the data show lies along the axis given as forward";
+    conventions.up_reason = "the detected axis is parallel to the given forward axis";
   }
 }
 
@@ -102,7 +102,7 @@ void report_conventions(const Conventions& conventions, const GivenConventions& 
     told.code = fmt::format("{}-{}", code_prefix, name);
     told.message = fmt::format("{} is {} ({})", subject, value, confidence_name(confidence)) +
                    (reason.empty() ? std::string() : ": " + reason);
-    if (guess) told.hint = fmt::format("say it with --{} if it is otherwise", name);
+    if (guess) told.hint = fmt::format("set it with --{} if that is wrong", name);
     told.where.file = file_name;
     diagnostics.push_back(std::move(told));
   };

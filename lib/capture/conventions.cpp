@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kDirectionNames = {"x", "-x", "y", "-y", "z", "-z"};
 
-// Named units and their size in metres. The CMU collection's Acclaim files are in inches divided by
-// 0.45 (mocap.cs.cmu.edu, frequently asked questions).
+// Unit names and sizes in metres. The CMU collection's Acclaim files are in inches divided by 0.45
+// (mocap.cs.cmu.edu, frequently asked questions).
 constexpr std::array<std::pair<std::string_view, double>, 7> kUnits = {{{"m", 1.0},
                                                                         {"dm", 0.1},
                                                                         {"cm", 0.01},
@@ -39,7 +39,7 @@ Result<Direction> parse_direction(std::string_view text) {
     }
   }
   return Error("direction-unknown", fmt::format("'{}' is not an axis", text),
-               "write x, y, z, -x, -y or -z");
+               "use x, y, z, -x, -y or -z");
 }
 
 Vec3 direction_vector(Direction direction) {
@@ -63,12 +63,12 @@ Result<Unit> parse_unit(std::string_view text) {
   for (const auto& [name, metres] : kUnits) {
     if (text == name) return Unit{metres, std::string(name)};
   }
-  // A bare number would be metres to parse_length; as a unit it is more likely a slip.
+  // parse_length reads a bare number as metres; as a unit it is more likely a mistake.
   const auto length = parse_length(text);
   const bool has_unit = !text.empty() && text.find_first_of("mnt") != std::string_view::npos;
   if (length.ok() && has_unit && *length > 0) return Unit{*length, std::string(text)};
   return Error("unit-unknown", fmt::format("'{}' is not a unit of length", text),
-               "write m, dm, cm, mm, in, ft, cmu, or a length such as 5.64cm");
+               "use m, dm, cm, mm, in, ft, cmu, or a length such as 5.64cm");
 }
 
 Result<Quat> rotation_to_krok(Direction up, Direction forward) {
@@ -76,9 +76,9 @@ Result<Quat> rotation_to_krok(Direction up, Direction forward) {
   const Vec3 z = direction_vector(forward);
   if (y.dot(z) != 0.0) {
     return Error("direction-parallel",
-                 fmt::format("up ({}) and forward ({}) lie on one axis", direction_name(up),
+                 fmt::format("up ({}) and forward ({}) are parallel", direction_name(up),
                              direction_name(forward)),
-                 "name two different axes");
+                 "use two different axes");
   }
   Mat3 to_krok;
   to_krok.row(0) = y.cross(z).transpose();

@@ -8,71 +8,72 @@
 #include "roles/roles.h"
 #include "scene/skeleton.h"
 
-// Working out in which unit and which axes a capture was written, and bringing it into Krok's frame
-// (metres, +Y up, facing +Z in the reference pose). Readers of foreign formats use this.
+// Detects the unit and axes of a capture and converts them to Krok's frame (metres, +Y up, facing
+// +Z in the reference pose). For readers of foreign formats.
 
 namespace krok {
 
 // A signed coordinate axis.
 enum class Direction : unsigned char { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
 
-// "x", "-x", "y", ... and back; an Error (code direction-unknown) for anything else.
+// "x", "-x", "y", ... and the inverse, which also takes "+x"; an Error (code direction-unknown) for
+// other text.
 std::string_view direction_name(Direction direction);
 Result<Direction> parse_direction(std::string_view text);
 Vec3 direction_vector(Direction direction);
 
-// How sure a guess is. `certain`: names and geometry agree, or the user said so. `likely`: geometry
-// alone. `guess`: a default, for want of evidence.
+// Confidence of a detected value. `certain`: several indications agree, or given by the user.
+// `likely`: a single indication, or a less clear one. `guess`: a default, or conflicting evidence.
 enum class Confidence { guess, likely, certain };
 std::string_view confidence_name(Confidence confidence);
 
-// A unit of length as its size in metres and its name for people.
+// A unit of length: its size in metres and its display name.
 struct Unit {
   double metres = 1.0;
   std::string name = "m";
 };
 
-// m, dm, cm, mm, in, ft, and "cmu" (the unit of the CMU collection's Acclaim files and most BVH
-// made from them, 0.0254 / 0.45 m); or a length such as 5.64cm. An Error (code unit-unknown)
-// otherwise.
+// Parses m, dm, cm, mm, in, ft, "cmu" (the unit of the CMU collection's Acclaim files and of most
+// BVH files converted from them, 0.0254 / 0.45 m), or a length such as 5.64cm. An Error (code
+// unit-unknown) otherwise.
 Result<Unit> parse_unit(std::string_view text);
 
 struct Conventions {
   Unit unit;
   Direction up = Direction::plus_y;
   Direction forward = Direction::plus_z;
-  // The axes of the reference pose where its bones show that they are others than the motion's (a
-  // figure stored y-up whose root turns it upright in a z-up world in every frame); of a reference
-  // pose that does not stand at all those of its pelvis, so that the hips face where they do in the
-  // motion; otherwise equal to `up` and `forward`. The reference pose is brought to Krok's frame by
-  // rotation_to_krok(reference_up, reference_forward), so that it stands upright and faces +Z too;
-  // a reader whose user named the axes sets them alike.
+  // Axes of the reference pose. They differ from `up` and `forward` if its bones show it (such as a
+  // skeleton stored y-up whose root rotates it upright in a z-up world in every frame). If the
+  // reference pose is not upright, they are the axes of its pelvis, so that the hips face as they
+  // do in the motion. rotation_to_krok(reference_up, reference_forward) converts the reference
+  // pose, so that it too is upright and faces +Z. Axes given by the user apply to both.
   Direction reference_up = Direction::plus_y;
   Direction reference_forward = Direction::plus_z;
   Confidence unit_confidence = Confidence::guess;
   Confidence up_confidence = Confidence::guess;
   Confidence forward_confidence = Confidence::guess;
-  // A sentence each on what the choice rests on, for the report.
+  // One sentence each on the evidence, for the report.
   std::string unit_reason, up_reason, forward_reason;
 };
 
-// Works the conventions out from the skeleton as the file has it (reference pose in the file's unit
-// and axes) and up to a few hundred sample frames of joint_to_world positions, shape
-// [samples x joints], possibly empty. Never fails: values that are not finite are passed over, and
-// what the figure does not show is a default with confidence `guess`.
+// Detects the conventions from the skeleton (reference pose in the file's unit and axes) and up to
+// a few hundred sample frames of joint_to_world positions, shape [samples x joints], possibly
+// empty. Never fails: non-finite values are skipped, and what the data does not show is set to a
+// default with confidence `guess`.
 //
-// Up: where the head is above the feet in most samples, or in the reference pose for want of
-// samples; a motion that is upside down does not turn over an upright reference pose, nor one that
-// lies in most samples a world in which it stands in others. Forward: to
-// the left of the right side (left x up) in the reference pose, held against the toes; in the first
-// sample where the reference pose does not stand as the motion does. Unit: the one that makes the
-// figure, from the lengths of its legs and spine, most like an adult of 1.5 to 2.0 m.
-// For figures that are not humanoid +Y up, +Z forward and a unit that gives a size below 10 m.
+// Up: the axis along which the head is above the feet in most samples, or in the reference pose if
+// there are no samples. A motion that is upside down does not override an upright reference pose,
+// nor does one that lies down in most samples but is upright in others. Forward: left x up in the
+// reference pose, checked against the toes; taken from the first usable sample if the reference
+// pose is not upright along the motion's up axis. Unit: the one that gives a body height, computed
+// from leg and spine lengths, closest to an adult's 1.72 m, with a penalty for rarer units.
+// Defaults: +Y up without hips and head; +Z forward without left and right limbs (-Y if up is along
+// z); without legs and arms the first of m, cm and mm that gives a size of at most 10 m, or mm.
 Conventions detect_conventions(const Skeleton& skeleton, const RoleMap& roles,
                                std::span<const Vec3> sample_positions);
 
-// The rotation that takes the file's axes to Krok's: up to +Y, forward to +Z. An Error (code
-// direction-parallel) if up and forward lie on one axis.
+// The rotation from the file's axes to Krok's: up to +Y, forward to +Z. An Error (code
+// direction-parallel) if up and forward are parallel.
 Result<Quat> rotation_to_krok(Direction up, Direction forward);
 
 }  // namespace krok

@@ -9,12 +9,12 @@ namespace krok::actor {
 
 namespace {
 
-// A direction at right angles to `up`, for want of evidence.
+// The default: perpendicular to `up`.
 Direction default_forward(Direction up) {
   return on_one_axis(up, Direction::plus_z) ? Direction::minus_y : Direction::plus_z;
 }
 
-// Forward from the reference pose, if its trunk points up as the motion's does.
+// Detects forward in the reference pose if its trunk is along the motion's up axis.
 bool detect_forward_in_reference(const Evidence& evidence, Conventions& found) {
   const auto& marks = evidence.marks;
   if (marks.hips < 0 || marks.head < 0) return false;
@@ -25,24 +25,25 @@ bool detect_forward_in_reference(const Evidence& evidence, Conventions& found) {
   if (!forward) return false;
   const NearestAxis axis = nearest_axis(*forward);
   found.forward = axis.direction;
-  found.forward_reason = fmt::format("by its left and right side the reference pose faces {}",
-                                     signed_name(axis.direction));
+  found.forward_reason =
+      fmt::format("the reference pose faces {}, judging by its left and right side",
+                  signed_name(axis.direction));
   found.forward_confidence = axis.cosine > 0.9 ? Confidence::likely : Confidence::guess;
-  if (!evidence.reference_stands) return true;  // the legs are folded, the toes tell nothing
+  if (!evidence.reference_stands) return true;  // legs bent: toes are no evidence
   const auto toes = toes_direction(evidence.reference, marks, found.up);
   if (!toes) return true;
   const double along = toes->dot(direction_vector(axis.direction));
   if (along > 0.5) {
     found.forward_confidence = axis.cosine > 0.9 ? Confidence::certain : Confidence::likely;
-    found.forward_reason += ", and the toes point there";
+    found.forward_reason += ", and the toes point that way";
   } else {
     found.forward_confidence = Confidence::guess;
-    found.forward_reason += ", but the toes do not point there: left and right may be exchanged";
+    found.forward_reason += ", but the toes do not point that way: left and right may be swapped";
   }
   return true;
 }
 
-// Three joints that the hips alone carry: both legs, and the spine above them.
+// Three children of the hips: both upper legs and the first joint of the spine.
 struct Pelvis {
   int hips = -1, left_leg = -1, right_leg = -1, spine = -1;
 
@@ -62,7 +63,7 @@ struct Pelvis {
 
   bool known() const { return spine >= 0; }
 
-  // How the pelvis stands in a pose: to its left, and at right angles to that towards the spine.
+  // Axes of the pelvis in a pose, as columns: left, perpendicular to it towards the spine, forward.
   std::optional<Mat3> frame(Positions pose) const {
     const Vec3 left = at(pose, left_leg) - at(pose, right_leg);
     const Vec3 middle = 0.5 * (at(pose, left_leg) + at(pose, right_leg));
@@ -77,8 +78,8 @@ struct Pelvis {
   }
 };
 
-// A reference pose that does not stand (rigs whose bones all lie along one of their axes) still has
-// a pelvis: it stands upright there as it does in the motion on average.
+// For a reference pose that is not upright (such as rigs with all bones along one axis): assumes
+// that its pelvis is oriented as in the motion on average.
 void detect_reference_axes_by_pelvis(const Evidence& evidence, Conventions& found) {
   const Pelvis pelvis(evidence);
   if (!pelvis.known()) return;
@@ -113,16 +114,17 @@ void detect_forward(const Evidence& evidence, Conventions& found) {
     found.forward = axis.direction;
     found.forward_confidence = axis.cosine > 0.9 ? Confidence::likely : Confidence::guess;
     found.forward_reason = fmt::format(
-        "the reference pose does not stand as the motion does; the "
-        "figure faces {} in the first frame",
+        "the facing of the reference pose is unclear; the character faces {} in the first usable "
+        "frame",
         signed_name(axis.direction));
     return;
   }
-  found.forward_reason = fmt::format("no left and right side that tells; {} is the default",
+  found.forward_reason = fmt::format("no left and right side to derive it from; {} is the default",
                                      signed_name(found.forward));
 }
 
-// The axes of a reference pose that stands otherwise than the motion, or not at all.
+// Detects the axes of a reference pose whose up axis differs from the motion's or that is not
+// upright.
 void detect_reference_axes(const Evidence& evidence, Conventions& found) {
   found.reference_up = found.up;
   found.reference_forward = found.forward;

@@ -12,7 +12,7 @@ namespace {
 
 struct UnitCandidate {
   const char* name;
-  double rarity;  // added to the distance from an adult's height, in natural logarithms
+  double rarity;  // penalty, added to |ln(height / usual height)|
 };
 constexpr std::array kUnitCandidates = {UnitCandidate{"m", 0.0},   UnitCandidate{"cm", 0.0},
                                         UnitCandidate{"mm", 0.05}, UnitCandidate{"in", 0.1},
@@ -23,7 +23,7 @@ Unit unit_named(const char* name) {
   return *parse_unit(name);
 }
 
-// Whether a captured figure may be as large as that.
+// Whether a captured subject can have that size.
 bool is_sensible(double metres) {
   return metres >= 0.01 && metres <= 1000.0;
 }
@@ -52,17 +52,16 @@ void detect_unit_of_actor(double height, bool cmu_names, Conventions& found) {
   }
   if (!is_sensible(metres)) {
     found.unit_reason = fmt::format(
-        "the figure would be {:.3g} m tall, and no common unit brings it near a usual height",
-        metres);
+        "the character would be {:.3g} m tall; no common unit gives a plausible height", metres);
     return;
   }
-  found.unit_reason = fmt::format("the bones are those of a figure about {:.2f} m tall", metres);
+  found.unit_reason = fmt::format("bone lengths fit a person about {:.2f} m tall", metres);
   if (found.unit.name == "cmu" && cmu_names && metres > 1.2 && metres < 2.2) {
     found.unit_confidence = Confidence::certain;
     found.unit_reason += ", with the joint names of the CMU collection";
   }
   if (found.unit_confidence == Confidence::guess) {
-    found.unit_reason += "; no common unit makes it a usual height";
+    found.unit_reason += "; no common unit is a clear match";
   }
 }
 
@@ -82,7 +81,7 @@ double largest_extent(const Evidence& evidence) {
   return largest;
 }
 
-// The helper joints that the CMU collection's skeletons have and hardly any other.
+// Helper joints that are nearly unique to the CMU collection's skeletons.
 bool has_cmu_names(const Skeleton& skeleton) {
   const bool lower_back = skeleton.find("LowerBack") >= 0 || skeleton.find("lowerback") >= 0;
   return lower_back && (skeleton.find("LHipJoint") >= 0 || skeleton.find("lhipjoint") >= 0);
@@ -101,15 +100,15 @@ void detect_unit(const Evidence& evidence, Conventions& found) {
   }
   const double metres = extent * found.unit.metres;
   if (!(extent > 0)) {
-    found.unit_reason = "all joints stand at one place, which shows no size to go by";
+    found.unit_reason = "all joints coincide, so the size is unknown";
   } else if (!is_sensible(metres)) {
     found.unit_reason = fmt::format(
-        "no legs or arms to go by, and in none of m, cm and mm is the size a sensible one; in {} "
-        "it is {:.3g} m",
+        "no legs or arms to measure, and none of m, cm and mm gives a plausible size; in {} it "
+        "would be {:.3g} m",
         found.unit.name, metres);
   } else {
     found.unit_reason =
-        fmt::format("no legs or arms to go by; a size of {:.3g} m is taken as sensible", metres);
+        fmt::format("no legs or arms to measure; a size of {:.3g} m is assumed plausible", metres);
   }
 }
 

@@ -10,7 +10,7 @@ namespace krok::actor {
 
 namespace {
 
-// In how many samples the body stands along each axis.
+// Number of samples in which the body is upright along each axis.
 struct UpVotes {
   std::array<int, 6> votes{};
   int valid = 0;
@@ -41,31 +41,31 @@ void detect_up_without_motion(const Evidence& evidence, Conventions& found) {
     found.up = evidence.reference_stands->direction;
     found.up_confidence =
         evidence.reference_stands->cosine > 0.95 ? Confidence::certain : Confidence::likely;
-    found.up_reason = fmt::format("the reference pose stands along {}", signed_name(found.up));
+    found.up_reason = fmt::format("the reference pose is upright along {}", signed_name(found.up));
     return;
   }
   const auto axis = body_axis(evidence.reference, evidence.marks);
   if (!axis) {
-    found.up_reason = "the figure has no size to tell up from down by; +y is the default";
+    found.up_reason = "the body axis has zero length; +y is the default";
     return;
   }
   found.up = nearest_axis(*axis).direction;
-  found.up_reason = fmt::format(
-      "in the reference pose, which does not stand, the head is furthest from the {} along {}",
-      evidence.marks.lower_end(), signed_name(found.up));
+  found.up_reason =
+      fmt::format("the reference pose is not upright; its head is furthest from the {} along {}",
+                  evidence.marks.lower_end(), signed_name(found.up));
 }
 
 bool is_usual(Direction up) {
   return up == Direction::plus_y || up == Direction::plus_z;
 }
 
-// The floor of a world is at 0, and a figure that stands in it has its lowest joint there. One that
-// seems to stand along an axis for which this is not so, and whose reference pose does not stand
-// along it either, may lie: then its lowest joint is near 0 along the true one.
+// The floor is at 0, so the lowest joint of a standing character is near 0. If it is not along the
+// detected up axis, and the reference pose is not upright along that axis either, the character may
+// lie on the floor: its lowest joint is then near 0 along the true up axis.
 void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
-  constexpr double kNear = 0.08;  // all of the figure's height
+  constexpr double kNear = 0.08;  // these are in body heights
   constexpr double kBelow = -0.03;
-  constexpr double kMinHips = 0.03;  // flesh is between a body and the ground
+  constexpr double kMinHips = 0.03;  // soft tissue between the hips and the ground
   const auto& reference = evidence.reference_stands;
   const bool unusual = !is_usual(found.up) && reference && is_usual(reference->direction);
   const auto standing = heights_along(evidence, found.up);
@@ -84,20 +84,20 @@ void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
     }
   }
   if (ground) {
-    found.up_reason +=
-        fmt::format("; but its lowest joint is near 0 along {} instead, so it seems to lie{}",
-                    signed_name(*ground), reference ? "" : ", and no reference pose stands");
+    found.up_reason += fmt::format(
+        "; but the lowest joint is near 0 along {} instead, so the character seems to lie down{}",
+        signed_name(*ground), reference ? "" : ", and the reference pose is not upright");
     found.up = *ground;
     found.up_confidence = Confidence::guess;
     return;
   }
   if (std::abs(standing->lowest) <= kNear) return;
-  found.up_reason += "; there it is not near the ground";
+  found.up_reason += "; but the lowest joint is not near the ground there";
   const bool other_is_usual = reference && is_usual(reference->direction);
   if (!is_usual(found.up) || other_is_usual) {
     if (other_is_usual && !is_usual(found.up)) {
       found.up = reference->direction;
-      found.up_reason += ", and hardly any file has that axis up; the reference pose's is taken";
+      found.up_reason += ", and that up axis is rare; using that of the reference pose";
     }
     found.up_confidence = Confidence::guess;
   } else if (found.up_confidence == Confidence::certain) {
@@ -105,7 +105,7 @@ void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
   }
 }
 
-// Whether the trunk is hardly ever along the legs: on all fours, crawling or sitting.
+// Whether trunk and legs are rarely aligned: on all fours, crawling or sitting.
 bool stays_folded(const Evidence& evidence) {
   constexpr double kStretched = 0.6;
   constexpr double kNow = 0.2;
@@ -119,12 +119,12 @@ bool stays_folded(const Evidence& evidence) {
   return known > 0 && static_cast<double>(stretched) < kNow * static_cast<double>(known);
 }
 
-// The head of an animal on all fours, or of one who crawls, is before the feet more than above
-// them. Where such a figure travels along what seems up, while its lowest joint keeps its height
-// along another axis that may be up, it walks on a floor.
+// On all fours the head is in front of the feet rather than above them, so the heading is mistaken
+// for up. If such a character travels along the detected up axis while its lowest joint stays at
+// one height along another axis, that axis is up.
 void look_for_a_floor(const Evidence& evidence, Conventions& found) {
   constexpr std::size_t kFewestSamples = 10;
-  constexpr double kTravels = 0.25;  // all of the figure's height
+  constexpr double kTravels = 0.25;  // these are in body heights
   constexpr double kKeepsHeight = 0.1;
   if (evidence.sample_count < kFewestSamples || !stays_folded(evidence)) return;
   const auto seeming = heights_along(evidence, found.up);
@@ -139,15 +139,15 @@ void look_for_a_floor(const Evidence& evidence, Conventions& found) {
   }
   if (!floor) return;
   found.up_reason += fmt::format(
-      "; but trunk and legs fold and its lowest joint keeps its height along {} while "
-      "it travels, so it seems to go on all fours",
+      "; but the body is bent at the hips and the lowest joint keeps its height along {} while it "
+      "travels, so the character seems to move on all fours",
       signed_name(*floor));
   found.up = *floor;
   found.up_confidence = Confidence::guess;
 }
 
-// Whether the figure stands as its reference pose does in part of the motion, and is along `other`
-// in the rest of it: it lies there, or falls.
+// Whether the character is upright along the reference pose's up axis in part of the motion; along
+// `other` it then lies or falls.
 bool stands_at_times(const Evidence& evidence, const UpVotes& votes, Direction other) {
   constexpr double kPart = 0.2;
   const auto& reference = evidence.reference_stands;
@@ -165,14 +165,14 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
   if (share >= 0.5 && !turned_over && !stands_at_times(evidence, votes, winner)) {
     found.up = winner;
     found.up_confidence = agrees || share >= 0.8 ? Confidence::certain : Confidence::likely;
-    found.up_reason =
-        fmt::format("the head is above the {} along {} in {}% of the frames looked at",
-                    evidence.marks.lower_end(), signed_name(winner), percent);
+    found.up_reason = fmt::format("the head is above the {} along {} in {}% of the sampled frames",
+                                  evidence.marks.lower_end(), signed_name(winner), percent);
     if (agrees) {
-      found.up_reason += ", and the reference pose stands so too";
+      found.up_reason += ", and the reference pose agrees";
     } else if (reference) {
-      found.up_reason += fmt::format("; the reference pose stands along {}, the motion decides",
-                                     signed_name(reference->direction));
+      found.up_reason +=
+          fmt::format("; the reference pose is upright along {}, the motion takes precedence",
+                      signed_name(reference->direction));
       if (found.up_confidence == Confidence::certain && share < 0.95) {
         found.up_confidence = Confidence::likely;
       }
@@ -185,8 +185,8 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
     found.up = reference->direction;
     found.up_confidence = Confidence::likely;
     found.up_reason = fmt::format(
-        "the reference pose stands along {}; the motion is upright along "
-        "it in {}% of the frames looked at only",
+        "the reference pose is upright along {}; the motion is upright along it in only {}% of the "
+        "sampled frames",
         signed_name(found.up), static_cast<int>(std::lround(100 * votes.share(found.up))));
     if (turned_over && share >= 0.8) {
       found.up_confidence = Confidence::guess;
@@ -196,7 +196,7 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
   }
   found.up = nearest_axis(votes.sum).direction;
   found.up_reason = fmt::format(
-      "on average the head is furthest from the {} along {}, though the figure seldom stands",
+      "on average the head is furthest from the {} along {}, but the character is rarely upright",
       evidence.marks.lower_end(), signed_name(found.up));
   look_for_a_floor(evidence, found);
 }
@@ -206,7 +206,7 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
 void detect_up(const Evidence& evidence, Conventions& found) {
   const auto& marks = evidence.marks;
   if (!marks.trunk_known()) {
-    found.up_reason = "without hips and a head up cannot be told from down; +y is the default";
+    found.up_reason = "up cannot be detected without hips and head; +y is the default";
     return;
   }
   const UpVotes votes(evidence);
@@ -216,7 +216,7 @@ void detect_up(const Evidence& evidence, Conventions& found) {
     detect_up_of_motion(evidence, votes, found);
   }
   if (marks.upright_known()) return;
-  found.up_reason += "; there are no two feet to hold it against";
+  found.up_reason += "; not checked against the feet, as fewer than two were found";
   if (found.up_confidence == Confidence::certain) found.up_confidence = Confidence::likely;
 }
 

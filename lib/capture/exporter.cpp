@@ -13,11 +13,11 @@ namespace {
 
 struct NameSet {
   std::string_view exporter;
-  std::string_view joints;  // lower case, with a space between; all must be there
+  std::string_view joints;  // lower case, separated by spaces; all must be present
   Confidence confidence;
 };
 
-// The first that fits counts, so those with more telling names stand first.
+// The first match wins, so sets with more distinctive names come first.
 constexpr std::array kNameSets = {
     NameSet{"iPi Mocap Studio, own names",
             "hip lowerspine middlespine chest lclavicle lshoulder lforearm lthigh lshin",
@@ -66,7 +66,7 @@ constexpr std::array kNameSets = {
 constexpr std::string_view kMotionBuilderNames =
     "hips spine leftupleg leftleg leftfoot leftarm leftforearm lefthand rightupleg rightarm";
 
-// A name in lower case without its name space, blanks as underscores.
+// The name in lower case, without namespace, with spaces replaced by underscores.
 std::string plain_name(std::string_view name) {
   const std::size_t colon = name.rfind(':');
   if (colon != std::string_view::npos) name.remove_prefix(colon + 1);
@@ -77,7 +77,7 @@ std::string plain_name(std::string_view name) {
 
 using Names = std::unordered_set<std::string>;
 
-// Whether all words of `joints` are names; how many there are.
+// The number of words in `joints`; empty unless all of them are in `names`.
 std::optional<int> matches(const Names& names, std::string_view joints) {
   int count = 0;
   while (!joints.empty()) {
@@ -89,7 +89,7 @@ std::optional<int> matches(const Names& names, std::string_view joints) {
   return count;
 }
 
-// iPi Mocap Studio prints the frame time with ten decimals and begins each row with a tab.
+// iPi Mocap Studio prints the frame time with ten decimals and starts each row with a tab.
 bool written_as_ipi_does(const ExporterTraits& traits) {
   const std::size_t point = traits.frame_time.find('.');
   return traits.rows_begin_with_tab && point != std::string_view::npos &&
@@ -99,20 +99,20 @@ bool written_as_ipi_does(const ExporterTraits& traits) {
 Exporter motion_builder_names(const Skeleton& skeleton, const ExporterTraits& traits) {
   for (const std::string& name : skeleton.names) {
     if (ascii_lower(name).starts_with("mixamorig")) {
-      return {"Mixamo", "the joints' names begin with mixamorig", Confidence::certain};
+      return {"Mixamo", "joint names begin with mixamorig", Confidence::certain};
     }
   }
-  const std::string names = "the joints have MotionBuilder's names";
+  const std::string names = "the joint names are MotionBuilder's";
   if (!traits.starts_unturned) {
-    return {"MotionBuilder's names", names + ", which many programs write", Confidence::likely};
+    return {"MotionBuilder's names", names + ", which many programs use", Confidence::likely};
   }
   if (written_as_ipi_does(traits)) {
     return {"iPi Mocap Studio, MotionBuilder's names with a rest pose as frame 0",
-            names + ", frame 0 has no rotations, and rows and frame time are printed as iPi does",
+            names + ", frame 0 has no rotations, and rows and frame time are printed as by iPi",
             Confidence::likely};
   }
   return {"MotionBuilder's names with a rest pose as frame 0",
-          names + ", and frame 0 has no rotations; iPi Mocap Studio's second preset is such a one",
+          names + ", and frame 0 has no rotations, as with iPi Mocap Studio's second preset",
           Confidence::guess};
 }
 
@@ -124,9 +124,9 @@ std::optional<Exporter> recognise_exporter(const Skeleton& skeleton, const Expor
   for (const NameSet& set : kNameSets) {
     const auto count = matches(names, set.joints);
     if (!count) continue;
-    std::string reason = fmt::format("{} of its joints' names are there", *count);
+    std::string reason = fmt::format("{} joint names match", *count);
     if (set.exporter.starts_with("iPi") && written_as_ipi_does(traits)) {
-      reason += ", and rows and frame time are printed as it does";
+      reason += ", and rows and frame time are printed as by iPi";
     }
     return Exporter{std::string(set.exporter), std::move(reason), set.confidence};
   }

@@ -7,8 +7,8 @@
 #include "capture/conventions.h"
 #include "scene/skeleton.h"
 
-// Which program a capture comes from, by the names of its joints and the way it is written.
-// Information for the user alone: nothing that is read depends on it.
+// Detects the program that wrote a capture from its joint names and number formatting. Informative
+// only: reading does not depend on it.
 
 namespace krok {
 
@@ -18,16 +18,16 @@ struct Exporter {
   Confidence confidence = Confidence::guess;
 };
 
-// What a reader of a text format knows beside the skeleton.
+// Properties of a text file other than its skeleton.
 struct ExporterTraits {
-  std::string_view frame_time;  // as printed, without blanks; empty where there is none
+  std::string_view frame_time;  // as printed, without blanks; empty if there is none
   bool rows_begin_with_tab = false;
-  bool starts_unturned = false;  // the first frame has no rotation anywhere
+  bool starts_unturned = false;  // all rotations of the first frame are zero
 };
 
-// The exporter whose joints are all there: certain where the names are hardly any other's, likely
-// where others are known to use them too; nothing where no table fits. Names are compared without
-// their case and name spaces.
+// The exporter whose characteristic joint names are all present: `certain` if the names are nearly
+// unique to it, `likely` if other programs use them too; empty if none matches. Comparison ignores
+// case and namespaces.
 std::optional<Exporter> recognise_exporter(const Skeleton& skeleton, const ExporterTraits& traits);
 
 }  // namespace krok

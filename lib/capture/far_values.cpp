@@ -13,8 +13,7 @@ namespace krok {
 namespace {
 
 std::string frames_of(std::size_t frames) {
-  return frames == 1 ? "no other frame has such values"
-                     : fmt::format("{} frames have such values", frames);
+  return frames == 1 ? "no other frame is affected" : fmt::format("{} frames are affected", frames);
 }
 
 }  // namespace
@@ -48,9 +47,9 @@ void FarValues::add(const FarValues& other) {
 
 Error far_rotation(std::string code, std::string_view channel, double degrees, std::size_t frames) {
   return {std::move(code),
-          fmt::format("{} turns by {} degrees, {} whole turns, which no joint does; {}", channel,
+          fmt::format("{} rotates by {} degrees, {} full turns, which is implausible; {}", channel,
                       readable(degrees), readable(std::floor(degrees / 360.0)), frames_of(frames)),
-          "look at the value; it is read as it stands, less its whole turns"};
+          "check the value; it is read modulo 360 degrees"};
 }
 
 Error far_position(std::string code, std::string_view joint, const Vec3& position,
@@ -59,11 +58,11 @@ Error far_position(std::string code, std::string_view joint, const Vec3& positio
   const double step = static_cast<double>(std::nextafter(size, INFINITY)) - size;
   const std::string steps = step < 1 ? readable(1000 * step, 3) + " mm" : readable(step, 3) + " m";
   return {std::move(code),
-          fmt::format("{} is {} m from the origin{}, where floats are {} apart, so that "
-                      "smaller movements are lost; {}",
+          fmt::format("{} is {} m from the origin{}, where floats are {} apart and smaller "
+                      "movements are lost; {}",
                       joint, readable(position.norm(), 4),
                       of_file.empty() ? "" : " (" + of_file + ")", steps, frames_of(frames)),
-          "look at the value, and at the unit; move the capture to the origin if it is far away"};
+          "check the value and the unit; if the capture is that far away, move it to the origin"};
 }
 
 }  // namespace krok

@@ -9,27 +9,27 @@
 #include "core/result.h"
 #include "math/transform.h"
 
-// Numbers of a capture that are finite, yet beyond any sense: one wrong digit or a lost point in a
-// file makes them, and a motion made of them would be wrong without a word.
+// Detects values of a capture that are finite but implausible, such as from a wrong digit or a
+// missing decimal point, so that they are reported.
 
 namespace krok {
 
-// Degrees. Turns of a spinning joint may go on without end: a dancer who turns once a second for
-// three quarters of an hour comes to this, 2,778 turns. Beyond it, an exporter's single precision
-// is coarser than a sixteenth of a degree, so that such a value is hardly a measured angle.
+// Max plausible rotation in degrees. Unwrapped angles accumulate: one turn per second for 46
+// minutes reaches this value, 2,778 turns. Beyond it single precision is no finer than 1/16 degree,
+// so such a value is hardly a measured angle.
 inline constexpr double kFarthestRotation = 1e6;
 
-// How far from the origin a joint may be, in metres: 10,000 times the largest extent of the
-// skeleton's reference pose over the axes, and of a metre where it is smaller. There a float's
-// steps reach a thousandth of the skeleton's size, a millimetre or two of a person, and what is
-// stored as floats begins to jerk. Never beyond what a float holds.
+// Max plausible distance of a joint from the origin in metres: 10,000 times the largest extent
+// along an axis of the skeleton's reference pose, or 1 m if that is smaller. At that distance the
+// spacing of floats is about a thousandth of the skeleton's size, 1 to 2 mm for a person, and
+// motion stored as floats starts to jitter. At most the largest float.
 double farthest_position(std::span<const Transform> reference);
 
-// Which frames have such values.
+// Frames with such values.
 struct FarValues {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  std::size_t first_rotation = kNone;  // the first frame with a rotation
-  std::size_t rotations = 0;           // how many frames have one
+  std::size_t first_rotation = kNone;  // first frame with such a rotation
+  std::size_t rotations = 0;           // number of frames with one
   std::size_t first_position = kNone;
   std::size_t positions = 0;
 
@@ -39,9 +39,9 @@ struct FarValues {
   void add(const FarValues& other);
 };
 
-// What is told of the first of them, without its place. `code` is the warning's, `channel` what the
-// file calls the rotation, `degrees` positive, `position` in metres; `of_file`, which may be empty,
-// what stands in the file, "Hips.Xposition is 1e9".
+// The warning about the first such value; the caller adds the location. `channel`: the rotation's
+// name in the file. `degrees`: positive. `frames`: number of frames with such values. `position`:
+// in metres. `of_file`: the value as in the file, "Hips.Xposition is 1e9"; may be empty.
 Error far_rotation(std::string code, std::string_view channel, double degrees, std::size_t frames);
 Error far_position(std::string code, std::string_view joint, const Vec3& position,
                    std::size_t frames, const std::string& of_file = {});

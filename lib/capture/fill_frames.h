@@ -4,9 +4,8 @@
 
 namespace krok {
 
-// Fills the frames between two whole ones (first < next) by interpolation relative to the parents:
-// positions linearly, orientations by slerp. Bones keep their lengths where both ends have the
-// same.
+// Fills the frames between two valid ones (first < next) by interpolating local transforms:
+// positions linearly, orientations by slerp. Preserves bone lengths that are equal at both ends.
 void fill_frames_between(Clip& clip, int first, int next);
 
 }  // namespace krok

@@ -5,8 +5,8 @@
 
 namespace krok {
 
-// A joint's name as a reader may keep it: UTF-8 (bytes that are not are read as Latin-1), with a _
-// for each control character but the tab.
+// Converts a joint name to valid UTF-8 (other text is read as Latin-1) and replaces each
+// control character except tab by '_'.
 std::string readable_joint_name(std::string_view bytes);
 
 }  // namespace krok

@@ -18,7 +18,7 @@ double degrees_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) / kRadiansPerDegree;
 }
 
-// What a pose is, in Krok's frame: legs down, trunk up, arms out (T) or hanging at an angle (A).
+// Classifies a pose in Krok's frame with legs down and trunk up: arms out (T) or lowered (A).
 PoseKind kind_of_pose(const RoleMap& roles, std::span<const Transform> pose) {
   if (!roles.humanoid) return PoseKind::unknown;
   const auto place = [&](Role role) {
@@ -44,13 +44,13 @@ PoseKind kind_of_pose(const RoleMap& roles, std::span<const Transform> pose) {
   return left_drop < 70 && right_drop < 70 ? PoseKind::a_pose : PoseKind::other;
 }
 
-// How joints turn against their parents from one frame to another.
+// Rotation of joints relative to their parents from one frame to another.
 struct Step {
   double largest = 0;    // degrees
-  int many_degrees = 0;  // joints that turn by 5 degrees or more
+  int many_degrees = 0;  // joints that rotate by at least 5 degrees
 };
 
-// The steps from one frame to the next, from the front.
+// Steps between successive frames, from the first frame on.
 class Steps {
  public:
   explicit Steps(const Clip& clip)
@@ -82,10 +82,10 @@ class Steps {
 
   const Clip& clip_;
   int frame_ = 0;
-  std::vector<Transform> world_, before_, now_;  // joints against their parents
+  std::vector<Transform> world_, before_, now_;  // before_, now_: local
 };
 
-// The share of joints with children that stand unturned against their parents, the root left out.
+// Fraction of joints, without root and end sites, that are not rotated relative to their parents.
 double unturned_share(const Clip& clip, int frame) {
   const auto joints = static_cast<std::size_t>(clip.joint_count());
   std::vector<Transform> world(joints), local(joints);
@@ -108,11 +108,11 @@ const char* name_of(PoseKind kind) {
     case PoseKind::a_pose:
       return "upright with the arms down";
     case PoseKind::other:
-      return "no T-pose";
+      return "not a T-pose";
     case PoseKind::unknown:
       break;
   }
-  return "of unknown kind, for no human figure was recognised";
+  return "of unknown kind, as no humanoid was recognised";
 }
 
 }  // namespace
@@ -132,15 +132,15 @@ RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
   clip.get_pose(0, pose);
   const bool t_pose = kind_of_pose(roles, pose) == PoseKind::t_pose;
-  // A T-pose is half the evidence.
+  // A T-pose is evidence too, so a smaller step suffices.
   constexpr double kMinStep = 15.0;  // degrees
   const double factor = t_pose ? 2.5 : 4.0;
-  // One or two joints that jump are a fault of the tracking.
+  // One or two joints that jump are a tracking error.
   const int fewest_joints = std::min(4, clip.joint_count() / 2);
   const bool apart = first_step.largest >= kMinStep && first_step.largest >= factor * later_step &&
                      first_step.many_degrees >= fewest_joints;
   if (!apart || (!t_pose && unturned_share(clip, 0) < 0.6)) {
-    if (t_pose) result.reference += "; the motion begins in a T-pose";
+    if (t_pose) result.reference += "; the motion starts in a T-pose";
     return result;
   }
   result.first_frame_is_rest = true;
@@ -159,7 +159,7 @@ bool settle_rest_frame(const RestPose& rest, RestFrame wish, const std::string& 
     const auto joints = static_cast<std::ptrdiff_t>(clip.joint_count());
     clip.positions.erase(clip.positions.begin(), clip.positions.begin() + joints);
     clip.orientations.erase(clip.orientations.begin(), clip.orientations.begin() + joints);
-    clip.provenance.conversions.emplace_back("the first frame, a rest pose, was left out");
+    clip.provenance.conversions.emplace_back("the first frame, a rest pose, was dropped");
   }
   if (!drop && !rest.first_frame_is_rest) return drop;
   Diagnostic told;
@@ -167,10 +167,10 @@ bool settle_rest_frame(const RestPose& rest, RestFrame wish, const std::string& 
   told.code = prefix + "-rest-frame";
   told.where.file = file_name;
   if (rest.first_frame_is_rest) {
-    told.message = fmt::format("{}; it {}", rest.reason, drop ? "was left out" : "was kept");
-    if (!drop) told.hint = "--skip-rest-frame auto leaves it out";
+    told.message = fmt::format("{}; it {}", rest.reason, drop ? "was dropped" : "was kept");
+    if (!drop) told.hint = "drop it with --skip-rest-frame auto";
   } else {
-    told.message = "the first frame was left out, as asked";
+    told.message = "the first frame was dropped as requested";
   }
   capture.diagnostics.push_back(std::move(told));
   return drop;

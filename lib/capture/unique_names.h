@@ -6,10 +6,10 @@
 
 namespace krok {
 
-// Names that were given out already.
+// A set of names in use.
 class UniqueNames {
  public:
-  // Claims a name that must stay as it is; false if it is taken.
+  // Claims a name without changing it; false if it is taken.
   bool claim(const std::string& name) { return taken_.insert(name).second; }
 
   // Claims the first free one of name, name_2, name_3, ...

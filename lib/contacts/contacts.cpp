@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kUsualLeg = 0.86;     // metres
 constexpr double kSamePlace = 0.15;    // metres
-constexpr double kJitterSpeed = 0.06;  // metres a second
+constexpr double kJitterSpeed = 0.06;  // metres per second
 constexpr double kJitterTimes = 2;
 constexpr double kLowestCutoff = 5;     // Hz
 constexpr double kRefineWindow = 0.12;  // seconds
 
-// A run of frames in which a point is still, edges in frames with fractions.
+// A run of frames in which a point is still; edges in fractional frames.
 struct Run {
   int track = 0;
   double first = 0, last = 0;
@@ -32,18 +32,18 @@ struct Run {
 struct Tracks {
   double rate = 30;
   std::vector<std::vector<Vec3>> raw, smooth;
-  std::vector<double> jitter;  // metres a second, what smoothing leaves
+  std::vector<double> jitter;  // metres per second, left after smoothing
 };
 
-// Where a value crosses `threshold` between frame f - 1 and f.
+// The fractional frame between f - 1 and f at which a value crosses `threshold`.
 double crossing(double before, double after, double threshold, int f) {
   const double rise = after - before;
   if (rise == 0) return f;
   return f - 1 + std::clamp((threshold - before) / rise, 0.0, 1.0);
 }
 
-// Runs of low values: on at or below `on`, off above `off`. The edges are where the value crosses
-// those.
+// Runs of low values with hysteresis: on at or below `on`, off above `off`. The edges are the
+// crossings of these thresholds.
 std::vector<Run> low_runs(const std::vector<double>& values, double on, double off) {
   std::vector<Run> runs;
   bool within = false;
@@ -79,7 +79,7 @@ Vec3 middle_place(const std::vector<Vec3>& track, double first, double last) {
   return {contacts::middle(values[0]), contacts::middle(values[1]), contacts::middle(values[2])};
 }
 
-// Cuts a run to where it is no higher above its own level than the thresholds say.
+// Cuts a run to its longest part within the thresholds of the run's own level.
 void cut_to_level(const std::vector<Vec3>& track, double on, double off, Run& run) {
   const int from = static_cast<int>(std::ceil(run.first)),
             to = static_cast<int>(std::floor(run.last));
@@ -154,7 +154,7 @@ class ContactFinder {
         kept.push_back(run);
       }
     }
-    // What is cut off by the clip's ends may have been longer.
+    // Runs cut off by the clip's ends may have been longer.
     std::erase_if(kept, [&](const Run& run) {
       if (run.open_start || run.open_end) return false;
       return run.last - run.first < options_.shortest * clip_.rate;
@@ -166,7 +166,7 @@ class ContactFinder {
     return found_.tracks[static_cast<std::size_t>(run.track)].point;
   }
 
-  // Whether the same part of a foot stood clearly lower in this place.
+  // Whether the same part of a foot was clearly lower at this position.
   bool floor_is_lower(const Run& run) const {
     return std::ranges::any_of(runs_, [&](const Run& other) {
       if (point(other).part != point(run).part) return false;
@@ -176,7 +176,8 @@ class ContactFinder {
     });
   }
 
-  // Whether the other foot stands lower all the while: this one then never bears the figure.
+  // Whether the other foot is in contact at a lower height throughout, so that this one never bears
+  // weight.
   bool other_foot_bears(const Run& run) const {
     for (double f = std::ceil(run.first); f <= run.last; ++f) {
       const bool borne = std::ranges::any_of(runs_, [&](const Run& other) {
@@ -187,8 +188,8 @@ class ContactFinder {
     }
     return true;
   }
-  // How much higher one part of a flat foot is than the other's; parts are points at the sole, so
-  // nothing, but a joint for the ball lies in the foot.
+  // The height of one part of a flat foot above another: 0 for points of the sole, but a ball joint
+  // is inside the foot.
   double rise_of(const Run& run, const Run& other) const {
     return point(run).part == point(other).part ? 0 : 0.03 * scale_;
   }
@@ -211,8 +212,7 @@ class ContactFinder {
     if (last > first) run.first = first, run.last = last;
   }
 
-  // The support under a point at a frame: the level of the stay it is in, between two stays from
-  // one to the other.
+  // The support height at a frame: the level of the contact there, interpolated between contacts.
   void set_heights() {
     for (std::size_t t = 0; t < found_.tracks.size(); ++t) {
       PointTrack& track = found_.tracks[t];
@@ -252,12 +252,12 @@ class ContactFinder {
   std::vector<Run> runs_;
 };
 
-// The stays that joints make.
+// Contacts of joints, from the stays of their points.
 void take_contacts(const Clip& clip, FoundContacts& found) {
   for (const Stay& stay : found.stays) {
     const SolePoint& point = found.tracks[static_cast<std::size_t>(stay.track)].point;
     if (point.estimated && point.part != FootPart::heel) continue;
-    // A touch at the clip's very end is a moment, not a stay.
+    // A touch at the clip's very end is an instant, not a contact.
     if ((stay.end - stay.start) * clip.rate < 1) continue;
     SolePoint joint = point;
     joint.offset = Vec3::Zero();
@@ -289,21 +289,21 @@ Result<FoundContacts> find_contacts(const Clip& clip, const RoleMap& roles,
     for (const SolePoint& point : points) found.tracks.push_back({point, {}, {}});
   }
   if (found.tracks.empty()) {
-    return Error("contacts-feet", "no joint of this skeleton is known to be a foot",
-                 "a role map tells which joints are legs and feet");
+    return Error("contacts-feet", "no foot joint was found in the skeleton",
+                 "assign the joints of legs and feet with a role map");
   }
   if (clip.frame_count() < 3) {
     found.warnings.push_back(
         warning("contacts-short",
-                fmt::format("{} frames are too few to tell what moves", clip.frame_count()), ""));
+                fmt::format("{} frames are too few to detect contacts", clip.frame_count()), ""));
     return found;
   }
   ContactFinder(clip, options, found).find();
   take_contacts(clip, found);
   if (found.contacts.empty()) {
     found.warnings.push_back(
-        warning("contacts-none", "no part of a foot ever stays in one place",
-                "does the figure walk in place, as on a treadmill, or float?"));
+        warning("contacts-none", "no foot contact was found",
+                "the character may walk in place, as on a treadmill, or float"));
   }
   return found;
 }

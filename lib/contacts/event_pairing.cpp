@@ -14,11 +14,11 @@ constexpr double kFar = 0.06;        // seconds
 constexpr double kVeryFar = 0.15;    // seconds
 constexpr double kScattered = 0.05;  // seconds
 constexpr double kPairWithin = 0.3;  // cycles
-// How long before the toes turn behind the pelvis contacts may have them leave: the published
+// How long contacts may end before the toes' turning point behind the pelvis: the published
 // agreement of the two is a frame at 60 Hz.
 constexpr double kEarly = 0.025;  // seconds
 
-// The index of the value nearest to `time` within `reach`, or nothing.
+// Index of the value nearest to `time`, at most `reach` away.
 std::optional<std::size_t> nearest(const std::vector<double>& values, double time, double reach) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -109,7 +109,7 @@ Events Pairing::events_with(const Offset& offset) const {
       continue;
     }
     double weight = offset.weight_of(found - expected);
-    // A seed is wrong that has the foot stand where it still moves.
+    // The seed is wrong if the foot still moves between prediction and event.
     if (weight == 0 && !offset.jittery && moves(found, expected)) weight = 1;
     result.times.push_back(expected + weight * (found - expected));
   }

@@ -6,27 +6,27 @@
 
 #include "contacts/gait_seeds_internal.h"
 
-// What contacts show of a foot's strikes, or of its offs, held against the seeds.
+// Matches a foot's strikes or toe-offs, as found from contacts, with the seeds.
 
 namespace krok::contacts {
 
-// Seconds after the foot's turning points, and of an off after the toes' own.
+// Seconds after the foot's turning points; for toe-offs also after the toes' own.
 inline constexpr double kStrikeAfterFront = 0.03, kOffAfterBack = 0.01, kOffAfterToes = -0.01;
 
-// What the pairs of seeds and events of one kind have in common, over both feet.
+// Statistics of the time from seeds to events of one kind, over both feet.
 struct Offset {
-  double usual, spread = 0;  // seconds, median and median deviation
+  double usual, spread = 0;  // seconds, median and median absolute deviation
   bool known = false;
   bool jittery = false;
-  bool scattered = false;  // too much for a seed to tell an event that no contact shows
+  bool scattered = false;  // too much to predict an event without a contact from its seed
 
-  // How much what the contacts show counts beside what the seeds let expect: all of it where they
-  // agree as well as people's steps are alike or the capture is clean, little where jitter scatters
-  // it, nothing where it lies far off.
+  // Weight, 0 to 1, of an event from contacts against its prediction from the seed, `apart` seconds
+  // away: 1 if the offsets are as consistent as people's steps or the capture is clean, small if
+  // jitter scatters them, 0 for outliers.
   double weight_of(double apart) const;
 };
 
-// `usual` is for where there are no offsets to tell it, or they scatter.
+// `usual` is used if there are no offsets or they scatter.
 Offset offset_of(std::vector<double> offsets, double usual, bool jittery);
 
 struct Events {
@@ -37,25 +37,24 @@ struct Events {
 struct Pairing {
   const std::vector<double>* seeds = nullptr;  // of this kind of event
   const Seeds* all = nullptr;
-  std::vector<double> events;                     // as contacts show them
-  std::vector<std::optional<std::size_t>> event;  // of each seed, set by pair()
+  std::vector<double> events;                     // from contacts
+  std::vector<std::optional<std::size_t>> event;  // [seeds], index into events; set by pair()
   std::vector<Stance> stances;
   double cycle = kUsualCycle;
-  // Whether the foot is down beside a seed.
+  // Whether the foot is down near a seed.
   std::function<bool(double seed)> is_low;
-  // When a foot that rolls off over its toes leaves the ground at a seed, or nothing where it does
-  // not; may be empty.
+  // When a foot that rolls off over its toes leaves the ground at a seed; nullopt if it does not
+  // roll off. May be empty.
   std::function<std::optional<double>(double seed)> rolls_off;
-  // Whether the foot is elsewhere at one moment than at another.
+  // Whether the positions of the foot at two times differ.
   std::function<bool(double from, double to)> moves;
-  // Whether nothing shows when its toes leave: it has no point for them, or, by what the contacts
-  // show, they leave long before they do so in walking (a joint that stands still does not bend
-  // with them).
+  // Whether contacts do not show toe-off: the foot has no point for the toes, or its contacts end
+  // long before toe-off in walking (a joint that is not animated does not bend with the toes).
   bool toes_unseen = false;
 
   void pair();
   void add_offsets(std::vector<double>& offsets) const;
-  // How much earlier, in seconds, contacts have the foot leave than it does in rolling off.
+  // By how many seconds contacts end before the toe-off of a foot that rolls off.
   void add_early(std::vector<double>& early) const;
   Events events_with(const Offset& offset) const;
 
@@ -63,7 +62,7 @@ struct Pairing {
   bool stands_at(double time) const;
 };
 
-// Whether contacts have feet leave so early that they do not show the toes.
+// Whether contacts end so early that they do not show the toes.
 bool leave_early(const std::vector<double>& early);
 
 }  // namespace krok::contacts

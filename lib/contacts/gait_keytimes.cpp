@@ -41,7 +41,7 @@ class KeytimeFinder {
   }
 
  private:
-  // Of two strikes of a foot in a row the first stays, of two offs the last.
+  // Of two consecutive strikes of a foot keeps the first, of two toe-offs the last.
   static void make_alternate(std::vector<Keytime>& keytimes) {
     std::vector<std::uint8_t> kept(keytimes.size(), 1);
     for (const char* side : {"left", "right"}) {
@@ -68,7 +68,7 @@ class KeytimeFinder {
     for (const Stance& stance : foot.stances) {
       if (!stance.open_start) times.push_back(stance.start);
     }
-    // A capture that sets in with a jerk has standing feet come to rest at once.
+    // In a capture that starts with a jerk, standing feet seem to strike at once.
     const bool jerk = !times.empty() && times.front() == foot.stances.front().start &&
                       times.front() < kJerk && is_cut_short(foot, times.front());
     if (jerk) times.erase(times.begin());
@@ -130,8 +130,8 @@ class KeytimeFinder {
     }
   }
 
-  // A clip that is cut at a strike begins with a foot that rolls over its heel. How long that takes
-  // is known from the other strikes.
+  // A clip cut at a strike starts while the foot rolls over its heel. How long that takes is known
+  // from the other strikes.
   void add_first_strike(const Foot& foot, std::vector<double>& strikes) const {
     if (foot.stances.empty() || !foot.stances.front().open_start || foot.tracks.size() < 2) return;
     std::vector<double> rolls;
@@ -158,8 +158,8 @@ class KeytimeFinder {
     }
   }
 
-  // Whether the first stance is too short to have begun at that strike: the clip begins in the
-  // middle of it.
+  // Whether the first stance is too short to have begun at that strike, so that the clip starts in
+  // the middle of it.
   static bool is_cut_short(const Foot& foot, double strike) {
     std::vector<double> lengths;
     for (const Stance& stance : foot.stances) {
@@ -169,8 +169,8 @@ class KeytimeFinder {
     return foot.stances.front().end - strike < kWhole * contacts::middle(lengths);
   }
 
-  // A clip that is cut at a strike ends with a foot about to touch, a usual swing after its off;
-  // the few frames in which it slows down do not tell when better.
+  // A clip cut at a strike ends with a foot about to touch, a usual swing after its toe-off; the
+  // few frames of its slowing down give no better estimate.
   void add_last_strike(const Foot& foot, std::vector<double>& strikes) const {
     std::vector<double> swings;
     for (std::size_t i = 1; i < foot.stances.size(); ++i) {
@@ -213,14 +213,15 @@ Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& foun
     warn("gait-none", "no step was found", "");
   } else if (found.contacts.empty()) {
     warn("gait-in-place",
-         "no part of a foot stays in one place, so keytimes are where the feet turn before and "
-         "behind the pelvis",
-         "a figure that walks on the spot slides; its strikes and offs are good to some 30 ms");
+         "no foot contact was found, so keytimes are when each foot is furthest ahead of or behind "
+         "the pelvis",
+         "feet slide when walking in place; strikes and toe-offs are accurate to about 30 ms");
   } else if (gait.from_seeds > 0) {
     warn("gait-seeds",
-         fmt::format("{} of {} keytimes are shown by no contact", gait.from_seeds,
+         fmt::format("{} of {} keytimes have no matching contact", gait.from_seeds,
                      gait.keytimes.size()),
-         "they are where the foot turns before or behind the pelvis; look at them with --plot");
+         "they are estimated from the foot's extremes relative to the pelvis; check them with "
+         "--plot");
   }
   return gait;
 }

@@ -47,8 +47,8 @@ GaitMetrics gait_metrics(const std::vector<Keytime>& keytimes) {
   if (metrics.cycles == 0) return metrics;
   metrics.cycle = length / metrics.cycles;
   metrics.cadence = 120 / metrics.cycle;
-  // A foot's cycle has two times of double support; by the stances alone they are what exceeds the
-  // whole, which needs no pairing of cycles at the clip's ends.
+  // Double support is the excess of both stance fractions over 1, which needs no pairing of cycles
+  // at the clip's ends.
   if (!cycles[0].empty() && !cycles[1].empty()) {
     metrics.double_support = std::max(0.0, metrics.stance[0] + metrics.stance[1] - 1);
   }

@@ -3,21 +3,21 @@
 
 #include "contacts/walking_feet_internal.h"
 
-// How a foot leaves the ground.
+// Detects how a foot leaves the ground.
 
 namespace krok::contacts {
 
 namespace {
 
-constexpr double kStair = 0.14;    // metres, a stride's rise
-constexpr double kGravity = 9.81;  // metres a second squared
-// Froude numbers, speed squared over gravity times leg: people break into a run at the one; no leg
-// vaults faster than the other.
+constexpr double kStair = 0.14;    // metres, rise of a stride
+constexpr double kGravity = 9.81;  // metres per second squared
+// Froude numbers, speed squared over gravity times leg length: above kRun people run; kFastest is
+// the limit for a leg that vaults.
 constexpr double kRun = 0.5, kFastest = 1;
-constexpr double kFlat = 0.003;        // of the leg, of the pelvis' rise over a step
-constexpr double kFlatBefore = 0.35;   // of a cycle, from a foot that is flat to one that leaves
-constexpr double kPitched = 0.06;      // of the leg, of the heel over the toes
-constexpr double kTurnsWithin = 0.15;  // seconds, of the toes about the foot's back seed
+constexpr double kFlat = 0.003;        // leg lengths, rise of the pelvis over a step
+constexpr double kFlatBefore = 0.35;   // cycles, from flat foot to toe-off
+constexpr double kPitched = 0.06;      // leg lengths, heel above toes
+constexpr double kTurnsWithin = 0.15;  // seconds, of the toes around the foot's back seed
 
 }  // namespace
 
@@ -48,7 +48,7 @@ WalkingFeet::Carriage WalkingFeet::carriage() const {
 }
 
 bool WalkingFeet::is_pitched(const Foot& foot, double seed) const {
-  if (foot.tracks.size() < 2) return true;  // nothing tells
+  if (foot.tracks.size() < 2) return true;  // unknown
   const auto rise = [&](double time) {
     const std::size_t f = frame_at(time);
     return tracks_[foot.tracks.front()][f].y() - tracks_[foot.tracks.back()][f].y();
@@ -77,7 +77,7 @@ double WalkingFeet::toes_back(const Foot& foot, double seed) const {
     if (toes_reach(foot, f) < toes_reach(foot, back)) back = f;
   }
   if (back == 0 || back + 1 >= clip_.frame_count()) return back / clip_.rate;
-  // The lowest point of the parabola through three frames.
+  // The minimum of the parabola through three frames.
   const double before = toes_reach(foot, back - 1), after = toes_reach(foot, back + 1);
   const double bend = before + after - 2 * toes_reach(foot, back);
   const double part = bend > 0 ? 0.5 * (before - after) / bend : 0;

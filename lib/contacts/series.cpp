@@ -30,7 +30,7 @@ std::vector<Vec3> velocities(const std::vector<Vec3>& track, double rate) {
     const std::size_t from = f == 0 ? 0 : f - 1, to = std::min(f + 1, track.size() - 1);
     result[f] = (track[to] - track[from]) * (rate / static_cast<double>(to - from));
   }
-  // The slope at the end of the parabola through the last three.
+  // At the ends the slope of the parabola through three frames.
   const std::size_t n = track.size();
   if (n > 2) {
     result[0] = (4 * track[1] - 3 * track[0] - track[2]) * (rate / 2);
@@ -54,19 +54,19 @@ double middle(std::vector<double> values) {
 
 namespace {
 
-// How much better a sudden start must fit to be believed: it bends to jitter more readily, and
-// feet mostly start smoothly.
+// How much better a sudden start must fit to be accepted: it overfits jitter, and feet mostly start
+// smoothly.
 constexpr double kSudden = 30;
 
-// How the moving side begins: without velocity, or with one at once.
+// How the moving side starts: at zero velocity, or at a finite one.
 enum class Start : unsigned char { smooth, sudden };
 
-// The sum of squares that the best two pieces meeting at `moment` leave.
+// The residual sum of squares of the best two pieces that meet at `moment`.
 double misfit(const std::vector<Vec3>& track, int first, int last, double moment, bool arrives,
               double stiffness, Start start) {
   const int count = last - first + 1;
-  // One row more, which holds the drift down: a point that stays drifts only where its place on the
-  // foot is not quite right, and jitter must not be taken for that.
+  // An extra row penalises drift: a resting point drifts only if its position on the foot is
+  // slightly wrong, and jitter must not be fitted as drift.
   Eigen::MatrixXd basis(count + 1, 4);
   Eigen::MatrixXd values(count + 1, 3);
   basis.row(count) << 0, 0, 0, stiffness * (last - first);
@@ -87,7 +87,7 @@ double misfit(const std::vector<Vec3>& track, int first, int last, double moment
 double break_near(const std::vector<Vec3>& track, double guess, double window, bool arrives,
                   double stiffness) {
   constexpr double kStep = 0.25;  // frames
-  constexpr int kRounds = 4;      // the window follows the moment found
+  constexpr int kRounds = 4;      // the window is re-centred on the result
   const int last_frame = static_cast<int>(track.size()) - 1;
   double best = guess;
   for (int round = 0; round < kRounds; ++round) {
@@ -95,7 +95,7 @@ double break_near(const std::vector<Vec3>& track, double guess, double window, b
     const int first = std::max(0, static_cast<int>(std::ceil(middle - window)));
     const int last = std::min(last_frame, static_cast<int>(std::floor(middle + window)));
     if (last - first + 1 < 7) return best;
-    // Two frames at least on either side.
+    // At least two frames on either side.
     const double low = std::max(middle - 0.6 * window, first + 1.5);
     const double high = std::min(middle + 0.6 * window, last - 1.5);
     double least = -1;
@@ -115,7 +115,7 @@ double break_near(const std::vector<Vec3>& track, double guess, double window, b
 double jitter_of(const std::vector<Vec3>& track) {
   // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance, that of movement
   // is small; the lower quartile of |x| of a Gaussian is 0.3186 of its deviation; feet rest for
-  // longer than that.
+  // more than a quarter of the time.
   double worst = 0;
   std::vector<double> differences;
   for (int axis = 0; axis < 3; ++axis) {
@@ -133,8 +133,8 @@ double jitter_of(const std::vector<Vec3>& track) {
 }
 
 double cutoff_for(double jitter, double speed, double rate) {
-  // White noise low-passed at c and differentiated keeps a variance of 2 (2 pi)^2 c^3 / (3 rate) of
-  // its own on each of three axes.
+  // White noise low-passed at c and differentiated has 2 (2 pi)^2 c^3 / (3 rate) times its variance
+  // on each of three axes.
   if (!(jitter > 0)) return rate;
   return std::cbrt(speed * speed * rate / (8 * kPi * kPi * jitter * jitter));
 }

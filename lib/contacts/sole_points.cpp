@@ -9,7 +9,7 @@ namespace krok {
 
 namespace {
 
-// Of the leg, hip to ankle: 0.491 of the stature (Drillis and Contini).
+// Fractions of the leg, hip to ankle, which is 0.491 of the stature (Drillis and Contini).
 constexpr double kAnkleHeight = 0.0794;
 constexpr double kHeelBehind = 0.0733;
 constexpr double kBallHeight = 0.0224;
@@ -18,8 +18,8 @@ constexpr double kTipForward = 0.236;
 constexpr double kTipHeight = 0.012;
 constexpr double kLowestAnkle = 0.04, kHighestAnkle = 0.16;
 
-constexpr double kStillSpeed = 0.17;  // legs a second: 0.15 m/s for a leg of 0.86 m
-constexpr double kJump = 0.1;         // of the leg
+constexpr double kStillSpeed = 0.17;  // leg lengths per second: 0.15 m/s for a leg of 0.86 m
+constexpr double kJump = 0.1;         // leg lengths
 constexpr double kLowest = 0.2;       // of all frames
 constexpr int kFewest = 5;            // frames
 
@@ -78,7 +78,7 @@ Leg find_leg(const Skeleton& skeleton, const RoleMap& roles, FootSide side) {
       leg.toes = joint;
     }
   }
-  // With a joint for the toes what ends below it is their tip, not the heel's end.
+  // With a toe joint, only end sites below it are the tip, not one of the heel.
   const std::vector<int> ends = ends_below(leg.toes >= 0 ? leg.toes : leg.foot);
   beyond.insert(beyond.end(), ends.begin(), ends.end());
   leg.tip = furthest(skeleton, leg.foot, beyond);
@@ -100,7 +100,7 @@ Quat orientation(const Clip& clip, int frame, int joint) {
       .normalized();
 }
 
-// The frames in which the foot is flat as far as can be told; empty for the reference pose.
+// The frames in which the foot is probably flat; empty: use the reference pose.
 std::vector<int> flat_frames(const Clip& clip, const Leg& leg, double leg_length) {
   const int frames = clip.frame_count();
   std::vector<int> flat;
@@ -128,7 +128,7 @@ std::vector<int> flat_frames(const Clip& clip, const Leg& leg, double leg_length
   return flat;
 }
 
-// Up in a joint's frame while the foot is flat, the median over its frames.
+// The up direction in a joint's frame while the foot is flat, the median over these frames.
 Vec3 up_in(const Clip& clip, int joint, const std::vector<int>& flat) {
   const Quat& reference = clip.skeleton.reference[static_cast<std::size_t>(joint)].orientation;
   const Vec3 at_reference = reference.conjugate() * Vec3::UnitY();
@@ -143,7 +143,7 @@ Vec3 up_in(const Clip& clip, int joint, const std::vector<int>& flat) {
   return up.norm() > 0.1 ? Vec3(up.normalized()) : at_reference;
 }
 
-// Where a joint is in another's frame while the foot is flat.
+// Position of a joint in another joint's frame while the foot is flat.
 Vec3 place_in(const Clip& clip, int joint, int frame_joint, const std::vector<int>& flat) {
   const auto relative = [](const Vec3& at, const Vec3& origin, const Quat& turn) -> Vec3 {
     return turn.conjugate() * Vec3(at - origin);
@@ -162,7 +162,7 @@ Vec3 place_in(const Clip& clip, int joint, int frame_joint, const std::vector<in
   return {contacts::middle(values[0]), contacts::middle(values[1]), contacts::middle(values[2])};
 }
 
-// Straight ahead in the foot joint's frame, at right angles to up.
+// The forward direction in the foot joint's frame, perpendicular to `up`.
 Vec3 forward_in(const Clip& clip, const Leg& leg, const Vec3& up, const std::vector<int>& flat) {
   const auto level = [&](const Vec3& v) -> Vec3 { return v - up * up.dot(v); };
   const int front = leg.tip >= 0 ? leg.tip : leg.toes;
@@ -195,7 +195,7 @@ std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side
       {side, FootPart::heel, leg.foot, -up * ankle - forward * (kHeelBehind * length), true});
   if (leg.toes >= 0) {
     points.push_back({side, FootPart::ball, leg.toes, Vec3::Zero(), false});
-    // Toes bend, so which way their tip lies is asked of the foot.
+    // Toes bend, so the direction to their tip is taken from the foot.
     const Vec3 toes_up = up_in(clip, leg.toes, flat);
     if (leg.tip >= 0) {
       points.push_back({side, FootPart::tip, leg.tip, Vec3::Zero(), false});

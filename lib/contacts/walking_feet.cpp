@@ -12,21 +12,21 @@ namespace {
 
 constexpr double kSeedCutoff = 6;      // Hz
 constexpr double kTravelCutoff = 0.6;  // Hz
-constexpr double kTravelSpeed = 0.3;   // metres a second
+constexpr double kTravelSpeed = 0.3;   // metres per second
 constexpr double kGap = 0.1;           // seconds
 constexpr double kJitter = 0.001;      // metres, frame to frame
 constexpr double kSlowing = 0.08;      // seconds
 constexpr double kSettling = 0.03;     // seconds
-constexpr double kRest = 0.15;         // metres a second
+constexpr double kRest = 0.15;         // metres per second
 constexpr double kJitterTimes = 2;
 constexpr double kSpeedCutoff = 15;  // Hz, of the tracks' speeds
 constexpr double kTogether = 0.06;   // seconds
-constexpr double kWindow = 0.12;     // seconds, to both sides of a break
+constexpr double kWindow = 0.12;     // seconds, on either side of a break
 constexpr double kJitteryWindow = 0.18;
-constexpr double kHeelUp = 0.02;    // metres over its support
+constexpr double kHeelUp = 0.02;    // metres above its support
 constexpr double kForward = 0.7;    // cosine between travel and facing
 constexpr double kEnd = 0.12;       // seconds at a clip's ends
-constexpr double kEndMovement = 2;  // metres, times seconds squared: half of a slow landing's
+constexpr double kEndMovement = 2;  // metres per second squared: half a slow landing's deceleration
 
 double level_norm(const Vec3& v) {
   return std::hypot(v.x(), v.z());
@@ -43,7 +43,7 @@ class FootSteps {
     std::ranges::stable_sort(stays_, {}, &Stance::start);
   }
 
-  // The foot's stances: stays of its points, breaks in between that are no steps left out.
+  // Merges the stays of the foot's points to stances, closing gaps that are not steps.
   template <typename IsStep>
   void join(const IsStep& is_step) {
     for (const Stance& stay : stays_) {
@@ -67,7 +67,7 @@ class FootSteps {
   std::vector<Stance> stays_;
 };
 
-// The moment, in frames, between a frame that is slow and its neighbour that is not.
+// The fractional frame at which the speed crosses `slow` between a slow frame and its neighbour.
 template <typename Speed>
 double crossed(const Speed& speed, int slow_frame, int fast_frame, int frames, double slow) {
   if (fast_frame < 0 || fast_frame >= frames) return slow_frame;
@@ -172,7 +172,7 @@ bool WalkingFeet::is_low(const Foot& foot, int frame, double floor) const {
 }
 
 bool WalkingFeet::stays_low(const Foot& foot, double seed, bool front) const {
-  // Where the clip begins or ends before the other seed, there.
+  // Without another seed within a cycle: a cycle away, within the clip.
   double other =
       front ? std::min(clip_.duration(), seed + foot.cycle) : std::max(0.0, seed - foot.cycle);
   for (const double time : front ? foot.seeds.back : foot.seeds.front) {
@@ -275,7 +275,7 @@ void WalkingFeet::to_touches(const Foot& foot, double before, double after, Stan
   if (starts.empty()) return;
   stance.start = *std::ranges::min_element(starts);
   if (!jittery_) return;
-  // The earliest of several that jitter scatters about one moment is too early.
+  // The earliest of several starts that jitter scatters around one time is too early.
   std::erase_if(starts, [&](double start) { return start > stance.start + kTogether; });
   stance.start =
       std::accumulate(starts.begin(), starts.end(), 0.0) / static_cast<double>(starts.size());
@@ -302,7 +302,7 @@ double WalkingFeet::touch(std::size_t t, double from, double limit, bool first) 
   const double stiffness = jittery_ ? 0.3 : 0.1;
   const double found = break_near(raw_[t], f, window, first, stiffness);
   if (!first) return std::max(found / clip_.rate, from);
-  // The ball and the tip go down evenly while the foot rolls over its heel; that ends no slowing.
+  // Ball and tip go down evenly while the foot rolls over its heel, without a deceleration.
   const bool heel = found_.tracks[t].point.part == FootPart::heel;
   const double slowed = heel ? end_of_slowing(t, f, last, found) : found;
   return std::min(slowed / clip_.rate, from);
@@ -323,7 +323,7 @@ double WalkingFeet::end_of_slowing(std::size_t t, int frame, int earliest, doubl
   int f = most + 1;
   while (f <= last && slowing(f) > half) ++f;
   if (!(half > 0) || f > last) return rest;
-  // Slowing from a frame to the next is that of the moment half-way.
+  // The deceleration between two frames is that at the time half-way.
   const double end = f - 0.5 + (slowing(f - 1) - half) / (slowing(f - 1) - slowing(f));
   const auto speed_at = [&](double time) {
     const double at = std::clamp<double>(time, 0, last);
@@ -334,11 +334,11 @@ double WalkingFeet::end_of_slowing(std::size_t t, int frame, int earliest, doubl
   const double settled = std::ceil(rest + std::max(1.0, kSettling * clip_.rate));
   const bool rests = std::min(speed_at(settled), speed_at(settled + 1)) <
                      std::hypot(kRest * leg_ / kUsualLeg, jitter);
-  // Speeds of few frames a second, which no filter has smoothed, do not tell that.
+  // At low frame rates speeds are unfiltered, so they cannot show that.
   const bool coarse = clip_.rate < 2.5 * kSpeedCutoff;
   const bool goes_on =
       coarse || speed_at(end) - speed_at(rest) + jitter >= 0.5 * half * (rest - end);
-  // A heel that is still up comes down after the ball, as on the way down stairs.
+  // A heel that is still up lands after the ball, as when descending stairs.
   const double height = found_.tracks[t].height[static_cast<std::size_t>(std::max(0.0, end))];
   const bool is_up = height > kHeelUp * leg_ / kUsualLeg;
   return is_up || (rests && goes_on) ? rest : end;

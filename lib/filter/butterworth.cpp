@@ -14,7 +14,7 @@ namespace {
 
 void run(const Section& s, std::span<double> series) {
   if (series.empty()) return;
-  // The state that a constant input leaves behind (direct form II transposed).
+  // Steady state of a constant input (direct form II transposed).
   double state2 = (s.b2 - s.a2) * series[0];
   double state1 = (s.b1 - s.a1) * series[0] + state2;
   for (double& value : series) {
@@ -29,20 +29,17 @@ void run(const Section& s, std::span<double> series) {
 
 Result<std::vector<Section>> design(const Butterworth& filter, double rate) {
   if (filter.order < 2 || filter.order > 8 || filter.order % 2 != 0) {
-    return Error(
-        "filter-order",
-        fmt::format("a Butterworth filter of order {} cannot be run both ways", filter.order),
-        "the order is that of both passes: 2, 4, 6 or 8");
+    return Error("filter-order", fmt::format("invalid Butterworth filter order {}", filter.order),
+                 "the order of both passes together must be 2, 4, 6 or 8");
   }
   const int poles = filter.order / 2;
   if (!(filter.cutoff > 0) || !std::isfinite(filter.cutoff) || !(filter.cutoff < rate / 2)) {
     return Error("filter-cutoff",
-                 fmt::format("a cutoff of {} Hz does not lie between 0 and {} Hz, half the frame "
-                             "rate",
+                 fmt::format("a cutoff of {} Hz is not between 0 and {} Hz, half the frame rate",
                              readable(filter.cutoff), readable(rate / 2)),
-                 "movement of people is kept by 6 Hz to 12 Hz");
+                 "6 Hz to 12 Hz suit human motion");
   }
-  // |H|^2 of one pass is 1 / (1 + (w / corner)^(2 poles)); two passes square it once more.
+  // |H|^2 of one pass is 1 / (1 + (w / corner)^(2 poles)); two passes square it.
   const double correction = std::pow(std::numbers::sqrt2 - 1, -1.0 / (2 * poles));
   const double w = std::tan(std::numbers::pi * filter.cutoff / rate) * correction;
   std::vector<Section> sections;

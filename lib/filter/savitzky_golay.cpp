@@ -10,31 +10,29 @@ namespace krok::filter {
 
 namespace {
 
-// The rows of weights take window^2 numbers.
+// The weights take window^2 values.
 constexpr int kLargestWindow = 2001;
 
 }  // namespace
 
 Status check(const SavitzkyGolay& filter) {
   if (filter.window < 1 || filter.window % 2 == 0 || filter.window > kLargestWindow) {
-    return Error(
-        "filter-window",
-        fmt::format("a window of {} frames does not fit, for it needs a middle", filter.window),
-        fmt::format("choose an odd number up to {}", kLargestWindow));
+    return Error("filter-window", fmt::format("invalid window of {} frames", filter.window),
+                 fmt::format("use an odd number from 1 to {}", kLargestWindow));
   }
   constexpr int kHighest = 12;
   if (filter.degree < 0 || filter.degree >= filter.window || filter.degree > kHighest) {
     return Error("filter-degree",
                  fmt::format("a polynomial of degree {} cannot be fitted to {} frames",
                              filter.degree, filter.window),
-                 fmt::format("the degree is less than the window and at most {}", kHighest));
+                 fmt::format("the degree must be less than the window and at most {}", kHighest));
   }
   return {};
 }
 
 PolynomialSmoother::PolynomialSmoother(const SavitzkyGolay& filter) : window_(filter.window) {
   const int n = window_, columns = filter.degree + 1;
-  // Legendre's recurrence over [-1, 1]: columns that are nearly perpendicular, whatever the degree.
+  // Legendre recurrence over [-1, 1]: the columns are nearly orthogonal for any degree.
   Eigen::MatrixXd basis(n, columns);
   for (int row = 0; row < n; ++row) {
     const double x = n == 1 ? 0 : 2.0 * row / (n - 1) - 1;

@@ -13,12 +13,11 @@ namespace krok::filter {
 
 using Smoothing = std::variant<Butterworth, SavitzkyGolay>;
 
-// Filters a motion against jitter, joint by joint: rotations relative to the parent by
-// smooth_rotations, positions of the root and of joints that move in their parents by
-// smooth_positions. Bones keep their lengths; nothing is shifted in time; rate and number of frames
-// stay. Joints with 0 in `joints` keep their rotation relative to the parent; an empty span selects
-// all. A clip of fewer than three frames comes back as it is, as does one shorter than the window
-// of a SavitzkyGolay. Codes: those of the filters.
+// Removes jitter per joint: local rotations by smooth_rotations; positions of the root and of
+// joints that translate relative to their parents by smooth_positions. Preserves bone lengths,
+// timing, frame rate and frame count. Joints with 0 in `joints` keep their local rotation and
+// position; an empty span selects all joints. Clips of fewer than three frames, or shorter than the
+// window of a SavitzkyGolay, are returned unchanged. Codes: those of the filters.
 Result<Clip> smooth(const Clip& clip, const Smoothing& smoothing,
                     std::span<const std::uint8_t> joints, int jobs = 1);
 

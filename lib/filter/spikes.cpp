@@ -26,7 +26,7 @@ Quat moved(const Quat& from, const Vec3& by) {
   return from * from_rotation_vector(by);
 }
 
-constexpr int kPair = 3;  // frames of two spikes with a sound one between them
+constexpr int kPair = 3;  // frames of two spikes with one valid frame between them
 
 struct Run {
   int first, last;
@@ -45,8 +45,8 @@ class SpikeFinder {
         longest_(longest),
         around_(around) {}
 
-  // Replaces spikes in the series. Short ones first: a long one may seem to be there only because
-  // of a short one.
+  // Replaces spikes in the series, short ones first: a short one may look like part of a longer
+  // one.
   std::vector<Run> remove() {
     std::vector<Run> runs;
     if (count_ < 5) return runs;
@@ -67,8 +67,8 @@ class SpikeFinder {
   const Value& value(int frame) const { return series_[at(frame)]; }
   double limit(int frame) const { return limits_[at(frame)]; }
 
-  // The frames that a guess at `frame` stands on when `run` is not to be believed: two on each
-  // side, where the clip has them; only two in all if one side has none.
+  // The frames from which the value at `frame` is predicted without those of `run`: up to two on
+  // each side, so two in total if one side has none.
   struct Support {
     std::array<int, 4> frames{};
     int count = 0;
@@ -90,7 +90,7 @@ class SpikeFinder {
     return found;
   }
 
-  // Lagrange's polynomial through the support, in the tangent space of its first frame.
+  // Lagrange polynomial through the support, in the tangent space of its first frame.
   Value guess(int frame, const Support& support) const {
     const Value& base = value(support.frames[0]);
     Vec3 sum = Vec3::Zero();
@@ -106,7 +106,7 @@ class SpikeFinder {
     return moved(base, sum);
   }
 
-  // How far the frame lies from the guess, and what is allowed, as a ratio; over 1 is too far.
+  // Distance of the frame from the prediction, divided by the limit; over 1 exceeds it.
   double excess(int frame, const Run& run) const {
     const Support from = support(frame, run);
     if (from.count < 2) return 0;
@@ -114,13 +114,13 @@ class SpikeFinder {
     return distance / (from.both_sides ? limit(frame) : 2 * limit(frame));
   }
 
-  // Of the first frame of a run from a guess without the run.
+  // Distance of the first frame of a run from its prediction without the run.
   double deviation(int frame, int length) const {
     const Run run{frame, std::min(count_, frame + length) - 1, 0};
     return difference(guess(frame, support(frame, run)), value(frame)).norm();
   }
 
-  // What is usual depends on how far the guess must reach.
+  // The usual deviation depends on the length of the gap that is predicted across.
   void set_limits(int length) {
     std::vector<double> usual;
     for (int f = 0; f < count_; ++f) usual.push_back(deviation(f, length));
@@ -135,7 +135,7 @@ class SpikeFinder {
     }
   }
 
-  // A jump between a frame and the one before shows in the deviation of at least one of them.
+  // A jump between a frame and the previous one raises the deviation of at least one of them.
   bool suspicious(int frame) const {
     const auto shows = [&](int f) {
       return f >= 0 && f < count_ && deviations_[at(f)] > 0.2 * limit(f);
@@ -148,16 +148,16 @@ class SpikeFinder {
     const int before = run.first - 1, after = run.last + 1;
     if (before < 0 || after >= count_) return run.first == run.last && jumps_at_end(run.first);
     if (!is_abrupt(run)) return false;
-    // Two spikes with a sound frame between them look like a longer one.
+    // Two spikes with a valid frame between them look like a longer one.
     for (int f = run.first + 1; f < run.last && run.last - run.first >= longest_; ++f) {
       if (excess(f, run) > 1) return false;
     }
-    // What stands beside a spike is sound without it.
+    // The frames next to a spike must be valid without it.
     return excess(before, run) <= 1 && excess(after, run) <= 1;
   }
 
-  // Whether the steps into the run and out of it are large beside those just before and after, and
-  // beside the way that is made meanwhile. A quick gesture gathers speed; a spike does not.
+  // Whether the steps into and out of the run are large compared to the steps just before and
+  // after, and to the distance across the run. A fast gesture accelerates; a spike does not.
   bool is_abrupt(const Run& run) const {
     const auto step = [&](int from, int to) {
       return from < 0 || to >= count_ ? 0 : difference(value(from), value(to)).norm();
@@ -168,8 +168,8 @@ class SpikeFinder {
     return step(before, run.first) > calm && step(run.last, after) > calm;
   }
 
-  // The clip's first or last frame by itself, reached by a step many times as large as those
-  // beside.
+  // Whether the clip's first or last frame is separated by a step many times larger than those next
+  // to it.
   bool jumps_at_end(int frame) const {
     const int inwards = frame == 0 ? 1 : -1;
     const auto step = [&](int k) {
@@ -205,7 +205,7 @@ Result<SpikeRemoval> remove_spikes(const Clip& clip, const SpikeOptions& options
   for (const double value :
        {options.threshold, options.least_angle, options.least_distance, options.longest}) {
     if (!(value > 0) || !std::isfinite(value)) {
-      return Error("filter-threshold", "what counts as a spike must be given by positive numbers");
+      return Error("filter-threshold", "spike thresholds must be positive and finite");
     }
   }
   LocalMotion motion = local_motion(clip);

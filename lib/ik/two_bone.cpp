@@ -18,13 +18,13 @@ bool finite(const TwoBoneChain& chain, const TwoBoneGoal& goal) {
          std::isfinite(goal.softness);
 }
 
-// The unit direction of v, or zero where v is too short beside `scale` to have one.
+// The unit direction of v, or zero if v is too short relative to `scale`.
 Vec3 direction(const Vec3& v, double scale = 1.0) {
   const double length = v.stableNorm();
   return length > kTiny * scale ? Vec3(v / length) : Vec3(Vec3::Zero());
 }
 
-// The unit part of v perpendicular to the unit vector `along`; zero where there is none.
+// The unit part of v perpendicular to the unit vector `along`; zero if there is none.
 Vec3 perpendicular_part(const Vec3& v, const Vec3& along) {
   const Vec3 unit = direction(v);
   const Vec3 part = unit - along * along.dot(unit);
@@ -43,8 +43,8 @@ double soft_distance(double distance, double longest, double softness) {
   return start + softness * (1.0 - std::exp(-(distance - start) / softness));
 }
 
-// The rotation that takes bone and hinge from where they are to where they shall be. The hinge is
-// squared to the bone on both sides.
+// The rotation that maps bone and hinge from their present to their new directions. Both hinges are
+// orthogonalised to their bones.
 Quat frame_rotation(const Vec3& bone_from, const Vec3& hinge_from, const Vec3& bone_to,
                     const Vec3& hinge_to) {
   const Vec3 from = perpendicular_part(hinge_from, bone_from);
@@ -59,8 +59,8 @@ Quat frame_rotation(const Vec3& bone_from, const Vec3& hinge_from, const Vec3& b
 }  // namespace
 
 double two_bone_reach(double upper_length, double lower_length, double bend) {
-  // |u a + l b|^2 with an angle of `bend` between the unit vectors a and b, in a form that does not
-  // cancel when folded.
+  // |u a + l b|^2 with an angle of `bend` between the unit vectors a and b, in a form without
+  // cancellation when folded.
   const double difference = upper_length - lower_length;
   const double half_cosine = std::cos(0.5 * bend);
   return std::sqrt(difference * difference +
@@ -102,7 +102,7 @@ TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goa
   const Vec3 to_target = goal.target - chain.root;
   const double wanted = soft_distance(to_target.norm(), longest, goal.softness);
   const double distance = std::clamp(wanted, shortest, longest);
-  // Clamped again: an exact limit must not be missed by rounding.
+  // Clamped again so that rounding cannot exceed an exact limit.
   solution.bend =
       std::clamp(two_bone_bend(upper_length, lower_length, distance), min_bend, max_bend);
 
@@ -111,7 +111,7 @@ TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goa
   if (line.isZero()) line = direction(chain.end - chain.root, sum);
   if (line.isZero()) line = upper_now.isZero() ? lower_now : upper_now;
 
-  // The way the middle points out, and the hinge that goes with it.
+  // The direction in which the middle joint points out, and the matching hinge.
   Vec3 present_hinge = direction(chain.hinge);
   if (present_hinge.isZero()) present_hinge = perpendicular_part(upper_now.cross(lower_now), line);
   Vec3 outward = perpendicular_part(goal.pole, line);
@@ -120,8 +120,8 @@ TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goa
   if (outward.isZero()) outward = any_perpendicular(line);
   const Vec3 hinge = outward.cross(line);
 
-  // The middle lies at `along` on the line and `out` beside it: the triangle with the bend as its
-  // outer angle.
+  // The middle joint is at `along` on the line and `out` beside it: the triangle with the bend as
+  // its exterior angle.
   double along = upper_length;
   double out = 0;
   if (distance > kTiny * sum) {

@@ -4,9 +4,9 @@
 
 namespace krok {
 
-// Every `step`-th frame of [first, last], the first included, as a clip that begins at time 0 and
-// whose rate is divided by `step`. Skeleton and provenance are kept. Needs 0 <= first <= last <
-// frame_count() and step >= 1.
+// Copies every `step`-th frame of [first, last], starting with `first`, to a clip that starts at
+// time 0 with its rate divided by `step`. Keeps skeleton and provenance. Requires 0 <= first <=
+// last < frame_count() and step >= 1.
 Clip cut(const Clip& clip, int first, int last, int step = 1);
 
 }  // namespace krok

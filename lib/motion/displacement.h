@@ -6,15 +6,15 @@
 
 namespace krok {
 
-// How far one of some joints was moved, and where: the first of equal ones.
+// The largest distance that a joint was moved, and the first joint and frame with it.
 struct Displacement {
   double distance = 0;  // metres
   int joint = 0;
   int frame = 0;
 };
 
-// The largest distance between the places that one of `joints` has in the two clips at the same
-// frame. They have the same joints and number of frames.
+// The largest distance between the positions of one of `joints` in two clips at the same frame.
+// Both clips have the same joints and frame count.
 Displacement largest_displacement(const Clip& before, const Clip& after,
                                   std::span<const int> joints);
 

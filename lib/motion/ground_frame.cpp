@@ -19,8 +19,8 @@ int carrying_joint(const RoleMap& roles) {
 GroundFrame ground_frame(const Skeleton& skeleton, int carrier, const Transform& carrier_to_world) {
   const Quat& reference = skeleton.reference[static_cast<std::size_t>(carrier)].orientation;
   const Quat turn = carrier_to_world.orientation * reference.conjugate();
-  // The twist of a rotation about an axis is the part of its quaternion along it. Upside down by
-  // exactly half a turn there is none.
+  // Swing-twist decomposition: the twist about an axis is the quaternion's part along it. It is
+  // undefined upside down by exactly half a turn.
   const double heading =
       turn.y() == 0 && turn.w() == 0 ? 0 : wrapped(2 * std::atan2(turn.y(), turn.w()));
   return {carrier_to_world.position.x(), carrier_to_world.position.z(), heading};

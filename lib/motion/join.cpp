@@ -16,7 +16,7 @@ namespace krok {
 
 namespace {
 
-constexpr const char* kRetarget = "bring it on the same skeleton with krok-retarget";
+constexpr const char* kRetarget = "retarget it to the same skeleton with krok-retarget";
 
 Status same_skeleton(const Skeleton& first, const Skeleton& second) {
   const std::string difference = difference_in_structure(first, second);
@@ -30,21 +30,22 @@ Status same_skeleton(const Skeleton& first, const Skeleton& second) {
     if ((a - b).norm() <= allowed) continue;
     const std::string& name = first.names[static_cast<std::size_t>(j)];
     const bool length = std::abs(a.norm() - b.norm()) > allowed;
-    Error error("motion-skeleton",
-                length
-                    ? fmt::format("the bone to {} is {} m long in the first and {} m in the second",
-                                  name, readable(a.norm(), 4), readable(b.norm(), 4))
-                    : fmt::format("{} stands elsewhere in its parent's frame in the second: the "
-                                  "reference poses differ",
-                                  name),
-                kRetarget);
+    Error error(
+        "motion-skeleton",
+        length
+            ? fmt::format("the bone to {} is {} m long in the first motion and {} m in the second",
+                          name, readable(a.norm(), 4), readable(b.norm(), 4))
+            : fmt::format("{} has another offset from its parent in the second motion: the "
+                          "reference poses differ",
+                          name),
+        kRetarget);
     error.joint = name;
     return error;
   }
   return {};
 }
 
-// Takes the second's figure to where the first's is.
+// Maps the character's ground frame in the second motion to that in the first.
 Transform alignment(const Clip& first, int first_frame, const Clip& second, int second_frame,
                     int carrier, bool match_height) {
   Transform move = ground_frame(first, carrier, first_frame).to_world() *
@@ -64,7 +65,7 @@ Result<Joined> join(const Clip& first, const Clip& second, int carrier,
   if (Status status = same_skeleton(first.skeleton, second.skeleton); !status)
     return status.error();
   if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
-    return Error("motion-blend", "the time that two motions share is 0 or more");
+    return Error("motion-blend", "the blend time must be finite and not negative");
   }
   if (first.frame_count() == 0) {
     Joined all{second};
@@ -79,14 +80,14 @@ Result<Joined> join(const Clip& first, const Clip& second, int carrier,
   const int n = first.frame_count(), m = next.frame_count();
   const double wanted = std::round(options.blend * first.rate);
   if (wanted > std::min(n, m) - 1) {
-    return Error(
-        "motion-blend",
-        fmt::format("motions of {} and {} s cannot share {} s", readable(first.duration(), 4),
-                    readable(next.duration(), 4), readable(options.blend, 4)),
-        "choose a shorter --blend");
+    return Error("motion-blend",
+                 fmt::format("motions of {} s and {} s are too short for a blend of {} s",
+                             readable(first.duration(), 4), readable(next.duration(), 4),
+                             readable(options.blend, 4)),
+                 "use a shorter --blend");
   }
   const int shared = static_cast<int>(wanted);
-  const int begin = n - 1 - shared;  // the frame of the first in which the second begins
+  const int begin = n - 1 - shared;  // the first's frame at which the second begins
   const int middle = shared / 2;
   move_clip(alignment(first, begin + middle, next, middle, carrier, options.match_height), next);
 

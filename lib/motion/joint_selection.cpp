@@ -11,7 +11,8 @@ namespace krok {
 
 namespace {
 
-// Goes back to the last star on a mismatch, so that time stays below the product of the lengths.
+// Backtracks only to the last * on a mismatch, so the time is bounded by the product of the
+// lengths.
 bool matches(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0, star = std::string_view::npos, taken = 0;
   while (n < name.size()) {
@@ -34,7 +35,7 @@ bool matches(std::string_view name, std::string_view pattern) {
 
 Error no_such_joint(const std::string& text) {
   return Error("motion-joint", fmt::format("no joint is called '{}'", shown(text)),
-               "krok-info lists the joints; * stands for any characters");
+               "krok-info lists the joints; * matches any characters");
 }
 
 }  // namespace

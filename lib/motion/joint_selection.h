@@ -9,14 +9,14 @@
 
 namespace krok {
 
-// Which joints an operation concerns, as people name them.
+// The joints that an operation applies to, selected by name.
 struct JointSelection {
-  std::vector<std::string> patterns;  // names; * stands for any characters, ? for one
-  std::vector<std::string> below;     // joints by name, each with all joints below it
+  std::vector<std::string> patterns;  // names; * matches any characters, ? one
+  std::vector<std::string> below;     // joint names; each selects its subtree
 };
 
-// 1 for every joint that a pattern or a sub-tree selects, shape [joints]; all 1 where both lists
-// are empty. Code motion-joint for a pattern or name that no joint has.
+// 1 for each joint selected by a pattern or subtree, shape [joints]; all 1 if both lists are empty.
+// Code motion-joint if a pattern or name matches no joint.
 Result<std::vector<std::uint8_t>> select_joints(const Skeleton& skeleton,
                                                 const JointSelection& selection);
 

@@ -8,8 +8,8 @@
 
 namespace krok {
 
-// A clip's transforms relative to the parent (the root's to the world), in doubles, for operations
-// that treat joints one by one and keep bone lengths. Shape [joints x frames], joint by joint.
+// A clip's transforms relative to the parent (the root's: to the world) in double precision, for
+// operations on single joints that keep bone lengths. Shape [joints x frames], joint-major.
 struct LocalMotion {
   int joints = 0;
   int frames = 0;
@@ -27,11 +27,11 @@ struct LocalMotion {
 
 LocalMotion local_motion(const Clip& clip);
 
-// Puts the motion into a clip of the same joints; the clip gets its number of frames.
+// Writes the motion to a clip with the same joints and sets the clip's frame count.
 void set_local_motion(const LocalMotion& motion, Clip& clip);
 
-// For each joint whether its place relative to its parent changes by more than a tenth of a
-// millimetre; always true for the root. Shape [joints].
+// 1 for joints whose position relative to the parent varies by more than 0.1 mm, and for the root.
+// Shape [joints].
 std::vector<std::uint8_t> moving_joints(const LocalMotion& motion);
 
 }  // namespace krok

@@ -16,17 +16,17 @@ namespace krok {
 namespace {
 
 constexpr double kDrift = 10 * kRadiansPerDegree;
-constexpr double kLevel = 0.05;  // of the figure's extent
+constexpr double kLevel = 0.05;  // of the skeleton's extent
 
 Quat turn_about_vertical(double angle) {
   return axis_rotation(Axis::y, angle);
 }
 
-// A way on the ground and a turn, a share of it: along the arc that leads there evenly.
+// A fraction of a displacement on the ground, along the circular arc to its end.
 Transform share_of(const Transform& displacement, double turn, double share) {
   Transform part{share * displacement.position, turn_about_vertical(share * turn)};
   if (std::abs(turn) < 1e-9) return part;
-  // The fixed point c of x -> R x + d in the plane; the arc turns about it.
+  // The arc's centre: the fixed point c of x -> R x + d in the plane.
   const double half_cotangent = 0.5 / std::tan(turn / 2);
   const Vec3 d(displacement.position.x(), 0, displacement.position.z());
   const Vec3 centre = 0.5 * d + half_cotangent * Vec3(d.z(), 0, -d.x());
@@ -75,8 +75,9 @@ class Looper {
     return place(to).to_world() * place(from).to_world().inverse();
   }
 
-  // Root sum of squares of the angles that the joints' rotations are apart, after `steps` (0 or 1)
-  // more of the last step from the last frame. The root counts without its heading.
+  // Root sum of squares of the angles between the joints' rotations in the first frame and in the
+  // last, the latter continued by `steps` (0 or 1) repeats of the last step. Ignores the root's
+  // heading.
   double distance_to_first(int steps) const {
     double sum = 0;
     const Quat root_turn = way(last(), 0).orientation;
@@ -97,7 +98,7 @@ class Looper {
   }
 
   void add_closing_frame() {
-    // The way of the missing step: half of the one before and half of the one after.
+    // The missing step is the mean of the steps before and after it.
     const Transform before = place(last() - 1).to_world().inverse() * place(last()).to_world();
     const Transform after = place(0).to_world().inverse() * place(1).to_world();
     const Transform step{0.5 * (before.position + after.position),
@@ -126,8 +127,8 @@ class Looper {
     result_.added_frames = 1;
   }
 
-  // Where the hips travel below a root that stands still, the root is given the even part of the
-  // way; otherwise the figure could not be moved on by moving all of it.
+  // If the hips travel below a static root, moves the even part of the travel to the root, because
+  // the displacement is applied at the root.
   void carry_still_root() {
     if (carrier_ == 0) return;
     const Vec3 root_way = motion_.at(0, last()).position - motion_.at(0, 0).position;
@@ -138,7 +139,7 @@ class Looper {
     if (Vec2(root_way.x(), root_way.z()).norm() > kStill) return;
     if (Vec2(carrier_way.x(), carrier_way.z()).norm() <= kStill) return;
     const double turn = wrapped(place(last()).heading - place(0).heading);
-    // Joints that hang on the root, the carrier's branch aside, go along with it.
+    // Only the carrier's branch is compensated; the root's other children move with the root.
     std::vector<int> children;
     for (int j = 1; j < motion_.joints; ++j) {
       const bool leads = subtree(clip_.skeleton, j)[static_cast<std::size_t>(carrier_)] != 0;
@@ -196,13 +197,13 @@ class Looper {
     }
   }
 
-  // A joint's frame on the end's side, brought to where the beginning is.
+  // A joint's local transform near the end, with the displacement removed.
   Transform brought_back(int joint, int frame) const {
     const Transform local = motion_.at(joint, frame);
     return joint == 0 ? result_.displacement.inverse() * local : local;
   }
 
-  // The frames about the seam, those of the end brought back.
+  // The frames around the seam, with the displacement removed at the end.
   SeamSides sides(int joint) const {
     SeamSides about;
     for (int k = 0; k < 3; ++k) {
@@ -212,7 +213,7 @@ class Looper {
     return about;
   }
 
-  // The same about a frame within, where nothing is missing.
+  // The same around an inner frame, where there is no gap.
   SeamSides sides_within(int joint, int frame) const {
     SeamSides about;
     for (int k = 0; k < 3; ++k) {
@@ -222,7 +223,7 @@ class Looper {
     return about;
   }
 
-  // What 19 of 20 frames' jumps of velocity stay below, per frame.
+  // 95th percentile of the velocity jumps at inner frames, per frame.
   double usual_jump(int joint, SeamGap (*gap)(const SeamSides&)) const {
     std::vector<double> jumps;
     for (int f = 2; f + 2 <= last(); ++f) jumps.push_back(gap(sides_within(joint, f)).jump());
@@ -286,7 +287,7 @@ class Looper {
         motion_.set(j, k, begin);
         motion_.set(j, last() - k, j == 0 ? result_.displacement * end : end);
       }
-      // Equal up to rounding already; exactly so from here on.
+      // Already equal up to rounding; makes them exactly equal.
       const Transform first = motion_.at(j, 0);
       motion_.set(j, last(), j == 0 ? result_.displacement * first : first);
     }
@@ -305,12 +306,10 @@ class Looper {
 
 Result<Looped> loop(const Clip& clip, int carrier, const LoopOptions& options) {
   if (clip.frame_count() < 4) {
-    return Error("motion-loop",
-                 "a motion of fewer than four frames has nothing to loop: there is no telling how "
-                 "it goes on");
+    return Error("motion-loop", "a motion needs at least four frames to be looped");
   }
   if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
-    return Error("motion-blend", "the time blended about the seam is 0 or more");
+    return Error("motion-blend", "the blend time must be finite and not negative");
   }
   return Looper(clip, carrier, options).loop();
 }
@@ -319,7 +318,7 @@ Result<Clip> repeated(const Clip& looped, const Transform& displacement, int rou
   const int period = looped.frame_count() - 1;
   if (period < 1 || rounds <= 1) return looped;
   if (static_cast<double>(period) * rounds * looped.joint_count() > 1e8) {
-    return Error("clip-too-long", "the motion repeated so often would be too long");
+    return Error("clip-too-long", "the repeated motion would exceed 100 million joint transforms");
   }
   Clip result{looped.skeleton, looped.rate, {}, {}, looped.provenance};
   result.resize(period * rounds + 1);

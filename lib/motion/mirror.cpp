@@ -11,7 +11,7 @@ namespace krok {
 
 namespace {
 
-// The mirror at x = 0, for points and for rotations: a rotation's axis is turned round as well.
+// Mirrors points and rotations at x = 0; a rotation's axis is a pseudovector.
 Vec3 image(const Vec3& point) {
   return {-point.x(), point.y(), point.z()};
 }
@@ -19,7 +19,7 @@ Quat image(const Quat& q) {
   return {q.w(), q.x(), -q.y(), -q.z()};
 }
 
-// Where a joint's bones point in the reference pose, the sum of its children's offsets.
+// The bone direction of a joint in the reference pose: the sum of its paired children's offsets.
 Vec3 bone(const Skeleton& skeleton, const MirrorPairs& pairs, const std::vector<int>& children,
           int joint) {
   Vec3 sum = Vec3::Zero();
@@ -30,9 +30,9 @@ Vec3 bone(const Skeleton& skeleton, const MirrorPairs& pairs, const std::vector<
   return sum;
 }
 
-// For each joint the turn from its own reference bone to the mirror image of its partner's;
-// the identity for symmetric figures. A joint without bones takes its parent's, as do very short
-// ones. The middle joints from which limbs branch off have no single direction: identity.
+// For each joint the rotation from its reference bone to the mirror image of its counterpart's; the
+// identity for symmetric skeletons. Joints with no bone or a very short one take their parent's.
+// Middle joints where limbs branch off have no single direction: identity.
 std::vector<Quat> lopsidedness(const Skeleton& skeleton, const MirrorPairs& pairs) {
   const auto children = skeleton.children();
   const double least = 0.01 * reference_extent(skeleton);
@@ -53,10 +53,10 @@ std::vector<Quat> lopsidedness(const Skeleton& skeleton, const MirrorPairs& pair
   return turns;
 }
 
-constexpr double kStill = 2 * kRadiansPerDegree;     // in the parent, over the whole clip
-constexpr double kTwisted = 60 * kRadiansPerDegree;  // what a mirror would turn it by
+constexpr double kStill = 2 * kRadiansPerDegree;     // relative to the parent, over the whole clip
+constexpr double kTwisted = 60 * kRadiansPerDegree;  // the turn by mirroring
 
-// 1 for joints that are no part of the body and do not turn in their parents.
+// 1 for joints that are not part of the body and do not rotate relative to their parents.
 std::vector<std::uint8_t> still_joints(const Clip& clip, const MirrorPairs& pairs) {
   std::vector<std::uint8_t> still(clip.skeleton.names.size(), 0);
   if (pairs.in_body.empty() || clip.frame_count() == 0) return still;
@@ -92,8 +92,8 @@ class PoseMirror {
     }
   }
 
-  // Has still joints go along with their parents where the mirror image of `pose` has them turned
-  // far from where they are.
+  // Makes still joints follow their parents if mirroring `pose` would turn them far from their
+  // present rotation.
   void keep_twisted(std::span<const Transform> pose, std::span<const std::uint8_t> still) {
     std::vector<Transform> mirrored(pose.size());
     begin(pose);
@@ -125,7 +125,7 @@ class PoseMirror {
     }
   }
 
-  // Joints above it are placed already.
+  // Requires the mirrored transforms of the ancestors.
   void place(int j, std::span<const Transform> pose, std::span<Transform> mirrored) {
     const std::vector<Transform>& reference = skeleton_.reference;
     const int parent = skeleton_.parents[at(j)];
@@ -139,12 +139,12 @@ class PoseMirror {
     new_turns_[at(j)] = normalized_or_identity(image(turns_[at(source)]) * lopsided_[at(j)]);
     joint.orientation = normalized_or_identity(new_turns_[at(j)] * reference_turn(j));
     if (parent < 0) {
-      // The figure's plane, not the root, is what the mirror holds on to.
+      // Mirrors about the plane of symmetry, which the root may be off.
       const Vec3 across(2 * (pairs_.plane - reference[at(j)].position.x()), 0, 0);
       joint.position = image(Vec3(pose[at(j)].position + turns_[at(j)] * across));
       return;
     }
-    // What the joint stands off from where its parent's turn alone would put it.
+    // The joint's offset from its position by the parent's rotation alone.
     const int above = skeleton_.parents[at(source)];
     const Vec3 offset = reference[at(source)].position - reference[at(above)].position;
     const Vec3 stray =
@@ -157,7 +157,7 @@ class PoseMirror {
   const Skeleton& skeleton_;
   const MirrorPairs& pairs_;
   std::vector<Quat> lopsided_;
-  std::vector<std::uint8_t> kept_;       // [joints], go along with their parents
+  std::vector<std::uint8_t> kept_;       // [joints], 1: follows its parent
   std::vector<Quat> turns_, new_turns_;  // from the reference pose
 };
 

@@ -23,7 +23,7 @@ constexpr std::pair<Role, Role> kSides[] = {{Role::left_collar, Role::right_coll
                                             {Role::left_lower_leg, Role::right_lower_leg},
                                             {Role::left_foot, Role::right_foot}};
 
-// The words of a name with the sides exchanged; nothing where it names no side.
+// The tokens of a name with left and right exchanged; empty if it has neither.
 std::optional<std::vector<std::string>> other_side(std::vector<std::string> words) {
   bool any = false;
   for (std::string& word : words) {
@@ -52,7 +52,7 @@ class PairFinder {
     pair_by_names();
     find_plane();
     near_ = 0.02 * reference_extent(skeleton_);
-    // Parents stand before their children, so the parents of a round are paired already.
+    // Parents precede their children, so they are paired already.
     for (int j = 0; j < skeleton_.joint_count(); ++j) {
       const int other = partner(j);
       if (other == j) pair_children_of_middle(j);
@@ -71,7 +71,7 @@ class PairFinder {
     pairs_.partners[at(b)] = a;
   }
 
-  // Only the topmost joint of a role: find_roles gives these to one joint each, a user's map may
+  // Only the topmost joint of a role: find_roles assigns each of these once, a user's role map may
   // not.
   void pair_by_roles() {
     for (const auto& [left, right] : kSides) {
@@ -112,13 +112,13 @@ class PairFinder {
     const auto half = middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2);
     std::nth_element(middles.begin(), half, middles.end());
     pairs_.plane = *half;
-    // The usual case to the bit, whatever the rounding of the offsets was.
+    // Makes the usual plane exactly 0 despite rounding of the offsets.
     if (std::abs(pairs_.plane) < 1e-6) pairs_.plane = 0;
   }
   double x(int joint) const { return skeleton_.reference[at(joint)].position.x(); }
 
-  // From a joint's mirror image to another joint, in the reference pose, as seen from their
-  // parents, so that a lopsided parent does not count.
+  // Distance from a joint's mirror image to another joint in the reference pose, relative to their
+  // parents, so that asymmetric parents do not matter.
   double apart(int joint, int other) const {
     const auto from_parent = [&](int j) -> Vec3 {
       return skeleton_.reference[at(j)].position -
@@ -153,7 +153,7 @@ class PairFinder {
       const int other = nearest(j, children_[at(parent)], 2.5 * near_);
       if (other != MirrorPairs::kNone) pair(j, other);
     }
-    // In a reference pose that holds its head aslant, jaw and tongue stand beside the plane.
+    // If the reference pose tilts the head, jaw and tongue are off the plane.
     for (const int j : children_[at(parent)]) {
       const bool sided = other_side(name_tokens(skeleton_.names[at(j)])).has_value();
       if (open(j) && !sided && std::abs(x(j) - pairs_.plane) < 5 * near_) pair(j, j);

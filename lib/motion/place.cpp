@@ -61,8 +61,8 @@ Transform onto_ground(const Clip& clip, std::span<const int> joints) {
 
 Status scale_clip(double factor, Clip& clip) {
   if (!(factor > 0) || !std::isfinite(factor)) {
-    return Error("motion-scale", fmt::format("a figure cannot be scaled by {}", factor),
-                 "the factor is a positive number");
+    return Error("motion-scale", fmt::format("cannot scale a motion by {}", factor),
+                 "the factor must be a positive number");
   }
   const auto scaled = [&](const Vec3f& position) {
     return Vec3f((factor * position.cast<double>()).cast<float>());
@@ -75,7 +75,7 @@ Status scale_clip(double factor, Clip& clip) {
       });
   if (!fits) {
     return Error("motion-scale",
-                 fmt::format("scaled by {} the motion goes beyond what can be stored", factor));
+                 fmt::format("positions scaled by {} exceed the range of a float", factor));
   }
   for (Vec3f& position : clip.positions) position = scaled(position);
   for (Transform& joint : clip.skeleton.reference) joint.position *= factor;

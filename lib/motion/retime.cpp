@@ -11,19 +11,18 @@ namespace krok {
 
 Result<Clip> retime(const Clip& clip, double rate, double speed, LastFrame last) {
   if (!(speed > 0) || !std::isfinite(speed)) {
-    return Error("motion-speed", fmt::format("a motion cannot be played {} times as fast", speed),
-                 "the speed is a positive number; 2 is twice as fast");
+    return Error("motion-speed", fmt::format("invalid speed {}", speed),
+                 "the speed must be a positive number; 2 is twice as fast");
   }
-  // Played at another rate the same frames are faster; sampled at the old one they are new frames.
+  // Raising the rate speeds the frames up; resampling then restores the requested rate.
   Clip faster = clip;
   faster.rate = clip.rate * speed;
   if (!std::isfinite(faster.rate) || !(faster.rate > 0)) {
-    return Error("motion-speed",
-                 fmt::format("a speed of {} is beyond what can be reckoned with", speed));
+    return Error("motion-speed", fmt::format("a speed of {} is out of range", speed));
   }
   const double steps = faster.duration() * rate;
   if (last == LastFrame::kept && steps > 0 && steps < 1e9 && std::isfinite(rate)) {
-    // Whole steps from end to end: the rate that makes them so stands in for the one asked for.
+    // Adjusts the speed so that a whole number of frames spans the motion.
     const double whole = std::max(1.0, std::round(steps));
     faster.rate = (clip.frame_count() - 1) * rate / whole;
   }

@@ -6,20 +6,18 @@
 
 namespace krok {
 
-// The pose at `time` seconds, clamped to the clip's range: joint_to_world, shape [joints].
-// Between frames each joint is interpolated relative to its parent, the position linearly, the
-// orientation by slerp along the shorter arc, so that bones keep their length. At a frame's own
-// time the frame comes back as Clip::get_pose gives it. A time that is not a number is the
-// beginning. A clip without frames gives the reference pose. `scratch` is working space of at least
-// [3 x joints] elements, so that nothing is allocated.
+// The pose at `time` seconds, clamped to the clip's range: joint_to_world, shape [joints]. Between
+// frames each joint is interpolated relative to its parent, positions linearly and orientations by
+// slerp along the shorter arc, so bone lengths are kept. At a frame's time the result equals
+// Clip::get_pose. NaN counts as time 0. A clip without frames gives the reference pose. `scratch`
+// is working memory of at least [3 x joints] elements; nothing is allocated.
 void sample(const Clip& clip, double time, std::span<Transform> joint_to_world,
             std::span<Transform> scratch);
 
-// The clip at another rate: frame i of the result is the sample at i / rate, bit for bit the
-// original's frame where it falls on one. The last frame is the
-// last that lies within the original's duration (a remainder under a thousandth of a frame counts
-// as within). An Error (code clip-rate) unless the rate is positive and finite, or if the result
-// would have more than 100 million joint transforms (code clip-too-long).
+// Resamples the clip: frame i of the result is the sample at i / rate, bit-identical to the
+// original's frame if it falls on one. The last frame is the last within the original's duration (a
+// remainder below 0.001 frames counts as within). Codes: clip-rate unless the rate is positive and
+// finite, clip-too-long if the result would exceed 100 million joint transforms.
 Result<Clip> resample(const Clip& clip, double rate);
 
 }  // namespace krok

@@ -10,7 +10,7 @@ namespace krok {
 namespace {
 
 // With right(s) = v s + a s^2 / 2 after the seam and left(s) = -u s + a s^2 / 2 before it, their
-// sum tells v - u and their difference v + u (the latter by least squares).
+// sum gives v - u and their difference v + u (the latter by least squares).
 void find_rates(const std::array<Vec3, 2>& left, const std::array<Vec3, 2>& right, SeamGap& gap) {
   const Vec3 jump = 2 * (left[0] + right[0]) - 0.5 * (left[1] + right[1]);
   const Vec3 mean = ((right[0] - left[0]) + 2 * (right[1] - left[1])) / 10;
@@ -18,9 +18,9 @@ void find_rates(const std::array<Vec3, 2>& left, const std::array<Vec3, 2>& righ
   gap.rate_after = mean + 0.5 * jump;
 }
 
-// The inverse of the right Jacobian of the exponential map of rotations at `v`: the derivative of
-// v that turns exp(v) at a body rate (Chirikjian, Stochastic Models, Information Theory, and Lie
-// Groups, vol. 2, sec. 10.7).
+// The inverse right Jacobian of SO(3)'s exponential map at `v`: the derivative of v for which
+// exp(v) turns at `body_rate` (Chirikjian, Stochastic Models, Information Theory, and Lie Groups,
+// vol. 2, sec. 10.7).
 Vec3 vector_rate(const Vec3& v, const Vec3& body_rate) {
   const double angle = v.norm();
   const double factor =
@@ -44,7 +44,7 @@ SeamGap rotation_gap(const SeamSides& sides) {
   const Quat& begin = sides.after[0].orientation;
   gap.value = rotation_vector(end.conjugate() * begin);
   std::array<Vec3, 2> left, right;
-  // Steps on the end's side are seen in the beginning's frame, for the fit adds both up.
+  // Steps before the seam are converted to the start's frame, because the fit adds both sides.
   const Quat end_to_begin = begin.conjugate() * end;
   for (std::size_t k = 0; k < 2; ++k) {
     left[k] = end_to_begin * rotation_vector(end.conjugate() * sides.before[k + 1].orientation);
@@ -89,8 +89,8 @@ SeamCurve position_curve(const SeamGap& gap, int width) {
 }
 
 SeamCurve rotation_curve(const SeamGap& gap, int width) {
-  // Both sides meet half way, and so do their velocities, seen from there: exp(-c) w exp(c) plus
-  // what the curve adds.
+  // Both sides meet half-way, and so do their velocities in that frame: exp(-c) w exp(c) plus the
+  // curve's rate.
   const Vec3 half = 0.5 * gap.value;
   const Vec3 before = from_rotation_vector(-half) * gap.rate_before;
   const Vec3 after = from_rotation_vector(half) * gap.rate_after;

@@ -17,7 +17,7 @@ bool travels(const Clip& clip, int joint) {
   return box.sizes().maxCoeff() > kStillMetres;
 }
 
-// The topmost joint that moves along with the carrier; the carrier itself where none above does.
+// The topmost joint that travels, from the carrier upwards; the carrier if none does.
 int top_traveller(const Clip& clip, int carrier) {
   int top = carrier;
   for (int j = carrier; j >= 0; j = clip.skeleton.parents[static_cast<std::size_t>(j)]) {

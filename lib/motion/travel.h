@@ -5,14 +5,14 @@
 namespace krok {
 
 enum class Travel {
-  all,   // the figure stays where it stands in the first frame
-  trend  // only the even part, a straight line from the first frame's place to the last's; what
-         // sways about it stays, and a loop stays one
+  all,   // the character stays at its position in the first frame
+  trend  // removes only the straight line from the first frame's position to the last's; sway about
+         // it is kept, and a loop stays a loop
 };
 
 // The motion without the horizontal travel of `carrier` (see carrying_joint). Heights and rotations
-// stay. Joints above the carrier that do not travel themselves, such as a root that only places the
-// figure, stay where they are. Fewer than two frames come back as they are.
+// are unchanged. Ancestors of the carrier that do not travel, such as a root that only places the
+// character, are unchanged. So are clips of fewer than two frames.
 Clip in_place(const Clip& clip, int carrier, Travel removed);
 
 }  // namespace krok

@@ -8,7 +8,7 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 
-// Measures of figures that the parts of retargeting share.
+// Skeleton measurements shared by the parts of retargeting.
 
 namespace krok::retarget {
 
@@ -25,18 +25,18 @@ inline double smooth_step(double from, double to, double x) {
   return t * t * (3 - 2 * t);
 }
 
-// Metres between two joints in the reference pose; 0 where one is -1.
+// Metres between two joints in the reference pose; 0 if either is -1.
 double length_of(const Skeleton& skeleton, int from, int to);
 
-// The mean length of thigh and shank of both legs, metres; what the roles do not know counts as 0.
+// Mean length of thigh and shank of both legs, metres; bones without a role count as 0.
 double leg_length(const Skeleton& skeleton, const RoleMap& roles);
 
-// The ratio of the lengths of all bones that both figures have, by a mapping by names; 1 where they
-// share none.
+// Total length of the bones that both skeletons have, target over source, for a mapping by names; 1
+// if they share none.
 double bone_ratio(const Skeleton& source, const Skeleton& target, const JointMapping& mapping);
 
-// Whether no finger of a hand ever leaves the place on its hand that it has in `rest`, shape
-// [joints], by more than half a degree. False for a hand without fingers.
+// Whether no finger of a hand ever rotates relative to the palm by more than half a degree from
+// `rest`, shape [joints]. False for a hand without fingers.
 bool fingers_never_move(const Clip& source, const RoleMap& roles, std::span<const Transform> rest,
                         Role hand, Role fingers);
 

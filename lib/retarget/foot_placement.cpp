@@ -34,7 +34,7 @@ double elevation(const Vec3& v) {
 }  // namespace
 
 int softening_reach(double rate) {
-  constexpr double kMax = 256;  // what only rates of thousands of frames a second come to
+  constexpr double kMax = 256;  // reached only at thousands of fps
   return static_cast<int>(std::lround(std::min(0.12 * rate, kMax)));
 }
 
@@ -46,7 +46,7 @@ std::vector<double> softened(const std::vector<double>& values, int reach) {
     const auto last = values.begin() + std::min(count, i + reach + 1);
     widened[at(i)] = *std::max_element(first, last);
   }
-  // A raised cosine.
+  // Raised-cosine weights.
   std::vector<double> weights;
   double all = 0;
   for (int k = -reach; k <= reach; ++k) {
@@ -78,7 +78,7 @@ double ankle_over_floor(const Actor& actor, Role foot, const Floor& floor) {
 
 double standing_height(const Clip& clip, const Actor& stance) {
   if (clip.frame_count() == 0) return 0;
-  std::vector<std::pair<int, float>> heights;  // joints of the feet, over the lowest of the foot
+  std::vector<std::pair<int, float>> heights;  // foot joints, above the lowest of the foot
   for (const Role foot : {Role::left_foot, Role::right_foot}) {
     const double lowest = lowest_of_foot(stance, foot);
     for (const int joint : subtree(stance.skeleton, stance.roles.joint(foot))) {
@@ -135,7 +135,7 @@ std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Acto
   leg.source_front_ = foot_front(source.skeleton, source.roles, foot);
   leg.find_soles(source, target, turns[at(leg.ankle_)], foot);
 
-  // The knee's hinge points to the figure's left where nothing else is known.
+  // By default the knee's hinge points to the character's left.
   const Vec3 thigh = to(leg.lower_) - to(leg.upper_);
   const Vec3 left =
       to(target.roles.joint(Role::left_upper_leg)) - to(target.roles.joint(Role::right_upper_leg));
@@ -166,8 +166,8 @@ void LegPlacement::find_soles(const Actor& source, const Actor& target, const Qu
     return front < 0 ? Vec3(Vec3::Zero())
                      : flat(actor.pose[at(front)].position - actor.pose[at(ankle)].position);
   };
-  // How far ahead of the ankle the ball is: at the toes, or by the other figure's, or a part of the
-  // way to the tip.
+  // Distance of the ball ahead of the ankle: at the toes, otherwise from the other skeleton, or a
+  // fraction of the way to the tip.
   const bool source_toes = !first_toes(source.skeleton, source.roles, foot).empty();
   const bool target_toes = !first_toes(target.skeleton, target.roles, foot).empty();
   const Vec3 source_reach = reach(source, source_front_);
@@ -194,7 +194,7 @@ void LegPlacement::find_soles(const Actor& source, const Actor& target, const Qu
                 part * (target_ball - scale_ * source_ball)};
   };
   ball_ = point(1);
-  heel_ = point(-0.3);  // behind the ankle, as feet are built
+  heel_ = point(-0.3);  // behind the ankle, a typical proportion
   ahead_ = source_back * heading;
   sideways_ = source_back * kUp.cross(heading);
 }
@@ -214,7 +214,7 @@ std::vector<double> LegPlacement::standing(const Clip& source) const {
     const int known = std::clamp(frame, 0, frames - 1);
     return Vec3(source.frame_positions(known)[at(joint)].cast<double>());
   };
-  // In lengths of the leg a second, over two frames; of the slower of ankle and ball.
+  // In leg lengths per second, over two frames; the slower of ankle and ball counts.
   const auto speed = [&](int frame, int joint) {
     return (place_of(frame + 1, joint) - place_of(frame - 1, joint)).norm() * 0.5 * source.rate /
            leg_;
@@ -228,7 +228,7 @@ std::vector<double> LegPlacement::standing(const Clip& source) const {
     const double height = depth(pose, source_points_, source_floor_.motion) / leg_;
     near[at(f)] = std::max(1 - smooth_step(0.12, 0.3, height), 1 - smooth_step(0.25, 0.8, slowest));
     const Vec3 shank = place_of(f, source_ankle_) - place_of(f, source_knee_);
-    const double lean = kPi / 2 + elevation(shank);  // from straight down
+    const double lean = kPi / 2 + elevation(shank);  // angle from straight down
     upright[at(f)] = 1 - smooth_step(60 * kRadiansPerDegree, 85 * kRadiansPerDegree, lean);
   }
   std::vector<double> result = softened(near, softening_reach(source.rate));
@@ -240,7 +240,7 @@ double LegPlacement::lack(std::span<const Transform> source_pose,
                           std::span<const Transform> target_pose, double standing) const {
   const auto place_of = [&](int joint) { return target_pose[at(joint)].position; };
   const Vec3 to_goal = goal_of(source_pose, target_pose, standing) - place_of(upper_);
-  // As straight as the leg is, or nearly as straight as it can be.
+  // The present extension, or nearly the full length if that is more.
   const double reach = std::max((place_of(ankle_) - place_of(upper_)).norm() * (1 + 1e-9),
                                 0.997 * ((place_of(lower_) - place_of(upper_)).norm() +
                                          (place_of(ankle_) - place_of(lower_)).norm()));
@@ -261,7 +261,7 @@ Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
   const Transform& source_ankle = source_pose[at(source_ankle_)];
   const double rolled = -elevation(source_ankle.orientation * ahead_);
   const double on_ball = smooth_step(0, 6 * kRadiansPerDegree, rolled);
-  // By the foot's side, for one that rolls over its toes points back for a moment.
+  // From the foot's lateral axis, because a foot rolling over its toes briefly points back.
   const Vec3 heading = flat((source_ankle.orientation * sideways_).cross(kUp)).stableNormalized();
   const auto ankle_over = [&](const Sole& sole) {
     return Vec3(scaled(source_ankle * sole.source) + sole.longer * heading -
@@ -289,14 +289,14 @@ LegPlacement::Outcome LegPlacement::place(std::span<const Transform> source_pose
   outcome.correction = (goal - ankle).norm();
   if (outcome.correction < 1e-7) return outcome;
 
-  // The way the knee points: as it does where it is bent, by its hinge where it is straight.
+  // The direction of the knee: its present one if bent, from its hinge if straight.
   const Vec3 upper_bone = knee - root;
   const Vec3 lower_bone = ankle - knee;
   const double length = upper_bone.norm() + lower_bone.norm();
   const Vec3 line = (ankle - root).stableNormalized();
   const Vec3 by_hinge = line.cross(target_pose[at(upper_)].orientation * hinge_).stableNormalized();
   const Vec3 bent = upper_bone - line * line.dot(upper_bone);
-  // A knee that is straight within 25 degrees tells little by itself.
+  // The direction of a knee within 25 degrees of straight is unreliable.
   const double straight = 1 - smooth_step(0.05 * length, 0.11 * length, bent.norm());
   const Vec3 outward = bent + (0.005 + 0.06 * straight) * length * by_hinge;
   TwoBoneChain chain{root, knee, ankle, outward.cross(line)};

@@ -12,8 +12,8 @@ namespace krok::retarget {
 
 namespace {
 
-// How far along a chain each of its joints lies, 0 to 1, by the lengths of its bones; by their
-// number where they have none.
+// The relative position of each joint along a chain, 0 to 1, by bone lengths; by index if these are
+// all 0.
 std::vector<double> places_along(const Skeleton& skeleton, const std::vector<int>& chain) {
   std::vector<double> places = {0.0};
   for (std::size_t i = 1; i < chain.size(); ++i) {
@@ -68,7 +68,7 @@ class RoleMapper {
     return chest >= 0 ? chest : roles.joint(Role::hips);
   }
 
-  // The head, or the neck's last joint.
+  // The head, or the last joint of the neck.
   static int top_of_neck(const RoleMap& roles) {
     const int head = roles.joint(Role::head);
     if (head >= 0) return head;
@@ -85,7 +85,7 @@ class RoleMapper {
            chain_between(target_, target_roles_, to_chest, top_of_neck(target_roles_)), false);
   }
 
-  // Gives the joints of one chain, the first apart, rotations from the same places along another.
+  // Maps the joints of chain `to`, without its first, to the same relative positions along `from`.
   void spread(const std::vector<int>& from, const std::vector<int>& to, bool is_trunk) {
     const std::vector<double> from_places = places_along(source_, from);
     const std::vector<double> to_places = places_along(target_, to);
@@ -145,7 +145,8 @@ class RoleMapper {
     if (place.phalanx == FingerJoint::kTip) return -1;
     if (has_finger(fingers, place.finger)) return source_roles_.finger_joint(fingers, place);
     if (place.finger == Finger::thumb || place.phalanx == FingerJoint::kMetacarpal) return -1;
-    // The nearest finger that there is, the inner one of two, or the joint for all of them.
+    // The nearest finger that exists, the one closer to the index finger of two, or the joint for
+    // all.
     constexpr std::array kFour = {Finger::index, Finger::middle, Finger::ring, Finger::little};
     const Finger wanted = place.finger == Finger::all ? Finger::middle : place.finger;
     Finger best = has_finger(fingers, Finger::all) ? Finger::all : Finger::none;
@@ -194,7 +195,8 @@ int palm_joint(const Skeleton& skeleton, const RoleMap& roles, Role hand) {
     if (parent != wrist || roles.roles[at(j)] == Role::helper) continue;
     const Finger finger = roles.fingers[at(j)].finger;
     if (finger == Finger::thumb) continue;
-    if (finger != Finger::none || palm >= 0) return wrist;  // fingers hang on the wrist itself
+    if (finger != Finger::none || palm >= 0)
+      return wrist;  // fingers are children of the wrist itself
     palm = j;
   }
   return palm >= 0 && has_fingers_below ? palm : wrist;

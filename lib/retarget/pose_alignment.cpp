@@ -17,7 +17,7 @@ double degrees(double angle) {
   return angle * kRadiansPerDegree;
 }
 
-// The unit part of v perpendicular to the unit vector `axis`; nothing where there is none.
+// The unit part of v perpendicular to the unit vector `axis`; empty if there is none.
 std::optional<Vec3> across(const Vec3& v, const Vec3& axis) {
   const Vec3 part = v - axis * axis.dot(v);
   const double length = part.norm();
@@ -25,7 +25,7 @@ std::optional<Vec3> across(const Vec3& v, const Vec3& axis) {
   return Vec3(part / length);
 }
 
-// The rotation that takes unit `x` to `x_to` and, as far as it can, `y` to `y_to`.
+// The rotation that maps unit `x` to `x_to` and, as far as possible, `y` to `y_to`.
 Quat frame_turn(const Vec3& x, const Vec3& y, const Vec3& x_to, const Vec3& y_to) {
   const auto from = across(y, x);
   const auto to = across(y_to, x_to);
@@ -36,8 +36,8 @@ Quat frame_turn(const Vec3& x, const Vec3& y, const Vec3& x_to, const Vec3& y_to
   return normalized_or_identity(Quat(Mat3(after * before.transpose())));
 }
 
-// The smallest turn of direction `from` to `to`; of nearly opposite ones half a turn about
-// `axis` comes first, so that the way round is not left to chance.
+// The smallest rotation of direction `from` to `to`. Nearly opposite directions are first rotated
+// by half a turn about `axis`, because their smallest rotation is ill-defined.
 Quat swing(const Vec3& from, const Vec3& to, const Vec3& axis) {
   if (from.normalized().dot(to.normalized()) > std::cos(degrees(150))) {
     return shortest_arc(from, to);
@@ -70,7 +70,7 @@ class View {
   int joint(Role role) const { return actor_.roles.joint(role); }
   Vec3 place(int joint) const { return actor_.pose[at(joint)].position; }
 
-  // The unit direction between two joints, nothing where one is absent or they are in one place.
+  // The unit direction between two joints; empty if either is missing or they coincide.
   std::optional<Vec3> direction(int from, int to) const {
     if (from < 0 || to < 0) return std::nullopt;
     const Vec3 along = place(to) - place(from);
@@ -84,7 +84,7 @@ class View {
     return 0.5 * (place(a) + place(b));
   }
 
-  // To the figure's left at the legs or the arms.
+  // The direction to the character's left, from the legs or the arms.
   std::optional<Vec3> left(Role left_role, Role right_role) const {
     return direction(joint(right_role), joint(left_role));
   }
@@ -108,7 +108,7 @@ class View {
     return direction(chest >= 0 ? chest : joint(Role::hips), neck());
   }
 
-  // Where a joint's bone leads: the one child that is no helper.
+  // The end of a joint's bone: its only child that is not a helper, or -1.
   int only_child(int joint) const {
     int only = -1;
     for (const int child : children_[at(joint)]) {
@@ -121,7 +121,7 @@ class View {
 
   const std::vector<int>& children(int joint) const { return children_[at(joint)]; }
 
-  // The first joint of a finger beyond the palm, its metacarpal where it has no more.
+  // The first joint of a finger beyond the palm, otherwise its metacarpal, or -1.
   int knuckle(Role fingers, Finger finger) const {
     for (const int phalanx : {1, FingerJoint::kMetacarpal}) {
       const int joint = roles().finger_joint(fingers, {finger, phalanx});
@@ -130,8 +130,8 @@ class View {
     return -1;
   }
 
-  // From the wrist to the middle of the knuckles, or to the end of the hand where there are none
-  // and it lies along the forearm.
+  // From the wrist to the mean of the knuckles, or without knuckles to the end of the hand if that
+  // is along the forearm.
   std::optional<Vec3> hand_direction(const ArmRoles& arm) const {
     const int wrist = joint(arm.hand);
     if (wrist < 0) return std::nullopt;
@@ -153,7 +153,7 @@ class View {
     return std::nullopt;
   }
 
-  // From the little finger's side of the hand to the index finger's.
+  // From the little or ring finger's knuckle to the index finger's.
   std::optional<Vec3> knuckle_line(const ArmRoles& arm) const {
     for (const Finger outer : {Finger::little, Finger::ring}) {
       const auto line = direction(knuckle(arm.fingers, outer), knuckle(arm.fingers, Finger::index));
@@ -210,7 +210,7 @@ class Aligner {
     set_[at(joint)] = 1;
   }
 
-  // Left to left; then up to up as far as the difference is a bend and not the body's build.
+  // Aligns left, then up as far as the difference is a bend and not body build.
   Quat trunk_turn(Role left, Role right, const std::optional<Vec3>& source_up,
                   const std::optional<Vec3>& target_up) const {
     const auto from = target_.left(left, right);
@@ -228,7 +228,7 @@ class Aligner {
     return from_rotation_vector(taken * *to) * level;
   }
 
-  // Turns joint `upper` so that its bone to `lower` points as the source's.
+  // Rotates joint `upper` so that its bone to `lower` points as the source's.
   Quat bone_turn(const Quat& above, Role upper, Role lower, const Vec3& axis) {
     return bone_turn(above, source_.direction(source_.joint(upper), source_.joint(lower)),
                      target_.direction(target_.joint(upper), target_.joint(lower)), axis);
@@ -251,7 +251,7 @@ class Aligner {
     const auto forearm = source_.direction(source_.joint(arm.lower), source_.joint(arm.hand));
     const auto along = source_.hand_direction(arm) ? source_.hand_direction(arm) : forearm;
     const Quat hand = along ? from_rotation_vector(twist * *along) * straight : straight;
-    // Palms turn by the twist of the forearm, which has half of it before the wrist.
+    // The palm turns by the twist of the forearm, so the forearm gets half of it.
     if (elbow && forearm) lower = from_rotation_vector(0.5 * twist * *forearm) * lower;
     set(target_.joint(arm.lower), lower);
     set(target_.joint(arm.hand), hand);
@@ -272,7 +272,7 @@ class Aligner {
     return from && to ? swing(lower * *from, *to, axis) * lower : lower;
   }
 
-  // The angle about the hand's direction that brings the palm the way the source's faces.
+  // The angle about the hand's direction that makes the palm face as the source's.
   double palm_twist(const ArmRoles& arm, const Quat& straight) const {
     auto from = target_.knuckle_line(arm);
     auto to = source_.knuckle_line(arm);
@@ -332,7 +332,7 @@ class Aligner {
     if (flat_now.norm() < 0.25 || flat_to.norm() < 0.25) return hips_;
     const double yaw = std::atan2(flat_now.cross(flat_to).dot(kUp), flat_now.dot(flat_to));
     if (std::abs(yaw) > degrees(90)) return hips_;
-    // A foot that points down (or up) so much more than the other is not flat on the floor.
+    // A foot pitched that much more than the other is not flat on the floor.
     const double pitch = std::asin(std::clamp(to->dot(kUp), -1.0, 1.0)) -
                          std::asin(std::clamp(now.dot(kUp), -1.0, 1.0));
     const double taken = pitch * smooth_step(degrees(30), degrees(50), std::abs(pitch));
@@ -358,15 +358,15 @@ class Aligner {
   Quat chest_ = Quat::Identity();
 };
 
-// The rotation that takes one set of directions closest to another (Kabsch, by the signed polar
-// decomposition of their correlation).
+// The rotation that best maps one set of directions to another (Kabsch algorithm, by the signed
+// polar decomposition of their correlation).
 Quat best_turn(const std::vector<Vec3>& from, const std::vector<Vec3>& to, const Quat& fallback) {
   if (from.empty()) return fallback;
   if (from.size() == 1) return shortest_arc(fallback * from[0], to[0]) * fallback;
   Mat3 correlation = Mat3::Zero();
   for (std::size_t i = 0; i < from.size(); ++i) correlation += to[i] * from[i].transpose();
   const Eigen::JacobiSVD<Mat3> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  // Directions in one line leave the turn about it open.
+  // Collinear directions leave the rotation about their line undefined.
   if (!(svd.singularValues()[1] > 1e-3 * svd.singularValues()[0])) {
     return shortest_arc(fallback * from[0], to[0]) * fallback;
   }

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kFramesATime = 64;
 
-// Orientations as they are, positions scaled: no rounding but that of the scale.
+// Copies orientations and scales positions, without rounding except by the scale.
 Retargeted copy_of(const Clip& source, const Skeleton& target, const SameSkeleton& same,
                    double scale) {
   Retargeted result;
@@ -54,13 +54,13 @@ Retargeted copy_of(const Clip& source, const Skeleton& target, const SameSkeleto
 }
 
 std::string list_of(const std::vector<Role>& roles) {
-  if (roles.size() == missing_roles({}).size()) return "every part of a human body";
+  if (roles.size() == missing_roles({}).size()) return "every humanoid role";
   std::string text;
   for (const Role role : roles) text += (text.empty() ? "" : ", ") + std::string(role_name(role));
   return text;
 }
 
-// Why roles do not serve, for people.
+// Describes the missing roles.
 std::string missing_text(const RoleMap& source, const RoleMap& target) {
   const std::string in_source = list_of(missing_roles(source));
   const std::string in_target = list_of(missing_roles(target));
@@ -73,7 +73,7 @@ int joints_without_ends(const Skeleton& skeleton) {
   return static_cast<int>(std::count(skeleton.end_sites.begin(), skeleton.end_sites.end(), 0));
 }
 
-// The first joint of a mapping by names, which moves the figure.
+// The first mapped joint, which carries the root motion.
 int first_mapped(const JointMapping& mapping) {
   for (std::size_t k = 0; k < mapping.size(); ++k) {
     if (mapping[k].first >= 0) return static_cast<int>(k);
@@ -81,7 +81,7 @@ int first_mapped(const JointMapping& mapping) {
   return 0;
 }
 
-// All that is the same for every frame.
+// State shared by all frames.
 class Transfer {
  public:
   Transfer(const Clip& source, const RoleMap& source_roles, const Clip& target,
@@ -109,8 +109,8 @@ class Transfer {
       return status.error();
     }
     if (!(report_.scale > 0) || !std::isfinite(report_.scale)) {
-      return Error("retarget-scale", "the lengths of the two skeletons give no scale",
-                   "give one with --scale");
+      return Error("retarget-scale", "cannot compute a scale from the lengths of the skeletons",
+                   "set it with --scale");
     }
     for (int k = 0; k < target_.joint_count(); ++k) {
       local_.push_back(target_.reference_local(k));
@@ -146,7 +146,7 @@ class Transfer {
     prepare_feet(from, to);
   }
 
-  // The hips; a joint above them at the same place, as Biped has one, turns and goes with them.
+  // The hips. Ancestors at the same position, as in Biped, rotate and move with them.
   void take_anchor_of_roles() {
     const int hips = target_roles_.joint(Role::hips);
     const double near = 0.05 * leg_length(target_, target_roles_);
@@ -159,8 +159,8 @@ class Transfer {
     }
   }
 
-  // How thick the target's soles are below the joints of its feet, where that is known: by its
-  // mesh, or by how high its feet stand in its own motion.
+  // Thickness of the target's soles below its foot joints, if known: from its mesh, or from the
+  // height of its feet in stance in its own motion.
   std::optional<double> target_sole(const Actor& to) const {
     if (options_.target_floor) {
       return std::min(lowest_of_foot(to, Role::left_foot), lowest_of_foot(to, Role::right_foot)) -
@@ -171,7 +171,7 @@ class Transfer {
     return is_sole(sole, leg_length(target_, target_roles_)) ? std::optional(sole) : std::nullopt;
   }
 
-  // Whether joints of feet that stand at this height have soles on a floor at 0 under them.
+  // Whether foot joints at this height in stance have soles on a floor at 0.
   static bool is_sole(double height, double leg) {
     return height > -0.02 * leg && height < 0.08 * leg;
   }
@@ -210,11 +210,10 @@ class Transfer {
     const int fewer = std::min(joints_without_ends(source_.skeleton), joints_without_ends(target_));
     if (shared * 5 < fewer * 3 || shared == 0) {
       return Error("retarget-roles",
-                   fmt::format("the skeletons are not both known as human figures ({}), and share "
-                               "{} of {} names of joints",
+                   fmt::format("the skeletons are not both humanoid ({}), and share only {} of {} "
+                               "joint names",
                                missing_text(source_roles_, target_roles_), shared, fewer),
-                   "tell what the joints are with --map and --onto-map; krok-info shows what was "
-                   "found");
+                   "assign joint roles with --map and --onto-map; krok-info shows those found");
     }
     turns_ = align_by_names({source_.skeleton, source_roles_, rest_},
                             {target_, target_roles_, target_rest_}, mapping_);
@@ -225,12 +224,12 @@ class Transfer {
     return {};
   }
 
-  // What a joint of the source has turned by since the reference pose.
+  // The rotation of a source joint since the reference pose.
   Quat turn_of(std::span<const Transform> pose, int joint) const {
     return pose[at(joint)].orientation * rest_back_[at(joint)];
   }
 
-  // Joint_to_world of the target, its anchor at the place it has in the reference pose.
+  // joint_to_world of the target, with its anchor at its reference position.
   void pose_of(std::span<const Transform> source_pose, std::span<Transform> pose) const {
     for (int k = 0; k < target_.joint_count(); ++k) {
       const JointSource& from = mapping_[at(k)];
@@ -251,7 +250,7 @@ class Transfer {
     return 0.5 * (pose[at(sides[0])].position + pose[at(sides[1])].position);
   }
 
-  // Moves the anchor and what hangs on it; joints above it that stand at the same place go with it.
+  // Moves the anchor and its descendants.
   void place(std::span<const Transform> source_pose, std::span<Transform> pose) const {
     const Vec3 goal = report_.scale * middle(source_pose, source_sides_) + rise_ * Vec3::UnitY();
     const Vec3 shift = goal - middle(pose, target_sides_);
@@ -268,8 +267,8 @@ class Transfer {
     }
   }
 
-  // Calls body(frame, source_pose, pose, leg states) for all frames, the target's pose as rotations
-  // and hips give it.
+  // Calls body(frame, source_pose, pose) for all frames, with the target's pose as given by
+  // rotations and hips.
   template <typename Body>
   void for_frames(const Body& body) const {
     const auto frames = at(source_.frame_count());
@@ -292,7 +291,7 @@ class Transfer {
     }
   }
 
-  // How far the hips come down in each frame so that standing legs reach the floor.
+  // How far the hips are lowered in each frame so that planted feet reach the floor.
   std::vector<double> find_drops() const {
     std::vector<double> drops(at(source_.frame_count()), 0.0);
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
@@ -379,23 +378,23 @@ class Transfer {
 
   std::vector<Transform> rest_;         // the source's reference pose, joint_to_world
   std::vector<Quat> rest_back_;         // its orientations, conjugated
-  std::vector<Transform> target_rest_;  // the target's
+  std::vector<Transform> target_rest_;  // that of the target
   JointMapping mapping_;                // [target joints]
   std::vector<Quat> turns_;             // [target joints], alignment of the reference pose
   std::vector<Transform> local_;        // [target joints], reference joint_to_parent
   std::vector<Quat> aligned_;  // [target joints], orientations of the aligned reference pose
-  int anchor_ = 0;             // the target's joint that places the figure
+  int anchor_ = 0;             // the target joint that carries the root motion
   std::vector<char> below_anchor_;
-  std::array<int, 2> source_sides_ = {0, 0};  // joints whose middle is carried over
+  std::array<int, 2> source_sides_ = {0, 0};  // joints whose midpoint is transferred
   std::array<int, 2> target_sides_ = {0, 0};
-  double rise_ = 0;  // metres that the target's hips are higher for its feet
+  double rise_ = 0;  // metres the target's hips are raised for the height of its ankles
   Floor source_floor_, target_floor_;
   struct Leg {
     LegPlacement placement;
     std::vector<double> standing;  // [frames]
     bool is_left = false;
   };
-  std::vector<Leg> legs_;  // none where feet are left free
+  std::vector<Leg> legs_;  // empty with Feet::free
   Report report_;
 };
 
@@ -406,7 +405,8 @@ Result<Retargeted> transfer(const Clip& source, const RoleMap& source_roles, con
   if (source.skeleton.empty()) return Error("retarget-empty", "the motion has no joints");
   if (target.skeleton.empty()) return Error("retarget-empty", "the target has no joints");
   if (options.scale && (!(*options.scale > 0) || !std::isfinite(*options.scale))) {
-    return Error("retarget-scale", fmt::format("a scale of {} is not positive", *options.scale));
+    return Error("retarget-scale",
+                 fmt::format("a scale of {} is not positive and finite", *options.scale));
   }
   const auto same = same_skeleton(source.skeleton, target.skeleton);
   if (same && !options.source_frame && !options.target_frame &&

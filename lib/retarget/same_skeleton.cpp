@@ -11,7 +11,7 @@ namespace krok::retarget {
 namespace {
 
 constexpr double kScaleTolerance = 1e-6;
-constexpr double kOffsetTolerance = 1e-5;  // of the sum of all bones' root mean square
+constexpr double kOffsetTolerance = 1e-5;  // of the root of the sum of squared bone lengths
 
 }  // namespace
 

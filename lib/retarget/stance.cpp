@@ -29,7 +29,7 @@ class Posture {
  public:
   explicit Posture(const Actor& actor) : actor_(actor) {}
 
-  // The unit direction from one role's joint to another's; zero where one is absent.
+  // The unit direction from one role's joint to another's; zero if either is missing.
   Vec3 bone(Role from, Role to) const {
     const int a = actor_.roles.joint(from);
     const int b = actor_.roles.joint(to);
@@ -47,7 +47,7 @@ class Posture {
     return least;
   }
 
-  // How near the pose comes to standing with arms to the sides, feet side by side.
+  // Similarity of the pose to standing with arms to the sides, feet side by side.
   double likeness() const {
     const Vec3 left = bone(Role::right_upper_leg, Role::left_upper_leg);
     const Role top = actor_.roles.joint(Role::head) >= 0 ? Role::head : Role::neck;
@@ -70,7 +70,7 @@ class Posture {
   const Actor& actor_;
 };
 
-// Turns a joint and all that hangs on it about its own place.
+// Rotates a joint and its descendants about its position.
 void turn_branch(const Skeleton& skeleton, int joint, const Quat& turn, std::span<Transform> pose) {
   std::vector<char> inside(skeleton.names.size(), 0);
   inside[static_cast<std::size_t>(joint)] = 1;
@@ -84,8 +84,8 @@ void turn_branch(const Skeleton& skeleton, int joint, const Quat& turn, std::spa
   }
 }
 
-// The pose of a frame with its legs made those of a stance: straight down, each foot as flat as in
-// the frame in which it is lowest, pointing ahead.
+// Gives the legs of a pose a stance: straight down, each foot as flat as in the frame in which it
+// is lowest, pointing forward.
 class LegStraightener {
  public:
   LegStraightener(const Clip& clip, const RoleMap& roles, int step)
@@ -150,8 +150,8 @@ Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional
   if (frame) {
     if (*frame < 0 || *frame >= frames) {
       return Error("retarget-frame",
-                   fmt::format("there is no frame {} for a reference pose; the motion has {}, "
-                               "counted from 0",
+                   fmt::format("no frame {} to use as reference pose; the motion has {} frames, "
+                               "numbered from 0",
                                *frame, frames));
     }
     clip.get_pose(*frame, stance.pose);

@@ -9,21 +9,20 @@
 
 namespace krok::retarget {
 
-// The pose that a figure's turns are counted from.
+// The pose that rotations are measured from.
 struct Stance {
   std::vector<Transform> pose;  // joint_to_world, shape [joints]
-  std::optional<int> frame;     // of the motion; nothing for the skeleton's reference pose
+  std::optional<int> frame;     // of the motion; empty for the skeleton's reference pose
 };
 
-// Whether a human figure stands in a pose: trunk, thighs and shanks within 60 degrees of upright.
-// Exporters whose bones all lie along one axis have reference poses that do not.
+// Whether a humanoid stands in a pose: trunk, thighs and shanks within 60 degrees of upright. In
+// reference poses of exporters whose bones all lie along one axis it does not.
 bool stands(const Actor& actor);
 
-// The reference pose of a clip's skeleton; where it does not stand, the frame that comes nearest to
-// a T-pose among up to 2,000 evenly spaced ones, if any stands, with its legs straightened and its
-// feet set flat. `frame` chooses a frame's pose outright; an
-// Error (code retarget-frame) where there is none of that number. Figures that are no humanoids
-// keep their reference pose.
+// The reference pose of a clip's skeleton. If that does not stand, the standing frame nearest to a
+// T-pose among up to 2,000 evenly spaced ones, if any, with its legs straightened and its feet
+// flat. `frame` selects a frame's pose directly; an Error (code retarget-frame) if there is no such
+// frame. Skeletons that are not humanoids keep their reference pose.
 Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame);
 
 }  // namespace krok::retarget

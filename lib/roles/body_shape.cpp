@@ -52,7 +52,7 @@ class ShapeFinder {
     return parent < 0 ? 0.0 : (place(joint) - place(parent)).norm();
   }
 
-  // `joint` and what follows it, as far as there is one way on; end sites left out.
+  // `joint` and its descendants down to the first branch, without end sites.
   Chain chain_from(int joint) const {
     Chain chain;
     while (joint >= 0 && !is_end(joint)) {
@@ -73,7 +73,7 @@ class ShapeFinder {
     return (place(a.front()) - place(b.front())).norm() > 0;
   }
 
-  // The longest two mirrored branches that hang on a joint.
+  // The longest two mirrored branches below a joint.
   std::optional<Pair> mirrored_pair(int joint, int least_joints) const {
     const auto& below = children_[at(joint)];
     if (below.size() < 3 || below.size() > 8) return std::nullopt;
@@ -89,7 +89,7 @@ class ShapeFinder {
     return best;
   }
 
-  // The child of the trunk's joint that is in neither branch, the one that reaches furthest.
+  // The child of a trunk joint with the longest branch, other than the two of the pair; -1 if none.
   int leading_on(int joint, const Pair& besides) const {
     int best = -1;
     for (const int child : children_[at(joint)]) {
@@ -100,7 +100,7 @@ class ShapeFinder {
     return best;
   }
 
-  // The last three joints before the hand's own, or of the leg the first three that have a length.
+  // Arms: the last three joints of the chain. Legs: the first three, without a short first bone.
   std::optional<std::vector<JointName>> name_actor(int hips, const Pair& legs, int chest,
                                                    const Pair& arms, int neck) const {
     const auto leg = [&](const Chain& chain) {
@@ -117,7 +117,7 @@ class ShapeFinder {
 
     std::vector<JointName> names(skeleton_.names.size());
     names[at(hips)] = {Part::hips, Side::middle};
-    int head = neck;  // the last joint of the branch, its face left out
+    int head = neck;  // follows the branch to its end or first fork (the face)
     while (children_[at(head)].size() == 1 && !is_end(children_[at(head)].front())) {
       names[at(head)] = {Part::neck, Side::middle};
       head = children_[at(head)].front();
@@ -143,7 +143,7 @@ class ShapeFinder {
     return true;
   }
 
-  // Forward and up, if the figure stands as a person does.
+  // Forward and up, if the pose is upright as a person's; empty otherwise.
   std::optional<std::pair<Vec3, Vec3>> stance(int hips, int chest, int foot_a, int foot_b,
                                               const Pair& arms, int neck) const {
     const Vec3 ground = 0.5 * (place(foot_a) + place(foot_b));
@@ -169,7 +169,7 @@ class ShapeFinder {
 
   const Skeleton& skeleton_;
   std::vector<std::vector<int>> children_;
-  std::vector<double> reach_;  // [joints], the longest way down
+  std::vector<double> reach_;  // [joints], length of the longest branch below
 };
 
 }  // namespace

@@ -4,15 +4,15 @@
 
 namespace krok {
 
-// The joints that turn a figure's eyes, -1 where there is none.
+// The joints that rotate the eyes; -1 if missing.
 struct EyeJoints {
   int left = -1;
   int right = -1;
 };
 
-// By their names alone, in the spellings of "LeftEye", "eye.L", "lEye", "J_Adj_R_FaceEye": a name
-// with the word eye and a side, and without a word of what is around an eye or steers it (lid,
-// brow, lash, target, end and the like). Of several the first.
+// Finds the eyes by name alone, such as "LeftEye", "eye.L", "lEye", "J_Adj_R_FaceEye": names with
+// the word eye and a side, but without a word for a part around the eye or a control (lid, brow,
+// lash, target, end and so on). The first match per side.
 EyeJoints find_eyes(const Skeleton& skeleton);
 
 }  // namespace krok

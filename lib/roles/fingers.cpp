@@ -22,13 +22,13 @@ constexpr std::array kFingerWords = {
     FingerWord{"little", Finger::little}, FingerWord{"pinky", Finger::little},
     FingerWord{"pinkie", Finger::little}, FingerWord{"fingers", Finger::all}};
 
-// Xsens counts the fingers from the thumb on.
+// Xsens counts the fingers from the thumb.
 constexpr std::array kOrdinalWords = {
     FingerWord{"first", Finger::thumb}, FingerWord{"second", Finger::index},
     FingerWord{"third", Finger::middle}, FingerWord{"fourth", Finger::ring},
     FingerWord{"fifth", Finger::little}};
 
-// What stands before or after a finger's word where a name is written in one: "righthandindex".
+// Words before or after the finger in names without separators: "righthandindex".
 constexpr std::array<std::string_view, 7> kBefore = {"left",   "right", "hand", "in",
                                                      "finger", "l",     "r"};
 constexpr std::array<std::string_view, 11> kAfter = {
@@ -39,15 +39,15 @@ struct FingerName {
   Finger finger = Finger::none;
   bool metacarpal = false;
   bool has_number = false;
-  bool base = false;        // of all fingers: "LeftFingerBase"
-  int counted_finger = -1;  // of "Finger21" the 2, which tells a finger when all names are known
+  bool base = false;        // common base of all fingers: "LeftFingerBase"
+  int counted_finger = -1;  // the 2 of "Finger21", resolved to a finger once all names are read
 };
 
 bool is_digits(std::string_view token) {
   return !token.empty() && std::isdigit(static_cast<unsigned char>(token[0])) != 0;
 }
 
-// The word without what may stand around it.
+// The finger's word without the words of kBefore and kAfter around it.
 std::string_view bare(std::string_view word) {
   const auto known = [](std::string_view text) {
     return std::any_of(kFingerWords.begin(), kFingerWords.end(),
@@ -150,8 +150,8 @@ class FingerFinder {
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
   static std::ptrdiff_t ptrdiff(std::size_t index) { return static_cast<std::ptrdiff_t>(index); }
 
-  // "Finger0" to "Finger4" are thumb to little finger; counted from 1, the thumb is the first
-  // unless it has a name of its own.
+  // "Finger0" to "Finger4" are thumb to little finger. If counted from 1, finger 1 is the thumb,
+  // unless a joint is named thumb.
   void name_counted_fingers() {
     bool from_zero = false;
     bool named_thumb = false;
@@ -168,8 +168,8 @@ class FingerFinder {
     }
   }
 
-  // A joint without a finger's name belongs to its parent's finger, or as a metacarpal to the one
-  // finger that hangs on it.
+  // A joint without a finger's name belongs to its parent's finger, or as a metacarpal to its only
+  // child's finger.
   void inherit() {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       if (names_[i].finger != Finger::none || above_[i] < 0) continue;
@@ -186,9 +186,9 @@ class FingerFinder {
     }
   }
 
-  // Whether the first joint of a finger only leads to its knuckle: named as a metacarpal (which for
-  // the thumb is its first bone), or without a number before a joint that has one
-  // ("LeftHandRing", "LeftHandRing1"), or of the same name as the next but for signs
+  // Whether the first joint of a finger is a metacarpal: named so (except for the thumb, whose
+  // metacarpal is its first bone), or without a number and followed by a joint with one
+  // ("LeftHandRing", "LeftHandRing1"), or of the same name as the next except for punctuation
   // ("__Ring1", "Ring1").
   bool leads_to_knuckle(std::size_t i) const {
     const FingerName& name = names_[i];

@@ -18,12 +18,12 @@ enum class Finger : unsigned char {
   middle,
   ring,
   little,
-  all  // one joint for the four fingers together, as in CMU's skeletons
+  all  // one joint for all four fingers together, as in CMU skeletons
 };
 
-// Where a joint is on its finger. The joint of a phalanx is the one whose rotation moves it: 1 is
-// at the knuckle, 2 and 3 beyond it. The thumb has its first joint at the wrist and is counted from
-// there, so that it has 1 to 3 too.
+// Finger and phalanx of a joint. The joint of a phalanx is the one whose rotation moves it: 1 is at
+// the knuckle, 2 and 3 beyond it. The thumb is counted from its joint at the wrist, so it has 1 to
+// 3 too.
 struct FingerJoint {
   static constexpr int kMetacarpal = 0;  // a joint in the palm that leads to the knuckle
   static constexpr int kTip = 4;         // beyond the last phalanx
@@ -37,14 +37,14 @@ struct FingerJoint {
 // "index_1", "thumb_3", "ring_metacarpal", "little_tip", "all_1"; empty for Finger::none.
 std::string finger_place_name(FingerJoint place);
 
-// The inverse of finger_place_name; nothing for other texts.
+// The inverse of finger_place_name; empty for other text.
 std::optional<FingerJoint> parse_finger_joint(std::string_view name);
 
-// Which finger each joint beyond one wrist belongs to, from the joints' names ("LeftHandIndex2",
-// "lMid1", "LFinger21", "LeftSecondPP", "finger3-1.L") and from their order along the finger, which
-// counts the phalanges whatever numbers the names have. `beyond_wrist` lists those joints, parents
-// first. Same length and order as `beyond_wrist`; Finger::none for joints in the palm that several
-// fingers hang on and for names that tell no finger.
+// Finger and phalanx of each joint beyond one wrist. The finger comes from the joint names
+// ("LeftHandIndex2", "lMid1", "LFinger21", "LeftSecondPP", "finger3-1.L"), the phalanx from the
+// order along the finger, regardless of numbers in the names. `beyond_wrist` lists the joints,
+// parents first. Returns the same length and order; Finger::none for palm joints shared by several
+// fingers and for names without a finger.
 std::vector<FingerJoint> find_fingers(const Skeleton& skeleton, std::span<const int> beyond_wrist);
 
 }  // namespace krok

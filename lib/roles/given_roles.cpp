@@ -1,4 +1,4 @@
-// Roles that a user gave, and what is found around them.
+// find_roles with roles given by the user.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace krok {
 
 namespace {
 
-// What a joint of this role would be called.
+// The part and side that a joint name of this role would have.
 JointName name_of(Role role) {
   switch (role) {
     case Role::hips:
@@ -77,9 +77,9 @@ Status check_once(const Skeleton& skeleton, std::span<const GivenRole> given) {
       }
       Error error(
           "role-twice",
-          fmt::format("'{}' and '{}' are both given as one and the same part of the body",
-                      skeleton.names[at(given[k].joint)], skeleton.names[at(given[i].joint)]),
-          "one joint alone can have this role; leave one of them out");
+          fmt::format("'{}' and '{}' were given the same role", skeleton.names[at(given[k].joint)],
+                      skeleton.names[at(given[i].joint)]),
+          "only one joint can have this role; remove one of the two");
       error.joint = skeleton.names[at(given[i].joint)];
       return error;
     }
@@ -87,7 +87,7 @@ Status check_once(const Skeleton& skeleton, std::span<const GivenRole> given) {
   return {};
 }
 
-// Roles of which the first must stand above the second.
+// Pairs of roles; the second joint must be a descendant of the first.
 constexpr std::array<std::array<Role, 2>, 20> kOrder = {{
     {Role::hips, Role::chest},
     {Role::hips, Role::head},
@@ -125,11 +125,12 @@ Status check_order(const Skeleton& skeleton, const RoleMap& map, std::span<const
     while (joint >= 0 && joint != upper) joint = skeleton.parents[at(joint)];
     if (joint == upper) continue;
     const Role told = is_given(below) ? below : above;
-    Error error("role-order",
-                fmt::format("'{}' is {} and '{}' is {}, but it does not hang under it",
-                            skeleton.names[at(upper)], role_name(above), skeleton.names[at(lower)],
-                            role_name(below)),
-                "give the other joint its role too, or this one another");
+    Error error(
+        "role-order",
+        fmt::format("'{}' is {} and '{}' is {}, but the latter is not a descendant of the former",
+                    skeleton.names[at(upper)], role_name(above), skeleton.names[at(lower)],
+                    role_name(below)),
+        "give the other joint a role too, or this one a different role");
     error.joint = skeleton.names[at(map.joint(told))];
     return error;
   }

@@ -19,10 +19,10 @@ struct Word {
   Part part;
 };
 
-// Words of joints that each side has. The spellings are those of the exporters listed in roles.h;
-// Acclaim's bone names (humerus, radius, femur, tibia) are named after their first joint too. The
-// names of single joints (sternoclavicular, midtarsal, skullbase) are those of H-Anim, ISO/IEC
-// 19774, which SmartBody has too.
+// Words for joints that exist on each side, as spelled by the exporters listed in roles.h.
+// Acclaim's bone names (humerus, radius, femur, tibia) stand for the bone's first joint. Some joint
+// names (sternoclavicular, midtarsal, skullbase) are those of H-Anim, ISO/IEC 19774, also used by
+// SmartBody.
 constexpr std::array kSidedWords = {Word{"clavicle", Part::collar},
                                     Word{"clav", Part::collar},
                                     Word{"collar", Part::collar},
@@ -89,12 +89,12 @@ constexpr std::array kMiddleWords = {
     Word{"torso", Part::spine},    Word{"thorax", Part::spine},    Word{"tospine", Part::spine},
     Word{"ribcage", Part::spine}};
 
-// Anywhere in the name.
+// Matched anywhere in the name.
 constexpr std::array<std::string_view, 27> kHelperWords = {
     "twist",  "roll",  "share",  "jaw",    "tongue", "teeth",    "face",     "facial",  "breast",
     "brow",   "cheek", "eyelid", "marker", "target", "effector", "control",  "ctrl",    "helper",
     "weapon", "prop",  "dummy",  "hair",   "cloth",  "skirt",    "hipjoint", "buttock", "glute"};
-// As a word of its own.
+// Matched as whole words only.
 constexpr std::array<std::string_view, 11> kHelperTokens = {
     "ik", "pole", "goal", "eye", "eyes", "ear", "lip", "nose", "tail", "nub", "heel"};
 
@@ -115,7 +115,7 @@ Side side_of(std::string_view token) {
   return Side::middle;
 }
 
-// The tokens without numbers in one word.
+// All tokens except numbers, concatenated.
 std::string joined(const Tokens& tokens) {
   std::string text;
   for (const std::string& token : tokens) {
@@ -139,9 +139,9 @@ Part middle_part(std::string_view text) {
   return find_word(kMiddleWords, text).value_or(Part::unknown);
 }
 
-// Takes the side out of the tokens.
+// Removes the side from the tokens and returns it.
 Side take_side(Tokens& tokens) {
-  // Last and first words are tried before those between, "arm_r_l" being a row of left arms.
+  // The first and last words are tried before those between: "arm_r_l" is on the left.
   std::vector<std::size_t> places;
   if (!tokens.empty()) places = {0, tokens.size() - 1};
   for (std::size_t i = 1; i + 1 < tokens.size(); ++i) places.push_back(i);
@@ -157,7 +157,7 @@ Side take_side(Tokens& tokens) {
   return Side::middle;
 }
 
-// "leftarm", "handright", "lhand", "LUArm": the side is part of a word. Gives what is left of it.
+// Splits a side that is part of a word ("leftarm", "handright", "lhand") from the rest of it.
 std::pair<Side, std::string> split_side(const std::string& text) {
   for (const auto& [word, side] :
        {std::pair<std::string_view, Side>{"left", Side::left}, {"right", Side::right}}) {
@@ -177,8 +177,8 @@ std::pair<Side, std::string> split_side(const std::string& text) {
   return {Side::middle, text};
 }
 
-// "Skeleton_arm_joint_L": words that say no more than that it is a joint. A hip joint is one of its
-// own (CMU's LHipJoint only leads from the hips to the thigh).
+// Removes words without meaning, as in "Skeleton_arm_joint_L". "Hip joint" is kept, as it is a
+// helper (CMU's LHipJoint between hips and thigh).
 void drop_filler_words(Tokens& tokens) {
   constexpr std::array<std::string_view, 6> kFillers = {"joint", "jnt",      "bone",
                                                         "bn",    "skeleton", "armature"};
@@ -212,7 +212,7 @@ JointName read_name(Tokens tokens) {
   if (helper) {
     name.part = Part::helper;
   } else if (name.side != Side::middle) {
-    // A pelvis of one side only carries the leg.
+    // A pelvis with a side is a helper between hips and leg.
     name.part =
         text == "pelvis" ? Part::helper : find_word(kSidedWords, text).value_or(Part::unknown);
   }
@@ -224,8 +224,7 @@ bool is_body_word(const std::string& token) {
          middle_part(token) != Part::unknown || split_side(token).first != Side::middle;
 }
 
-// Takes off the words that more than half of the names begin or end with and that are no part of a
-// body.
+// Removes words that more than half of the names start or end with, unless they name a body part.
 void strip_common_words(std::vector<Tokens>& names, bool at_end) {
   constexpr int kMaxWords = 6;
   if (names.size() < 4) return;
@@ -250,8 +249,9 @@ void strip_common_words(std::vector<Tokens>& names, bool at_end) {
   }
 }
 
-// Rigs that only number the joints of a limb ("leg_joint_L_1" to "leg_joint_L_5"): three or more in
-// a row with one word, on a side that has no other names, are the limb from its root to its end.
+// For rigs that only number the joints of a limb ("leg_joint_L_1" to "leg_joint_L_5"): a chain of
+// at least three joints with `word`, if no joint of that side is named by one of `others`, is
+// assigned the parts of `limb` from its root on.
 void read_numbered_limb(const Skeleton& skeleton, Part word, std::span<const Part> others,
                         std::span<const Part> limb, Side side, std::vector<JointName>& names) {
   std::vector<std::size_t> chain;
@@ -297,7 +297,7 @@ std::vector<std::string> name_tokens(std::string_view name) {
     if (open) {
       const unsigned char before = at(i - 1);
       const bool digit_before = std::isdigit(before) != 0;
-      // "leftArm" splits before A; "LThigh" before T, the last capital of a run.
+      // "leftArm" splits before A; "LThigh" before T, the last of several capitals.
       const bool hump = std::isupper(c) &&
                         (!std::isupper(before) || (i + 1 < name.size() && std::islower(at(i + 1))));
       begins = digit != digit_before || hump;
@@ -306,7 +306,7 @@ std::vector<std::string> name_tokens(std::string_view name) {
     tokens.back() += static_cast<char>(c < 0x80 ? std::tolower(c) : c);
     open = true;
   }
-  // OptiTrack writes LUArm and LFArm: side, place and part in one.
+  // OptiTrack's LUArm and LFArm: the tokens "lu", "arm" become "l", "u", "arm".
   for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
     const std::string token = tokens[i];
     if (token.size() == 2 && (token[0] == 'l' || token[0] == 'r') &&
@@ -335,8 +335,8 @@ std::vector<JointName> read_joint_names(const Skeleton& skeleton) {
     names[joints[i]] = read_name(tokens[i]);
     tokens_of[joints[i]] = &tokens[i];
   }
-  // Of two joints of the same name in a row (MakeHuman's "__UpLeg_L" and "UpLeg_L") the first only
-  // leads from the trunk to the place of the second.
+  // If a joint and its parent have the same name (MakeHuman's "__UpLeg_L" and "UpLeg_L"), the
+  // parent is a helper between trunk and limb.
   for (const std::size_t j : joints) {
     const int above = skeleton.parents[j];
     if (above < 0 || names[j].part == Part::unknown) continue;

@@ -6,16 +6,16 @@
 
 #include "scene/skeleton.h"
 
-// What a joint's name says, whatever the exporter: the part of the body and the side. Names alone;
-// find_roles holds them against the structure.
+// Reads body part and side from joint names of any exporter. Uses names only; find_roles checks
+// them against the hierarchy.
 
 namespace krok {
 
 enum class Side : unsigned char { middle, left, right };
 
-// The word in a name. Some words mean another joint from one exporter to the next ("shoulder" is
-// the collar bone in MotionBuilder and the upper arm in iPi and Biovision), so they are kept apart
-// here.
+// The body part word in a name. The meaning of some words depends on the exporter ("shoulder" is
+// the collar bone in MotionBuilder and the upper arm in iPi and Biovision), so they are kept
+// separate.
 enum class Part : unsigned char {
   unknown,
   hips,
@@ -25,16 +25,16 @@ enum class Part : unsigned char {
   collar,
   shoulder,  // collar or upper arm
   upper_arm,
-  arm,  // upper arm, or lower arm beside a named upper arm
+  arm,  // upper arm, or lower arm if another joint is named upper arm
   lower_arm,
   hand,
-  hip,  // the hip of one side: the upper leg, unless a joint is named so
+  hip,  // hip of one side: the upper leg, unless another joint is named upper leg
   upper_leg,
-  leg,  // lower leg, or upper leg beside a named lower leg
+  leg,  // lower leg, or upper leg if another joint is named lower leg
   lower_leg,
   foot,
   toes,
-  helper  // twist joints, face, props, targets of inverse kinematics
+  helper  // twist joints, face, props, IK targets
 };
 
 struct JointName {
@@ -42,11 +42,12 @@ struct JointName {
   Side side = Side::middle;
 };
 
-// The words of all joints' names, shape [joints]. Name spaces ("mixamorig:") and words that most of
-// the names begin with ("Bip01", "CC_Base_", "Robot_") are left out. End sites are unknown.
+// Part and side of all joints, shape [joints]. Ignores namespaces ("mixamorig:") and words that
+// most names start or end with ("Bip01", "CC_Base_", "Robot_"). End sites are unknown.
 std::vector<JointName> read_joint_names(const Skeleton& skeleton);
 
-// The words and numbers of a name in lower case: "mixamorig:LeftForeArm2" is left, fore, arm, 2.
+// The words and numbers of a name in lower case, without namespace: "mixamorig:LeftForeArm2" gives
+// left, fore, arm, 2.
 std::vector<std::string> name_tokens(std::string_view name);
 
 }  // namespace krok

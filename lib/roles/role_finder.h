@@ -7,8 +7,8 @@
 
 namespace krok {
 
-// The roles of joints of which it is known what their names say (shape [joints]), held against the
-// structure of the skeleton. The names may come from elsewhere than the skeleton.
+// Roles from part and side of each joint (shape [joints]), checked against the hierarchy. `names`
+// may come from another source than the skeleton's joint names.
 RoleMap roles_from_names(const Skeleton& skeleton, std::vector<JointName> names);
 
 }  // namespace krok

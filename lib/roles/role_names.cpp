@@ -1,4 +1,4 @@
-// What roles are called, and what a RoleMap tells.
+// Role names and queries of RoleMap.
 
 #include <algorithm>
 #include <array>

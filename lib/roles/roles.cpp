@@ -27,8 +27,8 @@ constexpr LegRoles kLeftLeg = {Role::left_upper_leg, Role::left_lower_leg, Role:
 constexpr LegRoles kRightLeg = {Role::right_upper_leg, Role::right_lower_leg, Role::right_foot,
                                 Role::right_toes};
 
-// Holds the names against the tree: finds the ends of the limbs by name, takes what lies between
-// them and the trunk as the limb, and the trunk as what the limbs have in common.
+// Matches names with the hierarchy: finds the ends of the limbs by name; joints that several limbs
+// descend from are the trunk, joints between trunk and end are the limb.
 class RoleFinder {
  public:
   RoleFinder(const Skeleton& skeleton, std::vector<JointName> names)
@@ -78,7 +78,7 @@ class RoleFinder {
     return joint == ancestor;
   }
 
-  // The joint furthest from the root that both descend from (themselves included); -1 for -1.
+  // The lowest common ancestor, which may be a or b. If one is -1, the other; -1 if both are.
   int common_ancestor(int a, int b) const {
     if (a < 0 || b < 0) return std::max(a, b);
     while (a != b) {
@@ -95,7 +95,7 @@ class RoleFinder {
     return (skeleton_.reference[at(a)].position - skeleton_.reference[at(b)].position).norm();
   }
 
-  // The joint nearest the root for which `wanted` holds; of equally near ones the first.
+  // The joint nearest to the root for which `wanted` holds, without end sites; the first of equals.
   template <typename Condition>
   int nearest(const Condition& wanted) const {
     int best = -1;
@@ -105,7 +105,7 @@ class RoleFinder {
     return best;
   }
 
-  // Whether a joint above `joint` on the same side is named as one of `parts`.
+  // Whether an ancestor of `joint` on `side` is named as one of `parts`.
   bool hangs_under(int joint, Side side, std::span<const Part> parts) const {
     for (int j = parent(joint); j >= 0; j = parent(j)) {
       if (names_[at(j)].side == side &&
@@ -116,8 +116,8 @@ class RoleFinder {
     return false;
   }
 
-  // The joint that ends a limb: by name under a joint of that limb, by name alone, or the next
-  // joint below the limb's last named one.
+  // The end joint of a limb: a joint named `tip` below a joint of that limb, else the main child of
+  // the limb's last part, else a joint named `tip` anywhere.
   int find_tip(Side side, Part tip, std::span<const Part> limb) const {
     const auto named = [&](int j) { return part(j) == tip && names_[at(j)].side == side; };
     int found = nearest([&](int j) { return named(j) && hangs_under(j, side, limb); });
@@ -128,7 +128,7 @@ class RoleFinder {
     return nearest(named);
   }
 
-  // The child that leads on: no helper, no end site, the most joints below. -1 if there is none.
+  // The child with the most descendants, other than helpers and end sites; -1 if there is none.
   int main_child(int joint) const {
     int best = -1;
     for (const int child : children_[at(joint)]) {
@@ -150,13 +150,13 @@ class RoleFinder {
       int last = neck_;
       while (main_child(last) >= 0 && part(main_child(last)) == Part::neck) last = main_child(last);
       head_ = main_child(last);
-      if (head_ < 0 && last != neck_) head_ = last;  // the last of several necks holds the head
+      if (head_ < 0 && last != neck_) head_ = last;  // the last of several necks
     }
     if (head_ < 0 && neck_ < 0) head_ = unnamed_head();
   }
 
-  // Where both arms and legs are known by name, but nothing is named as neck or head (a row of
-  // vertebrae, say): the last joint of the one branch that leads on between the arms.
+  // If both arms and legs are known by name, but no neck or head (only numbered vertebrae, for
+  // example): the last joint of the single branch above the arms.
   int unnamed_head() const {
     if (hands_[0] < 0 || hands_[1] < 0 || feet_[0] < 0 || feet_[1] < 0) return -1;
     const auto may_lead_on = [&](int j) {
@@ -164,7 +164,7 @@ class RoleFinder {
       return !is_end(j) && !named && names_[at(j)].side == Side::middle;
     };
     const int chest = common_ancestor(hands_[0], hands_[1]);
-    if (descends(feet_[0], chest)) return -1;  // limbs that hang on one joint tell no up
+    if (descends(feet_[0], chest)) return -1;  // all limbs on one joint: up is unknown
     int head = -1;
     for (const int child : children_[at(chest)]) {
       if (is_end(child) || descends(hands_[0], child) || descends(hands_[1], child)) continue;
@@ -177,7 +177,7 @@ class RoleFinder {
     return head;
   }
 
-  // A joint that two limbs, or a limb and the head, descend from belongs to the trunk.
+  // Trunk: joints that two limbs, or a limb and the head, descend from.
   void mark_trunk() {
     const std::array tips = {hands_[0], hands_[1], feet_[0], feet_[1], head_ >= 0 ? head_ : neck_};
     std::vector<int> tips_below(skeleton_.names.size(), 0);
@@ -188,7 +188,7 @@ class RoleFinder {
     for (std::size_t j = 0; j < trunk_.size(); ++j) trunk_[j] = tips_below[j] >= 2 ? 1 : 0;
   }
 
-  // The joints from the trunk (exclusive) to `tip` (exclusive), helpers left out.
+  // The joints between the trunk and `tip`, both exclusive, without helpers.
   std::vector<int> limb_above(int tip) const {
     std::vector<int> chain;
     for (int j = parent(tip); j >= 0 && trunk_[at(j)] == 0; j = parent(j)) {
@@ -198,13 +198,13 @@ class RoleFinder {
     return chain;
   }
 
-  // Named as a part of the trunk, as in a figure with one limb only.
+  // Whether the joint is named as part of the trunk; needed for skeletons with a single limb.
   bool is_middle(int joint) const {
     const Part p = part(joint);
     return p == Part::hips || p == Part::spine || p == Part::neck || p == Part::head;
   }
 
-  // Index in `chain` of the first joint named `wanted` at or after `from`, or -1.
+  // Index in `chain` of the first joint named `wanted`, starting at `from`; -1 if there is none.
   int position(const std::vector<int>& chain, Part wanted, int from = 0) const {
     for (int i = from; i < static_cast<int>(chain.size()); ++i) {
       if (part(chain[at(i)]) == wanted) return i;
@@ -251,9 +251,9 @@ class RoleFinder {
     ++limbs_;
   }
 
-  // Where a joint in the middle of the upper arm bears its name (MakeHuman's upperarm02 under
-  // shoulder02 under clavicle), the one before it, if that makes the upper arm as long as the
-  // lower.
+  // If a joint in the middle of the upper arm is named upper arm (MakeHuman's upperarm02 below
+  // shoulder02 below clavicle), returns the one before it, provided that the upper arm is then
+  // about as long as the lower arm.
   int repaired_upper_arm(const std::vector<int>& chain, int upper, int lower, int hand) const {
     const int collar = position(chain, Part::collar);
     if (collar < 0 || upper - 1 <= collar) return upper;
@@ -288,7 +288,7 @@ class RoleFinder {
 
   int find_hips(int legs, int top) const {
     const int meeting = common_ancestor(legs, top);
-    // A joint named so at or above the meeting point; in figures without legs wherever it stands.
+    // A joint named hips at or above the meeting point; without legs, any joint named hips.
     for (int j = meeting; j >= 0; j = parent(j)) {
       if (part(j) == Part::hips) return j;
     }
@@ -319,7 +319,7 @@ class RoleFinder {
     if (head_ >= 0) role(head_) = Role::head;
     int upward = head_ >= 0 ? parent(head_) : neck_;
     for (; upward >= 0 && !placed(upward); upward = parent(upward)) {
-      // Between arms and head is the neck, unless another joint is named so.
+      // Joints between arms and head are neck, unless another joint is named neck.
       const bool spine =
           part(upward) != Part::neck && (arms < 0 || (part(upward) == Part::spine && neck_ >= 0));
       role(upward) = is_helper(upward) ? Role::helper : spine ? Role::spine : Role::neck;
@@ -327,7 +327,7 @@ class RoleFinder {
   }
 
   void assign_rest() {
-    // Parents come first, so a joint inherits from what its parent became.
+    // Parents come first, so their roles are known.
     for (int j = 0; j < skeleton_.joint_count(); ++j) {
       if (placed(j)) continue;
       int above = parent(j);
@@ -346,7 +346,7 @@ class RoleFinder {
     }
   }
 
-  // Whether a joint below is named as toes: the rotation at the ball of the foot is that one's.
+  // Whether a child is named toes; that child is then the joint at the ball of the foot.
   bool leads_to_toes(int joint) const {
     for (const int child : children_[at(joint)]) {
       if (part(child) == Part::toes) return true;
@@ -363,7 +363,7 @@ class RoleFinder {
     }
   }
 
-  // What an unnamed joint below one with this role is.
+  // The role of an unnamed joint below a joint with this role.
   static Role beyond(Role role) {
     switch (role) {
       case Role::left_hand:

@@ -13,8 +13,8 @@ need_generators make-forearm
 methods=(linear dual-quaternion rigid)
 enter_folder "${1:-out/candy_wrapper}"
 
-# Between elbow and wrist the arm is a prism, 250 mm long, on an ellipse of 35 by 45 mm half axes
-# with 96 corners. Litres.
+# Volume between elbow and wrist, litres: a prism of 250 mm over a 96-gon inscribed in an ellipse
+# with semi-axes of 35 and 45 mm.
 stretch=$(awk 'BEGIN { print 0.25 * 0.035 * 0.045 * 48 * sin(3.141592653589793 / 48) * 1000 }')
 
 # volume METHOD FRAME: volume of the mesh in litres.
@@ -37,7 +37,7 @@ done
 echo "  twist.png   twisted by 0, 45, 90, 135 and 180 degrees"
 
 say "3. Volume loss between elbow and wrist"
-# One degree per frame. The whole loss is there: the rest of the arm moves rigidly.
+# One degree per frame. Only this part loses volume: the rest of the arm moves rigidly.
 whole=$(volume linear 0)
 echo "twist [deg],method,volume lost [percent]" >volume.csv
 for degrees in $(seq 0 15 180); do

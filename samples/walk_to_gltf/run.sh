@@ -3,8 +3,8 @@
 #
 #   run.sh [--quick] [CAPTURE.bvh] [OUTPUT_FOLDER]
 #
-# Without arguments: samples/captures/walk.bvh to out/demo. With --quick, to out/quick, the rig and the
-# page alone, by four tools. The tools are found through $KROK_BIN, or in build/bin.
+# Without arguments: samples/captures/walk.bvh to out/demo. With --quick: only the rig and the page,
+# to out/quick, with four tools. The tools are found through $KROK_BIN, or in build/bin.
 . "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
 
 # Durations to try, longest first, if the whole capture is too long to bake.

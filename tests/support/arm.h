@@ -7,9 +7,9 @@
 
 #include "rbf/inverse.h"
 
-// A motion whose parameters are known in closed form: a planar arm. An example is the angles of its
-// joints, a blend is their weighted sum, and the parameters are where the hand is, which way it
-// points and how high the elbow is, as many of them as wanted.
+// A motion whose parameters have a closed form: a planar arm. An example is its joint angles, a
+// blend is their weighted sum, and the parameters are up to four of hand position, elbow height and
+// hand angle.
 
 namespace krok::test {
 
@@ -20,13 +20,13 @@ struct Arm {
 
   static constexpr Eigen::Index kElbow = 1;                   // the joint whose link ends there
   std::vector<double> links = {0.35, 0.35, 0.3, 0.25, 0.15};  // metres
-  int dimensions = 2;              // of: hand x, hand y, elbow y, hand's angle
+  int dimensions = 2;              // the first of: hand x, hand y, elbow y, hand angle
   Eigen::MatrixXd angles;          // [joints x examples], radians
   std::vector<double> parameters;  // [examples x dimensions], measured
 
   Eigen::Index joints() const { return static_cast<Eigen::Index>(links.size()); }
 
-  // The parameters of a pose, and their slopes by its angles, [dimensions x joints].
+  // The parameters of a pose, and their derivatives by its angles, [dimensions x joints].
   Vector measure_pose(const Vector& pose, Matrix* slopes) const {
     Eigen::Vector4d all = Eigen::Vector4d::Zero();
     Matrix by_angle = Matrix::Zero(4, joints());
@@ -64,8 +64,8 @@ struct Arm {
   }
 };
 
-// Examples on a grid of `steps` along each parameter, each in a pose that no rule gives: what the
-// parameters leave free is at random. Ranges about 0.4 m and 50 degrees.
+// Examples on a grid of `steps` along each parameter; degrees of freedom that the parameters leave
+// open are random. Parameter ranges are about 0.4 m and 50 degrees.
 inline Arm make_arm(int dimensions, int steps, unsigned seed = 1) {
   Arm arm;
   arm.dimensions = dimensions;

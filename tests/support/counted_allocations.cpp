@@ -6,7 +6,7 @@
 
 namespace {
 
-// Not inlined, so that the compiler sees no pair of an allocation and another's release.
+// Not inlined, so that the compiler cannot pair an allocation with its release.
 [[gnu::noinline]] void* counted(std::size_t size, std::size_t alignment) {
   ++krok::test::allocations;
   return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);

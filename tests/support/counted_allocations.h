@@ -2,8 +2,8 @@
 
 #include <atomic>
 
-// How often the program took memory by operator new: counted_allocations.cpp beside this counts it,
-// for the whole program that it is linked into.
+// The number of calls of operator new, counted by counted_allocations.cpp in the whole program that
+// it is linked into.
 
 namespace krok::test {
 

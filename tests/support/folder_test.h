@@ -12,7 +12,7 @@
 
 namespace krok::test {
 
-// A new folder for each test, removed at its end.
+// A temporary folder for each test, removed after it.
 class FolderTest : public testing::Test {
  protected:
   FolderTest() {
@@ -28,7 +28,7 @@ class FolderTest : public testing::Test {
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  // Writes a file in the folder; gives its path.
+  // Writes a file in the folder; returns its path.
   std::string put(const std::string& name, const std::string& text) const {
     std::ofstream(path(name), std::ios::binary) << text;
     return path(name);

@@ -10,7 +10,7 @@
 
 #include "core/bytes.h"
 
-// Small glTF files put together by hand, JSON and bytes, so that tests of the reader depend on no
+// Small glTF files assembled by hand from JSON and bytes, so that reader tests do not depend on the
 // writer.
 
 namespace krok::test {
@@ -19,7 +19,7 @@ struct GlbBuilder {
   nlohmann::ordered_json json = {{"asset", {{"version", "2.0"}}}};
   std::vector<std::byte> bin;
 
-  // A buffer view of these bytes, aligned to 4; returns its index.
+  // Adds a buffer view of these bytes, aligned to 4; returns its index.
   int add_view(std::span<const std::byte> bytes, int stride = 0) {
     while (bin.size() % 4 != 0) bin.push_back(std::byte{0});
     nlohmann::ordered_json view = {
@@ -107,8 +107,8 @@ inline GlbBuilder square() {
   return builder;
 }
 
-// The square hung on two joints, Root at the origin and Tip one metre above it: its lower corners
-// on Root, its upper ones on Tip. "Bend" turns Tip by a quarter about Z within one second, with
+// The square skinned to two joints, Root at the origin and Tip one metre above it: its lower
+// corners to Root, its upper ones to Tip. "Bend" turns Tip by a quarter about Z in one second, with
 // keys at 0, 0.5 and 1 s.
 inline GlbBuilder rig() {
   GlbBuilder builder = square();
@@ -137,13 +137,12 @@ inline GlbBuilder rig() {
   return builder;
 }
 
-// What the rig shows at its three keys, baked: two morph targets, keyed so that each key shows one
-// state alone.
+// The rig baked at its three keys: two morph targets, keyed so that each key shows one state.
 inline GlbBuilder baked_rig() {
   GlbBuilder builder = square();
   const double root = 0.70710678118654752;
   const auto state = [](double x2, double y2) {
-    // Displacements of the corner at (1, 1), which hangs one metre beside Tip; the others rest.
+    // Displacements of the corner at (1, 1), one metre beside Tip; the others do not move.
     return std::vector<float>{
         0, 0, 0, 0, 0, 0, static_cast<float>(x2 - 1), static_cast<float>(y2 - 1), 0, 0, 0, 0};
   };

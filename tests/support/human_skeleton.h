@@ -4,9 +4,9 @@
 
 #include "scene/skeleton.h"
 
-// A human skeleton for tests: 1.75 m tall in T-pose, facing +Z, standing on y = 0, exactly mirror
-// symmetric, with the lengths of Drillis and Contini (in Winter, Biomechanics and Motor Control of
-// Human Movement): thigh 0.245, shank 0.246, upper arm 0.186, forearm 0.146 of the stature.
+// A human skeleton for tests: 1.75 m tall, T-pose, facing +Z, feet at y = 0, exactly mirror
+// symmetric, with the proportions of Drillis and Contini (in Winter, Biomechanics and Motor Control
+// of Human Movement): thigh 0.245, shank 0.246, upper arm 0.186, forearm 0.146 of the stature.
 
 namespace krok::test {
 

@@ -10,7 +10,7 @@
 #include "render/image.h"
 #include "render/png.h"
 
-// Looking at the pictures that tools make.
+// Inspects the images that tools write.
 
 namespace krok::test {
 
@@ -18,13 +18,13 @@ inline Result<render::Image> image_of(const std::string& png) {
   return render::read_png(std::as_bytes(std::span(png)));
 }
 
-// How far a pixel is from grey: what is behind figures is grey, figures are not.
+// A pixel's distance from grey: backgrounds are grey, characters are not.
 inline int colourfulness(render::Colour colour) {
   return std::max({colour.red, colour.green, colour.blue}) -
          std::min({colour.red, colour.green, colour.blue});
 }
 
-// Where a cell of the report shows a point of the world, by its numbers alone.
+// The pixel at which a cell of the report shows a world point, computed from the report.
 inline Vec2 place_in(const nlohmann::json& cell, double pixels_per_metre, const Vec3& point) {
   const double yaw = cell["yaw"], elevation = cell["elevation"];
   const auto& target = cell["target"];
@@ -36,7 +36,8 @@ inline Vec2 place_in(const nlohmann::json& cell, double pixels_per_metre, const 
   return Vec2(middle[0], middle[1]) + pixels_per_metre * Vec2(right, -up);
 }
 
-// What of a cell is a figure: limits in pixels, and where left (blue) and right (orange) limbs are.
+// The character in a cell: limits in pixels, and mean x of the left (blue) and right (orange)
+// limbs.
 struct Silhouette {
   int pixels = 0;
   int left = 1 << 30, right = -1, top = 1 << 30, bottom = -1;

@@ -10,12 +10,12 @@
 #include "skin/palette.h"
 #include "skin/skin_job_internal.h"
 
-// Linear blend skinning on arrays of any kind, by the kernel that skin() of lib/skin runs and by
-// the scalar reference beside it, which must give the same bytes. skin.h tells the formula.
+// Linear blend skinning on plain arrays, by the kernel of skin() in lib/skin and by its scalar
+// reference, which must give the same bytes. The formula is in skin.h.
 
 namespace krok::test {
 
-// What is skinned. Nothing is owned, nothing may overlap the output.
+// The input. Nothing is owned, nothing may overlap the output.
 struct SkinVertices {
   std::span<const Vec3f> positions;       // [vertices], metres, in the reference pose
   std::span<const Vec3f> normals;         // [vertices] or empty; any length
@@ -24,13 +24,13 @@ struct SkinVertices {
   std::span<const float> weights;         // the same shape
 };
 
-// The vertices of a model; views into it.
+// Views of the vertices of a model.
 inline SkinVertices skin_vertices(const Model& model) {
   return {model.positions, model.normals, model.influences_per_vertex, model.influence_joints,
           model.influence_weights};
 }
 
-// Where the result goes. Normals are empty exactly if the input's are.
+// The output. Normals are empty exactly if the input's are.
 struct SkinnedVertices {
   std::span<Vec3f> positions;  // [vertices]
   std::span<Vec3f> normals;    // [vertices] or empty; unit
@@ -67,7 +67,7 @@ inline void linear_blend(std::span<const SkinMatrix> palette, const SkinVertices
   skin_detail::linear_simd(job_of(palette, in, out), 0, in.positions.size());
 }
 
-// Over tiles of vertices on up to `jobs` threads (0: one a core).
+// In tiles of vertices on up to `jobs` threads (0: one per core).
 inline void linear_blend_parallel(std::span<const SkinMatrix> palette, const SkinVertices& in,
                                   SkinnedVertices out, int jobs) {
   skin_detail::over_tiles(skin_detail::linear_simd, job_of(palette, in, out), in.positions.size(),

@@ -7,7 +7,7 @@
 
 namespace krok::test {
 
-// A motion in which every vertex goes its own way, and its normal and tangent turn.
+// A motion in which vertices move differently, and their normals and tangents turn.
 inline MeshMotion wobble(const Model& model, int frames) {
   MeshMotion result;
   result.frames = frames;

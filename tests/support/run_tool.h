@@ -12,24 +12,24 @@
 #include <thread>
 #include <vector>
 
-// Runs a program and catches what it writes. For tests of the real tools.
+// Runs a program and captures its output. For tests of the real tools.
 
 namespace krok::test {
 
 struct ToolRun {
-  int exit_code = -1;  // -1 where a signal ended it
-  int signal = 0;      // the signal that ended it, or 0
+  int exit_code = -1;  // -1 if ended by a signal
+  int signal = 0;      // the signal that ended the program, or 0
   bool timed_out = false;
   std::string out;  // standard output
   std::string err;  // standard error
 };
 
 struct ToolOptions {
-  std::string input;        // what stands on standard input
-  std::string output_path;  // standard output goes there instead, "/dev/full"
-  std::string folder;       // the working folder
-  double timeout = 60;      // seconds; then the program is killed
-  // Called with the process's id again and again while it runs, until it gives true.
+  std::string input;        // standard input
+  std::string output_path;  // redirects standard output, as to "/dev/full"
+  std::string folder;       // the working directory
+  double timeout = 60;      // seconds until the program is killed
+  // Called repeatedly with the process id while the program runs, until it returns true.
   std::function<bool(pid_t)> meanwhile;
 };
 
@@ -42,7 +42,7 @@ inline std::string text_of(std::FILE* file) {
   return text;
 }
 
-// `arguments` begins with the program's path. Standard streams are files, so that nothing blocks.
+// `arguments` starts with the program's path. Standard streams are files, so that nothing blocks.
 inline ToolRun run(const std::vector<std::string>& arguments, const ToolOptions& options = {}) {
   std::FILE* in = std::tmpfile();
   std::FILE* out = std::tmpfile();

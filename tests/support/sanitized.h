@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether the program is built with a sanitizer that keeps memory or threads for itself.
+// Whether the program is built with a sanitizer that uses memory or threads itself.
 
 namespace krok::test {
 

@@ -8,8 +8,8 @@
 
 namespace krok::test {
 
-// A skeleton from names with a dot a level, "Hips .Spine ..Head .LeftUpLeg", in the identity pose;
-// a name that ends in '!' is an end site.
+// A skeleton from names with one dot per level, "Hips .Spine ..Head .LeftUpLeg", in the identity
+// pose; a name that ends in '!' is an end site.
 inline Skeleton skeleton_from_text(std::string_view text) {
   Skeleton skeleton;
   std::vector<int> path;

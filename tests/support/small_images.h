@@ -8,7 +8,7 @@
 
 #include "scene/encoded_image.h"
 
-// Pictures that other programs made (Pillow 9.4), small enough to stand here.
+// Small images written by another program (Pillow 9.4).
 
 namespace krok::test {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-// Values that damaged files hold and careless sums end in.
+// Non-finite values, as from damaged files and overflows.
 
 namespace krok::test {
 

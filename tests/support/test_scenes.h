@@ -14,8 +14,8 @@
 
 namespace krok::test {
 
-// The same joints at the same places with reference orientations that are not the world's, so that
-// a mix-up of frames shows.
+// The same joint positions with rotated reference orientations, so that mixed-up frames are
+// detected.
 inline Skeleton with_turned_joints(Skeleton skeleton) {
   for (int j = 0; j < skeleton.joint_count(); ++j) {
     skeleton.reference[j].orientation =
@@ -28,7 +28,7 @@ inline Skeleton turned_human() {
   return with_turned_joints(human_skeleton());
 }
 
-// Every joint swings about an axis of its own, the root walks along +Z.
+// Every joint swings about a different axis, the root walks along +Z.
 inline Clip swinging_clip(const Skeleton& skeleton, int frames, double rate) {
   Clip clip;
   clip.skeleton = skeleton;
@@ -56,7 +56,7 @@ inline Clip swinging_human(int frames) {
 }
 
 // A closed tube of `sides` corners and `rings` rings around every bone. Vertices follow the bone's
-// joint, with up to `influences` joints near its ends sharing the weight; 1 binds them rigidly.
+// joint and share weight with up to `influences` joints near its ends; 1 binds them rigidly.
 inline Model tube_model(const Skeleton& skeleton, int influences = 4, int rings = 6,
                         int sides = 8) {
   Model model;
@@ -78,7 +78,7 @@ inline Model tube_model(const Skeleton& skeleton, int influences = 4, int rings 
         model.positions.push_back((from + place * along + radius * out).cast<float>());
         model.normals.push_back(out.cast<float>());
         model.texture_coordinates.emplace_back(static_cast<float>(side) / sides, place);
-        // Up the chain and down to the child, with falling weights.
+        // Ancestors and the child, with decreasing weights.
         int other = joint;
         for (int k = 0; k < influences; ++k) {
           const double weight = k == 0 ? 1.0 : 0.5 * (k % 2 == 1 ? 1 - place : place) / k;

@@ -7,11 +7,11 @@
 
 #include "core/result.h"
 
-// Text files that people write: each mistake is to be told with its place.
+// Mistakes in hand-written text files: each must be reported with its location.
 
 namespace krok::test {
 
-// `text` with the first `from` in it replaced.
+// `text` with the first occurrence of `from` replaced.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const auto place = text.find(from);
   EXPECT_NE(place, std::string::npos) << from;
@@ -25,14 +25,14 @@ inline std::string place_of(const Error& error) {
 }
 
 struct Mistake {
-  const char* from;  // in a sound text
+  const char* from;  // in the valid text
   const char* to;
-  const char* place;      // as place_of() has it
+  const char* place;      // as from place_of()
   const char* says = "";  // in the message or the hint
 };
 
-// Makes each mistake in `good` and holds against it what `read` of the text tells; `file` is the
-// name that the Error should have.
+// Makes each mistake in `good` and compares the Error of `read` with it; `file` is the file name
+// expected in the Error.
 template <class Read>
 void expect_told(const std::string& good, std::span<const Mistake> mistakes, const Read& read,
                  const std::string& file = {}) {

@@ -11,7 +11,7 @@
 
 namespace krok::test {
 
-// What `write` puts into a file; `status` receives what it returns.
+// The bytes that `write` writes to a file; `status` receives its result.
 inline std::string bytes_of(const std::function<Status(OutputFile&)>& write, Status& status) {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
   const std::string path =
@@ -28,7 +28,7 @@ inline std::string bytes_of(const std::function<Status(OutputFile&)>& write, Sta
   return bytes;
 }
 
-// The bytes of what must be written without an error.
+// As above; expects no error.
 inline std::string bytes_of(const std::function<Status(OutputFile&)>& write) {
   Status status;
   std::string bytes = bytes_of(write, status);
@@ -36,7 +36,7 @@ inline std::string bytes_of(const std::function<Status(OutputFile&)>& write) {
   return bytes;
 }
 
-// The code of the error with which it is not; "none" where it is.
+// The error code of `write`; "none" if it succeeds.
 inline std::string error_code(const std::function<Status(OutputFile&)>& write) {
   Status status;
   bytes_of(write, status);

@@ -1,5 +1,5 @@
-// Broken files: each prefix of a small ASF and AMC, and each byte of them changed. If these fail, a
-// damaged download crashes a tool, hangs it, or comes out as a clip that breaks its own rules.
+// Damaged files: each prefix of a small ASF and AMC, and each byte of them changed. If these fail,
+// a damaged file crashes or hangs a tool, or is read as a clip that fails check().
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ void read_all_ways(const std::string& asf, const std::string& amc, Outcome& outc
 TEST(AcclaimFuzz, every_prefix_of_both_files) {
   Outcome outcome;
   for (std::size_t n = 0; n <= kAsf.size(); ++n) read_all_ways(kAsf.substr(0, n), kAmc, outcome);
-  // Without the last line's end nothing is lost; whatever is shorter is refused.
+  // Only the final line ending may be missing; anything shorter is an error.
   EXPECT_LE(outcome.read, 3 * 2);
   EXPECT_GE(outcome.read, 3);
   outcome = Outcome();

@@ -1,6 +1,6 @@
-// Damaged files of every format that is read through Assimp. If these fail, such a file crashes the
-// program, holds it up, or is read into a scene that breaks what nodes/scene.h promises. Crashes of
-// Assimp itself are expected; they must stay in its process.
+// Damaged files of every format that is read through Assimp. If these fail, such a file crashes or
+// hangs the program, or is read as a scene that violates nodes/scene.h. Crashes of Assimp itself
+// are expected; they must stay in its process.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -29,11 +29,11 @@ constexpr std::size_t kRounds = 28;
 
 class DamagedScenes : public testing::Test {
  protected:
-  // Reads it, and where that succeeds shows it at rest and in motion.
+  // Reads it; if that succeeds, evaluates it at rest and in motion.
   void survive(const std::string& name, const std::string& content) {
     const std::string path = folder_.add(name, content);
     assimp::ReadOptions options;
-    // Assimp 5.2 hangs on some; the sample itself is given all the time that it needs.
+    // Assimp 5.2 hangs on some files; the intact sample has a generous time limit.
     options.most_seconds = outcomes_.empty() ? 60 : 0.3;
     options.most_bytes = std::uint64_t{128} << 20;
     const auto scene = assimp::read_file(path, options);
@@ -66,19 +66,19 @@ class DamagedScenes : public testing::Test {
         changed[random() % changed.size()] = static_cast<char>(random() % 256);
       }
       survive(name, changed);
-      // A number that is another: texts have digits, binary files have bytes in their place.
+      // Another number: texts contain digits, binary files bytes of the same value.
       changed = whole;
       const std::size_t digit = changed.find_first_of("0123456789", random() % changed.size());
       if (digit != std::string::npos) changed.replace(digit, 1, round % 2 == 0 ? "-9999999" : "77");
       survive(name, changed);
-      // A piece twice, or not at all.
+      // A piece duplicated or removed.
       changed = whole;
       const std::size_t begin = random() % changed.size();
       const std::string piece = changed.substr(begin, 1 + random() % 200);
       changed.replace(begin, piece.size(), round % 2 == 0 ? piece + piece : "");
       survive(name, changed);
     }
-    // Messages say how the cases ended; nothing is left behind.
+    // Prints how the cases ended; no process may be left.
     std::ostringstream counts;
     for (const auto& [outcome, count] : outcomes_) counts << outcome << " " << count << "  ";
     RecordProperty(name, counts.str());

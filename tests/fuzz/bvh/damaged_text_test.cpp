@@ -1,5 +1,5 @@
-// If these fail, a damaged or malicious BVH file crashes a program, or makes it hang or eat memory.
-// Best run with the address and undefined-behaviour sanitizers.
+// If these fail, a damaged or malicious BVH file crashes or hangs a program or exhausts memory. Run
+// with the address and undefined-behaviour sanitizers.
 
 #include <chrono>
 #include <memory>
@@ -18,10 +18,10 @@ const std::string kSmall =
     "MOTION\r\nFrames:\t3\r\nFrame Time: 0.0333333\r\n"
     "0 15 0 1 2 3 4 5\r\n1 16 -1 2 3 4 5 6\r\n2 15 0 3.5 4 5e0 6 7\r\n";
 
-// Reads with each strictness. A value must hold what check() promises, an error must say what and
-// in which file.
+// Reads with each strictness. A value must pass check(), an Error must have a code, a message and
+// the file.
 void read_and_check(const std::string& text) {
-  // A copy of exactly the size, so that the sanitizer sees each byte read past the end.
+  // An exact-size copy, so that the sanitizer detects reads past the end.
   const std::unique_ptr<char[]> copy(new char[text.size()]);
   std::copy(text.begin(), text.end(), copy.get());
   const std::string_view view(copy.get(), text.size());
@@ -53,7 +53,7 @@ TEST(DamagedBvh, ATruncationNeverPassesSilently) {
   const auto whole = read(kSmall, "whole.bvh");
   ASSERT_TRUE(whole.ok());
   ASSERT_EQ(whole->clip.frame_count(), 3);
-  // Without the last line end the file is still whole.
+  // The file is still complete without its final line ending.
   for (std::size_t size = 0; size + 2 < kSmall.size(); ++size) {
     const auto capture = read(kSmall.substr(0, size), "cut.bvh");
     if (!capture.ok()) continue;
@@ -64,7 +64,7 @@ TEST(DamagedBvh, ATruncationNeverPassesSilently) {
     }
     EXPECT_TRUE(warned) << size;
     EXPECT_LT(capture->clip.frame_count(), 3) << size;
-    // The frames that are left are the file's own.
+    // The remaining frames are those of the file.
     for (std::size_t i = 0; i < capture->clip.positions.size(); ++i) {
       ASSERT_LT((capture->clip.positions[i] / capture->conventions.unit.metres -
                  whole->clip.positions[i] / whole->conventions.unit.metres)
@@ -109,7 +109,8 @@ TEST(DamagedBvh, BytesTakenOutPutInAndRepeated) {
   }
 }
 
-// A file that has what is odd but taken: text before and between, commas, a second motion.
+// A file with unusual but accepted syntax: text before and between sections, commas, a second
+// motion.
 const std::string kOdd =
     "made by hand\nHIERARCHY\n# one\nROOT a\n{\nOFFSET 0 1 0\nCHANNELS 3 Xrotation, Xrotation,"
     " Xscale\nEndSite\n{\nOFFSET 0 1 0\nCHANNELS 1 Yrotation\n}\n}\nMOTION\nFrames: 3.0 in all\n"
@@ -128,8 +129,8 @@ TEST(DamagedBvh, OddTextsCutAndChangedAtEveryByte) {
   }
 }
 
-// Each of these is a few hundred kilobytes that would take very long, or very much memory, if some
-// loop over the text stood inside of another.
+// Texts of a few hundred kilobytes that would exhaust time or memory if a loop over the text were
+// nested in another.
 TEST(DamagedBvh, TextsMadeToBeSlowAreNot) {
   const auto repeated = [](const std::string& part, int count) {
     std::string text;

@@ -1,5 +1,5 @@
-// If these fail, a damaged table crashes a program, or is read as something that it is not. Best
-// run with the address and undefined-behaviour sanitizers.
+// If these fail, a damaged table crashes a program or is read wrongly. Run with the address and
+// undefined-behaviour sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -18,9 +18,9 @@ const std::string kTable =
     "time [s],\"na\"\"me\",x_mm,y\r\n0,\"a, b\",1.5,nan\r\n\r\n0.1,c,-2e3,\r\n"
     "0.2,\"two\nlines\",+3,inf\r\n";
 
-// Reads a text and whatever can be asked of the result. What it says must hold together.
+// Reads a text and queries all of the table, which must be consistent.
 void read_and_check(const std::string& text) {
-  // A copy of exactly the size, so that the sanitizer sees each byte read past the end.
+  // An exact-size copy, so that the sanitizer detects reads past the end.
   const std::unique_ptr<char[]> copy(new char[text.size()]);
   std::copy(text.begin(), text.end(), copy.get());
   const auto table = Table::read({copy.get(), text.size()}, "t.csv");

@@ -1,5 +1,5 @@
-// If these fail, a damaged or malicious .anim, .model, .cam or .steps file crashes a program, or
-// passes for a good one. Best run with the address and undefined-behaviour sanitizers.
+// If these fail, a damaged or malicious .anim, .model, .cam or .steps file crashes a program or is
+// accepted as valid. Run with the address and undefined-behaviour sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -18,9 +18,10 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-// Reads a file of a kind. A value must hold what check() promises, an error must say something.
+// Reads a file by its extension. A value must pass check(), an Error must have a code and a
+// message.
 Status read_and_check(const std::string& ending, const Bytes& bytes) {
-  // A copy of exactly the size, so that the sanitizer sees each byte read past the end.
+  // An exact-size copy, so that the sanitizer detects reads past the end.
   const std::unique_ptr<std::byte[]> copy(new std::byte[bytes.size()]);
   std::copy(bytes.begin(), bytes.end(), copy.get());
   const std::span<const std::byte> file(copy.get(), bytes.size());
@@ -83,7 +84,7 @@ TEST(DamagedFiles, EveryChangedByteIsNoticed) {
   }
 }
 
-// With a right checksum the reader meets every wrong count, offset, name and number itself.
+// With a valid checksum the reader itself must handle every invalid count, offset, name and number.
 TEST(DamagedFiles, EveryByteToEveryValueWithARightChecksumIsHandled) {
   for (const auto& sample : samples::all()) {
     const Bytes whole = samples::bytes_of(sample.write);
@@ -98,7 +99,7 @@ TEST(DamagedFiles, EveryByteToEveryValueWithARightChecksumIsHandled) {
   }
 }
 
-// Whole words at once: counts of 2^31, offsets near 2^64, infinities.
+// Whole words changed: counts of 2^31, offsets near 2^64, infinities.
 TEST(DamagedFiles, EveryWordToAnExtremeWithARightChecksumIsHandled) {
   const std::uint64_t extremes[] = {0,
                                     1,

@@ -1,5 +1,5 @@
-// If these fail, a damaged glTF file crashes or hangs a program, or is read into something that
-// breaks what gltf_asset.h promises. Best run with the address and undefined-behaviour sanitizers.
+// If these fail, a damaged glTF file crashes or hangs a program, or is read as a scene that
+// violates nodes/scene.h. Run with the address and undefined-behaviour sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-// All that gltf_asset.h says of indices and sizes, for whoever uses an asset relies on it.
+// The guarantees of nodes/scene.h on indices and sizes.
 void expect_consistent(const nodes::Scene& asset) {
   const auto in = [](int index, std::size_t count) {
     return index >= 0 && static_cast<std::size_t>(index) < count;
@@ -48,8 +48,8 @@ void expect_consistent(const nodes::Scene& asset) {
   }
 }
 
-// Reads, and where that succeeds evaluates, a copy of exactly the size, so that the sanitizer sees
-// each byte read past the end. Returns whether it was read.
+// Reads an exact-size copy, so that the sanitizer detects reads past the end; evaluates it if that
+// succeeds. Returns whether it was read.
 bool survive(const Bytes& bytes) {
   const std::unique_ptr<std::byte[]> copy(new std::byte[bytes.size()]);
   std::copy(bytes.begin(), bytes.end(), copy.get());
@@ -74,7 +74,7 @@ bool survive(const Bytes& bytes) {
   return true;
 }
 
-// A square with a material that has every texture.
+// A square with a material that uses every texture.
 test::GlbBuilder dressed() {
   test::GlbBuilder builder = test::square();
   builder.json["images"] = {{{"bufferView", builder.add_view(test::png())}},
@@ -126,7 +126,7 @@ TEST(DamagedGltf, EveryChangedByteIsSurvived) {
 }
 
 TEST(DamagedGltf, EveryNumberOfTheJsonMayBeAnother) {
-  // Each run of digits becomes numbers that are wrong in different ways.
+  // Replaces each run of digits by numbers that are invalid in different ways.
   for (const auto& builder : {test::rig(), test::baked_rig(), dressed()}) {
     const std::string text = builder.json.dump();
     for (std::size_t i = 0; i < text.size(); ++i) {

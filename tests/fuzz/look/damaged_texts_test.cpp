@@ -1,5 +1,5 @@
-// If these fail, a damaged material or character file crashes a program, or is taken for something
-// that cannot be written again. Best run with the address and undefined-behaviour sanitizers.
+// If these fail, a damaged material or character file crashes a program, or is read as data that
+// cannot be written again. Run with the address and undefined-behaviour sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ void expect_told(const Result<Value>& found) {
   EXPECT_GT(found.error().where.line, 0) << found.error().message;
 }
 
-// What is read is written and read back the same. The text has no byte to spare behind its end.
+// What was read is written and read back unchanged. The text is an exact-size copy.
 bool survives_as_material(const std::string& text) {
   const std::unique_ptr<char[]> copy(new char[text.size()]);
   std::copy(text.begin(), text.end(), copy.get());

@@ -1,6 +1,5 @@
-// If these fail, a damaged shape, a damaged file of weights or of key shapes crashes a program, or
-// is taken for something that does not hold together. Best run with the address and
-// undefined-behaviour sanitizers.
+// If these fail, a damaged shape, weights file or key shapes file crashes a program, or is read as
+// inconsistent data. Run with the address and undefined-behaviour sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +27,7 @@ const std::string kShapes =
     "{\"schema\":\"krok.key-shapes/1\",\"rate\":30,\"between\":\"hermite\",\"tension\":0.5,"
     "\"keys\":[{\"time\":0,\"shape\":\"a.obj\"},{\"time\":\"9f\",\"shape\":\"b/c.glb\"}]}";
 
-// In memory of its own size, so that a reader that goes beyond its end is caught.
+// An exact-size copy, so that the sanitizer detects reads past the end.
 struct Copy {
   explicit Copy(const std::string& text) : bytes(new char[text.size()]), size(text.size()) {
     std::copy(text.begin(), text.end(), bytes.get());
@@ -59,7 +58,7 @@ bool read_weights(const std::string& text) {
   const auto file = weights::read(copy.view(), "w", kTargets);
   if (has_error(file)) return false;
   EXPECT_TRUE(check(file->curves).ok()) << text;
-  // Long ones are sound, but there is no time for them here.
+  // Long ones are valid, but too slow for this test.
   if (file->curves.duration() > 1000 || file->rate.value_or(30) > 1000) return true;
   MorphSet morphs;
   morphs.names = kTargets;

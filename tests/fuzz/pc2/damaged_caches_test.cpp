@@ -1,5 +1,5 @@
-// If these fail, a damaged or malicious point cache crashes a program, or gives vertices that the
-// file does not hold. Best run with the address and undefined-behaviour sanitizers.
+// If these fail, a damaged or malicious point cache crashes a program, or gives vertices that are
+// not in the file. Run with the address and undefined-behaviour sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -26,9 +26,9 @@ std::string sample_file() {
   return bytes;
 }
 
-// Reads a file and samples of it. What it says must fit the file.
+// Reads a file and samples of it, which must be consistent with the file.
 bool read_and_check(const std::string& bytes) {
-  // A copy of exactly the size, so that the sanitizer sees each byte read past the end.
+  // An exact-size copy, so that the sanitizer detects reads past the end.
   const std::unique_ptr<std::byte[]> copy(new std::byte[bytes.size()]);
   if (!bytes.empty()) std::memcpy(copy.get(), bytes.data(), bytes.size());
   const auto cache = PointCache::read({copy.get(), bytes.size()});
@@ -40,7 +40,7 @@ bool read_and_check(const std::string& bytes) {
   const auto points = static_cast<std::uint64_t>(cache->points());
   const auto samples = static_cast<std::uint64_t>(cache->samples());
   EXPECT_EQ(32 + points * samples * 12 + cache->bytes_left(), bytes.size());
-  // Memory for one sample is asked for only where the file has a sample.
+  // Memory for a sample is allocated only if the file has one.
   if (samples == 0) return true;
   std::vector<Vec3f> positions(points);
   for (const std::uint64_t sample : {std::uint64_t{0}, samples / 2, samples - 1}) {

@@ -1,5 +1,5 @@
-// If these fail, a damaged timeline crashes a program, makes it wait, or is played as something
-// that it is not. Best run with the address and undefined-behaviour sanitizers.
+// If these fail, a damaged timeline crashes or hangs a program, or is read wrongly. Run with the
+// address and undefined-behaviour sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ const blend::KeyedWalk& walk() {
   return made;
 }
 
-// Reads a text and plays what it says. What comes out must hold together.
+// Reads a text and mixes its timeline. The result must be consistent.
 bool read_and_play(const std::string& text) {
   const std::unique_ptr<char[]> copy(new char[text.size()]);
   std::copy(text.begin(), text.end(), copy.get());
@@ -46,7 +46,7 @@ bool read_and_play(const std::string& text) {
     EXPECT_GT(document.error().where.line, 0) << document.error().message;
     return false;
   }
-  // Long ones are sound, but there is no time for them here.
+  // High frame rates are valid, but too slow for this test.
   if (document->timeline.rate > 100) return false;
   std::vector<timeline::Source> sources;
   for (const SourceFile& file : document->sources) {
@@ -84,7 +84,7 @@ TEST(DamagedTimelines, OtherBytesAnywhereAreHandled) {
   }
 }
 
-// Values that stand for other ones, whole tokens at a time.
+// Replaces whole tokens by other values.
 TEST(DamagedTimelines, OtherValuesAreHandled) {
   std::vector<std::pair<std::size_t, std::size_t>> tokens;
   for (std::size_t at = kText.find("base"); at < kText.size(); ++at) {

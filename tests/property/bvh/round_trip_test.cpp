@@ -1,4 +1,4 @@
-// If this fails, some skeleton or motion does not survive being written as BVH and read again.
+// If this fails, a skeleton or motion changes when written as BVH and read again.
 
 #include <random>
 
@@ -17,8 +17,8 @@ Vec3 random_step(std::mt19937& random, double size) {
   return {uniform(random), uniform(random), uniform(random)};
 }
 
-// A tree with joints in depth-first order, turned reference frames, bones of length zero, and a
-// motion in which some joints also slide.
+// A tree with joints in depth-first order, rotated reference frames, zero-length bones, and a
+// motion in which some joints also translate.
 Clip random_clip(unsigned seed) {
   std::mt19937 random(seed);
   const auto chance = [&](int one_in) {
@@ -67,7 +67,7 @@ Clip random_clip(unsigned seed) {
   return clip;
 }
 
-// Names of end sites as a reader makes them.
+// Names end sites as the reader does.
 void name_end_sites(Skeleton& skeleton) {
   std::vector<int> count(skeleton.names.size(), 0);
   for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
@@ -103,8 +103,8 @@ TEST(RoundTrip, RandomSkeletonsAndMotionsSurvive) {
     for (std::size_t i = 0; i < clip.positions.size(); ++i) {
       ASSERT_LT((clip.positions[i] - back.clip.positions[i]).norm(), 2e-5f);
     }
-    // What was read holds nothing that BVH cannot say, so writing it again changes no digit that
-    // matters and no channel.
+    // BVH can store all that was read, so writing it again loses no channel and no significant
+    // digit.
     const std::string again = written(back.clip, options);
     const Capture third = read_ok(again, reading);
     for (std::size_t i = 0; i < clip.positions.size(); ++i) {

@@ -1,5 +1,5 @@
-// Laws that hold for every rotation, tried on many random ones (fixed seed). If one fails, some
-// rotation somewhere is wrong that the examples of the unit tests do not cover.
+// Properties of all rotations, tested on random ones (fixed seed). If one fails, some rotation is
+// wrong that the unit tests do not cover.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Laws that hold for every figure and every motion, on random ones: trees of any shape with axes of
-// any kind, tumbling without sense. If these fail, an edit works for well-behaved figures alone.
+// Properties of all skeletons and motions, tested on random ones: any tree, any joint axes,
+// tumbling motion. If these fail, an edit works only for typical skeletons.
 
 #include <gtest/gtest.h>
 

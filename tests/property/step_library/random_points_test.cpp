@@ -1,6 +1,6 @@
-// If these fail, a refined library gives nonsense for some parameters that no test thought of:
-// weights that are no numbers, do not sum to 1, leave their range, or jump; steps that are not what
-// was asked for; examples that do not come back.
+// If these fail, a refined library gives wrong results for some parameters: weights that are not
+// finite, do not sum to 1, leave their range, or jump; steps that do not have the requested
+// parameters; examples that are not reproduced.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kPoints = 10'000;
 
-// Five examples by length, nine by length and height, or 27 that turn as well, refined.
+// Five examples by length, nine by length and height, or 27 by length, height and turn, refined.
 class RefinedLibrary : public testing::TestWithParam<int> {
  protected:
   static void SetUpTestSuite() {
@@ -38,7 +38,7 @@ class RefinedLibrary : public testing::TestWithParam<int> {
   };
   const Made& made() const { return *made_[GetParam() - 1]; }
 
-  // A point of the box of the examples' ranges, widened by a part of them.
+  // A random point of the box of the examples' ranges, widened by the fraction `wider`.
   std::vector<double> random_point(const Bounds& bounds, double wider) {
     std::vector<double> point;
     for (std::size_t d = 0; d < bounds.lower.size(); ++d) {
@@ -120,14 +120,14 @@ TEST_P(RefinedLibrary, GivesSoundWeightsAnywhereInside) {
       ASSERT_TRUE(weight >= -0.15 && weight < 1.25) << weight;
     }
     for (std::size_t d = 0; d < point.size(); ++d) {
-      // Half a millimetre and a tenth of a degree: lengths are metres, turns radians.
+      // 0.6 mm and 0.1 degrees: lengths are metres, turns radians.
       const bool turn = made().library.parameters[d].quantity == Quantity::step_turn;
       ASSERT_NEAR(made_of->parameters[d], point[d], turn ? 0.1 * kRadiansPerDegree : 0.6e-3);
     }
   }
 }
 
-// What is asked may come from anywhere; an answer is an error or a motion, never nonsense.
+// Any requested point gives an error or a finite result.
 TEST_P(RefinedLibrary, PointsFarOutsideAreRefusedOrAnswered) {
   const auto synthesiser = Synthesiser::create(made().library, made().weights);
   ASSERT_TRUE(synthesiser.ok());
@@ -151,7 +151,7 @@ TEST_P(RefinedLibrary, PointsFarOutsideAreRefusedOrAnswered) {
   }
 }
 
-// A hundredth of a per cent of the range changes no weight by more than 20 times as much.
+// A step of 0.01 % of the range changes each weight by less than 20 times that.
 TEST_P(RefinedLibrary, WeightsAreContinuous) {
   const auto evaluator = rbf::WeightEvaluator::create(made().weights);
   ASSERT_TRUE(evaluator.ok());

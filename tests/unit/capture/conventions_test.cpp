@@ -106,7 +106,8 @@ TEST(DetectConventions, AReferencePoseThatStandsOtherwiseThanTheMotionYieldsToIt
   EXPECT_EQ(found.forward, Direction::minus_y);
   EXPECT_EQ(found.reference_up, Direction::plus_y);
   EXPECT_EQ(found.reference_forward, Direction::plus_z);
-  EXPECT_NE(found.up_reason.find("the motion decides"), std::string::npos) << found.up_reason;
+  EXPECT_NE(found.up_reason.find("the motion takes precedence"), std::string::npos)
+      << found.up_reason;
 }
 
 // The person's joints as rigs have them whose bones all lie along their first axis: the pelvis has
@@ -413,11 +414,11 @@ TEST(Conventions, SizesThatAreNoneAreNotCalledSensible) {
     rod.add("b", 0, {Vec3(0, length, 0), Quat::Identity()});
     return detect_conventions(rod, find_roles(rod), {}).unit_reason;
   };
-  EXPECT_NE(reason(2).find("taken as sensible"), std::string::npos);
+  EXPECT_NE(reason(2).find("is assumed plausible"), std::string::npos);
   for (const double length : {0.0, 2e-10, 1e9}) {
-    EXPECT_EQ(reason(length).find("taken as sensible"), std::string::npos) << reason(length);
+    EXPECT_EQ(reason(length).find("is assumed plausible"), std::string::npos) << reason(length);
   }
-  EXPECT_NE(reason(0).find("at one place"), std::string::npos);
+  EXPECT_NE(reason(0).find("all joints coincide"), std::string::npos);
   for (const double metres_per_unit : {1e-8, 1e8}) {
     const Skeleton actor = person(metres_per_unit, Direction::plus_y, Direction::plus_z);
     const Conventions found = detect_conventions(actor, find_roles(actor), {});

@@ -71,14 +71,14 @@ TEST(RestFrame, ATPoseInFrontOfAMotionIsFound) {
       std::vector<Vec3f>(whole.positions.begin() + whole.joint_count(), whole.positions.end()));
   EXPECT_EQ(capture.diagnostics[0].severity, Severity::note);
   EXPECT_THAT(capture.clip.provenance.conversions,
-              testing::ElementsAre("the first frame, a rest pose, was left out"));
+              testing::ElementsAre("the first frame, a rest pose, was dropped"));
 }
 
 TEST(RestFrame, AMotionThatBeginsInATPoseIsNone) {
   Capture capture;
   const RestPose rest = settle(kEven, RestFrame::automatic, capture);
   EXPECT_FALSE(rest.first_frame_is_rest);
-  EXPECT_EQ(rest.reference, "a T-pose; the motion begins in a T-pose");
+  EXPECT_EQ(rest.reference, "a T-pose; the motion starts in a T-pose");
   EXPECT_EQ(capture.clip.frame_count(), 7);
   EXPECT_TRUE(capture.diagnostics.empty());
 }
@@ -88,7 +88,7 @@ TEST(RestFrame, TheFirstFrameGoesWhereThatIsAskedFor) {
   settle(kEven, RestFrame::drop, capture);
   EXPECT_EQ(capture.clip.frame_count(), 6);
   ASSERT_EQ(capture.diagnostics.size(), 1u);
-  EXPECT_EQ(capture.diagnostics[0].message, "the first frame was left out, as asked");
+  EXPECT_EQ(capture.diagnostics[0].message, "the first frame was dropped as requested");
 }
 
 TEST(RestFrame, FewFramesTellNothing) {

@@ -116,7 +116,7 @@ TEST(GivenRoles, ALimbMustHangTogether) {
   ASSERT_FALSE(map.ok());
   EXPECT_EQ(map.error().code, "role-order");
   EXPECT_TRUE(map.error().joint == "b6" || map.error().joint == "c8") << map.error().joint;
-  EXPECT_NE(map.error().message.find("does not hang under it"), std::string::npos)
+  EXPECT_NE(map.error().message.find("is not a descendant of"), std::string::npos)
       << map.error().message;
 }
 
