@@ -8,27 +8,21 @@
 #include <memory>
 #include <mutex>
 
-#include "capture/exporter.h"
 #include "capture/fill_frames.h"
 #include "capture/rest_frame.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "formats/bvh/angle_unit_internal.h"
+#include "formats/bvh/choose_conventions_internal.h"
 #include "formats/bvh/decimal_commas_internal.h"
 #include "formats/bvh/far_rows_internal.h"
-#include "formats/bvh/frame_rate.h"
 #include "formats/bvh/hierarchy.h"
 #include "formats/bvh/kinematics.h"
 #include "formats/bvh/motion_rows.h"
-#include "formats/bvh/position_choice.h"
 #include "formats/bvh/row_frames.h"
-#include "formats/bvh/text_cursor.h"
 
 namespace krok::bvh {
 
 namespace {
-
-constexpr std::size_t kMaxSamples = 200;
 
 class Reader {
  public:
@@ -81,8 +75,7 @@ class Reader {
   std::optional<OpenedCapture> open(std::function<void(std::size_t)> release) {
     const auto one_row_a_line = begin(release);
     if (!one_row_a_line || !*one_row_a_line) return std::nullopt;
-    choose_rate();
-    if (!choose_conventions() || !check_size()) return std::nullopt;
+    if (!choose() || !check_size()) return std::nullopt;
     make_frames();
     // The first frames are enough to detect a rest frame.
     FrameSource head = source(0, nullptr, {});
@@ -103,61 +96,22 @@ class Reader {
   }
 
  private:
-  void tell(Severity severity, std::string code, std::string message, std::string hint = {},
-            Location where = {}) {
-    Diagnostic told;
-    told.severity = severity;
-    told.code = std::move(code);
-    told.message = std::move(message);
-    told.hint = std::move(hint);
-    told.where = std::move(where);
-    if (told.where.file.empty()) told.where.file = file_name_;
-    capture_.diagnostics.push_back(std::move(told));
-  }
-
-  // Recognised by the joint names and how the file is written.
-  void report_exporter(const SampleRows& samples) {
-    Skeleton names;
-    for (const auto& joint : hierarchy_.joints) {
-      names.add(joint.name, joint.parent, {}, joint.end_site);
-    }
-    ExporterTraits traits;
-    traits.frame_time = header_.frame_time_text;
-    const std::size_t row = rows_.empty() ? RowIndex::kFaulty : rows_[0];
-    traits.rows_begin_with_tab = row != RowIndex::kFaulty && row > 0 && text_[row - 1] == '\t';
-    traits.starts_unturned = samples.count() > 0;
-    for (std::size_t c = 0; c < samples.channels && traits.starts_unturned; ++c) {
-      const bool rotation = hierarchy_.channels[c].kind == ChannelKind::rotation;
-      traits.starts_unturned = !rotation || samples.row(0)[c] == 0.0;
-    }
-    const auto exporter = recognise_exporter(names, traits);
-    if (!exporter) return;
-    capture_.exporter = {exporter->name, exporter->reason, exporter->confidence};
-    tell(Severity::note, "bvh-exporter",
-         fmt::format("{} ({}): {}", exporter->name, confidence_name(exporter->confidence),
-                     exporter->reason));
-  }
-
-  void choose_angles(const SampleRows& samples) {
-    if (options_.angles == Angles::radians) {
-      hierarchy_.degrees_per_angle = 1.0 / kRadiansPerDegree;
-      return;
-    }
-    const auto reason = looks_like_radians(hierarchy_, samples);
-    if (!reason) return;
-    tell(Severity::warning, "bvh-angles",
-         fmt::format("the angles may be radians, though BVH uses degrees: {}", *reason),
-         "use --angles radians if they are");
-  }
-
   // Converts the indexed rows to the clip.
   Status convert() {
-    choose_rate();
-    if (Status status = choose_conventions(); !status) return status;
+    if (Status status = choose(); !status) return status;
     if (Status status = fill_clip(); !status) return status;
     if (row_is_faulty_) return {};
     if (Status status = report_far_values(); !status) return status;
     report_rest_pose();
+    return {};
+  }
+
+  Status choose() {
+    auto chosen =
+        choose_conventions({text_, file_name_, options_, header_, rows_}, hierarchy_, capture_);
+    if (!chosen) return std::move(chosen).error();
+    positions_ = chosen->positions;
+    conversion_ = chosen->conversion;
     return {};
   }
 
@@ -167,109 +121,6 @@ class Reader {
       fault.severity = Severity::warning;
       capture_.diagnostics.push_back(std::move(fault));
     }
-    return {};
-  }
-
-  void choose_rate() {
-    double& rate = capture_.clip.rate;
-    if (options_.rate) {
-      rate = *options_.rate;
-      capture_.rate = {readable(rate), "as given", Confidence::certain};
-      return;
-    }
-    const PrintedRate printed = rate_of_frame_time(header_.frame_time_text, header_.frame_time);
-    rate = printed.rate;
-    const bool doubtful = printed.few_digits || printed.unusual;
-    capture_.rate = {readable(rate), printed.reason,
-                     doubtful ? Confidence::guess : Confidence::certain};
-    tell(doubtful ? Severity::warning : Severity::note, "bvh-rate",
-         fmt::format("{} frames per second: {}", readable(rate), printed.reason),
-         doubtful ? "set the rate with --fps N if this is wrong" : "",
-         doubtful ? locate(text_, header_.frame_time_offset, file_name_) : Location());
-  }
-
-  // Up to kMaxSamples complete rows, evenly over the file.
-  SampleRows sample_rows() const {
-    SampleRows samples;
-    samples.channels = hierarchy_.channels.size();
-    const std::size_t count = std::min(rows_.size(), kMaxSamples);
-    std::vector<double> values(samples.channels);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t row = count < 2 ? 0 : i * (rows_.size() - 1) / (count - 1);
-      if (rows_[row] == RowIndex::kFaulty) continue;
-      if (parse_row(text_, rows_[row], values) == RowIndex::kFaulty) continue;
-      samples.values.insert(samples.values.end(), values.begin(), values.end());
-    }
-    return samples;
-  }
-
-  Status choose_conventions() {
-    const SampleRows samples = sample_rows();
-    report_exporter(samples);
-    choose_angles(samples);
-    PositionChoice positions;
-    if (options_.positions == Positions::automatic) {
-      positions = choose_positions(hierarchy_, samples, options_.up);
-    } else {
-      positions.positions = options_.positions;
-      positions.choice.choice = options_.positions == Positions::absolute ? "absolute" : "additive";
-      positions.choice.reason = "as given";
-      positions.choice.confidence = Confidence::certain;
-    }
-    if (Status status = detect(samples, positions.positions); !status) return status;
-    if (options_.positions == Positions::automatic && samples.count() > 0) {
-      positions = choose_positions(hierarchy_, samples, capture_.conventions.up);
-    }
-    positions_ = positions.positions;
-    capture_.positions = positions.choice;
-    if (options_.positions == Positions::automatic && positions.has_evidence) {
-      const bool guess = positions.choice.confidence == Confidence::guess;
-      tell(guess ? Severity::warning : Severity::note, "bvh-positions",
-           fmt::format("position channels are {} ({}): {}", positions.choice.choice,
-                       confidence_name(positions.choice.confidence), positions.choice.reason),
-           guess ? "use --positions absolute or additive if this is wrong" : "");
-    }
-    return make_conversion();
-  }
-
-  Skeleton skeleton_of(const Kinematics& kinematics) const {
-    Skeleton skeleton;
-    const std::vector<Transform> reference = kinematics.reference();
-    for (std::size_t j = 0; j < hierarchy_.joints.size(); ++j) {
-      const Hierarchy::Joint& joint = hierarchy_.joints[j];
-      skeleton.add(joint.name, joint.parent, reference[j], joint.end_site);
-    }
-    return skeleton;
-  }
-
-  // Unit and axes, from the options or else detected from the data.
-  Status detect(const SampleRows& samples, Positions positions) {
-    Conventions& conventions = capture_.conventions;
-    const Kinematics in_file(hierarchy_, positions, {});
-    const Skeleton skeleton = skeleton_of(in_file);
-    auto roles = roles_of(skeleton, options_);
-    if (!roles) return std::move(roles).error();
-    capture_.roles = *std::move(roles);
-    if (!options_.complete()) {
-      std::vector<Vec3> sample_positions;
-      std::vector<Transform> pose(in_file.joint_count());
-      for (std::size_t i = 0; i < samples.count(); ++i) {
-        in_file.pose(samples.row(i), pose);
-        for (const Transform& joint : pose) sample_positions.push_back(joint.position);
-      }
-      conventions = detect_conventions(skeleton, capture_.roles, sample_positions);
-    }
-    apply_given(options_, conventions);
-    return {};
-  }
-
-  Status make_conversion() {
-    const Conventions& conventions = capture_.conventions;
-    auto conversion = Conversion::make(conventions);
-    if (!conversion) return std::move(conversion).error().in_file(file_name_);
-    conversion_ = *conversion;
-    report_conventions(conventions, options_, "bvh", file_name_, capture_.diagnostics);
-    capture_.clip.provenance.conversions = describe_conversions(conventions, options_);
     return {};
   }
 
@@ -292,7 +143,7 @@ class Reader {
   // Makes the skeleton and the converter from rows to frames.
   void make_frames() {
     Kinematics kinematics(hierarchy_, positions_, conversion_);
-    capture_.clip.skeleton = skeleton_of(kinematics);
+    capture_.clip.skeleton = skeleton_of(hierarchy_, kinematics);
     frames_ = std::make_shared<const RowFrames>(text_, std::move(rows_), hierarchy_.channels.size(),
                                                 std::move(kinematics), careful_);
     rows_.clear();
@@ -383,8 +234,11 @@ class Reader {
 
   void report_rest_pose() {
     const RestPose rest = find_rest_pose(capture_.clip, capture_.roles);
-    tell(Severity::note, "bvh-reference",
-         fmt::format("the reference pose (OFFSETs, no rotations) is {}", rest.reference));
+    Diagnostic note("bvh-reference", fmt::format("the reference pose (OFFSETs, no rotations) is {}",
+                                                 rest.reference));
+    note.severity = Severity::note;
+    note.where.file = file_name_;
+    capture_.diagnostics.push_back(std::move(note));
     capture_.rest_frame_found = rest.first_frame_is_rest;
     capture_.rest_frame_dropped =
         settle_rest_frame(rest, options_.rest_frame, "bvh", file_name_, capture_);

@@ -13,8 +13,9 @@ using registry::Kind;
 
 constexpr auto kFormats = std::to_array<Format>({
     {.kind = Kind::anim, .read_motion = read_anim},
-    {.kind = Kind::bvh, .read_motion = read_bvh, .stream_motion = stream_bvh},
-    {.kind = Kind::amc, .read_motion = read_amc},
+    {.kind = Kind::bvh, .open_capture = open_bvh},
+    {.kind = Kind::amc, .open_capture = open_amc},
+    {.kind = Kind::asf, .open_capture = open_asf},
     {.kind = Kind::model, .read_model = read_model},
     {.kind = Kind::character, .read_model = read_character},
     {.kind = Kind::glb, .read_scene = read_gltf},

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "formats/io/inputs.h"
+#include "formats/io/open_capture.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/registry/registry.h"
@@ -22,8 +22,10 @@ struct Format {
   // Null for what the format cannot hold. The file is open already and of this kind.
   Result<Clip> (*read_motion)(const InputFile& file, Inputs& inputs,
                               const MotionOptions& options) = nullptr;
-  // The same without holding all frames in memory; nothing for a file that has to be read whole.
-  std::optional<MotionStream> (*stream_motion)(const InputFile& file, Inputs& inputs) = nullptr;
+  // For captures instead of read_motion; with `stream`, frames are read when asked for, if format
+  // and file allow it.
+  Result<OpenedCapture> (*open_capture)(const InputFile& file, Inputs& inputs,
+                                        const CaptureReading& reading, bool stream) = nullptr;
   Result<nodes::Scene> (*read_scene)(const InputFile& file, Inputs& inputs,
                                      bool with_materials) = nullptr;
   Result<ShownModel> (*read_model)(const InputFile& file, Inputs& inputs) = nullptr;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
@@ -29,13 +28,6 @@ Result<Clip> open_motion(const std::string& path, Inputs& inputs,
 // The same of a file that is open already.
 Result<Clip> open_motion(const InputFile& file, Inputs& inputs, const MotionOptions& options = {});
 
-// A motion whose frames are read when they are asked for. The file must outlive it.
-struct MotionStream {
-  FrameSource frames;
-  std::vector<std::string> conversions;  // those of reading a capture
-  Diagnostics diagnostics;               // of the reader; to be reported once the frames are read
-};
-
 // What is known of a motion once its frames were used.
 struct MotionSummary {
   Skeleton skeleton;
@@ -63,9 +55,5 @@ class ChecksumAtEnd {
   const InputFile& input_;
   Inputs& inputs_;
 };
-
-// The same frames; `faulty` becomes true when one cannot be read, whatever their user makes of
-// that. Both arguments must outlive what is returned.
-FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty);
 
 }  // namespace krok::io

@@ -7,9 +7,14 @@
 namespace krok::io {
 
 Result<Clip> read_anim(const InputFile& file, Inputs& inputs, const MotionOptions& options);
-Result<Clip> read_bvh(const InputFile& file, Inputs& inputs, const MotionOptions& options);
-std::optional<MotionStream> stream_bvh(const InputFile& file, Inputs& inputs);
-Result<Clip> read_amc(const InputFile& file, Inputs& inputs, const MotionOptions& options);
+
+// With `stream`, frames are read when asked for, if format and file allow it.
+Result<OpenedCapture> open_bvh(const InputFile& file, Inputs& inputs, const CaptureReading& reading,
+                               bool stream);
+Result<OpenedCapture> open_amc(const InputFile& file, Inputs& inputs, const CaptureReading& reading,
+                               bool stream);
+Result<OpenedCapture> open_asf(const InputFile& file, Inputs& inputs, const CaptureReading& reading,
+                               bool stream);
 
 Result<nodes::Scene> read_gltf(const InputFile& file, Inputs& inputs, bool with_materials);
 Result<nodes::Scene> read_through_assimp(const InputFile& file, Inputs& inputs,

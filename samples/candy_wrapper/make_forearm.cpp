@@ -3,14 +3,15 @@
 #include "formats/anim/anim.h"
 #include "formats/model/model_format.h"
 #include "samples/candy_wrapper/forearm.h"
-#include "tools/common/output_set.h"
-#include "tools/common/tool.h"
+#include "tools/cli/output_set.h"
+#include "tools/cli/tool.h"
 
 // make-forearm: writes a generated forearm as .model, and the motion that twists it as .anim.
 
 namespace {
 
 using namespace krok;
+using namespace krok::cli;
 
 Result<int> run(ToolContext& context, const std::string& model_path) {
   const Model model = samples::make_forearm();
@@ -45,5 +46,5 @@ int main(int argc, char** argv) {
         .group("Forearm");
   };
   spec.run = [&](ToolContext& context) { return run(context, model_path); };
-  return run_tool(spec, argc, argv);
+  return run_tool([&spec] { return spec; }, argc, argv);
 }

@@ -4,15 +4,16 @@
 #include "core/quantity.h"
 #include "formats/bvh/bvh_writer.h"
 #include "samples/generator/gesture.h"
-#include "tools/common/one_of.h"
-#include "tools/common/output_set.h"
-#include "tools/common/tool.h"
+#include "tools/cli/one_of.h"
+#include "tools/cli/output_set.h"
+#include "tools/cli/tool.h"
 
 // make-gesture: writes a generated gesture as BVH.
 
 namespace {
 
 using namespace krok;
+using namespace krok::cli;
 
 struct Arguments {
   samples::GestureOptions gesture;
@@ -77,5 +78,5 @@ int main(int argc, char** argv) {
   };
   spec.declare = [&](CommandOptions& command) { declare(command, arguments); };
   spec.run = [&](ToolContext& context) { return run(context, arguments); };
-  return run_tool(spec, argc, argv);
+  return run_tool([&spec] { return spec; }, argc, argv);
 }

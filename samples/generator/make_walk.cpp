@@ -5,14 +5,15 @@
 #include "formats/bvh/bvh_writer.h"
 #include "samples/generator/ground_truth.h"
 #include "samples/generator/walk.h"
-#include "tools/common/one_of.h"
-#include "tools/common/tool.h"
+#include "tools/cli/one_of.h"
+#include "tools/cli/tool.h"
 
 // make-walk: writes a generated walk as BVH, and its ground truth to a sidecar.
 
 namespace {
 
 using namespace krok;
+using namespace krok::cli;
 
 // A micrometre, also for rotations at the end of a leg.
 constexpr int kDecimals = 4;
@@ -166,5 +167,5 @@ int main(int argc, char** argv) {
   };
   spec.declare = [&](CommandOptions& command) { declare(command, arguments); };
   spec.run = [&](ToolContext& context) { return run(context, arguments); };
-  return run_tool(spec, argc, argv);
+  return run_tool([&spec] { return spec; }, argc, argv);
 }

@@ -131,8 +131,8 @@ nodes::Scene read(const std::string& path) {
 compare::SceneDifference compare_files(const std::string& first, const std::string& second) {
   const nodes::Scene a = read(first);
   const nodes::Scene b = read(second);
-  const auto scene_a = diff::scene_of(a);
-  const auto scene_b = diff::scene_of(b);
+  const auto scene_a = cli::diff::scene_of(a);
+  const auto scene_b = cli::diff::scene_of(b);
   Progress quiet;
   auto found = compare::difference(*scene_a, *scene_b, {}, 1, quiet);
   if (!found) std::abort();

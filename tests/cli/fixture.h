@@ -1,11 +1,27 @@
 #pragma once
 
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "support/folder_test.h"
 #include "support/run_tool.h"
 
 namespace krok::test {
+
+// What tests of tools look into reports and messages with.
+using nlohmann::json;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+using testing::StartsWith;
+using testing::UnorderedElementsAre;
 
 // A new folder for each test, and captures to put there.
 class CliTest : public FolderTest {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cli/bent_body.h"
+#include "cli/fixture.h"
 #include "support/small_images.h"
 
 namespace krok::test {

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "cli/fixture.h"
 #include "support/folder_test.h"
 #include "support/run_tool.h"
 

@@ -8,7 +8,7 @@
 #include "core/numbers.h"
 #include "formats/csv/table.h"
 
-namespace krok::blend_tool {
+namespace krok::cli::blend {
 
 Result<WeightedInput> parse_weighted_input(const std::string& word) {
   const std::size_t colon = word.rfind(':');
@@ -32,7 +32,7 @@ Result<WeightedInput> parse_weighted_input(const std::string& word) {
   return input;
 }
 
-Result<blend::WeightCurve> read_weight_curve(const std::string& path, ToolContext& context) {
+Result<krok::blend::WeightCurve> read_weight_curve(const std::string& path, ToolContext& context) {
   const auto file = context.open_input(path);
   if (!file) return file.error();
   const auto table = csv::Table::read(file->text(), path);
@@ -47,7 +47,7 @@ Result<blend::WeightCurve> read_weight_curve(const std::string& path, ToolContex
   }
   auto numbers = table->numbers(columns);
   if (!numbers) return numbers.error();
-  blend::WeightCurve curve{std::move((*numbers)[0]), std::move((*numbers)[1])};
+  krok::blend::WeightCurve curve{std::move((*numbers)[0]), std::move((*numbers)[1])};
   for (std::size_t row = 0; row < curve.generic.size(); ++row) {
     const bool sound = std::isfinite(curve.generic[row]) && std::isfinite(curve.weights[row]) &&
                        (row == 0 || curve.generic[row] > curve.generic[row - 1]);
@@ -62,4 +62,4 @@ Result<blend::WeightCurve> read_weight_curve(const std::string& path, ToolContex
   return curve;
 }
 
-}  // namespace krok::blend_tool
+}  // namespace krok::cli::blend

@@ -5,9 +5,9 @@
 
 #include "blend/time_map.h"
 #include "core/result.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
-namespace krok::blend_tool {
+namespace krok::cli::blend {
 
 // "walks/slow.anim:0.3" or "slow.anim:@weights.csv".
 struct WeightedInput {
@@ -21,6 +21,6 @@ Result<WeightedInput> parse_weighted_input(const std::string& word);
 
 // Reads a table with the columns "generic", rising, and "weight". Codes, with line and column:
 // those of csv::Table; weight-curve for missing values or times that do not rise.
-Result<blend::WeightCurve> read_weight_curve(const std::string& path, ToolContext& context);
+Result<krok::blend::WeightCurve> read_weight_curve(const std::string& path, ToolContext& context);
 
-}  // namespace krok::blend_tool
+}  // namespace krok::cli::blend

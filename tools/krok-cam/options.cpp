@@ -4,14 +4,16 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "core/numbers.h"
 #include "core/quantity.h"
-#include "tools/common/option_kinds.h"
-#include "tools/common/orientation_option.h"
-#include "tools/common/role_input.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-cam/run.h"
+#include "tools/shared/orientation_option.h"
+#include "tools/shared/role_input.h"
 
-namespace krok::cam_tool {
+namespace krok::cli::cam {
 
 namespace {
 
@@ -387,4 +389,25 @@ std::string ending(const Arguments& arguments) {
   return glb ? ".glb" : ".cam";
 }
 
-}  // namespace krok::cam_tool
+ToolSpec make_spec() {
+  const auto arguments = std::make_shared<Arguments>();
+  ToolSpec spec = spec_of("krok-cam", arguments, declare, understand, run);
+  spec.summary =
+      "Makes a camera from keys, or films a motion by following, orbiting or static "
+      "framing; writes a .cam file or glTF, separate or added to a character";
+  spec.inputs = "IN.json|IN.cam|IN.glb|IN.anim|IN.bvh|IN.amc";
+  spec.examples = {{"krok-cam shot.json -o shot.cam", "a camera from hand-written keys"},
+                   {"krok-cam walk.anim --follow hips -o shot.cam",
+                    "follows the hips, with the whole character in every frame"},
+                   {"krok-cam walk.anim --orbit 20s --frame upper --into walk.glb -o film.glb",
+                    "orbits the upper body once in 20 seconds, added to the character's file"},
+                   {"krok-cam shot.cam --into walk.glb -o film.glb", "adds an existing camera"},
+                   {"krok-cam film.glb -o shot.cam", "extracts it"},
+                   {"krok-cam captures/*.bvh --still --view left --out-dir cameras",
+                    "one camera per file, framing the whole motion from the left"}};
+  spec.batch = {{".anim", ".bvh", ".amc"},
+                [arguments]() -> Result<std::string> { return ending(*arguments); }};
+  return spec;
+}
+
+}  // namespace krok::cli::cam

@@ -7,9 +7,10 @@
 #include "camera/actor_camera.h"
 #include "core/result.h"
 #include "formats/cam/cam.h"
-#include "tools/common/command_options.h"
+#include "tools/cli/command_options.h"
+#include "tools/cli/tool.h"
 
-namespace krok::cam_tool {
+namespace krok::cli::cam {
 
 enum class Format { from_name, cam, glb };
 enum class View { front, three_quarter, left, right, back, top };
@@ -78,4 +79,7 @@ Result<Options> understand(const Arguments& arguments);
 // The output extension that the options imply, ".cam" or ".glb".
 std::string ending(const Arguments& arguments);
 
-}  // namespace krok::cam_tool
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::cam

@@ -7,9 +7,9 @@
 #include "core/text.h"
 #include "formats/io/open_scene.h"
 #include "nodes/evaluate.h"
-#include "tools/common/gltf/camera_choice.h"
+#include "tools/shared/camera_choice.h"
 
-namespace krok::cam_tool {
+namespace krok::cli::cam {
 
 namespace {
 
@@ -83,4 +83,4 @@ Result<CameraTrack> read_scene_camera(const InputFile& file, const std::string& 
   return track;
 }
 
-}  // namespace krok::cam_tool
+}  // namespace krok::cli::cam

@@ -6,9 +6,9 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "scene/camera_track.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
-namespace krok::cam_tool {
+namespace krok::cli::cam {
 
 // A camera of a glTF file in the first animation that moves it or one of its parent nodes, at the
 // rate of the keys or at `rate`; one frame if no animation does. `wanted` as in choose_camera.
@@ -16,4 +16,4 @@ namespace krok::cam_tool {
 Result<CameraTrack> read_scene_camera(const InputFile& file, const std::string& wanted,
                                       std::optional<double> rate, ToolContext& context);
 
-}  // namespace krok::cam_tool
+}  // namespace krok::cli::cam

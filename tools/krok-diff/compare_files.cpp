@@ -1,11 +1,11 @@
-#include "compare_files.h"
+#include "tools/krok-diff/compare_files.h"
 
 #include <fmt/format.h>
 
-#include "comparisons.h"
-#include "input_kinds.h"
+#include "tools/krok-diff/comparisons.h"
+#include "tools/krok-diff/input_kinds.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -82,4 +82,4 @@ Result<Outcome> compare_files(const Options& options, ToolContext& context) {
   return compare_scenes(*first, *first_kind, *second, *second_kind, options, context);
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

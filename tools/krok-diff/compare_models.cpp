@@ -2,14 +2,14 @@
 
 #include "compare/model_difference.h"
 #include "compare/morph_difference.h"
-#include "compare_two.h"
-#include "comparisons.h"
 #include "core/numbers.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
-#include "heatmap.h"
+#include "tools/krok-diff/compare_two.h"
+#include "tools/krok-diff/comparisons.h"
+#include "tools/krok-diff/heatmap.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 Result<Outcome> compare_models(const InputFile& first, const InputFile& second,
                                const Options& options, ToolContext& context) {
@@ -68,4 +68,4 @@ Result<Outcome> compare_morphs(const InputFile& first, const InputFile& second,
   return outcome;
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -2,14 +2,14 @@
 
 #include "compare/camera_difference.h"
 #include "compare/clip_difference.h"
-#include "compare_two.h"
-#include "comparisons.h"
 #include "core/numbers.h"
-#include "difference_plot.h"
 #include "formats/cam/cam.h"
 #include "formats/io/open_motion.h"
+#include "tools/krok-diff/compare_two.h"
+#include "tools/krok-diff/comparisons.h"
+#include "tools/krok-diff/difference_plot.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
                                 const Options& options, ToolContext& context) {
@@ -64,4 +64,4 @@ Result<Outcome> compare_cameras(const InputFile& first, const InputFile& second,
   return outcome;
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -1,21 +1,20 @@
 #include <fmt/format.h>
 
-#include <memory>
 #include <optional>
 
 #include "compare/scene_difference.h"
-#include "compare_two.h"
-#include "comparisons.h"
 #include "core/numbers.h"
-#include "difference_plot.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_scene.h"
 #include "formats/model/model_format.h"
-#include "gltf_scene.h"
-#include "heatmap.h"
-#include "other_scenes.h"
+#include "tools/krok-diff/compare_two.h"
+#include "tools/krok-diff/comparisons.h"
+#include "tools/krok-diff/difference_plot.h"
+#include "tools/krok-diff/gltf_scene.h"
+#include "tools/krok-diff/heatmap.h"
+#include "tools/krok-diff/other_scenes.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -172,4 +171,4 @@ Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
   return outcome_of(a, b, *found);
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

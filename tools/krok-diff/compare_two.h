@@ -6,13 +6,13 @@
 #include <tuple>
 #include <utility>
 
-#include "compare_files.h"
 #include "core/file.h"
 #include "core/result.h"
+#include "tools/krok-diff/compare_files.h"
 
 // Shared by the comparisons of all file types.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 // Reads both files with the same reader; errors carry the file's path.
 template <typename T, typename Read>
@@ -44,4 +44,4 @@ inline Status draw_sheet(const Options& options, ToolContext& context,
   return write_sheet(sheet, options.sheet, context);
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

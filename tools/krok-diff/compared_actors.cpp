@@ -6,12 +6,12 @@
 #include "compare/frame_match.h"
 #include "compare/matching.h"
 #include "compare/skeleton_match.h"
-#include "difference_sheet.h"
 #include "motion/ground_frame.h"
 #include "roles/roles.h"
-#include "tools/common/actors/bone_actor.h"
+#include "tools/krok-diff/difference_sheet.h"
+#include "tools/shared/bone_actor.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -326,4 +326,4 @@ DifferenceSheet sheet_of(const compare::Scene& first, const compare::Scene& seco
   return sheet;
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -1,16 +1,16 @@
 #pragma once
 
-#include "compare_files.h"
 #include "core/file.h"
 #include "core/result.h"
-#include "input_kinds.h"
-#include "outcome.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
+#include "tools/krok-diff/compare_files.h"
+#include "tools/krok-diff/input_kinds.h"
+#include "tools/krok-diff/outcome.h"
 
 // The comparisons that compare_files() selects by file type. They write the requested plots and
 // images.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 // Compares two motions, each a .anim file or a capture.
 Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
@@ -30,4 +30,4 @@ Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
                                const InputFile& second, InputKind second_kind,
                                const Options& options, ToolContext& context);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -1,4 +1,4 @@
-#include "difference_plot.h"
+#include "tools/krok-diff/difference_plot.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include "core/text.h"
 #include "draw/difference_chart.h"
 #include "roles/roles.h"
-#include "tools/common/output_set.h"
+#include "tools/cli/output_set.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -161,4 +161,4 @@ Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolCont
   return write_chart(chart, path, context);
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

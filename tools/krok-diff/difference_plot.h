@@ -6,12 +6,12 @@
 #include "compare/scene_difference.h"
 #include "core/result.h"
 #include "scene/clip.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
 // Charts of the differences of two motions or scenes over time: max and RMS, the tolerance, and the
 // time of the max.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 struct PlottedClip {
   std::string name;
@@ -37,4 +37,4 @@ struct PlottedScenes {
 };
 Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolContext& context);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -1,4 +1,4 @@
-#include "difference_sheet.h"
+#include "tools/krok-diff/difference_sheet.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/numbers.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -133,4 +133,4 @@ Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
   return write_image(made->image, options.path, context);
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -11,12 +11,12 @@
 #include "render/sheet.h"
 #include "scene/clip.h"
 #include "scene/model.h"
-#include "tools/common/actors/image.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
+#include "tools/shared/image.h"
 
 // An image of two characters and their differences.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 inline constexpr int kDifferenceMoments = 6;
 
@@ -62,4 +62,4 @@ DistanceColours distance_colours(double tolerance, double largest);
 // Draws the sheet, writes the image and adds it to the report.
 Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options, ToolContext& context);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

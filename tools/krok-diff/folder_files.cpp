@@ -1,4 +1,4 @@
-#include "folder_files.h"
+#include "tools/krok-diff/folder_files.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <set>
 
-#include "tools/common/glob.h"
-#include "tools/common/paths.h"
+#include "core/glob.h"
+#include "tools/cli/paths.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -128,4 +128,4 @@ Result<FolderFiles> files_in(const std::string& folder, const PathFilter& filter
   return Walk(folder, filter, other, written).run();
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -8,7 +8,7 @@
 
 // Selects the files of a folder to compare.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 // Shell patterns. Without a slash they match file names, "*.glb"; with a slash, paths relative to
 // the folder, "walks/**/*.glb". An empty `include` matches all files.
@@ -34,4 +34,4 @@ struct FolderFiles {
 Result<FolderFiles> files_in(const std::string& folder, const PathFilter& filter,
                              const std::string& other, const std::vector<std::string>& written);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <array>
 
-#include "compare_files.h"
 #include "core/markup.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "folders.h"
-#include "tools/common/output_set.h"
-#include "tools/common/printable.h"
+#include "tools/cli/output_set.h"
+#include "tools/cli/printable.h"
+#include "tools/krok-diff/compare_files.h"
+#include "tools/krok-diff/folders.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -220,4 +220,4 @@ Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,
   return write_output(context, path, [&](OutputFile& file) { return file.write(text); });
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <set>
 
-#include "compare_files.h"
-#include "folders.h"
-#include "tools/common/new_folders.h"
-#include "tools/common/paths.h"
+#include "tools/cli/new_folders.h"
+#include "tools/cli/paths.h"
+#include "tools/krok-diff/compare_files.h"
+#include "tools/krok-diff/folders.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -89,4 +89,4 @@ Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& o
   return update;
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -1,4 +1,4 @@
-#include "folders.h"
+#include "tools/krok-diff/folders.h"
 
 #include <fmt/format.h>
 
@@ -8,15 +8,15 @@
 #include <optional>
 #include <set>
 
-#include "compare_files.h"
 #include "core/hash.h"
+#include "core/in_order.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/registry/registry.h"
-#include "tools/common/in_order.h"
-#include "tools/common/paths.h"
+#include "tools/cli/paths.h"
+#include "tools/krok-diff/compare_files.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -172,14 +172,14 @@ class Comparison {
     one.first = first_path(path);
     one.second = second_path(path);
     one.folders = {};
-    std::string messages;  // printed later, in order
+    OneOfMany one_of_many;
     Progress no_progress;
     ToolContext context;
     context.report.tool = context_.report.tool;
     context.jobs = jobs_of_a_file_;
     context.quiet = true;
     context.progress = &no_progress;
-    context.kept_messages = &messages;
+    context.one_of_many = &one_of_many;
     context.destinations = context_.destinations;
     auto outcome = outcome_of(one, context);
     if (!outcome) {
@@ -397,4 +397,4 @@ Result<int> run_folders(const Options& options, ToolContext& context) {
   return missing || (other && !folders.update) ? kExitNo : kExitDone;
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

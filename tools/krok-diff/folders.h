@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "core/result.h"
-#include "folder_files.h"
-#include "tools/common/report.h"
-#include "tools/common/tool.h"
+#include "tools/cli/report.h"
+#include "tools/cli/tool.h"
+#include "tools/krok-diff/folder_files.h"
 
 // Compares two folders: files are paired by their relative paths.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 struct Options;
 
@@ -90,4 +90,4 @@ Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,
 // "the same", "differs", "only in golden".
 std::string status_words(FileStatus status, const Options& options);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

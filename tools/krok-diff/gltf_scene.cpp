@@ -1,11 +1,11 @@
-#include "gltf_scene.h"
+#include "tools/krok-diff/gltf_scene.h"
 
 #include <fmt/format.h>
 
 #include "core/numbers.h"
 #include "nodes/evaluate.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -133,4 +133,4 @@ std::string summary_of(const compare::Scene& scene) {
                      counted(number(scene.animations.size()), "animation", "animations"));
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -1,4 +1,4 @@
-#include "heatmap.h"
+#include "tools/krok-diff/heatmap.h"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
-#include "difference_sheet.h"
 #include "formats/gltf/coloured_meshes.h"
-#include "other_scenes.h"
-#include "tools/common/output_set.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-diff/difference_sheet.h"
+#include "tools/krok-diff/other_scenes.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -140,4 +140,4 @@ Status write_heatmap(const Model& first, const Model& second, const compare::Sce
   return write_heatmap(a, *found, path, context);
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

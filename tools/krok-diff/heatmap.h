@@ -5,11 +5,11 @@
 #include "compare/scene_difference.h"
 #include "core/result.h"
 #include "scene/model.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
 // Mesh differences as vertex colours of the first mesh.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 // Error usage if the extension of --heatmap is not supported.
 Status check_heatmap_name(const std::string& path);
@@ -24,4 +24,4 @@ Status write_heatmap(const compare::Scene& first, const compare::SceneDifference
 Status write_heatmap(const Model& first, const Model& second, const compare::SceneOptions& options,
                      const std::string& path, ToolContext& context);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -1,4 +1,4 @@
-#include "input_kinds.h"
+#include "tools/krok-diff/input_kinds.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "formats/registry/registry.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -91,4 +91,4 @@ Result<InputKind> kind_of(const InputFile& file) {
       .in_file(file.path());
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

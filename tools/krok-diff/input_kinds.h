@@ -7,7 +7,7 @@
 
 // File types that krok-diff can compare.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 enum class InputKind {
   motion,  // .anim, or a capture
@@ -27,4 +27,4 @@ const char* word_of(InputKind kind);
 // Detected from the content, or else from the file name. Code diff-kind.
 Result<InputKind> kind_of(const InputFile& file);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -1,13 +1,11 @@
-#include "other_scenes.h"
+#include "tools/krok-diff/other_scenes.h"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
-#include "core/numbers.h"
 #include "math/quaternion.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -171,4 +169,4 @@ Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Sc
   return scene;
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

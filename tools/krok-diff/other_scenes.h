@@ -9,7 +9,7 @@
 // Motions, models and point caches as scenes of lib/compare, so that they can be compared with
 // glTF. The scenes refer to their sources, which must outlive them.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 // Joints without a mesh: an animation with a key at each frame, interpolated in between.
 compare::Scene scene_of(const Clip& clip);
@@ -23,4 +23,4 @@ compare::Scene scene_of(const Model& model);
 // each has that many. Error (code pc2-value) for positions that are not finite.
 Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Scene* partner);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

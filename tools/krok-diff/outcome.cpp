@@ -1,4 +1,4 @@
-#include "outcome.h"
+#include "tools/krok-diff/outcome.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/numbers.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -319,4 +319,4 @@ Json to_json(const Outcome& outcome, const compare::Tolerance& tolerance) {
   return json;
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

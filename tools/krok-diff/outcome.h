@@ -5,11 +5,11 @@
 
 #include "compare/measure.h"
 #include "compare/scene_difference.h"
-#include "tools/common/report.h"
+#include "tools/cli/report.h"
 
 // The result of a comparison of any file type, ready to be printed.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 enum class Unit {
   length,
@@ -66,4 +66,4 @@ std::string worst_of(const Outcome& outcome);
 Json to_json(const Outcome& outcome, const compare::Tolerance& tolerance);
 Json to_json(const compare::Tolerance& tolerance);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

@@ -1,12 +1,12 @@
-#include "tolerance_options.h"
+#include "tools/krok-diff/tolerance_options.h"
 
 #include <fmt/format.h>
 
 #include "core/numbers.h"
 #include "core/quantity.h"
-#include "tools/common/option_kinds.h"
+#include "tools/cli/option_kinds.h"
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 namespace {
 
@@ -149,4 +149,4 @@ Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments)
   return tolerance;
 }
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

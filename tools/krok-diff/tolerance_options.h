@@ -5,11 +5,11 @@
 #include "compare/matching.h"
 #include "compare/measure.h"
 #include "core/result.h"
-#include "tools/common/command_options.h"
+#include "tools/cli/command_options.h"
 
 // Options for matching and tolerances.
 
-namespace krok::diff {
+namespace krok::cli::diff {
 
 // As given on the command line; empty: not given.
 struct ToleranceArguments {
@@ -30,4 +30,4 @@ Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments)
 // The value of --match.
 const char* word_of(compare::Matching matching);
 
-}  // namespace krok::diff
+}  // namespace krok::cli::diff

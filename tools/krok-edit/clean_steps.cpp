@@ -7,7 +7,7 @@
 #include "motion/ground_frame.h"
 #include "tools/krok-edit/steps.h"
 
-namespace krok::edit {
+namespace krok::cli::edit {
 
 namespace {
 
@@ -132,4 +132,4 @@ Status clean(const Options& options, ToolContext& context, Edit& edit) {
   return filter_jitter(options, context, *joints, edit);
 }
 
-}  // namespace krok::edit
+}  // namespace krok::cli::edit

@@ -6,7 +6,7 @@
 
 // Options that modify another option, and that option.
 
-namespace krok::edit {
+namespace krok::cli::edit {
 
 namespace {
 
@@ -59,4 +59,4 @@ Status check_needs(const Arguments& arguments) {
   return {};
 }
 
-}  // namespace krok::edit
+}  // namespace krok::cli::edit

@@ -3,14 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/common/option_kinds.h"
-#include "tools/common/orientation_option.h"
-#include "tools/common/role_input.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-edit/run.h"
+#include "tools/shared/orientation_option.h"
+#include "tools/shared/role_input.h"
 
-namespace krok::edit {
+namespace krok::cli::edit {
 
 namespace {
 
@@ -379,4 +381,35 @@ Result<Options> understand(const Arguments& arguments) {
   return options;
 }
 
-}  // namespace krok::edit
+ToolSpec make_spec() {
+  const auto arguments = std::make_shared<Arguments>();
+  ToolSpec spec = spec_of("krok-edit", arguments, declare, understand, run);
+  spec.summary =
+      "Cleans, cuts, mirrors, retimes, joins, loops, scales and positions a motion. Steps run in "
+      "the "
+      "order listed here, regardless of the order of the options";
+  spec.inputs = "IN.anim|IN.bvh|IN.amc";
+  spec.examples = {
+      {"krok-edit take.anim -o clean.anim --spikes --filter butterworth --cutoff 8Hz",
+       "replaces spikes and removes jitter without time shift"},
+      {"krok-edit take.anim -o walk.anim --from 1.5s --to 187f --loop --treadmill",
+       "a seamless walk cycle in place"},
+      {"krok-edit take.anim -o 'take_{sequence}.anim' --sequences take.json",
+       "every sequence listed in a file, at its speed, looped if the file says so"},
+      {"krok-edit walk.anim -o both.anim --append turn.anim --blend 0.3s --at-origin --heading 0",
+       "two motions in sequence, from the origin towards +Z"}};
+  spec.needs_output = false;  // --list-sequences writes nothing
+  spec.batch = {{".anim", ".bvh", ".amc"}, [arguments]() -> Result<std::string> {
+                  if (arguments->list_sequences) {
+                    return Error(
+                        "usage",
+                        "--list-sequences has no outputs; --out-dir and --manifest cannot be used",
+                        "give a single input");
+                  }
+                  const bool several = !arguments->sequences.empty() && arguments->sequence.empty();
+                  return std::string(several ? "_{sequence}.anim" : ".anim");
+                }};
+  return spec;
+}
+
+}  // namespace krok::cli::edit

@@ -12,9 +12,10 @@
 #include "motion/joint_selection.h"
 #include "motion/loop.h"
 #include "motion/travel.h"
-#include "tools/common/command_options.h"
+#include "tools/cli/command_options.h"
+#include "tools/cli/tool.h"
 
-namespace krok::edit {
+namespace krok::cli::edit {
 
 // The options as given.
 struct Arguments {
@@ -110,4 +111,7 @@ Status check_needs(const Arguments& arguments);
 // Errors name the option. Code usage for options that exclude each other.
 Result<Options> understand(const Arguments& arguments);
 
-}  // namespace krok::edit
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::edit

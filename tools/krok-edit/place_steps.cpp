@@ -7,7 +7,7 @@
 #include "motion/place.h"
 #include "tools/krok-edit/steps.h"
 
-namespace krok::edit {
+namespace krok::cli::edit {
 
 Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
   if (!options.removed_travel) return {};
@@ -85,4 +85,4 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
   return {};
 }
 
-}  // namespace krok::edit
+}  // namespace krok::cli::edit

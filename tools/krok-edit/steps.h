@@ -7,12 +7,12 @@
 #include "formats/sequences/sequences.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-edit/options.h"
 
 // The steps of an edit. A step does nothing unless its options are given, and notes what it did.
 
-namespace krok::edit {
+namespace krok::cli::edit {
 
 // The state of an edit.
 struct Edit {
@@ -49,4 +49,4 @@ Status take_out_travel(const Options& options, ToolContext& context, Edit& edit)
 Status change_size(const Options& options, ToolContext& context, Edit& edit);
 Status change_place(const Options& options, ToolContext& context, Edit& edit);
 
-}  // namespace krok::edit
+}  // namespace krok::cli::edit

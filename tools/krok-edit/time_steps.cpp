@@ -12,7 +12,7 @@
 #include "motion/retime.h"
 #include "tools/krok-edit/steps.h"
 
-namespace krok::edit {
+namespace krok::cli::edit {
 
 namespace {
 
@@ -302,4 +302,4 @@ Status make_loop(const Options& options, ToolContext&, Edit& edit) {
   return {};
 }
 
-}  // namespace krok::edit
+}  // namespace krok::cli::edit

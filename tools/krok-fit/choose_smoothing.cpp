@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 namespace {
 
@@ -44,4 +44,4 @@ Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& opt
   return choice;
 }
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -9,7 +9,7 @@
 
 // Chooses whether the weights of a library interpolate its examples or smooth the noise in them.
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 struct SmoothingChoice {
   double smoothing = 0;  // of the weight function
@@ -29,4 +29,4 @@ bool contradict_each_other(const parametric::LeftOutMeans& exact);
 Result<SmoothingChoice> choose_smoothing(LibraryInput& input, const Options& options,
                                          ToolContext& context);
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

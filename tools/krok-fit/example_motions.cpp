@@ -8,16 +8,16 @@
 #include <utility>
 
 #include "contacts/gait_keytimes.h"
+#include "core/glob.h"
 #include "core/numbers.h"
 #include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
 #include "motion/cut.h"
 #include "parametric/library.h"
-#include "tools/common/glob.h"
-#include "tools/common/keys_sidecar.h"
-#include "tools/common/paths.h"
-#include "tools/common/role_input.h"
+#include "tools/cli/paths.h"
+#include "tools/shared/keys_sidecar.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 namespace {
 
@@ -183,7 +183,7 @@ class MotionReader {
     }
     if (motion.has_keys) return {};
     if (!motion.found) {
-      auto keys = krok::find_keys(motion.clip, made_.roles, context_);
+      auto keys = krok::cli::find_keys(motion.clip, made_.roles, context_);
       if (!keys) return std::move(keys).error().in_file(motion.path);
       motion.keys = *std::move(keys);
       return {};
@@ -227,4 +227,4 @@ Error at_entry(Error error, const Location& place) {
   return error;
 }
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -10,11 +10,11 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
 // Loads the motions named in a library description, with their keys; all share one skeleton.
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 // A motion and its entry in the description.
 struct ExampleMotion {
@@ -50,4 +50,4 @@ Result<ExampleMotions> read_example_motions(const library::LibraryDescription& d
 // Sets the error's location in the description, unless it has one.
 Error at_entry(Error error, const Location& place);
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -13,7 +13,7 @@
 #include "parametric/bounds.h"
 #include "rbf/weight_solver.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 namespace {
 
@@ -120,7 +120,7 @@ rbf::Measure measure_of(const parametric::Measure& measure) {
 }
 
 Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& options,
-                                  SmoothingChoice smoothing, const fit::Refined* start,
+                                  SmoothingChoice smoothing, const krok::fit::Refined* start,
                                   ToolContext& context) {
   const Library& library = input.library;
   FittedLibrary fitted;
@@ -140,7 +140,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
 
   const parametric::Measure measure(library, fitted.packed);
   const parametric::Bounds bounds = parametric::bounds_of(library);
-  fit::RefineOptions how;
+  krok::fit::RefineOptions how;
   how.inside = [&bounds](std::span<const double> point) {
     return parametric::outside(bounds, point).distance <= 0;
   };
@@ -157,7 +157,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   how.held_out = options.held_out;
   how.jobs = context.jobs;
   const auto begin = std::chrono::steady_clock::now();
-  auto refined = fit::refine(fitted.start, measure_of(measure), how, *context.progress);
+  auto refined = krok::fit::refine(fitted.start, measure_of(measure), how, *context.progress);
   if (!refined) {
     // An error in the saved weights is not an error in the description.
     const bool saved = start != nullptr && refined.error().code.starts_with("rbf-");
@@ -166,7 +166,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   fitted.refined = *std::move(refined);
   if (options.polish) {
     context.progress->begin("polishing", 1);
-    auto polished = fit::polish(fitted.refined, measure_of(measure), how);
+    auto polished = krok::fit::polish(fitted.refined, measure_of(measure), how);
     context.progress->advance(1);
     context.progress->end();
     if (!polished) return std::move(polished).error().in_file(options.library);
@@ -190,4 +190,4 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   return fitted;
 }
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -10,14 +10,14 @@
 #include "tools/krok-fit/library_input.h"
 #include "tools/krok-fit/options.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 // The weight functions of a library, and their inputs.
 struct FittedLibrary {
   parametric::PackedExamples packed;
   std::vector<double> tolerances;  // [parameters], in parameter units
-  fit::Refined start;              // before this run's refinement
-  fit::Refined refined;
+  krok::fit::Refined start;        // before this run's refinement
+  krok::fit::Refined refined;
   double seconds = 0;  // time of refinement; not written to any file
   SmoothingChoice smoothing;
   // Leave-one-out errors with unrefined weights; empty for more than kMaxLeftOut examples.
@@ -30,9 +30,9 @@ struct FittedLibrary {
 rbf::Measure measure_of(const parametric::Measure& measure);
 
 // Weights for the examples alone or from `start`, refined and polished according to the options.
-// Codes: those of rbf::WeightSolver, with the names of the examples, and of fit::refine.
+// Codes: those of rbf::WeightSolver, with the names of the examples, and of krok::fit::refine.
 Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& options,
-                                  SmoothingChoice smoothing, const fit::Refined* start,
+                                  SmoothingChoice smoothing, const krok::fit::Refined* start,
                                   ToolContext& context);
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

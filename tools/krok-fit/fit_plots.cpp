@@ -1,7 +1,5 @@
 #include "tools/krok-fit/fit_plots.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +11,7 @@
 #include "rbf/weight_evaluator.h"
 #include "tools/krok-fit/parameter_text.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 namespace {
 
@@ -60,7 +58,7 @@ class Charts {
     const auto rounds_before = fitted_.start.rounds.size();
     int sum = fitted_.start.function.inserted();
     std::vector<double> inserted = {static_cast<double>(sum)};
-    std::vector<const fit::RefineMetrics*> charts = {
+    std::vector<const krok::fit::RefineMetrics*> charts = {
         rounds_before == 0 ? &fitted_.refined.before : &rounds[rounds_before - 1].after};
     for (std::size_t r = rounds_before; r < rounds.size(); ++r) {
       sum += rounds[r].inserted;
@@ -85,7 +83,7 @@ class Charts {
       Series most = series_of("95th percentile", SeriesStyle::line_and_points);
       Series mean = series_of("mean", SeriesStyle::line_and_points);
       for (Series* series : {&largest, &most, &mean}) series->x = inserted;
-      for (const fit::RefineMetrics* at : charts) {
+      for (const krok::fit::RefineMetrics* at : charts) {
         largest.y.push_back(at->within[d].largest * unit.factor);
         most.y.push_back(at->within[d].most * unit.factor);
         mean.y.push_back(at->within[d].mean * unit.factor);
@@ -252,7 +250,7 @@ class Charts {
     for (int k = 0; k < function.centre_count(); ++k) {
       add(k < function.examples ? examples : inserted, function.centre(k));
     }
-    for (const fit::RefusedPoint& point : fitted_.refined.refused) add(refused, point.point);
+    for (const krok::fit::RefusedPoint& point : fitted_.refined.refused) add(refused, point.point);
     panel.series = {std::move(refused), std::move(inserted), std::move(examples)};
     return panel;
   }
@@ -303,4 +301,4 @@ Result<std::vector<ChartFile>> make_charts(const LibraryInput& input, const Fitt
   return files;
 }
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

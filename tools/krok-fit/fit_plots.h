@@ -7,7 +7,7 @@
 #include "core/result.h"
 #include "tools/krok-fit/fit_library.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 // A chart's file name and its SVG.
 using ChartFile = std::pair<std::string, std::string>;
@@ -18,4 +18,4 @@ using ChartFile = std::pair<std::string, std::string>;
 // parameters by the requested ones, before and after refinement. Codes: those of draw::to_svg.
 Result<std::vector<ChartFile>> make_charts(const LibraryInput& input, const FittedLibrary& fitted);
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -8,12 +8,12 @@
 #include "tools/krok-fit/choose_smoothing.h"
 #include "tools/krok-fit/parameter_text.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 namespace {
 
-using fit::ParameterError;
-using fit::RefineMetrics;
+using krok::fit::ParameterError;
+using krok::fit::RefineMetrics;
 
 Json errors_json(const std::vector<ParameterError>& errors, const LibraryInput& input) {
   Json result = Json::object();
@@ -59,7 +59,7 @@ Json parameters_json(const LibraryInput& input, const FittedLibrary& fitted) {
 
 Json rounds_json(const LibraryInput& input, const FittedLibrary& fitted) {
   Json list = Json::array();
-  for (const fit::RefineRound& round : fitted.refined.rounds) {
+  for (const krok::fit::RefineRound& round : fitted.refined.rounds) {
     Json entry;
     entry["inserted"] = round.inserted;
     entry["refused"] = round.refused;
@@ -73,11 +73,11 @@ Json rounds_json(const LibraryInput& input, const FittedLibrary& fitted) {
 
 Json refused_json(const FittedLibrary& fitted) {
   Json list = Json::array();
-  for (const fit::RefusedPoint& point : fitted.refined.refused) {
+  for (const krok::fit::RefusedPoint& point : fitted.refined.refused) {
     Json entry;
     entry["round"] = point.round;
     entry["point"] = point.point;
-    entry["reason"] = std::string(fit::refusal_name(point.reason));
+    entry["reason"] = std::string(krok::fit::refusal_name(point.reason));
     entry["value"] = point.value;
     list.push_back(std::move(entry));
   }
@@ -131,16 +131,16 @@ std::string range_text(const LibraryInput& input, std::size_t d) {
                      readable(input.upper[d] * unit.factor, 3), unit.name);
 }
 
-std::string what_stopped(const fit::Refined& refined) {
+std::string what_stopped(const krok::fit::Refined& refined) {
   switch (refined.stop) {
-    case fit::Stop::tolerance:
+    case krok::fit::Stop::tolerance:
       return "tolerances reached";
-    case fit::Stop::points:
+    case krok::fit::Stop::points:
       return "requested number reached";
-    case fit::Stop::stalled:
+    case krok::fit::Stop::stalled:
       return "no further improvement";
     default:
-      return std::string(fit::stop_name(refined.stop));
+      return std::string(krok::fit::stop_name(refined.stop));
   }
 }
 
@@ -220,7 +220,7 @@ Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
     result["polished"] = {{"after", metrics_json(fitted.refined.polished->after, input)}};
   }
   result["leave_one_out"] = left_out_json(fitted.left_out);
-  result["stop"] = std::string(fit::stop_name(fitted.refined.stop));
+  result["stop"] = std::string(krok::fit::stop_name(fitted.refined.stop));
   return result;
 }
 
@@ -269,4 +269,4 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
                           readable(after.least_weight, 3), readable(after.largest_weight, 3)));
 }
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "tools/common/report.h"
-#include "tools/common/tool.h"
+#include "tools/cli/report.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-fit/fit_library.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 // The report for --json.
 Json report_json(const LibraryInput& input, const FittedLibrary& fitted);
@@ -18,4 +18,4 @@ Json saved_json(const LibraryInput& input, const FittedLibrary& fitted);
 // Logs a short summary: the examples, errors before and after, why refinement stopped.
 void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolContext& context);
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -8,7 +8,7 @@
 
 #include "parametric/thin_out.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 namespace {
 
@@ -263,4 +263,4 @@ void take_all_steps(LibraryInput& input) {
   (void)find_range(input).ok();
 }
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -7,12 +7,12 @@
 #include "formats/library/library_description.h"
 #include "parametric/cut_steps.h"
 #include "parametric/library.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-fit/example_motions.h"
 
 // Builds a library from its description and motions.
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 struct LibraryInput {
   library::LibraryDescription description;
@@ -36,4 +36,4 @@ Result<LibraryInput> read_library(const std::string& path, bool keep_going, Tool
 // Uses all detected steps as examples, for smoothed weights; of duplicates only one.
 void take_all_steps(LibraryInput& input);
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -1,10 +1,13 @@
 #include "tools/krok-fit/options.h"
 
+#include <memory>
+
 #include "core/numbers.h"
 #include "core/quantity.h"
-#include "tools/common/option_kinds.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-fit/run.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 void declare(CommandOptions& command, Options& options) {
   command
@@ -88,4 +91,23 @@ Status check(const Options& options) {
   return Error("usage", "--until: the error must be greater than 0");
 }
 
-}  // namespace krok::fit_tool
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-fit", options, declare, check, run);
+  spec.summary =
+      "Fits a step library to example motions, so that krok-synth can make motions for any "
+      "parameters between them, with a measured error";
+  spec.inputs = "LIBRARY.json";
+  spec.examples = {
+      {"krok-fit walking.json -o walking.steps",
+       "uses the examples in the description and refines until the tolerances are met"},
+      {"krok-fit walking.json -o walking.steps --refine 80 --until 0.5mm --plots charts",
+       "inserts up to 80 points until lengths are within 0.5 mm, and writes charts"},
+      {"krok-fit walking.json --resume walking.steps --refine 160 -o better.steps",
+       "continues the refinement of an earlier run"}};
+  spec.exit_partly = "with --keep-going: some motions were left out, the library was written";
+  spec.report_name = "--report";
+  return spec;
+}
+
+}  // namespace krok::cli::fit

@@ -6,9 +6,10 @@
 
 #include "core/result.h"
 #include "rbf/weight_function.h"
-#include "tools/common/command_options.h"
+#include "tools/cli/command_options.h"
+#include "tools/cli/tool.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 struct Options {
   std::string library;  // path of the description
@@ -33,4 +34,7 @@ inline constexpr int kMaxRefined = 4000;
 void declare(CommandOptions& command, Options& options);
 Status check(const Options& options);
 
-}  // namespace krok::fit_tool
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::fit

@@ -1,6 +1,6 @@
 #include "tools/krok-fit/parameter_text.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 ShownUnit unit_for_values(const parametric::Parameter& parameter) {
   if (parameter.quantity == parametric::Quantity::step_turn) {
@@ -20,4 +20,4 @@ ShownUnit unit_for_errors(const parametric::Parameter& parameter) {
   }
 }
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

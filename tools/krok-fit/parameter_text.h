@@ -8,7 +8,7 @@
 // Parameters in readable units: lengths in millimetres or metres, angles in degrees, times in
 // milliseconds or seconds.
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 // A unit for values or errors, and the factor from the parameter's own unit.
 struct ShownUnit {
@@ -18,4 +18,4 @@ struct ShownUnit {
 ShownUnit unit_for_values(const parametric::Parameter& parameter);
 ShownUnit unit_for_errors(const parametric::Parameter& parameter);
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -4,15 +4,15 @@
 #include <cstdint>
 #include <optional>
 
-#include "tools/common/report.h"
+#include "tools/cli/report.h"
 #include "tools/krok-fit/options.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 namespace {
 
-using fit::ParameterError;
-using fit::RefineMetrics;
+using krok::fit::ParameterError;
+using krok::fit::RefineMetrics;
 
 // Missing members or wrong types throw; read_refinement() catches all.
 std::vector<ParameterError> errors_of(const Json& json, const LibraryInput& input) {
@@ -39,11 +39,11 @@ RefineMetrics metrics_of(const Json& json, const LibraryInput& input) {
   return metrics;
 }
 
-fit::Refusal refusal_named(const std::string& name) {
-  using fit::Refusal;
+krok::fit::Refusal refusal_named(const std::string& name) {
+  using krok::fit::Refusal;
   for (const Refusal refusal :
        {Refusal::weights, Refusal::residual, Refusal::near, Refusal::system}) {
-    if (fit::refusal_name(refusal) == name) return refusal;
+    if (krok::fit::refusal_name(refusal) == name) return refusal;
   }
   return Refusal::growth;
 }
@@ -56,10 +56,10 @@ int count_of(const Json& json) {
 
 // Whether the rounds match the points, as refinement counts them. A forged report could otherwise
 // claim any number of points, each of which takes time.
-bool adds_up(const fit::Refined& refined) {
+bool adds_up(const krok::fit::Refined& refined) {
   std::int64_t inserted = 0, refused = 0;
-  for (const fit::RefineRound& round : refined.rounds) {
-    if (round.inserted > fit::RefineOptions().points_a_round) return false;
+  for (const krok::fit::RefineRound& round : refined.rounds) {
+    if (round.inserted > krok::fit::RefineOptions().points_a_round) return false;
     inserted += round.inserted;
     refused += round.refused;
   }
@@ -70,14 +70,14 @@ bool adds_up(const fit::Refined& refined) {
                              [&](const auto& point) { return point.round < rounds; });
 }
 
-fit::Refined refinement_of(const Json& json, const LibraryInput& input,
-                           const rbf::WeightFunction& function) {
-  fit::Refined refined;
+krok::fit::Refined refinement_of(const Json& json, const LibraryInput& input,
+                                 const rbf::WeightFunction& function) {
+  krok::fit::Refined refined;
   refined.function = function;
   refined.example_error = json.at("example_error_of_range").get<double>();
   refined.before = metrics_of(json.at("before"), input);
   for (const Json& entry : json.at("rounds")) {
-    fit::RefineRound round;
+    krok::fit::RefineRound round;
     round.inserted = count_of(entry.at("inserted"));
     round.refused = count_of(entry.at("refused"));
     round.by_point = count_of(entry.at("by_other_parameters"));
@@ -106,8 +106,8 @@ fit::Refined refinement_of(const Json& json, const LibraryInput& input,
 
 }  // namespace
 
-Result<fit::Refined> read_refinement(const std::string& text, const LibraryInput& input,
-                                     const rbf::WeightFunction& function) {
+Result<krok::fit::Refined> read_refinement(const std::string& text, const LibraryInput& input,
+                                           const rbf::WeightFunction& function) {
   try {
     return refinement_of(parse_ordered_json(text), input, function);
   } catch (const std::exception&) {
@@ -116,4 +116,4 @@ Result<fit::Refined> read_refinement(const std::string& text, const LibraryInput
   }
 }
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

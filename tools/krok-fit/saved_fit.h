@@ -6,11 +6,11 @@
 #include "fit/refine.h"
 #include "tools/krok-fit/library_input.h"
 
-namespace krok::fit_tool {
+namespace krok::cli::fit {
 
 // Reads the refinement state from a fitted library's report `text`, to resume it. Code fit-resume
 // if there is none, or it does not match the parameters or points.
-Result<fit::Refined> read_refinement(const std::string& text, const LibraryInput& input,
-                                     const rbf::WeightFunction& function);
+Result<krok::fit::Refined> read_refinement(const std::string& text, const LibraryInput& input,
+                                           const rbf::WeightFunction& function);
 
-}  // namespace krok::fit_tool
+}  // namespace krok::cli::fit

@@ -14,7 +14,7 @@
 #include "roles/eyes.h"
 #include "tools/krok-import/image_names.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 namespace {
 
@@ -166,4 +166,4 @@ Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::S
   return Adder(files, scene, actor, outputs, folder).add();
 }
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

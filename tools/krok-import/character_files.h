@@ -7,10 +7,10 @@
 #include "formats/container/packed_orientation.h"
 #include "nodes/scene.h"
 #include "scene/character.h"
-#include "tools/common/new_folders.h"
-#include "tools/common/output_set.h"
+#include "tools/cli/new_folders.h"
+#include "tools/cli/output_set.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 // Input of --character hero.character, which writes hero.model, hero.material with its images in
 // hero_textures/, hero_morphs.exr, and hero.character, which refers to them. Files without content
@@ -34,4 +34,4 @@ Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::S
                                      character::Actor& actor, OutputSet& outputs,
                                      NewFolders& folder);
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

@@ -7,9 +7,9 @@
 #include "capture/unique_names.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/common/file_name.h"
+#include "tools/cli/file_name.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 namespace {
 
@@ -102,4 +102,4 @@ Result<std::string> clip_path(const std::string& pattern, const std::string& opt
   return path.replace(place, kPlace.size(), clip.file_name);
 }
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

@@ -5,11 +5,11 @@
 
 #include "core/result.h"
 #include "nodes/scene.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
 // Selects the animations of a scene to import, and their file names.
 
-namespace krok::import {
+namespace krok::cli::import {
 
 struct ChosenClip {
   int animation = -1;
@@ -28,4 +28,4 @@ Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const st
 Result<std::string> clip_path(const std::string& pattern, const std::string& option,
                               const ChosenClip& clip, bool several, const std::string& extension);
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

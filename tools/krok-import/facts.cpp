@@ -6,11 +6,11 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
-#include "tools/common/json_object.h"
-#include "tools/common/printable.h"
-#include "tools/common/role_report.h"
+#include "tools/cli/json_object.h"
+#include "tools/cli/printable.h"
+#include "tools/shared/role_report.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 namespace {
 
@@ -109,7 +109,22 @@ Json facts_of(const Conventions& c) {
   return facts;
 }
 
-Json result_of(const Capture& capture, const FrameSource& motion, double height, Json details) {
+// What only some formats know.
+Json facts_of(const io::CaptureDetails& details) {
+  Json facts = object_for(4);
+  if (details.positions) facts["positions"] = to_json(*details.positions);
+  if (details.exporter) facts["exporter"] = to_json(*details.exporter);
+  if (details.frames_announced) facts["frames_announced"] = *details.frames_announced;
+  if (details.first_frame_number) facts["first_frame_number"] = *details.first_frame_number;
+  if (details.rest_frame) {
+    facts["rest_frame"] = {{"found", details.rest_frame->found},
+                           {"left_out", details.rest_frame->left_out}};
+  }
+  return facts;
+}
+
+Json result_of(const io::OpenedCapture& opened, const FrameSource& motion, double height) {
+  const Capture& capture = *opened.capture;
   Json result = object_for(32);
   const auto add = [&](Json facts) {
     for (auto& [name, fact] : facts.get_ref<Json::object_t&>()) result[name] = std::move(fact);
@@ -118,7 +133,7 @@ Json result_of(const Capture& capture, const FrameSource& motion, double height,
   add(roles_json(motion.skeleton, capture.roles));
   add(facts_of(capture.conventions));
   result["source_rate"] = to_json(capture.rate);
-  add(std::move(details));
+  add(facts_of(opened.details));
   result["repairs"] = capture.repairs;
   return result;
 }
@@ -139,4 +154,4 @@ std::string line_about(const std::string& input, const FrameSource& motion, doub
                      readable(motion.rate), readable(motion.duration(), 2), readable(height, 3));
 }
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

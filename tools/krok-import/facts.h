@@ -3,14 +3,14 @@
 #include <span>
 #include <vector>
 
-#include "capture/capture.h"
+#include "formats/io/open_capture.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
 // Report contents common to all imported formats.
 
-namespace krok::import {
+namespace krok::cli::import {
 
 // Median height from lowest to highest joint, sampled at about a hundred frames; that of the
 // reference pose without frames.
@@ -45,8 +45,8 @@ Json facts_of(const FrameSource& motion, double height);
 // Unit, up and forward, and the axes of the reference pose.
 Json facts_of(const Conventions& conventions);
 
-// The full report of a capture with frames `motion`; `details` are specific to its format.
-Json result_of(const Capture& capture, const FrameSource& motion, double height, Json details);
+// The full report of a capture with frames `motion`.
+Json result_of(const io::OpenedCapture& opened, const FrameSource& motion, double height);
 
 // With -v: prints joint roles, one line per body part.
 void log_roles(const Skeleton& skeleton, const RoleMap& roles, ToolContext& context);
@@ -54,4 +54,4 @@ void log_roles(const Skeleton& skeleton, const RoleMap& roles, ToolContext& cont
 // "walk.bvh: 52 joints, 90 frames at 30 fps (2.97 s), height 1.71 m".
 std::string line_about(const std::string& input, const FrameSource& motion, double height);
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

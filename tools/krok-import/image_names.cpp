@@ -4,9 +4,9 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "tools/common/file_name.h"
+#include "tools/cli/file_name.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 namespace {
 
@@ -38,4 +38,4 @@ std::string ImageNames::make(const EncodedImage& image, ImageKind kind,
   return name + std::string(extension_of(kind));
 }
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

@@ -5,7 +5,7 @@
 
 #include "scene/encoded_image.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 // Creates file names for images in their own folder.
 class ImageNames {
@@ -18,4 +18,4 @@ class ImageNames {
   std::set<std::string> taken_;  // in lower case
 };
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
-#include "tools/common/option_kinds.h"
-#include "tools/common/orientation_option.h"
+#include <memory>
 
-namespace krok::import {
+#include "formats/registry/registry.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/cli/output_kind.h"
+#include "tools/krok-import/run.h"
+#include "tools/shared/orientation_option.h"
+
+namespace krok::cli::import {
 
 namespace {
 
@@ -21,7 +26,7 @@ Result<std::optional<Direction>> direction_option(const std::string& text, const
 
 }  // namespace
 
-void declare_options(CommandOptions& command, Options& options) {
+void declare(CommandOptions& command, Options& options) {
   command
       .add_option("input", options.input,
                   "Motion capture (BVH; Acclaim motion, AMC; Acclaim skeleton, ASF) or character "
@@ -140,8 +145,8 @@ void declare_options(CommandOptions& command, Options& options) {
   add_orientation_option(command, options.orientation);
 }
 
-Result<CaptureOptions> read_options(const Options& options) {
-  CaptureOptions result;
+Result<io::CaptureReading> read_options(const Options& options) {
+  io::CaptureReading result;
   if (options.unit != "auto") {
     auto unit = parse_unit(options.unit);
     if (!unit) {
@@ -161,10 +166,66 @@ Result<CaptureOptions> read_options(const Options& options) {
   }
   result.roles = options.roles;
   if (options.fps > 0) result.rate = options.fps;
+  result.rest_frame = options.rest_frame;
+  result.skeleton = options.skeleton;
+  result.positions = options.positions;
+  result.angles = options.angles;
   result.strictness = options.strict   ? Strictness::strict
                       : options.repair ? Strictness::repair
                                        : Strictness::normal;
   return result;
 }
 
-}  // namespace krok::import
+namespace {
+
+Status check(const Options& options) {
+  if (const auto how = read_options(options); !how) return how.error();
+  if (!options.character.empty() && !(options.model.empty() && options.morphs.empty())) {
+    return Error("usage", "--character already writes model and morph targets",
+                 "remove --model and --morphs");
+  }
+  if (Status status =
+          check_output_kind(options.character, "--character", registry::Kind::character);
+      !status) {
+    return status;
+  }
+  if (options.character == "-") {
+    return Error("usage", "--character -: several files cannot go to standard output");
+  }
+  return check_output_kind(options.model, "--model", registry::Kind::model);
+}
+
+}  // namespace
+
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-import", options, declare, check, run);
+  spec.summary = "Converts motion captures and characters to Krok's formats";
+  spec.inputs = "IN";
+  spec.needs_output = false;  // --model or --cam alone is enough
+  spec.examples = {
+      {"krok-import walk.bvh -o walk.anim -v", "detects unit and axes and prints them"},
+      {"krok-import take7.bvh -o take7.anim --model actor.model --unit in --up z --forward -y",
+       "a capture in inches with +Z up, and its skeleton as a model"},
+      {"krok-import 01_01.amc --skeleton 01.asf -o walk.anim",
+       "an Acclaim motion with its skeleton, as in the CMU database"},
+      {"krok-import hero.glb --clip Walk -o walk.anim --model hero.model --cam shot.cam",
+       "one animation of a character, its mesh and skin, and the camera"},
+      {"krok-import hero.glb --clip all -o 'hero_{clip}.anim' --morphs face.exr",
+       "all animations, one file each, and the morph targets"},
+      {"krok-import hero.glb --character hero.character",
+       "the whole character: mesh, materials, textures and expressions"},
+      {"krok-import broken.bvh -o broken.anim --repair --json",
+       "repairs damaged frames and lists the repairs for a script"},
+      {"krok-import captures --out-dir motions --keep-going",
+       "all captures in a folder; run again, it processes only new, changed and failed files"}};
+  // Only files with motion; an Acclaim skeleton or an MD5 mesh is read with the motion beside it.
+  spec.batch = {
+      {".bvh", ".amc", ".glb", ".gltf", ".fbx", ".dae", ".smd", ".ms3d", ".ase", ".md5anim"},
+      [options]() -> Result<std::string> {
+        return std::string(options->clip == "all" ? "_{clip}.anim" : ".anim");
+      }};
+  return spec;
+}
+
+}  // namespace krok::cli::import

@@ -2,14 +2,14 @@
 
 #include <string>
 
-#include "capture/capture.h"
 #include "core/result.h"
-#include "formats/bvh/bvh_reader.h"
 #include "formats/container/packed_orientation.h"
-#include "tools/common/command_options.h"
-#include "tools/common/role_input.h"
+#include "formats/io/open_capture.h"
+#include "tools/cli/command_options.h"
+#include "tools/cli/tool.h"
+#include "tools/shared/role_input.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 // Command-line options; as text if the library parses them.
 struct Options {
@@ -40,9 +40,12 @@ struct Options {
   io::FindRoles roles;
 };
 
-void declare_options(CommandOptions& command, Options& options);
+void declare(CommandOptions& command, Options& options);
 
-// Options common to all readers; an Error for an invalid unit or axis.
-Result<CaptureOptions> read_options(const Options& options);
+// Options common to all readers of captures; an Error for an invalid unit or axis.
+Result<io::CaptureReading> read_options(const Options& options);
 
-}  // namespace krok::import
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::import

@@ -7,7 +7,7 @@
 #include "nodes/evaluate.h"
 #include "tools/krok-import/scene_importer.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 namespace {
 
@@ -57,4 +57,4 @@ Result<int> import_scene(const InputFile& input, const Options& options, ToolCon
   return SceneImporter(input, options, *how, *scene, *evaluator, context).run();
 }
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

@@ -5,12 +5,12 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/common/gltf/camera_choice.h"
-#include "tools/common/role_report.h"
-#include "tools/common/scene/scene_conventions.h"
 #include "tools/krok-import/facts.h"
+#include "tools/shared/camera_choice.h"
+#include "tools/shared/role_report.h"
+#include "tools/shared/scene_conventions.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 Result<int> SceneImporter::run() {
   for (auto step : {&SceneImporter::choose, &SceneImporter::find_rig, &SceneImporter::find_space,
@@ -56,7 +56,7 @@ Status SceneImporter::choose_camera() {
   if (cameras_.empty()) {
     return missing("camera", "--cam", "in glTF, a camera must be used by a node of the scene");
   }
-  const auto chosen = krok::choose_camera(scene_, cameras_, options_.camera, path_, context_);
+  const auto chosen = krok::cli::choose_camera(scene_, cameras_, options_.camera, path_, context_);
   if (!chosen) return chosen.error();
   camera_ = *chosen;
   return {};
@@ -71,7 +71,7 @@ Status SceneImporter::choose() {
   if (!clips) return clips.error();
   clips_ = std::move(*clips);
   // In a batch, the motion of this particular file was not requested.
-  still_ = clips_.empty() && context_.kept_messages != nullptr &&
+  still_ = clips_.empty() && context_.one_of_many != nullptr &&
            (wants_model() || wants_character() || wants_camera() || wants_morphs());
   if (wants_motion() && clips_.empty()) {
     return missing("animation", "-o",
@@ -160,4 +160,4 @@ void SceneImporter::report() {
   context_.report.result = std::move(result);
 }
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

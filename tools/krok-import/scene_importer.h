@@ -10,13 +10,13 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "nodes/evaluate.h"
-#include "tools/common/new_folders.h"
-#include "tools/common/output_set.h"
-#include "tools/common/tool.h"
+#include "tools/cli/new_folders.h"
+#include "tools/cli/output_set.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-import/clips.h"
 #include "tools/krok-import/options.h"
 
-namespace krok::import {
+namespace krok::cli::import {
 
 // Converts a scene to Krok's formats.
 class SceneImporter {
@@ -89,4 +89,4 @@ class SceneImporter {
   std::string line_;
 };
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

@@ -8,14 +8,14 @@
 #include "formats/csv/csv_writer.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
-#include "tools/common/output_kind.h"
+#include "tools/cli/output_kind.h"
 #include "tools/krok-import/character_files.h"
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_importer.h"
 
 // Outputs of a scene import: the actor, its motions, a camera.
 
-namespace krok::import {
+namespace krok::cli::import {
 
 using registry::Kind;
 
@@ -193,4 +193,4 @@ Status SceneImporter::add_camera(const ChosenClip& clip,
   });
 }
 
-}  // namespace krok::import
+}  // namespace krok::cli::import

@@ -4,16 +4,16 @@
 
 #include "core/file.h"
 #include "core/result.h"
-#include "describe_skeleton.h"
-#include "description.h"
 #include "formats/registry/registry.h"
 #include "scene/model.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
+#include "tools/krok-info/describe_skeleton.h"
+#include "tools/krok-info/description.h"
 
 // One function per kind of file. Each reads the whole file, so that the file is also validated;
 // reader warnings go to the context.
 
-namespace krok::info {
+namespace krok::cli::info {
 
 Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how,
                                   ToolContext& context);
@@ -40,4 +40,4 @@ void add_parts(const Model& model, Description& out);
 // Size of the mesh, or of the skeleton without a mesh, and volume.
 void add_mesh_size(const Model& model, Description& out);
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

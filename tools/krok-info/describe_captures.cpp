@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
-#include "core/numbers.h"
-#include "describe.h"
-#include "formats/acclaim/acclaim_reader.h"
-#include "formats/acclaim/find_skeleton.h"
 #include "formats/bvh/bvh_reader.h"
-#include "formats/registry/registry.h"
+#include "formats/io/open_capture.h"
+#include "tools/krok-info/describe.h"
 
-namespace krok::info {
+namespace krok::cli::info {
 
 namespace {
 
@@ -49,37 +46,28 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
 
 Result<Description> describe_acclaim(const InputFile& file, const SkeletonOptions& how,
                                      ToolContext& context) {
-  acclaim::ReadOptions options;
-  options.jobs = context.jobs;
-  options.progress = context.progress;
+  io::CaptureReading reading;
+  reading.jobs = context.jobs;
+  reading.progress = context.progress;
   Description out;
-  const bool is_motion = registry::identify(file.path(), file.bytes()) == registry::Kind::amc;
-  Result<acclaim::Capture> capture = acclaim::Capture();
-  if (is_motion) {
-    auto found = acclaim::find_skeleton(file.path());
-    if (!found) {
-      Error error = std::move(found).error();
-      error.hint = "put its skeleton beside it";
-      return error;
-    }
-    const auto skeleton = context.open_input(found->path);
-    if (!skeleton) return skeleton.error();
-    capture = acclaim::read(skeleton->text(), skeleton->path(), file.text(), file.path(), options);
-    out.what = "a capture (AMC), as read by krok-import";
-    out.json["kind"] = "amc";
-    out.add("skeleton", fmt::format("{} ({})", found->path, found->reason));
-    out.json["skeleton_file"] = found->path;
-  } else {
-    capture = acclaim::read(file.text(), file.path(), {}, {}, options);
-    out.what = "a skeleton (ASF), as read by krok-import";
-    out.json["kind"] = "asf";
-  }
-  if (!capture) return capture.error();
-  context.diagnose(capture->diagnostics);
-  if (is_motion) add_timing(capture->clip.frame_count(), capture->clip.rate, out);
-  if (Status status = add_capture(*capture, "joints in the reference pose", how, out); !status)
-    return status.error();
+  const Status status = io::use_capture(
+      file, context, reading, true, [&](const io::OpenedCapture& opened) -> Status {
+        const Capture& capture = *opened.capture;
+        const bool is_motion = opened.details.skeleton.has_value();
+        out.what = is_motion ? "a capture (AMC), as read by krok-import"
+                             : "a skeleton (ASF), as read by krok-import";
+        out.json["kind"] = is_motion ? "amc" : "asf";
+        if (is_motion) {
+          out.add("skeleton", fmt::format("{} ({})", opened.details.skeleton->path,
+                                          opened.details.skeleton->reason));
+          out.json["skeleton_file"] = opened.details.skeleton->path;
+        }
+        context.diagnose(capture.diagnostics);
+        if (is_motion) add_timing(capture.clip.frame_count(), capture.clip.rate, out);
+        return add_capture(capture, "joints in the reference pose", how, out);
+      });
+  if (!status) return status.error();
   return out;
 }
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

@@ -5,13 +5,13 @@
 
 #include "core/path_inside.h"
 #include "core/text.h"
-#include "describe.h"
 #include "formats/io/open_character.h"
 #include "formats/material/material_format.h"
+#include "tools/krok-info/describe.h"
 
 // Materials and characters.
 
-namespace krok::info {
+namespace krok::cli::info {
 
 namespace {
 
@@ -211,4 +211,4 @@ Result<Description> describe_character(const InputFile& file, const SkeletonOpti
   return out;
 }
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

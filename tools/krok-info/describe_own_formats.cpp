@@ -3,14 +3,14 @@
 #include <algorithm>
 
 #include "core/numbers.h"
-#include "describe.h"
 #include "formats/anim/anim.h"
 #include "formats/cam/cam.h"
 #include "formats/container/sections.h"
 #include "formats/model/model_format.h"
-#include "volumes.h"
+#include "tools/krok-info/describe.h"
+#include "tools/krok-info/volumes.h"
 
-namespace krok::info {
+namespace krok::cli::info {
 
 namespace {
 
@@ -129,4 +129,4 @@ Result<Description> describe_cam(const InputFile& file, ToolContext&) {
   return out;
 }
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

@@ -7,13 +7,13 @@
 #include "character/rig.h"
 #include "character/space.h"
 #include "core/numbers.h"
-#include "describe.h"
 #include "formats/io/open_scene.h"
 #include "nodes/evaluate.h"
-#include "tools/common/scene/scene_conventions.h"
-#include "volumes.h"
+#include "tools/krok-info/describe.h"
+#include "tools/krok-info/volumes.h"
+#include "tools/shared/scene_conventions.h"
 
-namespace krok::info {
+namespace krok::cli::info {
 
 namespace {
 
@@ -253,4 +253,4 @@ Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
   return out;
 }
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

@@ -1,4 +1,4 @@
-#include "describe_skeleton.h"
+#include "tools/krok-info/describe_skeleton.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "tools/common/role_report.h"
+#include "tools/shared/role_report.h"
 
-namespace krok::info {
+namespace krok::cli::info {
 
 namespace {
 
@@ -55,4 +55,4 @@ Status add_skeleton(const Skeleton& skeleton, const SkeletonOptions& options, De
   return {};
 }
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "description.h"
 #include "scene/skeleton.h"
-#include "tools/common/role_input.h"
+#include "tools/krok-info/description.h"
+#include "tools/shared/role_input.h"
 
-namespace krok::info {
+namespace krok::cli::info {
 
 // How joint roles are found and printed.
 struct SkeletonOptions {
@@ -19,4 +19,4 @@ Status add_skeleton(const Skeleton& skeleton, const SkeletonOptions& options, De
 // The same for known roles.
 void add_skeleton(const Skeleton& skeleton, const RoleMap& map, bool verbose, Description& out);
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

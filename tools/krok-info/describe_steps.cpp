@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include "describe.h"
 #include "formats/steps/parameter_names.h"
 #include "formats/steps/steps.h"
 #include "parametric/bounds.h"
 #include "parametric/parameter.h"
+#include "tools/krok-info/describe.h"
 
-namespace krok::info {
+namespace krok::cli::info {
 
 namespace {
 
@@ -82,4 +82,4 @@ Result<Description> describe_steps(const InputFile& file, ToolContext&) {
   return out;
 }
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

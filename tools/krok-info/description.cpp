@@ -1,13 +1,13 @@
-#include "description.h"
+#include "tools/krok-info/description.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "core/numbers.h"
-#include "tools/common/printable.h"
+#include "tools/cli/printable.h"
 
-namespace krok::info {
+namespace krok::cli::info {
 
 void Description::add(std::string label, std::string line) {
   rows.push_back({std::move(label), {std::move(line)}});
@@ -105,4 +105,4 @@ void add_provenance(const Provenance& provenance, Description& out) {
   out.add("warnings", provenance.warnings);
 }
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

@@ -9,11 +9,11 @@
 #include "core/numbers.h"
 #include "math/types.h"
 #include "scene/provenance.h"
-#include "tools/common/report.h"
+#include "tools/cli/report.h"
 
 // The description of a file as text and as JSON, and parts common to several kinds of files.
 
-namespace krok::info {
+namespace krok::cli::info {
 
 // Rows with a label and one or more lines.
 struct Description {
@@ -62,4 +62,4 @@ void add_size(std::span<const Point> points, const std::string& measured, Descri
   add_size(box, measured, out);
 }
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

@@ -1,10 +1,10 @@
-#include "volumes.h"
+#include "tools/krok-info/volumes.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-namespace krok::info {
+namespace krok::cli::info {
 
 void add_volumes(const std::vector<NamedVolume>& volumes, Description& out) {
   constexpr double kLitres = 1000;  // per cubic metre
@@ -22,4 +22,4 @@ void add_volumes(const std::vector<NamedVolume>& volumes, Description& out) {
   out.add("volume", std::move(lines));
 }
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

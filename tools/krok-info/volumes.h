@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "description.h"
 #include "scene/mesh_volume.h"
+#include "tools/krok-info/description.h"
 
-namespace krok::info {
+namespace krok::cli::info {
 
 struct NamedVolume {
   std::string mesh;  // empty if there is only one
@@ -17,4 +17,4 @@ struct NamedVolume {
 // and area (square metres) of all meshes.
 void add_volumes(const std::vector<NamedVolume>& volumes, Description& out);
 
-}  // namespace krok::info
+}  // namespace krok::cli::info

@@ -9,7 +9,7 @@
 
 #include "core/numbers.h"
 
-namespace krok::keys_tool {
+namespace krok::cli::keys {
 
 namespace {
 
@@ -28,14 +28,14 @@ bool marked(const std::vector<std::uint8_t>& marks, std::size_t i) {
   return i < marks.size() && marks[i] != 0;
 }
 
-std::vector<MarkedKeytime> keytimes_of(const keys::Sidecar& sidecar) {
+std::vector<MarkedKeytime> keytimes_of(const krok::keys::Sidecar& sidecar) {
   std::vector<MarkedKeytime> list;
   for (std::size_t i = 0; i < sidecar.keys.keytimes.size(); ++i) {
     list.push_back({sidecar.keys.keytimes[i], marked(sidecar.keytimes_by_hand, i)});
   }
   return list;
 }
-std::vector<MarkedContact> contacts_of(const keys::Sidecar& sidecar) {
+std::vector<MarkedContact> contacts_of(const krok::keys::Sidecar& sidecar) {
   std::vector<MarkedContact> list;
   for (std::size_t i = 0; i < sidecar.keys.contacts.size(); ++i) {
     list.push_back({sidecar.keys.contacts[i], marked(sidecar.contacts_by_hand, i)});
@@ -43,7 +43,7 @@ std::vector<MarkedContact> contacts_of(const keys::Sidecar& sidecar) {
   return list;
 }
 
-void put(std::vector<MarkedKeytime> list, keys::Sidecar& sidecar) {
+void put(std::vector<MarkedKeytime> list, krok::keys::Sidecar& sidecar) {
   std::ranges::stable_sort(list, {}, [](const MarkedKeytime& k) { return k.key.time; });
   sidecar.keys.keytimes.clear();
   sidecar.keytimes_by_hand.clear();
@@ -52,7 +52,7 @@ void put(std::vector<MarkedKeytime> list, keys::Sidecar& sidecar) {
     sidecar.keytimes_by_hand.push_back(entry.by_hand ? 1 : 0);
   }
 }
-void put(std::vector<MarkedContact> list, keys::Sidecar& sidecar) {
+void put(std::vector<MarkedContact> list, krok::keys::Sidecar& sidecar) {
   std::ranges::stable_sort(list, {}, [](const MarkedContact& c) {
     return std::tuple(c.contact.start, c.contact.joint);
   });
@@ -112,7 +112,7 @@ Vec3 place_of(const Clip& clip, int joint, double from, double to) {
   return place;
 }
 
-Status set_keytimes(const Changes& changes, const Clip& clip, keys::Sidecar& sidecar) {
+Status set_keytimes(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar) {
   std::vector<MarkedKeytime> list = keytimes_of(sidecar);
   for (const KeytimeChange& change : changes.remove) {
     std::size_t removed = 0;
@@ -150,7 +150,7 @@ Status set_keytimes(const Changes& changes, const Clip& clip, keys::Sidecar& sid
   return {};
 }
 
-Status set_contacts(const Changes& changes, const Clip& clip, keys::Sidecar& sidecar) {
+Status set_contacts(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar) {
   std::vector<MarkedContact> list = contacts_of(sidecar);
   for (const ContactChange& change : changes.remove_contact) {
     const auto joint = joint_of(change.joint, clip);
@@ -189,8 +189,8 @@ Status set_contacts(const Changes& changes, const Clip& clip, keys::Sidecar& sid
 
 }  // namespace
 
-keys::Sidecar with_edits(MotionKeys found, const keys::Sidecar& before) {
-  keys::Sidecar result;
+krok::keys::Sidecar with_edits(MotionKeys found, const krok::keys::Sidecar& before) {
+  krok::keys::Sidecar result;
   result.keys = std::move(found);
   std::vector<MarkedKeytime> keytimes = keytimes_of(result);
   std::vector<MarkedContact> contacts = contacts_of(result);
@@ -212,9 +212,9 @@ keys::Sidecar with_edits(MotionKeys found, const keys::Sidecar& before) {
   return result;
 }
 
-Status change(const Changes& changes, const Clip& clip, keys::Sidecar& sidecar) {
+Status change(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar) {
   if (Status status = set_keytimes(changes, clip, sidecar); !status) return status.error();
   return set_contacts(changes, clip, sidecar);
 }
 
-}  // namespace krok::keys_tool
+}  // namespace krok::cli::keys

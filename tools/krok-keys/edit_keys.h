@@ -4,13 +4,13 @@
 #include "scene/clip.h"
 #include "tools/krok-keys/options.h"
 
-namespace krok::keys_tool {
+namespace krok::cli::keys {
 
 // Merges detected keys with manual edits: detected keytimes of the same name within 0.15 s and
 // detected contacts of the same joint that overlap are replaced.
-keys::Sidecar with_edits(MotionKeys found, const keys::Sidecar& before);
+krok::keys::Sidecar with_edits(MotionKeys found, const krok::keys::Sidecar& before);
 
 // Applies the edits from the options. Codes: keys-none (nothing to remove), keys-joint, keys-time.
-Status change(const Changes& changes, const Clip& clip, keys::Sidecar& sidecar);
+Status change(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar);
 
-}  // namespace krok::keys_tool
+}  // namespace krok::cli::keys

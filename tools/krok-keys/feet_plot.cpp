@@ -6,7 +6,7 @@
 
 #include "draw/plot.h"
 
-namespace krok::keys_tool {
+namespace krok::cli::keys {
 
 namespace {
 
@@ -74,4 +74,4 @@ Result<std::string> feet_plot(const std::string& title, const Clip& clip,
   return draw::to_svg(chart);
 }
 
-}  // namespace krok::keys_tool
+}  // namespace krok::cli::keys

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "tools/common/one_of.h"
-#include "tools/common/role_input.h"
+#include <memory>
 
-namespace krok::keys_tool {
+#include "tools/cli/one_of.h"
+#include "tools/krok-keys/run.h"
+#include "tools/shared/role_input.h"
+
+namespace krok::cli::keys {
 
 namespace {
 
@@ -146,4 +149,24 @@ Status check(const Options& options) {
   return {};
 }
 
-}  // namespace krok::keys_tool
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-keys", options, declare, check, run);
+  spec.summary =
+      "Detects foot contacts and gait keytimes, shows them, and writes them to an editable file "
+      "beside the motion";
+  spec.inputs = "IN.anim|IN.bvh|IN.amc";
+  spec.examples = {
+      {"krok-keys walk.anim", "prints what is detected, or walk.keys.json if that was edited"},
+      {"krok-keys walk.anim -o walk.keys.json --plot walk.svg",
+       "writes the file beside the motion, and a plot of the feet for checking"},
+      {"krok-keys walk.anim -o walk.keys.json --set left_strike=1.25s,right_off=1.31s",
+       "moves two keytimes; they are kept when the file is rebuilt"},
+      {"krok-keys motions --out-dir motions", "for all motions of a folder, beside them"}};
+  spec.exit_no = "--find steps was given and no step was found";
+  spec.needs_output = false;
+  spec.batch = {{".anim", ".bvh", ".amc"}, always(".keys.json")};
+  return spec;
+}
+
+}  // namespace krok::cli::keys

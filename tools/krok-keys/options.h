@@ -6,9 +6,10 @@
 
 #include "core/quantity.h"
 #include "core/result.h"
-#include "tools/common/command_options.h"
+#include "tools/cli/command_options.h"
+#include "tools/cli/tool.h"
 
-namespace krok::keys_tool {
+namespace krok::cli::keys {
 
 enum class Find : unsigned char { automatic, steps, none };
 
@@ -46,4 +47,7 @@ void declare(CommandOptions& command, Options& options);
 Result<Changes> changes_of(const Options& options);
 Status check(const Options& options);
 
-}  // namespace krok::keys_tool
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::keys

@@ -1,14 +1,13 @@
 #include "tools/krok-mix/timeline_sources.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <set>
 
 #include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
 #include "formats/sequences/sequences.h"
 
-namespace krok::mix_tool {
+namespace krok::cli::mix {
 
 namespace {
 
@@ -70,4 +69,4 @@ Result<TimelineSources> read_sources(const timeline_file::Document& document,
   return read;
 }
 
-}  // namespace krok::mix_tool
+}  // namespace krok::cli::mix

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "formats/timeline/timeline_file.h"
-#include "tools/krok-mix/mix_files.h"
+#include "tools/krok-mix/options.h"
 
-namespace krok::mix_tool {
+namespace krok::cli::mix {
 
 // The motions of a timeline; the sources point into it.
 struct TimelineSources {
@@ -24,4 +24,4 @@ Result<TimelineSources> read_sources(const timeline_file::Document& document,
                                      const std::string& path, const Options& options,
                                      const io::FindRoles& find_roles, ToolContext& context);
 
-}  // namespace krok::mix_tool
+}  // namespace krok::cli::mix

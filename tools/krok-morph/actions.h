@@ -1,10 +1,10 @@
 #pragma once
 
 #include "core/result.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-morph/options.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 // One function per action; the options have been checked. Codes, besides those of readers and
 // writers: morph-input, morph-empty, morph-vertices, morph-triangles, morph-name, morph-target,
@@ -15,6 +15,4 @@ Result<int> info(const Options& options, ToolContext& context);
 Result<int> bake(const Options& options, ToolContext& context);
 Result<int> frames(const Options& options, ToolContext& context);
 
-Result<int> run(const Options& options, ToolContext& context);
-
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

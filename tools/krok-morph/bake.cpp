@@ -10,7 +10,7 @@
 
 // Bakes animated morph targets.
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 namespace {
 
@@ -88,4 +88,4 @@ Result<int> bake(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -12,7 +12,7 @@
 
 // Key-frame meshes: interpolates shapes over time.
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 namespace {
 
@@ -142,4 +142,4 @@ Result<int> frames(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -12,7 +12,7 @@
 
 // Describes an .exr of morph targets.
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 Result<TargetFile> read_targets(const std::string& path, ToolContext& context) {
   auto file = context.open_input(path);
@@ -68,4 +68,4 @@ Result<int> info(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -13,7 +13,7 @@
 #include "core/quantity.h"
 #include "core/text.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 namespace {
 
@@ -169,4 +169,4 @@ Result<KeyShapes> read_key_shapes(const Options& options, ToolContext& context) 
   return keys;
 }
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -8,7 +8,7 @@
 #include "scene/morph_set.h"
 #include "tools/krok-morph/shape_file.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 // Key shapes with times; all files have been read.
 struct KeyShapes {
@@ -25,4 +25,4 @@ struct KeyShapes {
 // order ("2" before "10"). Options override the file.
 Result<KeyShapes> read_key_shapes(const Options& options, ToolContext& context);
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

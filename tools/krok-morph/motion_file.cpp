@@ -7,7 +7,7 @@
 #include "formats/gltf/gltf_writer.h"
 #include "formats/pc2/pc2.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 namespace {
 
@@ -74,4 +74,4 @@ Status add_targets(const Model& model, const MorphSet& morphs, const MorphWeight
   });
 }
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -6,10 +6,10 @@
 #include "scene/mesh_motion.h"
 #include "scene/model.h"
 #include "scene/morph_set.h"
-#include "tools/common/output_set.h"
-#include "tools/common/tool.h"
+#include "tools/cli/output_set.h"
+#include "tools/cli/tool.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 // Output format of an animated mesh, by extension.
 enum class MotionFormat { glb, gltf, pc2, exr };
@@ -26,4 +26,4 @@ Status add_baked(const Model& model, const MeshMotion& motion, MotionFormat form
 Status add_targets(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
                    MotionFormat format, OutputSet& outputs, ToolContext& context);
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -4,7 +4,7 @@
 
 #include "core/numbers.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 namespace {
 
@@ -47,4 +47,4 @@ std::string describe(const Movement& movement) {
                      readable(movement.mean * kMillimetres, 3));
 }
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "scene/morph_set.h"
-#include "tools/common/report.h"
+#include "tools/cli/report.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 // How far a target displaces a mesh, in metres.
 struct Movement {
@@ -24,4 +24,4 @@ Json to_json(const Movement& movement);
 // "moves 312 vertices, max 12.3 mm (vertex 88), mean 3.1 mm".
 std::string describe(const Movement& movement);
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

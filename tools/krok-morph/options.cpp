@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 
 #include "capture/conventions.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
-#include "tools/common/option_kinds.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-morph/run.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 namespace {
 
@@ -264,4 +266,25 @@ Status check(const Options& options) {
   return usage("--spacing is not greater than 0");
 }
 
-}  // namespace krok::morph
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-morph", options, declare, check, run);
+  spec.summary =
+      "Packs morph targets into a float texture, unpacks and animates them; bakes key-frame meshes";
+  spec.inputs = "pack|unpack|info|bake|frames IN...";
+  spec.examples = {
+      {"krok-morph pack face.obj smile.obj blink.obj -o face.exr",
+       "two targets, smile and blink, of the mesh in face.obj"},
+      {"krok-morph pack hero.glb -o hero.exr", "the targets of a glTF character"},
+      {"krok-morph info face.exr face.obj", "lists the targets and how far each moves the mesh"},
+      {"krok-morph unpack face.exr face.obj --out-dir shapes", "back to shapes/smile.obj, ..."},
+      {"krok-morph bake face.exr face.obj --weights talk.json -o talk.glb",
+       "animates the face with hand-written keys"},
+      {"krok-morph frames flag.json -o flag.glb", "a key-frame mesh, interpolated between shapes"},
+      {"krok-morph frames flag_shapes --spacing 0.5s --between hermite -o flag.pc2",
+       "a folder of shapes every 0.5 s, cubic interpolation, as a point cache"}};
+  spec.needs_output = false;
+  return spec;
+}
+
+}  // namespace krok::cli::morph

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "core/result.h"
-#include "tools/common/command_options.h"
+#include "tools/cli/command_options.h"
+#include "tools/cli/tool.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 enum class Action { pack, unpack, info, bake, frames };
 enum class As { clip, targets };
@@ -48,4 +49,7 @@ void declare(CommandOptions& command, Options& options);
 // Checks that the options are valid for the action and consistent. Code usage.
 Status check(const Options& options);
 
-}  // namespace krok::morph
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::morph

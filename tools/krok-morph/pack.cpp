@@ -3,14 +3,14 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/morph_exr/morph_exr.h"
-#include "tools/common/output_set.h"
+#include "tools/cli/output_set.h"
 #include "tools/krok-morph/actions.h"
 #include "tools/krok-morph/movement.h"
 #include "tools/krok-morph/shape_file.h"
 
 // Packs shapes into an .exr of morph targets.
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 namespace {
 
@@ -108,4 +108,4 @@ Result<int> pack(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -13,7 +13,7 @@
 #include "formats/registry/registry.h"
 #include "skin/surface_normals.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 namespace {
 
@@ -190,4 +190,4 @@ std::vector<Vec3f> normals_for(const ShapeFile& base, const ShapeFile& shape) {
   return normals;
 }
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -5,10 +5,10 @@
 #include "core/result.h"
 #include "scene/model.h"
 #include "scene/morph_set.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-morph/options.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 enum class Source { obj, gltf, model };
 
@@ -37,4 +37,4 @@ Status check_vertices(const ShapeFile& base, const MorphSet& morphs, const std::
 // Normals of a shape: its own, or else the base's, transformed with the surface.
 std::vector<Vec3f> normals_for(const ShapeFile& base, const ShapeFile& shape);
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

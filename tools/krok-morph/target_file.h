@@ -5,9 +5,9 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "scene/morph_set.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 // An .exr of morph targets and the file it came from.
 struct TargetFile {
@@ -16,4 +16,4 @@ struct TargetFile {
 };
 Result<TargetFile> read_targets(const std::string& path, ToolContext& context);
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -11,15 +11,15 @@
 #include "formats/model/model_format.h"
 #include "formats/obj/obj_writer.h"
 #include "skin/surface_normals.h"
-#include "tools/common/file_name.h"
-#include "tools/common/output_set.h"
+#include "tools/cli/file_name.h"
+#include "tools/cli/output_set.h"
 #include "tools/krok-morph/actions.h"
 #include "tools/krok-morph/shape_file.h"
 #include "tools/krok-morph/target_file.h"
 
 // Unpacks morph targets, one file each.
 
-namespace krok::morph {
+namespace krok::cli::morph {
 
 namespace {
 
@@ -158,4 +158,4 @@ Result<int> unpack(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
-}  // namespace krok::morph
+}  // namespace krok::cli::morph

@@ -11,7 +11,7 @@
 #include "motion/ground_frame.h"
 #include "motion/joint_selection.h"
 
-namespace krok::plot {
+namespace krok::cli::plot {
 
 namespace {
 
@@ -211,4 +211,4 @@ Result<draw::Chart> chart_motions(const Motions& motions, const Options& options
   return MotionChart(motions, options, context).make();
 }
 
-}  // namespace krok::plot
+}  // namespace krok::cli::plot

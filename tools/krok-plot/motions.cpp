@@ -7,11 +7,11 @@
 
 #include "core/numbers.h"
 #include "formats/io/open_motion.h"
-#include "tools/common/file_name.h"
-#include "tools/common/keys_sidecar.h"
-#include "tools/common/role_input.h"
+#include "formats/io/open_role_map.h"
+#include "tools/cli/file_name.h"
+#include "tools/shared/keys_sidecar.h"
 
-namespace krok::plot {
+namespace krok::cli::plot {
 
 namespace {
 
@@ -89,4 +89,4 @@ Result<Motions> read_motions(const std::vector<std::string>& inputs, const Motio
   return motions;
 }
 
-}  // namespace krok::plot
+}  // namespace krok::cli::plot

@@ -8,10 +8,10 @@
 #include "draw/motion_charts.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-plot/options.h"
 
-namespace krok::plot {
+namespace krok::cli::plot {
 
 // The motions of the input files, which must outlive charts made from them.
 struct Motions {
@@ -28,4 +28,4 @@ struct Motions {
 Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
                              ToolContext& context);
 
-}  // namespace krok::plot
+}  // namespace krok::cli::plot

@@ -4,16 +4,18 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string_view>
 
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/common/one_of.h"
-#include "tools/common/option_kinds.h"
-#include "tools/common/role_input.h"
+#include "tools/cli/one_of.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-plot/run.h"
+#include "tools/shared/role_input.h"
 
-namespace krok::plot {
+namespace krok::cli::plot {
 
 namespace {
 
@@ -359,4 +361,30 @@ Result<Options> understand(const Arguments& arguments) {
   return options;
 }
 
-}  // namespace krok::plot
+ToolSpec make_spec() {
+  const auto arguments = std::make_shared<Arguments>();
+  ToolSpec spec = spec_of("krok-plot", arguments, declare, understand, run);
+  spec.summary = "Plots motions and numeric tables as charts in one SVG";
+  spec.inputs = "IN...";
+  spec.examples = {
+      {"krok-plot walk.bvh -o walk.svg",
+       "path from above, foot heights and speeds, leg and arm angles"},
+      {"krok-plot raw.anim clean.anim --show angles,difference --from 1s --to 3s -o clean.svg",
+       "two motions in the same panels, and the distance between them"},
+      {"krok-plot take.bvh --joint LeftHand --euler ZXY -o hand.svg",
+       "position and rotation of a joint"},
+      {"krok-plot walk.csv --where joint=LeftFoot --where joint=RightFoot --y y -o heights.svg",
+       "one column of a table, with a line for each of two joints"},
+      {"krok-plot fit.csv --x examples --y error_mm --log-y --style both -o fit.svg",
+       "any table of numbers; the unit is read from the column's name"},
+      {"krok-plot walk.bvh --sheet walk.png", "images of the character at eight times"},
+      {"krok-plot hero.character walk.anim --strip hero.png",
+       "an animated character with the colours and textures of its materials; without "
+       "a motion, in its reference pose"}};
+  spec.needs_output = false;  // --sheet and --strip have their own output files
+  spec.batch = {{".anim", ".bvh", ".amc"}, always(".svg")};
+  spec.check = [arguments] { return check(*arguments); };
+  return spec;
+}
+
+}  // namespace krok::cli::plot

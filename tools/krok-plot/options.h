@@ -9,10 +9,11 @@
 #include "core/result.h"
 #include "draw/plot.h"
 #include "math/euler.h"
-#include "tools/common/command_options.h"
+#include "tools/cli/command_options.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-plot/sheet.h"
 
-namespace krok::plot {
+namespace krok::cli::plot {
 
 enum class ChartKind : unsigned char { path, feet, angles, positions, difference };
 
@@ -84,4 +85,7 @@ Status check(const Arguments& arguments);
 // Errors name the option. Code usage for options that cannot be combined.
 Result<Options> understand(const Arguments& arguments);
 
-}  // namespace krok::plot
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::plot

@@ -10,10 +10,10 @@
 #include "core/parallel.h"
 #include "core/quantity.h"
 #include "render/strip.h"
-#include "tools/common/actors/skin_method_option.h"
-#include "tools/common/one_of.h"
+#include "tools/cli/one_of.h"
+#include "tools/shared/skin_method_option.h"
 
-namespace krok::plot {
+namespace krok::cli::plot {
 
 namespace {
 
@@ -281,4 +281,4 @@ Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& o
   return {};
 }
 
-}  // namespace krok::plot
+}  // namespace krok::cli::plot

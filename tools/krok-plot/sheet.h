@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "core/result.h"
-#include "tools/common/actors/image.h"
-#include "tools/common/actors/moving_actor.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
+#include "tools/shared/image.h"
+#include "tools/shared/moving_actor.h"
 
 // Rendered images: contact sheets and motion strips.
 
-namespace krok::plot {
+namespace krok::cli::plot {
 
 // What counts as the front.
 enum class Front : unsigned char {
@@ -36,4 +36,4 @@ void declare_sheet(CommandOptions& command, SheetOptions& options);
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
                    ToolContext& context);
 
-}  // namespace krok::plot
+}  // namespace krok::cli::plot

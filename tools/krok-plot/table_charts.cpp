@@ -9,9 +9,9 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/csv/table.h"
-#include "tools/common/file_name.h"
+#include "tools/cli/file_name.h"
 
-namespace krok::plot {
+namespace krok::cli::plot {
 
 namespace {
 
@@ -319,4 +319,4 @@ Result<draw::Chart> chart_tables(const Options& options, ToolContext& context) {
   return chart;
 }
 
-}  // namespace krok::plot
+}  // namespace krok::cli::plot

@@ -7,17 +7,17 @@
 #include "core/index.h"
 #include "core/numbers.h"
 
-namespace krok::retarget_tool {
+namespace krok::cli::retarget {
 
 namespace {
 
-std::string method_name(retarget::Method method) {
+std::string method_name(krok::retarget::Method method) {
   switch (method) {
-    case retarget::Method::same_skeleton:
+    case krok::retarget::Method::same_skeleton:
       return "same skeleton";
-    case retarget::Method::roles:
+    case krok::retarget::Method::roles:
       return "roles";
-    case retarget::Method::names:
+    case krok::retarget::Method::names:
       break;
   }
   return "names";
@@ -50,14 +50,14 @@ std::vector<int> with_a_role(const std::vector<int>& joints, const RoleMap& role
   return found;
 }
 
-std::string source_text(const Outcome& outcome, const retarget::MappedJoint& joint) {
+std::string source_text(const Outcome& outcome, const krok::retarget::MappedJoint& joint) {
   const std::string& first = outcome.source.names[at(joint.source)];
   if (joint.second_source < 0) return first;
   return fmt::format("{} + {} ({} %)", first, outcome.source.names[at(joint.second_source)],
                      readable(100 * joint.share, 2));
 }
 
-Json foot_json(const std::optional<retarget::FootReport>& foot) {
+Json foot_json(const std::optional<krok::retarget::FootReport>& foot) {
   if (!foot) return {};
   const auto frame = [](int number) { return number < 0 ? Json() : Json(number); };
   return {{"largest_correction", foot->largest_correction},
@@ -69,7 +69,7 @@ Json foot_json(const std::optional<retarget::FootReport>& foot) {
 }  // namespace
 
 std::string summary(const Outcome& outcome) {
-  const retarget::Report& report = outcome.report;
+  const krok::retarget::Report& report = outcome.report;
   std::string text =
       fmt::format("{} of {} joints mapped by {}, scale {}", report.mapped.size(),
                   std::count(outcome.target.end_sites.begin(), outcome.target.end_sites.end(), 0),
@@ -91,15 +91,15 @@ std::string summary(const Outcome& outcome) {
 }
 
 std::string table(const Outcome& outcome) {
-  const retarget::Report& report = outcome.report;
+  const krok::retarget::Report& report = outcome.report;
   std::size_t role_width = 4, target_width = 6;
-  for (const retarget::MappedJoint& joint : report.mapped) {
+  for (const krok::retarget::MappedJoint& joint : report.mapped) {
     role_width = std::max(role_width, label_of(outcome.target_roles, joint.target).size());
     target_width = std::max(target_width, outcome.target.names[at(joint.target)].size());
   }
   std::string text =
       fmt::format("  {:<{}}  {:<{}}  from\n", "role", role_width, "target", target_width);
-  for (const retarget::MappedJoint& joint : report.mapped) {
+  for (const krok::retarget::MappedJoint& joint : report.mapped) {
     text += fmt::format("  {:<{}}  {:<{}}  {}", label_of(outcome.target_roles, joint.target),
                         role_width, outcome.target.names[at(joint.target)], target_width,
                         source_text(outcome, joint));
@@ -121,7 +121,7 @@ std::string table(const Outcome& outcome) {
 }
 
 Json to_json(const Outcome& outcome) {
-  const retarget::Report& report = outcome.report;
+  const krok::retarget::Report& report = outcome.report;
   Json json;
   json["method"] = method_name(report.method);
   json["scale"] = report.scale;
@@ -129,7 +129,7 @@ Json to_json(const Outcome& outcome) {
   json["reference_frame"] = report.source_frame ? Json(*report.source_frame) : Json();
   json["target_reference_frame"] = report.target_frame ? Json(*report.target_frame) : Json();
   json["joints"] = Json::array();
-  for (const retarget::MappedJoint& joint : report.mapped) {
+  for (const krok::retarget::MappedJoint& joint : report.mapped) {
     Json entry;
     entry["joint"] = outcome.target.names[at(joint.target)];
     const std::string label = role_label(outcome.target_roles, joint.target);
@@ -158,4 +158,4 @@ Json to_json(const Outcome& outcome) {
   return json;
 }
 
-}  // namespace krok::retarget_tool
+}  // namespace krok::cli::retarget

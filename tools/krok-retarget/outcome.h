@@ -3,9 +3,9 @@
 #include <string>
 
 #include "retarget/retarget.h"
-#include "tools/common/report.h"
+#include "tools/cli/report.h"
 
-namespace krok::retarget_tool {
+namespace krok::cli::retarget {
 
 // The outcome of a retarget, with names for the indices in its report.
 struct Outcome {
@@ -13,7 +13,7 @@ struct Outcome {
   const RoleMap& source_roles;
   const Skeleton& target;
   const RoleMap& target_roles;
-  const retarget::Report& report;
+  const krok::retarget::Report& report;
 };
 
 // One or two lines for display.
@@ -24,4 +24,4 @@ std::string table(const Outcome& outcome);
 
 Json to_json(const Outcome& outcome);
 
-}  // namespace krok::retarget_tool
+}  // namespace krok::cli::retarget

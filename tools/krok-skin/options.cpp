@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 
 #include "core/numbers.h"
 #include "core/quantity.h"
-#include "tools/common/actors/skin_method_option.h"
-#include "tools/common/option_kinds.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-skin/run.h"
+#include "tools/shared/skin_method_option.h"
 
-namespace krok::skinning {
+namespace krok::cli::skin {
 
 namespace {
 
@@ -46,7 +48,7 @@ bool is_character(const std::string& path) {
   return extension(path) == ".character";
 }
 
-void declare_options(CommandOptions& command, Options& options) {
+void declare(CommandOptions& command, Options& options) {
   command
       .add_option("subject", options.subject,
                   "Skinned mesh: a .model, or a .character with its materials and expressions")
@@ -158,4 +160,22 @@ Result<double> pose_time(const Options& options, const Clip& clip) {
   return seconds;
 }
 
-}  // namespace krok::skinning
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-skin", options, declare, check, run);
+  spec.summary =
+      "Skins a mesh with a skeleton's motion and writes glTF, a point cache or OBJ files";
+  spec.inputs = "IN.model IN.anim";
+  spec.examples = {
+      {"krok-skin body.model walk.anim -o walk.glb",
+       "baked vertex animation, for viewers without skinning"},
+      {"krok-skin body.model walk.anim --as rig -o walk.glb", "a rig for a game engine or Blender"},
+      {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one pose"},
+      {"krok-skin hero.character walk.anim --weights smile.csv --as rig -o hero.glb",
+       "a character with its materials, eyes and expressions"},
+      {"krok-skin body.model walk.anim -o walk.pc2", "a point cache for Blender or 3ds Max"}};
+  spec.batch = {{".anim"}, always(".glb")};
+  return spec;
+}
+
+}  // namespace krok::cli::skin

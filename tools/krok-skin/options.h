@@ -7,9 +7,10 @@
 #include "formats/pc2/pc2.h"
 #include "scene/clip.h"
 #include "skin/skin.h"
-#include "tools/common/command_options.h"
+#include "tools/cli/command_options.h"
+#include "tools/cli/tool.h"
 
-namespace krok::skinning {
+namespace krok::cli::skin {
 
 enum class As { clip, pose, rig, frames };
 
@@ -30,7 +31,7 @@ struct Options {
 // Whether a path is a character, not a model.
 bool is_character(const std::string& path);
 
-void declare_options(CommandOptions& command, Options& options);
+void declare(CommandOptions& command, Options& options);
 
 // Checks the options for values that are invalid for any file.
 Status check(const Options& options);
@@ -44,4 +45,7 @@ Result<std::optional<Range>> chosen_range(const Options& options, const Clip& cl
 // The time of --as pose in seconds; code skin-time.
 Result<double> pose_time(const Options& options, const Clip& clip);
 
-}  // namespace krok::skinning
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::skin

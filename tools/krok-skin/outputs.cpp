@@ -6,15 +6,14 @@
 #include <functional>
 #include <memory>
 
-#include "core/numbers.h"
 #include "formats/gltf/baked_writer.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/obj/obj_writer.h"
 #include "formats/pc2/pc2.h"
-#include "tools/common/output_set.h"
+#include "tools/cli/output_set.h"
 #include "tools/krok-skin/posed_mesh.h"
 
-namespace krok::skinning {
+namespace krok::cli::skin {
 
 namespace {
 
@@ -208,4 +207,4 @@ Result<std::string> write_frames(const Subject& subject, const SkinBinding& bind
   return fmt::format("{} to {}", paths.front(), paths.back());
 }
 
-}  // namespace krok::skinning
+}  // namespace krok::cli::skin

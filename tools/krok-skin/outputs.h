@@ -2,12 +2,12 @@
 
 #include "core/result.h"
 #include "skin/skin.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-skin/subject.h"
 
 // The files that krok-skin writes. The output's extension determines the kind.
 
-namespace krok::skinning {
+namespace krok::cli::skin {
 
 // Checks that the output's format can hold this kind of output. Codes skin-format, skin-output.
 Status check_output(As as, const std::string& output);
@@ -28,4 +28,4 @@ Status write_rig(const Subject& subject, ToolContext& context);
 Result<std::string> write_frames(const Subject& subject, const SkinBinding& binding,
                                  ToolContext& context);
 
-}  // namespace krok::skinning
+}  // namespace krok::cli::skin

@@ -6,7 +6,7 @@
 #include "motion/sample.h"
 #include "skin/morph.h"
 
-namespace krok::skinning {
+namespace krok::cli::skin {
 
 PosedMesh::PosedMesh(const Subject& subject, const SkinBinding& binding, int jobs)
     : subject_(subject),
@@ -46,4 +46,4 @@ SkinSurface PosedMesh::shape_at(double frame, const SkinnedSurface& out) {
   return surface;
 }
 
-}  // namespace krok::skinning
+}  // namespace krok::cli::skin

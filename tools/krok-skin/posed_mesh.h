@@ -5,7 +5,7 @@
 #include "skin/skin.h"
 #include "tools/krok-skin/subject.h"
 
-namespace krok::skinning {
+namespace krok::cli::skin {
 
 // The subject's mesh at times of its motion: morph targets first, then skinning. Owns working
 // memory: use one per thread. Subject and binding must outlive it.
@@ -31,4 +31,4 @@ class PosedMesh {
   std::vector<Vec3f> positions_, normals_;
 };
 
-}  // namespace krok::skinning
+}  // namespace krok::cli::skin

@@ -15,7 +15,7 @@
 #include "scene/tangents.h"
 #include "skin/bind.h"
 
-namespace krok::skinning {
+namespace krok::cli::skin {
 
 namespace {
 
@@ -206,4 +206,4 @@ Result<Subject> load(const Options& options, ToolContext& context) {
   return Loader(options, context).load();
 }
 
-}  // namespace krok::skinning
+}  // namespace krok::cli::skin

@@ -6,10 +6,10 @@
 #include "scene/material.h"
 #include "scene/model.h"
 #include "scene/morph_set.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-skin/options.h"
 
-namespace krok::skinning {
+namespace krok::cli::skin {
 
 // The input of skinning: a mesh and a motion on one skeleton, with morph targets.
 struct Subject {
@@ -30,4 +30,4 @@ struct Subject {
 // skin-empty-model, skin-morphs.
 Result<Subject> load(const Options& options, ToolContext& context);
 
-}  // namespace krok::skinning
+}  // namespace krok::cli::skin

@@ -14,7 +14,7 @@
 #include "math/types.h"
 #include "parametric/bounds.h"
 
-namespace krok::synth_tool {
+namespace krok::cli::synth {
 
 namespace {
 
@@ -144,4 +144,4 @@ Result<std::vector<std::vector<double>>> read_points(const std::string& path,
   return points;
 }
 
-}  // namespace krok::synth_tool
+}  // namespace krok::cli::synth

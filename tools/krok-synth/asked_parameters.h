@@ -6,11 +6,11 @@
 
 #include "core/result.h"
 #include "formats/steps/steps.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
 // A library's parameters by the names in its description, and requested values.
 
-namespace krok::synth_tool {
+namespace krok::cli::synth {
 
 struct NamedParameter {
   std::string name;            // "length"
@@ -35,4 +35,4 @@ Result<std::vector<std::vector<double>>> read_points(const std::string& path,
                                                      const std::vector<NamedParameter>& parameters,
                                                      ToolContext& context);
 
-}  // namespace krok::synth_tool
+}  // namespace krok::cli::synth

@@ -1,13 +1,12 @@
 #include "tools/krok-view/files.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <string_view>
 
 #include "body/body.h"
+#include "core/glob.h"
 #include "core/text.h"
 #include "formats/cam/cam.h"
 #include "formats/gltf/gltf_reader.h"
@@ -15,11 +14,10 @@
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/registry/registry.h"
-#include "tools/common/file_name.h"
-#include "tools/common/glob.h"
-#include "tools/common/keys_sidecar.h"
+#include "tools/cli/file_name.h"
+#include "tools/shared/keys_sidecar.h"
 
-namespace krok::view {
+namespace krok::cli::view {
 
 namespace {
 
@@ -174,4 +172,4 @@ Result<Files> read_files(const Options& options, ToolContext& context) {
   return files;
 }
 
-}  // namespace krok::view
+}  // namespace krok::cli::view

@@ -12,10 +12,10 @@
 #include "scene/clip.h"
 #include "scene/material.h"
 #include "scene/model.h"
-#include "tools/common/tool.h"
-#include "tools/krok-view/view.h"
+#include "tools/cli/tool.h"
+#include "tools/krok-view/options.h"
 
-namespace krok::view {
+namespace krok::cli::view {
 
 // The contents of the input files, which must outlive the page made from them.
 struct Files {
@@ -51,4 +51,4 @@ struct Files {
 // have their character's default expression.
 Result<Files> read_files(const Options& options, ToolContext& context);
 
-}  // namespace krok::view
+}  // namespace krok::cli::view

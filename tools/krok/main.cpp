@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 
 // krok VERB ... runs krok-VERB ... from this program's folder, or else from the PATH.
 
@@ -66,15 +66,15 @@ bool is_verb(std::string_view name) {
 int main(int argc, char** argv) {
   const std::string verb = argc > 1 ? argv[1] : "";
   if (verb == "--help" || verb == "-h" || verb == "help") {
-    return krok::print_and_end("krok", help());
+    return krok::cli::print_and_end("krok", help());
   }
   if (verb == "--version") {
-    return krok::print_and_end("krok", fmt::format("krok {}\n", krok::version()));
+    return krok::cli::print_and_end("krok", fmt::format("krok {}\n", krok::cli::version()));
   }
   if (!is_verb(verb)) {
     fmt::print(stderr, "krok: error: {} [usage]\n  hint: see krok --help\n",
                verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb));
-    return krok::kExitTrouble;
+    return krok::cli::kExitTrouble;
   }
   const std::string program = "krok-" + verb;
   std::error_code error;
@@ -92,5 +92,5 @@ int main(int argc, char** argv) {
              "krok: error: cannot run {}: {} [usage]\n  hint: the tools must be in the same folder "
              "as krok\n",
              program, std::strerror(errno));
-  return krok::kExitTrouble;
+  return krok::cli::kExitTrouble;
 }

@@ -7,9 +7,6 @@
 namespace krok::test {
 namespace {
 
-using testing::EndsWith;
-using testing::HasSubstr;
-
 class BatchList : public BatchTest {
  protected:
   void expect_usage_error(const ToolRun& run, const std::string& part) {

@@ -8,8 +8,6 @@
 namespace krok::test {
 namespace {
 
-using testing::HasSubstr;
-
 struct Value {
   std::string tool;
   Names options;

@@ -8,9 +8,6 @@
 namespace krok::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-
 class BatchRun : public BatchTest {
  protected:
   void put_captures(int count) const {

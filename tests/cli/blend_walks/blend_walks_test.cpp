@@ -16,8 +16,6 @@ namespace krok {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 class BlendWalks : public test::StoryTest {
  protected:

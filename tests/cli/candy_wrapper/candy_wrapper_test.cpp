@@ -18,8 +18,6 @@ namespace krok {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 class CandyWrapper : public test::StoryTest {
  protected:

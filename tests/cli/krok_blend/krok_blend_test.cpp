@@ -11,10 +11,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::HasSubstr;
-using testing::UnorderedElementsAre;
-
 class KrokBlend : public CliTest {
  protected:
   void SetUp() override {

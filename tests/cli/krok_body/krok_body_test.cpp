@@ -13,11 +13,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-
 const std::string kMotion = kFrozen + "motion.anim";
 
 class KrokBody : public CliTest {

@@ -15,11 +15,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-
 constexpr const char* kKeys = R"({
   "schema": "krok.camera-keys/1",
   "rate": 30,

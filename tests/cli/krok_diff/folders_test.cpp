@@ -14,11 +14,6 @@ namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 class KrokDiffFolders : public CliTest {
  protected:

@@ -14,9 +14,6 @@ namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 class KrokDiffHeatmap : public CliTest {
  protected:

@@ -13,9 +13,6 @@
 namespace krok::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 class KrokDiffImages : public CliTest {
  protected:
   // A mast with two arms along x; the figure faces +Z.

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 
+#include "cli/fixture.h"
 #include "core/file.h"
 #include "formats/anim/anim.h"
 #include "math/quaternion.h"
@@ -19,8 +20,6 @@ namespace krok {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
 
 struct Outcome {
   int exit_code = -1;

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "cli/fixture.h"
 #include "cli/krok_diff/target_a_frame.h"
 #include "core/file.h"
 #include "formats/anim/anim.h"
@@ -18,9 +19,6 @@
 
 namespace krok {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 class KrokDiffMatching : public test::FolderTest {
  protected:

@@ -15,10 +15,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
-
 // How a baked square differs from the others.
 struct Change {
   int frame = -1;        // in which

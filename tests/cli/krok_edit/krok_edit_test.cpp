@@ -18,9 +18,6 @@
 namespace krok {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-
 class KrokEdit : public test::CliTest {
  protected:
   void write(const std::string& name, const Clip& clip) {

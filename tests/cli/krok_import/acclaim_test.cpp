@@ -12,8 +12,6 @@ namespace krok::test {
 namespace {
 
 using PlainJson = nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
 
 class AcclaimImport : public CliTest {
  protected:

@@ -14,8 +14,6 @@
 namespace krok::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
 using Json = nlohmann::ordered_json;
 
 class RoleMapImport : public CliTest {

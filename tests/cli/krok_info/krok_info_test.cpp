@@ -10,16 +10,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/fixture.h"
 #include "core/file.h"
 #include "golden/samples/samples.h"
 #include "support/human_skeleton.h"
 
 namespace krok {
 namespace {
-
-using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
 
 const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
 

@@ -13,8 +13,6 @@
 namespace krok::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
 using Json = nlohmann::ordered_json;
 
 class InfoOfScenes : public CliTest {

@@ -11,12 +11,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-
 class KrokKeys : public CliTest {
  protected:
   KrokKeys() : motion_(put("walk.bvh", get(kWalk))), file_(path("walk.keys.json")) {}

@@ -12,10 +12,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::HasSubstr;
-using testing::UnorderedElementsAre;
-
 class KrokMix : public CliTest {
  protected:
   void SetUp() override {

@@ -21,10 +21,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 constexpr int kSide = 12;  // vertices
 
 // A square sheet of quads, whose height is told by `height`.

@@ -9,8 +9,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-
 class PlotCharacter : public HeroCharacter {
  protected:
   // A picture of the figure and how its one cell is described.

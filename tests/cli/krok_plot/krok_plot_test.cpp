@@ -12,13 +12,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::SizeIs;
-
 const std::string kTurn = KROK_SOURCE_DIR "/samples/captures/turn.bvh";
 
 class KrokPlot : public CliTest {

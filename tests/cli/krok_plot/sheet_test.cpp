@@ -14,11 +14,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-
 class KrokPlotSheet : public CliTest {
  protected:
   ToolRun plot(std::vector<std::string> arguments) const {

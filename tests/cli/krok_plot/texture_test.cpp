@@ -11,8 +11,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-
 class PlotTexture : public CliTest {
  protected:
   // A square metre of two joints, standing in x and y from 0 to 1, that shows a picture as it is:

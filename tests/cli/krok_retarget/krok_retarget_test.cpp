@@ -18,10 +18,6 @@
 namespace krok {
 namespace {
 
-using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
-
 class KrokRetarget : public test::CliTest {
  protected:
   void SetUp() override {

@@ -9,8 +9,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-
 class SkinCharacter : public HeroCharacter {
  protected:
   json gltf(const std::string& name) { return json::parse(get(path(name))); }

@@ -8,8 +8,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-
 class SkinMethods : public CliTest {
  protected:
   void SetUp() override {

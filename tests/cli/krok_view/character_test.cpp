@@ -10,8 +10,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-
 class ViewCharacter : public HeroCharacter {
  protected:
   // What a page of these files shows.

@@ -14,11 +14,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-
 const std::string kMotion = kFrozen + "motion.anim";
 
 class KrokView : public CliTest {

@@ -9,8 +9,6 @@ namespace krok {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 class MeshRegression : public test::StoryTest {
  protected:

@@ -14,11 +14,6 @@
 namespace krok::test {
 namespace {
 
-using nlohmann::json;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
-
 class StepLibrary : public CliTest {
  protected:
   // Four walks, two lengths of step by two slopes.

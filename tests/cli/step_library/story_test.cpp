@@ -16,8 +16,6 @@ namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-using testing::HasSubstr;
 
 const std::string kStory = KROK_SOURCE_DIR "/samples/step_library/";
 

@@ -13,10 +13,6 @@ namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 class TimelineStory : public StoryTest {
  protected:

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "cli/fixture.h"
 #include "support/folder_test.h"
 #include "support/run_tool.h"
 
@@ -13,8 +14,6 @@ namespace krok {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
 
 using test::ToolRun;
 

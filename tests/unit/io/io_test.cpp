@@ -40,13 +40,15 @@ TEST(Formats, EachRowReadsSomethingAndHasAName) {
   for (const Format& format : formats()) {
     EXPECT_TRUE(kinds.insert(format.kind).second) << registry::kind_name(format.kind);
     EXPECT_NE(registry::kind_name(format.kind), "unknown");
-    EXPECT_TRUE(format.read_motion || format.read_scene || format.read_model);
-    EXPECT_TRUE(!format.stream_motion || format.read_motion) << "streaming needs a fallback";
+    EXPECT_TRUE(format.read_motion || format.open_capture || format.read_scene ||
+                format.read_model);
+    EXPECT_FALSE(format.read_motion && format.open_capture) << "two ways to read a motion";
     // The ending leads back to the row where the content does not decide.
     const std::string name = "x." + std::string(registry::kind_name(format.kind));
     EXPECT_EQ(registry::kind_of_name(name), format.kind);
   }
   EXPECT_EQ(format_of(Kind::unknown).read_motion, nullptr);
+  EXPECT_EQ(format_of(Kind::unknown).open_capture, nullptr);
 }
 
 TEST(Formats, AStreamHasTheFramesOfTheClip) {

@@ -1,0 +1,195 @@
+#include "formats/bvh/choose_conventions_internal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "capture/exporter.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/bvh/angle_unit_internal.h"
+#include "formats/bvh/frame_rate.h"
+#include "formats/bvh/position_choice.h"
+
+namespace krok::bvh {
+
+namespace {
+
+constexpr std::size_t kMaxSamples = 200;
+
+class ConventionChooser {
+ public:
+  ConventionChooser(const IndexedFile& file, Hierarchy& hierarchy, Capture& capture)
+      : file_(file), hierarchy_(hierarchy), capture_(capture) {}
+
+  Result<ChosenConventions> choose() {
+    choose_rate();
+    const SampleRows samples = sample_rows();
+    report_exporter(samples);
+    choose_angles(samples);
+    PositionChoice positions;
+    if (file_.options.positions == Positions::automatic) {
+      positions = choose_positions(hierarchy_, samples, file_.options.up);
+    } else {
+      positions.positions = file_.options.positions;
+      positions.choice.choice =
+          file_.options.positions == Positions::absolute ? "absolute" : "additive";
+      positions.choice.reason = "as given";
+      positions.choice.confidence = Confidence::certain;
+    }
+    if (Status status = detect(samples, positions.positions); !status) return status.error();
+    if (file_.options.positions == Positions::automatic && samples.count() > 0) {
+      positions = choose_positions(hierarchy_, samples, capture_.conventions.up);
+    }
+    chosen_.positions = positions.positions;
+    capture_.positions = positions.choice;
+    if (file_.options.positions == Positions::automatic && positions.has_evidence) {
+      const bool guess = positions.choice.confidence == Confidence::guess;
+      tell(guess ? Severity::warning : Severity::note, "bvh-positions",
+           fmt::format("position channels are {} ({}): {}", positions.choice.choice,
+                       confidence_name(positions.choice.confidence), positions.choice.reason),
+           guess ? "use --positions absolute or additive if this is wrong" : "");
+    }
+    if (Status status = make_conversion(); !status) return status.error();
+    return chosen_;
+  }
+
+ private:
+  void tell(Severity severity, std::string code, std::string message, std::string hint = {},
+            Location where = {}) {
+    Diagnostic told;
+    told.severity = severity;
+    told.code = std::move(code);
+    told.message = std::move(message);
+    told.hint = std::move(hint);
+    told.where = std::move(where);
+    if (told.where.file.empty()) told.where.file = file_.file_name;
+    capture_.diagnostics.push_back(std::move(told));
+  }
+
+  void choose_rate() {
+    double& rate = capture_.clip.rate;
+    if (file_.options.rate) {
+      rate = *file_.options.rate;
+      capture_.rate = {readable(rate), "as given", Confidence::certain};
+      return;
+    }
+    const PrintedRate printed =
+        rate_of_frame_time(file_.header.frame_time_text, file_.header.frame_time);
+    rate = printed.rate;
+    const bool doubtful = printed.few_digits || printed.unusual;
+    capture_.rate = {readable(rate), printed.reason,
+                     doubtful ? Confidence::guess : Confidence::certain};
+    tell(doubtful ? Severity::warning : Severity::note, "bvh-rate",
+         fmt::format("{} frames per second: {}", readable(rate), printed.reason),
+         doubtful ? "set the rate with --fps N if this is wrong" : "",
+         doubtful ? locate(file_.text, file_.header.frame_time_offset, file_.file_name)
+                  : Location());
+  }
+
+  // Up to kMaxSamples complete rows, evenly over the file.
+  SampleRows sample_rows() const {
+    SampleRows samples;
+    samples.channels = hierarchy_.channels.size();
+    const std::size_t count = std::min(file_.rows.size(), kMaxSamples);
+    std::vector<double> values(samples.channels);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t row = count < 2 ? 0 : i * (file_.rows.size() - 1) / (count - 1);
+      if (file_.rows[row] == RowIndex::kFaulty) continue;
+      if (parse_row(file_.text, file_.rows[row], values) == RowIndex::kFaulty) continue;
+      samples.values.insert(samples.values.end(), values.begin(), values.end());
+    }
+    return samples;
+  }
+
+  // Recognised by the joint names and how the file is written.
+  void report_exporter(const SampleRows& samples) {
+    Skeleton names;
+    for (const auto& joint : hierarchy_.joints) {
+      names.add(joint.name, joint.parent, {}, joint.end_site);
+    }
+    ExporterTraits traits;
+    traits.frame_time = file_.header.frame_time_text;
+    const std::size_t row = file_.rows.empty() ? RowIndex::kFaulty : file_.rows[0];
+    traits.rows_begin_with_tab = row != RowIndex::kFaulty && row > 0 && file_.text[row - 1] == '\t';
+    traits.starts_unturned = samples.count() > 0;
+    for (std::size_t c = 0; c < samples.channels && traits.starts_unturned; ++c) {
+      const bool rotation = hierarchy_.channels[c].kind == ChannelKind::rotation;
+      traits.starts_unturned = !rotation || samples.row(0)[c] == 0.0;
+    }
+    const auto exporter = recognise_exporter(names, traits);
+    if (!exporter) return;
+    capture_.exporter = {exporter->name, exporter->reason, exporter->confidence};
+    tell(Severity::note, "bvh-exporter",
+         fmt::format("{} ({}): {}", exporter->name, confidence_name(exporter->confidence),
+                     exporter->reason));
+  }
+
+  void choose_angles(const SampleRows& samples) {
+    if (file_.options.angles == Angles::radians) {
+      hierarchy_.degrees_per_angle = 1.0 / kRadiansPerDegree;
+      return;
+    }
+    const auto reason = looks_like_radians(hierarchy_, samples);
+    if (!reason) return;
+    tell(Severity::warning, "bvh-angles",
+         fmt::format("the angles may be radians, though BVH uses degrees: {}", *reason),
+         "use --angles radians if they are");
+  }
+
+  // Unit and axes, from the options or else detected from the data.
+  Status detect(const SampleRows& samples, Positions positions) {
+    Conventions& conventions = capture_.conventions;
+    const Kinematics in_file(hierarchy_, positions, {});
+    const Skeleton skeleton = skeleton_of(hierarchy_, in_file);
+    auto roles = roles_of(skeleton, file_.options);
+    if (!roles) return std::move(roles).error();
+    capture_.roles = *std::move(roles);
+    if (!file_.options.complete()) {
+      std::vector<Vec3> sample_positions;
+      std::vector<Transform> pose(in_file.joint_count());
+      for (std::size_t i = 0; i < samples.count(); ++i) {
+        in_file.pose(samples.row(i), pose);
+        for (const Transform& joint : pose) sample_positions.push_back(joint.position);
+      }
+      conventions = detect_conventions(skeleton, capture_.roles, sample_positions);
+    }
+    apply_given(file_.options, conventions);
+    return {};
+  }
+
+  Status make_conversion() {
+    const Conventions& conventions = capture_.conventions;
+    auto conversion = Conversion::make(conventions);
+    if (!conversion) return std::move(conversion).error().in_file(file_.file_name);
+    chosen_.conversion = *conversion;
+    report_conventions(conventions, file_.options, "bvh", file_.file_name, capture_.diagnostics);
+    capture_.clip.provenance.conversions = describe_conversions(conventions, file_.options);
+    return {};
+  }
+
+  const IndexedFile& file_;
+  Hierarchy& hierarchy_;
+  Capture& capture_;
+  ChosenConventions chosen_;
+};
+
+}  // namespace
+
+Skeleton skeleton_of(const Hierarchy& hierarchy, const Kinematics& kinematics) {
+  Skeleton skeleton;
+  const std::vector<Transform> reference = kinematics.reference();
+  for (std::size_t j = 0; j < hierarchy.joints.size(); ++j) {
+    const Hierarchy::Joint& joint = hierarchy.joints[j];
+    skeleton.add(joint.name, joint.parent, reference[j], joint.end_site);
+  }
+  return skeleton;
+}
+
+Result<ChosenConventions> choose_conventions(const IndexedFile& file, Hierarchy& hierarchy,
+                                             Capture& capture) {
+  return ConventionChooser(file, hierarchy, capture).choose();
+}
+
+}  // namespace krok::bvh

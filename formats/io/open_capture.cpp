@@ -1,0 +1,176 @@
+#include "formats/io/open_capture.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "formats/acclaim/acclaim_reader.h"
+#include "formats/acclaim/find_skeleton.h"
+#include "formats/io/formats.h"
+#include "formats/io/readers_internal.h"
+
+namespace krok::io {
+
+namespace {
+
+CaptureDetails details_of(const bvh::Capture& capture) {
+  CaptureDetails details;
+  details.positions = capture.positions;
+  if (!capture.exporter.choice.empty()) details.exporter = capture.exporter;
+  details.frames_announced = capture.frames_announced;
+  details.rest_frame = {capture.rest_frame_found, capture.rest_frame_dropped};
+  return details;
+}
+
+CaptureDetails details_of(const acclaim::Capture& capture, bool has_motion) {
+  CaptureDetails details;
+  details.first_frame_number = capture.first_frame_number;
+  if (has_motion) details.rest_frame = {capture.rest_frame_found, capture.rest_frame_dropped};
+  return details;
+}
+
+template <typename FormatCapture>
+OpenedCapture read_whole(FormatCapture read, CaptureDetails details) {
+  auto capture = std::make_shared<FormatCapture>(std::move(read));
+  OpenedCapture opened;
+  opened.frames = frames_of(capture->clip);
+  opened.capture = std::move(capture);
+  opened.details = std::move(details);
+  return opened;
+}
+
+using Companion = CaptureDetails::Companion;
+
+// The skeleton beside a motion, with a note.
+Result<Companion> find_companion(const InputFile& motion, Inputs& inputs) {
+  if (motion.path() == "-") {
+    return Error("acclaim-skeleton", "an Acclaim motion needs its skeleton",
+                 "give the name of a file with its .asf beside it")
+        .in_file(motion.path());
+  }
+  inputs.depends_on_neighbours(motion.path(), ".asf");
+  auto found = acclaim::find_skeleton(motion.path());
+  if (!found) {
+    Error error = std::move(found).error();
+    error.hint = "put its skeleton beside it";
+    return error;
+  }
+  Diagnostic note;
+  note.severity = Severity::note;
+  note.code = "acclaim-skeleton";
+  note.message = fmt::format("{} is used as the skeleton: {}", found->path, found->reason);
+  note.hint = "krok-import with --skeleton FILE.asf selects another";
+  note.where.file = motion.path();
+  inputs.diagnose(std::move(note));
+  return Companion{found->path, found->reason};
+}
+
+Status check_bvh_choices(const CaptureReading& reading) {
+  if (reading.positions != bvh::Positions::automatic) {
+    return Error("usage", "--positions is for BVH; the Acclaim format has no such choice");
+  }
+  if (reading.angles != bvh::Angles::degrees) return Error("usage", "--angles is for BVH");
+  return {};
+}
+
+Status check_no_skeleton(const InputFile& file, const CaptureReading& reading) {
+  if (reading.skeleton.empty()) return {};
+  return Error("usage", fmt::format("--skeleton is for an Acclaim motion (AMC), which {} is not",
+                                    file.path()));
+}
+
+acclaim::ReadOptions acclaim_options(const CaptureReading& reading) {
+  acclaim::ReadOptions options;
+  static_cast<CaptureOptions&>(options) = reading;
+  options.rest_frame = reading.rest_frame;
+  return options;
+}
+
+// The same frames; `faulty` becomes true when one cannot be read, whatever their user makes of it.
+FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty) {
+  FrameSource watching = frames;
+  watching.read = [&faulty, read = frames.read](int first, int count, std::span<Vec3f> positions,
+                                                std::span<Quatf> orientations) {
+    Status status = read(first, count, positions, orientations);
+    if (!status) faulty = true;
+    return status;
+  };
+  return watching;
+}
+
+}  // namespace
+
+Result<OpenedCapture> open_bvh(const InputFile& file, Inputs& /*inputs*/,
+                               const CaptureReading& reading, bool stream) {
+  if (Status status = check_no_skeleton(file, reading); !status) return status.error();
+  bvh::ReadOptions options;
+  static_cast<CaptureOptions&>(options) = reading;
+  options.positions = reading.positions;
+  options.angles = reading.angles;
+  options.rest_frame = reading.rest_frame;
+  if (stream) {
+    auto streamed = bvh::open(file.text(), file.path(), options,
+                              [&file](std::size_t offset) { file.release_before(offset); });
+    if (streamed) {
+      OpenedCapture opened;
+      opened.details = details_of(*streamed);
+      opened.streamed = true;
+      auto capture = std::make_shared<bvh::OpenedCapture>(*std::move(streamed));
+      opened.frames = capture->frames;
+      opened.capture = std::move(capture);
+      return opened;
+    }
+  }
+  auto read = bvh::read(file.text(), file.path(), options);
+  if (!read) return std::move(read).error();
+  CaptureDetails details = details_of(*read);
+  return read_whole(*std::move(read), std::move(details));
+}
+
+Result<OpenedCapture> open_amc(const InputFile& file, Inputs& inputs, const CaptureReading& reading,
+                               bool /*stream*/) {
+  if (Status status = check_bvh_choices(reading); !status) return status.error();
+  std::optional<Companion> companion;
+  if (reading.skeleton.empty()) {
+    auto found = find_companion(file, inputs);
+    if (!found) return found.error();
+    companion = *std::move(found);
+  }
+  const auto skeleton = inputs.open_input(companion ? companion->path : reading.skeleton);
+  if (!skeleton) return skeleton.error();
+  auto read = acclaim::read(skeleton->text(), skeleton->path(), file.text(), file.path(),
+                            acclaim_options(reading));
+  if (!read) return std::move(read).error();
+  CaptureDetails details = details_of(*read, true);
+  details.skeleton = std::move(companion);
+  return read_whole(*std::move(read), std::move(details));
+}
+
+Result<OpenedCapture> open_asf(const InputFile& file, Inputs& /*inputs*/,
+                               const CaptureReading& reading, bool /*stream*/) {
+  if (Status status = check_no_skeleton(file, reading); !status) return status.error();
+  if (Status status = check_bvh_choices(reading); !status) return status.error();
+  auto read = acclaim::read(file.text(), file.path(), {}, {}, acclaim_options(reading));
+  if (!read) return std::move(read).error();
+  CaptureDetails details = details_of(*read, false);
+  return read_whole(*std::move(read), std::move(details));
+}
+
+Status use_capture(const InputFile& file, Inputs& inputs, const CaptureReading& reading, bool whole,
+                   const std::function<Status(const OpenedCapture& opened)>& use) {
+  const Format& format = format_of(file);
+  const auto open = format.open_capture != nullptr ? format.open_capture : open_bvh;
+  auto opened = open(file, inputs, reading, !whole);
+  if (!opened) return opened.error();
+  if (opened->streamed) {
+    std::atomic<bool> faulty = false;
+    opened->frames = watched(opened->frames, faulty);
+    Status status = use(*opened);
+    if (!faulty) return status;
+    opened = open(file, inputs, reading, false);
+    if (!opened) return opened.error();
+  }
+  return use(*opened);
+}
+
+}  // namespace krok::io

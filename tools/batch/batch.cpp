@@ -1,0 +1,366 @@
+#include "tools/batch/batch.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <new>
+#include <optional>
+#include <set>
+
+#include "core/in_order.h"
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "tools/batch/journal.h"
+#include "tools/batch/list.h"
+#include "tools/batch/made_with.h"
+#include "tools/batch/names.h"
+#include "tools/batch/option_sets.h"
+#include "tools/batch/ready_lines.h"
+#include "tools/batch/report.h"
+#include "tools/batch/tally.h"
+#include "tools/cli/json_object.h"
+#include "tools/cli/paths.h"
+
+namespace krok::cli::batch {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// How many files may be processed ahead of the first whose messages are not printed yet.
+constexpr std::size_t kWindow = 256;
+
+// The outcome of one file.
+struct Outcome {
+  FileState state = FileState::failed;
+  OneOfMany run;  // its held files are those to be renamed to their final names
+  Json report;
+  Status journal;
+  // Outputs whose names are not known from the list, "hero_{clip}.anim": if two files write the
+  // same one, the first in list order gets it.
+  std::vector<std::string> unforeseen;
+  std::optional<Json> record;  // for the journal, after renaming
+  ToolContext context;
+};
+
+Json options_of_batch(const CommandLine& line) {
+  Json options = line.context().report.options;
+  const auto note = [&](const char* name, const std::string& value) {
+    if (!value.empty()) options[name] = value;
+  };
+  note("out-dir", line.out_dir);
+  note("base", line.base);
+  note("manifest", line.manifest);
+  note("shard", line.shard);
+  if (line.keep_going) options["keep-going"] = true;
+  if (line.force) options["force"] = true;
+  return options;
+}
+
+std::string journal_suffix(const std::string& shard) {
+  if (shard.empty()) return {};
+  const std::size_t slash = shard.find('/');
+  return "." + shard.substr(0, slash) + "-of-" + shard.substr(slash + 1);
+}
+
+class Batch {
+ public:
+  Batch(const MakeToolSpec& make_spec, const CommandLine& line)
+      : make_spec_(make_spec), line_(line), context_(line.context()) {
+    const bool silent = line.quiet && line.style == ProgressStyle::automatic;
+    console_ = console_progress(silent ? ProgressStyle::none : line.style);
+    context_.console = console_.get();
+  }
+
+  int run() {
+    if (!line_.output.empty()) {
+      return stop({Error("usage", "-o is for one output, but there are several inputs",
+                         "use --out-dir DIR")});
+    }
+    Diagnostics errors;
+    list_ = list_files(line_, make_spec_, errors);
+    tally_ = BatchTally(list_.files.size());
+    if (!errors.empty()) return stop(errors);
+    if (Status status = prepare(); !status) return stop({status.error()});
+    if (Status status = begin_report(); !status) return stop({status.error()});
+    do_files();
+    return finish();
+  }
+
+ private:
+  Status begin_report() {
+    return report_.begin(line_.json_path, {.no_clobber = line_.no_clobber}, context_.report.tool,
+                         context_.report.version, options_of_batch(line_));
+  }
+
+  // Ends a batch before any file is started.
+  int stop(const Diagnostics& errors) {
+    context_.diagnose(errors);
+    if (only_a_report_stands_at(line_.json_path) && begin_report()) {
+      (void)report_.end(context_.report.issues, tally_.result()).ok();
+    }
+    return kExitTrouble;
+  }
+
+  // Creates folders and removes temporary files of killed runs.
+  Status prepare() {
+    std::set<std::string> folders = {line_.out_dir,
+                                     fs::path(line_.json_path).parent_path().string()};
+    for (const BatchFile& file : list_.files) {
+      for (const std::string& path : outputs_of(file, list_, line_.out_dir)) {
+        folders.insert(fs::path(path).parent_path().string());
+      }
+    }
+    std::error_code trouble;
+    if (!line_.out_dir.empty()) fs::create_directories(line_.out_dir, trouble);
+    if (trouble) {
+      return Error("file-unwritable", fmt::format("cannot create folder: {}", trouble.message()))
+          .in_file(line_.out_dir);
+    }
+    for (const std::string& folder : folders) {
+      remove_temporaries_of_killed(folder.empty() ? "." : folder);
+    }
+    journal_.emplace(line_.out_dir, context_.report.tool, journal_suffix(line_.shard));
+    return {};
+  }
+
+  void do_files() {
+    const std::size_t count = list_.files.size();
+    const int threads = thread_count(line_.jobs);
+    const int workers =
+        static_cast<int>(std::clamp<std::size_t>(count, 1, static_cast<std::size_t>(threads)));
+    jobs_of_a_file_ = std::max(1, threads / workers);
+    ready_lines_.emplace(make_spec_, workers);
+    console_->begin(context_.report.tool, count);
+    in_order<Outcome>(
+        count, workers, kWindow, [&](std::size_t i) { return do_file(list_.files[i]); },
+        [&](std::size_t i, Outcome outcome) { return take(list_.files[i], std::move(outcome)); });
+    console_->end();
+  }
+
+  Outcome do_file(const BatchFile& file) {
+    Outcome outcome;
+    try {
+      run_file(file, outcome.context, outcome);
+    } catch (const std::bad_alloc&) {
+      fail(file, Error("out-of-memory", "out of memory"), outcome);
+    } catch (const std::exception& error) {
+      fail(file, Error("internal", error.what()), outcome);
+    }
+    // Free data that no report needs on the thread that allocated it, which is cheaper.
+    if (!report_.is_wanted()) outcome.context.report.issues = {};
+    return outcome;
+  }
+
+  void run_file(const BatchFile& file, ToolContext& context, Outcome& outcome) {
+    auto ready = ready_lines_->take(file.options);
+    const auto parsed = ready->line.parse(arguments_for_file(options_of(file, list_, line_.out_dir),
+                                                             line_.fixed_positionals, file.input,
+                                                             file.output, line_.no_clobber));
+    if (!parsed) return fail(file, parsed.error(), outcome);
+    context = ready->line.context();
+    context.jobs = jobs_of_a_file_;
+    context.quiet = line_.quiet;
+    context.verbose = line_.verbose;
+    context.progress = &no_progress_;
+    context.one_of_many = &outcome.run;
+    context.report_on_standard_output = line_.json_path == "-";
+    context.subject.file = file.input;
+    context.report_path = line_.json_path;
+    outcome.run.check_unforeseen = [this](const std::string& path) { return names_.check(path); };
+
+    const std::string digest = made_with(file, list_, line_.fixed_positionals, context);
+    if (!line_.force) {
+      if (auto record = journal_->unchanged(file.key, digest, file.input)) {
+        return note_unchanged(file, std::move(*record), outcome);
+      }
+    }
+    std::error_code known_later;  // noticed when the file is created
+    for (const std::string& path : context.destinations) {
+      fs::create_directories(fs::path(path).parent_path(), known_later);
+    }
+    const Result<int> done = run_guarded(ready->spec, context);
+    ready_lines_->put_back(file.options, std::move(ready));
+    if (!done) return fail(file, done.error(), outcome);
+    if (*done != kExitDone) {
+      return fail(file, Error("failed", fmt::format("ended with exit code {}", *done)), outcome);
+    }
+    outcome.state = FileState::done;
+    note_report(file, outcome);
+    outcome.unforeseen = std::move(outcome.run.held_paths);
+    auto record = journal_record(line_.out_dir, file.key, digest, file.input, context.report,
+                                 places_of(outcome));
+    // Outputs that are gone or not regular files cannot be checked by later runs.
+    if (!record) return;
+    if (outcome.run.held_files.empty()) {
+      outcome.journal = journal_->add(*record);
+    } else {
+      outcome.record = std::move(*record);
+    }
+  }
+
+  // Temporary names of outputs that are not renamed yet.
+  static std::map<std::string, std::string> places_of(const Outcome& outcome) {
+    std::map<std::string, std::string> places;
+    for (std::size_t i = 0; i < outcome.run.held_files.size(); ++i) {
+      places[outcome.unforeseen[i]] = outcome.run.held_files[i].written_at();
+    }
+    return places;
+  }
+
+  // In list order: renames held outputs to their final names.
+  Status place(const BatchFile& file, Outcome& outcome) {
+    if (Status status = names_.claim(outcome.unforeseen, file.input); !status) return status;
+    if (Status status = OutputFile::place_all(outcome.run.held_files); !status) return status;
+    if (outcome.record) outcome.journal = journal_->add(*outcome.record);
+    return {};
+  }
+
+  // Adds a file to the batch report.
+  void note_report(const BatchFile& file, Outcome& outcome) const {
+    if (!report_.is_wanted()) return;
+    const ToolContext& context = outcome.context;
+    Json& report = outcome.report;
+    report = object_for(8);
+    report["input"] = file.input;
+    report["output"] = file.output;
+    report["status"] = name_of(outcome.state);
+    report["options"] = context.report.options;
+    report["inputs"] = to_json(context.report.inputs);
+    report["outputs"] = context.report.outputs;
+    report["issues"] = to_json(context.report.issues);
+    report["result"] = context.report.result;
+  }
+
+  void note_unchanged(const BatchFile& file, Json record, Outcome& outcome) const {
+    Report& report = outcome.context.report;
+    outcome.state = FileState::unchanged;
+    for (const Json& written : record["outputs"]) {
+      report.outputs.push_back(below(line_.out_dir, written.value("path", std::string())));
+      const std::string& path = report.outputs.back();
+      if (!outcome.context.is_destination(path)) outcome.unforeseen.push_back(path);
+    }
+    note_report(file, outcome);
+    if (!report_.is_wanted()) return;
+    outcome.report["inputs"] = std::move(record["inputs"]);
+    outcome.report["issues"] = std::move(record["issues"]);
+    outcome.report["result"] = std::move(record["result"]);
+  }
+
+  void fail(const BatchFile& file, Error error, Outcome& outcome) const {
+    ToolContext& context = outcome.context;
+    // The location is a manifest word, or else the file.
+    const bool of_line = error.code == "usage" && !list_.option_sets[file.options].options.empty();
+    if (error.where.file.empty() && of_line && !file.line.file.empty()) error.where = file.line;
+    context.report.tool = context_.report.tool;
+    context.one_of_many = &outcome.run;
+    context.subject.file = file.input;
+    context.diagnose(error);
+    outcome.state = FileState::failed;
+    outcome.run.held_files.clear();
+    context.report.outputs.clear();
+    context.report.result = Json::object();
+    note_report(file, outcome);
+  }
+
+  // Reports the outcome of a file. Returns whether to continue.
+  bool take(const BatchFile& file, Outcome outcome) {
+    if (outcome.state != FileState::failed) {
+      if (const Status status = place(file, outcome); !status) fail(file, status.error(), outcome);
+    }
+    if (!outcome.run.messages.empty()) write_message(console_.get(), outcome.run.messages);
+    if (report_.is_wanted()) report_.add(outcome.report);
+    if (!outcome.journal && journal_trouble_) {
+      journal_trouble_ = outcome.journal;
+    }
+    tally_.add(outcome.state, file.input);
+    console_->advance(1);
+    if (outcome.state == FileState::done) {
+      for (const std::string& path : outcome.context.report.outputs) {
+        written_folders_.insert(fs::path(path).parent_path().string());
+      }
+    }
+    return outcome.state != FileState::failed || line_.keep_going;
+  }
+
+  // Waits until everything written is on disk; warns on failure.
+  Status store() const {
+    std::set<dev_t> stored;
+    std::set<std::string> folders = written_folders_;
+    if (!folders.empty()) folders.insert(line_.out_dir);  // for the journal
+    for (const std::string& folder : folders) {
+      const std::string path = folder.empty() ? "." : folder;
+      struct stat status {};
+      if (stat(path.c_str(), &status) != 0 || !stored.insert(status.st_dev).second) continue;
+      if (Status step = store_files(path); !step) return step;
+    }
+    return {};
+  }
+
+  int finish() {
+    // The journal first, so that one wait covers all. It may reach the disk before the outputs that
+    // it lists, as it is verified when used.
+    Status status = journal_->tidy();
+    const Status stored = store();
+    if (!stored) context_.diagnose(stored.error());
+    if (!journal_trouble_) status = journal_trouble_;
+    if (!status) {
+      Diagnostic warning = status.error();
+      warning.severity = Severity::warning;
+      context_.diagnose(std::move(warning));
+    }
+    if (tally_.failed() > 0) context_.diagnose(tally_.failure(line_.keep_going));
+    const std::string part =
+        line_.shard.empty() ? "" : fmt::format(" of {} (part {})", list_.total, line_.shard);
+    context_.log(fmt::format("{}: {}", context_.report.tool, tally_.summary(part)));
+    const Status reported = report_.end(context_.report.issues, tally_.result());
+    if (!reported) {
+      context_.diagnose(reported.error());
+      return kExitTrouble;
+    }
+    if (!stored) return kExitTrouble;
+    if (tally_.failed() == 0) return kExitDone;
+    return line_.keep_going ? kExitPartly : kExitTrouble;
+  }
+
+  const MakeToolSpec& make_spec_;
+  const CommandLine& line_;
+  ToolContext context_;  // of the whole batch
+  std::unique_ptr<Console> console_;
+  Progress no_progress_;
+  BatchList list_;
+  BatchNames names_{list_, line_.out_dir};
+  BatchReport report_;
+  std::optional<Journal> journal_;
+  int jobs_of_a_file_ = 1;
+  std::optional<ReadyLines> ready_lines_;
+  BatchTally tally_;
+  std::set<std::string> written_folders_;
+  Status journal_trouble_;
+};
+
+// Whether a command line asks for batch mode.
+bool is_for_many(const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments) {
+    if (argument == "--") return false;
+    for (const std::string option : {"--out-dir", "--manifest"}) {
+      if (argument == option || argument.rfind(option + "=", 0) == 0) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+int run_tool(const MakeToolSpec& make_spec, int argc, char** argv) {
+  return cli::run_tool(make_spec, argc, argv,
+                       {is_for_many, [](const MakeToolSpec& spec, const CommandLine& line) {
+                          return Batch(spec, line).run();
+                        }});
+}
+
+}  // namespace krok::cli::batch

@@ -1,0 +1,71 @@
+#include "tools/batch/option_sets.h"
+
+#include <algorithm>
+
+namespace krok::cli::batch {
+
+std::vector<std::string> arguments_for_file(const std::vector<GivenOption>& options,
+                                            const std::vector<std::string>& fixed_positionals,
+                                            const std::string& input, const std::string& output,
+                                            bool no_clobber) {
+  std::vector<std::string> arguments = arguments_of(options);
+  arguments.insert(arguments.end(), {"--output", output});
+  if (no_clobber) arguments.push_back("--no-clobber");
+  arguments.push_back("--");
+  arguments.insert(arguments.end(), fixed_positionals.begin(), fixed_positionals.end());
+  arguments.push_back(input);
+  return arguments;
+}
+
+OptionSets::OptionSets(MakeToolSpec make_spec, const CommandLine& whole)
+    : make_spec_(std::move(make_spec)),
+      whole_(whole.given()),
+      fixed_positionals_(whole.fixed_positionals) {}
+
+Result<OptionSet> OptionSets::parse(const std::vector<std::string>& words) const {
+  CommandLine line(make_spec_(), CommandLine::Form::own);
+  if (const auto parsed = line.parse(words); !parsed) return parsed.error();
+  OptionSet set;
+  for (const GivenOption& option : whole_) {
+    const bool replaced =
+        std::any_of(line.given().begin(), line.given().end(),
+                    [&](const GivenOption& given) { return given.name == option.name; });
+    if (!replaced) set.options.push_back(option);
+  }
+  set.options.insert(set.options.end(), line.given().begin(), line.given().end());
+
+  // Merged, as they will be parsed for each file.
+  const ToolSpec spec = make_spec_();
+  CommandLine file(spec, CommandLine::Form::one_file);
+  const auto parsed =
+      file.parse(arguments_for_file(set.options, fixed_positionals_, "input", "output", false));
+  if (!parsed) return parsed.error();
+  if (spec.check) {
+    if (Status status = spec.check(); !status) return status.error();
+  }
+  set.ending = spec.batch->ending();
+  return set;
+}
+
+Result<std::size_t> OptionSets::find(const std::vector<ManifestWord>& words) {
+  std::vector<std::string> texts;
+  for (const ManifestWord& word : words) texts.push_back(word.text);
+  if (const auto found = known_.find(texts); found != known_.end()) return found->second;
+  auto set = parse(texts);
+  if (set) {
+    sets_.push_back(std::move(*set));
+    return known_[texts] = sets_.size() - 1;
+  }
+  if (words.empty()) return std::move(set).error();
+  // The invalid word follows the longest valid prefix.
+  std::size_t right = words.size() - 1;
+  while (right > 0 && !parse({texts.begin(), texts.begin() + static_cast<std::ptrdiff_t>(right)})) {
+    --right;
+  }
+  Error error = std::move(set).error();
+  error.where = words[right].where;
+  error.hint = "lines take the tool's own options; batch options go on the command line";
+  return error;
+}
+
+}  // namespace krok::cli::batch

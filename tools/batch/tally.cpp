@@ -1,0 +1,76 @@
+#include "tools/batch/tally.h"
+
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+
+namespace krok::cli::batch {
+
+namespace {
+
+// Max number of failed files that are named.
+constexpr std::size_t kNamed = 10;
+
+std::string counted_files(std::size_t count) {
+  return counted(static_cast<long long>(count), "file");
+}
+
+}  // namespace
+
+const char* name_of(FileState state) {
+  switch (state) {
+    case FileState::done:
+      return "done";
+    case FileState::unchanged:
+      return "unchanged";
+    case FileState::failed:
+      break;
+  }
+  return "failed";
+}
+
+void BatchTally::add(FileState state, const std::string& name) {
+  ++counts_[static_cast<std::size_t>(state)];
+  if (state == FileState::failed && failed_.size() < kNamed) failed_.push_back(name);
+}
+
+std::size_t BatchTally::left() const {
+  return files_ - counts_[0] - counts_[1] - counts_[2];
+}
+
+Json BatchTally::result() const {
+  Json json;
+  json["files"] = files_;
+  json["done"] = count(FileState::done);
+  json["unchanged"] = count(FileState::unchanged);
+  json["failed"] = failed();
+  json["left"] = left();
+  return json;
+}
+
+std::string BatchTally::summary(const std::string& of_what) const {
+  std::string text = counted_files(files_) + of_what;
+  const auto add = [&](std::size_t number, const char* what) {
+    if (number > 0) text += fmt::format(", {} {}", number, what);
+  };
+  add(count(FileState::done), "done");
+  add(count(FileState::unchanged), "unchanged");
+  add(failed(), "failed");
+  add(left(), "left");
+  return text;
+}
+
+Error BatchTally::failure(bool kept_going) const {
+  std::string names;
+  for (const std::string& name : failed_) names += (names.empty() ? "" : ", ") + name;
+  if (!kept_going) {
+    return Error("batch-stopped",
+                 fmt::format("stopped at {}, the first file that failed; {} left", names, left()),
+                 "use --keep-going to process the others; finished files are not processed again");
+  }
+  const std::size_t more = failed() - failed_.size();
+  if (more > 0) names += fmt::format(" and {} more", more);
+  return Error("batch-failed", fmt::format("{} failed: {}", counted_files(failed()), names));
+}
+
+}  // namespace krok::cli::batch

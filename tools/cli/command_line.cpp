@@ -1,0 +1,254 @@
+#include "tools/cli/command_line.h"
+
+#include <fmt/format.h>
+
+#include "tools/cli/help.h"
+#include "tools/cli/one_of.h"
+#include "tools/cli/option_kinds.h"
+
+namespace krok::cli {
+
+namespace {
+
+constexpr const char* kCommon = "Common options";
+constexpr const char* kMany = "Batch mode";
+
+bool type_begins(const CLI::Option& option, const char* word) {
+  return option.get_type_name().rfind(word, 0) == 0;
+}
+
+bool is_flag(const CLI::Option& option) {
+  return option.get_items_expected_max() == 0;
+}
+
+}  // namespace
+
+std::vector<std::string> arguments_of(const std::vector<GivenOption>& options) {
+  std::vector<std::string> arguments;
+  for (const GivenOption& option : options) {
+    const std::string dashed = (option.name.size() == 1 ? "-" : "--") + option.name;
+    for (const std::string& value : option.values) {
+      if (option.is_flag) {
+        arguments.push_back(dashed + "=" + value);
+      } else {
+        arguments.push_back(dashed);
+        arguments.push_back(value);
+      }
+    }
+  }
+  return arguments;
+}
+
+CommandLine::CommandLine(const ToolSpec& spec, Form form)
+    : form_(form),
+      declare_(spec.declare),
+      app_(spec.summary, spec.name),
+      tool_(spec.name),
+      takes_many_(spec.batch.has_value()) {
+  app_.set_help_flag();
+  declare_(options_);
+  if (form == Form::many) take_many_inputs();
+  for (CLI::Option* option : app_.get_options()) {
+    if (!option->get_positional()) own_options_.push_back(option);
+  }
+  // Required options may be given either by a manifest line or on the command line.
+  if (form == Form::many || form == Form::own) {
+    for (CLI::Option* option : app_.get_options()) option->required(false);
+  }
+  if (form == Form::own) {
+    std::vector<CLI::Option*> positionals;
+    for (CLI::Option* option : app_.get_options()) {
+      if (option->get_positional()) positionals.push_back(option);
+    }
+    for (CLI::Option* option : positionals) app_.remove_option(option);
+  }
+  remember_values();
+  if (form == Form::single || form == Form::many) {
+    shape_help(app_, spec);
+    if (spec.batch) declare_for_many();
+    declare_common(spec);
+  } else if (form == Form::one_file) {
+    app_.add_option("-o,--output", output);
+    app_.add_flag("--no-clobber", no_clobber);
+  }
+}
+
+// Turns the last positional into a list.
+void CommandLine::take_many_inputs() {
+  CLI::Option* last = nullptr;
+  for (CLI::Option* option : app_.get_options()) {
+    if (option->get_positional()) last = option;
+  }
+  if (last == nullptr) return;
+  const std::string type = last->get_type_name();
+  app_.remove_option(last);
+  inputs_option_ = app_.add_option("inputs", inputs, "")->type_name(type);
+}
+
+void CommandLine::declare_common(const ToolSpec& spec) {
+  app_.set_help_flag("-h,--help", "Print this help")->group(kCommon);
+  app_.set_version_flag("--version", fmt::format("{} {}", spec.name, version()),
+                        "Print the version")
+      ->group(kCommon);
+  if (spec.has_output) {
+    auto* option =
+        app_.add_option("-o,--output", output, "Output file")->type_name("OUTPUT")->group(kCommon);
+    if (spec.needs_output && form_ == Form::single) option->required();
+    app_.add_flag("--no-clobber", no_clobber, "Do not overwrite existing files")->group(kCommon);
+  }
+  app_.add_flag("-q,--quiet", quiet, "Print only errors")->group(kCommon);
+  app_.add_flag("-v,--verbose", verbose, "Also print notes")->group(kCommon);
+  const std::string& more_names = spec.report_name;
+  app_.add_option(more_names.empty() ? "--json" : "--json," + more_names, json_path,
+                  "Write a JSON report to standard output, or to FILE with --json=FILE")
+      ->type_name("[=FILE]")
+      ->group(kCommon);
+  options_.add_option("--progress", style, "Progress display: auto, bar, plain, json or none")
+      .type_name("STYLE")
+      .transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
+                                        {"bar", ProgressStyle::bar},
+                                        {"plain", ProgressStyle::plain},
+                                        {"json", ProgressStyle::json},
+                                        {"none", ProgressStyle::none}}))
+      .default_str("auto")
+      .group(kCommon);
+  add_whole(options_, "-j,--jobs", jobs, "Number of threads; 0: one per core", 0, 1024)
+      .default_str("0")
+      .group(kCommon);
+}
+
+void CommandLine::declare_for_many() {
+  app_.add_option("--out-dir", out_dir,
+                  "Process many inputs (files, folders, patterns such as 'takes/**/*.bvh'); write "
+                  "the outputs to DIR, in the same sub-folders")
+      ->type_name("DIR")
+      ->group(kMany);
+  app_.add_option("--base", base,
+                  "Keep sub-folders relative to FOLDER, not to a pattern's fixed part or the "
+                  "common folder of the named files")
+      ->type_name("FOLDER")
+      ->group(kMany);
+  app_.add_option("--manifest", manifest,
+                  "List of files, one per line: input, output and options, tab-separated; - is "
+                  "standard input")
+      ->type_name("LIST.tsv")
+      ->group(kMany);
+  app_.add_option("--shard", shard, "Process only part I of N of the list")
+      ->type_name("I/N")
+      ->group(kMany);
+  app_.add_flag("--keep-going", keep_going,
+                "Continue after a file fails; by default, the first failure ends the run")
+      ->group(kMany);
+  app_.add_flag("--force", force, "Rebuild outputs that are up to date (same input and options)")
+      ->group(kMany);
+}
+
+// The transform added last sees the values first.
+void CommandLine::remember_values() {
+  for (CLI::Option* option : own_options_) {
+    if (is_flag(*option)) continue;
+    option->transform([this, option](const std::string& value) {
+      written_[option].push_back(value);
+      return value;
+    });
+  }
+}
+
+void CommandLine::note_given() {
+  for (const CLI::Option* option : own_options_) {
+    if (option->count() == 0) continue;
+    GivenOption given;
+    given.name = option->get_single_name();
+    const auto found = written_.find(option);
+    given.is_flag = is_flag(*option);
+    given.values = found == written_.end() ? option->results() : found->second;
+    if (given.is_flag) {  // "off", "no" and "0" are words for false
+      for (std::string& value : given.values) {
+        bool on = false;
+        (void)CLI::detail::lexical_cast(value, on);
+        value = on ? "true" : "false";
+      }
+    }
+    given.names_input = type_begins(*option, "IN");
+    given.names_output = type_begins(*option, "OUT");
+    given_.push_back(std::move(given));
+  }
+  if (form_ != Form::many) return;
+  for (const CLI::Option* option : app_.get_options()) {
+    if (!option->get_positional() || option == inputs_option_) continue;
+    for (const std::string& value : option->results()) fixed_positionals.push_back(value);
+  }
+}
+
+Status CommandLine::check_use_of_batch_options() const {
+  const char* const first = !base.empty()    ? "--base"
+                            : !shard.empty() ? "--shard"
+                            : keep_going     ? "--keep-going"
+                            : force          ? "--force"
+                                             : nullptr;
+  if (form_ != Form::single || first == nullptr) return {};
+  return Error("usage", fmt::format("{} is for batch mode only", first),
+               "add --out-dir or --manifest");
+}
+
+Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arguments) {
+  written_.clear();
+  given_.clear();
+  fixed_positionals.clear();
+  try {
+    app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    return Wish::help;
+  } catch (const CLI::CallForVersion&) {
+    return Wish::version;
+  } catch (const CLI::ParseError& error) {
+    const bool too_many = form_ == Form::single && takes_many_ &&
+                          dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    return Error("usage", error.what(),
+                 fmt::format("see {} --help{}", tool_,
+                             too_many ? "; for several inputs, use --out-dir DIR" : ""));
+  }
+  if (Status status = check_use_of_batch_options(); !status) return status.error();
+  note_given();
+  return Wish::run;
+}
+
+std::string CommandLine::help() const {
+  return help_text(app_);
+}
+
+ToolContext CommandLine::context() const {
+  ToolContext context;
+  context.report.tool = tool_;
+  context.report.version = version();
+  context.jobs = jobs;
+  context.no_clobber = no_clobber;
+  context.quiet = quiet;
+  context.verbose = verbose;
+  context.output = output;
+  context.report_path = json_path;
+  context.report_on_standard_output = json_path == "-";
+  for (const GivenOption& option : given_) {
+    const Json value = option.is_flag              ? Json(option.values.back() != "false")
+                       : option.values.size() == 1 ? Json(option.values.front())
+                                                   : Json(option.values);
+    context.report.options[option.name] = value;
+    if (option.names_output) {
+      for (const std::string& path : option.values) context.destinations.push_back(path);
+      continue;
+    }
+    if (!option.names_input) {
+      context.result_options[option.name] = value;
+      continue;
+    }
+    Json names = Json::array();
+    for (const std::string& path : option.values) names.push_back(base_name(path));
+    context.result_options[option.name] = names.size() == 1 ? names.front() : names;
+  }
+  for (const std::string& path : {output, json_path}) {
+    if (!path.empty()) context.destinations.push_back(path);
+  }
+  return context;
+}
+
+}  // namespace krok::cli

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "tools/cli/console_progress.h"
+#include "tools/cli/tool.h"
+
+// Declares and parses a command line or a manifest line.
+
+namespace krok::cli {
+
+// An option as the user wrote it. A flag's value is "true".
+struct GivenOption {
+  std::string name;  // without dashes
+  std::vector<std::string> values;
+  bool is_flag = false;
+  bool names_input = false;   // IN... in the help
+  bool names_output = false;  // OUT... in the help
+};
+
+// Arguments that parse to these options.
+std::vector<std::string> arguments_of(const std::vector<GivenOption>& options);
+
+class CommandLine {
+ public:
+  enum class Form {
+    single,    // one input, one output
+    many,      // batch mode: --out-dir or --manifest
+    own,       // only the tool's own options, none required: a manifest line
+    one_file,  // the tool's own options and positionals, and -o: one file of a batch
+  };
+  enum class Wish { run, help, version };
+
+  CommandLine(const ToolSpec& spec, Form form);
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  // May be called again with the same options and other values; options that are not given keep
+  // their value. Errors have the code usage.
+  Result<Wish> parse(const std::vector<std::string>& arguments);
+
+  std::string help() const;
+
+  // The tool's own options that were given, in declaration order.
+  const std::vector<GivenOption>& given() const { return given_; }
+
+  // A context with the given options; the output names are its destinations.
+  ToolContext context() const;
+
+  // Form many: all values of the last positional, and the positionals before it.
+  std::vector<std::string> inputs;
+  std::vector<std::string> fixed_positionals;
+
+  // The common options.
+  std::string output;
+  std::string json_path;  // "-" is standard output
+  ProgressStyle style = ProgressStyle::automatic;
+  int jobs = 0;
+  bool no_clobber = false;
+  bool quiet = false;
+  bool verbose = false;
+
+  // Batch options.
+  std::string out_dir;
+  std::string base;
+  std::string manifest;
+  std::string shard;
+  bool keep_going = false;
+  bool force = false;
+
+ private:
+  void take_many_inputs();
+  void declare_common(const ToolSpec& spec);
+  void declare_for_many();
+  void remember_values();
+  void note_given();
+  Status check_use_of_batch_options() const;
+
+  Form form_;
+  // Keeps the variables alive that the options of app_ write to.
+  std::function<void(CommandOptions&)> declare_;
+  CLI::App app_;
+  CommandOptions options_{app_};
+  CLI::Option* inputs_option_ = nullptr;
+  std::vector<CLI::Option*> own_options_;
+  // The value of each option as written ("xyzw"), before CLI11 transforms it ("1").
+  std::map<const CLI::Option*, std::vector<std::string>> written_;
+  std::vector<GivenOption> given_;
+  std::string tool_;
+  bool takes_many_ = false;
+};
+
+}  // namespace krok::cli

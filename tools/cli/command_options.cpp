@@ -1,0 +1,127 @@
+#include "tools/cli/command_options.h"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+namespace krok::cli {
+
+namespace {
+
+// No description: CLI11 would print it beside the value name in the help.
+CLI::Validator validator(CheckValue check) {
+  return CLI::Validator(std::move(check), "");
+}
+
+}  // namespace
+
+CommandOption CommandOption::type_name(const std::string& name) const {
+  option_->type_name(name);
+  return *this;
+}
+CommandOption CommandOption::default_str(const std::string& text) const {
+  option_->default_str(text);
+  return *this;
+}
+CommandOption CommandOption::capture_default_str() const {
+  option_->capture_default_str();
+  return *this;
+}
+CommandOption CommandOption::group(const std::string& name) const {
+  option_->group(name);
+  return *this;
+}
+CommandOption CommandOption::required() const {
+  option_->required();
+  return *this;
+}
+CommandOption CommandOption::needs(const std::string& other) const {
+  option_->needs(other);
+  return *this;
+}
+CommandOption CommandOption::excludes(CommandOption other) const {
+  option_->excludes(other.option_);
+  return *this;
+}
+CommandOption CommandOption::check(CheckValue check) const {
+  option_->check(validator(std::move(check)));
+  return *this;
+}
+CommandOption CommandOption::transform(CheckValue check) const {
+  option_->transform(validator(std::move(check)));
+  return *this;
+}
+CommandOption CommandOption::one_each_time() const {
+  option_->expected(1)->take_all();
+  return *this;
+}
+CommandOption CommandOption::delimiter(char between) const {
+  option_->delimiter(between);
+  return *this;
+}
+CommandOption CommandOption::allow_extra_args(bool allowed) const {
+  option_->allow_extra_args(allowed);
+  return *this;
+}
+
+template <typename Value>
+CommandOption CommandOptions::add_value(const std::string& name, Value& value,
+                                        const std::string& help) {
+  return CommandOption(app_.add_option(name, value, help));
+}
+template CommandOption CommandOptions::add_value(const std::string&, std::string&,
+                                                 const std::string&);
+template CommandOption CommandOptions::add_value(const std::string&, std::vector<std::string>&,
+                                                 const std::string&);
+template CommandOption CommandOptions::add_value(const std::string&, int&, const std::string&);
+template CommandOption CommandOptions::add_value(const std::string&, std::int64_t&,
+                                                 const std::string&);
+template CommandOption CommandOptions::add_value(const std::string&, std::uint64_t&,
+                                                 const std::string&);
+template CommandOption CommandOptions::add_value(const std::string&, std::uint32_t&,
+                                                 const std::string&);
+template CommandOption CommandOptions::add_value(const std::string&, double&, const std::string&);
+template CommandOption CommandOptions::add_value(const std::string&, std::optional<int>&,
+                                                 const std::string&);
+template CommandOption CommandOptions::add_value(const std::string&, std::optional<double>&,
+                                                 const std::string&);
+
+CommandOption CommandOptions::add_number_function(const std::string& name,
+                                                  std::function<void(std::int64_t)> take,
+                                                  const std::string& help) {
+  return CommandOption(app_.add_option_function<std::int64_t>(
+      name, [take = std::move(take)](const std::int64_t& number) { take(number); }, help));
+}
+
+CommandOption CommandOptions::add_flag(const std::string& name, bool& value,
+                                       const std::string& help) {
+  return CommandOption(app_.add_flag(name, value, help));
+}
+
+CommandOption CommandOptions::add_option_function(const std::string& name,
+                                                  std::function<void(const std::string&)> take,
+                                                  const std::string& help) {
+  return CommandOption(app_.add_option_function<std::string>(name, std::move(take), help));
+}
+CommandOption CommandOptions::add_flag_callback(const std::string& name, std::function<void()> take,
+                                                const std::string& help) {
+  return CommandOption(app_.add_flag_callback(name, std::move(take), help));
+}
+CommandOption CommandOptions::add_flag_function(const std::string& name,
+                                                std::function<void(std::int64_t)> take,
+                                                const std::string& help) {
+  return CommandOption(app_.add_flag_function(name, std::move(take), help));
+}
+
+CommandOption CommandOptions::get_option(const std::string& name) {
+  return CommandOption(app_.get_option(name));
+}
+std::size_t CommandOptions::count(const std::string& name) const {
+  return app_.count(name);
+}
+void CommandOptions::group_remaining(const std::string& name) {
+  for (CLI::Option* option : app_.get_options()) {
+    if (option->get_group() == "Options" && !option->get_positional()) option->group(name);
+  }
+}
+
+}  // namespace krok::cli

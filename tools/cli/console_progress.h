@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/progress.h"
+
+namespace krok::cli {
+
+enum class ProgressStyle { automatic, bar, plain, json, none };
+
+// Progress and messages on standard error, without garbling each other.
+class Console : public Progress {
+ public:
+  // Prints whole lines; clears a progress bar first.
+  virtual void write(const std::string& text);
+};
+
+// Writes `text` to `console`, or to standard error if null.
+void write_message(Console* console, const std::string& text);
+
+// automatic: a bar on a terminal, otherwise nothing. plain: a line at the start and every 10 %.
+// json: one {"progress": {"what", "done", "total"}} per line. The bar appears after half a second,
+// so that short runs print nothing. NO_COLOR is honoured.
+std::unique_ptr<Console> console_progress(ProgressStyle style);
+
+}  // namespace krok::cli

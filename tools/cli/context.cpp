@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "core/hash.h"
+#include "core/text.h"
+#include "tools/cli/console_progress.h"
+#include "tools/cli/json_line.h"
+#include "tools/cli/paths.h"
+#include "tools/cli/tool.h"
+
+namespace krok::cli {
+
+void ToolContext::put_message(const std::string& text) {
+  if (one_of_many != nullptr) {
+    one_of_many->messages += text;
+  } else {
+    write_message(console, text);
+  }
+}
+
+void ToolContext::diagnose(Diagnostic diagnostic) {
+  if (diagnostic.where.file.empty() && !subject.file.empty()) diagnostic.where = subject;
+  const bool shown = diagnostic.severity == Severity::error ||
+                     (!quiet && (verbose || diagnostic.severity != Severity::note));
+  if (shown) put_message(message_of(report.tool, diagnostic));
+  report.issues.push_back(std::move(diagnostic));
+}
+
+void ToolContext::warn(std::string code, std::string message, std::string hint) {
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = std::move(code);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  diagnose(std::move(diagnostic));
+}
+
+void ToolContext::log(const std::string& line) {
+  if (!quiet && !report_on_standard_output && (verbose || one_of_many == nullptr))
+    put_message(line + "\n");
+}
+
+void ToolContext::print(const std::string& text) {
+  if (report_on_standard_output) return;
+  // Failures are checked once, at the end.
+  (void)std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+Result<InputFile> ToolContext::open_input(const std::string& path) {
+  auto file = open_long_input(path);
+  if (file) note_checksum(*file);
+  return file;
+}
+
+Result<InputFile> ToolContext::open_long_input(const std::string& path) {
+  const auto replaces = [&](const std::string& destination) {
+    return same_file(path, destination);
+  };
+  if (std::any_of(destinations.begin(), destinations.end(), replaces) ||
+      (!written_.empty() && written_.count(place_of(path)) > 0)) {
+    refused_inputs.push_back(path);
+    return replaced_error(path);
+  }
+  for (const Report::Input& input : report.inputs) {
+    if (path == "-" && input.path == path) {
+      return Error("usage", "standard input can be read only once",
+                   "use a file for the other input");
+    }
+  }
+  auto file = InputFile::open(path);
+  if (file) report.inputs.push_back({path, ""});
+  return file;
+}
+
+void ToolContext::note_checksum(const InputFile& input) {
+  for (Report::Input& opened : report.inputs) {
+    if (opened.xxh3.empty() && opened.path == input.path()) opened.xxh3 = hex(input.checksum());
+  }
+}
+
+void ToolContext::depends_on_neighbours(const std::string& path, const std::string& ending) {
+  report.choices.push_back({std::filesystem::path(path).parent_path().string(), ending});
+}
+
+Status ToolContext::check_output(const std::string& path) {
+  for (const Report::Input& input : report.inputs) {
+    if (!same_file(input.path, path)) continue;
+    refused_inputs.push_back(input.path);
+    return replaced_error(input.path);
+  }
+  if (one_of_many != nullptr && one_of_many->check_unforeseen && !is_destination(path)) {
+    if (Status status = one_of_many->check_unforeseen(path); !status) return status;
+  }
+  const std::string place = place_of(path);
+  if (!place.empty()) written_.insert(place);
+  const auto is_same = [&](const std::string& other) {
+    return !place.empty() && place_of(other) == place;
+  };
+  if ((!report_path.empty() && is_same(report_path)) ||
+      std::any_of(report.outputs.begin(), report.outputs.end(), is_same)) {
+    return twice_error(path);
+  }
+  return {};
+}
+
+bool ToolContext::is_destination(const std::string& path) const {
+  return std::find(destinations.begin(), destinations.end(), path) != destinations.end();
+}
+
+void ToolContext::wrote(const std::string& path) {
+  report.outputs.push_back(path);
+}
+
+// Formats store text as UTF-8; file names may be any bytes.
+Provenance ToolContext::provenance() const {
+  Provenance provenance;
+  provenance.tool = report.tool;
+  provenance.version = report.version;
+  for (const auto& input : report.inputs) {
+    provenance.sources.push_back({to_utf8(base_name(input.path)), input.xxh3});
+  }
+  const auto text_of = [](const Json& value) {
+    return value.is_string() ? to_utf8(value.get<std::string>()) : json_line(value);
+  };
+  for (const auto& [name, value] : result_options.items()) {
+    // Repeated options are listed once per occurrence.
+    const Json values = value.is_array() ? value : Json::array({value});
+    for (const Json& one : values) provenance.options.emplace_back(name, text_of(one));
+  }
+  for (const Diagnostic& issue : report.issues) {
+    if (issue.severity == Severity::warning) {
+      provenance.warnings.push_back(to_utf8(fmt::format("{} [{}]", issue.message, issue.code)));
+    }
+  }
+  return provenance;
+}
+
+}  // namespace krok::cli

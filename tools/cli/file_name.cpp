@@ -1,0 +1,29 @@
+#include "tools/cli/file_name.h"
+
+#include <string_view>
+
+#include "core/file.h"
+
+namespace krok::cli {
+
+std::string file_name_of(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    const bool odd = static_cast<unsigned char>(c) < 32 || c == 127 ||
+                     std::string_view("/\\:*?\"<>|{}$`'&;!").find(c) != std::string_view::npos;
+    result += odd ? '_' : c;
+  }
+  while (result.starts_with('.') || result.starts_with('-')) result[0] = '_';
+  if (result.size() > 100) {
+    std::size_t end = 100;
+    while ((static_cast<unsigned char>(result[end]) & 0xC0) == 0x80) --end;
+    result.resize(end);
+  }
+  return result;
+}
+
+std::string name_of_input(const std::string& path) {
+  return path == "-" ? "standard input" : base_name(path);
+}
+
+}  // namespace krok::cli

@@ -1,0 +1,42 @@
+#include "tools/cli/output_kind.h"
+
+#include <fmt/format.h>
+
+namespace krok::cli {
+
+using registry::Kind;
+
+namespace {
+
+// Hint which tool creates files of this kind; empty if none does.
+std::string maker_of(Kind kind, Kind from) {
+  switch (kind) {
+    case Kind::glb:
+    case Kind::gltf:
+      return from == Kind::anim ? "krok-export converts .anim files to glTF"
+                                : "krok-skin creates glTF from a .model and a .anim file";
+    case Kind::bvh:
+      return "krok-export converts .anim files to BVH";
+    case Kind::model:
+      return "krok-body creates a .model file for a .anim file";
+    case Kind::anim:
+      return "krok-import converts captures to .anim files";
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+Status check_output_kind(const std::string& path, const std::string& option, Kind written) {
+  const Kind named = registry::kind_of_name(path);
+  if (named == Kind::unknown || named == written) return {};
+  const std::string_view own = registry::kind_name(written);
+  const std::string maker = maker_of(named, written);
+  return Error("usage",
+               fmt::format("{} {}: the output is a .{} file, not .{}", option, path, own,
+                           registry::kind_name(named)),
+               fmt::format("use the extension .{}{}{}", own, maker.empty() ? "" : "; ", maker));
+}
+
+}  // namespace krok::cli

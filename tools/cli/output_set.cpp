@@ -1,0 +1,85 @@
+#include "tools/cli/output_set.h"
+
+#include <algorithm>
+#include <atomic>
+#include <iterator>
+#include <optional>
+
+#include "core/parallel.h"
+#include "tools/cli/paths.h"
+
+namespace krok::cli {
+
+namespace {
+
+Result<OutputFile> written(const std::string& path, OutputFile::Options options,
+                           const std::function<Status(OutputFile&)>& write) {
+  auto file = OutputFile::create(path, options);
+  if (!file) return file.error();
+  if (Status status = write(*file); !status) return std::move(status.error()).in_file(path);
+  if (Status status = file->seal(); !status) return status.error();
+  return file;
+}
+
+}  // namespace
+
+Status OutputSet::add(const std::string& path, const std::function<Status(OutputFile&)>& write) {
+  if (path.empty()) return {};
+  return add_all({path}, 1, [&](std::size_t, OutputFile& file) { return write(file); });
+}
+
+Status OutputSet::add_all(const std::vector<std::string>& paths, int jobs,
+                          const std::function<Status(std::size_t, OutputFile&)>& write) {
+  for (const std::string& path : paths) {
+    if (Status status = context_.check_output(path); !status) return status;
+    const std::string place = place_of(path);
+    if (!place.empty() && !places_.insert(place).second) return twice_error(path);
+  }
+  std::vector<std::optional<Result<OutputFile>>> made(paths.size());
+  std::atomic<bool> failed = false;
+  parallel_for(paths.size(), 1, jobs, [&](std::size_t i, std::size_t) {
+    if (failed) return;
+    made[i] = written(paths[i], context_.output_options(),
+                      [&](OutputFile& file) { return write(i, file); });
+    if (!*made[i]) failed = true;
+  });
+  // Files are started in order, so the first failing file is always among those started.
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (made[i] && !*made[i]) return made[i]->error();
+  }
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    files_.push_back(std::move(**made[i]));
+    paths_.push_back(paths[i]);
+  }
+  return {};
+}
+
+Status OutputSet::finish() {
+  const bool foreseen = std::all_of(paths_.begin(), paths_.end(), [&](const std::string& path) {
+    return context_.is_destination(path);
+  });
+  if (context_.one_of_many != nullptr && !foreseen) {
+    std::move(files_.begin(), files_.end(), std::back_inserter(context_.one_of_many->held_files));
+    auto& held_paths = context_.one_of_many->held_paths;
+    held_paths.insert(held_paths.end(), paths_.begin(), paths_.end());
+  } else if (Status status = OutputFile::place_all(files_); !status) {
+    return status;
+  }
+  for (const std::string& path : paths_) context_.wrote(path);
+  return {};
+}
+
+std::string OutputSet::names() const {
+  std::string names;
+  for (const std::string& path : paths_) names += (names.empty() ? "" : ", ") + path;
+  return names;
+}
+
+Status write_output(ToolContext& context, const std::string& path,
+                    const std::function<Status(OutputFile&)>& write) {
+  OutputSet outputs(context);
+  if (Status status = outputs.add(path, write); !status) return status;
+  return outputs.finish();
+}
+
+}  // namespace krok::cli

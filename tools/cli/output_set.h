@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/file.h"
+#include "core/result.h"
+#include "tools/cli/tool.h"
+
+namespace krok::cli {
+
+// The output files of one run, written atomically: all appear or none. Each path is checked by
+// ToolContext::check_output before writing starts. Write errors without a file name get the path.
+class OutputSet {
+ public:
+  explicit OutputSet(ToolContext& context) : context_(context) {}
+
+  // Writes a file under a temporary name beside `path`. Does nothing if `path` is empty.
+  Status add(const std::string& path, const std::function<Status(OutputFile&)>& write);
+
+  // The same for several files, on up to `jobs` threads. If several fail, the error of the first
+  // file in the list is returned. write(i, file) writes the ith file.
+  Status add_all(const std::vector<std::string>& paths, int jobs,
+                 const std::function<Status(std::size_t, OutputFile&)>& write);
+
+  // Renames all files to their final names once each is safely on disk, and adds them to the
+  // report. In a batch, files whose names are not known from the command line are handed over to
+  // the batch, which renames them in list order.
+  Status finish();
+
+  // The paths so far, for messages.
+  std::string names() const;
+
+ private:
+  ToolContext& context_;
+  std::vector<std::string> paths_;
+  std::set<std::string> places_;
+  std::vector<OutputFile> files_;
+};
+
+// Writes a single output file.
+Status write_output(ToolContext& context, const std::string& path,
+                    const std::function<Status(OutputFile&)>& write);
+
+}  // namespace krok::cli

@@ -1,0 +1,101 @@
+#include "tools/cli/report.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/file.h"
+#include "tools/cli/json_object.h"
+
+namespace krok::cli {
+
+namespace {
+
+const char* severity_name(Severity severity) {
+  switch (severity) {
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      break;
+  }
+  return "error";
+}
+
+}  // namespace
+
+Json to_json(const Diagnostic& diagnostic) {
+  const Location& where = diagnostic.where;
+  Json json = object_for(10);
+  json["code"] = diagnostic.code;
+  json["severity"] = severity_name(diagnostic.severity);
+  json["file"] = where.file.empty() ? Json() : Json(where.file);
+  json["line"] = where.line > 0 ? Json(where.line) : Json();
+  json["column"] = where.column > 0 ? Json(where.column) : Json();
+  if (where.byte_offset >= 0) json["byte"] = where.byte_offset;
+  json["joint"] = diagnostic.joint.empty() ? Json() : Json(diagnostic.joint);
+  json["frame"] = diagnostic.frame >= 0 ? Json(diagnostic.frame) : Json();
+  json["message"] = diagnostic.message;
+  json["hint"] = diagnostic.hint.empty() ? Json() : Json(diagnostic.hint);
+  return json;
+}
+
+Json to_json(const Diagnostics& diagnostics) {
+  Json json = Json::array();
+  for (const Diagnostic& diagnostic : diagnostics) json.push_back(to_json(diagnostic));
+  return json;
+}
+
+Json to_json(const std::vector<Report::Input>& inputs) {
+  Json json = Json::array();
+  for (const auto& input : inputs) {
+    Json& entry = json.emplace_back(object_for(2));
+    entry["path"] = input.path;
+    entry["xxh3"] = input.xxh3;
+  }
+  return json;
+}
+
+Json Report::to_json() const {
+  Json json = object_for(8);
+  json["schema"] = "krok.report/1";
+  json["tool"] = tool;
+  json["version"] = version;
+  json["inputs"] = krok::cli::to_json(inputs);
+  json["options"] = options;
+  json["outputs"] = outputs;
+  json["issues"] = krok::cli::to_json(issues);
+  json["result"] = result;
+  return json;
+}
+
+bool only_a_report_stands_at(const std::string& path) {
+  std::error_code missing;
+  if (path == "-" || !std::filesystem::exists(path, missing)) return true;
+  if (!std::filesystem::is_regular_file(path, missing)) return false;
+  const auto file = InputFile::open(path);
+  return file && file->text().substr(0, 100).find("\"schema\": \"krok.") != std::string::npos;
+}
+
+std::string to_text(const Diagnostic& diagnostic) {
+  const Location& where = diagnostic.where;
+  std::string text;
+  if (!where.file.empty()) {
+    text = where.file;
+    if (where.line > 0) text += fmt::format(":{}", where.line);
+    if (where.line > 0 && where.column > 0) text += fmt::format(":{}", where.column);
+    text += ": ";
+  }
+  text += fmt::format("{}: {}", severity_name(diagnostic.severity), diagnostic.message);
+  if (where.byte_offset >= 0) text += fmt::format(" (at byte {})", where.byte_offset);
+  if (!diagnostic.code.empty()) text += fmt::format(" [{}]", diagnostic.code);
+  if (!diagnostic.hint.empty()) text += fmt::format("\n  hint: {}", diagnostic.hint);
+  return text;
+}
+
+std::string message_of(const std::string& tool, const Diagnostic& diagnostic) {
+  return (diagnostic.where.file.empty() ? tool + ": " : "") + to_text(diagnostic) + "\n";
+}
+
+}  // namespace krok::cli

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "tools/cli/json.h"
+
+namespace krok::cli {
+
+// The report of a run, written as JSON (schema krok.report/1) for scripts. Identical for two runs
+// on the same input.
+struct Report {
+  std::string tool;
+  std::string version;
+  struct Input {
+    std::string path;
+    std::string xxh3;
+  };
+  std::vector<Input> inputs;
+  // Folders that were searched for files; for the journal of a batch, not for the report.
+  struct Choice {
+    std::string folder;
+    std::string ending;  // ".asf", or a full file name
+  };
+  std::vector<Choice> choices;
+  Json options = Json::object();
+  std::vector<std::string> outputs;
+  Diagnostics issues;
+  Json result = Json::object();
+
+  Json to_json() const;
+};
+
+Json to_json(const Diagnostic& diagnostic);
+Json to_json(const Diagnostics& diagnostics);
+Json to_json(const std::vector<Report::Input>& inputs);
+
+// Whether `path` is free or holds a report. Only then may a report be written to it when the
+// command line could not be parsed, as `path` might be an input.
+bool only_a_report_stands_at(const std::string& path);
+
+// "walk.bvh:214:61: error: message [code]", with a second line for the hint if any. Without a file
+// it starts at the severity.
+std::string to_text(const Diagnostic& diagnostic);
+
+// The same with a line end, and with the tool's name first if there is no file.
+std::string message_of(const std::string& tool, const Diagnostic& diagnostic);
+
+}  // namespace krok::cli

@@ -1,0 +1,256 @@
+#include "tools/cli/tool.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include "core/temporary_files.h"
+#include "tools/cli/command_line.h"
+#include "tools/cli/console_progress.h"
+#include "tools/cli/paths.h"
+
+namespace krok::cli {
+
+namespace {
+
+// A program may be started with standard streams closed. The next opened file would get their
+// descriptor, and messages would be written into it.
+void open_missing_standard_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);
+  }
+}
+
+// "--json" alone means standard output; CLI11 would take the next argument as its value.
+std::vector<std::string> arguments_of(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  bool options_end = false;
+  for (int i = 1; i < argc; ++i) {
+    std::string argument = argv[i];
+    if (argument == "--") options_end = true;
+    if (argument == "--json" && !options_end) argument = "--json=-";
+    arguments.push_back(std::move(argument));
+  }
+  return arguments;
+}
+
+// Report path if the command line cannot be parsed: a file only if no other argument names it.
+std::string report_path(const std::vector<std::string>& arguments) {
+  const std::string option = "--json=";
+  std::string path;
+  for (const std::string& argument : arguments) {
+    if (argument == "--") break;
+    if (argument.rfind(option, 0) == 0) path = argument.substr(option.size());
+  }
+  for (const std::string& argument : arguments) {
+    if (argument.rfind(option, 0) != 0 && same_file(path, argument)) return {};
+  }
+  return path;
+}
+
+// Of two outputs in one file only the last would remain.
+Status check_destinations(const ToolContext& context) {
+  const auto& paths = context.destinations;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (same_file(paths[i], paths[j])) {
+        return twice_error(paths[i]);
+      }
+    }
+  }
+  return {};
+}
+
+// The report file, opened before the run, so that the run fails early if it cannot be written.
+using ReportFile = std::optional<OutputFile>;
+
+Status begin_report(const ToolContext& context, ReportFile& file) {
+  if (context.report_path.empty()) return {};
+  auto created = OutputFile::create(context.report_path, {.no_clobber = context.no_clobber});
+  if (!created) return created.error();
+  file = std::move(*created);
+  return {};
+}
+
+int finish(ToolContext& context, ReportFile& file, int exit_code) {
+  if (!file) return exit_code;
+  for (const std::string& input : context.refused_inputs) {
+    if (same_file(input, context.report_path)) return kExitTrouble;
+  }
+  const std::string text = json_text(context.report.to_json(), 2) + "\n";
+  (void)file->write(text).ok();  // errors are kept and returned by commit()
+  if (const Status status = file->commit(); !status) {
+    write_message(context.console, to_text(status.error()) + "\n");
+    return kExitTrouble;
+  }
+  return exit_code;
+}
+
+int fail(ToolContext& context, ReportFile& file, const Error& error) {
+  context.diagnose(error);
+  return finish(context, file, kExitTrouble);
+}
+
+// Errors before the report exists.
+int fail(ToolContext& context, const Error& error) {
+  context.diagnose(error);
+  return kExitTrouble;
+}
+
+bool standard_output_written() {
+  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+}
+
+Error standard_output_error() {
+  return Error("file-unwritable", "cannot write to standard output",
+               "check where it is redirected to");
+}
+
+int run_single(const ToolSpec& spec, const CommandLine& line) {
+  ToolContext context = line.context();
+  if (context.report_on_standard_output && context.output == "-") {
+    return fail(context,
+                Error("usage", "the report and the output cannot both go to standard output",
+                      fmt::format("see {} --help", spec.name)));
+  }
+  if (Status status = check_destinations(context); !status) return fail(context, status.error());
+  ReportFile report;
+  if (Status status = begin_report(context, report); !status) return fail(context, status.error());
+  const bool silent = context.quiet && line.style == ProgressStyle::automatic;
+  const auto console = console_progress(silent ? ProgressStyle::none : line.style);
+  context.console = console.get();
+  context.progress = console.get();
+  const Status status = spec.check ? spec.check() : Status();
+  const Result<int> done = status ? run_guarded(spec, context) : Result<int>(status.error());
+  console->end();
+  if (!done) return fail(context, report, done.error());
+  if (!standard_output_written()) return fail(context, report, standard_output_error());
+  return finish(context, report, *done);
+}
+
+// For a command line that cannot be parsed.
+int fail_usage(const ToolSpec& spec, const std::vector<std::string>& arguments, bool many,
+               const Error& error) {
+  ToolContext context;
+  context.report.tool = spec.name;
+  context.report.version = version();
+  context.report_path = report_path(arguments);
+  const auto end = std::find(arguments.begin(), arguments.end(), "--");
+  context.no_clobber = std::find(arguments.begin(), end, "--no-clobber") != end;
+  if (many && !only_a_report_stands_at(context.report_path)) {
+    context.report_path.clear();  // a pattern may match it
+  }
+  ReportFile report;
+  const Status status = begin_report(context, report);
+  const int code = fail(context, report, error);
+  return status ? code : fail(context, status.error());
+}
+
+int run_arguments(const MakeToolSpec& make_spec, const std::vector<std::string>& arguments,
+                  const ManyFiles& many_files) {
+  const ToolSpec spec = make_spec();
+  const bool many = spec.batch && many_files.asked_for && many_files.asked_for(arguments);
+  CommandLine line(spec, many ? CommandLine::Form::many : CommandLine::Form::single);
+  const auto wish = line.parse(arguments);
+  if (!wish) return fail_usage(spec, arguments, many, wish.error());
+  if (*wish == CommandLine::Wish::version) {
+    return print_and_end(spec.name, fmt::format("{} {}\n", spec.name, version()));
+  }
+  // The help is that of single-file mode, whatever else was given.
+  if (*wish == CommandLine::Wish::help) {
+    return print_and_end(spec.name, CommandLine(spec, CommandLine::Form::single).help());
+  }
+  return many ? many_files.run(make_spec, line) : run_single(spec, line);
+}
+
+// Converts the current exception to an Error; call in a catch clause.
+Error error_of_exception(const std::string& tool) {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return Error("out-of-memory", "out of memory");
+  } catch (const std::exception& error) {
+    return Error("internal", fmt::format("a bug in {}: {}", tool, error.what()),
+                 "please report it with the input that caused it");
+  }
+}
+
+constexpr std::size_t kMaxName = 64;
+char name_when_ending[kMaxName] = "krok";
+
+// When memory is exhausted, destructors may throw (those of JSON values allocate) and exceptions
+// may fail to allocate. Neither can be caught.
+[[noreturn]] void exit_out_of_memory() {
+  remove_temporaries();
+  for (const char* words :
+       {static_cast<const char*>(name_when_ending), ": error: out of memory [out-of-memory]\n"}) {
+    (void)!::write(STDERR_FILENO, words, std::strlen(words));
+  }
+  _exit(kExitTrouble);
+}
+
+// Terminate handler, for exceptions that cannot be caught.
+void end_by_exception() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+  } catch (...) {
+    std::abort();  // a bug
+  }
+  exit_out_of_memory();
+}
+
+void install_out_of_memory_handler(const char* path) {
+  const char* slash = std::strrchr(path, '/');
+  std::strncpy(name_when_ending, slash == nullptr ? path : slash + 1, kMaxName - 1);
+  std::set_terminate(end_by_exception);
+}
+
+}  // namespace
+
+std::string version() {
+  return KROK_VERSION;
+}
+
+std::function<Result<std::string>()> always(std::string ending) {
+  return [ending = std::move(ending)] { return ending; };
+}
+
+Result<int> run_guarded(const ToolSpec& spec, ToolContext& context) {
+  try {
+    return spec.run(context);
+  } catch (const std::exception&) {
+    return error_of_exception(spec.name);
+  }
+}
+
+int print_and_end(const std::string& tool, const std::string& text) {
+  (void)std::fwrite(text.data(), 1, text.size(), stdout);
+  if (standard_output_written()) return kExitDone;
+  write_message(nullptr, message_of(tool, standard_output_error()));
+  return kExitTrouble;
+}
+
+int run_tool(const MakeToolSpec& make_spec, int argc, char** argv, const ManyFiles& many) {
+  open_missing_standard_streams();
+  remove_temporaries_on_signals();
+  install_out_of_memory_handler(argc > 0 ? argv[0] : "krok");
+  try {
+    return run_arguments(make_spec, arguments_of(argc, argv), many);
+  } catch (const std::exception&) {
+    const std::string tool = base_name(argc > 0 ? argv[0] : "krok");
+    write_message(nullptr, message_of(tool, error_of_exception(tool)));
+    return kExitTrouble;
+  }
+}
+
+}  // namespace krok::cli

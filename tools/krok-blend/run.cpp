@@ -1,0 +1,230 @@
+#include "tools/krok-blend/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "blend/warp_by_shape.h"
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "core/text.h"
+#include "formats/anim/anim.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
+#include "tools/cli/file_name.h"
+#include "tools/cli/output_kind.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-blend/weighted_input.h"
+#include "tools/shared/keys_sidecar.h"
+
+namespace krok::cli::blend {
+
+namespace {
+
+using krok::blend::Blended;
+using krok::blend::BlendInput;
+using krok::blend::Correspondence;
+
+struct Motion {
+  std::string name;
+  Clip clip;
+  MotionKeys keys;
+  bool has_keys = false;
+  krok::blend::WeightCurve weight;
+};
+
+Result<std::vector<Motion>> read_motions(const Options& options, const io::FindRoles& find_roles,
+                                         ToolContext& context) {
+  std::vector<Motion> motions;
+  for (const std::string& word : options.inputs) {
+    const auto input = parse_weighted_input(word);
+    if (!input) return input.error();
+    auto clip = io::open_motion(input->path, context);
+    if (!clip) return clip.error();
+    Motion motion;
+    motion.name = name_of_input(input->path);
+    motion.clip = std::move(*clip);
+    if (input->weight) {
+      motion.weight = krok::blend::WeightCurve::constant(*input->weight);
+    } else {
+      auto curve = read_weight_curve(input->curve, context);
+      if (!curve) return curve.error();
+      motion.weight = std::move(*curve);
+    }
+    auto found =
+        choose_keys(options.keys, input->path, motion.name, motion.clip, find_roles, context);
+    if (!found) return found.error();
+    motion.has_keys = found->has_value();
+    if (motion.has_keys) motion.keys = std::move(**found);
+    motions.push_back(std::move(motion));
+  }
+  return motions;
+}
+
+// Corresponding times from keytimes, from poses (DTW), or from start and end.
+Result<Correspondence> find_moments(const Options& options, const std::vector<Motion>& motions,
+                                    const RoleMap& roles, ToolContext& context) {
+  if (options.warp == WarpChoice::dtw) {
+    std::vector<const Clip*> clips;
+    for (const Motion& motion : motions) clips.push_back(&motion.clip);
+    return krok::blend::warp_by_shape(clips, roles, {.jobs = context.jobs});
+  }
+  const auto ends = [&] {
+    std::vector<double> durations;
+    for (const Motion& motion : motions) durations.push_back(motion.clip.duration());
+    return krok::blend::ends_alone(durations);
+  };
+  if (options.keys == KeysChoice::none) return ends();
+  const auto lacks_keytimes = [](const Motion& motion) { return motion.keys.keytimes.empty(); };
+  if (options.keys == KeysChoice::automatic && std::ranges::any_of(motions, lacks_keytimes)) {
+    const auto& motion = *std::ranges::find_if(motions, lacks_keytimes);
+    context.warn("blend-keys",
+                 fmt::format("{} has no keytimes; the motions are matched from beginning to end",
+                             motion.name),
+                 "--warp dtw aligns them by their poses; krok-keys --set sets keytimes");
+    return ends();
+  }
+  std::vector<krok::blend::KeyedMotion> keyed;
+  for (const Motion& motion : motions) {
+    keyed.push_back({motion.name, motion.clip.duration(), &motion.keys, 2.1 / motion.clip.rate});
+  }
+  auto found = krok::blend::match_keytimes(keyed);
+  if (found) context.diagnose(found->notes);
+  return found;
+}
+
+// The source times of each frame in all motions, as a CSV table.
+std::string warp_table(const std::vector<Motion>& motions, const Blended& blended) {
+  std::string text = "time [s],generic";
+  for (const Motion& motion : motions) {
+    std::string name = motion.name;
+    std::ranges::replace_if(
+        name, [](char c) { return c == ',' || c == '"' || c == '\n'; }, '_');
+    text += fmt::format(",{} [s]", name);
+  }
+  text += '\n';
+  for (std::size_t f = 0; f < blended.generic.size(); ++f) {
+    text += fmt::format("{:.6f},{:.6f}", static_cast<double>(f) / blended.clip.rate,
+                        blended.generic[f]);
+    for (const auto& times : blended.times) text += fmt::format(",{:.6f}", times[f]);
+    text += '\n';
+  }
+  return text;
+}
+
+Status write_results(const Options& options, const std::vector<Motion>& motions, Blended& blended,
+                     ToolContext& context) {
+  const auto keys_path = place_for_keys(blended.keys, blended.clip.skeleton, context.output);
+  if (!keys_path) return keys_path.error();
+  blended.clip.provenance = context.provenance();
+  for (const Motion& motion : motions) {
+    for (const std::string& conversion : motion.clip.provenance.conversions) {
+      blended.clip.provenance.conversions.push_back(fmt::format("{}: {}", motion.name, conversion));
+    }
+  }
+  OutputSet outputs(context);
+  Status status = outputs.add(context.output, [&](OutputFile& file) {
+    return anim::write(blended.clip,
+                       {.orientation = options.orientation, .jobs = thread_count(context.jobs)},
+                       file);
+  });
+  if (status && !keys_path->empty()) {
+    status = outputs.add(*keys_path, [&](OutputFile& file) {
+      return file.write(keys::write(blended.keys, blended.clip.skeleton, blended.clip.duration()));
+    });
+  }
+  if (status) {
+    status = outputs.add(options.save_warp, [&](OutputFile& file) {
+      return file.write(warp_table(motions, blended));
+    });
+  }
+  return status ? outputs.finish() : status;
+}
+
+void warn_of_spread(const Blended& blended, ToolContext& context) {
+  constexpr double kMax = kPi / 2;
+  if (blended.widest_spread <= kMax) return;
+  Diagnostic told;
+  told.severity = Severity::warning;
+  told.code = "blend-spread";
+  told.joint = blended.clip.skeleton.names[static_cast<std::size_t>(blended.spread_joint)];
+  told.frame = blended.spread_frame;
+  told.message = fmt::format(
+      "the motions' rotations of {} differ by up to {:.0f} degrees (frame {}); blending "
+      "rotations over 90 degrees apart is unreliable",
+      told.joint, blended.widest_spread / kRadiansPerDegree, told.frame);
+  told.hint = "check the result, and whether the keytimes correspond";
+  context.diagnose(std::move(told));
+}
+
+void report(const std::vector<Motion>& motions, const Correspondence& moments,
+            const Blended& blended, ToolContext& context) {
+  Json list = Json::array();
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    Json entry;
+    entry["name"] = motions[m].name;
+    entry["weight"] = motions[m].weight.is_constant() ? Json(motions[m].weight.weights[0]) : Json();
+    entry["moments"] = moments.times[m];
+    list.push_back(std::move(entry));
+  }
+  Json& result = context.report.result;
+  result["frames"] = blended.clip.frame_count();
+  result["rate"] = blended.clip.rate;
+  result["duration"] = blended.clip.duration();
+  result["moments"] = moments.names;
+  result["motions"] = std::move(list);
+  result["keytimes"] = to_json(blended.keys.keytimes);
+  result["widest_spread_degrees"] = blended.widest_spread / kRadiansPerDegree;
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
+  }
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  const auto motions = read_motions(options, *find_roles, context);
+  if (!motions) return motions.error();
+  const auto roles = (*find_roles)(motions->front().clip.skeleton);
+  if (!roles) return roles.error();
+  const auto moments = find_moments(options, *motions, *roles, context);
+  if (!moments) return moments.error();
+
+  std::vector<BlendInput> inputs;
+  for (const Motion& motion : *motions) {
+    inputs.push_back(
+        {motion.name, &motion.clip, motion.has_keys ? &motion.keys : nullptr, motion.weight});
+  }
+  const auto stands = [](const Motion& motion) { return !motion.keys.contacts.empty(); };
+  if (options.align == krok::blend::Align::stance && !std::ranges::all_of(*motions, stands)) {
+    context.warn("blend-stance",
+                 fmt::format("{} has no contacts; its feet are not locked",
+                             std::ranges::find_if_not(*motions, stands)->name),
+                 "krok-keys finds contacts, and --add-contact adds them");
+  }
+  krok::blend::BlendOptions how;
+  how.warp =
+      options.warp == WarpChoice::linear ? krok::blend::Warp::linear : krok::blend::Warp::pchip;
+  how.align = options.align;
+  how.rate = options.rate;
+  how.any_sum = options.modifier;
+  how.jobs = context.jobs;
+  auto blended = krok::blend::blend_clips(inputs, *roles, *moments, how);
+  if (!blended) return blended.error();
+  warn_of_spread(*blended, context);
+  if (Status status = write_results(options, *motions, *blended, context); !status) {
+    return status.error();
+  }
+  report(*motions, *moments, *blended, context);
+  context.log(fmt::format("{} -> {}: {} at {} fps ({} s), {} matched times",
+                          counted(static_cast<long long>(motions->size()), "motion"),
+                          context.output, counted(blended->clip.frame_count(), "frame"),
+                          readable(blended->clip.rate), readable(blended->clip.duration(), 4),
+                          moments->moments()));
+  return kExitDone;
+}
+
+}  // namespace krok::cli::blend

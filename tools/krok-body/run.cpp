@@ -1,0 +1,91 @@
+#include "tools/krok-body/run.h"
+
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "formats/anim/anim.h"
+#include "formats/model/model_format.h"
+#include "formats/registry/registry.h"
+#include "tools/cli/output_kind.h"
+#include "tools/cli/output_set.h"
+
+namespace krok::cli::body {
+
+namespace {
+
+// A clip with the file's skeleton, and its motion if any.
+Result<Clip> read_skeleton(const InputFile& input) {
+  switch (registry::kind_of_content(input.bytes())) {
+    case registry::Kind::anim: {
+      auto clip = anim::read(input.bytes());
+      if (!clip) return std::move(clip).error().in_file(input.path());
+      return clip;
+    }
+    case registry::Kind::model: {
+      auto model = model::read(input.bytes());
+      if (!model) return std::move(model).error().in_file(input.path());
+      Clip clip;
+      clip.skeleton = std::move(model->skeleton);
+      return clip;
+    }
+    default:
+      break;
+  }
+  const registry::Kind kind = registry::identify(input.path(), input.bytes());
+  return Error("body-input",
+               fmt::format("expected a .anim or .model file, but this is {}",
+                           registry::describe_content(input.bytes())),
+               registry::advice(kind, registry::Kind::anim))
+      .in_file(input.path());
+}
+
+Json result_of(const Body& body) {
+  Json result;
+  result["vertices"] = body.model.vertex_count();
+  result["triangles"] = body.model.triangles.size();
+  result["joints"] = body.model.skeleton.joint_count();
+  result["bones"] = body.model.skeleton.joint_count() - 1;
+  result["volume"] = body.volume;
+  result["human"] = body.human;
+  result["stature"] = body.human ? Json(body.stature) : Json();
+  result["pose"] = body.pose;
+  return result;
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  auto how = body_options(options);
+  if (!how) return how.error();
+  how->jobs = context.jobs;
+  how->progress = context.progress;
+
+  auto input = context.open_input(options.input);
+  if (!input) return input.error();
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::model); !status) {
+    return status.error();
+  }
+  auto clip = read_skeleton(*input);
+  if (!clip) return clip.error();
+  auto body = make_body(*clip, *how);
+  if (!body) return std::move(body).error().in_file(input->path());
+  context.diagnose(body->diagnostics);
+
+  Model& model = body->model;
+  model.provenance = context.provenance();
+  model.provenance.conversions.push_back(fmt::format("body built in pose: {}", body->pose));
+  const Status status = write_output(context, context.output, [&](OutputFile& file) {
+    return model::write(model, {.orientation = options.orientation}, file);
+  });
+  if (!status) return status.error();
+
+  context.report.result = result_of(*body);
+  context.log(fmt::format("body: {}, {}, {}, {} m3 -> {}",
+                          counted(model.vertex_count(), "vertex", "vertices"),
+                          counted(static_cast<long long>(model.triangles.size()), "triangle"),
+                          counted(model.skeleton.joint_count() - 1, "bone"),
+                          readable(body->volume, 2), context.output));
+  return kExitDone;
+}
+
+}  // namespace krok::cli::body

@@ -1,0 +1,315 @@
+#include "tools/krok-cam/run.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "camera/camera_motion.h"
+#include "camera/keyed_camera.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/cam/cam.h"
+#include "formats/camera_keys/camera_keys.h"
+#include "formats/gltf/add_camera.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
+#include "formats/registry/registry.h"
+#include "motion/ground_frame.h"
+#include "tools/cli/output_kind.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-cam/scene_camera.h"
+
+namespace krok::cli::cam {
+
+namespace {
+
+using registry::Kind;
+
+// A camera, and a summary of how it was made.
+struct Shot {
+  CameraTrack track;
+  std::vector<std::string> conversions;
+  Json facts = Json::object();
+  std::string words;
+};
+
+bool is_keys(const InputFile& file, Kind kind) {
+  if (kind != Kind::unknown) return false;
+  const std::string_view text = trimmed(without_byte_order_mark(file.text()));
+  return text.starts_with('{') || extension(file.path()) == ".json";
+}
+
+Status refuse_film(const Options& options, const char* what) {
+  if (!options.film) return {};
+  return Error("usage",
+               fmt::format("--follow, --orbit and --still need a motion; this is {}", what))
+      .in_file(options.input);
+}
+
+Status refuse_camera(const Options& options) {
+  if (options.camera.empty()) return {};
+  return Error("usage", "--camera is for scenes").in_file(options.input);
+}
+
+Result<Shot> from_keys(const Options& options, const InputFile& file) {
+  if (Status status = refuse_film(options, "keys"); !status) return status.error();
+  if (Status status = refuse_camera(options); !status) return status.error();
+  auto keys = camera_keys::read(file.text());
+  if (!keys) return std::move(keys).error().in_file(file.path());
+  auto track = make_track(keys->camera, options.rate.value_or(keys->rate));
+  if (!track) return std::move(track).error().in_file(file.path());
+  Shot shot;
+  shot.track = *std::move(track);
+  const auto count = keys->camera.keys.size();
+  shot.facts["keys"] = count;
+  shot.words = fmt::format("from {}", counted(static_cast<long long>(count), "key"));
+  return shot;
+}
+
+Result<Shot> from_cam(const Options& options, const InputFile& file) {
+  if (Status status = refuse_film(options, "a camera"); !status) return status.error();
+  if (Status status = refuse_camera(options); !status) return status.error();
+  if (options.rate) return Error("usage", "--rate is for keys and scenes").in_file(options.input);
+  auto track = krok::cam::read(file.bytes());
+  if (!track) return std::move(track).error().in_file(file.path());
+  Shot shot;
+  shot.conversions = track->provenance.conversions;
+  shot.track = *std::move(track);
+  return shot;
+}
+
+Result<Shot> from_scene(const Options& options, const InputFile& file, ToolContext& context) {
+  if (Status status = refuse_film(options, "a scene"); !status) return status.error();
+  auto track = read_scene_camera(file, options.camera, options.rate, context);
+  if (!track) return std::move(track).error();
+  Shot shot;
+  shot.track = *std::move(track);
+  return shot;
+}
+
+// Finds a joint by name or role.
+Result<int> find_joint(const std::string& name, const Skeleton& skeleton, const RoleMap& roles) {
+  const int joint = skeleton.find(name);
+  if (joint >= 0) return joint;
+  const auto role = parse_role(name);
+  if (role && roles.joint(*role) >= 0) return roles.joint(*role);
+  return Error("cam-joint",
+               role ? fmt::format("--follow {}: no joint has that role", shown(name))
+                    : fmt::format("--follow {}: the motion has no joint of that name", shown(name)),
+               "krok-info -v lists the joints and their roles; --map assigns roles");
+}
+
+void warn(ToolContext& context, const std::string& path, const char* code, std::string message,
+          std::string hint, int frame) {
+  Diagnostic told;
+  told.severity = Severity::warning;
+  told.code = code;
+  told.message = std::move(message);
+  told.hint = std::move(hint);
+  told.where.file = path;
+  told.frame = frame;
+  context.diagnose(std::move(told));
+}
+
+void report_faults(const ActorShot& shot, const std::string& path, ToolContext& context) {
+  const int frames = shot.track.frame_count();
+  if (shot.frames_shown < frames) {
+    warn(context, path, "cam-cut",
+         fmt::format("in {} of {} frames, joints to be framed are outside the image, first in "
+                     "frame {}",
+                     frames - shot.frames_shown, frames, shot.first_not_shown),
+         "omit --distance to choose it automatically", shot.first_not_shown);
+  }
+  if (shot.frames_inside > 0) {
+    warn(context, path, "cam-inside",
+         fmt::format("in {} of {} frames the camera is inside the body or closer to it than {} m, "
+                     "first in frame {}",
+                     shot.frames_inside, frames, readable(kClearance), shot.first_inside),
+         "omit --distance or increase it", shot.first_inside);
+  }
+}
+
+std::string_view part_name(Framing framing) {
+  switch (framing) {
+    case Framing::upper:
+      return "upper body";
+    case Framing::head:
+      return "head";
+    default:
+      return "full body";
+  }
+}
+
+Result<Shot> from_motion(const Options& options, const InputFile& file, ToolContext& context) {
+  if (!options.film) {
+    return Error("usage", "no camera mode given", "use --follow hips, --orbit 20s or --still")
+        .in_file(file.path());
+  }
+  const auto clip = io::open_motion(file, context);
+  if (!clip) return clip.error();
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  const auto roles = (*find_roles)(clip->skeleton);
+  if (!roles) return roles.error();
+  if (clip->skeleton.empty()) {
+    return Error("camera-empty", "the motion has no joints").in_file(file.path());
+  }
+  ActorCamera camera = options.film->camera;
+  if (options.film->moving_centre) {
+    const auto joint = options.film->follow.empty()
+                           ? Result<int>(carrying_joint(*roles))
+                           : find_joint(options.film->follow, clip->skeleton, *roles);
+    if (!joint) return Error(joint.error()).in_file(file.path());
+    camera.joint = *joint;
+  }
+  const double duration = clip->duration();
+  if (options.film->turns != 0 && duration > 0) {
+    camera.turning = options.film->turns * 2 * kPi / duration;
+  }
+  auto filmed = film(*clip, *roles, camera);
+  if (!filmed) return std::move(filmed).error().in_file(file.path());
+  report_faults(*filmed, file.path(), context);
+  Shot shot;
+  shot.conversions = clip->provenance.conversions;
+  shot.facts["framed"] = part_name(camera.framing);
+  shot.facts["follows"] = camera.joint < 0
+                              ? Json()
+                              : Json(clip->skeleton.names[static_cast<std::size_t>(camera.joint)]);
+  shot.facts["distance"] = filmed->distance;
+  shot.facts["frames_shown"] = filmed->frames_shown;
+  shot.facts["frames_inside"] = filmed->frames_inside;
+  const int frames = filmed->track.frame_count();
+  shot.words =
+      fmt::format("{} in {} from {} m", part_name(camera.framing),
+                  filmed->frames_shown == frames
+                      ? "all frames"
+                      : fmt::format("{} of {}", filmed->frames_shown, counted(frames, "frame")),
+                  readable(filmed->distance, 3));
+  shot.track = std::move(filmed->track);
+  return shot;
+}
+
+Result<Shot> make_shot(const Options& options, ToolContext& context) {
+  const auto file = context.open_input(options.input);
+  if (!file) return file.error();
+  const Kind kind = registry::identify(file->path(), file->bytes());
+  if (is_keys(*file, kind)) return from_keys(options, *file);
+  switch (kind) {
+    case Kind::cam:
+      return from_cam(options, *file);
+    case Kind::glb:
+    case Kind::gltf:
+      return from_scene(options, *file, context);
+    case Kind::anim:
+    case Kind::bvh:
+    case Kind::amc:
+      return from_motion(options, *file, context);
+    default:
+      break;
+  }
+  return Error("cam-input",
+               fmt::format("this is {}, expected keys, a camera, a scene with one, or a motion",
+                           registry::describe_content(file->bytes())),
+               registry::is_read_through_assimp(kind)
+                   ? "krok-import --cam shot.cam extracts a camera from such scenes"
+                   : "keys are JSON, see formats/camera_keys/SPEC.md")
+      .in_file(file->path());
+}
+
+// The format of the output at `path`.
+Result<Format> format_of(const Options& options, const std::string& path) {
+  const std::string end = extension(path);
+  if (!options.into.empty() || options.format == Format::glb || end == ".glb") {
+    if (options.format == Format::cam) return Format::cam;
+    if (Status status = check_output_kind(path, "-o", Kind::glb); !status) return status.error();
+    return Format::glb;
+  }
+  if (Status status = check_output_kind(path, "-o", Kind::cam); !status) return status.error();
+  return Format::cam;
+}
+
+// The GLB file with the camera added.
+Result<gltf::WithCamera> glb_of(const Options& options, const CameraTrack& track,
+                                ToolContext& context) {
+  gltf::CameraOptions how;
+  how.name = options.name;
+  how.animation = options.clip;
+  how.aspect = options.aspect;
+  if (!how.aspect && options.film) how.aspect = options.film->camera.aspect;
+  if (options.into.empty()) return gltf::camera_alone(track, how);
+  const auto file = context.open_input(options.into);
+  if (!file) return file.error();
+  gltf::ReadOptions reading;
+  if (options.into != "-") {
+    const std::string folder = std::filesystem::path(options.into).parent_path().string();
+    reading.folder = folder.empty() ? "." : folder;
+  }
+  auto made = gltf::add_camera(file->bytes(), track, how, reading);
+  if (!made) return std::move(made).error().in_file(options.into);
+  for (const std::string& path : made->files) {
+    if (const auto other = context.open_input(path); !other) return other.error();
+  }
+  return made;
+}
+
+Status write(const Options& options, Format format, CameraTrack& track, ToolContext& context) {
+  if (format == Format::cam) {
+    return write_output(context, context.output, [&](OutputFile& file) {
+      return krok::cam::write(track, {.orientation = options.orientation}, file);
+    });
+  }
+  auto made = glb_of(options, track, context);
+  if (!made) return std::move(made).error();
+  for (Diagnostic& diagnostic : made->diagnostics) {
+    if (diagnostic.where.file.empty()) diagnostic.where.file = options.input;
+    context.diagnose(std::move(diagnostic));
+  }
+  return write_output(context, context.output,
+                      [&](OutputFile& file) { return file.write(made->bytes); });
+}
+
+void report(const Shot& shot, ToolContext& context) {
+  const CameraTrack& track = shot.track;
+  const CameraMotion motion = camera_motion(track);
+  const double duration = track.frame_count() < 2 ? 0 : (track.frame_count() - 1) / track.rate;
+  Json result;
+  result["frames"] = track.frame_count();
+  result["rate"] = track.rate;
+  result["duration"] = duration;
+  result.update(shot.facts);
+  result["way"] = motion.length;
+  result["largest_speed"] = {{"metres_per_second", motion.largest_speed},
+                             {"frame", motion.fastest_frame}};
+  result["largest_turning"] = {{"degrees_per_second", motion.largest_turning / kRadiansPerDegree},
+                               {"frame", motion.fastest_turning_frame}};
+  result["field_of_view"] = {{"least", motion.least_field_of_view / kRadiansPerDegree},
+                             {"most", motion.most_field_of_view / kRadiansPerDegree}};
+  context.report.result = std::move(result);
+  context.log(fmt::format("{}: {}, {} s{}{}; max {} m/s and {} degrees/s", context.output,
+                          counted(track.frame_count(), "frame"), readable(duration, 3),
+                          shot.words.empty() ? "" : "; ", shot.words,
+                          readable(motion.largest_speed, 3),
+                          readable(motion.largest_turning / kRadiansPerDegree, 3)));
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  const auto format = format_of(options, context.output);
+  if (!format) return format.error();
+  if (*format == Format::cam && options.aspect && !options.film) {
+    return Error("usage",
+                 "--aspect is for glTF and for filming a motion; a .cam file does not store it");
+  }
+  auto shot = make_shot(options, context);
+  if (!shot) return shot.error();
+  shot->track.provenance = context.provenance();
+  shot->track.provenance.conversions = shot->conversions;
+  if (Status status = write(options, *format, shot->track, context); !status) {
+    return status.error();
+  }
+  report(*shot, context);
+  return kExitDone;
+}
+
+}  // namespace krok::cli::cam

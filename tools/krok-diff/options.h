@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "compare/matching.h"
+#include "compare/measure.h"
+#include "tools/cli/tool.h"
+#include "tools/krok-diff/difference_sheet.h"
+#include "tools/krok-diff/folders.h"
+
+namespace krok::cli::diff {
+
+struct Options {
+  std::string first, second;  // paths
+  compare::Matching matching = compare::Matching::automatic;
+  bool materials = false;  // whether different materials count as a difference
+  compare::Tolerance tolerance;
+  SheetOptions sheet;
+  std::string plot;     // path; empty for none
+  std::string heatmap;  // path; empty for none
+  FolderOptions folders;
+};
+
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::diff

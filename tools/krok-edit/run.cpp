@@ -1,0 +1,228 @@
+#include "tools/krok-edit/run.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "formats/anim/anim.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
+#include "formats/sequences/sequences.h"
+#include "motion/ground_frame.h"
+#include "tools/cli/file_name.h"
+#include "tools/cli/output_kind.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-edit/steps.h"
+
+namespace krok::cli::edit {
+
+std::string in_degrees(double radians) {
+  const double degrees = radians / kRadiansPerDegree;
+  return std::abs(degrees) < 1e-4 ? "0 deg" : readable(degrees, 3) + " deg";
+}
+
+namespace {
+
+constexpr std::string_view kSequencePlace = "{sequence}";
+
+Json summary_of(const Clip& clip) {
+  Json json;
+  json["joints"] = clip.joint_count();
+  json["frames"] = clip.frame_count();
+  json["rate"] = clip.rate;
+  json["duration"] = clip.duration();
+  return json;
+}
+
+std::string summary_text(const Clip& clip) {
+  return fmt::format("{} at {} fps ({} s)", counted(clip.frame_count(), "frame"),
+                     readable(clip.rate), readable(clip.duration(), 4));
+}
+
+// Keeps the provenance of earlier steps, newest last.
+Provenance extended(const Provenance& before, Provenance now,
+                    const std::vector<std::string>& done) {
+  std::vector<Provenance::Source> sources = before.sources;
+  sources.insert(sources.end(), now.sources.begin(), now.sources.end());
+  now.sources = std::move(sources);
+  std::vector<std::string> conversions = before.conversions;
+  if (!before.tool.empty()) {
+    std::string made = fmt::format("made by {} {}", before.tool, before.version);
+    for (const auto& [name, value] : before.options) {
+      made += value == "true" ? fmt::format(" --{}", name) : fmt::format(" --{} {}", name, value);
+    }
+    conversions.push_back(std::move(made));
+  }
+  conversions.insert(conversions.end(), done.begin(), done.end());
+  now.conversions = std::move(conversions);
+  std::vector<std::string> warnings = before.warnings;
+  warnings.insert(warnings.end(), now.warnings.begin(), now.warnings.end());
+  now.warnings = std::move(warnings);
+  return now;
+}
+
+Result<sequences::SequenceFile> read_sequences(const std::string& path, ToolContext& context) {
+  const auto input = context.open_input(path);
+  if (!input) return input.error();
+  auto file = sequences::read(input->text());
+  if (!file) return std::move(file.error()).in_file(path);
+  return file;
+}
+
+Result<int> list_sequences(const Options& options, ToolContext& context) {
+  const auto file = read_sequences(options.sequences, context);
+  if (!file) return file.error();
+  Json list = Json::array();
+  std::string text;
+  for (const sequences::Sequence& sequence : file->sequences) {
+    text += fmt::format("{}: frames {} to {}", sequence.name, sequence.first, sequence.last);
+    if (sequence.speed != 1) text += fmt::format(", speed {}", readable(sequence.speed));
+    if (sequence.loop) text += ", loop";
+    text += "\n";
+    Json entry;
+    entry["name"] = sequence.name;
+    entry["first"] = sequence.first;
+    entry["last"] = sequence.last;
+    entry["speed"] = sequence.speed;
+    entry["loop"] = sequence.loop;
+    list.push_back(std::move(entry));
+  }
+  context.report.result["rate"] = file->rate > 0 ? Json(file->rate) : Json();
+  context.report.result["sequences"] = std::move(list);
+  context.print(text);
+  return kExitDone;
+}
+
+// Reads all inputs, each opened once.
+Result<Edit> read_inputs(const Options& options, ToolContext& context) {
+  Edit edit;
+  auto clip = io::open_motion(options.input, context);
+  if (!clip) return clip.error();
+  edit.clip = std::move(*clip);
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  auto roles = (*find_roles)(edit.clip.skeleton);
+  if (!roles) return roles.error();
+  edit.roles = std::move(*roles);
+  edit.carrier = carrying_joint(edit.roles);
+  edit.sequence = options.sequence;
+  if (!options.sequences.empty()) {
+    auto file = read_sequences(options.sequences, context);
+    if (!file) return file.error();
+    edit.sequences = std::move(*file);
+  }
+  for (const std::string& path : options.append) {
+    auto next = io::open_motion(path, context);
+    if (!next) return next.error();
+    edit.appended.push_back(std::move(*next));
+  }
+  return edit;
+}
+
+// The result for one part of the input.
+struct Edited {
+  Json result;                     // for the report
+  std::vector<std::string> lines;  // for display
+};
+
+// Applies the steps and adds the result to the outputs.
+Result<Edited> edit_one(const Options& options, Edit edit, const std::string& output,
+                        ToolContext& context, OutputSet& outputs) {
+  const std::string before = summary_text(edit.clip);
+  // The order given in the help.
+  for (const auto step : {clean, cut_out, mirror_sides, change_timing, append_motions, make_loop,
+                          take_out_travel, change_size, change_place}) {
+    if (Status status = step(options, context, edit); !status) {
+      return std::move(status.error()).in_file(options.input);
+    }
+  }
+  edit.clip.provenance = extended(edit.clip.provenance, context.provenance(), edit.lines);
+  anim::WriteOptions writing;
+  writing.orientation = options.orientation;
+  writing.jobs = thread_count(context.jobs);
+  const Status status =
+      outputs.add(output, [&](OutputFile& file) { return anim::write(edit.clip, writing, file); });
+  if (!status) return status.error();
+  Edited edited;
+  edited.lines.push_back(fmt::format("{}: {} -> {}: {}", name_of_input(options.input), before,
+                                     output, summary_text(edit.clip)));
+  for (const std::string& line : edit.lines) edited.lines.push_back("  " + line);
+  edited.result = summary_of(edit.clip);
+  edited.result["steps"] = std::move(edit.steps);
+  return edited;
+}
+
+// One file per sequence; cleaning is done once for all.
+Result<Edited> edit_all_sequences(const Options& options, Edit source, ToolContext& context,
+                                  OutputSet& outputs) {
+  const std::string& pattern = context.output;
+  const std::size_t place = pattern.rfind(kSequencePlace);
+  if (place == std::string::npos) {
+    return Error("usage", "several sequences need distinct names",
+                 "select one with --sequence NAME, or use {sequence} for their names: -o "
+                 "'take_{sequence}.anim'");
+  }
+  if (Status status = check_sequences(options, source); !status) return status.error();
+  if (Status status = clean(options, context, source); !status) {
+    return std::move(status.error()).in_file(options.input);
+  }
+  Options cleaned_already = options;
+  cleaned_already.spike_threshold.reset();
+  cleaned_already.smoothing.reset();
+  cleaned_already.joints = {};
+  Edited all;
+  all.result["sequences"] = Json::array();
+  for (const sequences::Sequence& sequence : source.sequences->sequences) {
+    Edit edit = source;
+    edit.sequence = sequence.name;
+    std::string output = pattern;
+    output.replace(place, kSequencePlace.size(), sequence.name);
+    auto edited = edit_one(cleaned_already, std::move(edit), output, context, outputs);
+    if (!edited) return edited.error();
+    Json entry;
+    entry["name"] = sequence.name;
+    entry["output"] = output;
+    entry.update(edited->result);
+    all.result["sequences"].push_back(std::move(entry));
+    all.lines.insert(all.lines.end(), edited->lines.begin(), edited->lines.end());
+  }
+  return all;
+}
+
+}  // namespace
+
+void Edit::note(const char* step, Json metrics, std::string line) {
+  Json entry;
+  entry["step"] = step;
+  entry["did"] = line;
+  for (auto& [key, value] : metrics.items()) entry[key] = std::move(value);
+  steps.push_back(std::move(entry));
+  lines.push_back(std::move(line));
+}
+
+Result<int> run(const Options& options, ToolContext& context) {
+  if (options.list_sequences) return list_sequences(options, context);
+  if (context.output.empty()) return Error("usage", "no output given (-o)");
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
+  }
+  auto source = read_inputs(options, context);
+  if (!source) return source.error();
+  const Json input_summary = summary_of(source->clip);
+  const bool all_sequences = source->sequences && source->sequence.empty();
+  OutputSet outputs(context);
+  auto edited = all_sequences
+                    ? edit_all_sequences(options, std::move(*source), context, outputs)
+                    : edit_one(options, std::move(*source), context.output, context, outputs);
+  if (!edited) return edited.error();
+  if (Status status = outputs.finish(); !status) return status.error();
+  for (const std::string& line : edited->lines) context.log(line);
+  context.report.result = std::move(edited->result);
+  context.report.result["input"] = input_summary;
+  return kExitDone;
+}
+
+}  // namespace krok::cli::edit

@@ -1,0 +1,141 @@
+#include "tools/krok-export/options.h"
+
+#include <memory>
+
+#include "capture/conventions.h"
+#include "core/quantity.h"
+#include "formats/bvh/bvh_writer.h"
+#include "tools/cli/one_of.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-export/run.h"
+
+namespace krok::cli::exporting {
+
+namespace {
+
+Result<std::string> extension_of(ExportFormat format) {
+  switch (format) {
+    case ExportFormat::bvh:
+      return std::string(".bvh");
+    case ExportFormat::glb:
+      return std::string(".glb");
+    case ExportFormat::gltf:
+      return std::string(".gltf");
+    case ExportFormat::csv:
+      return std::string(".csv");
+    case ExportFormat::from_extension:
+      break;
+  }
+  return Error("usage", "no output format given", "use --format bvh, glb, gltf or csv");
+}
+
+Status check(const Options& options) {
+  // Without a format, the output's extension determines it.
+  if (options.format == ExportFormat::from_extension) return {};
+  return check_for(options.format, options);
+}
+
+}  // namespace
+
+Result<double> unit_of(const Options& options, ExportFormat format) {
+  if (options.unit.empty()) return bvh::WriteOptions().unit_metres;
+  if (format != ExportFormat::bvh) {
+    return Error("export-unit", "--unit is for BVH; the other formats are in metres");
+  }
+  const auto unit = parse_unit(options.unit);
+  if (!unit) return Error("usage", "--unit: " + unit.error().message, unit.error().hint);
+  return unit->metres;
+}
+
+Result<double> reduce_tolerance(const Options& options) {
+  const auto tolerance = parse_length(options.reduce);
+  if (!tolerance)
+    return Error("usage", "--reduce: " + tolerance.error().message, tolerance.error().hint);
+  if (!(*tolerance > 0)) {
+    return Error("usage", fmt::format("--reduce: {} is not a positive length", options.reduce),
+                 "for example --reduce 1mm; without --reduce, all keys are kept");
+  }
+  return *tolerance;
+}
+
+// Checks that the options apply to this format.
+Status check_for(ExportFormat format, const Options& options) {
+  if (const auto unit = unit_of(options, format); !unit) return unit.error();
+  if (format != ExportFormat::bvh && (options.digits || !options.order.empty())) {
+    return Error("usage", "--digits and --order are for BVH");
+  }
+  if (options.bones && format != ExportFormat::glb && format != ExportFormat::gltf) {
+    return Error("usage", "--bones and --no-bones are for glTF");
+  }
+  if (!options.reduce.empty()) {
+    if (format != ExportFormat::glb && format != ExportFormat::gltf) {
+      return Error("usage", "--reduce is for glTF; the other formats store every frame");
+    }
+    if (const auto tolerance = reduce_tolerance(options); !tolerance) return tolerance.error();
+  }
+  return {};
+}
+
+namespace {
+
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("input", options.input,
+                  "Motion: a .anim file, or a capture (BVH; AMC with its ASF beside it), read as "
+                  "by krok-import without options")
+      .type_name("IN")
+      .required();
+  command
+      .add_option("--format", options.format,
+                  "bvh, glb, gltf (text, embedded data) or csv; default: the output's extension")
+      .type_name("FORMAT")
+      .transform(one_of<ExportFormat>({{"bvh", ExportFormat::bvh},
+                                       {"glb", ExportFormat::glb},
+                                       {"gltf", ExportFormat::gltf},
+                                       {"csv", ExportFormat::csv}}));
+  command.add_option("--unit", options.unit, "BVH: length unit: m, cm, mm, in, ft")
+      .type_name("UNIT")
+      .default_str("cm");
+  add_whole(
+      command, "--digits", options.digits,
+      "BVH: decimal places of angles in degrees and lengths in centimetres; adjusted to the same "
+      "precision for other units. 6 preserve the motion to 1e-6 metres and radians",
+      1, 15)
+      .type_name("1..15")
+      .default_str("6");
+  command
+      .add_option("--order", options.order,
+                  "BVH: order of the rotation channels: XYZ, XZY, YXZ, YZX, ZXY or ZYX")
+      .type_name("ORDER")
+      .transform(one_of_words({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}))
+      .default_str("ZXY");
+  command
+      .add_option("--reduce", options.reduce,
+                  "glTF: reduce keys for a smaller file; joints, and points 3 cm around them, "
+                  "move by at most this distance, such as 1mm. By default each frame is a key")
+      .type_name("LENGTH");
+  command.add_flag_function(
+      "--bones,!--no-bones", [&options](std::int64_t sign) { options.bones = sign > 0; },
+      "glTF: add a thin mesh for each bone, so that viewers display the skeleton (default; "
+      "--no-bones: joints only)");
+}
+
+}  // namespace
+
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-export", options, declare, check, run);
+  spec.summary = "Exports a motion as BVH, glTF or a CSV table of world positions";
+  spec.inputs = "IN";
+  spec.examples = {
+      {"krok-export walk.anim -o walk.glb", "the animated skeleton, for any glTF viewer"},
+      {"krok-export walk.anim -o walk.csv",
+       "frame,time,joint,x,y,z: one row per frame and joint, in metres"},
+      {"krok-export capture.bvh -o capture.glb",
+       "directly from a capture; -v prints the detected conventions"},
+      {"krok-export walk.anim --format csv -o - | head", "the first rows"}};
+  spec.batch = {{".anim", ".bvh", ".amc"}, [options] { return extension_of(options->format); }};
+  return spec;
+}
+
+}  // namespace krok::cli::exporting

@@ -1,0 +1,162 @@
+#include "tools/krok-export/run.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "capture/conventions.h"
+#include "core/numbers.h"
+#include "core/quantity.h"
+#include "core/text.h"
+#include "formats/bvh/bvh_writer.h"
+#include "formats/csv/csv_writer.h"
+#include "formats/gltf/gltf_writer.h"
+#include "formats/gltf/reduce_tracks.h"
+#include "formats/io/open_motion.h"
+#include "skin/bone_mesh.h"
+#include "tools/cli/output_set.h"
+
+namespace krok::cli::exporting {
+
+namespace {
+
+Result<ExportFormat> format_of(const Options& options, const std::string& output) {
+  if (options.format != ExportFormat::from_extension) return options.format;
+  const std::string end = extension(output);
+  if (end == ".bvh") return ExportFormat::bvh;
+  if (end == ".glb") return ExportFormat::glb;
+  if (end == ".gltf") return ExportFormat::gltf;
+  if (end == ".csv") return ExportFormat::csv;
+  return Error("export-format",
+               end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
+                           : fmt::format("unknown extension {}", end),
+               "use .bvh, .glb, .gltf or .csv; or --format bvh, glb, gltf or csv")
+      .in_file(output);
+}
+
+// "ZXY", in any case; validated by the option's check.
+EulerOrder order_of(const std::string& letters) {
+  EulerOrder order{};
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = static_cast<Axis>(ascii_lower(letters.at(i)) - 'x');
+  }
+  return order;
+}
+
+Status write_as(ExportFormat format, const Clip& clip, const Options& options, double unit_metres,
+                OutputFile& file) {
+  if (format == ExportFormat::bvh) {
+    bvh::WriteOptions writing;
+    writing.unit_metres = unit_metres;
+    if (options.digits) writing.decimals = *options.digits;
+    if (!options.order.empty()) writing.order = order_of(options.order);
+    return bvh::write(clip, writing, file);
+  }
+  return csv::write(clip, file);
+}
+
+io::MotionSummary facts_of(const Clip& clip) {
+  return {clip.skeleton, clip.rate, clip.frame_count(), clip.duration(), {}};
+}
+
+Error empty_error(const std::string& path) {
+  return Error("export-empty", "the motion has no joints").in_file(path);
+}
+
+// Reduces keys if requested.
+Result<std::optional<Reduction>> reduce(const Options& options, const Skeleton& skeleton, int jobs,
+                                        gltf::JointTracks& tracks) {
+  if (options.reduce.empty()) return std::optional<Reduction>();
+  const auto tolerance = reduce_tolerance(options);
+  if (!tolerance) return tolerance.error();
+  auto reduction = gltf::reduce_tracks(skeleton, {.tolerance = *tolerance}, jobs, tracks);
+  if (!reduction) return reduction.error();
+  return std::optional(*std::move(reduction));
+}
+
+// Reads the motion, writes it, and returns its summary.
+Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolContext& context,
+                                      std::optional<Reduction>& reduction) {
+  std::optional<gltf::JointTracks> tracks;
+  const auto facts =
+      io::stream_motion(options.input, context, [&](const FrameSource& frames) -> Status {
+        if (frames.skeleton.empty()) return empty_error(options.input);
+        auto made = gltf::joint_tracks(frames.skeleton, frames, context.jobs);
+        if (!made) return made.error();
+        tracks = *std::move(made);
+        return {};
+      });
+  if (!facts) return facts.error();
+  auto reduced = reduce(options, facts->skeleton, context.jobs, *tracks);
+  if (!reduced) return reduced.error();
+  reduction = *std::move(reduced);
+  gltf::WriteOptions writing;
+  writing.binary = binary;
+  writing.provenance = context.provenance();
+  writing.provenance.conversions = facts->conversions;
+  const bool bones = options.bones.value_or(true);
+  writing.name = bones ? "bones" : "skeleton";
+  const Status status = write_output(context, context.output, [&](OutputFile& file) {
+    return bones ? gltf::write_rig(bone_mesh(facts->skeleton), *tracks, writing, file)
+                 : gltf::write_skeleton(facts->skeleton, *tracks, writing, file);
+  });
+  if (!status) return status.error();
+  return facts;
+}
+
+Result<io::MotionSummary> export_others(ExportFormat format, const Options& options,
+                                        double unit_metres, ToolContext& context) {
+  const auto clip = io::open_motion(options.input, context);
+  if (!clip) return clip.error();
+  if (clip->skeleton.empty()) return empty_error(options.input);
+  const Status status = write_output(context, context.output, [&](OutputFile& file) {
+    return write_as(format, *clip, options, unit_metres, file);
+  });
+  if (!status) return status.error();
+  return facts_of(*clip);
+}
+
+Json result_of(const io::MotionSummary& motion, const std::optional<Reduction>& reduction) {
+  Json result;
+  result["joints"] = motion.skeleton.joint_count();
+  result["frames"] = motion.frame_count;
+  result["rate"] = motion.rate;
+  result["duration"] = motion.duration;
+  if (reduction) {
+    result["keys"] = reduction->keys_after;
+    result["keys_before"] = reduction->keys_before;
+    result["largest_error"] = reduction->largest_error;
+  }
+  return result;
+}
+
+std::string words_for(const Reduction& reduction) {
+  return fmt::format(", {} of {}, max error {} mm",
+                     grouped(static_cast<long long>(reduction.keys_after)),
+                     counted(static_cast<long long>(reduction.keys_before), "key"),
+                     readable(1e3 * reduction.largest_error, 3));
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  const auto format = format_of(options, context.output);
+  if (!format) return format.error();
+  if (Status status = check_for(*format, options); !status) return status.error();
+  const auto unit_metres = unit_of(options, *format);
+  if (!unit_metres) return unit_metres.error();
+  const bool is_glb = *format == ExportFormat::glb;
+  std::optional<Reduction> reduction;
+  const auto motion = is_glb || *format == ExportFormat::gltf
+                          ? export_gltf(is_glb, options, context, reduction)
+                          : export_others(*format, options, *unit_metres, context);
+  if (!motion) return motion.error();
+  context.report.result = result_of(*motion, reduction);
+  context.log(fmt::format("{}: {}, {}, {} s{}", context.output,
+                          counted(motion->skeleton.joint_count(), "joint"),
+                          counted(motion->frame_count, "frame"), readable(motion->duration, 3),
+                          reduction ? words_for(*reduction) : ""));
+  return kExitDone;
+}
+
+}  // namespace krok::cli::exporting

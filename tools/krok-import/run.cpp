@@ -1,0 +1,140 @@
+#include "tools/krok-import/run.h"
+
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "formats/anim/anim.h"
+#include "formats/io/open_capture.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
+#include "formats/io/open_scene.h"
+#include "formats/model/model_format.h"
+#include "motion/sample.h"
+#include "scene/model.h"
+#include "tools/cli/output_kind.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-import/facts.h"
+#include "tools/krok-import/scene_import.h"
+
+namespace krok::cli::import {
+
+namespace {
+
+// Rejects options that are only for characters.
+Status check_capture_options(const Options& options, const std::string& path) {
+  const auto missing = [&](const char* what, const char* option) {
+    return Error("import-missing",
+                 fmt::format("a capture has no {}: {} cannot be used", what, option))
+        .in_file(path);
+  };
+  if (!options.character.empty()) return missing("materials", "--character");
+  if (!options.cam.empty()) return missing("camera", "--cam");
+  if (!options.camera.empty()) return missing("camera", "--camera");
+  if (!options.morphs.empty()) return missing("morph targets", "--morphs");
+  if (!options.weights.empty()) return missing("morph targets", "--morph-weights");
+  if (!options.skin.empty()) return missing("skin", "--skin");
+  if (!options.clip.empty()) return missing("animations to choose from", "--clip");
+  return {};
+}
+
+// Writes the outputs and reports what was imported.
+Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
+                     const Options& options, ToolContext& context) {
+  Capture& capture = *opened.capture;
+  std::optional<Clip> resampled;
+  FrameSource frames = opened.frames;
+  if (options.resample > 0) {
+    auto made = resample(capture.clip, options.resample);
+    if (!made) return made.error();
+    resampled = *std::move(made);
+    capture.clip.provenance.conversions.push_back(
+        fmt::format("resampled from {} to {} frames per second", readable(frames.rate),
+                    readable(options.resample)));
+    frames = frames_of(*resampled);
+  }
+  HeightWatch height(frames);
+  frames = height.watched(frames);
+  // The diagnostics and the checksum are complete once all frames were read.
+  Provenance provenance;
+  const auto complete = [&] {
+    context.diagnose(capture.diagnostics);
+    context.note_checksum(input);
+    provenance = context.provenance();
+    provenance.conversions = capture.clip.provenance.conversions;
+    return provenance;
+  };
+  OutputSet outputs(context);
+  if (context.output.empty()) {
+    height.see(0, (resampled ? *resampled : capture.clip).positions);
+    complete();
+  } else {
+    const anim::WriteOptions writing{.orientation = options.orientation, .jobs = context.jobs};
+    Status status = outputs.add(context.output, [&](OutputFile& file) {
+      return anim::write(frames, complete, writing, file);
+    });
+    if (!status) return status;
+  }
+  Status status = outputs.add(options.model, [&](OutputFile& file) {
+    Model model;
+    model.skeleton = frames.skeleton;
+    model.provenance = provenance;
+    return model::write(model, {.orientation = options.orientation}, file);
+  });
+  if (status) status = outputs.finish();
+  if (!status) return status;
+
+  context.report.result = result_of(opened, frames, height.height());
+  context.log(
+      fmt::format("{} -> {}", line_about(options.input, frames, height.height()), outputs.names()));
+  log_roles(frames.skeleton, capture.roles, context);
+  return {};
+}
+
+Result<int> import_capture(const InputFile& input, const Options& options, ToolContext& context) {
+  if (Status status = check_capture_options(options, input.path()); !status) return status.error();
+  auto reading = read_options(options);
+  if (!reading) return reading.error();
+  reading->jobs = context.jobs;
+  reading->progress = context.progress;
+  const bool whole = context.output.empty() || options.resample > 0;
+  Status status =
+      io::use_capture(input, context, *reading, whole, [&](const io::OpenedCapture& opened) {
+        if (Status fits = check_output_kind(context.output, "-o", registry::Kind::anim); !fits) {
+          return fits;
+        }
+        return write_capture(opened, input, options, context);
+      });
+  if (!status) {
+    Error error = std::move(status).error();
+    if (error.code == "acclaim-skeleton") error.hint = "use --skeleton FILE.asf";
+    return error;
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+Result<int> run(const Options& given, ToolContext& context) {
+  Options options = given;
+  if (context.output.empty() && options.model.empty() && options.cam.empty() &&
+      options.character.empty() && options.morphs.empty() && options.weights.empty()) {
+    return Error("usage",
+                 "nothing to write: none of -o, --model, --character, --cam, --morphs is given",
+                 "write the motion with -o OUTPUT.anim");
+  }
+  if (!options.model.empty() && options.model == context.output) {
+    return Error("usage", "-o and --model name the same file");
+  }
+  const auto input = context.open_long_input(options.input);
+  if (!input) return input.error();
+  const io::ChecksumAtEnd noted(*input, context);
+  auto roles = io::open_role_map(options.map, context);
+  if (!roles) return roles.error();
+  if (!options.map.empty()) options.roles = *std::move(roles);
+  const registry::Kind kind = registry::identify(input->path(), input->bytes());
+  if (!io::is_scene(kind)) return import_capture(*input, options, context);
+  context.note_checksum(*input);
+  return import_scene(*input, options, context);
+}
+
+}  // namespace krok::cli::import

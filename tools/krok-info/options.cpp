@@ -1,0 +1,38 @@
+#include "tools/krok-info/options.h"
+
+#include <memory>
+
+#include "tools/krok-info/run.h"
+#include "tools/shared/role_input.h"
+
+namespace krok::cli::info {
+
+namespace {
+
+void declare(CommandOptions& command, Options& options) {
+  command.add_option("FILE", options.files, "Files of these kinds; - is standard input")
+      .type_name("")
+      .required();
+  add_map_option(command, options.map);
+}
+
+}  // namespace
+
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of<Options>("krok-info", options, declare, nullptr, run);
+  spec.summary =
+      "Prints the contents of files: motions (.anim), models (.model), cameras (.cam), step "
+      "libraries "
+      "(.steps), materials (.material), characters (.character; glTF, FBX, COLLADA, SMD, MS3D, "
+      "3DS, ASE, MD5), captures (.bvh, .asf, .amc)";
+  spec.inputs = "FILE...";
+  spec.examples = {
+      {"krok-info walk.anim", "frames, rate, duration, size, provenance and joint roles"},
+      {"krok-info -v capture.bvh", "also each joint with its role, and the reader's notes"},
+      {"krok-info --json *.model > models.json", "the same as JSON for scripts"}};
+  spec.has_output = false;
+  return spec;
+}
+
+}  // namespace krok::cli::info

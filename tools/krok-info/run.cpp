@@ -1,0 +1,84 @@
+#include "tools/krok-info/run.h"
+
+#include "formats/io/open_role_map.h"
+#include "formats/io/open_scene.h"
+#include "formats/registry/registry.h"
+#include "tools/krok-info/describe.h"
+
+namespace krok::cli::info {
+
+namespace {
+
+Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
+                             ToolContext& context) {
+  using registry::Kind;
+  const Kind kind = registry::identify(file.path(), file.bytes());
+  if (io::is_scene(kind)) return describe_scene(file, kind, how, context);
+  switch (kind) {
+    case Kind::anim:
+      return describe_anim(file, how, context);
+    case Kind::model:
+      return describe_model(file, how, context);
+    case Kind::cam:
+      return describe_cam(file, context);
+    case Kind::steps:
+      return describe_steps(file, context);
+    case Kind::material:
+      return describe_material(file, context);
+    case Kind::character:
+      return describe_character(file, how, context);
+    case Kind::bvh:
+      return describe_bvh(file, how, context);
+    case Kind::asf:
+    case Kind::amc:
+      return describe_acclaim(file, how, context);
+    default:
+      break;
+  }
+  return Error(
+      "info-kind",
+      "is " + std::string(registry::describe_content(file.bytes())) +
+          ", which krok-info cannot read",
+      "supported are .anim, .model, .cam, .steps, .material, .character, .bvh, .asf, .amc, "
+      ".glb and .gltf files, and characters in .fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and "
+      ".md5anim files");
+}
+
+Result<Description> describe_path(const std::string& path, const SkeletonOptions& how,
+                                  ToolContext& context) {
+  const auto file = context.open_input(path);
+  if (!file) return file.error();
+  auto description = describe(*file, how, context);
+  if (!description) return std::move(description).error().in_file(path);
+  description->json["bytes"] = file->bytes().size();
+  return description;
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  auto roles = io::open_role_map(options.map, context);
+  if (!roles) return roles.error();
+  const SkeletonOptions how{*std::move(roles), !options.map.empty(), context.verbose};
+  Json files = Json::array();
+  bool failed = false;
+  bool first = true;
+  for (const std::string& path : options.files) {
+    auto description = describe_path(path, how, context);
+    Json entry = {{"path", path}};
+    if (description) {
+      entry.update(description->json);
+      if (!context.quiet) context.print((first ? "" : "\n") + to_text(path, *description));
+      first = false;
+    } else {
+      failed = true;
+      entry["error"] = description.error().code;
+      context.diagnose(std::move(description).error());
+    }
+    files.push_back(std::move(entry));
+  }
+  context.report.result["files"] = std::move(files);
+  return failed ? kExitTrouble : kExitDone;
+}
+
+}  // namespace krok::cli::info

@@ -1,0 +1,222 @@
+#include "tools/krok-keys/run.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "contacts/gait_keytimes.h"
+#include "contacts/gait_metrics.h"
+#include "contacts/slide_speed.h"
+#include "core/numbers.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
+#include "formats/keys/keys.h"
+#include "tools/cli/file_name.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-keys/edit_keys.h"
+#include "tools/krok-keys/feet_plot.h"
+#include "tools/shared/keys_sidecar.h"
+
+namespace krok::cli::keys {
+
+namespace {
+
+bool stands(const std::string& path) {
+  std::error_code ignored;
+  return !path.empty() && path != "-" && std::filesystem::is_regular_file(path, ignored);
+}
+
+// The output file is also read first, to keep manual edits in it.
+Result<std::optional<krok::keys::Sidecar>> read_before(const Options& options, const Clip& clip,
+                                                       ToolContext& context) {
+  if (options.discard_edits) return std::optional<krok::keys::Sidecar>();
+  if (!options.keys.empty()) {
+    auto sidecar = read_keys_file(options.keys, clip, context);
+    if (!sidecar) return std::move(sidecar).error();
+    return std::optional<krok::keys::Sidecar>(std::move(*sidecar));
+  }
+  if (context.output.empty()) return read_keys_beside(options.input, clip, context);
+  if (!stands(context.output)) return std::optional<krok::keys::Sidecar>();
+  const auto file = InputFile::open(context.output);
+  if (!file) return file.error();
+  auto sidecar =
+      krok::keys::read_sidecar(file->text(), context.output, clip.skeleton, clip.duration());
+  if (!sidecar) {
+    Error error = std::move(sidecar).error();
+    if (error.hint.empty()) error.hint = "--discard-edits replaces the file";
+    return error;
+  }
+  return std::optional<krok::keys::Sidecar>(std::move(*sidecar));
+}
+
+struct Found {
+  std::optional<FoundContacts> contacts;  // if the feet are known
+  MotionKeys keys;
+};
+
+Result<Found> find(const Clip& clip, const RoleMap& roles, ToolContext& context) {
+  auto contacts = find_contacts(clip, roles);
+  if (!contacts) return std::move(contacts).error();
+  Gait gait = find_gait(clip, roles, *contacts);
+  context.diagnose(contacts->warnings);
+  context.diagnose(gait.warnings);
+  Found found;
+  found.keys = {contacts->contacts, std::move(gait.keytimes)};
+  found.contacts = std::move(*contacts);
+  return found;
+}
+
+// Whether to detect steps; an Error if that would discard unmarked edits.
+Result<bool> is_to_find(const Options& options, const std::optional<krok::keys::Sidecar>& before) {
+  if (options.find == Find::none) return false;
+  if (!before || !before->has_edits()) return true;
+  if (options.find == Find::automatic) return false;
+  if (!before->edited) return true;
+  return Error("keys-edited",
+               "the keytime file has unmarked edits, which finding steps again "
+               "would discard",
+               "mark them with \"by\": \"hand\", or use --discard-edits");
+}
+
+std::string as_table(const krok::keys::Sidecar& sidecar, const Skeleton& skeleton) {
+  std::string text;
+  const auto hand = [](const std::vector<std::uint8_t>& marks, std::size_t i) {
+    return i < marks.size() && marks[i] != 0 ? "  by hand" : "";
+  };
+  for (std::size_t i = 0; i < sidecar.keys.keytimes.size(); ++i) {
+    const Keytime& key = sidecar.keys.keytimes[i];
+    text += fmt::format("{:9.3f} s  {}{}\n", key.time, key.name, hand(sidecar.keytimes_by_hand, i));
+  }
+  for (std::size_t i = 0; i < sidecar.keys.contacts.size(); ++i) {
+    const Contact& contact = sidecar.keys.contacts[i];
+    text += fmt::format("{:9.3f} s to {:7.3f} s  {} at {:.3f}, {:.3f}, {:.3f} m{}\n", contact.start,
+                        contact.end, skeleton.names[static_cast<std::size_t>(contact.joint)],
+                        contact.place.x(), contact.place.y(), contact.place.z(),
+                        hand(sidecar.contacts_by_hand, i));
+  }
+  return text;
+}
+
+Json as_json(const krok::keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitMetrics& gait,
+             double slide) {
+  const auto hand = [](const std::vector<std::uint8_t>& marks, std::size_t i) {
+    return i < marks.size() && marks[i] != 0;
+  };
+  Json keytimes = Json::array(), contacts = Json::array();
+  for (std::size_t i = 0; i < sidecar.keys.keytimes.size(); ++i) {
+    const Keytime& key = sidecar.keys.keytimes[i];
+    keytimes.push_back(
+        {{"name", key.name}, {"time", key.time}, {"by_hand", hand(sidecar.keytimes_by_hand, i)}});
+  }
+  for (std::size_t i = 0; i < sidecar.keys.contacts.size(); ++i) {
+    const Contact& contact = sidecar.keys.contacts[i];
+    contacts.push_back({{"joint", skeleton.names[static_cast<std::size_t>(contact.joint)]},
+                        {"start", contact.start},
+                        {"end", contact.end},
+                        {"place", {contact.place.x(), contact.place.y(), contact.place.z()}},
+                        {"by_hand", hand(sidecar.contacts_by_hand, i)}});
+  }
+  Json json;
+  json["keytimes"] = std::move(keytimes);
+  json["contacts"] = std::move(contacts);
+  json["gait"] = {{"cycles", gait.cycles},
+                  {"cycle", gait.cycle},
+                  {"cadence", gait.cadence},
+                  {"stance", {gait.stance[0], gait.stance[1]}},
+                  {"double_support", gait.double_support},
+                  {"slide_speed", slide}};
+  return json;
+}
+
+std::string gait_text(const GaitMetrics& gait, double slide) {
+  if (gait.cycles == 0) return {};
+  std::string text =
+      fmt::format("; {:.0f} steps per minute, stance {:.0f} % and {:.0f} % of a cycle",
+                  gait.cadence, 100 * gait.stance[0], 100 * gait.stance[1]);
+  // In a run, flight phases would count as skating.
+  if (gait.double_support > 0) text += fmt::format(", foot skate {:.1f} mm/s", 1e3 * slide);
+  return text;
+}
+
+Status write_results(const Options& options, const Clip& clip, const RoleMap& roles,
+                     std::optional<FoundContacts> found, const krok::keys::Sidecar& sidecar,
+                     ToolContext& context) {
+  OutputSet outputs(context);
+  if (!context.output.empty()) {
+    const std::string text = krok::keys::write_sidecar(sidecar, clip.skeleton);
+    const Status status =
+        outputs.add(context.output, [&](OutputFile& file) { return file.write(text); });
+    if (!status) return status;
+  }
+  if (!options.plot.empty()) {
+    if (!found) {
+      auto contacts = find_contacts(clip, roles);
+      if (!contacts) return std::move(contacts).error();
+      found = std::move(*contacts);
+    }
+    const auto svg = feet_plot(name_of_input(options.input), clip, *found, sidecar.keys);
+    if (!svg) return svg.error();
+    const Status status =
+        outputs.add(options.plot, [&](OutputFile& file) { return file.write(*svg); });
+    if (!status) return status;
+  }
+  return outputs.finish();
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  const auto changes = changes_of(options);
+  if (!changes) return changes.error();
+  if (!changes->empty() && context.output.empty()) {
+    return Error(
+        "usage", "edits need an output file, -o",
+        fmt::format("use -o {} to write beside the motion",
+                    options.input == "-" ? "NAME.keys.json" : keys_sidecar_path(options.input)));
+  }
+  const auto clip = io::open_motion(options.input, context);
+  if (!clip) return clip.error();
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  const auto roles = (*find_roles)(clip->skeleton);
+  if (!roles) return roles.error();
+  const auto before = read_before(options, *clip, context);
+  if (!before) return before.error();
+  const auto finding = is_to_find(options, *before);
+  if (!finding) return finding.error();
+
+  krok::keys::Sidecar sidecar = before->value_or(krok::keys::Sidecar{});
+  std::optional<FoundContacts> contacts;
+  if (*finding) {
+    auto found = find(*clip, *roles, context);
+    if (!found) return std::move(found).error().in_file(options.input);
+    sidecar = with_edits(std::move(found->keys), sidecar);
+    contacts = std::move(found->contacts);
+  } else if (*before && (*before)->has_edits()) {
+    context.log("the keys were edited by hand and are kept; --find steps detects the rest again");
+  }
+  sidecar.duration = clip->duration();
+  if (Status status = change(*changes, *clip, sidecar); !status) return status.error();
+  if (Status status = krok::check(sidecar.keys, clip->skeleton, clip->duration()); !status) {
+    return status.error();
+  }
+  const Status status =
+      write_results(options, *clip, *roles, std::move(contacts), sidecar, context);
+  if (!status) return status.error();
+
+  const GaitMetrics gait = gait_metrics(sidecar.keys.keytimes);
+  const double slide = slide_speed(*clip, *roles);
+  context.report.result = as_json(sidecar, clip->skeleton, gait, slide);
+  context.report.result["found"] = *finding;
+  context.report.result["edited"] = sidecar.has_edits();
+  if (context.output.empty() && options.plot.empty()) {
+    context.print(as_table(sidecar, clip->skeleton));
+  }
+  context.log(fmt::format("{}: {}, {}{}", name_of_input(options.input),
+                          counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
+                          counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
+                          gait_text(gait, slide)));
+  return options.find == Find::steps && sidecar.keys.keytimes.empty() ? kExitNo : kExitDone;
+}
+
+}  // namespace krok::cli::keys

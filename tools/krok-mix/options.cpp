@@ -1,0 +1,47 @@
+#include "tools/krok-mix/options.h"
+
+#include <memory>
+
+#include "tools/krok-mix/run.h"
+#include "tools/shared/orientation_option.h"
+#include "tools/shared/role_input.h"
+
+namespace krok::cli::mix {
+
+namespace {
+
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("input", options.input,
+                  "Timeline (JSON): a sequence of motions, transitions, layers; "
+                  "see formats/timeline/SPEC.md")
+      .type_name("IN.json")
+      .required();
+  add_keys_option(command, options.keys).group("Time");
+  add_map_option(command, options.map).group("Space");
+  add_orientation_option(command, options.orientation);
+}
+
+}  // namespace
+
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of<Options>("krok-mix", options, declare, nullptr, run);
+  spec.summary =
+      "Bakes a timeline to a motion: a sequence of motions, transitions between them, layers on "
+      "top";
+  spec.inputs = "IN.json";
+  spec.examples = {
+      {"krok-mix story.json -o story.anim --json=story.report.json",
+       "story.json: {\"schema\": \"krok.timeline/1\", \"sources\": {\"walk\": \"walk.anim\", "
+       "\"run\": \"run.anim\"}, \"base\": [{\"source\": \"walk\", \"loop\": 2}, {\"source\": "
+       "\"run\", \"change\": {\"kind\": \"crossfade\", \"duration\": \"0.4s\"}}]}"},
+      {"krok-mix wave.json -o wave.anim",
+       "wave.json adds: \"layers\": [{\"mask\": [{\"below\": \"LeftShoulder\", \"soft\": "
+       "2}], \"items\": [{\"source\": \"wave\", \"at\": \"1s\", \"fade_in\": \"0.3s\"}]}]"},
+      {"krok-mix 'stories/scene_*.json' --out-dir out", "all timelines matching a pattern"}};
+  spec.batch = {{".json"}, always(".anim")};
+  return spec;
+}
+
+}  // namespace krok::cli::mix

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "core/result.h"
+#include "formats/container/packed_orientation.h"
+#include "tools/cli/tool.h"
+#include "tools/shared/keys_choice.h"
+
+namespace krok::cli::mix {
+
+struct Options {
+  std::string input;
+  KeysChoice keys = KeysChoice::automatic;
+  std::string map;
+  OrientationEncoding orientation = OrientationEncoding::xyz;
+};
+
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::mix

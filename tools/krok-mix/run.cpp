@@ -1,0 +1,182 @@
+#include "tools/krok-mix/run.h"
+
+#include <fmt/format.h>
+
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "core/text.h"
+#include "formats/anim/anim.h"
+#include "formats/io/open_role_map.h"
+#include "formats/timeline/timeline_file.h"
+#include "timeline/mix.h"
+#include "tools/cli/output_kind.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-mix/timeline_sources.h"
+#include "tools/shared/keys_sidecar.h"
+
+namespace krok::cli::mix {
+
+namespace {
+
+using timeline::ChangeFacts;
+using timeline::Event;
+using timeline::ItemFacts;
+using timeline::Mixed;
+
+Result<timeline_file::Document> read_timeline(const Options& options, ToolContext& context) {
+  const auto file = context.open_input(options.input);
+  if (!file) return file.error();
+  return timeline_file::read(file->text(), file->path());
+}
+
+std::string joint_name(const Mixed& mixed, int joint) {
+  return mixed.clip.skeleton.names[static_cast<std::size_t>(joint)];
+}
+
+void warn_of_pops(const timeline::Timeline& timeline, const Mixed& mixed, ToolContext& context) {
+  for (const ChangeFacts& change : mixed.changes) {
+    if (!change.pops()) continue;
+    const timeline::BaseItem& item = timeline.base[static_cast<std::size_t>(change.item)];
+    Diagnostic told;
+    told.severity = Severity::warning;
+    told.code = "mix-pop";
+    told.joint = joint_name(mixed, change.fastest_joint);
+    told.frame = change.fastest_frame;
+    told.message = fmt::format(
+        "the change ({}) into {} rotates {} at {:.0f} degrees per second (frame {}); 99 % of the "
+        "frames of the motions stay below {:.0f}",
+        timeline::change_name(change.kind), shown(item.name), told.joint,
+        change.fastest / kRadiansPerDegree, change.fastest_frame, change.usual / kRadiansPerDegree);
+    told.hint = change.kind == timeline::ChangeKind::cut
+                    ? "a change of kind inertial or crossfade is smooth"
+                    : "use a longer duration or another time";
+    told.where = item.where;
+    context.diagnose(std::move(told));
+  }
+}
+
+Status write_results(const Options& options, const TimelineSources& motions, Mixed& mixed,
+                     ToolContext& context) {
+  const auto keys_path = place_for_keys(mixed.keys, mixed.clip.skeleton, context.output);
+  if (!keys_path) return keys_path.error();
+  mixed.clip.provenance = context.provenance();
+  for (const timeline::Source& source : motions.sources) {
+    for (const std::string& conversion : source.clip->provenance.conversions) {
+      mixed.clip.provenance.conversions.push_back(fmt::format("{}: {}", source.name, conversion));
+    }
+  }
+  OutputSet outputs(context);
+  Status status = outputs.add(context.output, [&](OutputFile& file) {
+    return anim::write(
+        mixed.clip, {.orientation = options.orientation, .jobs = thread_count(context.jobs)}, file);
+  });
+  if (status && !keys_path->empty()) {
+    status = outputs.add(*keys_path, [&](OutputFile& file) {
+      return file.write(keys::write(mixed.keys, mixed.clip.skeleton, mixed.clip.duration()));
+    });
+  }
+  return status ? outputs.finish() : status;
+}
+
+Json layer_name(const timeline::Timeline& timeline, int layer) {
+  return layer < 0 ? Json() : Json(timeline.layers[static_cast<std::size_t>(layer)].name);
+}
+
+Json items_report(const timeline::Timeline& timeline, const Mixed& mixed) {
+  Json list = Json::array();
+  for (const ItemFacts& item : mixed.items) {
+    list.push_back({{"name", item.name},
+                    {"layer", layer_name(timeline, item.layer)},
+                    {"start", item.start},
+                    {"end", item.end},
+                    {"rounds", item.rounds},
+                    {"skipped", item.skipped}});
+  }
+  return list;
+}
+
+Json changes_report(const timeline::Timeline& timeline, const Mixed& mixed) {
+  Json list = Json::array();
+  for (const ChangeFacts& change : mixed.changes) {
+    list.push_back({{"into", timeline.base[static_cast<std::size_t>(change.item)].name},
+                    {"kind", timeline::change_name(change.kind)},
+                    {"begin", change.begin},
+                    {"end", change.end},
+                    {"in_step", change.in_step},
+                    {"on_feet", change.on_feet},
+                    {"angle_degrees", change.angle / kRadiansPerDegree},
+                    {"angle_joint", joint_name(mixed, change.angle_joint)},
+                    {"fastest_degrees_per_second", change.fastest / kRadiansPerDegree},
+                    {"fastest_joint", joint_name(mixed, change.fastest_joint)},
+                    {"fastest_frame", change.fastest_frame},
+                    {"usual_degrees_per_second", change.usual / kRadiansPerDegree},
+                    {"pops", change.pops()}});
+  }
+  return list;
+}
+
+Json events_report(const timeline::Timeline& timeline, const Mixed& mixed) {
+  constexpr const char* kKinds[] = {"begin", "end", "loop", "mark"};
+  Json list = Json::array();
+  for (const Event& event : mixed.events) {
+    Json entry = {{"time", event.time},
+                  {"frame", event.time * mixed.clip.rate},
+                  {"event", kKinds[static_cast<std::size_t>(event.kind)]},
+                  {"item", event.item},
+                  {"layer", layer_name(timeline, event.layer)}};
+    if (event.kind == Event::Kind::mark) entry["name"] = event.name;
+    if (event.round > 0) entry["round"] = event.round;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+void report(const timeline::Timeline& timeline, const Mixed& mixed, ToolContext& context) {
+  Json& result = context.report.result;
+  result["frames"] = mixed.clip.frame_count();
+  result["rate"] = mixed.clip.rate;
+  result["duration"] = mixed.clip.duration();
+  result["items"] = items_report(timeline, mixed);
+  result["changes"] = changes_report(timeline, mixed);
+  result["events"] = events_report(timeline, mixed);
+  result["keytimes"] = to_json(mixed.keys.keytimes);
+  result["contacts"] = mixed.keys.contacts.size();
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
+  }
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  const auto document = read_timeline(options, context);
+  if (!document) return document.error();
+  const timeline::Timeline& timeline = document->timeline;
+  const auto motions = read_sources(*document, options.input, options, *find_roles, context);
+  if (!motions) return motions.error();
+  if (motions->sources.empty()) {
+    return Error("timeline-empty", "has no motions").in_file(options.input);
+  }
+  const auto roles = (*find_roles)(motions->sources.front().clip->skeleton);
+  if (!roles) return roles.error();
+  auto mixed = timeline::mix(timeline, motions->sources, *roles, {.jobs = context.jobs});
+  if (!mixed) return Error(mixed.error()).in_file(options.input);
+  context.diagnose(mixed->warnings);
+  warn_of_pops(timeline, *mixed, context);
+  if (Status status = write_results(options, *motions, *mixed, context); !status) {
+    return status.error();
+  }
+  report(timeline, *mixed, context);
+  context.log(fmt::format("{} -> {}: {} and {} on {}, {} at {} fps ({} s)", options.input,
+                          context.output,
+                          counted(static_cast<long long>(timeline.base.size()), "item"),
+                          counted(static_cast<long long>(timeline.layers.size()), "layer"),
+                          counted(static_cast<long long>(motions->sources.size()), "motion"),
+                          counted(mixed->clip.frame_count(), "frame"), readable(mixed->clip.rate),
+                          readable(mixed->clip.duration(), 4)));
+  return kExitDone;
+}
+
+}  // namespace krok::cli::mix

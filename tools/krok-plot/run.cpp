@@ -1,0 +1,136 @@
+#include "tools/krok-plot/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/file.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/registry/registry.h"
+#include "tools/cli/file_name.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-plot/charts.h"
+#include "tools/krok-plot/motions.h"
+#include "tools/krok-plot/table_charts.h"
+
+namespace krok::cli::plot {
+
+namespace {
+
+// Sizes at which text is legible on A4 paper with two panels per row.
+constexpr double kPanelWidth = 340, kPanelHeight = 170;
+constexpr double kSingleWidth = 640, kSingleHeight = 260;
+
+Status check_output(const std::string& path) {
+  const std::string ending = extension(path);
+  const bool other = registry::kind_of_name(path) != registry::Kind::unknown || ending == ".png" ||
+                     ending == ".pdf" || ending == ".csv" || ending == ".html";
+  if (!other) return {};
+  return Error("usage", fmt::format("-o {}: the output is SVG, not {}", path, ending),
+               "use the extension .svg");
+}
+
+void lay_out(const Options& options, draw::Chart& chart) {
+  const bool single = chart.panels.size() == 1;
+  chart.columns = options.columns.value_or(single ? 1 : 2);
+  chart.panel_width = single ? kSingleWidth : kPanelWidth;
+  chart.panel_height = single ? kSingleHeight : kPanelHeight;
+  if (options.panel) {
+    chart.panel_width = options.panel->first;
+    chart.panel_height = options.panel->second;
+  }
+}
+
+std::string usual_title(const std::vector<std::string>& inputs) {
+  std::string title = name_of_input(inputs[0]);
+  if (inputs.size() == 2) title += " and " + name_of_input(inputs[1]);
+  if (inputs.size() > 2) title += fmt::format(" and {} more", inputs.size() - 1);
+  return title;
+}
+
+Json axis_json(const draw::Axis& axis) {
+  Json json;
+  json["label"] = to_utf8(axis.label);
+  json["unit"] = to_utf8(axis.unit);
+  return json;
+}
+
+// The chart's contents for the report: for each line, the number of values and their range.
+Json summary_of(const draw::Chart& chart) {
+  Json panels = Json::array();
+  for (const draw::Panel& panel : chart.panels) {
+    Json lines = Json::array();
+    for (const draw::Series& series : panel.series) {
+      if (series.name.empty()) continue;
+      double low = INFINITY, high = -INFINITY;
+      std::size_t values = 0;
+      for (const double value : series.y) {
+        if (!std::isfinite(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
+        ++values;
+      }
+      Json line;
+      line["name"] = to_utf8(series.name);
+      line["values"] = values;
+      line["low"] = values > 0 ? Json(low) : Json();
+      line["high"] = values > 0 ? Json(high) : Json();
+      lines.push_back(std::move(line));
+    }
+    Json entry;
+    entry["title"] = to_utf8(panel.title);
+    entry["x"] = axis_json(panel.x);
+    entry["y"] = axis_json(panel.y);
+    entry["lines"] = std::move(lines);
+    panels.push_back(std::move(entry));
+  }
+  return panels;
+}
+
+Result<draw::Chart> make_chart(const Options& options, ToolContext& context) {
+  if (options.table) return chart_tables(options, context);
+  const auto motions = read_motions(options.inputs, options.motion, context);
+  if (!motions) return motions.error();
+  return chart_motions(*motions, options, context);
+}
+
+Status write_charts(const Options& options, ToolContext& context) {
+  if (Status status = check_output(context.output); !status) return status;
+  auto chart = make_chart(options, context);
+  if (!chart) return chart.error();
+  chart->title = options.title.empty() ? usual_title(options.inputs) : options.title;
+  lay_out(options, *chart);
+  const auto svg = draw::to_svg(*chart);
+  if (!svg) return svg.error();
+  const Status status =
+      write_output(context, context.output, [&](OutputFile& file) { return file.write(*svg); });
+  if (!status) return status;
+  context.report.result["panels"] = summary_of(*chart);
+  context.log(fmt::format("{}: {}", context.output == "-" ? "standard output" : context.output,
+                          counted(static_cast<long long>(chart->panels.size()), "panel")));
+  return {};
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  const bool images = options.sheet.wanted();
+  if (context.output.empty() && !images) {
+    return Error("usage", "-o is missing", "see krok-plot --help");
+  }
+  if (images && context.one_of_many != nullptr) {
+    return Error("usage", "--sheet and --strip cannot be used in batch mode");
+  }
+  if (images) {
+    if (Status status = make_sheets(options.inputs, options.sheet, context); !status) {
+      return status.error();
+    }
+  }
+  if (context.output.empty()) return kExitDone;
+  if (Status status = write_charts(options, context); !status) return status.error();
+  return kExitDone;
+}
+
+}  // namespace krok::cli::plot

@@ -1,0 +1,120 @@
+#include "tools/krok-retarget/options.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "core/numbers.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-retarget/run.h"
+#include "tools/shared/orientation_option.h"
+#include "tools/shared/role_input.h"
+
+namespace krok::cli::retarget {
+
+namespace {
+
+Result<std::optional<int>> parse_frame(const char* option, const std::string& text) {
+  if (text == "auto") return std::optional<int>();
+  const auto frame = parse_integer(text);
+  if (!frame || *frame < 0 || *frame > 2'000'000'000) {
+    return Error("usage", fmt::format("{} {} is not auto or a frame number", option, text),
+                 "frames are numbered from 0");
+  }
+  return std::optional<int>(static_cast<int>(*frame));
+}
+
+}  // namespace
+
+Result<krok::retarget::Options> parse(const Options& options) {
+  krok::retarget::Options parsed;
+  parsed.feet = options.feet;
+  if (!options.scale.empty()) {
+    const auto scale = parse_finite(options.scale);
+    if (!scale || !(*scale > 0)) {
+      return Error("usage",
+                   fmt::format("--scale {} is not a number greater than 0", options.scale));
+    }
+    parsed.scale = *scale;
+  }
+  const auto source_frame = parse_frame("--reference-pose", options.reference_pose);
+  if (!source_frame) return source_frame.error();
+  const auto target_frame = parse_frame("--onto-reference-pose", options.onto_reference_pose);
+  if (!target_frame) return target_frame.error();
+  parsed.source_frame = *source_frame;
+  parsed.target_frame = *target_frame;
+  return parsed;
+}
+
+namespace {
+
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("input", options.input,
+                  "Motion, or a capture read as by krok-import (- is standard input)")
+      .type_name("IN.anim")
+      .required();
+  command
+      .add_option("--onto", options.onto,
+                  "Target skeleton: a model, or any motion or capture of it")
+      .type_name("IN.model|IN.anim")
+      .required();
+  add_map_option(command, options.map, "--map",
+                 "Role map (JSON) for input joints whose names do not identify them")
+      .group("Joints");
+  add_map_option(command, options.onto_map, "--onto-map", "The same for the target's joints")
+      .group("Joints");
+  command
+      .add_option(
+          "--reference-pose", options.reference_pose,
+          "Pose of the input that matches the target's reference pose: a frame number, or auto: "
+          "its own reference pose or, if that is not a standing pose, the frame nearest to a "
+          "T-pose")
+      .type_name("POSE")
+      .default_str("auto")
+      .group("Joints");
+  command
+      .add_option("--onto-reference-pose", options.onto_reference_pose,
+                  "The same for a target that is a motion")
+      .type_name("POSE")
+      .default_str("auto")
+      .group("Joints");
+  add_choice<krok::retarget::Feet>(
+      command, "--feet", options.feet,
+      {{"keep", krok::retarget::Feet::keep}, {"free", krok::retarget::Feet::free}},
+      "keep: foot positions follow the input's, scaled, and stay above the "
+      "floor; free: from the leg rotations only",
+      "HOW", "keep")
+      .group("Motion");
+  command
+      .add_option("--scale", options.scale,
+                  "Scale of the root motion; default: ratio of leg lengths")
+      .type_name("NUMBER")
+      .group("Motion");
+  add_orientation_option(command, options.orientation);
+}
+
+Status check(const Options& options) {
+  const auto how = parse(options);
+  return how ? Status() : how.error();
+}
+
+}  // namespace
+
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-retarget", options, declare, check, run);
+  spec.summary = "Retargets a motion to another skeleton";
+  spec.inputs = "--onto IN.model|IN.anim IN.anim";
+  spec.examples = {{"krok-retarget --onto hero.model walk.anim -o hero_walk.anim -v",
+                    "joints are mapped by role; -v prints the mapping"},
+                   {"krok-retarget --map rig.json --onto hero.model take.anim -o hero_take.anim",
+                    "rig.json gives the roles of unusual joint names: {\"joints\": {\"Bone_012\": "
+                    "\"left_hand\"}}"},
+                   {"krok-retarget --onto hero.model motions --out-dir hero_motions",
+                    "all motions in a folder"}};
+  spec.batch = {{".anim", ".bvh", ".amc"}, always(".anim")};
+  return spec;
+}
+
+}  // namespace krok::cli::retarget

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "formats/container/packed_orientation.h"
+#include "retarget/retarget.h"
+#include "tools/cli/tool.h"
+
+namespace krok::cli::retarget {
+
+// The options as given.
+struct Options {
+  std::string input;
+  std::string onto;
+  std::string map;       // of the input's joints; empty: none
+  std::string onto_map;  // of the target's joints
+  krok::retarget::Feet feet = krok::retarget::Feet::keep;
+  std::string scale;                    // empty: ratio of leg lengths
+  std::string reference_pose = "auto";  // auto, or a frame
+  std::string onto_reference_pose = "auto";
+  OrientationEncoding orientation = OrientationEncoding::xyz;
+};
+
+// Code usage for invalid values.
+Result<krok::retarget::Options> parse(const Options& options);
+
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::retarget

@@ -1,0 +1,137 @@
+#include "tools/krok-retarget/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "formats/anim/anim.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
+#include "formats/model/model_format.h"
+#include "formats/registry/registry.h"
+#include "tools/cli/output_kind.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-retarget/outcome.h"
+
+namespace krok::cli::retarget {
+
+namespace {
+
+// The target: a skeleton, and the floor height below its mesh, if any.
+struct Target {
+  Clip clip;  // without frames if it is a model
+  std::optional<double> floor;
+};
+
+Result<Target> read_target(const std::string& path, ToolContext& context) {
+  const auto file = context.open_input(path);
+  if (!file) return file.error();
+  const registry::Kind kind = registry::identify(path, file->bytes());
+  Target target;
+  if (kind == registry::Kind::model) {
+    auto model = model::read(file->bytes());
+    if (!model) return std::move(model).error().in_file(path);
+    for (const Vec3f& position : model->positions) {
+      const double height = position.y();
+      target.floor = std::min(target.floor.value_or(height), height);
+    }
+    target.clip.skeleton = std::move(model->skeleton);
+    return target;
+  }
+  auto clip = io::open_motion(*file, context);
+  if (!clip) return clip.error();
+  target.clip = std::move(*clip);
+  return target;
+}
+
+Result<RoleMap> roles_of(const Skeleton& skeleton, const std::string& map_path,
+                         ToolContext& context) {
+  const auto roles = io::open_role_map(map_path, context);
+  if (!roles) return roles.error();
+  return (*roles)(skeleton);
+}
+
+// A mesh bottom far above or below the feet is not their floor.
+std::optional<double> believable_floor(const Target& target, const RoleMap& roles) {
+  if (!target.floor || !roles.humanoid) return std::nullopt;
+  double lowest = 0;
+  bool found = false;
+  for (std::size_t j = 0; j < roles.roles.size(); ++j) {
+    const double height = target.clip.skeleton.reference[j].position.y();
+    if (!found || height < lowest) lowest = height;
+    found = true;
+  }
+  const double under = lowest - *target.floor;
+  const bool near = under > -0.02 && under < 0.06 * reference_extent(target.clip.skeleton);
+  return near ? target.floor : std::nullopt;
+}
+
+void report_choices(const Outcome& outcome, ToolContext& context) {
+  const krok::retarget::Report& report = outcome.report;
+  const auto note = [&](std::string code, std::string message) {
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::note;
+    diagnostic.code = std::move(code);
+    diagnostic.message = std::move(message);
+    context.diagnose(std::move(diagnostic));
+  };
+  const auto note_frame = [&](const std::optional<int>& frame, const char* whose) {
+    if (!frame) return;
+    note("retarget-reference",
+         fmt::format("frame {} of the {} is used as its reference pose", *frame, whose));
+  };
+  note_frame(report.source_frame, "input");
+  note_frame(report.target_frame, "target");
+  if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
+    note("retarget-fingers",
+         "the input's fingers never move; the target's fingers keep their reference pose");
+  }
+  if (report.method == krok::retarget::Method::names) {
+    note("retarget-names", "joints were mapped by name; foot contacts are not preserved");
+  }
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  auto how = parse(options);
+  if (!how) return how.error();
+  how->jobs = context.jobs;
+  how->progress = context.progress;
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
+  }
+  const auto source = io::open_motion(options.input, context);
+  if (!source) return source.error();
+  const auto target = read_target(options.onto, context);
+  if (!target) return target.error();
+  const auto source_roles = roles_of(source->skeleton, options.map, context);
+  if (!source_roles) return source_roles.error();
+  const auto target_roles = roles_of(target->clip.skeleton, options.onto_map, context);
+  if (!target_roles) return target_roles.error();
+  how->target_floor = believable_floor(*target, *target_roles);
+
+  auto result = krok::retarget::transfer(*source, *source_roles, target->clip, *target_roles, *how);
+  if (!result) return std::move(result).error().in_file(options.input);
+  const Outcome outcome{source->skeleton, *source_roles, target->clip.skeleton, *target_roles,
+                        result->report};
+  report_choices(outcome, context);
+
+  Clip& clip = result->clip;
+  clip.provenance = context.provenance();
+  clip.provenance.conversions = source->provenance.conversions;
+  clip.provenance.conversions.push_back("retargeted: " + summary(outcome));
+  anim::WriteOptions writing;
+  writing.orientation = options.orientation;
+  writing.jobs = context.jobs;
+  const Status status = write_output(
+      context, context.output, [&](OutputFile& file) { return anim::write(clip, writing, file); });
+  if (!status) return status.error();
+
+  context.report.result = to_json(outcome);
+  context.log(fmt::format("{}: {}", context.output, summary(outcome)));
+  if (context.verbose) context.log(table(outcome));
+  return kExitDone;
+}
+
+}  // namespace krok::cli::retarget

@@ -1,0 +1,75 @@
+#include "tools/krok-synth/options.h"
+
+#include <memory>
+
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-synth/asked_parameters.h"
+#include "tools/krok-synth/run.h"
+#include "tools/shared/orientation_option.h"
+
+namespace krok::cli::synth {
+
+namespace {
+
+void declare(CommandOptions& command, Options& options) {
+  command.add_option("library", options.library, "Step library made by krok-fit")
+      .type_name("IN.steps")
+      .required();
+  command
+      .add_option("--set", options.set,
+                  "Value of a parameter: length=70cm, turn=15deg, duration=0.6s")
+      .type_name("NAME=VALUE")
+      .group("Parameters");
+  command
+      .add_option("--table", options.table,
+                  "Table (CSV) with a column per parameter; makes one motion per row, named as "
+                  "-o plus the row number")
+      .type_name("IN.csv")
+      .group("Parameters");
+  command
+      .add_flag("--extrapolate", options.extrapolate,
+                "Allow parameters outside the range of the examples, where the error is unknown")
+      .group("Parameters");
+  add_choice<SideChoice>(
+      command, "--side", options.side,
+      {{"library", SideChoice::library}, {"left", SideChoice::left}, {"right", SideChoice::right}},
+      "Swing foot: library (as in the library), left or "
+      "right",
+      "SIDE", "library")
+      .group("Motion");
+  command
+      .add_flag("--correct", options.correct,
+                "Correct the weights until the measured parameters match")
+      .group("Motion");
+  add_rate(command, "--rate", options.rate, "Frames per second (default: the library's)")
+      .group("Motion");
+  add_orientation_option(command, options.orientation);
+}
+
+Status check(const Options& options) {
+  if (options.set.empty() == options.table.empty()) {
+    return Error(
+        "usage",
+        options.set.empty() ? "no parameters given" : "--set and --table exclude each other",
+        "give each parameter with --set NAME=VALUE, or a table with --table IN.csv");
+  }
+  return {};
+}
+
+}  // namespace
+
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-synth", options, declare, check, run);
+  spec.summary = "Makes a motion with given parameters from a step library";
+  spec.inputs = "IN.steps";
+  spec.examples = {{"krok-synth walking.steps --set length=70cm --set turn=15deg -o step.anim",
+                    "one step of that length and turn; prints its measured parameters"},
+                   {"krok-synth walking.steps --set length=0.7 --correct --side right -o step.anim",
+                    "a step of the right foot, corrected to within a hundredth of the tolerance"},
+                   {"krok-synth walking.steps --table points.csv -o steps/step.anim",
+                    "one motion per row of a table with a column per parameter: step_1.anim, ..."}};
+  return spec;
+}
+
+}  // namespace krok::cli::synth

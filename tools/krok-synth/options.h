@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "formats/container/packed_orientation.h"
+#include "tools/cli/tool.h"
+
+namespace krok::cli::synth {
+
+enum class SideChoice : unsigned char { library, left, right };
+
+struct Options {
+  std::string library;
+  std::vector<std::string> set;  // NAME=VALUE
+  std::string table;
+  SideChoice side = SideChoice::library;
+  bool correct = false;
+  bool extrapolate = false;
+  double rate = 0;  // 0: the library's
+  OrientationEncoding orientation = OrientationEncoding::xyz;
+};
+
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::synth

@@ -1,0 +1,184 @@
+#include "tools/krok-synth/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/numbers.h"
+#include "core/parallel.h"
+#include "formats/anim/anim.h"
+#include "formats/keys/keys.h"
+#include "formats/steps/steps.h"
+#include "math/types.h"
+#include "parametric/synthesise.h"
+#include "roles/roles.h"
+#include "tools/cli/output_kind.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-synth/asked_parameters.h"
+#include "tools/shared/keys_choice.h"
+#include "tools/shared/keys_sidecar.h"
+
+namespace krok::cli::synth {
+
+namespace {
+
+constexpr int kCorrections = 4;  // two are enough near the library; far outside more are needed
+
+struct Motion {
+  std::string path;
+  std::vector<double> asked;
+  parametric::Synthesis synthesis;
+  parametric::BlendedMotion::Made made;
+};
+
+Result<steps::StepsFile> read_steps(const Options& options, ToolContext& context) {
+  const auto file = context.open_input(options.library);
+  if (!file) return file.error();
+  auto steps = steps::read(file->bytes());
+  if (!steps) return std::move(steps).error().in_file(options.library);
+  if (!steps->weights) {
+    return Error("synth-weights", "the library was not fitted", "krok-fit fits it")
+        .in_file(options.library);
+  }
+  const bool is_left = steps->library.swing == FootSide::left;
+  const bool other = (options.side == SideChoice::left && !is_left) ||
+                     (options.side == SideChoice::right && is_left);
+  if (!other) return steps;
+  auto mirrored = parametric::mirrored(steps->library, find_roles(steps->library.skeleton));
+  if (!mirrored) return std::move(mirrored).error().in_file(options.library);
+  steps->library = *std::move(mirrored);
+  return steps;
+}
+
+// "steps/step_12.anim" for number 12 of "steps/step.anim", zero-padded to the width of the last.
+std::string numbered(const std::string& path, std::size_t number, std::size_t count) {
+  const std::filesystem::path whole(path);
+  const std::string name = fmt::format("{}_{:0{}}{}", whole.stem().string(), number,
+                                       fmt::format("{}", count).size(), whole.extension().string());
+  return (whole.parent_path() / name).string();
+}
+
+Status make_all(const parametric::Synthesiser& synthesiser, const Options& options,
+                std::vector<Motion>& motions, ToolContext& context) {
+  parametric::SynthesisOptions how;
+  how.extrapolate = options.extrapolate;
+  how.corrections = options.correct ? kCorrections : 0;
+  std::vector<Status> done(motions.size());
+  context.progress->begin("making motions", motions.size());
+  parallel_for(motions.size(), 1, context.jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      auto synthesis = synthesiser.weights(motions[i].asked, how);
+      if (!synthesis) {
+        done[i] = synthesis.error();
+        continue;
+      }
+      motions[i].synthesis = *std::move(synthesis);
+      const auto motion = synthesiser.motion(motions[i].synthesis.weights);
+      auto made = motion ? motion->make(options.rate)
+                         : Result<parametric::BlendedMotion::Made>(motion.error());
+      if (made) {
+        motions[i].made = *std::move(made);
+      } else {
+        done[i] = made.error();
+      }
+      context.progress->advance(1);
+    }
+  });
+  context.progress->end();
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (done[i]) continue;
+    Error error = std::move(done[i]).error();
+    if (motions.size() > 1) error.message = fmt::format("row {}: {}", i + 1, error.message);
+    if (error.code == "parametric-bounds") error.hint += "; --extrapolate allows this";
+    return error;
+  }
+  return {};
+}
+
+Status write_all(const Options& options, std::vector<Motion>& motions, ToolContext& context) {
+  OutputSet outputs(context);
+  for (Motion& motion : motions) {
+    Clip& clip = motion.made.clip;
+    clip.provenance = context.provenance();
+    Status status = outputs.add(motion.path, [&](OutputFile& file) {
+      return anim::write(
+          clip, {.orientation = options.orientation, .jobs = thread_count(context.jobs)}, file);
+    });
+    if (!status) return status;
+    const auto keys_path = place_for_keys(motion.made.keys, clip.skeleton, motion.path);
+    if (!keys_path) return keys_path.error();
+    if (keys_path->empty()) continue;
+    status = outputs.add(*keys_path, [&](OutputFile& file) {
+      return file.write(keys::write(motion.made.keys, clip.skeleton, clip.duration()));
+    });
+    if (!status) return status;
+  }
+  return outputs.finish();
+}
+
+std::string with_unit(double value, std::string_view unit) {
+  if (unit == "rad") return fmt::format("{}\u00B0", readable(value / kRadiansPerDegree, 4));
+  return fmt::format("{} {}", readable(value, 4), unit);
+}
+
+void report(const std::vector<NamedParameter>& parameters, const std::vector<Motion>& motions,
+            ToolContext& context) {
+  Json list = Json::array();
+  for (const Motion& motion : motions) {
+    Json entry, asked, measured;
+    std::string line =
+        fmt::format("{}: {} s", motion.path, readable(motion.made.clip.duration(), 4));
+    for (std::size_t d = 0; d < parameters.size(); ++d) {
+      asked[parameters[d].name] = motion.asked[d];
+      measured[parameters[d].name] = motion.synthesis.parameters[d];
+      line += fmt::format(", {} {}", parameters[d].name,
+                          with_unit(motion.synthesis.parameters[d], parameters[d].unit));
+    }
+    entry["output"] = motion.path;
+    entry["asked"] = std::move(asked);
+    entry["measured"] = std::move(measured);
+    entry["error_in_tolerances"] = motion.synthesis.error;
+    entry["error_before_correction"] = motion.synthesis.error_before;
+    entry["corrections"] = motion.synthesis.corrections;
+    entry["weights"] = motion.synthesis.weights;
+    entry["duration"] = motion.made.clip.duration();
+    entry["frames"] = motion.made.clip.frame_count();
+    list.push_back(std::move(entry));
+    context.log(line);
+  }
+  context.report.result["motions"] = std::move(list);
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
+    return status.error();
+  }
+  const auto steps = read_steps(options, context);
+  if (!steps) return steps.error();
+  const auto parameters = parameters_of(*steps);
+  std::vector<Motion> motions;
+  if (options.table.empty()) {
+    auto point = parse_settings(options.set, parameters);
+    if (!point) return point.error();
+    motions.push_back({context.output, *std::move(point), {}, {}});
+  } else {
+    const auto points = read_points(options.table, parameters, context);
+    if (!points) return points.error();
+    for (const auto& point : *points) {
+      const std::string path = numbered(context.output, motions.size() + 1, points->size());
+      motions.push_back({path, point, {}, {}});
+    }
+  }
+  const auto synthesiser = parametric::Synthesiser::create(steps->library, *steps->weights);
+  if (!synthesiser) return Error(synthesiser.error()).in_file(options.library);
+  if (Status status = make_all(*synthesiser, options, motions, context); !status)
+    return status.error();
+  if (Status status = write_all(options, motions, context); !status) return status.error();
+  report(parameters, motions, context);
+  return kExitDone;
+}
+
+}  // namespace krok::cli::synth

@@ -1,0 +1,70 @@
+#include "tools/krok-view/options.h"
+
+#include <memory>
+
+#include "tools/cli/one_of.h"
+#include "tools/krok-view/run.h"
+
+namespace krok::cli::view {
+
+namespace {
+
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("inputs", options.inputs,
+                  "Motions (.anim, or a capture such as BVH), models and characters "
+                  "(.model, .character, animated by the motions of their skeleton), "
+                  "cameras (.cam), glTF; for a folder, all motions, characters and "
+                  "glTF in it")
+      .type_name("IN")
+      .required();
+  command
+      .add_option("--layout", options.layout,
+                  "Layout of several characters: apart (side by side), together (at "
+                  "their own positions), list (one at a time), or auto: apart for up "
+                  "to four, otherwise list")
+      .type_name("HOW")
+      .transform(one_of<Layout>({{"auto", Layout::automatic},
+                                 {"apart", Layout::apart},
+                                 {"together", Layout::together},
+                                 {"list", Layout::list}}))
+      .default_str("auto");
+  command.add_flag("--difference", options.difference,
+                   "Show the first two characters together and colour joints of the same name by "
+                   "their distance");
+  add_body_option(command, options.body,
+                  "Body for motions without a model: none, low (2,500 vertices), medium (10,000), "
+                  "high (40,000), or auto: lower detail for more files, none for more than four");
+  command
+      .add_option("--keys", options.keys,
+                  "Contacts and keytimes to mark on the timeline: auto (from the sidecar "
+                  "NAME.keys.json), find (detected as in krok-keys), none")
+      .type_name("WHICH")
+      .transform(one_of<KeysChoice>({{"auto", KeysChoice::automatic},
+                                     {"find", KeysChoice::find},
+                                     {"none", KeysChoice::none}}))
+      .default_str("auto");
+  command.add_option("--title", options.title, "The page's title; default: the first file's name")
+      .type_name("WORDS");
+}
+
+}  // namespace
+
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of<Options>("krok-view", options, declare, nullptr, run);
+  spec.summary = "Makes an HTML page that plays motions offline in any browser";
+  spec.inputs = "IN...";
+  spec.examples = {{"krok-view walk.bvh -o walk.html", "a capture, with a generated body"},
+                   {"krok-view before.anim after.anim --difference -o change.html",
+                    "two motions at the same position, joints coloured by their "
+                    "distance"},
+                   {"krok-view hero.model walk.anim shot.cam -o shot.html",
+                    "an animated model, viewed through a recorded camera"},
+                   {"krok-view hero.character walk.anim -o hero.html",
+                    "an animated character with its materials; without a motion, in "
+                    "its reference pose"}};
+  return spec;
+}
+
+}  // namespace krok::cli::view

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "tools/cli/tool.h"
+#include "tools/shared/body_choice.h"
+
+namespace krok::cli::view {
+
+enum class Layout : unsigned char { automatic, apart, together, list };
+enum class KeysChoice : unsigned char { automatic, none, find };
+
+struct Options {
+  std::vector<std::string> inputs;
+  Layout layout = Layout::automatic;
+  BodyChoice body = BodyChoice::automatic;
+  KeysChoice keys = KeysChoice::automatic;
+  bool difference = false;
+  std::string title;
+};
+
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::view

@@ -1,0 +1,104 @@
+#include "tools/krok-view/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/numbers.h"
+#include "draw/viewer_page.h"
+#include "tools/cli/output_set.h"
+#include "tools/krok-view/files.h"
+
+namespace krok::cli::view {
+
+namespace {
+
+std::string facts_of(const Clip& clip) {
+  if (clip.frame_count() == 0) return fmt::format("{} joints, no motion", clip.joint_count());
+  return fmt::format("{} joints, {} frames, {} fps, {} s", clip.joint_count(), clip.frame_count(),
+                     readable(clip.rate), fmt::format("{:.2f}", clip.duration()));
+}
+
+draw::ViewerPage page_of(const Files& files, const Options& options, Layout layout) {
+  draw::ViewerPage page;
+  page.apart = layout == Layout::apart;
+  page.difference = options.difference;
+  // In a list one file is visible at a time, initially the first.
+  const auto visible = [&](std::size_t place) { return layout != Layout::list || place == 0; };
+  for (const Files::Motion& motion : files.motions) {
+    draw::ViewedMotion viewed;
+    viewed.name = motion.name;
+    viewed.facts = facts_of(motion.clip);
+    viewed.visible = visible(page.motions.size());
+    viewed.clip = &motion.clip;
+    viewed.body = motion.body;
+    viewed.materials = motion.materials;
+    viewed.keys = motion.keys;
+    page.motions.push_back(std::move(viewed));
+  }
+  for (const Files::Glb& glb : files.glbs) {
+    draw::ViewedGlb viewed;
+    viewed.name = glb.name;
+    viewed.visible = visible(page.motions.size() + page.files.size());
+    viewed.bytes = glb.bytes;
+    page.files.push_back(std::move(viewed));
+  }
+  for (const Files::Camera& camera : files.cameras) {
+    page.cameras.push_back(
+        {camera.name,
+         fmt::format("{} frames, {} fps", camera.track.frame_count(), readable(camera.track.rate)),
+         &camera.track});
+  }
+  page.title = options.title;
+  if (page.title.empty()) {
+    page.title = !page.motions.empty() ? page.motions.front().name
+                 : !page.files.empty() ? page.files.front().name
+                                       : page.cameras.front().name;
+    const std::size_t all = page.motions.size() + page.files.size() + page.cameras.size();
+    if (all > 1) page.title += fmt::format(" and {} more", all - 1);
+  }
+  return page;
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  const auto files = read_files(options, context);
+  if (!files) return files.error();
+  const std::size_t actors = files->motions.size() + files->glbs.size();
+  if (options.difference && files->motions.size() < 2) {
+    return Error("usage", "--difference needs two motions");
+  }
+  Layout layout = options.layout;
+  if (options.difference && layout == Layout::automatic) layout = Layout::together;
+  if (layout == Layout::automatic) layout = actors > 4 ? Layout::list : Layout::apart;
+  if (actors < 2) layout = Layout::together;
+
+  auto html = draw::write_viewer_page(page_of(*files, options, layout));
+  if (!html) return html.error();
+  const Status status =
+      write_output(context, context.output, [&](OutputFile& file) { return file.write(*html); });
+  if (!status) return status.error();
+
+  Json shown = Json::array();
+  for (const Files::Motion& motion : files->motions) {
+    shown.push_back({{"name", motion.name},
+                     {"joints", motion.clip.joint_count()},
+                     {"frames", motion.clip.frame_count()},
+                     {"rate", motion.clip.rate},
+                     {"vertices", motion.body ? motion.body->vertex_count() : 0},
+                     {"materials", motion.materials.size()},
+                     {"contacts", motion.keys.contacts.size()},
+                     {"keytimes", motion.keys.keytimes.size()}});
+  }
+  context.report.result["motions"] = std::move(shown);
+  context.report.result["files"] = files->glbs.size();
+  context.report.result["cameras"] = files->cameras.size();
+  context.report.result["bytes"] = html->size();
+  context.log(fmt::format("{}: {}, {:.1f} MB; open it in a browser", context.output,
+                          actors == 1 ? "1 character" : fmt::format("{} characters", actors),
+                          static_cast<double>(html->size()) / 1e6));
+  return kExitDone;
+}
+
+}  // namespace krok::cli::view

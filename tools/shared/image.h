@@ -1,0 +1,67 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "render/sheet.h"
+#include "tools/cli/tool.h"
+
+// Options of tools that render images of actors: times, sides and size.
+
+namespace krok::cli {
+
+struct ImageOptions {
+  std::string moments;  // "8", or "0s,1.5s,120f"; empty: the tool's default
+  std::string sides = "front,left";
+  std::string elevation = "0deg";
+  int size = 280;  // pixels
+};
+
+// --moments, --sides, --elevation, --size. `by_default` is the default number of moments, for the
+// help.
+void declare_image_options(CommandOptions& command, ImageOptions& options, int by_default);
+
+// A time in an actor's motion; `frame` is -1 without frames.
+struct ImageMoment {
+  double time = 0;
+  int frame = -1;
+
+  std::string label() const;  // "frame 24", or "0.40 s" without frames
+  std::string note() const;   // "0.40 s", or empty
+};
+
+// The range to choose from: frames `first` to `last`, at frame / rate seconds; without frames (rate
+// 0), `start` to `end` seconds.
+struct ImageSpan {
+  double rate = 0;
+  int first = 0, last = 0;
+  double start = 0, end = 0;
+};
+
+// Parses `moments` (see ImageOptions) into times, sorted and without duplicates. Empty:
+// `by_default` of them, evenly spaced from the first to the last, or fewer if there are fewer
+// frames. Code usage for invalid text and for times outside the span.
+Result<std::vector<ImageMoment>> choose_moments(const std::string& moments, int by_default,
+                                                const ImageSpan& span);
+
+// A view direction: `yaw` is relative to the actor's heading.
+struct ImageSide {
+  std::string name;
+  double yaw = 0, elevation = 0;  // radians
+};
+
+// front, left, back, right, front-left, front-right, back-left, back-right, top; separated by
+// commas. Code usage.
+Result<std::vector<ImageSide>> parse_sides(const ImageOptions& options);
+
+// Fails (code usage) if the extension of `path` is that of another kind of file.
+Status check_image_name(const std::string& path, const std::string& option);
+
+// Writes the image as PNG to `path` and adds it to the report.
+Status write_image(const render::Image& image, const std::string& path, ToolContext& context);
+
+// Position and camera of a cell, for the report; needed for measuring in images.
+Json to_json(const render::CellLayout& cell);
+
+}  // namespace krok::cli

@@ -1,0 +1,70 @@
+#include "tools/shared/keys_choice.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "formats/io/open_role_map.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/shared/keys_sidecar.h"
+
+namespace krok::cli {
+
+CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice) {
+  return add_choice<KeysChoice>(
+      command, "--keys", choice,
+      {{"auto", KeysChoice::automatic},
+       {"sidecar", KeysChoice::sidecar},
+       {"none", KeysChoice::none}},
+      "Keytimes: auto (from NAME.keys.json beside a motion, otherwise detected as by krok-keys), "
+      "sidecar (only from that file), none (start and end only)",
+      "WHICH", "auto");
+}
+
+Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::string& path,
+                                              const std::string& name, const Clip& clip,
+                                              const io::FindRoles& find_roles,
+                                              ToolContext& context) {
+  std::optional<MotionKeys> none;
+  if (choice == KeysChoice::none) return none;
+  auto sidecar = read_keys_beside(path, clip, context);
+  if (!sidecar) return sidecar.error();
+  if (*sidecar) return std::optional(std::move((*sidecar)->keys));
+  if (choice == KeysChoice::sidecar) {
+    return Error("keys-missing",
+                 fmt::format("{} is missing beside it", base_name(keys_sidecar_path(path))),
+                 "create it with krok-keys, or use --keys auto to detect keytimes")
+        .in_file(path);
+  }
+  const auto roles = find_roles(clip.skeleton);
+  if (!roles) return roles.error();
+  // Warnings refer to this motion, one of several.
+  const Location before = std::exchange(context.subject, Location{.file = path});
+  auto found = find_keys(clip, *roles, context);
+  context.subject = before;
+  if (!found) {
+    context.warn("keys-none", fmt::format("{}: {}", name, found.error().message));
+    return none;
+  }
+  return std::optional(std::move(*found));
+}
+
+Result<std::string> place_for_keys(const MotionKeys& keys, const Skeleton& skeleton,
+                                   const std::string& motion_path) {
+  const std::string path = keys_sidecar_path(motion_path);
+  if (keys.empty() || path.empty()) return std::string();
+  std::error_code unknown;
+  if (!std::filesystem::exists(path, unknown)) return path;
+  const auto file = InputFile::open(path);
+  if (!file) return file.error();
+  const auto before = krok::keys::read_sidecar(file->text(), path, skeleton, HUGE_VAL);
+  if (before && !before->has_edits()) return path;
+  return Error("keys-edited", "was edited by hand, or is not a keytime file for this motion",
+               "the result's keytimes would overwrite it: move it away, or choose another name for "
+               "the result")
+      .in_file(path);
+}
+
+}  // namespace krok::cli

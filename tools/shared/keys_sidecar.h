@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "formats/keys/keys.h"
+#include "roles/roles.h"
+#include "scene/clip.h"
+#include "tools/cli/tool.h"
+
+// Sidecars: the contacts and keytimes of a motion, stored beside it as NAME.keys.json.
+
+namespace krok::cli {
+
+// "takes/walk.keys.json" for "takes/walk.anim". Empty for standard input.
+std::string keys_sidecar_path(const std::string& motion_path);
+
+// Reads the file `path`, opened by context.open_input. Warns (code keys-stale) if the file was made
+// for a motion of another duration.
+Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
+                                     ToolContext& context);
+
+// Reads the sidecar of a motion read from `motion_path`; empty if there is none.
+Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& motion_path,
+                                                      const Clip& clip, ToolContext& context);
+
+// Detects contacts and keytimes as krok-keys does, with warnings for doubtful results. Code:
+// contacts-feet.
+Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext& context);
+
+// Names and times for the report.
+Json to_json(std::span<const Keytime> keytimes);
+
+}  // namespace krok::cli

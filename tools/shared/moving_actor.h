@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "nodes/scene.h"
+#include "render/actor.h"
+#include "skin/skin.h"
+#include "tools/cli/tool.h"
+#include "tools/shared/body_choice.h"
+
+// Reads input files as actors that can be rendered.
+
+namespace krok::cli {
+
+struct MovingActor {
+  std::string path, name;  // the name is for display
+  std::string facts;       // "31 joints, 264 frames", for display
+  int frame_count = 0;     // 0 without frames: a model, a scene with keyframes
+  double rate = 0;         // frames per second, if it has frames
+  double duration = 0;     // seconds; 0 if static
+  bool has_body = false;   // drawn as a surface, not as bones
+
+  // The actor at a time; with frames, at the nearest frame. Thread-safe.
+  std::function<render::Actor(double time)> at;
+  // World position of the hips, or of whatever node carries the actor, in metres.
+  std::function<Vec3(double time)> carrier;
+  // Heading: radians about +Y; 0 is +Z, pi/2 is +X.
+  std::function<double(double time)> heading;
+};
+
+// Reads motions (captures, .anim), models and characters (.model, .character; animated by the
+// motions of their skeleton or static, faces at rest) and glTF files, in the order of `paths`. With
+// BodyChoice::none, motions, models and glTF files with joints are drawn as bones. glTF files are
+// drawn with their materials if one of them has an image, see look_of(), otherwise in the default
+// body colour. BodyChoice::automatic is low for more than two motions without a body, otherwise
+// medium. `method` is the skinning method for motions; glTF files are skinned as in viewers. Code
+// figure-input for a file without an actor.
+Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths, BodyChoice body,
+                                             SkinMethod method, ToolContext& context);
+
+}  // namespace krok::cli
