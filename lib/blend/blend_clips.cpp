@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
+#include "motion/hips_root.h"
 #include "pose/blend_pose.h"
 #include "pose/sample_pose.h"
 
@@ -328,7 +329,22 @@ Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& r
     return Error("clip-too-long", fmt::format("{} s at {} frames per second exceed the limit",
                                               readable(time->duration()), readable(rate)));
   }
-  return Blender(inputs, roles, options, *time, rate).blend(correspondence);
+  std::vector<const Clip*> clips;
+  for (const BlendInput& input : inputs) clips.push_back(input.clip);
+  const HipsRoot hips_root(clips, carrying_joint(roles));
+  if (!hips_root.changes()) {
+    return Blender(inputs, roles, options, *time, rate).blend(correspondence);
+  }
+  std::vector<Clip> rooted;
+  rooted.reserve(inputs.size());
+  std::vector<BlendInput> rooted_inputs(inputs.begin(), inputs.end());
+  for (BlendInput& input : rooted_inputs) {
+    input.clip = &rooted.emplace_back(hips_root.rooted(*input.clip));
+  }
+  Blended blended = Blender(rooted_inputs, roles, options, *time, rate).blend(correspondence);
+  blended.clip = hips_root.restored(blended.clip, clips.front()->skeleton);
+  blended.spread_joint = hips_root.original(blended.spread_joint);
+  return blended;
 }
 
 }  // namespace krok::blend

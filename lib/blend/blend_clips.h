@@ -51,7 +51,8 @@ struct Blended {
 };
 
 // The blend starts at the weighted mean of the motions' start positions. All motions need the same
-// skeleton: names, order and parents. Codes: blend-skeleton; blend-empty for no motions or a motion
+// skeleton: names, order and parents. Poses are summed from the hips down, whatever the root above
+// them does (HipsRoot). Codes: blend-skeleton; blend-empty for no motions or a motion
 // without frames; blend-sum if the weights do not sum to 1 within 1e-6 at some point and any_sum is
 // not set; clip-rate, clip-too-long as resample(); those of check(Correspondence), of BlendTime,
 // and of check(Clip) and check(MotionKeys).

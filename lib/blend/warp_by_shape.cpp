@@ -23,15 +23,19 @@ constexpr double kVelocityTime = 0.1;  // seconds
 // ground frame, and their velocities.
 class Shapes {
  public:
-  Shapes(const Clip& clip, int carrier, int moments) : joints_(clip.joint_count()) {
+  Shapes(const Clip& clip, int carrier, int moments) {
+    // A root that does not move with the hips says nothing about the pose.
+    const auto moves = subtree(clip.skeleton, carrier);
+    joints_ = static_cast<int>(std::ranges::count(moves, 1));
     std::vector<Transform> pose(clip.skeleton.names.size()), scratch(3 * pose.size());
     const double step = clip.duration() / (moments - 1);
     for (int i = 0; i < moments; ++i) {
       sample(clip, i * step, pose, scratch);
       const Transform world_to_place =
           ground_frame(clip.skeleton, carrier, pose[at(carrier)]).to_world().inverse();
-      for (const Transform& joint : pose) {
-        positions_.push_back((world_to_place * joint.position).cast<float>());
+      for (std::size_t j = 0; j < pose.size(); ++j) {
+        if (moves[j] == 0) continue;
+        positions_.push_back((world_to_place * pose[j].position).cast<float>());
       }
     }
     velocities_.resize(positions_.size());
@@ -57,7 +61,7 @@ class Shapes {
   }
 
  private:
-  int joints_;
+  int joints_ = 0;
   std::vector<Vec3f> positions_, velocities_;  // [moments x joints]
 };
 

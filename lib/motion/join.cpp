@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
 #include "motion/sample.h"
@@ -18,13 +21,15 @@ namespace {
 
 constexpr const char* kRetarget = "retarget it to the same skeleton with krok-retarget";
 
-Status same_skeleton(const Skeleton& first, const Skeleton& second) {
+// The joints above the hips only place the figure, so their offsets and the hips' are not compared.
+Status same_skeleton(const Skeleton& first, const Skeleton& second, int carrier) {
   const std::string difference = difference_in_structure(first, second);
   if (!difference.empty()) {
     return Error("motion-skeleton", "the skeletons differ: " + difference, kRetarget);
   }
   const double allowed = 0.01 * std::max(reference_extent(first), reference_extent(second));
   for (int j = 1; j < first.joint_count(); ++j) {
+    if (subtree(first, j)[at(carrier)] != 0) continue;
     const Vec3 a = first.reference_local(j).position;
     const Vec3 b = second.reference_local(j).position;
     if ((a - b).norm() <= allowed) continue;
@@ -58,15 +63,9 @@ Transform alignment(const Clip& first, int first_frame, const Clip& second, int 
   return move;
 }
 
-}  // namespace
-
-Result<Joined> join(const Clip& first, const Clip& second, int carrier,
-                    const JoinOptions& options) {
-  if (Status status = same_skeleton(first.skeleton, second.skeleton); !status)
-    return status.error();
-  if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
-    return Error("motion-blend", "the blend time must be finite and not negative");
-  }
+// Joins motions rooted at the hips.
+Result<Joined> join_rooted(const Clip& first, const Clip& second, int carrier,
+                           const JoinOptions& options) {
   if (first.frame_count() == 0) {
     Joined all{second};
     all.clip.skeleton = first.skeleton;
@@ -127,6 +126,24 @@ Result<Joined> join(const Clip& first, const Clip& second, int carrier,
   result.clip.provenance = first.provenance;
   set_local_motion(whole, result.clip);
   return result;
+}
+
+}  // namespace
+
+Result<Joined> join(const Clip& first, const Clip& second, int carrier,
+                    const JoinOptions& options) {
+  if (Status status = same_skeleton(first.skeleton, second.skeleton, carrier); !status)
+    return status.error();
+  if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
+    return Error("motion-blend", "the time that two motions share is 0 or more");
+  }
+  const HipsRoot hips_root(std::array<const Clip*, 2>{&first, &second}, carrier);
+  if (!hips_root.changes()) return join_rooted(first, second, carrier, options);
+  auto joined = join_rooted(hips_root.rooted(first), hips_root.rooted(second), carrier, options);
+  if (!joined) return joined;
+  joined->clip = hips_root.restored(joined->clip, first.skeleton);
+  joined->largest_joint = hips_root.original(joined->largest_joint);
+  return joined;
 }
 
 }  // namespace krok

@@ -8,6 +8,7 @@
 #include "math/euler.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/local_motion.h"
 #include "motion/seam_curves.h"
 
@@ -16,7 +17,8 @@ namespace krok {
 namespace {
 
 constexpr double kDrift = 10 * kRadiansPerDegree;
-constexpr double kLevel = 0.05;  // of the skeleton's extent
+constexpr double kLevel = 0.05;     // of the figure's extent
+constexpr double kNoTravel = 1e-3;  // metres
 
 Quat turn_about_vertical(double angle) {
   return axis_rotation(Axis::y, angle);
@@ -41,7 +43,6 @@ class Looper {
       : clip_(clip), carrier_(carrier), options_(options), motion_(local_motion(clip)) {}
 
   Looped loop() {
-    carry_still_root();
     if (needs_closing_frame()) add_closing_frame();
     straighten();
     choose_displacement();
@@ -125,36 +126,6 @@ class Looper {
     }
     motion_ = std::move(longer);
     result_.added_frames = 1;
-  }
-
-  // If the hips travel below a static root, moves the even part of the travel to the root, because
-  // the displacement is applied at the root.
-  void carry_still_root() {
-    if (carrier_ == 0) return;
-    const Vec3 root_way = motion_.at(0, last()).position - motion_.at(0, 0).position;
-    const Transform displacement = way(0, last());
-    const Vec3 carrier_way =
-        displacement * carrier_to_world(0).position - carrier_to_world(0).position;
-    constexpr double kStill = 1e-3;
-    if (Vec2(root_way.x(), root_way.z()).norm() > kStill) return;
-    if (Vec2(carrier_way.x(), carrier_way.z()).norm() <= kStill) return;
-    const double turn = wrapped(place(last()).heading - place(0).heading);
-    // Only the carrier's branch is compensated; the root's other children move with the root.
-    std::vector<int> children;
-    for (int j = 1; j < motion_.joints; ++j) {
-      const bool leads = subtree(clip_.skeleton, j)[static_cast<std::size_t>(carrier_)] != 0;
-      if (clip_.skeleton.parents[at(j)] == 0 && leads) children.push_back(j);
-    }
-    for (int f = 0; f < motion_.frames; ++f) {
-      const Transform part = share_of(displacement, turn, static_cast<double>(f) / last());
-      const Transform root = motion_.at(0, f);
-      const Transform carried = part * root;
-      for (const int j : children) {
-        motion_.set(j, f, carried.inverse() * root * motion_.at(j, f));
-      }
-      motion_.set(0, f, carried);
-    }
-    result_.carried = true;
   }
 
   void straighten() {
@@ -311,7 +282,28 @@ Result<Looped> loop(const Clip& clip, int carrier, const LoopOptions& options) {
   if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
     return Error("motion-blend", "the blend time must be finite and not negative");
   }
-  return Looper(clip, carrier, options).loop();
+  const HipsRoot hips_root(clip, carrier);
+  if (!hips_root.changes()) return Looper(clip, carrier, options).loop();
+  const Clip rooted = hips_root.rooted(clip);
+  Looped looped = Looper(rooted, carrier, options).loop();
+  const Transform& displacement = looped.displacement;
+  const Vec3 hips = clip.frame_positions(0)[at(carrier)].cast<double>();
+  const Vec3 way = displacement * hips - hips;
+  // A figure is moved on by moving all of it, so a root that stands must go along.
+  looped.carried = hips_root.stands() && Vec2(way.x(), way.z()).norm() > kNoTravel;
+  HipsRoot::Carried carried;
+  if (looped.carried) {
+    const int last = looped.clip.frame_count() - 1;
+    carried = [&displacement, turn = looped.turn, last](int frame) {
+      return share_of(displacement, turn, static_cast<double>(frame) / last);
+    };
+  }
+  looped.clip = hips_root.restored(looped.clip, clip.skeleton, carried);
+  for (Seam* seam : {&looped.before, &looped.after}) {
+    seam->angle_joint = hips_root.original(seam->angle_joint);
+    seam->angular_velocity_joint = hips_root.original(seam->angular_velocity_joint);
+  }
+  return looped;
 }
 
 Result<Clip> repeated(const Clip& looped, const Transform& displacement, int rounds) {

@@ -63,17 +63,19 @@ struct Looped {
   double straightened = 0;  // radians of turn removed
   double levelled = 0;      // metres of height blended away
   int blended_frames = 0;   // before the seam, and as many after it
-  bool carried = false;     // a static root now travels with the character
+  // A root that stood still now travels along, evenly: the figure is moved on by moving all of it.
+  bool carried = false;
 };
 
-// Closes the seam with a correction curve added to each joint's rotation, and to the positions of
-// the root and of joints that move relative to their parents: half the gap in value and velocity at
-// the seam, fading to zero with two derivatives over the blend (a quintic Hermite curve). Only the
-// part of a velocity jump that exceeds the joint's usual jump is corrected, so a motion that
-// already repeats is unchanged. Afterwards poses match across the seam and velocities match as well
-// as elsewhere; bone lengths are kept; frames outside the blend change only by straightening.
-// `carrier` is the result of carrying_joint(). Codes: motion-loop for clips of fewer than four
-// frames, motion-blend if the blend is negative or not finite.
+// The seam is closed by adding to each joint's rotation, and to the places of the root and of
+// joints that move in their parents, a curve that is half of what is missing at the seam, in value
+// and in velocity, and fades to nothing with two derivatives within the blend (a quintic Hermite
+// curve). Of a jump in velocity only what is more than the joint's usual is missing, so that a
+// motion that repeats already stays as it is. Poses then agree across the seam, and velocities as
+// well as elsewhere; bones keep their lengths; frames further away stay as they are, except for
+// what straightening does. Poses are those of the hips and the joints below, whatever the root
+// above them does (HipsRoot). `carrier` is what carrying_joint() gives. Codes: motion-loop for
+// clips of fewer than four frames, motion-blend for a blend that is negative or not finite.
 Result<Looped> loop(const Clip& clip, int carrier, const LoopOptions& options);
 
 // The clip played `rounds` times as described above, as one motion of rounds * (n - 1) + 1 frames.

@@ -146,7 +146,7 @@ Result<BlendedMotion::Made> BlendedMotion::make(double rate, LastFrame last) con
     return Error("clip-rate", "the rate of a motion must be a positive number");
   }
   const double frames = duration() * rate;
-  const auto joints = library_.skeleton.names.size();
+  const auto joints = packed_.skeleton.names.size();
   if (!(frames * static_cast<double>(joints) <= kMaxTransforms)) {
     return Error("clip-too-long", fmt::format("{} s at {} frames per second are too many frames",
                                               readable(duration()), readable(rate)));
@@ -155,7 +155,7 @@ Result<BlendedMotion::Made> BlendedMotion::make(double rate, LastFrame last) con
                                             : static_cast<int>(std::floor(frames + 1e-6));
   const double stretch = last == LastFrame::kept ? count / frames : 1;
   Made made;
-  made.clip.skeleton = library_.skeleton;
+  made.clip.skeleton = packed_.skeleton;
   made.clip.rate = rate;
   made.clip.resize(count + 1);
   Scratch scratch = make_scratch();
@@ -170,11 +170,13 @@ Result<BlendedMotion::Made> BlendedMotion::make(double rate, LastFrame last) con
       made.agreement = std::min(made.agreement, static_cast<double>(agreement));
     }
     const std::size_t from = static_cast<std::size_t>(first) * joints;
-    local_to_model({library_.skeleton.parents, std::span(poses).first(some * blocks), space},
+    local_to_model({packed_.skeleton.parents, std::span(poses).first(some * blocks), space},
                    std::span(made.clip.positions).subspan(from, some * joints),
                    std::span(made.clip.orientations).subspan(from, some * joints));
   }
   for (Quatf& orientation : made.clip.orientations) orientation.normalize();
+  made.clip = packed_.hips_root.changes() ? packed_.hips_root.restored(made.clip, library_.skeleton)
+                                          : std::move(made.clip);
   made.keys = keys(stretch, made.clip.duration());
   return made;
 }

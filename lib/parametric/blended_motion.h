@@ -13,9 +13,11 @@ namespace krok::parametric {
 // theirs, from 0; (2) a monotone cubic through them maps time to generic time; (3) each example is
 // sampled at that generic time; (4) positions and (5) local rotations are summed with the weights,
 // the root's relative to the stance footprint, rotations normalised and in the hemisphere of the
-// examples' mean. The result is then aligned to the stance foot: at the first keytime the blend's
-// own footprint is at the origin, toes to +Z. The stance foot is not locked after that: between
-// examples as different as level steps and stairs it skates by some centimetres.
+// examples' mean. Joints above the hips are restored as HipsRoot has it; a root that stands in the
+// examples stands where it does in the reference pose. The result is then aligned to the stance
+// foot: at the first keytime the blend's own footprint is at the origin, toes to +Z. The stance
+// foot is not locked after that: between examples as different as level steps and stairs it skates
+// by some centimetres.
 class BlendedMotion {
  public:
   // Both must outlive the motion. `weights`: [examples]. Codes: parametric-weights if the count is

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <optional>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "math/quaternion.h"
 #include "motion/cut.h"
+#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/mirror.h"
 
 namespace krok::parametric {
@@ -76,7 +79,9 @@ std::vector<Found> find_steps(const MotionKeys& keys, const CutOptions& options)
 }
 
 // Description of a jump of the pose between frames; empty if there is none.
-std::string jump_in(const Clip& piece) {
+std::string jump_in(const Clip& motion, int carrier) {
+  const HipsRoot hips_root(motion, carrier);
+  const Clip piece = hips_root.rooted(motion);
   std::vector<Transform> before(piece.skeleton.names.size()), pose(before.size()),
       local(before.size());
   for (int f = 0; f < piece.frame_count(); ++f) {
@@ -85,7 +90,9 @@ std::string jump_in(const Clip& piece) {
     for (std::size_t j = 0; f > 0 && j < local.size(); ++j) {
       const bool turns = angle_between(before[j].orientation, local[j].orientation) > kJumpAngle;
       const bool moves = j == 0 && (before[j].position - local[j].position).norm() > kJumpWay;
-      if (turns || moves) return fmt::format("{} jumps", piece.skeleton.names[j]);
+      if (!turns && !moves) continue;
+      const int joint = hips_root.original(static_cast<int>(j));
+      return fmt::format("{} jumps", piece.skeleton.names[at(joint)]);
     }
     std::swap(before, local);
   }
@@ -204,7 +211,7 @@ class Cutter {
         std::min(clip.frame_count() - 1, static_cast<int>(std::ceil(step.end * clip.rate - 1e-6)));
     if (last <= first) return "it is outside the walk";
     Clip piece = cut(clip, first, last);
-    if (std::string jump = jump_in(piece); !jump.empty()) return jump;
+    if (std::string jump = jump_in(piece, carrying_joint(roles_)); !jump.empty()) return jump;
     const double shift = first / clip.rate;
     const auto within = [&](double time) {
       return std::clamp(time - shift, 0.0, piece.duration());

@@ -69,8 +69,11 @@ std::vector<double> nearest_weights(const Bounds& bounds, std::span<const double
   return weights;
 }
 
-// Joint positions of a motion at fractions of its intervals: [samples x joints].
-std::vector<Vec3> poses_of(const BlendedMotion& motion, const Skeleton& skeleton) {
+// Positions at fractions of a motion's intervals, [samples x joints], without the joints above the
+// hips.
+std::vector<Vec3> poses_of(const BlendedMotion& motion, const PackedExamples& packed) {
+  const Skeleton& skeleton = packed.skeleton;
+  const std::vector<std::uint8_t>& below = packed.hips_root.below();
   auto scratch = motion.make_scratch();
   std::vector<PoseBlock> pose(scratch.reference.size());
   std::vector<Transform> world(skeleton.names.size());
@@ -82,7 +85,9 @@ std::vector<Vec3> poses_of(const BlendedMotion& motion, const Skeleton& skeleton
       motion.pose(keytimes[k] + lasts * (part + 0.5) / kParts, pose, scratch);
       unpack_pose(pose, world);
       local_to_world(skeleton.parents, world, world);
-      for (const Transform& joint : world) positions.push_back(joint.position);
+      for (std::size_t j = 0; j < below.size(); ++j) {
+        if (below[j] != 0) positions.push_back(world[j].position);
+      }
     }
   }
   return positions;
@@ -92,7 +97,7 @@ std::optional<double> distance(const Library& library, const PackedExamples& pac
                                std::span<const double> weights, const std::vector<Vec3>& wanted) {
   const auto motion = BlendedMotion::create(library, packed, weights);
   if (!motion) return std::nullopt;
-  const auto found = poses_of(*motion, library.skeleton);
+  const auto found = poses_of(*motion, packed);
   double sum = 0;
   for (std::size_t i = 0; i < found.size(); ++i) sum += (found[i] - wanted[i]).squaredNorm();
   return std::sqrt(sum / static_cast<double>(found.size()));
@@ -111,7 +116,7 @@ std::vector<Vec3> example_poses(const Library& library, std::size_t index) {
   alone.examples.assign(1, library.examples[index]);
   const PackedExamples packed = pack_examples(alone);
   const double all = 1;
-  return poses_of(*BlendedMotion::create(alone, packed, {&all, 1}), library.skeleton);
+  return poses_of(*BlendedMotion::create(alone, packed, {&all, 1}), packed);
 }
 
 Gap gap_of(const Library& library, std::size_t index) {

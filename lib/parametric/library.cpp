@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "core/numbers.h"
+#include "motion/ground_frame.h"
 #include "motion/mirror.h"
 #include "motion/place.h"
 #include "parametric/measure.h"
@@ -105,6 +107,10 @@ FootShape mirrored_foot(const FootShape& foot, const Skeleton& skeleton, int par
 
 }  // namespace
 
+int carrying_joint(const Library& library) {
+  return krok::carrying_joint(find_roles(library.skeleton));
+}
+
 double shortest_interval(const Library& library) {
   return std::min(2 / library.rate, kShortest) * (1 - 1e-9);
 }
@@ -120,6 +126,8 @@ Status same_skeleton(const Skeleton& library, const Skeleton& other) {
     const Vec3 ours = library.reference_local(j).position;
     const Vec3 theirs = other.reference_local(j).position;
     if ((ours - theirs).norm() <= allowed) continue;
+    // The joints above the hips only place the figure.
+    if (subtree(library, j)[at(krok::carrying_joint(find_roles(library)))] != 0) continue;
     const std::string& name = library.names[static_cast<std::size_t>(j)];
     Error error("parametric-skeleton",
                 fmt::format("not the library's skeleton: {} is offset by {} m in its parent's "

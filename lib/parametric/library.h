@@ -45,9 +45,12 @@ struct Library {
 // captures.)
 double shortest_interval(const Library& library);
 
-// Whether two skeletons can share a library: same names, order and parents; offsets in the
-// reference poses equal to within a hundredth of the skeleton's extent. Code: parametric-skeleton,
-// naming the joint.
+// The joint that carries the motions: the hips by find_roles(), or the root.
+int carrying_joint(const Library& library);
+
+// Whether two skeletons can share a library: same names, order and parents; offsets of joints below
+// the hips in the reference poses equal to within a hundredth of the skeleton's extent. Code:
+// parametric-skeleton, naming the joint.
 Status same_skeleton(const Skeleton& library, const Skeleton& other);
 
 // Makes an example of a motion with keytimes (seconds): moves it into the stance foot's frame and

@@ -79,7 +79,7 @@ void add_reference(PackedExamples& packed) {
   }
 }
 
-std::vector<std::uint8_t> carrying_joints(const Skeleton& skeleton) {
+std::vector<std::uint8_t> joints_with_bones(const Skeleton& skeleton) {
   std::vector<std::uint8_t> carries(skeleton.names.size(), 0);
   const double least = kMinReach * reference_extent(skeleton);
   for (std::size_t j = carries.size(); j-- > 1;) {
@@ -94,10 +94,19 @@ std::vector<std::uint8_t> carrying_joints(const Skeleton& skeleton) {
 
 PackedExamples pack_examples(const Library& library) {
   PackedExamples packed;
-  for (const Example& example : library.examples) packed.clips.push_back(pack_clip(example.motion));
+  std::vector<const Clip*> motions;
+  for (const Example& example : library.examples) motions.push_back(&example.motion);
+  packed.hips_root = HipsRoot(motions, carrying_joint(library));
+  // A root that stands has been moved along with each step into the stance foot's frame.
+  packed.hips_root.stand_at(library.skeleton.reference.front());
+  packed.skeleton = packed.hips_root.rooted(library.skeleton);
+  for (const Clip* motion : motions) {
+    packed.clips.push_back(packed.hips_root.changes() ? pack_clip(packed.hips_root.rooted(*motion))
+                                                      : pack_clip(*motion));
+  }
   add_times(library, packed);
   add_reference(packed);
-  packed.carries = carrying_joints(library.skeleton);
+  packed.carries = joints_with_bones(packed.skeleton);
   return packed;
 }
 
@@ -126,7 +135,8 @@ Spread widest_spread(const PackedExamples& packed) {
         for (std::size_t j = 0; j < poses[a].size(); ++j) {
           const double angle = angle_between(poses[a][j].orientation, poses[b][j].orientation);
           if (!packed.carries[j] || angle <= widest.angle) continue;
-          widest = {angle, static_cast<int>(j), static_cast<int>(b), static_cast<int>(a), generic};
+          widest = {angle, packed.hips_root.original(static_cast<int>(j)), static_cast<int>(b),
+                    static_cast<int>(a), generic};
         }
       }
     }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "motion/hips_root.h"
 #include "parametric/library.h"
 #include "pose/packed_pose.h"
 
@@ -14,7 +15,12 @@ namespace krok::parametric {
 // first keytime, and at each other one the mean of the examples' times, seconds. (Numbering
 // keytimes 0, 1, 2 works only if intervals have similar length; otherwise the cubic comes to rest
 // at the end of a short interval, and blends start with a jerk.)
+//
+// Poses are those of HipsRoot::rooted(): a step's root stands wherever the walk left it, which says
+// nothing about the step.
 struct PackedExamples {
+  HipsRoot hips_root;
+  Skeleton skeleton;              // of the poses: the library's joints, and those appended
   std::vector<PackedClip> clips;  // [examples]
   std::vector<double> generic;    // [keytimes], generic time of the keytimes, rising from 0
   // Each example's time by generic time is a monotone cubic (PCHIP) through its keytimes: values
@@ -22,7 +28,8 @@ struct PackedExamples {
   Eigen::MatrixXd times, slopes;
   // Mean of all examples by generic time; rotations are summed in its hemisphere.
   PackedClip reference;
-  // [joints], 1 if the joint carries a bone longer than a hundredth of the skeleton's extent.
+  // [joints of the poses], 1 if the joint carries a bone longer than a hundredth of the skeleton's
+  // extent.
   std::vector<std::uint8_t> carries;
 
   int examples() const { return static_cast<int>(clips.size()); }

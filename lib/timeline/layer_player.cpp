@@ -94,13 +94,14 @@ Result<ActorPose> reference_of(const Layer& layer, const ItemPlayer& player, int
 }  // namespace
 
 Result<LayerPlayer> LayerPlayer::create(const Layer& layer, std::span<const Source> sources,
-                                        int carrier, double rate, double end) {
+                                        const HipsRoot& hips_root, int carrier, double rate,
+                                        double end) {
   LayerPlayer player;
   player.layer_ = &layer;
   player.skeleton_ = &sources.front().clip->skeleton;
   auto mask = mask_weights(*player.skeleton_, layer.mask);
   if (!mask) return mask.error();
-  player.mask_ = std::move(*mask);
+  player.mask_ = hips_root.rooted(std::span(*mask).first(hips_root.below().size()));
   for (std::size_t j = 0; j < player.mask_.size(); ++j) {
     const int parent = player.skeleton_->parents[j];
     const bool above = parent >= 0 && player.touched_[static_cast<std::size_t>(parent)] != 0;

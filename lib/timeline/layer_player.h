@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "motion/hips_root.h"
 #include "timeline/item_player.h"
 #include "timeline/timeline.h"
 
@@ -21,8 +22,10 @@ class LayerPlayer {
  public:
   // Codes timeline-mask, timeline-time, timeline-endless, timeline-weight and those of resolve(),
   // with the location of the error. `end` is the end of the base: items are cut there.
+  // The sources' clips are those of `hips_root`.
   static Result<LayerPlayer> create(const Layer& layer, std::span<const Source> sources,
-                                    int carrier, double rate, double end);
+                                    const HipsRoot& hips_root, int carrier, double rate,
+                                    double end);
 
   const std::vector<LayerTimes>& items() const { return items_; }
 

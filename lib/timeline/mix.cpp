@@ -8,6 +8,7 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "motion/hips_root.h"
 #include "scene/frame_moment.h"
 #include "timeline/result_keys_internal.h"
 
@@ -124,14 +125,10 @@ void make_frames(const BaseMotion& base, std::span<const LayerPlayer> layers, in
       });
 }
 
-}  // namespace
-
-Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, const RoleMap& roles,
-                  const MixOptions& options) {
-  if (timeline.base.empty() || sources.empty()) {
-    return Error("timeline-empty", "the timeline is empty");
-  }
-  if (Status status = check_sources(sources); !status) return status.error();
+// Mixes motions rooted at the hips.
+Result<Mixed> mix_rooted(const Timeline& timeline, std::span<const Source> sources,
+                         const HipsRoot& hips_root, const RoleMap& roles,
+                         const MixOptions& options) {
   double rate = timeline.rate;
   if (rate == 0) {
     // schedule() reports an invalid source index.
@@ -156,7 +153,7 @@ Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, con
       return Error("timeline-limit",
                    fmt::format("layers have more than {} items in total", grouped(kMaxLayerItems)));
     }
-    auto player = LayerPlayer::create(layer, sources, carrier, rate, end);
+    auto player = LayerPlayer::create(layer, sources, hips_root, carrier, rate, end);
     if (!player) return player.error();
     layers.push_back(std::move(*player));
   }
@@ -170,13 +167,41 @@ Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, con
   const BaseMotion base(timeline, sources, roles, std::move(*items), rate);
   make_frames(base, layers, options.jobs, mixed.clip);
 
-  const Parts parts{timeline, sources, base, layers, mixed.clip, options.jobs};
+  const Parts parts{timeline, sources, base, layers, mixed.clip, options.jobs, hips_root};
   auto events = result_events(parts, mixed.warnings);
   if (!events) return events.error();
   mixed.events = std::move(*events);
   mixed.keys = result_keys(parts);
   mixed.items = result_items(parts);
   mixed.changes = result_changes(parts, mixed.warnings);
+  return mixed;
+}
+
+}  // namespace
+
+Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, const RoleMap& roles,
+                  const MixOptions& options) {
+  if (timeline.base.empty() || sources.empty()) {
+    return Error("timeline-empty", "the timeline is empty");
+  }
+  if (Status status = check_sources(sources); !status) return status.error();
+  std::vector<const Clip*> clips;
+  for (const Source& source : sources) clips.push_back(source.clip);
+  const HipsRoot hips_root(clips, carrying_joint(roles));
+  if (!hips_root.changes()) return mix_rooted(timeline, sources, hips_root, roles, options);
+  std::vector<Clip> rooted;
+  rooted.reserve(sources.size());
+  std::vector<Source> rooted_sources(sources.begin(), sources.end());
+  for (Source& source : rooted_sources) {
+    source.clip = &rooted.emplace_back(hips_root.rooted(*source.clip));
+  }
+  auto mixed = mix_rooted(timeline, rooted_sources, hips_root, roles, options);
+  if (!mixed) return mixed;
+  mixed->clip = hips_root.restored(mixed->clip, clips.front()->skeleton);
+  for (ChangeFacts& change : mixed->changes) {
+    change.angle_joint = hips_root.original(change.angle_joint);
+    change.fastest_joint = hips_root.original(change.fastest_joint);
+  }
   return mixed;
 }
 

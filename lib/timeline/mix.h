@@ -65,9 +65,10 @@ struct Mixed {
 };
 
 // Outside changes, a frame of a motion that is not repositioned equals the source frame bit for
-// bit; layers do not change joints that they do not move. The keys are those of the base: keytimes
-// of its motions (in a crossfade, of the motion with the larger weight), and contacts outside
-// changes of joints that no layer moves at that time.
+// bit, joints above the hips aside: a root that stands in all motions stands where it does in the
+// first (HipsRoot). Layers do not change joints that they do not move. The keys are those of the
+// base: keytimes of its motions (in a crossfade, of the motion with the larger weight), and
+// contacts outside changes of joints that no layer moves at that time.
 //
 // All sources need the same skeleton: names, order and parents. Codes: timeline-skeleton,
 // timeline-empty (no item, or a motion without frames), timeline-limit; those of schedule() and of

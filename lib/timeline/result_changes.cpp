@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/index.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "math/quaternion.h"
@@ -135,7 +136,7 @@ class ChangeFinder {
     Diagnostic seam;
     seam.severity = Severity::warning;
     seam.code = "timeline-seam";
-    seam.joint = parts_.clip.skeleton.names[static_cast<std::size_t>(jump.joint)];
+    seam.joint = parts_.clip.skeleton.names[at(parts_.hips_root.original(jump.joint))];
     seam.message = fmt::format("{}: the loop has a seam: {} jumps by {:.1f} degrees",
                                shown(parts_.timeline.base[i].name), seam.joint,
                                jump.angle / kRadiansPerDegree);

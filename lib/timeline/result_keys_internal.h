@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "motion/hips_root.h"
 #include "timeline/base_motion.h"
 #include "timeline/layer_player.h"
 #include "timeline/mix.h"
@@ -18,6 +19,7 @@ struct Parts {
   std::span<const LayerPlayer> layers;
   const Clip& clip;  // the result
   int jobs;
+  const HipsRoot& hips_root;  // of the sources' clips and the result
 };
 
 // Keytimes and contacts of the base where they are still valid.

@@ -4,6 +4,7 @@
 #include "core/quantity.h"
 #include "formats/bvh/bvh_writer.h"
 #include "samples/generator/ground_truth.h"
+#include "samples/generator/rig.h"
 #include "samples/generator/walk.h"
 #include "tools/cli/one_of.h"
 #include "tools/cli/tool.h"
@@ -23,6 +24,7 @@ struct Arguments {
   std::string stature, step_length, step_width, turn, rise, noise_angle, noise_position;
   std::string ground = "stairs";
   std::string first = "left";
+  std::string rig = "hips";
   std::string contacts;
 };
 
@@ -60,6 +62,15 @@ void declare(CommandOptions& command, Arguments& arguments) {
       .capture_default_str()
       .group("Walk");
   quantity("--stature", arguments.stature, "LENGTH", "1.75m", "Height of the actor");
+  command
+      .add_option("--rig", arguments.rig,
+                  "Where the motion is: hips (the root), static-root (hips below a root at the "
+                  "origin), ground-root (hips above a root on the ground) or lying (hips, with a "
+                  "lying reference pose)")
+      .transform(one_of_words({"hips", "static-root", "ground-root", "lying"}))
+      .type_name("RIG")
+      .capture_default_str()
+      .group("Capture");
   command.add_option("--rate", walk.rate, "Frames per second")
       .type_name("N")
       .capture_default_str()
@@ -116,6 +127,12 @@ Status read_quantities(Arguments& arguments) {
   return {};
 }
 
+samples::Rig rig_of(const std::string& word) {
+  if (word == "static-root") return samples::Rig::static_root;
+  if (word == "ground-root") return samples::Rig::ground_root;
+  return word == "lying" ? samples::Rig::lying : samples::Rig::hips;
+}
+
 // walk.bvh -> walk.contacts.json
 std::string contacts_path(const std::string& capture) {
   return capture.substr(0, capture.size() - extension(capture).size()) + ".contacts.json";
@@ -130,7 +147,9 @@ Result<int> run(ToolContext& context, Arguments& arguments) {
   if (!capture) return std::move(capture).error();
   bvh::WriteOptions options;
   options.decimals = kDecimals;
-  if (Status status = bvh::write(walk->clip, options, *capture); !status) {
+  if (Status status =
+          bvh::write(samples::with_rig(walk->clip, rig_of(arguments.rig)), options, *capture);
+      !status) {
     return std::move(status).error();
   }
   const std::string truth = samples::ground_truth_json(*walk, base_name(context.output));
