@@ -1,11 +1,13 @@
 #include "motion/mirror.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cstdint>
 #include <span>
 
 #include "core/index.h"
 #include "math/quaternion.h"
+#include "motion/ground_frame.h"
 
 namespace krok {
 
@@ -19,39 +21,100 @@ Quat image(const Quat& q) {
   return {q.w(), q.x(), -q.y(), -q.z()};
 }
 
-// The bone direction of a joint in the reference pose: the sum of its paired children's offsets.
-Vec3 bone(const Skeleton& skeleton, const MirrorPairs& pairs, const std::vector<int>& children,
-          int joint) {
-  Vec3 sum = Vec3::Zero();
-  for (const int child : children) {
-    if (pairs.partners[at(child)] == MirrorPairs::kNone) continue;
-    sum += skeleton.reference[at(child)].position - skeleton.reference[at(joint)].position;
-  }
-  return sum;
+constexpr double kSameOffset = 1e-7;  // metres
+
+// A rotation that takes own bones to the images of the partner's, and leaves what they do not
+// determine (the twist about a single bone) as `usual` has it: the polar part of the correlation of
+// both (Horn, Closed-form solution of absolute orientation using orthonormal matrices, J. Opt. Soc.
+// Am. A 5, 1988) with a very small share of `usual`.
+Quat fitted_turn(const Mat3& correlation, double size, const Quat& usual) {
+  constexpr double kShare = 1e-9;
+  const Mat3 all = correlation + kShare * size * usual.toRotationMatrix();
+  const Eigen::JacobiSVD<Mat3> svd(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 flip = Mat3::Identity();
+  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return normalized_or_identity(Quat(Mat3(svd.matrixU() * flip * svd.matrixV().transpose())));
 }
 
-// For each joint the rotation from its reference bone to the mirror image of its counterpart's; the
-// identity for symmetric skeletons. Joints with no bone or a very short one take their parent's.
-// Middle joints where limbs branch off have no single direction: identity.
-std::vector<Quat> lopsidedness(const Skeleton& skeleton, const MirrorPairs& pairs) {
-  const auto children = skeleton.children();
-  const double least = 0.01 * reference_extent(skeleton);
-  std::vector<Quat> turns(skeleton.names.size(), Quat::Identity());
-  for (int j = 1; j < skeleton.joint_count(); ++j) {
-    const int other = pairs.partners[at(j)];
-    if (other == MirrorPairs::kNone) continue;
-    if (other == j && children[at(j)].size() > 1) continue;
-    const Vec3 own = bone(skeleton, pairs, children[at(j)], j);
-    const Vec3 theirs = bone(skeleton, pairs, children[at(other)], other);
-    const int parent = skeleton.parents[at(j)];
-    if (std::min(own.norm(), theirs.norm()) > least) {
-      turns[at(j)] = shortest_arc(own, image(theirs));
-    } else if (pairs.partners[at(parent)] == skeleton.parents[at(other)]) {
-      turns[at(j)] = turns[at(parent)];
+// How joints' own axes stand to those of their partners, see axes_to_images().
+class AxesFinder {
+ public:
+  AxesFinder(const Skeleton& skeleton, const MirrorPairs& pairs)
+      : skeleton_(skeleton),
+        pairs_(pairs),
+        children_(skeleton.children()),
+        least_(0.01 * reference_extent(skeleton)),
+        found_(skeleton.names.size(), Quat::Identity()) {}
+
+  std::vector<Quat> find() {
+    for (int j = 0; j < skeleton_.joint_count(); ++j) {
+      const int other = pairs_.partners[at(j)];
+      if (other == MirrorPairs::kNone) continue;
+      found_[at(j)] = other < j ? image(found_[at(other)].conjugate()) : of(j, other);
     }
+    return std::move(found_);
   }
-  return turns;
-}
+
+ private:
+  // Offsets of a joint's children and the images of those of their partners.
+  struct Bones {
+    std::vector<Vec3> own, images;
+  };
+  Bones bones(int joint, int other) const {
+    Bones result;
+    for (const int child : children_[at(joint)]) {
+      const int partner = pairs_.partners[at(child)];
+      if (partner == MirrorPairs::kNone || skeleton_.parents[at(partner)] != other) continue;
+      result.own.push_back(skeleton_.reference_local(child).position);
+      result.images.push_back(image(skeleton_.reference_local(partner).position));
+    }
+    return result;
+  }
+
+  static double misfit(const Bones& bones, const Quat& turn) {
+    double most = 0;
+    for (std::size_t k = 0; k < bones.own.size(); ++k) {
+      most = std::max(most, (turn * bones.own[k] - bones.images[k]).norm());
+    }
+    return most;
+  }
+
+  Quat of(int joint, int other) const {
+    const Quat by_reference = image(skeleton_.reference[at(other)].orientation).conjugate() *
+                              skeleton_.reference[at(joint)].orientation;
+    const int parent = skeleton_.parents[at(joint)];
+    const bool has_parents =
+        parent >= 0 && pairs_.partners[at(parent)] == skeleton_.parents[at(other)];
+    const Bones all = bones(joint, other);
+    double size = 0;
+    for (const Vec3& bone : all.own) size = std::max(size, bone.norm());
+    if (size < least_) {
+      // Turned in its parent as its partner is in the reference pose.
+      return has_parents ? image(skeleton_.reference_local(other).orientation).conjugate() *
+                               found_[at(parent)] * skeleton_.reference_local(joint).orientation
+                         : by_reference;
+    }
+    // In most captures joints have their parents' axes at rest, and need no reference pose.
+    const bool by_parent = has_parents && misfit(all, by_reference) >= kFits * size &&
+                           misfit(all, found_[at(parent)]) < kFits * size;
+    const Quat usual = by_parent ? found_[at(parent)] : by_reference;
+    // The usual case to the bit, whatever the rounding of the offsets was.
+    if (misfit(all, usual) < kSameOffset) return usual;
+    Mat3 correlation = Mat3::Zero();
+    for (std::size_t k = 0; k < all.own.size(); ++k) {
+      correlation += all.images[k] * all.own[k].transpose();
+    }
+    return fitted_turn(correlation, size * size, usual);
+  }
+
+  static constexpr double kFits = 0.01;  // of a bone
+
+  const Skeleton& skeleton_;
+  const MirrorPairs& pairs_;
+  std::vector<std::vector<int>> children_;
+  double least_;
+  std::vector<Quat> found_;
+};
 
 constexpr double kStill = 2 * kRadiansPerDegree;     // relative to the parent, over the whole clip
 constexpr double kTwisted = 60 * kRadiansPerDegree;  // the turn by mirroring
@@ -80,91 +143,98 @@ std::vector<std::uint8_t> still_joints(const Clip& clip, const MirrorPairs& pair
 // Mirrors poses of one skeleton.
 class PoseMirror {
  public:
-  PoseMirror(const Skeleton& skeleton, const MirrorPairs& pairs)
-      : skeleton_(skeleton),
-        pairs_(pairs),
-        lopsided_(lopsidedness(skeleton, pairs)),
-        kept_(skeleton.names.size(), 0),
-        turns_(kept_.size()),
-        new_turns_(kept_.size()) {
-    for (std::size_t j = 1; j < kept_.size(); ++j) {
-      kept_[j] = pairs.partners[j] == MirrorPairs::kNone ? 1 : 0;
-    }
+  PoseMirror(const Clip& clip, const MirrorPairs& pairs)
+      : skeleton_(clip.skeleton), pairs_(pairs), axes_(axes_to_images(clip.skeleton, pairs)) {
+    if (clip.frame_count() > 0) find_axes_above(clip);
   }
 
-  // Makes still joints follow their parents if mirroring `pose` would turn them far from their
-  // present rotation.
+  // Leaves still joints turned in their parents as they are where the mirror image of `pose` has
+  // them turned far from that.
   void keep_twisted(std::span<const Transform> pose, std::span<const std::uint8_t> still) {
     std::vector<Transform> mirrored(pose.size());
-    begin(pose);
     for (int j = 0; j < skeleton_.joint_count(); ++j) {
       place(j, pose, mirrored);
-      if (still[at(j)] == 0 || kept_[at(j)] != 0 || still[at(pairs_.partners[at(j)])] == 0) {
-        continue;
-      }
+      const int source = pairs_.partners[at(j)];
+      if (still[at(j)] == 0 || source == MirrorPairs::kNone || still[at(source)] == 0) continue;
       const auto parent = at(skeleton_.parents[at(j)]);
       const Quat before = pose[parent].orientation.conjugate() * pose[at(j)].orientation;
       const Quat after = mirrored[parent].orientation.conjugate() * mirrored[at(j)].orientation;
       if (angle_between(before, after) <= kTwisted) continue;
-      kept_[at(j)] = 1;
+      axes_[at(j)] =
+          image(pose[at(source)].orientation).conjugate() * mirrored[parent].orientation * before;
       place(j, pose, mirrored);
     }
   }
 
   void operator()(std::span<const Transform> pose, std::span<Transform> mirrored) {
-    begin(pose);
     for (int j = 0; j < skeleton_.joint_count(); ++j) place(j, pose, mirrored);
   }
 
+  // The skeleton whose bones are as long, and set at the angles, as the images of the partners'.
+  Skeleton mirrored_skeleton() const {
+    Skeleton result = skeleton_;
+    for (int j = 1; j < skeleton_.joint_count(); ++j) {
+      const int parent = skeleton_.parents[at(j)], source = pairs_.partners[at(j)];
+      Transform local = skeleton_.reference_local(j);
+      if (source != MirrorPairs::kNone &&
+          skeleton_.parents[at(source)] == pairs_.partners[at(parent)]) {
+        const Vec3 offset =
+            axes_[at(parent)].conjugate() * image(skeleton_.reference_local(source).position);
+        if ((offset - local.position).norm() > kSameOffset) local.position = offset;
+      }
+      result.reference[at(j)] = result.reference[at(parent)] * local;
+    }
+    return result;
+  }
+
  private:
-  const Quat& reference_turn(int joint) const { return skeleton_.reference[at(joint)].orientation; }
-
-  void begin(std::span<const Transform> pose) {
-    for (int j = 0; j < skeleton_.joint_count(); ++j) {
-      turns_[at(j)] = pose[at(j)].orientation * reference_turn(j).conjugate();
+  // The axes of joints above the hips: one that stands, or keeps to the hips' ground frame, is
+  // turned as before.
+  void find_axes_above(const Clip& clip) {
+    for (int j = skeleton_.parents[at(pairs_.carrier)]; j >= 0; j = skeleton_.parents[at(j)]) {
+      const Quat first = orientation(clip, 0, j);
+      bool stands = true;
+      for (int f = 1; f < clip.frame_count() && stands; ++f) {
+        stands = angle_between(first, orientation(clip, f, j)) < kStands;
+      }
+      Quat turn = first;
+      if (!stands) {
+        turn = ground_frame(clip, pairs_.carrier, 0).to_world().orientation.conjugate() * first;
+      }
+      axes_[at(j)] = image(turn).conjugate() * turn;
     }
   }
-
-  // Requires the mirrored transforms of the ancestors.
-  void place(int j, std::span<const Transform> pose, std::span<Transform> mirrored) {
-    const std::vector<Transform>& reference = skeleton_.reference;
-    const int parent = skeleton_.parents[at(j)];
-    Transform& joint = mirrored[at(j)];
-    if (parent >= 0 && kept_[at(j)] != 0) {
-      joint = mirrored[at(parent)] * (pose[at(parent)].inverse() * pose[at(j)]);
-      new_turns_[at(j)] = joint.orientation * reference_turn(j).conjugate();
-      return;
-    }
-    const int source = parent < 0 ? j : pairs_.partners[at(j)];
-    new_turns_[at(j)] = normalized_or_identity(image(turns_[at(source)]) * lopsided_[at(j)]);
-    joint.orientation = normalized_or_identity(new_turns_[at(j)] * reference_turn(j));
-    if (parent < 0) {
-      // Mirrors about the plane of symmetry, which the root may be off.
-      const Vec3 across(2 * (pairs_.plane - reference[at(j)].position.x()), 0, 0);
-      joint.position = image(Vec3(pose[at(j)].position + turns_[at(j)] * across));
-      return;
-    }
-    // The joint's offset from its position by the parent's rotation alone.
-    const int above = skeleton_.parents[at(source)];
-    const Vec3 offset = reference[at(source)].position - reference[at(above)].position;
-    const Vec3 stray =
-        pose[at(source)].position - pose[at(above)].position - turns_[at(above)] * offset;
-    const Vec3 own_offset = reference[at(j)].position - reference[at(parent)].position;
-    joint.position =
-        mirrored[at(parent)].position + new_turns_[at(parent)] * own_offset + image(stray);
+  static Quat orientation(const Clip& clip, int frame, int joint) {
+    return clip.frame_orientations(frame)[at(joint)].cast<double>().normalized();
   }
+
+  // Joints above it are placed already.
+  void place(int j, std::span<const Transform> pose, std::span<Transform> mirrored) const {
+    const int source = pairs_.partners[at(j)];
+    if (source == MirrorPairs::kNone) {
+      const int parent = skeleton_.parents[at(j)];
+      mirrored[at(j)] = mirrored[at(parent)] * (pose[at(parent)].inverse() * pose[at(j)]);
+      return;
+    }
+    mirrored[at(j)] = {image(pose[at(source)].position),
+                       normalized_or_identity(image(pose[at(source)].orientation) * axes_[at(j)])};
+  }
+
+  static constexpr double kStands = 1e-3;  // radians
 
   const Skeleton& skeleton_;
   const MirrorPairs& pairs_;
-  std::vector<Quat> lopsided_;
-  std::vector<std::uint8_t> kept_;       // [joints], 1: follows its parent
-  std::vector<Quat> turns_, new_turns_;  // from the reference pose
+  std::vector<Quat> axes_;
 };
 
 }  // namespace
 
+std::vector<Quat> axes_to_images(const Skeleton& skeleton, const MirrorPairs& pairs) {
+  return AxesFinder(skeleton, pairs).find();
+}
+
 Clip mirror(const Clip& clip, const MirrorPairs& pairs) {
-  PoseMirror mirror_pose(clip.skeleton, pairs);
+  PoseMirror mirror_pose(clip, pairs);
   Clip result = clip;
   std::vector<Transform> pose(clip.skeleton.names.size()), mirrored(pose.size());
   if (clip.frame_count() > 0) {
@@ -176,6 +246,7 @@ Clip mirror(const Clip& clip, const MirrorPairs& pairs) {
     mirror_pose(pose, mirrored);
     result.set_pose(f, mirrored);
   }
+  result.skeleton = mirror_pose.mirrored_skeleton();
   return result;
 }
 

@@ -17,7 +17,8 @@ struct MirrorPairs {
   std::vector<int> partners;
   // [joints], 1 for joints that are a known part of the body; empty: all are. See mirror().
   std::vector<std::uint8_t> in_body;
-  double plane = 0;  // the plane of symmetry in the reference pose is x = `plane`
+  double plane = 0;  // the figure's plane of symmetry in the reference pose is x = `plane`
+  int carrier = 0;   // what carrying_joint() gives
 
   std::vector<int> unpaired() const;
 };
@@ -30,13 +31,22 @@ MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles);
 // Mirrors the motion at the world plane x = 0: the left arm does what the right one did, and a path
 // to the left goes to the right. Mirroring twice restores the motion up to float rounding.
 //
-// Each joint's world rotation from the reference pose is mirrored, so joint axes need not be alike
-// on both sides. Where bones of the reference pose are not mirror images of each other, the
-// difference is compensated, so that the bones of the result are. Bone lengths are kept. Joints
-// without a counterpart keep their transforms relative to their parents. So do joints that are not
-// part of the body (jaws, eyes, tongues), do not move relative to their parents, and would be
-// turned by over 60 degrees: some exporters' reference poses have them twisted, so that a constant
-// offset this large is not part of the pose.
+// Every joint comes exactly where its partner's image is, whatever the reference pose and the
+// joints' own axes are. The figure is mirrored with the motion: where bones differ between the
+// sides, each takes the length of its partner's, in the skeleton of the result too. Joints without
+// a partner go along with their parents, their transforms relative to them unchanged.
+//
+// Orientations are the images of the partners', turned by axes_to_images(). Joints that are no part
+// of the body (jaws, eyes, tongues), do not move in their parents, and would be turned by over 60
+// degrees keep their rotations relative to their parents: some exporters' reference poses have them
+// twisted, and what stays that far off is no posture. Joints above the hips that stand, or keep to
+// the hips' ground frame, are not turned.
 Clip mirror(const Clip& clip, const MirrorPairs& pairs);
+
+// For each joint the turn from the image of its partner's axes to its own, [joints]; the identity
+// without a partner. The bones that hang on both tell it: a vector v in the partner's axes has the
+// image turn.conjugate() * (-v.x, v.y, v.z) in the joint's. Only what they leave open, such as the
+// twist about a single bone, is taken from the reference pose.
+std::vector<Quat> axes_to_images(const Skeleton& skeleton, const MirrorPairs& pairs);
 
 }  // namespace krok

@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "motion/ground_frame.h"
 #include "motion/mirror.h"
 #include "roles/joint_names.h"
 
@@ -195,6 +196,7 @@ std::vector<int> MirrorPairs::unpaired() const {
 
 MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles) {
   MirrorPairs pairs = PairFinder(skeleton, roles).find();
+  pairs.carrier = skeleton.empty() ? 0 : carrying_joint(roles);
   for (const Role role : roles.roles) {
     const bool unknown = role == Role::none || role == Role::helper || role == Role::end;
     pairs.in_body.push_back(unknown ? 0 : 1);

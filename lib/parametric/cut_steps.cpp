@@ -249,6 +249,7 @@ class Cutter {
 
   void flip(Clip& piece, std::vector<Contact>& contacts) const {
     piece = mirror(piece, pairs_);
+    piece.skeleton = result_.library.skeleton;
     const auto partner = [&](const Contact& contact) {
       return pairs_.partners[static_cast<std::size_t>(contact.joint)];
     };

@@ -97,11 +97,11 @@ Vec3 image(const Vec3& v) {
   return {-v.x(), v.y(), v.z()};
 }
 
-// The sole of `foot` mirrored to its partner.
-FootShape mirrored_foot(const FootShape& foot, const Skeleton& skeleton, int partner) {
-  const Quat& from = skeleton.reference[static_cast<std::size_t>(foot.joint)].orientation;
-  const Quat& to = skeleton.reference[static_cast<std::size_t>(partner)].orientation;
-  const auto across = [&](const Vec3& v) -> Vec3 { return to.conjugate() * image(from * v); };
+// The sole of `foot` mirrored to its partner; `axes` from axes_to_images().
+FootShape mirrored_foot(const FootShape& foot, const std::vector<Quat>& axes, int partner) {
+  const auto across = [&](const Vec3& v) -> Vec3 {
+    return axes[at(partner)].conjugate() * image(v);
+  };
   return {partner, across(foot.heel), across(foot.forward), foot.length};
 }
 
@@ -202,6 +202,7 @@ Status check(const Library& library) {
 Result<Library> mirrored(const Library& library, const RoleMap& roles) {
   const MirrorPairs pairs = find_mirror_pairs(library.skeleton, roles);
   const auto partner = [&](int joint) { return pairs.partners[static_cast<std::size_t>(joint)]; };
+  const std::vector<Quat> axes = axes_to_images(library.skeleton, pairs);
   Library result = library;
   result.swing = library.stance();
   for (const FootSide side : {FootSide::left, FootSide::right}) {
@@ -211,7 +212,7 @@ Result<Library> mirrored(const Library& library, const RoleMap& roles) {
                    "assign them with --map");
     }
     result.feet[1 - static_cast<std::size_t>(side)] =
-        mirrored_foot(foot, library.skeleton, partner(foot.joint));
+        mirrored_foot(foot, axes, partner(foot.joint));
   }
   for (Parameter& parameter : result.parameters) {
     if (parameter.joint < 0) continue;
@@ -223,6 +224,7 @@ Result<Library> mirrored(const Library& library, const RoleMap& roles) {
   }
   for (Example& example : result.examples) {
     example.motion = mirror(example.motion, pairs);
+    example.motion.skeleton = library.skeleton;
     example.mirrored = !example.mirrored;
     std::erase_if(example.contacts, [&](const Contact& contact) {
       return partner(contact.joint) == MirrorPairs::kNone;
