@@ -120,8 +120,8 @@ class Crossfade : public Transition {
     double all = 0;
     Vec3 sum = Vec3::Zero();
     for (const int joint : joints) {
-      const double stands = (sides_.previous.stands(joint, previous) ? 1 - share : 0) +
-                            (sides_.next.stands(joint, next) ? share : 0);
+      const double stands = (1 - share) * sides_.previous.contact_weight(joint, previous) +
+                            share * sides_.next.contact_weight(joint, next);
       const auto j = static_cast<std::size_t>(joint);
       all += stands;
       sum += stands * (before[j] - turned * now[j]);

@@ -10,6 +10,8 @@ namespace krok::timeline {
 
 namespace {
 
+constexpr double kContactFade = 0.1;  // seconds
+
 void sample_source(const Clip& clip, double time, std::span<Transform> joint_to_world) {
   // Per thread, to avoid an allocation per frame.
   thread_local std::vector<Transform> scratch;
@@ -83,6 +85,21 @@ bool ItemPlayer::stands(int joint, double play_time) const {
   return std::ranges::any_of(source_->keys->contacts, [&](const Contact& contact) {
     return contact.joint == joint && contact.start <= time && time <= contact.end;
   });
+}
+
+double ItemPlayer::contact_weight(int joint, double play_time) const {
+  if (source_->keys == nullptr) return 0;
+  const double time = range_.at(play_time).time, last = source_->clip->duration();
+  double most = 0;
+  for (const Contact& contact : source_->keys->contacts) {
+    if (contact.joint != joint || time < contact.start || time > contact.end) continue;
+    const double fade = std::min(kContactFade, 0.5 * (contact.end - contact.start));
+    const double begun = contact.start <= kContactFade ? 1 : (time - contact.start) / fade;
+    const double rest = contact.end >= last - kContactFade ? 1 : (contact.end - time) / fade;
+    const double part = std::clamp(std::min(begun, rest), 0.0, 1.0);
+    most = std::max(most, part * part * (3 - 2 * part));
+  }
+  return most;
 }
 
 }  // namespace krok::timeline

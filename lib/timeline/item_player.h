@@ -36,6 +36,10 @@ class ItemPlayer {
 
   // Whether a joint is in contact at a play time, according to the motion's contacts.
   bool stands(int joint, double play_time) const;
+  // The same as a weight: 1 within a contact, falling smoothly to 0 at its beginning and end, which
+  // lets feet take the figure over from each other without a jerk. Contacts that the ends of the
+  // motion cut off do not fall there.
+  double contact_weight(int joint, double play_time) const;
 
  private:
   const Source* source_;

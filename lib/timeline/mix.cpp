@@ -167,7 +167,7 @@ Result<Mixed> mix_rooted(const Timeline& timeline, std::span<const Source> sourc
   const BaseMotion base(timeline, sources, roles, std::move(*items), rate);
   make_frames(base, layers, options.jobs, mixed.clip);
 
-  const Parts parts{timeline, sources, base, layers, mixed.clip, options.jobs, hips_root};
+  const Parts parts{timeline, sources, base, layers, mixed.clip, options.jobs, hips_root, roles};
   auto events = result_events(parts, mixed.warnings);
   if (!events) return events.error();
   mixed.events = std::move(*events);
@@ -201,6 +201,7 @@ Result<Mixed> mix(const Timeline& timeline, std::span<const Source> sources, con
   for (ChangeFacts& change : mixed->changes) {
     change.angle_joint = hips_root.original(change.angle_joint);
     change.fastest_joint = hips_root.original(change.fastest_joint);
+    for (Pace& pace : change.paces) pace.joint = hips_root.original(pace.joint);
   }
   return mixed;
 }

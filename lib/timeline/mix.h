@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +37,21 @@ struct ItemFacts {
   double skipped = 0;         // play time at its start, from time alignment, seconds
 };
 
+// How fast the hips and the feet (ankles and balls) go through the world, and how hard they are
+// accelerated: metres per second, or per second squared.
+enum PaceOf : std::size_t { hips_speed, feet_speed, hips_acceleration, feet_acceleration };
+constexpr std::size_t kPaces = 4;
+struct Pace {
+  double most = 0;
+  double usual = 0;  // the 99th percentile over the frames of a motion, the larger of both motions'
+  int joint = 0, frame = 0;
+};
+
+// The pace that is furthest beyond what is usual; nothing where none is beyond it. Allowed are 1.5
+// times the usual speed, as a figure may catch up with an offset, and 2.5 times the usual
+// acceleration, of which a few frames have far more than all others; 0.3 m/s and 10 m/s² always.
+std::optional<PaceOf> worst_pace(const std::array<Pace, kPaces>& paces);
+
 struct ChangeFacts {
   int item = 0;  // index of the next item, from 1 on
   ChangeKind kind = ChangeKind::cut;
@@ -51,8 +68,12 @@ struct ChangeFacts {
   double fastest = 0, usual = 0;
   int fastest_joint = 0, fastest_frame = 0;
 
+  std::array<Pace, kPaces> paces;  // by PaceOf; they jump where angles tell nothing
+
+  // Whether joints turn, or the hips or feet go, faster than in the motions.
+  bool pops() const { return turns_too_fast() || worst_pace(paces).has_value(); }
   // Allows 10 % because one frame in a hundred of the motions exceeds `usual` too.
-  bool pops() const { return fastest > 1.1 * usual; }
+  bool turns_too_fast() const { return fastest > 1.1 * usual; }
 };
 
 struct Mixed {

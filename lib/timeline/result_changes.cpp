@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -8,6 +9,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "math/quaternion.h"
+#include "timeline/paces_internal.h"
 #include "timeline/result_keys_internal.h"
 
 namespace krok::timeline {
@@ -58,7 +60,8 @@ double usual_speed(const Clip& clip, int jobs) {
 
 class ChangeFinder {
  public:
-  ChangeFinder(const Parts& parts, Diagnostics& warnings) : parts_(parts), warnings_(warnings) {}
+  ChangeFinder(const Parts& parts, Diagnostics& warnings)
+      : parts_(parts), warnings_(warnings), joints_(tracked_joints(parts.roles)) {}
 
   std::vector<ChangeFacts> find() {
     std::vector<ChangeFacts> changes;
@@ -81,11 +84,55 @@ class ChangeFinder {
     return found->second * std::abs(range.speed);
   }
 
-  std::vector<Transform> local_at(double time) const {
-    std::vector<Transform> world(parts_.clip.skeleton.names.size()), local(world.size());
+  std::array<double, kPaces> usual_paces_of(std::size_t item) {
+    const PlayedRange& range = parts_.base.items()[item].range;
+    const auto [found, is_new] = usual_paces_.try_emplace({range.source, std::abs(range.speed)});
+    if (is_new) {
+      found->second = usual_paces(joints_, *parts_.sources[at(range.source)].clip, range.speed,
+                                  parts_.clip.rate, parts_.jobs);
+    }
+    return found->second;
+  }
+
+  std::vector<Transform> world_at(double time) const {
+    std::vector<Transform> world(parts_.clip.skeleton.names.size());
     parts_.base.pose(time, world);
+    return world;
+  }
+  std::vector<Transform> local_at(double time) const {
+    const std::vector<Transform> world = world_at(time);
+    std::vector<Transform> local(world.size());
     world_to_local(parts_.clip.skeleton.parents, world, local);
     return local;
+  }
+
+  // Takes up what is more than before.
+  void look_at_paces(double time, int frame, std::array<Pace, kPaces>& paces) const {
+    const double step = 1 / parts_.clip.rate;
+    const auto here = paces_of(joints_, world_at(time - 2 * step), world_at(time - step),
+                               world_at(time), parts_.clip.rate);
+    for (std::size_t of = 0; of < kPaces; ++of) {
+      if (here[of].value <= paces[of].most) continue;
+      paces[of].most = here[of].value;
+      paces[of].joint = here[of].joint;
+      paces[of].frame = frame;
+    }
+  }
+
+  // In the change into an item, from one frame to another.
+  std::array<Pace, kPaces> paces_within(std::size_t item, int begin, int end) {
+    std::array<Pace, kPaces> paces;
+    for (const std::size_t side : {item - 1, item}) {
+      const auto usual = usual_paces_of(side);
+      for (std::size_t of = 0; of < kPaces; ++of) {
+        paces[of].usual = std::max(paces[of].usual, usual[of]);
+      }
+    }
+    // Two frames before the first are needed.
+    for (int f = std::max(2, begin + 1); f <= end; ++f) {
+      look_at_paces(f / parts_.clip.rate, f, paces);
+    }
+    return paces;
   }
 
   ChangeFacts change(std::size_t i) {
@@ -108,6 +155,7 @@ class ChangeFinder {
     const int last = parts_.clip.frame_count() - 1;
     const int begin = std::clamp(static_cast<int>(std::floor(item.begin * rate)) - 1, 0, last);
     const int end = std::clamp(static_cast<int>(std::ceil(item.settled * rate)) + 1, 0, last);
+    facts.paces = paces_within(i, begin, end);
     std::vector<Transform> pose = local_at(begin / rate);
     for (int f = begin + 1; f <= end; ++f) {
       std::vector<Transform> next = local_at(f / rate);
@@ -132,7 +180,10 @@ class ChangeFinder {
     const ItemPlayer round(player.source(), once, parts_.base.carrier(), 0);
     const Angle jump = largest_angle(round.actor(0).local, round.actor(once.round).local);
     const double usual_turn = usual(i) / parts_.clip.rate;
-    if (usual_turn == 0 || jump.angle <= usual_turn) return;
+    if (usual_turn == 0 || jump.angle <= usual_turn) {
+      check_pace_of_seam(i);
+      return;
+    }
     Diagnostic seam;
     seam.severity = Severity::warning;
     seam.code = "timeline-seam";
@@ -145,9 +196,38 @@ class ChangeFinder {
     warnings_.push_back(std::move(seam));
   }
 
+  // Warns if the hips or feet jump where the second round begins.
+  void check_pace_of_seam(std::size_t i) {
+    const ScheduledItem& item = parts_.base.items()[i];
+    const double rate = parts_.clip.rate, seam = item.time_of(item.range.round);
+    if (!(seam - 2 / rate >= item.settled) || seam + 2 / rate > item.end) return;
+    const auto usual = usual_paces_of(i);
+    std::array<Pace, kPaces> paces;
+    for (std::size_t of = 0; of < kPaces; ++of) paces[of].usual = usual[of];
+    for (int k = 0; k < 3; ++k) look_at_paces(seam + (k + 0.5) / rate, 0, paces);
+    const auto worst = worst_pace(paces);
+    if (!worst) return;
+    const Pace& pace = paces[*worst];
+    const bool speed = *worst == hips_speed || *worst == feet_speed;
+    Diagnostic told;
+    told.severity = Severity::warning;
+    told.code = "timeline-seam";
+    told.joint = parts_.clip.skeleton.names[at(parts_.hips_root.original(pace.joint))];
+    told.message = fmt::format(
+        "{}: the loop has a seam: {} {} {:.1f} {}; 99 % of the frames of the motion stay below "
+        "{:.1f}",
+        shown(parts_.timeline.base[i].name), told.joint, speed ? "moves at" : "is accelerated by",
+        pace.most, speed ? "m/s" : "m/s²", pace.usual);
+    told.hint = "use krok-edit --loop to make a seamless loop";
+    told.where = parts_.timeline.base[i].where;
+    warnings_.push_back(std::move(told));
+  }
+
   const Parts& parts_;
   Diagnostics& warnings_;
-  std::map<int, double> usual_;  // by source
+  TrackedJoints joints_;
+  std::map<int, double> usual_;                                               // by source
+  std::map<std::pair<int, double>, std::array<double, kPaces>> usual_paces_;  // by source and speed
 };
 
 }  // namespace

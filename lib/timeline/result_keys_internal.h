@@ -20,6 +20,7 @@ struct Parts {
   const Clip& clip;  // the result
   int jobs;
   const HipsRoot& hips_root;  // of the sources' clips and the result
+  const RoleMap& roles;
 };
 
 // Keytimes and contacts of the base where they are still valid.

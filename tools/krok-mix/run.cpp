@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
@@ -33,6 +35,13 @@ std::string joint_name(const Mixed& mixed, int joint) {
   return mixed.clip.skeleton.names[static_cast<std::size_t>(joint)];
 }
 
+std::string pace_in_words(const timeline::Pace& pace, timeline::PaceOf of,
+                          const std::string& joint) {
+  const bool speed = of == timeline::hips_speed || of == timeline::feet_speed;
+  return fmt::format("{} {} {} {}", speed ? "moves" : "accelerates", joint, speed ? "at" : "by",
+                     fmt::format("{:.2g} {}", pace.most, speed ? "m/s" : "m/s²"));
+}
+
 void warn_of_pops(const timeline::Timeline& timeline, const Mixed& mixed, ToolContext& context) {
   for (const ChangeFacts& change : mixed.changes) {
     if (!change.pops()) continue;
@@ -40,13 +49,19 @@ void warn_of_pops(const timeline::Timeline& timeline, const Mixed& mixed, ToolCo
     Diagnostic told;
     told.severity = Severity::warning;
     told.code = "mix-pop";
-    told.joint = joint_name(mixed, change.fastest_joint);
-    told.frame = change.fastest_frame;
+    const auto pace = worst_pace(change.paces);
+    told.joint = joint_name(mixed, pace ? change.paces[*pace].joint : change.fastest_joint);
+    told.frame = pace ? change.paces[*pace].frame : change.fastest_frame;
     told.message = fmt::format(
-        "the change ({}) into {} rotates {} at {:.0f} degrees per second (frame {}); 99 % of the "
-        "frames of the motions stay below {:.0f}",
-        timeline::change_name(change.kind), shown(item.name), told.joint,
-        change.fastest / kRadiansPerDegree, change.fastest_frame, change.usual / kRadiansPerDegree);
+        "the change ({}) into {} {} (frame {}); 99 % of the frames of the "
+        "motions stay below {}",
+        timeline::change_name(change.kind), shown(item.name),
+        pace ? pace_in_words(change.paces[*pace], *pace, told.joint)
+             : fmt::format("rotates {} at {:.0f} degrees per second", told.joint,
+                           change.fastest / kRadiansPerDegree),
+        told.frame,
+        pace ? fmt::format("{:.2g}", change.paces[*pace].usual)
+             : fmt::format("{:.0f}", change.usual / kRadiansPerDegree));
     told.hint = change.kind == timeline::ChangeKind::cut
                     ? "a change of kind inertial or crossfade is smooth"
                     : "use a longer duration or another time";
@@ -95,6 +110,20 @@ Json items_report(const timeline::Timeline& timeline, const Mixed& mixed) {
   return list;
 }
 
+Json paces_report(const Mixed& mixed, const ChangeFacts& change) {
+  constexpr std::array<const char*, timeline::kPaces> kNames = {
+      "hips_speed", "feet_speed", "hips_acceleration", "feet_acceleration"};
+  Json paces;
+  for (std::size_t of = 0; of < kNames.size(); ++of) {
+    const timeline::Pace& pace = change.paces[of];
+    paces[kNames[of]] = {{"most", pace.most},
+                         {"usual", pace.usual},
+                         {"joint", joint_name(mixed, pace.joint)},
+                         {"frame", pace.frame}};
+  }
+  return paces;
+}
+
 Json changes_report(const timeline::Timeline& timeline, const Mixed& mixed) {
   Json list = Json::array();
   for (const ChangeFacts& change : mixed.changes) {
@@ -110,6 +139,7 @@ Json changes_report(const timeline::Timeline& timeline, const Mixed& mixed) {
                     {"fastest_joint", joint_name(mixed, change.fastest_joint)},
                     {"fastest_frame", change.fastest_frame},
                     {"usual_degrees_per_second", change.usual / kRadiansPerDegree},
+                    {"paces", paces_report(mixed, change)},
                     {"pops", change.pops()}});
   }
   return list;

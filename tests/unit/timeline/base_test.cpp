@@ -156,6 +156,24 @@ TEST(Base, RoundsThatJumpAreTold) {
   EXPECT_EQ(result.warnings[0].code, "timeline-seam");
 }
 
+// A walk that ends a hand's breadth higher than it begins falls each round; no angle tells.
+TEST(Base, RoundsWhoseHipsJumpAreTold) {
+  KeyedWalk walk = keyed_walk(slow_walk());
+  const int last = walk.clip.frame_count() - 1;
+  // The last tenth of a second rises steeply, all of the figure as one.
+  for (int f = last - 5; f <= last; ++f) {
+    for (Vec3f& place : walk.clip.frame_positions(f)) {
+      place.y() += 0.04f * static_cast<float>(f - last + 6);
+    }
+  }
+  Timeline timeline{0, {played(0)}, {}};
+  timeline.base[0].play.rounds = 2;
+  const Mixed result = mixed(timeline, {source_of(walk)});
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_EQ(result.warnings[0].code, "timeline-seam");
+  EXPECT_FALSE(result.warnings[0].joint.empty());
+}
+
 TEST(Base, ItsOwnRateAndPlace) {
   const KeyedWalk walk = keyed_walk(slow_walk());
   Timeline timeline{30, {played(0)}, {}};

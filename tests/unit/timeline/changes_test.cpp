@@ -80,12 +80,52 @@ TEST(Changes, PopsAreTold) {
   EXPECT_NEAR(cut.changes[0].begin, 2.1, 1e-9);
   EXPECT_EQ(cut.changes[0].fastest_frame, static_cast<int>(std::lround(2.1 * slow.clip.rate)));
   EXPECT_GT(cut.changes[0].angle, 0.2);
+  EXPECT_GT(cut.changes[0].paces[feet_speed].most, 3 * cut.changes[0].paces[feet_speed].usual);
   for (const ChangeKind kind : kGentle) {
-    const Mixed gentle = mixed(walk_into_walk(kind, 0.3), sources);
+    Timeline timeline = walk_into_walk(kind, 0.3);
+    timeline.base[1].change.sync = Sync::automatic;
+    const Mixed gentle = mixed(timeline, sources);
     EXPECT_FALSE(gentle.changes[0].pops()) << change_name(kind);
     EXPECT_NEAR(gentle.changes[0].angle, cut.changes[0].angle,
                 kind == ChangeKind::crossfade ? 1 : 1e-6);
   }
+}
+
+// The angles of a walk that goes on half a metre aside, or faces about, are those of the walk.
+TEST(Changes, PopsOfHipsAndFeetAreTold) {
+  const KeyedWalk walk = keyed_walk(slow_walk());
+  Timeline timeline{0, {played(0), changed(0, ChangeKind::cut, 0)}, {}};
+  timeline.base[0].play.to = seconds(1.5);
+  timeline.base[1].play.from = seconds(1.5);
+  const Mixed goes_on = mixed(timeline, {source_of(walk)});
+  EXPECT_FALSE(goes_on.changes[0].pops());
+  const int carrier = carrying_joint(find_roles(walk.clip.skeleton));
+  GroundFrame place = ground_frame(walk.clip, carrier, static_cast<int>(1.5 * walk.clip.rate));
+  place.x += 0.5;
+  timeline.base[1].place = place;
+  const Mixed aside = mixed(timeline, {source_of(walk)});
+  const ChangeFacts& change = aside.changes[0];
+  EXPECT_FALSE(change.turns_too_fast());
+  EXPECT_TRUE(change.pops());
+  EXPECT_NEAR(change.paces[hips_speed].most, 0.5 * walk.clip.rate, 1);
+  EXPECT_EQ(change.paces[hips_speed].joint, carrier);
+  EXPECT_NEAR(change.paces[hips_speed].frame, 1.5 * walk.clip.rate, 1.1);
+}
+
+// By the clock one motion's foot takes over from the other's at once.
+TEST(Changes, FeetOutOfStepJerkTheHips) {
+  const KeyedWalk slow = keyed_walk(slow_walk()), quick = keyed_walk(quick_walk());
+  const std::vector<Source> sources = {source_of(slow, "slow"), source_of(quick, "quick")};
+  const auto jerk = [&](Sync sync) {
+    Timeline timeline = walk_into_walk(ChangeKind::crossfade, 0.3);
+    timeline.base[1].change.sync = sync;
+    const ChangeFacts change = mixed(timeline, sources).changes[0];
+    EXPECT_FALSE(change.turns_too_fast());
+    EXPECT_EQ(change.pops(), sync == Sync::clock);
+    return change.paces[hips_acceleration].most / change.paces[hips_acceleration].usual;
+  };
+  EXPECT_GT(jerk(Sync::clock), 4);
+  EXPECT_LT(jerk(Sync::automatic), 2);
 }
 
 TEST(Smooth, PutsItsDurationInBetween) {
