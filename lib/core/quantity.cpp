@@ -22,11 +22,12 @@ struct Split {
   std::string_view unit;
 };
 
-// The unit is the letters at the end; the rest is the number.
+// The unit is the letters (or degree sign) at the end; the rest is the number.
 Result<Split> split(std::string_view text) {
   std::size_t end = text.size();
   while (end > 0 && ((text[end - 1] >= 'a' && text[end - 1] <= 'z') ||
-                     (text[end - 1] >= 'A' && text[end - 1] <= 'Z'))) {
+                     (text[end - 1] >= 'A' && text[end - 1] <= 'Z') ||
+                     static_cast<unsigned char>(text[end - 1]) >= 0x80)) {
     --end;
   }
   std::string_view number = text.substr(0, end);
@@ -55,7 +56,8 @@ Result<double> parse_with(std::string_view text, std::span<const NamedUnit> unit
 constexpr std::array kLengths = {
     NamedUnit{"m", 1.0},   NamedUnit{"dm", 0.1},    NamedUnit{"cm", 0.01},  NamedUnit{"mm", 0.001},
     NamedUnit{"um", 1e-6}, NamedUnit{"in", 0.0254}, NamedUnit{"ft", 0.3048}};
-constexpr std::array kAngles = {NamedUnit{"deg", std::numbers::pi / 180.0}, NamedUnit{"rad", 1.0}};
+constexpr std::array kAngles = {NamedUnit{"deg", std::numbers::pi / 180.0}, NamedUnit{"rad", 1.0},
+                                NamedUnit{"\u00B0", std::numbers::pi / 180.0}};
 constexpr std::array kFrequencies = {NamedUnit{"Hz", 1.0}};
 constexpr std::array kTimes = {NamedUnit{"s", 1.0}, NamedUnit{"ms", 0.001}, NamedUnit{"f", 1.0}};
 

@@ -12,7 +12,7 @@ namespace krok {
 // Metres from "0.1mm", "5 cm", "1.7m", "3in", "1ft"; without a unit, metres.
 Result<double> parse_length(std::string_view text);
 
-// Radians from "15deg", "0.26rad"; without a unit, degrees.
+// Radians from "15deg", "15°", "0.26rad"; without a unit, degrees.
 Result<double> parse_angle(std::string_view text);
 
 // Hertz from "6Hz", "0.5 Hz"; without a unit, hertz.

@@ -141,7 +141,8 @@ float BlendedMotion::pose(double time, std::span<PoseBlock> pose, Scratch& scrat
 }
 
 Result<BlendedMotion::Made> BlendedMotion::make(double rate, LastFrame last) const {
-  if (rate == 0) rate = library_.rate;
+  const bool any_rate = rate == 0;
+  if (any_rate) rate = library_.rate;
   if (!(rate > 0) || !std::isfinite(rate)) {
     return Error("clip-rate", "the rate of a motion must be a positive number");
   }
@@ -153,7 +154,8 @@ Result<BlendedMotion::Made> BlendedMotion::make(double rate, LastFrame last) con
   }
   const int count = last == LastFrame::kept ? std::max(1, static_cast<int>(std::lround(frames)))
                                             : static_cast<int>(std::floor(frames + 1e-6));
-  const double stretch = last == LastFrame::kept ? count / frames : 1;
+  const double stretch = last == LastFrame::kept && !any_rate ? count / frames : 1;
+  if (last == LastFrame::kept && any_rate) rate = count / duration();
   Made made;
   made.clip.skeleton = packed_.skeleton;
   made.clip.rate = rate;

@@ -43,11 +43,13 @@ class BlendedMotion {
   // Does not allocate; thread-safe with one scratch per thread.
   float pose(double time, std::span<PoseBlock> pose, Scratch& scratch) const;
 
-  // Samples the motion to a clip at `rate` (frames per second; 0: the library's), without
-  // provenance, with its keys. LastFrame::kept stretches it by up to half a frame, so that the last
-  // keytime is at the last frame; within ends up to a frame before it. Step keytimes get the names
-  // used in walks: left_strike for swing_strike if the swing foot is the left one. Contacts are
-  // those common to all examples with nonzero weight. Codes: clip-rate, clip-too-long.
+  // Samples the motion to a clip at `rate` (frames per second), without provenance, with its keys.
+  // LastFrame::kept stretches it by up to half a frame, so that the last keytime is at the last
+  // frame; within ends up to a frame before it. 0 is the library's rate, with LastFrame::kept the
+  // rate next to it at which the last frame is at the last keytime, so that the motion lasts
+  // exactly as long as it should. Step keytimes get the names used in walks: left_strike for
+  // swing_strike if the swing foot is the left one. Contacts are those common to all examples with
+  // nonzero weight. Codes: clip-rate, clip-too-long.
   struct Made {
     Clip clip;
     MotionKeys keys;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/numbers.h"
+#include "core/text.h"
 #include "math/dense_solve.h"
 
 namespace krok::parametric {
@@ -29,6 +30,19 @@ std::string in_words(const Library& library, std::span<const double> parameters)
                         angle ? "degrees" : unit_of(parameter));
   }
   return text;
+}
+
+// How far a weight is from the middle of its range.
+double from_middle(double weight) {
+  return std::abs(weight - 0.5 * (kLeastWeight + kMostWeight));
+}
+
+bool is_blend(std::span<const double> weights) {
+  constexpr double kRoundingOfWeights = 1e-9;
+  return std::ranges::all_of(weights, [](double weight) {
+    return weight >= kLeastWeight - kRoundingOfWeights &&
+           weight <= kMostWeight + kRoundingOfWeights;
+  });
 }
 
 }  // namespace
@@ -90,13 +104,21 @@ Result<Synthesis> Synthesiser::weights(std::span<const double> parameters,
     return status.error();
   }
   synthesis.error = synthesis.error_before = error_of(parameters, synthesis.parameters);
-  if (Status status = correct(parameters, options.corrections, synthesis); !status) {
+  if (Status status = correct(parameters, options, synthesis); !status) {
     return status.error();
   }
-  return synthesis;
+  if (options.extrapolate || is_blend(synthesis.weights)) return synthesis;
+  const auto worst = std::ranges::max_element(synthesis.weights, {}, from_middle);
+  const auto& name =
+      library_->examples[static_cast<std::size_t>(worst - synthesis.weights.begin())].name;
+  return Error("parametric-extrapolation",
+               fmt::format("{} needs a weight of {} for {}; {} to {} are safe",
+                           in_words(*library_, parameters), readable(*worst, 3), shown(name),
+                           kLeastWeight, kMostWeight),
+               "add examples near these parameters, or smooth the weights with krok-fit --smooth");
 }
 
-Status Synthesiser::correct(std::span<const double> parameters, int steps,
+Status Synthesiser::correct(std::span<const double> parameters, const SynthesisOptions& options,
                             Synthesis& synthesis) const {
   const auto n = static_cast<Eigen::Index>(synthesis.weights.size());
   const auto d = static_cast<Eigen::Index>(parameters.size());
@@ -104,7 +126,7 @@ Status Synthesiser::correct(std::span<const double> parameters, int steps,
   RowMajor jacobian(d, n);
   std::vector<double> weights(synthesis.weights.size()), measured(parameters.size());
   const auto size = static_cast<std::size_t>(jacobian.size());
-  for (int step = 0; step < steps && synthesis.error > kGoodEnough; ++step) {
+  for (int step = 0; step < options.corrections && synthesis.error > kGoodEnough; ++step) {
     if (Status status = measure_(synthesis.weights, measured, {jacobian.data(), size}, scratch);
         !status) {
       return status;
@@ -125,6 +147,7 @@ Status Synthesiser::correct(std::span<const double> parameters, int steps,
       for (std::size_t i = 0; i < weights.size(); ++i) {
         weights[i] = synthesis.weights[i] + part * change[static_cast<Eigen::Index>(i)];
       }
+      if (!options.extrapolate && !is_blend(weights)) continue;
       if (!measure_(weights, measured, {}, scratch)) continue;
       nearer = error_of(parameters, measured) < synthesis.error;
     }

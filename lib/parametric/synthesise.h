@@ -11,11 +11,16 @@
 namespace krok::parametric {
 
 struct SynthesisOptions {
-  bool extrapolate = false;  // allow parameters outside the bounds
+  // Allow parameters outside the bounds, and weights outside [kLeastWeight, kMostWeight].
+  bool extrapolate = false;
   // Max run-time correction steps: Gauss-Newton on the weights, starting from those of the weight
   // function.
   int corrections = 0;
 };
+
+// Beyond these a motion is no blend of the examples any more: rotations and timing are carried on
+// to where no example is.
+constexpr double kLeastWeight = -0.25, kMostWeight = 1.25;
 
 struct Synthesis {
   std::vector<double> weights;     // [examples], summing to 1
@@ -40,10 +45,14 @@ class Synthesiser {
   // Weights for parameters, [dimensions]. A correction is the minimum-norm change of the weights,
   // with sum 0, that to first order brings the measured parameters (scaled by tolerance) to the
   // request. It is halved up to four times while the error does not shrink; correction stops at a
-  // hundredth of the tolerance. Codes: parametric-bounds outside the bounds, with the nearest
-  // parameters inside; those of Measure.
+  // hundredth of the tolerance, or before weights leave their range. Codes: parametric-bounds
+  // outside the bounds, with the nearest parameters inside; parametric-extrapolation if weights are
+  // outside their range; those of Measure.
   Result<Synthesis> weights(std::span<const double> parameters,
                             const SynthesisOptions& options = {}) const;
+
+  // The largest difference of parameters, in multiples of their tolerances.
+  double error_of(std::span<const double> parameters, std::span<const double> measured) const;
 
   // The motion for weights, see BlendedMotion; refers to this object.
   Result<BlendedMotion> motion(std::span<const double> weights) const {
@@ -52,8 +61,8 @@ class Synthesiser {
 
  private:
   Synthesiser(const Library& library, PackedExamples packed, rbf::WeightEvaluator evaluator);
-  double error_of(std::span<const double> parameters, std::span<const double> measured) const;
-  Status correct(std::span<const double> parameters, int steps, Synthesis& synthesis) const;
+  Status correct(std::span<const double> parameters, const SynthesisOptions& options,
+                 Synthesis& synthesis) const;
 
   const Library* library_;
   PackedExamples packed_;

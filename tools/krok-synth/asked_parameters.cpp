@@ -128,17 +128,23 @@ Result<std::vector<std::vector<double>>> read_points(const std::string& path,
     }
     factors.push_back(*factor);
   }
-  const auto numbers = table->numbers(columns);
-  if (!numbers) return numbers.error();
   std::vector<std::vector<double>> points(table->row_count());
-  for (std::size_t row = 0; row < points.size(); ++row) {
-    for (std::size_t d = 0; d < parameters.size(); ++d) {
-      const double value = (*numbers)[d][row] * factors[d];
-      if (!std::isfinite(value)) {
-        return Error("synth-table", fmt::format("row {} has no {}", row + 1, parameters[d].name))
-            .in_file(path);
+  for (std::size_t d = 0; d < parameters.size(); ++d) {
+    const std::vector<std::string> texts = table->texts(columns[d]);
+    for (std::size_t row = 0; row < points.size(); ++row) {
+      // A cell may have a unit of its own: "14\u00B0", "34deg".
+      const auto number = parse_finite(texts[row]);
+      const Result<double> value = number ? Result<double>(*number * factors[d])
+                                          : parse_value(texts[row], parameters[d].unit);
+      if (!value) {
+        Error error("synth-table",
+                    fmt::format("row {}, {}: {}", row + 1, parameters[d].name,
+                                texts[row].empty() ? "no value" : value.error().message),
+                    value.error().hint);
+        error.where = table->place(row, columns[d]);
+        return error;
       }
-      points[row].push_back(value);
+      points[row].push_back(*value);
     }
   }
   return points;

@@ -18,6 +18,7 @@ struct Options {
   SideChoice side = SideChoice::library;
   bool correct = false;
   bool extrapolate = false;
+  bool strict = false;
   double rate = 0;  // 0: the library's
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };

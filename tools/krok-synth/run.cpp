@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "core/numbers.h"
@@ -30,6 +31,8 @@ struct Motion {
   std::vector<double> asked;
   parametric::Synthesis synthesis;
   parametric::BlendedMotion::Made made;
+  std::vector<double> measured;  // on the clip
+  double error = 0;              // largest difference to what was asked, in tolerances
 };
 
 Result<steps::StepsFile> read_steps(const Options& options, ToolContext& context) {
@@ -59,6 +62,26 @@ std::string numbered(const std::string& path, std::size_t number, std::size_t co
   return (whole.parent_path() / name).string();
 }
 
+// Makes the motion and measures it as if it were captured: what weights promise is not taken for
+// granted.
+Status make(const parametric::Synthesiser& synthesiser, const Options& options, Motion& motion) {
+  const auto blended = synthesiser.motion(motion.synthesis.weights);
+  if (!blended) return blended.error();
+  auto made = blended->make(options.rate);
+  if (!made) return made.error();
+  motion.made = *std::move(made);
+  const Clip& clip = motion.made.clip;
+  std::vector<double> keytimes = blended->keytimes();
+  for (double& time : keytimes) {
+    time = std::min(time * clip.duration() / blended->duration(), clip.duration());
+  }
+  auto measured = parametric::make_example(synthesiser.library(), motion.path, clip, keytimes);
+  if (!measured) return measured.error();
+  motion.measured = std::move(measured->parameters);
+  motion.error = synthesiser.error_of(motion.asked, motion.measured);
+  return {};
+}
+
 Status make_all(const parametric::Synthesiser& synthesiser, const Options& options,
                 std::vector<Motion>& motions, ToolContext& context) {
   parametric::SynthesisOptions how;
@@ -74,14 +97,7 @@ Status make_all(const parametric::Synthesiser& synthesiser, const Options& optio
         continue;
       }
       motions[i].synthesis = *std::move(synthesis);
-      const auto motion = synthesiser.motion(motions[i].synthesis.weights);
-      auto made = motion ? motion->make(options.rate)
-                         : Result<parametric::BlendedMotion::Made>(motion.error());
-      if (made) {
-        motions[i].made = *std::move(made);
-      } else {
-        done[i] = made.error();
-      }
+      done[i] = make(synthesiser, options, motions[i]);
       context.progress->advance(1);
     }
   });
@@ -90,7 +106,9 @@ Status make_all(const parametric::Synthesiser& synthesiser, const Options& optio
     if (done[i]) continue;
     Error error = std::move(done[i]).error();
     if (motions.size() > 1) error.message = fmt::format("row {}: {}", i + 1, error.message);
-    if (error.code == "parametric-bounds") error.hint += "; --extrapolate allows this";
+    if (error.code == "parametric-bounds" || error.code == "parametric-extrapolation") {
+      error.hint += "; --extrapolate allows this";
+    }
     return error;
   }
   return {};
@@ -122,6 +140,33 @@ std::string with_unit(double value, std::string_view unit) {
   return fmt::format("{} {}", readable(value, 4), unit);
 }
 
+// Warns of motions that are not what was asked for; how many there are.
+int warn_of_misses(const parametric::Library& library,
+                   const std::vector<NamedParameter>& parameters,
+                   const std::vector<Motion>& motions, const Options& options,
+                   ToolContext& context) {
+  int misses = 0;
+  for (const Motion& motion : motions) {
+    if (!(motion.error > 1)) continue;
+    ++misses;
+    std::string text;
+    for (std::size_t d = 0; d < parameters.size(); ++d) {
+      const double off = motion.measured[d] - motion.asked[d];
+      const double tolerance = library.parameters[d].tolerance;
+      if (std::abs(off) <= tolerance) continue;
+      text += fmt::format("{}{} is {}, {} was asked for (tolerance {})", text.empty() ? "" : "; ",
+                          parameters[d].name, with_unit(motion.measured[d], parameters[d].unit),
+                          with_unit(motion.asked[d], parameters[d].unit),
+                          with_unit(tolerance, parameters[d].unit));
+    }
+    context.warn("synth-missed", fmt::format("{}: {}", motion.path, text),
+                 options.correct ? "the library does not reach this, or a duration was rounded to "
+                                   "frames of --rate"
+                                 : "use --correct, or refine the library with krok-fit --refine");
+  }
+  return misses;
+}
+
 void report(const std::vector<NamedParameter>& parameters, const std::vector<Motion>& motions,
             ToolContext& context) {
   Json list = Json::array();
@@ -131,14 +176,14 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
         fmt::format("{}: {} s", motion.path, readable(motion.made.clip.duration(), 4));
     for (std::size_t d = 0; d < parameters.size(); ++d) {
       asked[parameters[d].name] = motion.asked[d];
-      measured[parameters[d].name] = motion.synthesis.parameters[d];
+      measured[parameters[d].name] = motion.measured[d];
       line += fmt::format(", {} {}", parameters[d].name,
-                          with_unit(motion.synthesis.parameters[d], parameters[d].unit));
+                          with_unit(motion.measured[d], parameters[d].unit));
     }
     entry["output"] = motion.path;
     entry["asked"] = std::move(asked);
     entry["measured"] = std::move(measured);
-    entry["error_in_tolerances"] = motion.synthesis.error;
+    entry["error_in_tolerances"] = motion.error;
     entry["error_before_correction"] = motion.synthesis.error_before;
     entry["corrections"] = motion.synthesis.corrections;
     entry["weights"] = motion.synthesis.weights;
@@ -152,6 +197,58 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
 
 }  // namespace
 
+void declare(CommandOptions& command, Options& options) {
+  command.add_option("library", options.library, "Step library made by krok-fit")
+      .type_name("IN.steps")
+      .required();
+  command
+      .add_option("--set", options.set,
+                  "Value of a parameter: length=70cm, turn=15deg, duration=0.6s")
+      .type_name("NAME=VALUE")
+      .group("Parameters");
+  command
+      .add_option("--table", options.table,
+                  "Table (CSV) with a column per parameter; makes one motion per row, named as "
+                  "-o plus the row number")
+      .type_name("IN.csv")
+      .group("Parameters");
+  command
+      .add_flag("--extrapolate", options.extrapolate,
+                "Allow parameters outside the range of the examples, and weights outside -0.25 to "
+                "1.25, where the error is unknown")
+      .group("Parameters");
+  command
+      .add_flag("--strict", options.strict,
+                "Exit with 1 if a motion differs from what was asked by more than the library's "
+                "tolerance (otherwise a warning)")
+      .group("Parameters");
+  add_choice<SideChoice>(
+      command, "--side", options.side,
+      {{"library", SideChoice::library}, {"left", SideChoice::left}, {"right", SideChoice::right}},
+      "Swing foot: library (as in the library), left or "
+      "right",
+      "SIDE", "library")
+      .group("Motion");
+  command
+      .add_flag("--correct", options.correct,
+                "Correct the weights until the measured parameters match")
+      .group("Motion");
+  add_rate(command, "--rate", options.rate,
+           "Frames per second (default: the library's, adjusted so that the duration is exact)")
+      .group("Motion");
+  add_orientation_option(command, options.orientation);
+}
+
+Status check(const Options& options) {
+  if (options.set.empty() == options.table.empty()) {
+    return Error(
+        "usage",
+        options.set.empty() ? "no parameters given" : "--set and --table exclude each other",
+        "give each parameter with --set NAME=VALUE, or a table with --table IN.csv");
+  }
+  return {};
+}
+
 Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
     return status.error();
@@ -163,13 +260,13 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (options.table.empty()) {
     auto point = parse_settings(options.set, parameters);
     if (!point) return point.error();
-    motions.push_back({context.output, *std::move(point), {}, {}});
+    motions.push_back({.path = context.output, .asked = *std::move(point)});
   } else {
     const auto points = read_points(options.table, parameters, context);
     if (!points) return points.error();
     for (const auto& point : *points) {
       const std::string path = numbered(context.output, motions.size() + 1, points->size());
-      motions.push_back({path, point, {}, {}});
+      motions.push_back({.path = path, .asked = point});
     }
   }
   const auto synthesiser = parametric::Synthesiser::create(steps->library, *steps->weights);
@@ -178,7 +275,8 @@ Result<int> run(const Options& options, ToolContext& context) {
     return status.error();
   if (Status status = write_all(options, motions, context); !status) return status.error();
   report(parameters, motions, context);
-  return kExitDone;
+  const int misses = warn_of_misses(steps->library, parameters, motions, options, context);
+  return options.strict && misses > 0 ? kExitNo : kExitDone;
 }
 
 }  // namespace krok::cli::synth

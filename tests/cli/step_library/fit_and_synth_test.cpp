@@ -152,6 +152,61 @@ TEST_F(StepLibrary, ATableMakesAMotionForEachRow) {
   EXPECT_THAT(listing(), Not(Contains("t_1.anim")));
 }
 
+// What was made is measured, not what the weights promise.
+TEST_F(StepLibrary, WhatIsNotAsAskedIsTold) {
+  write("library.json", R"({"schema": "krok.library/1", "steps": "auto",
+ "parameters": [{"name": "length", "measures": "step.length", "tolerance": "0.005mm"},
+                {"measures": "step.height"}], "examples": [{"clip": "walk_*.bvh"}]})");
+  ASSERT_EQ(fit({"--refine", "0"}).exit_code, 0);
+  std::vector<std::string> set = {"--set", "length=57cm", "--set", "height=3cm"};
+  const ToolRun plain = synth(set);
+  EXPECT_EQ(plain.exit_code, 0);
+  EXPECT_TRUE(has_code(plain.err, "synth-missed")) << plain.err;
+  EXPECT_THAT(plain.err, HasSubstr("was asked for"));
+  EXPECT_THAT(plain.err, HasSubstr("--correct"));
+  set.emplace_back("--strict");
+  EXPECT_EQ(synth(set).exit_code, 1);
+  EXPECT_THAT(listing(), Contains("step.anim"));
+  set.emplace_back("--correct");
+  const ToolRun corrected = synth(set);
+  EXPECT_EQ(corrected.exit_code, 0);
+  EXPECT_FALSE(has_code(corrected.err, "synth-missed")) << corrected.err;
+}
+
+TEST_F(StepLibrary, DurationsAreExact) {
+  write("library.json", R"({"schema": "krok.library/1", "steps": "auto",
+ "parameters": [{"measures": "duration"}], "examples": [{"clip": "walk_*.bvh"}]})");
+  const ToolRun run = fit();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json made = synthesised({"--set", "duration=0.5731s", "--correct", "--strict"});
+  EXPECT_NEAR(made[0]["duration"].get<double>(), 0.5731, 1e-5);
+  EXPECT_NEAR(made[0]["measured"]["duration"].get<double>(), 0.5731, 1e-5);
+  const ToolRun rounded =
+      synth({"--set", "duration=0.5731s", "--correct", "--strict", "--rate", "60"});
+  EXPECT_EQ(rounded.exit_code, 1);
+  EXPECT_TRUE(has_code(rounded.err, "synth-missed")) << rounded.err;
+}
+
+TEST_F(StepLibrary, CellsOfATableMayHaveUnits) {
+  for (const char* turn : {"0", "20"}) {
+    ASSERT_EQ(run({KROK_MAKE_WALK, "--steps", "4", "--turn", std::string(turn) + "deg", "-q", "-o",
+                   path(std::string("bend_") + turn + ".bvh")})
+                  .exit_code,
+              0);
+  }
+  write("library.json", R"({"schema": "krok.library/1", "steps": "auto",
+ "parameters": [{"name": "turn", "measures": "step.turn"}], "examples": [{"clip": "bend_*.bvh"}]})");
+  ASSERT_EQ(fit().exit_code, 0);
+  write("points.csv", "turn [deg]\n16\n16\u00B0\n16deg\n0.279253rad\n");
+  const json made = synthesised({"--table", path("points.csv"), "-o", path("s.anim")});
+  ASSERT_EQ(made.size(), 4u);
+  for (const json& one : made) EXPECT_NEAR(one["asked"]["turn"].get<double>(), 0.279253, 1e-6);
+  write("points.csv", "turn [deg]\n8\n8cm\n");
+  const ToolRun wrong = synth({"--table", path("points.csv"), "-o", path("s.anim")});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("points.csv:3:1: error")) << wrong.err;
+}
+
 TEST_F(StepLibrary, TheSameBytesWhateverTheThreads) {
   fit_well({"--refine", "12", "--until", "0.001mm", "-j", "1"});
   const auto first = InputFile::open(path("out.steps"));

@@ -123,8 +123,14 @@ TEST(BlendedMotion, MakesAClipThatEndsWithTheStrike) {
   ASSERT_TRUE(made.ok());
   EXPECT_TRUE(check(made->clip));
   EXPECT_TRUE(check(made->keys, made->clip.skeleton, made->clip.duration()));
-  EXPECT_EQ(made->clip.rate, library().rate);
-  EXPECT_NEAR(made->clip.duration(), motion->duration(), 0.5 / made->clip.rate);
+  // As near to the library's rate as the exact duration allows.
+  EXPECT_NEAR(made->clip.duration(), motion->duration(), 1e-9);
+  EXPECT_NEAR(made->clip.rate, library().rate, 0.5 / motion->duration());
+  const auto at_rate = motion->make(library().rate);
+  ASSERT_TRUE(at_rate.ok());
+  EXPECT_EQ(at_rate->clip.rate, library().rate);
+  EXPECT_EQ(at_rate->clip.frame_count(), made->clip.frame_count());
+  EXPECT_NEAR(at_rate->clip.duration(), motion->duration(), 0.5 / library().rate);
   ASSERT_EQ(made->keys.keytimes.size(), 3u);
   EXPECT_EQ(made->keys.keytimes[0].name, "right_strike");
   EXPECT_EQ(made->keys.keytimes[1].name, "left_off");

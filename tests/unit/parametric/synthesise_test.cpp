@@ -114,6 +114,35 @@ TEST(Synthesise, CorrectionBringsTheMotionToWhatWasAsked) {
   }
 }
 
+// Two examples as good as equal but for a centimetre of height: what lies between the others there
+// needs them many times over, against each other.
+TEST(Synthesise, WeightsThatAreNoBlendAreRefused) {
+  Fitted crowded = fitted(false);
+  Library& library = crowded.library;
+  Example near = library.examples[4];
+  near.parameters[1] += 0.01;
+  near.parameters[0] += 0.002;
+  library.examples.push_back(near);
+  crowded.weights = weights_of(library);
+  const auto made = Synthesiser::create(library, crowded.weights);
+  ASSERT_TRUE(made.ok());
+  int refused = 0;
+  for (const auto& point : grid(made->bounds(), 15)) {
+    if (outside(made->bounds(), point).distance > 0) continue;
+    const auto plain = made->weights(point);
+    const auto beyond = made->weights(point, {.extrapolate = true});
+    ASSERT_TRUE(beyond.ok());
+    const auto [least, most] = std::ranges::minmax(beyond->weights);
+    const bool is_blend = least >= kLeastWeight && most <= kMostWeight;
+    EXPECT_EQ(plain.ok(), is_blend) << least << " " << most;
+    if (plain) continue;
+    ++refused;
+    EXPECT_EQ(plain.error().code, "parametric-extrapolation");
+    EXPECT_THAT(plain.error().message, HasSubstr("weight"));
+  }
+  EXPECT_GT(refused, 10);
+}
+
 TEST(Synthesise, OutsideTheExamplesItSaysWhereTheyEnd) {
   const Synthesiser made = synthesiser(false);
   const std::vector<double> far = {1.4, 0};
