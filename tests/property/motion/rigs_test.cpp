@@ -65,7 +65,8 @@ Clip mixed(const Walks& walks, timeline::ChangeKind kind, timeline::Align align,
     timeline::BaseItem item;
     item.name = "walk";
     item.play.source = source;
-    item.change = {.kind = kind, .duration = kind == timeline::ChangeKind::cut ? 0 : 0.4};
+    item.change.kind = kind;
+    item.change.duration = kind == timeline::ChangeKind::cut ? 0 : 0.4;
     item.change.align = align;
     timeline.base.push_back(item);
   }
@@ -73,8 +74,11 @@ Clip mixed(const Walks& walks, timeline::ChangeKind kind, timeline::Align align,
     for (const auto mode : {timeline::LayerMode::override, timeline::LayerMode::additive}) {
       timeline::Layer layer;
       layer.mode = mode;
-      layer.mask.push_back({.joints = "Hips", .weight = 0.5});
-      layer.mask.push_back({.below = "Spine", .weight = 0.7});
+      layer.mask.resize(2);
+      layer.mask[0].joints = "Hips";
+      layer.mask[0].weight = 0.5;
+      layer.mask[1].below = "Spine";
+      layer.mask[1].weight = 0.7;
       timeline::LayerItem item;
       item.name = "layer";
       item.play.source = 1;
@@ -322,6 +326,30 @@ TEST(Rigs, AMirroredLibraryMeasuresTheSame) {
       }
     }
   }
+}
+
+// Files of one figure often differ in where they put the hips below a root, which the motion says
+// anyway.
+TEST(Rigs, TheOffsetOfTheHipsAloneMakesNoOtherSkeleton) {
+  const Walks plain = changed(
+      walks(), [](const KeyedWalk& walk) { return blend::rigged(walk, blend::Rig::static_root); });
+  Walks elsewhere = plain;
+  for (std::size_t j = 1; j < elsewhere[1].clip.skeleton.reference.size(); ++j) {
+    elsewhere[1].clip.skeleton.reference[j].position += Vec3(0.4, -0.9, 4);
+  }
+  for (const Operation& operation : operations()) {
+    EXPECT_LT(blend::farthest_by_name(operation.apply(plain), operation.apply(elsewhere)), kSame)
+        << operation.name;
+  }
+  // A thigh of another length is another figure's.
+  Walks other = plain;
+  Skeleton& skeleton = other[1].clip.skeleton;
+  const auto knee = static_cast<std::size_t>(skeleton.find("LeftLeg"));
+  ASSERT_LT(knee, skeleton.names.size());
+  skeleton.reference[knee].position.y() -= 0.1;
+  EXPECT_EQ(join(other[0].clip, other[1].clip, 1, {}).error().code, "motion-skeleton");
+  EXPECT_EQ(parametric::same_skeleton(other[0].clip.skeleton, skeleton).error().code,
+            "parametric-skeleton");
 }
 
 }  // namespace
