@@ -31,6 +31,7 @@ ALLOWED = {
     "lib/rbf": {"lib/core", "lib/math"},
     "lib/fit": {"lib/core", "lib/rbf"},
     "lib/ik": BASE,
+    "lib/plant": BASE | {"lib/roles", "lib/motion", "lib/contacts", "lib/ik"},
     "lib/retarget": BASE | {"lib/roles", "lib/ik", "lib/motion"},
     "lib/skin": BASE,
     "lib/body": BASE | {"lib/roles"},

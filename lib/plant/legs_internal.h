@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "contacts/sole_points.h"
+#include "core/result.h"
+#include "roles/roles.h"
+#include "scene/clip.h"
+
+// The joints that foot clean-up moves. Used by plant_feet().
+
+namespace krok::plant {
+
+// What carries a joint along.
+enum class Body : std::uint8_t { none, pelvis, upper, lower, foot, toes };
+
+struct Leg {
+  FootSide side = FootSide::left;
+  int upper = -1, lower = -1, foot = -1;
+  int toes = -1;                  // the joint at the ball, or -1
+  std::vector<SolePoint> points;  // heel before ball before tip
+  Vec3 knee_axis =
+      Vec3::Zero();  // the usual direction of cross(thigh, shank), in the thigh's frame
+
+  const SolePoint* point(FootPart part) const;
+};
+
+struct PlantedBody {
+  std::vector<Leg> legs;           // one or two
+  int pelvis = 0;                  // all joints below it move with it
+  double leg_length = 0;           // metres
+  std::vector<Body> bodies;        // [joints]
+  std::vector<std::uint8_t> side;  // [joints], index into legs, for joints of legs
+};
+
+// Code contacts-feet where no leg has thigh, shank and foot.
+Result<PlantedBody> find_body(const Clip& clip, const RoleMap& roles);
+
+inline Transform joint_at(const Clip& clip, int frame, int joint) {
+  return {
+      clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>(),
+      clip.frame_orientations(frame)[static_cast<std::size_t>(joint)].cast<double>().normalized()};
+}
+
+}  // namespace krok::plant

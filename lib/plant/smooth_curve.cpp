@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "plant/smooth_curve_internal.h"
+
+namespace krok::plant {
+
+namespace {
+
+constexpr double kLowestCutoff = 4, kHighestCutoff = 20;  // Hz
+
+// A symmetric matrix of five diagonals, positive definite.
+struct Pentadiagonal {
+  std::vector<double> main, first, second;  // first[i] couples i and i + 1
+
+  explicit Pentadiagonal(std::size_t n) : main(n, 0), first(n, 0), second(n, 0) {}
+
+  // Adds weight * (second difference at i)^2.
+  void add_bend(std::size_t i, double weight) {
+    main[i - 1] += weight;
+    main[i] += 4 * weight;
+    main[i + 1] += weight;
+    first[i - 1] -= 2 * weight;
+    first[i] -= 2 * weight;
+    second[i - 1] += weight;
+  }
+
+  // Solves in place, by L D L^T.
+  void solve(std::vector<Vec3>& values) {
+    const std::size_t n = main.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double pivot = main[i];
+      const double near = first[i] / pivot, far = second[i] / pivot;
+      if (i + 1 < n) {
+        main[i + 1] -= near * first[i];
+        first[i + 1] -= near * second[i];
+        values[i + 1] -= near * values[i];
+      }
+      if (i + 2 < n) {
+        main[i + 2] -= far * second[i];
+        values[i + 2] -= far * values[i];
+      }
+      first[i] = near;
+      second[i] = far;
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      values[i] /= main[i];
+      if (i + 1 < n) values[i] -= first[i] * values[i + 1];
+      if (i + 2 < n) values[i] -= second[i] * values[i + 2];
+    }
+  }
+};
+
+// 1 at 0, 0 from 1 on, two derivatives continuous.
+double fade_out(double u) {
+  if (u >= 1) return 0;
+  return 1 - u * u * u * (10 - 15 * u + 6 * u * u);
+}
+
+std::vector<double> running_minimum(std::span<const double> values, int reach) {
+  std::vector<double> result(values.size());
+  std::deque<std::size_t> rising;  // of the window, those with nothing lower behind them
+  const std::size_t n = values.size(), r = static_cast<std::size_t>(reach);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (; next < std::min(n, i + r + 1); ++next) {
+      while (!rising.empty() && values[rising.back()] >= values[next]) rising.pop_back();
+      rising.push_back(next);
+    }
+    while (rising.front() + r < i) rising.pop_front();
+    result[i] = values[rising.front()];
+  }
+  return result;
+}
+
+// The mean over `reach` frames on either side; ends stand for what is beyond.
+std::vector<double> running_mean(std::span<const double> values, int reach) {
+  const int n = static_cast<int>(values.size());
+  std::vector<double> result(values.size());
+  const auto at = [&](int i) { return values[static_cast<std::size_t>(std::clamp(i, 0, n - 1))]; };
+  double sum = 0;
+  for (int i = -reach; i <= reach; ++i) sum += at(i);
+  for (int i = 0; i < n; ++i) {
+    result[static_cast<std::size_t>(i)] = sum / (2 * reach + 1);
+    sum += at(i + reach + 1) - at(i - reach);
+  }
+  return result;
+}
+
+}  // namespace
+
+double jitter_of(const KnownCurve& curve) {
+  // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance.
+  double sum = 0;
+  long count = 0;
+  for (std::size_t f = 3; f < curve.values.size(); ++f) {
+    if (!curve.known[f - 3] || !curve.known[f - 2] || !curve.known[f - 1] || !curve.known[f]) {
+      continue;
+    }
+    sum +=
+        (curve.values[f] - 3 * curve.values[f - 1] + 3 * curve.values[f - 2] - curve.values[f - 3])
+            .squaredNorm();
+    count += 3;
+  }
+  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count) / 20);
+}
+
+double cutoff_against(double deviation, double speed, double rate) {
+  // White noise low-passed at c and differentiated keeps a variance of 2 (2 pi)^2 c^3 / (3 rate) of
+  // its own on each of three axes.
+  if (!(deviation > 0)) return kHighestCutoff;
+  const double cutoff = std::cbrt(speed * speed * rate / (8 * kPi * kPi * deviation * deviation));
+  return std::clamp(cutoff, kLowestCutoff, kHighestCutoff);
+}
+
+std::vector<Vec3> smooth_curve(const KnownCurve& curve, double rate, double cutoff, double fade) {
+  const std::size_t n = curve.values.size();
+  std::vector<Vec3> result(n, Vec3::Zero());
+  if (std::ranges::count(curve.known, 1) == 0) return result;
+  Pentadiagonal matrix(n);
+  const double frames = 0.25 * fade * rate;
+  const double bend = frames * frames * frames * frames;
+  // A sine of frequency w keeps 1 / (1 + bend / known * w^4) of itself.
+  const double turn = 2 * std::sin(std::min(kPi * cutoff / rate, kPi / 2));
+  const double known = std::max(1.0, bend * turn * turn * turn * turn);
+  for (std::size_t f = 0; f < n; ++f) {
+    matrix.main[f] += curve.known[f] ? known : 1;
+    if (curve.known[f]) result[f] = known * curve.values[f];
+    if (f > 0 && f + 1 < n) matrix.add_bend(f, bend);
+  }
+  matrix.solve(result);
+  return result;
+}
+
+std::vector<Vec3> curve_through(const KnownCurve& curve, double rate, double cutoff, double fade,
+                                double join) {
+  std::vector<Vec3> result = smooth_curve(curve, rate, cutoff, fade);
+  const int n = static_cast<int>(result.size());
+  const auto known = [&](int f) { return curve.known[static_cast<std::size_t>(f)] != 0; };
+  const auto at = [](auto& list, int f) -> auto& {
+    return list[static_cast<std::size_t>(f)];
+  };
+  const int reach = std::max(1, static_cast<int>(std::lround(join * rate)));
+  std::vector<Vec3> rest(curve.values.size(), Vec3::Zero());
+  for (int f = 0; f < n; ++f) {
+    if (!known(f)) continue;
+    const Vec3 missing = at(curve.values, f) - at(result, f);
+    at(rest, f) = missing;
+    for (const int step : {-1, 1}) {
+      for (int i = 1; i < reach; ++i) {
+        const int g = f + step * i;
+        if (g < 0 || g >= n || known(g)) break;
+        at(rest, g) += fade_out(static_cast<double>(i) / reach) * missing;
+      }
+    }
+  }
+  for (int f = 0; f < n; ++f) {
+    if (known(f)) {
+      at(result, f) = at(curve.values, f);
+    } else {
+      at(result, f) += at(rest, f);
+    }
+  }
+  return result;
+}
+
+std::vector<double> smooth_below(std::span<const double> bounds, int reach) {
+  // Three means of a third of the width each make a smooth one of no more than the width.
+  const int part = std::max(1, reach / 3);
+  std::vector<double> curve = running_minimum(bounds, 3 * part);
+  for (int i = 0; i < 3; ++i) curve = running_mean(curve, part);
+  return curve;
+}
+
+}  // namespace krok::plant

@@ -1,0 +1,246 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "plant/smooth_curve_internal.h"
+#include "plant/stays_internal.h"
+
+namespace krok::plant {
+
+namespace {
+
+constexpr double kFarFromPlace = 0.2;  // of the leg
+constexpr int kRounds = 200;
+constexpr double kExact = 1e-8;  // metres
+
+double median(std::vector<double> values) {
+  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), half, values.end());
+  if (values.size() % 2 == 1) return *half;
+  return 0.5 * (*half + *std::max_element(values.begin(), half));
+}
+
+Vec3 median_place(const std::vector<Vec3>& track, int first, int last) {
+  Vec3 place;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (int f = first; f <= last; ++f) values.push_back(track[static_cast<std::size_t>(f)][axis]);
+    place[axis] = median(std::move(values));
+  }
+  return place;
+}
+
+// Places of heels and balls that stand together, brought to the distance that they have in the
+// foot; heights stay, where they allow it.
+struct Pair {
+  int heel = 0, ball = 0;  // indices into the stays
+  double distance = 0;     // metres
+};
+
+void bring_to_distance(const Pair& pair, std::vector<FixedStay>& stays) {
+  Vec3& heel = stays[static_cast<std::size_t>(pair.heel)].place;
+  Vec3& ball = stays[static_cast<std::size_t>(pair.ball)].place;
+  Vec3 apart = ball - heel;
+  const double rise = apart.y();
+  if (std::abs(rise) < 0.9 * pair.distance) {
+    apart.y() = 0;
+    const double level = apart.norm();
+    const double wanted = std::sqrt(pair.distance * pair.distance - rise * rise);
+    if (level < 1e-9) return;
+    apart *= (wanted - level) / level;
+  } else {
+    apart *= (pair.distance - apart.norm()) / apart.norm();
+  }
+  heel -= 0.5 * apart;
+  ball += 0.5 * apart;
+}
+
+class StayFixer {
+ public:
+  StayFixer(const Clip& clip, const PlantedBody& body, const Leg& leg)
+      : clip_(clip), body_(body), leg_(leg) {
+    for (const SolePoint& point : leg.points) {
+      std::vector<Vec3> track;
+      track.reserve(static_cast<std::size_t>(clip.frame_count()));
+      for (int f = 0; f < clip.frame_count(); ++f) {
+        track.push_back(joint_at(clip, f, point.joint) * point.offset);
+      }
+      footing.tracks.push_back(std::move(track));
+    }
+  }
+
+  void add(std::size_t point, double start, double end) {
+    const int last_frame = clip_.frame_count() - 1;
+    const std::vector<Vec3>& track = footing.tracks[point];
+    FixedStay stay;
+    stay.point = leg_.points[point];
+    stay.first = std::max(0, static_cast<int>(std::ceil(start * clip_.rate - 1e-3)));
+    stay.last = std::min(last_frame, static_cast<int>(std::floor(end * clip_.rate + 1e-3)));
+    if (stay.first > stay.last) return;
+    stay.place = median_place(track, stay.first, stay.last);
+    const auto is_far = [&](int f) {
+      return (track[static_cast<std::size_t>(f)] - stay.place).norm() >
+             kFarFromPlace * body_.leg_length;
+    };
+    while (stay.first <= stay.last && is_far(stay.first)) ++stay.first;
+    while (stay.first <= stay.last && is_far(stay.last)) --stay.last;
+    if (stay.first > stay.last) return;
+    footing.stays.push_back(stay);
+  }
+
+  void finish() {
+    order();
+    for (std::size_t p = 0; p < leg_.points.size(); ++p) draw_heights_together(leg_.points[p].part);
+    keep_distances();
+  }
+
+  Footing footing;
+
+ private:
+  // By point and frame; stays of a point that overlap become one.
+  void order() {
+    std::vector<FixedStay>& stays = footing.stays;
+    std::ranges::sort(stays, {},
+                      [](const FixedStay& s) { return std::pair(s.point.part, s.first); });
+    std::vector<FixedStay> apart;
+    for (const FixedStay& stay : stays) {
+      const bool again = !apart.empty() && apart.back().point.part == stay.point.part &&
+                         stay.first <= apart.back().last;
+      if (!again) {
+        apart.push_back(stay);
+      } else if (stay.last > apart.back().last) {
+        apart.back().last = stay.last;
+        const auto& track = footing.tracks[index_of(stay.point.part)];
+        apart.back().place = median_place(track, apart.back().first, stay.last);
+      }
+    }
+    stays = std::move(apart);
+    footing.stay_at.assign(leg_.points.size(),
+                           std::vector<int>(static_cast<std::size_t>(clip_.frame_count()), -1));
+    for (std::size_t i = 0; i < stays.size(); ++i) {
+      auto& at = footing.stay_at[index_of(stays[i].point.part)];
+      for (int f = stays[i].first; f <= stays[i].last; ++f) {
+        at[static_cast<std::size_t>(f)] = static_cast<int>(i);
+      }
+    }
+  }
+
+  std::size_t index_of(FootPart part) const {
+    return static_cast<std::size_t>(std::ranges::find(leg_.points, part, &SolePoint::part) -
+                                    leg_.points.begin());
+  }
+
+  // The median of n values that jitter has 1.57 / n of the jitter's variance. What the heights of a
+  // point's stays vary by beyond that is real.
+  void draw_heights_together(FootPart part) {
+    KnownCurve heights(static_cast<std::size_t>(clip_.frame_count()));
+    const std::size_t point = index_of(part);
+    std::vector<FixedStay*> own;
+    double mean = 0;
+    for (FixedStay& stay : footing.stays) {
+      if (stay.point.part != part) continue;
+      own.push_back(&stay);
+      mean += stay.place.y();
+      for (int f = stay.first; f <= stay.last; ++f) {
+        const auto i = static_cast<std::size_t>(f);
+        heights.set(i, Vec3(0, footing.tracks[point][i].y(), 0));
+      }
+    }
+    if (own.size() < 2) return;
+    mean /= static_cast<double>(own.size());
+    const double jitter = std::sqrt(3.0) * jitter_of(heights);  // of one axis of three
+    const auto error = [&](const FixedStay& stay) {
+      return 0.5 * kPi * jitter * jitter / (stay.last - stay.first + 1);
+    };
+    double spread = 0;
+    for (const FixedStay* stay : own) {
+      const double off = stay->place.y() - mean;
+      spread += (off * off - error(*stay)) / static_cast<double>(own.size() - 1);
+    }
+    spread = std::max(0.0, spread);
+    for (FixedStay* stay : own) {
+      const double own_part = spread / std::max(1e-18, spread + error(*stay));
+      stay->place.y() = mean + own_part * (stay->place.y() - mean);
+    }
+  }
+
+  void keep_distances() {
+    const SolePoint* ball = leg_.point(FootPart::ball);
+    if (!ball) return;
+    const std::size_t b = index_of(FootPart::ball);
+    std::vector<Pair> pairs;
+    std::vector<double> distances;
+    const auto close = [&] {
+      if (!distances.empty()) pairs.back().distance = median(std::exchange(distances, {}));
+    };
+    for (std::size_t f = 0; f < footing.stay_at[0].size(); ++f) {
+      const int at_heel = footing.stay_at[0][f], at_ball = footing.stay_at[b][f];
+      if (at_heel < 0 || at_ball < 0) continue;
+      if (pairs.empty() || pairs.back().heel != at_heel || pairs.back().ball != at_ball) {
+        close();
+        pairs.push_back({at_heel, at_ball, 0});
+      }
+      distances.push_back((footing.tracks[b][f] - footing.tracks[0][f]).norm());
+    }
+    close();
+    // Stays overlap as a chain, so that rounds converge.
+    double moved = 1;
+    for (int round = 0; round < kRounds && moved > kExact; ++round) {
+      moved = 0;
+      for (const Pair& pair : pairs) {
+        const Vec3 before = footing.stays[static_cast<std::size_t>(pair.heel)].place;
+        bring_to_distance(pair, footing.stays);
+        moved = std::max(
+            moved, (footing.stays[static_cast<std::size_t>(pair.heel)].place - before).norm());
+      }
+    }
+  }
+
+  const Clip& clip_;
+  const PlantedBody& body_;
+  const Leg& leg_;
+};
+
+}  // namespace
+
+std::vector<Footing> fix_stays(const Clip& clip, const PlantedBody& body,
+                               const std::vector<Stay>& found,
+                               const std::vector<PointTrack>& tracks,
+                               const std::optional<std::span<const Contact>>& contacts) {
+  std::vector<Footing> footings;
+  for (const Leg& leg : body.legs) {
+    StayFixer fixer(clip, body, leg);
+    const auto is_named = [](const SolePoint& point) {
+      return !point.estimated || point.part == FootPart::heel;
+    };
+    for (std::size_t p = 0; p < leg.points.size(); ++p) {
+      const SolePoint& point = leg.points[p];
+      if (contacts && is_named(point)) {
+        for (const Contact& contact : *contacts) {
+          if (contact.joint == point.joint) fixer.add(p, contact.start, contact.end);
+        }
+        continue;
+      }
+      for (const Stay& stay : found) {
+        const SolePoint& other = tracks[static_cast<std::size_t>(stay.track)].point;
+        if (other.side == leg.side && other.part == point.part) {
+          fixer.add(p, stay.start, stay.end);
+        }
+      }
+    }
+    fixer.finish();
+    footings.push_back(std::move(fixer.footing));
+  }
+  return footings;
+}
+
+double drift_of(std::span<const Vec3> track, int first, int last) {
+  Vec3 low = track[static_cast<std::size_t>(first)], high = low;
+  for (int f = first; f <= last; ++f) {
+    low = low.cwiseMin(track[static_cast<std::size_t>(f)]);
+    high = high.cwiseMax(track[static_cast<std::size_t>(f)]);
+  }
+  return (high - low).norm();
+}
+
+}  // namespace krok::plant

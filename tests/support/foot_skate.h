@@ -1,0 +1,152 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "contacts/contacts.h"
+#include "ik/two_bone.h"
+#include "math/quaternion.h"
+#include "roles/roles.h"
+#include "samples/generator/walk.h"
+#include "scene/clip.h"
+
+// Walks whose feet slide and jitter, and measures of what a clean-up makes of them.
+
+namespace krok::test {
+
+inline Transform joint_of(const Clip& clip, int frame, int joint) {
+  return {clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>(),
+          clip.frame_orientations(frame)[static_cast<std::size_t>(joint)]
+              .cast<double>()
+              .normalized()};
+}
+
+struct LegRoles {
+  int upper = -1, lower = -1, foot = -1;
+};
+inline std::array<LegRoles, 2> legs_of(const RoleMap& roles) {
+  return {LegRoles{roles.joint(Role::left_upper_leg), roles.joint(Role::left_lower_leg),
+                   roles.joint(Role::left_foot)},
+          LegRoles{roles.joint(Role::right_upper_leg), roles.joint(Role::right_lower_leg),
+                   roles.joint(Role::right_foot)}};
+}
+
+// Moves a foot in one frame by two-bone inverse kinematics, its orientation kept; joints below the
+// foot go along.
+inline void move_foot(Clip& clip, int frame, const LegRoles& leg, const Vec3& shift) {
+  const Transform upper = joint_of(clip, frame, leg.upper), lower = joint_of(clip, frame, leg.lower),
+                  foot = joint_of(clip, frame, leg.foot);
+  const TwoBoneSolution solution = solve_two_bone(
+      {upper.position, lower.position, foot.position, Vec3::Zero()}, {foot.position + shift});
+  std::vector<int> part(clip.skeleton.names.size(), 0);
+  for (std::size_t j = 0; j < part.size(); ++j) {
+    const int parent = clip.skeleton.parents[j], joint = static_cast<int>(j);
+    if (parent >= 0) part[j] = part[static_cast<std::size_t>(parent)];
+    part[j] = joint == leg.upper ? 1 : joint == leg.lower ? 2 : joint == leg.foot ? 3 : part[j];
+    if (part[j] == 0) continue;
+    const Quat turn = part[j] == 1   ? solution.root_rotation
+                      : part[j] == 2 ? solution.middle_rotation
+                                     : Quat::Identity();
+    const Vec3 from = part[j] == 1 ? upper.position : part[j] == 2 ? lower.position : foot.position;
+    const Vec3 to = part[j] == 1 ? upper.position : part[j] == 2 ? solution.middle : solution.end;
+    const Transform now = joint_of(clip, frame, joint);
+    clip.frame_positions(frame)[j] = (to + turn * Vec3(now.position - from)).cast<float>();
+    clip.frame_orientations(frame)[j] = (turn * now.orientation).cast<float>();
+  }
+}
+
+struct Skate {
+  double slide = 0.02;         // metres that a foot slides over a stance, and back in the swing
+  double body_jitter = 0.005;  // metres, deviation of each axis, of the whole figure
+  double foot_jitter = 0;      // the same, of each foot for itself
+  unsigned seed = 1;
+};
+
+// Slides begin and end at rest, each in a direction of its own along the ground.
+inline Clip with_skate(const samples::Walk& walk, const Skate& skate) {
+  Clip clip = walk.clip;
+  std::mt19937 random(skate.seed);
+  std::normal_distribution<double> normal;
+  const auto vector = [&](double size) {
+    const double x = normal(random), y = normal(random), z = normal(random);
+    return Vec3(size * Vec3(x, y, z));
+  };
+  const auto legs = legs_of(find_roles(clip.skeleton));
+  const auto ease = [](double u) {
+    u = std::clamp(u, 0.0, 1.0);
+    return u * u * (3 - 2 * u);
+  };
+  std::vector<Vec3> directions;
+  for (std::size_t i = 0; i < walk.prints.size(); ++i) {
+    const double angle = 2 * kPi * static_cast<double>(random()) / 4294967296.0;
+    directions.emplace_back(std::sin(angle), 0, std::cos(angle));
+  }
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const double time = f / clip.rate;
+    for (const std::size_t side : {0U, 1U}) {
+      Vec3 shift = vector(skate.foot_jitter);
+      for (std::size_t i = 0; i < walk.prints.size(); ++i) {
+        const samples::Footprint& print = walk.prints[i];
+        if (static_cast<std::size_t>(print.side) != side) continue;
+        const double swing = 0.35 * walk.step_time;
+        const double part = ease((time - print.strike) / (print.off - print.strike)) -
+                            ease((time - print.off) / swing);
+        shift += skate.slide * part * directions[i];
+      }
+      if (!shift.isZero()) move_foot(clip, f, legs[side], shift);
+    }
+    const Vec3f all = vector(skate.body_jitter).cast<float>();
+    for (Vec3f& position : clip.frame_positions(f)) position += all;
+  }
+  return clip;
+}
+
+// The generator's walks over its whole range: lengths, turns, slopes, stairs, statures and rates.
+inline samples::WalkOptions varied_walk(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  samples::WalkOptions options;
+  options.steps = 10;
+  options.stature = uniform(1.5, 1.95);
+  options.step_length = uniform(0.4, 0.85) * options.stature / 1.75;
+  options.step_width = uniform(0.06, 0.2);
+  options.turn = random() % 3 == 0 ? uniform(-0.4, 0.4) : 0;
+  const unsigned ground = random() % 4;
+  if (ground == 0) options.rise = uniform(-0.05, 0.05);
+  options.ground = samples::Ground::slope;
+  options.from_standing = random() % 4 == 0;
+  options.rate = std::array{30.0, 60.0, 60.0, 100.0, 120.0}[random() % 5];
+  return options;
+}
+
+// Degrees a second squared, over all frames of both knees, of the bend between thigh and shank.
+struct KneeAcceleration {
+  double percentile_99 = 0, max = 0;
+};
+inline KneeAcceleration knee_acceleration(const Clip& clip, const RoleMap& roles, int first = 0) {
+  std::vector<double> all;
+  for (const LegRoles& leg : legs_of(roles)) {
+    std::vector<double> bend;
+    for (int f = first; f < clip.frame_count(); ++f) {
+      const Vec3 hip = joint_of(clip, f, leg.upper).position,
+                 knee = joint_of(clip, f, leg.lower).position,
+                 ankle = joint_of(clip, f, leg.foot).position;
+      const Vec3 thigh = knee - hip, shank = ankle - knee;
+      bend.push_back(std::atan2(thigh.cross(shank).norm(), thigh.dot(shank)) / kRadiansPerDegree);
+    }
+    for (std::size_t f = 2; f < bend.size(); ++f) {
+      all.push_back(std::abs(bend[f] - 2 * bend[f - 1] + bend[f - 2]) * clip.rate * clip.rate);
+    }
+  }
+  if (all.empty()) return {};
+  std::ranges::sort(all);
+  return {all[static_cast<std::size_t>(0.99 * static_cast<double>(all.size() - 1))], all.back()};
+}
+
+}  // namespace krok::test
