@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "plant/legs_internal.h"
+#include "plant/smooth_curve_internal.h"
 #include "plant/stays_internal.h"
 
 // Where fixed points bring each foot. Used by plant_feet().
@@ -15,12 +16,12 @@ struct FootPath {
   std::vector<Vec3> shift;  // metres, of the ankle
 };
 
-struct Paths {
-  std::vector<FootPath> feet;  // [legs]
-  std::vector<Vec3> body;      // metres, [frames]: of everything from the pelvis on, feet included
-};
+FootPath foot_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
+                   const Footing& footing);
 
-Paths foot_paths(const Clip& clip, const PlantedBody& body, const std::vector<Footing>& footings);
+// The same shift before it is drawn through the frames in which nothing stands.
+KnownCurve needed_shift(const Clip& clip, const PlantedBody& body, const Leg& leg,
+                        const Footing& footing);
 
 // The toes lie on the ground while the heel comes up: of the foot's turn they take the part about
 // the vertical.

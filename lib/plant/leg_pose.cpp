@@ -16,19 +16,19 @@ constexpr double kStraight = 10 * kRadiansPerDegree;  // the bend below which st
 constexpr double kSpread = 0.2;                       // seconds
 constexpr double kReached = 1e-5;                     // metres
 
-// A leg in one frame, as captured but for the shift of the whole body.
+// A leg in one frame, as captured but for the pelvis.
 struct LegNow {
   Transform upper, lower, foot;
   double thigh = 0, shank = 0, reach = 0;  // metres; reach from hip to ankle
   Vec3 goal = Vec3::Zero();                // of the ankle
 
-  LegNow(const Clip& clip, int frame, const Leg& leg, const FootPath& path, const Vec3& body) {
+  LegNow(const Clip& clip, int frame, const Leg& leg, const FootPath& path, double lowered) {
     const auto f = static_cast<std::size_t>(frame);
     upper = joint_at(clip, frame, leg.upper);
     lower = joint_at(clip, frame, leg.lower);
     foot = joint_at(clip, frame, leg.foot);
     goal = foot.position + path.shift[f];
-    for (Transform* joint : {&upper, &lower, &foot}) joint->position += body;
+    for (Transform* joint : {&upper, &lower, &foot}) joint->position.y() -= lowered;
     thigh = (lower.position - upper.position).norm();
     shank = (foot.position - lower.position).norm();
     reach = (foot.position - upper.position).norm();
@@ -96,12 +96,13 @@ Moves moves_of(const Clip& clip, int frame, const Leg& leg, const LegNow& now, c
 
 }  // namespace
 
-std::vector<double> lowering(const Clip& clip, const PlantedBody& body, const Paths& paths) {
+std::vector<double> lowering(const Clip& clip, const PlantedBody& body,
+                             const std::vector<FootPath>& paths) {
   const auto frames = static_cast<std::size_t>(clip.frame_count());
   std::vector<double> bounds(frames, 0);
   for (std::size_t i = 0; i < body.legs.size(); ++i) {
     for (std::size_t f = 0; f < frames; ++f) {
-      const LegNow now(clip, static_cast<int>(f), body.legs[i], paths.feet[i], paths.body[f]);
+      const LegNow now(clip, static_cast<int>(f), body.legs[i], paths[i], 0);
       const double longest = std::max(now.reach, two_bone_reach(now.thigh, now.shank, kStraight));
       bounds[f] = std::min(bounds[f], -drop_for(now.goal - now.upper.position, longest));
     }
@@ -112,17 +113,17 @@ std::vector<double> lowering(const Clip& clip, const PlantedBody& body, const Pa
   return lowered;
 }
 
-int apply(const PlantedBody& body, const Paths& paths, const std::vector<double>& lowered,
-          Clip& clip) {
+int apply(const PlantedBody& body, const std::vector<FootPath>& paths,
+          const std::vector<double>& lowered, Clip& clip) {
   int out_of_reach = 0;
   std::array<Moves, 2> moves;
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     const auto f = static_cast<std::size_t>(frame);
-    const Vec3 shift = paths.body[f] - lowered[f] * Vec3::UnitY();
+    const Vec3 shift = -lowered[f] * Vec3::UnitY();
     bool reached = true;
     for (std::size_t i = 0; i < body.legs.size(); ++i) {
-      const LegNow now(clip, frame, body.legs[i], paths.feet[i], shift);
-      moves[i] = moves_of(clip, frame, body.legs[i], now, paths.feet[i].turn[f]);
+      const LegNow now(clip, frame, body.legs[i], paths[i], lowered[f]);
+      moves[i] = moves_of(clip, frame, body.legs[i], now, paths[i].turn[f]);
       reached = reached &&
                 (moves[i][static_cast<std::size_t>(Body::foot)].then - now.goal).norm() < kReached;
     }

@@ -10,13 +10,14 @@
 #include "plant/leg_pose_internal.h"
 #include "plant/legs_internal.h"
 #include "plant/stays_internal.h"
+#include "plant/steady_internal.h"
 
 namespace krok {
 
 namespace {
 
-void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing>& footings,
-                PlantedFeet& planted) {
+void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing>& captured,
+                const std::vector<plant::Footing>& footings, PlantedFeet& planted) {
   for (std::size_t i = 0; i < body.legs.size(); ++i) {
     for (std::size_t p = 0; p < body.legs[i].points.size(); ++p) {
       const SolePoint& point = body.legs[i].points[p];
@@ -27,7 +28,7 @@ void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing
       }
       for (FixedStay stay : footings[i].stays) {
         if (stay.point.part != point.part) continue;
-        stay.drift_before = plant::drift_of(footings[i].tracks[p], stay.first, stay.last);
+        stay.drift_before = plant::drift_of(captured[i].tracks[p], stay.first, stay.last);
         stay.drift_after = plant::drift_of(after, stay.first, stay.last);
         planted.stays.push_back(stay);
         if (point.part == FootPart::tip) continue;
@@ -61,8 +62,8 @@ Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
   if (!found) return std::move(found).error();
   PlantedFeet planted;
   if (!contacts) planted.warnings = std::move(found->warnings);
-  const auto footings = plant::fix_stays(clip, *body, found->stays, found->tracks, contacts);
-  if (std::ranges::all_of(footings, [](const plant::Footing& f) { return f.stays.empty(); })) {
+  const auto captured = plant::fix_stays(clip, *body, found->stays, found->tracks, contacts);
+  if (std::ranges::all_of(captured, [](const plant::Footing& f) { return f.stays.empty(); })) {
     return Error("plant-contacts",
                  "no heel, ball or toe stands at any frame, so nothing can be planted",
                  contacts ? "the contacts given are not of feet; remove the file to have them found"
@@ -70,17 +71,28 @@ Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
                             "contacts");
   }
   planted.clip = clip;
-  const plant::Paths paths = plant::foot_paths(clip, *body, footings);
-  const std::vector<double> lowered = plant::lowering(clip, *body, paths);
+  auto footings = captured;
+  // Twice: places are known better once the body is steady.
+  for (int round = 0; round < 2; ++round) {
+    std::vector<plant::KnownCurve> shifts;
+    for (std::size_t i = 0; i < footings.size(); ++i) {
+      shifts.push_back(plant::needed_shift(planted.clip, *body, body->legs[i], footings[i]));
+    }
+    const double jitter = plant::steady(*body, shifts, planted.clip);
+    planted.body_steadied = std::hypot(planted.body_steadied, jitter);
+    footings = plant::fix_stays(planted.clip, *body, found->stays, found->tracks, contacts);
+  }
+  std::vector<plant::FootPath> paths;
+  for (std::size_t i = 0; i < footings.size(); ++i) {
+    paths.push_back(plant::foot_path(planted.clip, *body, body->legs[i], footings[i]));
+  }
+  const std::vector<double> lowered = plant::lowering(planted.clip, *body, paths);
   planted.out_of_reach = plant::apply(*body, paths, lowered, planted.clip);
-  note_stays(*body, footings, planted);
+  planted.pelvis_lowered = *std::ranges::max_element(lowered);
+  note_stays(*body, captured, footings, planted);
   if (planted.out_of_reach > 0) {
     planted.warnings.push_back(reach_warning(planted.out_of_reach, clip));
   }
-  double squares = 0;
-  for (const Vec3& shift : paths.body) squares += shift.squaredNorm();
-  planted.pelvis_steadied = std::sqrt(squares / static_cast<double>(paths.body.size()));
-  planted.pelvis_lowered = *std::ranges::max_element(lowered);
   return planted;
 }
 

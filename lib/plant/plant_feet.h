@@ -28,9 +28,9 @@ struct PlantedFeet {
   std::vector<FixedStay> stays;  // left foot before right, heel, ball, tip, then by frame
   // The largest over all stays of heels and balls, metres.
   double drift_before = 0, drift_after = 0;
-  double pelvis_lowered = 0;   // metres, the most in any frame
-  double pelvis_steadied = 0;  // metres, root mean square of the jitter taken out of the whole body
-  int out_of_reach = 0;        // frames in which a leg is too short for its place
+  double pelvis_lowered = 0;  // metres, the most in any frame
+  double body_steadied = 0;   // metres, root mean square of the jitter taken out of the whole body
+  int out_of_reach = 0;       // frames in which a leg is too short for its place
   Diagnostics warnings;
 };
 

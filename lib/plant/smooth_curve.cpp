@@ -26,6 +26,13 @@ struct Pentadiagonal {
     second[i - 1] += weight;
   }
 
+  // Adds weight * (difference from i to i + 1)^2.
+  void add_slope(std::size_t i, double weight) {
+    main[i] += weight;
+    main[i + 1] += weight;
+    first[i] -= weight;
+  }
+
   // Solves in place, by L D L^T.
   void solve(std::vector<Vec3>& values) {
     const std::size_t n = main.size();
@@ -95,7 +102,8 @@ double jitter_of(const KnownCurve& curve) {
   double sum = 0;
   long count = 0;
   for (std::size_t f = 3; f < curve.values.size(); ++f) {
-    if (!curve.known[f - 3] || !curve.known[f - 2] || !curve.known[f - 1] || !curve.known[f]) {
+    if (!curve.is_exact(f - 3) || !curve.is_exact(f - 2) || !curve.is_exact(f - 1) ||
+        !curve.is_exact(f)) {
       continue;
     }
     sum +=
@@ -114,53 +122,50 @@ double cutoff_against(double deviation, double speed, double rate) {
   return std::clamp(cutoff, kLowestCutoff, kHighestCutoff);
 }
 
-std::vector<Vec3> smooth_curve(const KnownCurve& curve, double rate, double cutoff, double fade) {
+std::vector<Vec3> smooth_curve(const KnownCurve& curve, const CurveOptions& options) {
   const std::size_t n = curve.values.size();
   std::vector<Vec3> result(n, Vec3::Zero());
-  if (std::ranges::count(curve.known, 1) == 0) return result;
+  if (std::ranges::count(curve.known, Known::no) == static_cast<long>(n)) return result;
   Pentadiagonal matrix(n);
-  const double frames = 0.25 * fade * rate;
+  const double frames = 0.25 * options.fade * options.rate;
   const double bend = frames * frames * frames * frames;
-  // A sine of frequency w keeps 1 / (1 + bend / known * w^4) of itself.
-  const double turn = 2 * std::sin(std::min(kPi * cutoff / rate, kPi / 2));
-  const double known = std::max(1.0, bend * turn * turn * turn * turn);
+  const double slope = bend / std::pow(std::max(0.5, options.tension * options.rate), 2);
+  // A sine of frequency w keeps 1 / (1 + bend / weight * w^4) of itself.
+  const double turn = 2 * std::sin(std::min(kPi * options.cutoff / options.rate, kPi / 2));
+  const double weight = std::max(1.0, bend * turn * turn * turn * turn);
   for (std::size_t f = 0; f < n; ++f) {
-    matrix.main[f] += curve.known[f] ? known : 1;
-    if (curve.known[f]) result[f] = known * curve.values[f];
+    const bool known = curve.known[f] != Known::no;
+    matrix.main[f] += known ? weight : 1;
+    if (known) result[f] = weight * curve.values[f];
     if (f > 0 && f + 1 < n) matrix.add_bend(f, bend);
+    if (f + 1 < n && (!known || curve.known[f + 1] == Known::no)) matrix.add_slope(f, slope);
   }
   matrix.solve(result);
   return result;
 }
 
-std::vector<Vec3> curve_through(const KnownCurve& curve, double rate, double cutoff, double fade,
-                                double join) {
-  std::vector<Vec3> result = smooth_curve(curve, rate, cutoff, fade);
+std::vector<Vec3> curve_through(const KnownCurve& curve, const CurveOptions& options) {
+  std::vector<Vec3> result = smooth_curve(curve, options);
   const int n = static_cast<int>(result.size());
-  const auto known = [&](int f) { return curve.known[static_cast<std::size_t>(f)] != 0; };
+  const auto exact = [&](int f) { return curve.is_exact(static_cast<std::size_t>(f)); };
   const auto at = [](auto& list, int f) -> auto& {
     return list[static_cast<std::size_t>(f)];
   };
-  const int reach = std::max(1, static_cast<int>(std::lround(join * rate)));
+  const int reach = std::max(1, static_cast<int>(std::lround(options.join * options.rate)));
   std::vector<Vec3> rest(curve.values.size(), Vec3::Zero());
   for (int f = 0; f < n; ++f) {
-    if (!known(f)) continue;
+    if (!exact(f)) continue;
     const Vec3 missing = at(curve.values, f) - at(result, f);
-    at(rest, f) = missing;
     for (const int step : {-1, 1}) {
       for (int i = 1; i < reach; ++i) {
         const int g = f + step * i;
-        if (g < 0 || g >= n || known(g)) break;
+        if (g < 0 || g >= n || exact(g)) break;
         at(rest, g) += fade_out(static_cast<double>(i) / reach) * missing;
       }
     }
   }
   for (int f = 0; f < n; ++f) {
-    if (known(f)) {
-      at(result, f) = at(curve.values, f);
-    } else {
-      at(result, f) += at(rest, f);
-    }
+    at(result, f) = exact(f) ? at(curve.values, f) : Vec3(at(result, f) + at(rest, f));
   }
   return result;
 }

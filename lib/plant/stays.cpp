@@ -55,6 +55,64 @@ void bring_to_distance(const Pair& pair, std::vector<FixedStay>& stays) {
   ball += 0.5 * apart;
 }
 
+// A height with the variance of its error.
+struct PlacedHeight {
+  Vec3 place;
+  double error = 0;  // metres squared
+};
+
+// The plane through heights, its slopes held to those of a path that people walk.
+struct Plane {
+  Vec3 middle = Vec3::Zero();
+  Vec3 slope = Vec3::Zero();  // height = slope . (place - middle) + middle.y
+
+  double at(const Vec3& place) const {
+    return middle.y() + slope.x() * (place.x() - middle.x()) + slope.z() * (place.z() - middle.z());
+  }
+
+  Plane(const std::vector<PlacedHeight>& heights, double spread) {
+    constexpr double kSlope = 0.1;
+    double sum = 0;
+    for (const PlacedHeight& h : heights) {
+      middle += h.place / (h.error + spread);
+      sum += 1 / (h.error + spread);
+    }
+    middle /= sum;
+    Eigen::Matrix2d moments = Eigen::Matrix2d::Identity() / (kSlope * kSlope);
+    Vec2 rises = Vec2::Zero();
+    for (const PlacedHeight& h : heights) {
+      const Vec2 off(h.place.x() - middle.x(), h.place.z() - middle.z());
+      moments += off * off.transpose() / (h.error + spread);
+      rises += off * (h.place.y() - middle.y()) / (h.error + spread);
+    }
+    const Vec2 fitted = moments.inverse() * rises;
+    slope = Vec3(fitted.x(), 0, fitted.y());
+  }
+};
+
+// Each height between itself and the plane, weighted by the variance of its error and of what the
+// ground really is off the plane by (shrinkage, James and Stein 1961). The latter is nothing unless
+// it is significant: beyond two deviations of what error alone gives.
+std::vector<double> drawn_together(const std::vector<PlacedHeight>& heights) {
+  double spread = 0;
+  std::vector<double> drawn;
+  for (int round = 0; round < 5; ++round) {
+    const Plane plane(heights, spread);
+    const double freedom = std::max(1.0, static_cast<double>(heights.size()) - 2);
+    double off = 0, beyond = 0;
+    drawn.clear();
+    for (const PlacedHeight& h : heights) {
+      const double rest = h.place.y() - plane.at(h.place);
+      off += rest * rest / h.error;
+      beyond += (rest * rest - h.error) / freedom;
+      drawn.push_back(plane.at(h.place) + spread / (spread + h.error) * rest);
+    }
+    const bool significant = off > freedom + 2 * std::sqrt(2 * freedom);
+    spread = significant ? std::max(0.0, beyond) : 0;
+  }
+  return drawn;
+}
+
 class StayFixer {
  public:
   StayFixer(const Clip& clip, const PlantedBody& body, const Leg& leg)
@@ -130,38 +188,30 @@ class StayFixer {
                                     leg_.points.begin());
   }
 
-  // The median of n values that jitter has 1.57 / n of the jitter's variance. What the heights of a
-  // point's stays vary by beyond that is real.
+  // The heights of a point's stays, drawn to the plane that fits them best as far as jitter alone
+  // explains what they are off it by.
   void draw_heights_together(FootPart part) {
-    KnownCurve heights(static_cast<std::size_t>(clip_.frame_count()));
     const std::size_t point = index_of(part);
+    KnownCurve heights(static_cast<std::size_t>(clip_.frame_count()));
     std::vector<FixedStay*> own;
-    double mean = 0;
     for (FixedStay& stay : footing.stays) {
       if (stay.point.part != part) continue;
       own.push_back(&stay);
-      mean += stay.place.y();
       for (int f = stay.first; f <= stay.last; ++f) {
         const auto i = static_cast<std::size_t>(f);
         heights.set(i, Vec3(0, footing.tracks[point][i].y(), 0));
       }
     }
     if (own.size() < 2) return;
-    mean /= static_cast<double>(own.size());
     const double jitter = std::sqrt(3.0) * jitter_of(heights);  // of one axis of three
-    const auto error = [&](const FixedStay& stay) {
-      return 0.5 * kPi * jitter * jitter / (stay.last - stay.first + 1);
-    };
-    double spread = 0;
+    if (!(jitter > 0)) return;
+    std::vector<PlacedHeight> placed;
     for (const FixedStay* stay : own) {
-      const double off = stay->place.y() - mean;
-      spread += (off * off - error(*stay)) / static_cast<double>(own.size() - 1);
+      // The median of n values has 1.57 / n of their variance.
+      placed.push_back({stay->place, 0.5 * kPi * jitter * jitter / (stay->last - stay->first + 1)});
     }
-    spread = std::max(0.0, spread);
-    for (FixedStay* stay : own) {
-      const double own_part = spread / std::max(1e-18, spread + error(*stay));
-      stay->place.y() = mean + own_part * (stay->place.y() - mean);
-    }
+    const std::vector<double> drawn = drawn_together(placed);
+    for (std::size_t i = 0; i < own.size(); ++i) own[i]->place.y() = drawn[i];
   }
 
   void keep_distances() {

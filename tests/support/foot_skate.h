@@ -19,10 +19,9 @@
 namespace krok::test {
 
 inline Transform joint_of(const Clip& clip, int frame, int joint) {
-  return {clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>(),
-          clip.frame_orientations(frame)[static_cast<std::size_t>(joint)]
-              .cast<double>()
-              .normalized()};
+  return {
+      clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>(),
+      clip.frame_orientations(frame)[static_cast<std::size_t>(joint)].cast<double>().normalized()};
 }
 
 struct LegRoles {
@@ -36,12 +35,13 @@ inline std::array<LegRoles, 2> legs_of(const RoleMap& roles) {
 }
 
 // Moves a foot in one frame by two-bone inverse kinematics, its orientation kept; joints below the
-// foot go along.
-inline void move_foot(Clip& clip, int frame, const LegRoles& leg, const Vec3& shift) {
-  const Transform upper = joint_of(clip, frame, leg.upper), lower = joint_of(clip, frame, leg.lower),
-                  foot = joint_of(clip, frame, leg.foot);
+// foot go along. False, and nothing done, where the leg is too short.
+inline bool move_foot(Clip& clip, int frame, const LegRoles& leg, const Vec3& shift) {
+  const Transform upper = joint_of(clip, frame, leg.upper),
+                  lower = joint_of(clip, frame, leg.lower), foot = joint_of(clip, frame, leg.foot);
   const TwoBoneSolution solution = solve_two_bone(
       {upper.position, lower.position, foot.position, Vec3::Zero()}, {foot.position + shift});
+  if (!solution.reached) return false;
   std::vector<int> part(clip.skeleton.names.size(), 0);
   for (std::size_t j = 0; j < part.size(); ++j) {
     const int parent = clip.skeleton.parents[j], joint = static_cast<int>(j);
@@ -57,6 +57,7 @@ inline void move_foot(Clip& clip, int frame, const LegRoles& leg, const Vec3& sh
     clip.frame_positions(frame)[j] = (to + turn * Vec3(now.position - from)).cast<float>();
     clip.frame_orientations(frame)[j] = (turn * now.orientation).cast<float>();
   }
+  return true;
 }
 
 struct Skate {
@@ -66,7 +67,8 @@ struct Skate {
   unsigned seed = 1;
 };
 
-// Slides begin and end at rest, each in a direction of its own along the ground.
+// Slides begin and end at rest, each in a direction of its own along the ground. Where a leg is too
+// short for them they are less.
 inline Clip with_skate(const samples::Walk& walk, const Skate& skate) {
   Clip clip = walk.clip;
   std::mt19937 random(skate.seed);
@@ -97,7 +99,9 @@ inline Clip with_skate(const samples::Walk& walk, const Skate& skate) {
                             ease((time - print.off) / swing);
         shift += skate.slide * part * directions[i];
       }
-      if (!shift.isZero()) move_foot(clip, f, legs[side], shift);
+      for (int i = 0; i < 6 && !shift.isZero(); ++i, shift *= 0.7) {
+        if (move_foot(clip, f, legs[side], shift)) break;
+      }
     }
     const Vec3f all = vector(skate.body_jitter).cast<float>();
     for (Vec3f& position : clip.frame_positions(f)) position += all;

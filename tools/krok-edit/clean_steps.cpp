@@ -129,7 +129,8 @@ Status clean(const Options& options, ToolContext& context, Edit& edit) {
   const auto joints = select_joints(edit.clip.skeleton, options.joints);
   if (!joints) return joints.error();
   if (Status status = remove_spikes(options, context, *joints, edit); !status) return status;
-  return filter_jitter(options, context, *joints, edit);
+  if (Status status = filter_jitter(options, context, *joints, edit); !status) return status;
+  return plant(options, context, edit);
 }
 
 }  // namespace krok::cli::edit

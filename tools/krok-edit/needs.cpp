@@ -40,6 +40,7 @@ constexpr std::array kNeeds = {
     Need{"--order", filters, "--filter"},
     Need{"--joints", cleans, "--spikes or --filter"},
     Need{"--below", cleans, "--spikes or --filter"},
+    Need{"--contacts", [](const Arguments& a) { return a.plant; }, "--plant"},
     Need{"--blend", appends, "--append"},
     Need{"--match-height", appends, "--append"},
     Need{"--loop-blend", may_loop, kLoop},

@@ -60,6 +60,18 @@ void declare_cleaning(CommandOptions& command, Arguments& a) {
       .type_name("NAME")
       .one_each_time()
       .group(group);
+  command
+      .add_flag("--plant", a.plant,
+                "Remove foot skate: heel and ball stay where they stand, the pelvis is lowered "
+                "where a leg would be stretched")
+      .group(group);
+  command
+      .add_option("--contacts", a.contacts,
+                  "When the feet stand: a file, find, or auto, which uses NAME.keys.json next to "
+                  "the motion if it exists")
+      .type_name("IN.json|auto|find")
+      .default_str(a.contacts)
+      .group(group);
 }
 
 void declare_cut(CommandOptions& command, Arguments& a) {
@@ -255,6 +267,8 @@ Status understand_cleaning(const Arguments& a, Options& options) {
     options.smoothing = polynomials;
   }
   options.joints = {a.joints, a.below};
+  options.plant = a.plant;
+  options.contacts = a.contacts;
   return {};
 }
 

@@ -32,6 +32,8 @@ struct Arguments {
   std::optional<int> order;
   int window = 9;
   std::vector<std::string> joints, below;
+  bool plant = false;
+  std::string contacts = "auto";
   // 2. cut
   std::string from, to, sequences, sequence;
   bool list_sequences = false;
@@ -73,6 +75,8 @@ struct Options {
   std::optional<double> spike_threshold;
   std::optional<filter::Smoothing> smoothing;
   JointSelection joints;
+  bool plant = false;
+  std::string contacts;  // a file, "auto" or "find"
 
   std::optional<ClipTime> from, to;
   std::string sequences, sequence;

@@ -7,7 +7,8 @@
 #include "formats/sequences/sequences.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
-#include "tools/cli/tool.h"
+#include "scene/motion_keys.h"
+#include "tools/common/tool.h"
 #include "tools/krok-edit/options.h"
 
 // The steps of an edit. A step does nothing unless its options are given, and notes what it did.
@@ -21,8 +22,9 @@ struct Edit {
   int carrier = 0;  // the joint whose position is the actor's position
   // Inputs of options, read beforehand.
   std::optional<sequences::SequenceFile> sequences;
-  std::string sequence;        // to cut out, or empty
-  std::vector<Clip> appended;  // in the order of Options::append
+  std::string sequence;                          // to cut out, or empty
+  std::optional<std::vector<Contact>> contacts;  // of the input; none: to be found
+  std::vector<Clip> appended;                    // in the order of Options::append
 
   double speed = 1;   // of options and sequence together
   bool loop = false;  // of options or sequence
@@ -39,7 +41,9 @@ std::string in_degrees(double radians);
 // Checks that all sequences of the sequences file are within the motion.
 Status check_sequences(const Options& options, const Edit& edit);
 
+// Spikes, filter and foot planting.
 Status clean(const Options& options, ToolContext& context, Edit& edit);
+Status plant(const Options& options, ToolContext& context, Edit& edit);
 Status cut_out(const Options& options, ToolContext& context, Edit& edit);
 Status mirror_sides(const Options& options, ToolContext& context, Edit& edit);
 Status change_timing(const Options& options, ToolContext& context, Edit& edit);
