@@ -16,6 +16,9 @@ namespace krok {
 
 namespace {
 
+// Of the leg: what jitter of the whole body is so large that contacts are found better without it.
+constexpr double kShakes = 0.001;
+
 void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing>& captured,
                 const std::vector<plant::Footing>& footings, PlantedFeet& planted) {
   for (std::size_t i = 0; i < body.legs.size(); ++i) {
@@ -80,7 +83,12 @@ Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
     }
     const double jitter = plant::steady(*body, shifts, planted.clip);
     planted.body_steadied = std::hypot(planted.body_steadied, jitter);
-    footings = plant::fix_stays(planted.clip, *body, found->stays, found->tracks, contacts);
+    if (!contacts && jitter > kShakes * found->leg_length) {
+      found = find_contacts(planted.clip, roles);
+      if (!found) return std::move(found).error();
+    }
+    footings =
+        plant::fix_stays(planted.clip, *body, found->stays, found->tracks, contacts, captured);
   }
   std::vector<plant::FootPath> paths;
   for (std::size_t i = 0; i < footings.size(); ++i) {

@@ -98,20 +98,25 @@ std::vector<double> running_mean(std::span<const double> values, int reach) {
 }  // namespace
 
 double jitter_of(const KnownCurve& curve) {
-  // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance.
-  double sum = 0;
-  long count = 0;
-  for (std::size_t f = 3; f < curve.values.size(); ++f) {
-    if (!curve.is_exact(f - 3) || !curve.is_exact(f - 2) || !curve.is_exact(f - 1) ||
-        !curve.is_exact(f)) {
-      continue;
+  // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance, that of movement
+  // is small for most frames; the median of |x| of a Gaussian is 0.6745 of its deviation.
+  double squares = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> differences;
+    for (std::size_t f = 3; f < curve.values.size(); ++f) {
+      if (!curve.is_exact(f - 3) || !curve.is_exact(f - 2) || !curve.is_exact(f - 1) ||
+          !curve.is_exact(f)) {
+        continue;
+      }
+      const auto at = [&](std::size_t frame) { return curve.values[frame][axis]; };
+      differences.push_back(std::abs(at(f) - 3 * at(f - 1) + 3 * at(f - 2) - at(f - 3)));
     }
-    sum +=
-        (curve.values[f] - 3 * curve.values[f - 1] + 3 * curve.values[f - 2] - curve.values[f - 3])
-            .squaredNorm();
-    count += 3;
+    if (differences.empty()) return 0;
+    const auto half = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+    std::nth_element(differences.begin(), half, differences.end());
+    squares += *half * *half / (0.6745 * 0.6745 * 20);
   }
-  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count) / 20);
+  return std::sqrt(squares / 3);
 }
 
 double cutoff_against(double deviation, double speed, double rate) {

@@ -10,6 +10,7 @@ namespace krok::plant {
 namespace {
 
 constexpr double kFarFromPlace = 0.2;  // of the leg
+constexpr double kJitter = 0.001;      // metres, less does not matter to a place
 constexpr int kRounds = 200;
 constexpr double kExact = 1e-8;  // metres
 
@@ -124,6 +125,7 @@ class StayFixer {
         track.push_back(joint_at(clip, f, point.joint) * point.offset);
       }
       footing.tracks.push_back(std::move(track));
+      footing.parts.push_back(point.part);
     }
   }
 
@@ -146,15 +148,6 @@ class StayFixer {
     footing.stays.push_back(stay);
   }
 
-  void finish() {
-    order();
-    for (std::size_t p = 0; p < leg_.points.size(); ++p) draw_heights_together(leg_.points[p].part);
-    keep_distances();
-  }
-
-  Footing footing;
-
- private:
   // By point and frame; stays of a point that overlap become one.
   void order() {
     std::vector<FixedStay>& stays = footing.stays;
@@ -168,7 +161,7 @@ class StayFixer {
         apart.push_back(stay);
       } else if (stay.last > apart.back().last) {
         apart.back().last = stay.last;
-        const auto& track = footing.tracks[index_of(stay.point.part)];
+        const auto& track = footing.tracks[footing.index_of(stay.point.part)];
         apart.back().place = median_place(track, apart.back().first, stay.last);
       }
     }
@@ -176,89 +169,98 @@ class StayFixer {
     footing.stay_at.assign(leg_.points.size(),
                            std::vector<int>(static_cast<std::size_t>(clip_.frame_count()), -1));
     for (std::size_t i = 0; i < stays.size(); ++i) {
-      auto& at = footing.stay_at[index_of(stays[i].point.part)];
+      auto& at = footing.stay_at[footing.index_of(stays[i].point.part)];
       for (int f = stays[i].first; f <= stays[i].last; ++f) {
         at[static_cast<std::size_t>(f)] = static_cast<int>(i);
       }
     }
   }
 
-  std::size_t index_of(FootPart part) const {
-    return static_cast<std::size_t>(std::ranges::find(leg_.points, part, &SolePoint::part) -
-                                    leg_.points.begin());
-  }
-
-  // The heights of a point's stays, drawn to the plane that fits them best as far as jitter alone
-  // explains what they are off it by.
-  void draw_heights_together(FootPart part) {
-    const std::size_t point = index_of(part);
-    KnownCurve heights(static_cast<std::size_t>(clip_.frame_count()));
-    std::vector<FixedStay*> own;
-    for (FixedStay& stay : footing.stays) {
-      if (stay.point.part != part) continue;
-      own.push_back(&stay);
-      for (int f = stay.first; f <= stay.last; ++f) {
-        const auto i = static_cast<std::size_t>(f);
-        heights.set(i, Vec3(0, footing.tracks[point][i].y(), 0));
+  // Before stays get their common heights: of each point while it stands.
+  void measure_jitter() {
+    for (std::size_t p = 0; p < footing.tracks.size(); ++p) {
+      KnownCurve heights(footing.tracks[p].size());
+      for (std::size_t f = 0; f < footing.tracks[p].size(); ++f) {
+        if (footing.stay_at[p][f] >= 0) heights.set(f, Vec3(0, footing.tracks[p][f].y(), 0));
       }
-    }
-    if (own.size() < 2) return;
-    const double jitter = std::sqrt(3.0) * jitter_of(heights);  // of one axis of three
-    if (!(jitter > 0)) return;
-    std::vector<PlacedHeight> placed;
-    for (const FixedStay* stay : own) {
-      // The median of n values has 1.57 / n of their variance.
-      placed.push_back({stay->place, 0.5 * kPi * jitter * jitter / (stay->last - stay->first + 1)});
-    }
-    const std::vector<double> drawn = drawn_together(placed);
-    for (std::size_t i = 0; i < own.size(); ++i) own[i]->place.y() = drawn[i];
-  }
-
-  void keep_distances() {
-    const SolePoint* ball = leg_.point(FootPart::ball);
-    if (!ball) return;
-    const std::size_t b = index_of(FootPart::ball);
-    std::vector<Pair> pairs;
-    std::vector<double> distances;
-    const auto close = [&] {
-      if (!distances.empty()) pairs.back().distance = median(std::exchange(distances, {}));
-    };
-    for (std::size_t f = 0; f < footing.stay_at[0].size(); ++f) {
-      const int at_heel = footing.stay_at[0][f], at_ball = footing.stay_at[b][f];
-      if (at_heel < 0 || at_ball < 0) continue;
-      if (pairs.empty() || pairs.back().heel != at_heel || pairs.back().ball != at_ball) {
-        close();
-        pairs.push_back({at_heel, at_ball, 0});
-      }
-      distances.push_back((footing.tracks[b][f] - footing.tracks[0][f]).norm());
-    }
-    close();
-    // Stays overlap as a chain, so that rounds converge.
-    double moved = 1;
-    for (int round = 0; round < kRounds && moved > kExact; ++round) {
-      moved = 0;
-      for (const Pair& pair : pairs) {
-        const Vec3 before = footing.stays[static_cast<std::size_t>(pair.heel)].place;
-        bring_to_distance(pair, footing.stays);
-        moved = std::max(
-            moved, (footing.stays[static_cast<std::size_t>(pair.heel)].place - before).norm());
-      }
+      footing.jitter.push_back(std::sqrt(3.0) * jitter_of(heights));  // of one axis of three
     }
   }
 
+  Footing footing;
+
+ private:
   const Clip& clip_;
   const PlantedBody& body_;
   const Leg& leg_;
 };
 
+void keep_distances(const Leg& leg, Footing& footing) {
+  const SolePoint* ball = leg.point(FootPart::ball);
+  if (!ball) return;
+  const std::size_t b = footing.index_of(FootPart::ball);
+  std::vector<Pair> pairs;
+  std::vector<double> distances;
+  const auto close = [&] {
+    if (!distances.empty()) pairs.back().distance = median(std::exchange(distances, {}));
+  };
+  for (std::size_t f = 0; f < footing.stay_at[0].size(); ++f) {
+    const int at_heel = footing.stay_at[0][f], at_ball = footing.stay_at[b][f];
+    if (at_heel < 0 || at_ball < 0) continue;
+    if (pairs.empty() || pairs.back().heel != at_heel || pairs.back().ball != at_ball) {
+      close();
+      pairs.push_back({at_heel, at_ball, 0});
+    }
+    distances.push_back((footing.tracks[b][f] - footing.tracks[0][f]).norm());
+  }
+  close();
+  // Stays overlap as a chain, so that rounds converge.
+  double moved = 1;
+  for (int round = 0; round < kRounds && moved > kExact; ++round) {
+    moved = 0;
+    for (const Pair& pair : pairs) {
+      const Vec3 before = footing.stays[static_cast<std::size_t>(pair.heel)].place;
+      bring_to_distance(pair, footing.stays);
+      moved = std::max(moved,
+                       (footing.stays[static_cast<std::size_t>(pair.heel)].place - before).norm());
+    }
+  }
+}
+
+// The heights of one part's stays, of both feet, drawn to the plane that fits them best as far as
+// jitter alone explains what they are off it by.
+void draw_heights_together(FootPart part, std::vector<Footing>& footings) {
+  std::vector<FixedStay*> own;
+  std::vector<PlacedHeight> heights;
+  for (Footing& footing : footings) {
+    for (FixedStay& stay : footing.stays) {
+      if (stay.point.part != part) continue;
+      const double jitter = footing.jitter[footing.index_of(part)];
+      if (jitter < kJitter) return;
+      own.push_back(&stay);
+      // The median of n values has 1.57 / n of their variance.
+      heights.push_back({stay.place, 0.5 * kPi * jitter * jitter / (stay.last - stay.first + 1)});
+    }
+  }
+  if (own.size() < 2) return;
+  const std::vector<double> drawn = drawn_together(heights);
+  for (std::size_t i = 0; i < own.size(); ++i) own[i]->place.y() = drawn[i];
+}
+
 }  // namespace
+
+std::size_t Footing::index_of(FootPart part) const {
+  return static_cast<std::size_t>(std::ranges::find(parts, part) - parts.begin());
+}
 
 std::vector<Footing> fix_stays(const Clip& clip, const PlantedBody& body,
                                const std::vector<Stay>& found,
                                const std::vector<PointTrack>& tracks,
-                               const std::optional<std::span<const Contact>>& contacts) {
+                               const std::optional<std::span<const Contact>>& contacts,
+                               const std::vector<Footing>& before) {
   std::vector<Footing> footings;
-  for (const Leg& leg : body.legs) {
+  for (std::size_t i = 0; i < body.legs.size(); ++i) {
+    const Leg& leg = body.legs[i];
     StayFixer fixer(clip, body, leg);
     const auto is_named = [](const SolePoint& point) {
       return !point.estimated || point.part == FootPart::heel;
@@ -278,8 +280,18 @@ std::vector<Footing> fix_stays(const Clip& clip, const PlantedBody& body,
         }
       }
     }
-    fixer.finish();
+    fixer.order();
+    fixer.measure_jitter();
+    for (std::size_t p = 0; i < before.size() && p < leg.points.size(); ++p) {
+      fixer.footing.jitter[p] = std::max(fixer.footing.jitter[p], before[i].jitter[p]);
+    }
     footings.push_back(std::move(fixer.footing));
+  }
+  for (const FootPart part : {FootPart::heel, FootPart::ball, FootPart::tip}) {
+    draw_heights_together(part, footings);
+  }
+  for (std::size_t i = 0; i < footings.size(); ++i) {
+    keep_distances(body.legs[i], footings[i]);
   }
   return footings;
 }
