@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 #include "contacts/series_internal.h"
@@ -166,24 +167,63 @@ class ContactFinder {
     return found_.tracks[static_cast<std::size_t>(run.track)].point;
   }
 
-  // Whether the same part of a foot was clearly lower at this position.
-  bool floor_is_lower(const Run& run) const {
-    return std::ranges::any_of(runs_, [&](const Run& other) {
-      if (point(other).part != point(run).part) return false;
-      const Vec3 apart = other.place - run.place;
-      return -apart.y() > options_.off_height * scale_ &&
-             Vec2(apart.x(), apart.z()).norm() < kSamePlace * scale_;
-    });
+  // Runs by the square of ground that they are on, the lowest first.
+  using Square = std::pair<long, long>;
+  Square square_of(const Run& run) const {
+    const double side = kSamePlace * scale_;
+    return {std::lround(run.place.x() / side), std::lround(run.place.z() / side)};
+  }
+  std::map<Square, std::vector<const Run*>> by_square() const {
+    std::map<Square, std::vector<const Run*>> squares;
+    for (const Run& run : runs_) squares[square_of(run)].push_back(&run);
+    for (auto& [square, runs] : squares) {
+      std::ranges::stable_sort(runs, {}, [](const Run* run) { return run->place.y(); });
+    }
+    return squares;
   }
 
-  // Whether the other foot is in contact at a lower height throughout, so that this one never bears
-  // weight.
+  // Whether the same part of a foot stood clearly lower in this place.
+  bool floor_is_lower(const Run& run,
+                      const std::map<Square, std::vector<const Run*>>& squares) const {
+    const Square here = square_of(run);
+    for (const long x : {-1L, 0L, 1L}) {
+      for (const long z : {-1L, 0L, 1L}) {
+        const auto square = squares.find({here.first + x, here.second + z});
+        if (square == squares.end()) continue;
+        for (const Run* other : square->second) {
+          const Vec3 apart = other->place - run.place;
+          if (!(-apart.y() > options_.off_height * scale_)) break;
+          if (point(*other).part == point(run).part &&
+              Vec2(apart.x(), apart.z()).norm() < kSamePlace * scale_) {
+            return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+  // Whether the other foot stands lower all the while: this one then never bears the figure.
+  // Runs are by track, then in the order of time.
   bool other_foot_bears(const Run& run) const {
+    std::vector<const Run*> lower;
+    for (auto track = runs_.begin(); track != runs_.end();) {
+      const auto end = std::upper_bound(track, runs_.end(), track->track,
+                                        [](int t, const Run& other) { return t < other.track; });
+      auto other = std::lower_bound(track, end, run.first,
+                                    [](const Run& r, double first) { return r.last < first; });
+      for (; other != end && other->first <= run.last; ++other) {
+        if (point(*other).side != point(run).side &&
+            run.place.y() - other->place.y() >
+                options_.off_height * scale_ + rise_of(run, *other)) {
+          lower.push_back(&*other);
+        }
+      }
+      track = end;
+    }
     for (double f = std::ceil(run.first); f <= run.last; ++f) {
-      const bool borne = std::ranges::any_of(runs_, [&](const Run& other) {
-        return point(other).side != point(run).side && other.first <= f && f <= other.last &&
-               run.place.y() - other.place.y() > options_.off_height * scale_ + rise_of(run, other);
-      });
+      const bool borne = std::ranges::any_of(
+          lower, [&](const Run* other) { return other->first <= f && f <= other->last; });
       if (!borne) return false;
     }
     return true;
@@ -196,8 +236,9 @@ class ContactFinder {
 
   void leave_out_air() {
     std::vector<Run> kept;
+    const auto squares = by_square();
     for (const Run& run : runs_) {
-      if (!floor_is_lower(run) && !other_foot_bears(run)) kept.push_back(run);
+      if (!floor_is_lower(run, squares) && !other_foot_bears(run)) kept.push_back(run);
     }
     runs_ = std::move(kept);
   }
@@ -254,15 +295,21 @@ class ContactFinder {
 
 // Contacts of joints, from the stays of their points.
 void take_contacts(const Clip& clip, FoundContacts& found) {
+  std::vector<Vec3> track;
+  int of_track = -1;
   for (const Stay& stay : found.stays) {
     const SolePoint& point = found.tracks[static_cast<std::size_t>(stay.track)].point;
     if (point.estimated && point.part != FootPart::heel) continue;
     // A touch at the clip's very end is an instant, not a contact.
     if ((stay.end - stay.start) * clip.rate < 1) continue;
-    SolePoint joint = point;
-    joint.offset = Vec3::Zero();
-    const Vec3 place = middle_place(track_of(clip, joint, found.leg_length), stay.start * clip.rate,
-                                    stay.end * clip.rate);
+    // Stays are by track.
+    if (stay.track != of_track) {
+      of_track = stay.track;
+      SolePoint joint = point;
+      joint.offset = Vec3::Zero();
+      track = track_of(clip, joint, found.leg_length);
+    }
+    const Vec3 place = middle_place(track, stay.start * clip.rate, stay.end * clip.rate);
     found.contacts.push_back({point.joint, stay.start, stay.end, place});
   }
   std::ranges::sort(found.contacts, {},

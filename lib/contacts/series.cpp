@@ -1,9 +1,10 @@
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "contacts/series_internal.h"
 #include "filter/butterworth.h"
-#include "math/dense_solve.h"
 
 namespace krok::contacts {
 
@@ -58,29 +59,61 @@ namespace {
 // smoothly.
 constexpr double kSudden = 30;
 
-// How the moving side starts: at zero velocity, or at a finite one.
-enum class Start : unsigned char { smooth, sudden };
-
-// The residual sum of squares of the best two pieces that meet at `moment`.
-double misfit(const std::vector<Vec3>& track, int first, int last, double moment, bool arrives,
-              double stiffness, Start start) {
-  const int count = last - first + 1;
-  // An extra row penalises drift: a resting point drifts only if its position on the foot is
-  // slightly wrong, and jitter must not be fitted as drift.
-  Eigen::MatrixXd basis(count + 1, 4);
-  Eigen::MatrixXd values(count + 1, 3);
-  basis.row(count) << 0, 0, 0, stiffness * (last - first);
-  values.row(count).setZero();
-  for (int i = 0; i < count; ++i) {
-    const double u = (first + i - moment) * (arrives ? 1 : -1);
-    const double moving = std::min(u, 0.0);
-    const double third = start == Start::smooth ? moving * moving * moving : moving;
-    basis.row(i) << 1, moving * moving, third, u;
-    values.row(i) = track[static_cast<std::size_t>(first + i)].transpose();
+// Two pieces that meet at a moment, fitted to the positions of some frames. `reach` is half of
+// those frames, for numbers near 1.
+class Pieces {
+ public:
+  Pieces(const std::vector<Vec3>& track, int first, int last, bool arrives, double stiffness)
+      : track_(track),
+        first_(first),
+        last_(last),
+        reach_(0.5 * (last - first)),
+        sign_(arrives ? 1 : -1),
+        stiffness_(stiffness) {
+    for (int f = first; f <= last; ++f)
+      middle_ += track[static_cast<std::size_t>(f)] / (last - first + 1);
   }
-  const Eigen::MatrixXd solution = solve_least_squares(basis, values);
-  return (values - basis * solution).squaredNorm();
-}
+
+  // The sum of squares that the best pieces leave that meet at `moment`. The moving side begins
+  // without velocity of its own or, if that fits far better, with one at once.
+  double misfit(double moment) const {
+    Eigen::Matrix<double, 5, 5> moments = Eigen::Matrix<double, 5, 5>::Zero();
+    Eigen::Matrix<double, 5, 3> sums = Eigen::Matrix<double, 5, 3>::Zero();
+    double squares = 0;
+    for (int f = first_; f <= last_; ++f) {
+      const double u = (f - moment) * sign_ / reach_;
+      const double moving = std::min(u, 0.0);
+      const Vec3 off = track_[static_cast<std::size_t>(f)] - middle_;
+      const double row[5] = {1, u, moving * moving, moving * moving * moving, moving};
+      for (int i = 0; i < 5; ++i) {
+        for (int j = i; j < 5; ++j) moments(j, i) += row[i] * row[j];
+        for (int axis = 0; axis < 3; ++axis) sums(i, axis) += row[i] * off[axis];
+      }
+      squares += off.squaredNorm();
+    }
+    // One row more, which holds the drift down: a point that stays drifts only where its place on
+    // the foot is not quite right, and jitter must not be taken for that.
+    moments(1, 1) += 4 * stiffness_ * stiffness_;
+    const Eigen::Matrix<double, 5, 5> full = moments.selfadjointView<Eigen::Lower>();
+    double least = 0;
+    for (const bool sudden : {false, true}) {
+      const std::array<int, 4> used = {0, 1, 2, sudden ? 4 : 3};
+      const Eigen::Matrix4d normal = full(used, used);
+      const Eigen::Matrix<double, 4, 3> right = sums(used, Eigen::all);
+      const Eigen::Matrix<double, 4, 3> fit = normal.ldlt().solve(right);
+      // Written so that errors of the fit count by their squares.
+      const double left = squares + fit.cwiseProduct(normal * fit - 2 * right).sum();
+      least = sudden ? std::min(least, kSudden * left) : left;
+    }
+    return least;
+  }
+
+ private:
+  const std::vector<Vec3>& track_;
+  int first_, last_;
+  double reach_, sign_, stiffness_;
+  Vec3 middle_ = Vec3::Zero();
+};
 
 }  // namespace
 
@@ -98,11 +131,10 @@ double break_near(const std::vector<Vec3>& track, double guess, double window, b
     // At least two frames on either side.
     const double low = std::max(middle - 0.6 * window, first + 1.5);
     const double high = std::min(middle + 0.6 * window, last - 1.5);
+    const Pieces pieces(track, first, last, arrives, stiffness);
     double least = -1;
     for (double moment = low; moment <= high + 1e-9; moment += kStep) {
-      const double left =
-          std::min(misfit(track, first, last, moment, arrives, stiffness, Start::smooth),
-                   kSudden * misfit(track, first, last, moment, arrives, stiffness, Start::sudden));
+      const double left = pieces.misfit(moment);
       if (least >= 0 && left >= least) continue;
       least = left;
       best = moment;

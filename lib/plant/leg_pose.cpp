@@ -12,8 +12,8 @@ namespace krok::plant {
 
 namespace {
 
-constexpr double kStraight = 10 * kRadiansPerDegree;  // the bend below which stretching is avoided
-constexpr double kSpread = 0.2;                       // seconds
+constexpr double kStraight = 20 * kRadiansPerDegree;  // the bend below which stretching is avoided
+constexpr double kSpread = 0.3;                       // seconds
 constexpr double kReached = 1e-5;                     // metres
 
 // A leg in one frame, as captured but for the pelvis.

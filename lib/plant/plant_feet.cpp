@@ -17,7 +17,7 @@ namespace krok {
 namespace {
 
 // Of the leg: what jitter of the whole body is so large that contacts are found better without it.
-constexpr double kShakes = 0.001;
+constexpr double kShakes = 0.003;
 
 void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing>& captured,
                 const std::vector<plant::Footing>& footings, PlantedFeet& planted) {

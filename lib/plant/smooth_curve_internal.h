@@ -40,10 +40,10 @@ double cutoff_against(double deviation, double speed, double rate);
 
 struct CurveOptions {
   double rate = 30;
-  double cutoff = 20;     // Hz, where the response to known values falls to one half
-  double fade = 1;        // seconds within which the curve falls to zero away from known values
-  double tension = 0.08;  // seconds within which it stops following their slope
-  double join = 0.05;     // seconds, see curve_through()
+  double cutoff = 20;    // Hz, where the response to known values falls to one half
+  double fade = 0.5;     // seconds within which the curve falls to zero away from known values
+  double tension = 0.1;  // seconds within which it stops following their slope
+  double join = 0.05;    // seconds, see curve_through()
 };
 
 // The curve that is near the known values and bends least: the minimum of the squared second

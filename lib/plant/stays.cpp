@@ -10,7 +10,7 @@ namespace krok::plant {
 namespace {
 
 constexpr double kFarFromPlace = 0.2;  // of the leg
-constexpr double kJitter = 0.001;      // metres, less does not matter to a place
+constexpr double kJitter = 0.002;      // metres, less does not matter to a place
 constexpr int kRounds = 200;
 constexpr double kExact = 1e-8;  // metres
 
