@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "ik/two_bone.h"
 #include "math/quaternion.h"
 #include "plant/smooth_curve_internal.h"
 
@@ -14,6 +15,10 @@ namespace {
 constexpr double kJitterSpeed = 0.03;  // metres a second, for a leg of 0.86 m
 constexpr double kUsualLeg = 0.86;     // metres
 constexpr double kFootLength = 0.22;   // of the leg, heel to ball
+
+constexpr double kMostLift = 15 * kRadiansPerDegree;
+constexpr double kLeastLever = 0.2;  // of the way from ball to ankle
+constexpr double kLiftCutoff = 6;    // Hz
 
 class FootSolver {
  public:
@@ -59,7 +64,58 @@ class FootSolver {
   }
   double speed() const { return speed_; }
 
+  // The heel comes up more than captured where the ball stands alone and the leg would be
+  // stretched.
+  void lift_heel(FootPath& path) const {
+    if (ball_ < 0) return;
+    KnownCurve lift(frames_);
+    for (std::size_t f = 0; f < frames_; ++f) {
+      if (stay(0, f)) {
+        lift.set(f, Vec3::Zero());
+      } else if (stay(ball_, f)) {
+        lift.set(f, Vec3(needed_lift(path, f), 0, 0), Known::roughly);
+      }
+    }
+    const std::vector<Vec3> angles =
+        curve_through(lift, {.rate = clip_.rate, .cutoff = kLiftCutoff});
+    for (std::size_t f = 0; f < frames_; ++f) {
+      const double angle = angles[f].x();
+      if (std::abs(angle) < 1e-9) continue;
+      path.turn[f] = rotation_vector(from_rotation_vector(angle * sideways(f)) *
+                                     from_rotation_vector(path.turn[f]));
+    }
+  }
+
  private:
+  // About this axis the heel comes up.
+  Vec3 sideways(std::size_t f) const {
+    const Vec3 ankle = joint_at(clip_, static_cast<int>(f), leg_.foot).position;
+    return Vec3::UnitY().cross(Vec3(track(ball_)[f] - ankle)).stableNormalized();
+  }
+
+  // The turn about the ball, radians, that brings the ankle as near to the hip as it was, or within
+  // reach of a leg that is nearly straight.
+  double needed_lift(const FootPath& path, std::size_t f) const {
+    const int frame = static_cast<int>(f);
+    const Vec3 hip = joint_at(clip_, frame, leg_.upper).position;
+    const Vec3 knee = joint_at(clip_, frame, leg_.lower).position;
+    const Vec3 captured = joint_at(clip_, frame, leg_.foot).position;
+    const double longest =
+        std::max((captured - hip).norm(),
+                 two_bone_reach((knee - hip).norm(), (captured - knee).norm(), kNearlyStraight));
+    const Vec3 ball = turned(ball_, f, path.turn[f]) + path.shift[f];
+    const Vec3 ankle = captured + path.shift[f], axis = sideways(f);
+    double angle = 0;
+    for (int round = 0; round < 3; ++round) {
+      const Vec3 arm = from_rotation_vector(angle * axis) * Vec3(ankle - ball);
+      const Vec3 line = ball + arm - hip;
+      const double nearer = -axis.cross(arm).dot(line.stableNormalized());
+      if (nearer < kLeastLever * arm.norm()) break;
+      angle = std::clamp(angle + (line.norm() - longest) / nearer, 0.0, kMostLift);
+    }
+    return angle;
+  }
+
   int index_of(FootPart part) const {
     for (std::size_t p = 0; p < leg_.points.size(); ++p) {
       if (leg_.points[p].part == part) return static_cast<int>(p);
@@ -130,6 +186,8 @@ FootPath foot_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
   const FootSolver solver(clip, body, leg, footing);
   FootPath path;
   path.turn = solver.turns();
+  path.shift = solver.through(solver.shifts(path.turn), solver.speed());
+  solver.lift_heel(path);
   path.shift = solver.through(solver.shifts(path.turn), solver.speed());
   return path;
 }

@@ -10,6 +10,10 @@
 
 namespace krok::plant {
 
+// The bend of a knee, radians, below which a leg is not stretched further than captured: there the
+// knee turns far for a little way of the ankle.
+inline constexpr double kNearlyStraight = 20 * kRadiansPerDegree;
+
 // What is done to one foot, [frames]; world space.
 struct FootPath {
   std::vector<Vec3> turn;   // rotation vectors, to be put on the foot from the left

@@ -12,9 +12,8 @@ namespace krok::plant {
 
 namespace {
 
-constexpr double kStraight = 20 * kRadiansPerDegree;  // the bend below which stretching is avoided
-constexpr double kSpread = 0.3;                       // seconds
-constexpr double kReached = 1e-5;                     // metres
+constexpr double kSpread = 0.3;    // seconds
+constexpr double kReached = 1e-5;  // metres
 
 // A leg in one frame, as captured but for the pelvis.
 struct LegNow {
@@ -103,7 +102,8 @@ std::vector<double> lowering(const Clip& clip, const PlantedBody& body,
   for (std::size_t i = 0; i < body.legs.size(); ++i) {
     for (std::size_t f = 0; f < frames; ++f) {
       const LegNow now(clip, static_cast<int>(f), body.legs[i], paths[i], 0);
-      const double longest = std::max(now.reach, two_bone_reach(now.thigh, now.shank, kStraight));
+      const double longest =
+          std::max(now.reach, two_bone_reach(now.thigh, now.shank, kNearlyStraight));
       bounds[f] = std::min(bounds[f], -drop_for(now.goal - now.upper.position, longest));
     }
   }
