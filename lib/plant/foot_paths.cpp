@@ -64,7 +64,7 @@ class FootSolver {
   }
   double speed() const { return speed_; }
 
-  // The heel comes up more than captured where the ball stands alone and the leg would be
+  // The heel comes up more than captured where ball or tip stand without it and the leg would be
   // stretched.
   void lift_heel(FootPath& path) const {
     if (ball_ < 0) return;
@@ -72,7 +72,7 @@ class FootSolver {
     for (std::size_t f = 0; f < frames_; ++f) {
       if (stay(0, f)) {
         lift.set(f, Vec3::Zero());
-      } else if (stay(ball_, f)) {
+      } else if (stay(ball_, f) || (tip_ >= 0 && stay(tip_, f))) {
         lift.set(f, Vec3(needed_lift(path, f), 0, 0), Known::roughly);
       }
     }
