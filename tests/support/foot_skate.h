@@ -35,13 +35,14 @@ inline std::array<LegRoles, 2> legs_of(const RoleMap& roles) {
 }
 
 // Moves a foot in one frame by two-bone inverse kinematics, its orientation kept; joints below the
-// foot go along. False, and nothing done, where the leg is too short.
-inline bool move_foot(Clip& clip, int frame, const LegRoles& leg, const Vec3& shift) {
+// foot go along. False where the leg is too short; then nothing is done, or what it reaches.
+inline bool move_foot(Clip& clip, int frame, const LegRoles& leg, const Vec3& shift,
+                      bool as_far_as_it_reaches = false) {
   const Transform upper = joint_of(clip, frame, leg.upper),
                   lower = joint_of(clip, frame, leg.lower), foot = joint_of(clip, frame, leg.foot);
   const TwoBoneSolution solution = solve_two_bone(
       {upper.position, lower.position, foot.position, Vec3::Zero()}, {foot.position + shift});
-  if (!solution.reached) return false;
+  if (!solution.reached && !as_far_as_it_reaches) return false;
   std::vector<int> part(clip.skeleton.names.size(), 0);
   for (std::size_t j = 0; j < part.size(); ++j) {
     const int parent = clip.skeleton.parents[j], joint = static_cast<int>(j);
@@ -57,7 +58,7 @@ inline bool move_foot(Clip& clip, int frame, const LegRoles& leg, const Vec3& sh
     clip.frame_positions(frame)[j] = (to + turn * Vec3(now.position - from)).cast<float>();
     clip.frame_orientations(frame)[j] = (turn * now.orientation).cast<float>();
   }
-  return true;
+  return solution.reached;
 }
 
 struct Skate {

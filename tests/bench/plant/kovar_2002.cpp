@@ -30,14 +30,6 @@ struct Fixed {
   Vec3 heel_place, ball_place;
 };
 
-Vec3 mean_place(const Clip& clip, const FixedStay& stay) {
-  Vec3 sum = Vec3::Zero();
-  for (int f = stay.first; f <= stay.last; ++f) {
-    sum += joint_of(clip, f, stay.point.joint) * stay.point.offset;
-  }
-  return sum / (stay.last - stay.first + 1);
-}
-
 // Changes of frames that no constraint sets, from the nearest before and after that one sets.
 void blend_between(std::vector<Change>& changes, double rate, bool Change::*set,
                    Vec3 Change::*value) {
@@ -98,12 +90,11 @@ class Cleanup {
       if (static_cast<std::size_t>(stay.point.side) != side || stay.point.part == FootPart::tip) {
         continue;
       }
-      const Vec3 place = mean_place(clip_, stay);
       for (int f = stay.first; f <= stay.last; ++f) {
         Fixed& now = fixed[static_cast<std::size_t>(f)];
         const bool heel = stay.point.part == FootPart::heel;
         (heel ? now.heel : now.ball) = &stay;
-        (heel ? now.heel_place : now.ball_place) = place;
+        (heel ? now.heel_place : now.ball_place) = stay.place;
       }
     }
     changes_[side].resize(fixed.size());

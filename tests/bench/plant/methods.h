@@ -4,7 +4,8 @@
 
 #include "plant/plant_feet.h"
 
-// Other clean-ups of foot skate to measure beside plant_feet(), given the same stays.
+// Other clean-ups of foot skate to measure beside plant_feet(), given the same stays
+// and places.
 
 namespace krok::bench {
 
@@ -13,7 +14,7 @@ namespace krok::bench {
 Clip plain_locking(const Clip& clip, const RoleMap& roles, const std::vector<FixedStay>& stays);
 
 // Kovar, Schreiner and Gleicher, "Footskate Cleanup for Motion Capture Editing", Symposium on
-// Computer Animation 2002, after the paper's description: constraint positions by averages; ankles
+// Computer Animation 2002, after the paper's description: ankles
 // placed for heel, ball or both; their changes blended into frames without constraint within a
 // window; the root projected to where both ankles are within reach, its changes blended alike; legs
 // solved in closed form with knees damped near full extension, and stretched by what is missing.

@@ -15,7 +15,7 @@ Clip plain_locking(const Clip& clip, const RoleMap& roles, const std::vector<Fix
           continue;
         }
         const Vec3 now = test::joint_of(clip, f, stay.point.joint) * stay.point.offset;
-        (void)test::move_foot(result, f, legs[side], stay.place - now);
+        (void)test::move_foot(result, f, legs[side], stay.place - now, true);
         break;
       }
     }

@@ -37,6 +37,7 @@ struct Measures {
   double drift = 0;                  // metres, largest
   double knee_99 = 1, knee_max = 1;  // of the input's
   double height = 0;                 // metres, largest
+  int stays = 0, high = 0;           // heels and balls; those whose height is off by over 1 mm
   double stretch = 0;                // metres, largest
 };
 
@@ -60,13 +61,17 @@ Measures measure(const Sample& sample, const RoleMap& roles, const std::vector<F
     if (stay.point.part == FootPart::tip) continue;
     const double height = median_height(sample.clean.value_or(sample.input), stay);
     Vec3 low = place_of(result, stay.first, stay.point), high = low;
+    double off = 0;
     for (int f = stay.first; f <= stay.last; ++f) {
       const Vec3 place = place_of(result, f, stay.point);
       low = low.cwiseMin(place);
       high = high.cwiseMax(place);
-      measures.height = std::max(measures.height, std::abs(place.y() - height));
+      off = std::max(off, std::abs(place.y() - height));
     }
     measures.drift = std::max(measures.drift, (high - low).norm());
+    measures.height = std::max(measures.height, off);
+    measures.stays += 1;
+    measures.high += off > 0.001 ? 1 : 0;
   }
   // Captures may begin with a rest pose.
   const auto before = test::knee_acceleration(sample.input, roles, 1);
@@ -104,6 +109,8 @@ void add(const Measures& m, Total& total) {
   worst.knee_max = std::max(worst.knee_max, m.knee_max);
   worst.height = std::max(worst.height, m.height);
   worst.stretch = std::max(worst.stretch, m.stretch);
+  worst.stays += m.stays;
+  worst.high += m.high;
   total.knee_99 += m.knee_99;
   total.knee_max += m.knee_max;
   total.over += m.knee_99 > 1.2 ? 1 : 0;
@@ -155,10 +162,12 @@ void compare(const char* title, const std::vector<Sample>& samples, bool details
               "knee max mean/worst", "height mm", "stretch mm");
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const Total& t = totals[m];
-    std::printf("  %-20s %10.3f %11.2f / %8.2f %11.2f / %8.2f %10.2f %10.3f  (%d over 1.2)\n",
-                methods[m].first.c_str(), t.worst.drift * 1000, t.knee_99 / t.clips,
-                t.worst.knee_99, t.knee_max / t.clips, t.worst.knee_max, t.worst.height * 1000,
-                t.worst.stretch * 1000, t.over);
+    std::printf(
+        "  %-20s %10.3f %11.2f / %8.2f %11.2f / %8.2f %10.2f %10.3f  %d of %d clips over 1.2, %d "
+        "of %d heights over 1 mm\n",
+        methods[m].first.c_str(), t.worst.drift * 1000, t.knee_99 / t.clips, t.worst.knee_99,
+        t.knee_max / t.clips, t.worst.knee_max, t.worst.height * 1000, t.worst.stretch * 1000,
+        t.over, t.clips, t.worst.high, t.worst.stays);
   }
 }
 
