@@ -75,13 +75,14 @@ Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
   }
   planted.clip = clip;
   auto footings = captured;
+  const double pelvis_jitter = plant::pelvis_jitter(*body, clip);
   // Twice: places are known better once the body is steady.
   for (int round = 0; round < 2; ++round) {
     std::vector<plant::KnownCurve> shifts;
     for (std::size_t i = 0; i < footings.size(); ++i) {
       shifts.push_back(plant::needed_shift(planted.clip, *body, body->legs[i], footings[i]));
     }
-    const double jitter = plant::steady(*body, shifts, planted.clip);
+    const double jitter = plant::steady(*body, shifts, pelvis_jitter, planted.clip);
     planted.body_steadied = std::hypot(planted.body_steadied, jitter);
     if (!contacts && jitter > kShakes * found->leg_length) {
       found = find_contacts(planted.clip, roles);

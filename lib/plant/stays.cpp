@@ -10,6 +10,7 @@ namespace krok::plant {
 namespace {
 
 constexpr double kFarFromPlace = 0.2;  // of the leg
+constexpr double kOffGround = 0.012;   // of the leg, at the ends of a stay
 constexpr double kJitter = 0.002;      // metres, less does not matter to a place
 constexpr int kRounds = 200;
 constexpr double kExact = 1e-8;  // metres
@@ -124,6 +125,9 @@ class StayFixer {
       for (int f = 0; f < clip.frame_count(); ++f) {
         track.push_back(joint_at(clip, f, point.joint) * point.offset);
       }
+      KnownCurve heights(track.size());
+      for (std::size_t f = 0; f < track.size(); ++f) heights.set(f, Vec3(0, track[f].y(), 0));
+      height_jitter_.push_back(std::sqrt(3.0) * jitter_of(heights));
       footing.tracks.push_back(std::move(track));
       footing.parts.push_back(point.part);
     }
@@ -139,12 +143,14 @@ class StayFixer {
     if (stay.first > stay.last) return;
     stay.place = median_place(track, stay.first, stay.last);
     const auto is_far = [&](int f) {
-      return (track[static_cast<std::size_t>(f)] - stay.place).norm() >
-             kFarFromPlace * body_.leg_length;
+      const Vec3 off = track[static_cast<std::size_t>(f)] - stay.place;
+      return off.norm() > kFarFromPlace * body_.leg_length ||
+             std::abs(off.y()) > kOffGround * body_.leg_length + 3 * height_jitter_[point];
     };
     while (stay.first <= stay.last && is_far(stay.first)) ++stay.first;
     while (stay.first <= stay.last && is_far(stay.last)) --stay.last;
     if (stay.first > stay.last) return;
+    stay.place = median_place(track, stay.first, stay.last);
     footing.stays.push_back(stay);
   }
 
@@ -193,6 +199,7 @@ class StayFixer {
   const Clip& clip_;
   const PlantedBody& body_;
   const Leg& leg_;
+  std::vector<double> height_jitter_;  // [points], over all frames
 };
 
 void keep_distances(const Leg& leg, Footing& footing) {

@@ -9,8 +9,13 @@
 
 namespace krok::plant {
 
+// The deviation of the pelvis' jitter from frame to frame, metres.
+double pelvis_jitter(const PlantedBody& body, const Clip& clip);
+
 // Takes the jitter that feet and pelvis share out of everything from the pelvis on. `shifts` bring
-// the feet to their places, one a leg. Returns the jitter's root mean square, metres.
-double steady(const PlantedBody& body, const std::vector<KnownCurve>& shifts, Clip& clip);
+// the feet to their places, one a leg; `jitter` is that of the pelvis as captured. Returns the root
+// mean square of what was taken out, metres.
+double steady(const PlantedBody& body, const std::vector<KnownCurve>& shifts, double jitter,
+              Clip& clip);
 
 }  // namespace krok::plant
