@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "ik/tree_internal.h"
+#include "math/quaternion.h"
+
+namespace krok::ik {
+
+namespace {
+
+// The turn of a joint that brings one goal nearest, as a rotation vector in the world; false where
+// the goal asks nothing of this joint.
+bool wanted_turn(const Tree& tree, const GoalRows& g, int j, Vec3& turn) {
+  const Goal& goal = *g.goal;
+  if (g.effector < 0) return false;
+  const Transform& effector = tree.joints[at(g.effector)].world;
+  const Vec3& origin = tree.joints[at(j)].world.position;
+  const bool own = j == g.effector;
+  switch (goal.kind) {
+    case Goal::Kind::position:
+      turn = rotation_vector(shortest_arc(effector * goal.point - origin, goal.target - origin));
+      return true;
+    case Goal::Kind::orientation:
+      turn = rotation_vector(goal.orientation * effector.orientation.conjugate());
+      return true;
+    case Goal::Kind::pose:
+      // The effector's own joint gives the orientation, those above it the position.
+      turn =
+          own ? rotation_vector(goal.orientation * effector.orientation.conjugate())
+              : rotation_vector(shortest_arc(effector * goal.point - origin, goal.target - origin));
+      return true;
+    case Goal::Kind::look_at:
+      turn = rotation_vector(
+          shortest_arc(effector.orientation * goal.axis, goal.target - effector * goal.point));
+      return true;
+    default:
+      return false;
+  }
+}
+
+// The mean of what all goals within whose depth the joint lies want of it; false for none.
+bool mean_turn(const Tree& tree, int j, Vec3& mean) {
+  double weights = 0;
+  mean = Vec3::Zero();
+  for (const GoalRows& g : tree.goals) {
+    const auto begin = tree.path.begin() + g.first_path;
+    if (std::find(begin, begin + g.moving, j) == begin + g.moving) continue;
+    Vec3 turn;
+    if (!wanted_turn(tree, g, j, turn)) continue;
+    mean += g.goal->weight * turn;
+    weights += g.goal->weight;
+  }
+  if (!(weights > 0)) return false;
+  mean /= weights;
+  return true;
+}
+
+}  // namespace
+
+int solve_ccd(Tree& tree, const Options& options) {
+  int sweep = 0;
+  while (sweep < options.iterations && !tree.reached(options)) {
+    ++sweep;
+    double moved = 0;
+    for (int j = static_cast<int>(tree.joints.size()) - 1; j >= 0; --j) {
+      ChainJoint& joint = tree.joints[at(j)];
+      Vec3 turn;
+      if (!joint.moves || !mean_turn(tree, j, turn)) continue;
+      const Quat before = joint.local;
+      Vec3 local = joint.weight * (joint.world.orientation.conjugate() * turn);
+      if (joint.is_hinge()) local = joint.limit->axis * joint.limit->axis.dot(local);
+      joint.local = (joint.local * from_rotation_vector(local)).normalized();
+      if (joint.limit) joint.local = clamped(*joint.limit, joint.local);
+      moved = std::max(moved, angle_between(before, joint.local));
+      tree.forward(j);
+    }
+    // Nothing turns any more: as near as it gets.
+    if (moved < 1e-9) break;
+  }
+  return sweep;
+}
+
+}  // namespace krok::ik

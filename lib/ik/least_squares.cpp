@@ -1,0 +1,329 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "ik/least_squares_internal.h"
+#include "ik/random_internal.h"
+#include "math/quaternion.h"
+
+namespace krok::ik {
+
+namespace {
+
+// Largest turn of a joint in one step, beyond which the derivatives mean nothing.
+constexpr double kLargestTurn = 1.0;
+
+// A step that lowers the error by less than this part is no progress; so many in a row, and a
+// local minimum is near.
+constexpr double kSlow = 0.02;
+constexpr int kSlowSteps = 4;
+
+constexpr double kBias = 1e-9;
+
+void keep(const Tree& tree, std::vector<Quat>& rotations, Vec3& root) {
+  rotations.resize(tree.joints.size());
+  for (std::size_t j = 0; j < rotations.size(); ++j) rotations[j] = tree.joints[j].local;
+  root = tree.joints.front().offset;
+}
+
+void restore(Tree& tree, const std::vector<Quat>& rotations, const Vec3& root) {
+  for (std::size_t j = 0; j < rotations.size(); ++j) tree.joints[j].local = rotations[j];
+  tree.joints.front().offset = root;
+}
+
+}  // namespace
+
+void LeastSquares::list_columns(const Tree& tree, const Options& options) {
+  columns_.clear();
+  turnings_.clear();
+  for (std::size_t j = 0; j < tree.joints.size(); ++j) {
+    const ChainJoint& joint = tree.joints[j];
+    const bool root_shifts = joint.parent < 0 && options.root_moves && joint.weight > 0;
+    if (!joint.moves && !root_shifts) continue;
+    int first_row = tree.rows, last_row = 0;
+    for (const GoalRows& goal : tree.goals) {
+      const auto begin = tree.path.begin() + goal.first_path;
+      if (std::find(begin, begin + goal.paths, static_cast<int>(j)) == begin + goal.paths) continue;
+      first_row = std::min(first_row, goal.row);
+      last_row = std::max(last_row, goal.row + goal.rows);
+    }
+    Column column;
+    column.freedom.joint = static_cast<int>(j);
+    column.first_row = first_row;
+    column.last_row = last_row;
+    if (joint.moves) {
+      const int count = joint.is_hinge() ? 1 : 3;
+      turnings_.push_back({static_cast<int>(j), static_cast<int>(columns_.size()), count, 0});
+      column.weight = joint.mobility;
+      for (int i = 0; i < count; ++i) columns_.push_back(column);
+    }
+    if (root_shifts) {
+      column.freedom.shift = true;
+      column.weight = joint.weight;
+      for (int i = 0; i < 3; ++i) {
+        column.freedom.local = column.freedom.world = Vec3::Unit(i);
+        columns_.push_back(column);
+      }
+    }
+  }
+  const auto rows = at(tree.rows);
+  stride_ = rows;
+  entries_.resize(columns_.size() * stride_);
+  for (auto* list : {&errors_, &tried_, &right_side_, &multipliers_}) list->assign(rows, 0.0);
+}
+
+void LeastSquares::fill_columns(Tree& tree, const Options& options) {
+  pulls_ = options.rest_pull > 0;
+  for (Turning& turning : turnings_) {
+    const ChainJoint& joint = tree.joints[at(turning.joint)];
+    turning.fixed = 0;
+    const Vec3 pull =
+        pulls_ ? Vec3(options.rest_pull * rotation_vector(joint.local.conjugate() * joint.start))
+               : Vec3(Vec3::Zero());
+    const Mat3 axes = joint.world.orientation.toRotationMatrix();
+    for (int i = 0; i < turning.count; ++i) {
+      Column& column = columns_[at(turning.first + i)];
+      column.freedom.local = joint.is_hinge() ? joint.limit->axis : Vec3(Vec3::Unit(i));
+      column.freedom.world = joint.is_hinge() ? Vec3(axes * joint.limit->axis) : Vec3(axes.col(i));
+      column.pull = pull.dot(column.freedom.local);
+    }
+  }
+  std::fill(entries_.begin(), entries_.end(), 0.0);
+  for (const GoalRows& goal : tree.goals) {
+    // Columns lie in the order of joints; the path runs from the effector up.
+    std::size_t c = columns_.size();
+    for (int i = 0; i < goal.paths; ++i) {
+      const int joint = tree.path[at(goal.first_path + i)];
+      while (c > 0 && columns_[c - 1].freedom.joint > joint) --c;
+      for (; c > 0 && columns_[c - 1].freedom.joint == joint; --c) {
+        tree.column(goal, columns_[c - 1].freedom, entries(c - 1));
+      }
+    }
+  }
+  equations_.reset(tree.rows);
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    equations_.add(columns_[c].weight, entries(c), columns_[c].first_row, columns_[c].last_row);
+  }
+}
+
+// The step for the columns that are not fixed: turn = pull + W J^T (J W J^T + damping)^-1 (e - J
+// pull), where what fixed ones do is taken off the error.
+void LeastSquares::solve_step(const Tree& tree, double damping) {
+  right_side_ = errors_;
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const Column& column = columns_[c];
+    const double known = column.fixed ? column.turn : column.pull;
+    if (known == 0) continue;
+    const double* const entry = entries(c);
+    for (int r = column.first_row; r < column.last_row; ++r) {
+      right_side_[at(r)] -= known * entry[r];
+    }
+  }
+  working_.solve(damping, right_side_.data(), multipliers_.data());
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    Column& column = columns_[c];
+    if (column.fixed) continue;
+    const double* const entry = entries(c);
+    double sum = 0;
+    for (int r = column.first_row; r < column.last_row; ++r) sum += entry[r] * multipliers_[at(r)];
+    column.turn = column.pull + column.weight * sum;
+  }
+  (void)tree;
+}
+
+Vec3 LeastSquares::turn_of(const Turning& turning) const {
+  Vec3 turn = Vec3::Zero();
+  for (int i = 0; i < turning.count; ++i) {
+    const Column& column = columns_[at(turning.first + i)];
+    turn += column.turn * column.freedom.local;
+  }
+  return turn;
+}
+
+bool LeastSquares::fix_hinge(const ChainJoint& joint, Turning& turning) {
+  Column& column = columns_[at(turning.first)];
+  const JointLimit& limit = *joint.limit;
+  if (limit.max_twist - limit.min_twist >= 2 * kPi) return false;
+  const double now = measure(limit, joint.local).twist;
+  const double bounded = std::clamp(now + column.turn, limit.min_twist, limit.max_twist);
+  if (std::abs(bounded - now - column.turn) < 1e-12) return false;
+  column.turn = bounded - now;
+  column.fixed = true;
+  turning.fixed = 1;
+  const auto c = at(turning.first);
+  working_.add(-column.weight, entries(c), column.first_row, column.last_row);
+  return true;
+}
+
+// Turns the columns that are still free so that the last of them is along `normal`, and fixes it at
+// its part of `wanted`.
+bool LeastSquares::fix_along(Turning& turning, const Vec3& normal, const Vec3& wanted) {
+  const int free = turning.count - turning.fixed;
+  Vec3 along = Vec3::Zero();
+  for (int i = 0; i < free; ++i) {
+    const Vec3& axis = columns_[at(turning.first + i)].freedom.local;
+    along += axis * axis.dot(normal);
+  }
+  if (!(along.norm() > 1e-3 * normal.norm()) || free == 0) return false;
+  along.normalize();
+  // Householder's reflection of the free axes takes the last one to -+along.
+  const Vec3 last = columns_[at(turning.first + free - 1)].freedom.local;
+  const double sign = last.dot(along) < 0 ? 1.0 : -1.0;
+  const Vec3 mirror = last - sign * along;
+  const double square = mirror.squaredNorm();
+  if (square > 1e-20) {
+    double part[3] = {0, 0, 0};
+    for (int i = 0; i < free; ++i) {
+      part[i] = columns_[at(turning.first + i)].freedom.local.dot(mirror);
+    }
+    const Column& range = columns_[at(turning.first)];
+    for (int r = range.first_row; r < range.last_row; ++r) {
+      double sum = 0;
+      for (int i = 0; i < free; ++i) sum += part[i] * entries(at(turning.first + i))[r];
+      for (int i = 0; i < free; ++i) {
+        entries(at(turning.first + i))[r] -= 2 * part[i] * sum / square;
+      }
+    }
+    Vec3 pull = Vec3::Zero();
+    for (int i = 0; i < free; ++i) {
+      const Column& column = columns_[at(turning.first + i)];
+      pull += column.pull * column.freedom.local;
+    }
+    for (int i = 0; i < free; ++i) {
+      Column& column = columns_[at(turning.first + i)];
+      column.freedom.local -= (2 * part[i] / square) * mirror;
+      column.pull = pull.dot(column.freedom.local);
+    }
+  }
+  const auto c = at(turning.first + free - 1);
+  Column& fixed = columns_[c];
+  fixed.fixed = true;
+  fixed.turn = wanted.dot(fixed.freedom.local);
+  working_.add(-fixed.weight, entries(c), fixed.first_row, fixed.last_row);
+  ++turning.fixed;
+  return true;
+}
+
+bool LeastSquares::fix_cone(const ChainJoint& joint, Turning& turning) {
+  const JointLimit& limit = *joint.limit;
+  const Quat next = joint.local * from_rotation_vector(turn_of(turning));
+  const LimitAngles angles = measure(limit, next);
+  const bool twists =
+      angles.twist < limit.min_twist - 1e-9 || angles.twist > limit.max_twist + 1e-9;
+  const auto nearest = nearest_swing(limit, angles.swing);
+  const bool swings = std::abs(nearest[0] - angles.swing[0]) > 1e-9 ||
+                      std::abs(nearest[1] - angles.swing[1]) > 1e-9;
+  if (!twists && !swings) return false;
+  const Quat allowed =
+      compose(limit, std::clamp(angles.twist, limit.min_twist, limit.max_twist), nearest);
+  const Vec3 wanted = rotation_vector(joint.local.conjugate() * allowed);
+  const LimitGradients normals = gradients(limit, allowed);
+  bool fixed = false;
+  if (twists) fixed = fix_along(turning, normals.twist, wanted);
+  if (swings) fixed = fix_along(turning, normals.swing, wanted) || fixed;
+  return fixed;
+}
+
+bool LeastSquares::fix_at_limits(const Tree& tree) {
+  bool any = false;
+  for (Turning& turning : turnings_) {
+    if (turning.fixed == turning.count) continue;
+    const ChainJoint& joint = tree.joints[at(turning.joint)];
+    if (joint.is_hinge()) any = fix_hinge(joint, turning) || any;
+    if (joint.is_cone()) any = fix_cone(joint, turning) || any;
+  }
+  return any;
+}
+
+void LeastSquares::find_step(const Tree& tree, double damping) {
+  working_ = equations_;
+  for (Column& column : columns_) column.fixed = false;
+  for (Turning& turning : turnings_) turning.fixed = 0;
+  // Each round fixes at least one more direction; beyond a few the clamping of the step does.
+  for (int round = 0; round < 6; ++round) {
+    solve_step(tree, damping);
+    if (!fix_at_limits(tree)) return;
+  }
+  solve_step(tree, damping);
+}
+
+void LeastSquares::take_step(Tree& tree, double scale) const {
+  for (const Turning& turning : turnings_) {
+    ChainJoint& joint = tree.joints[at(turning.joint)];
+    joint.local = (joint.local * from_rotation_vector(scale * turn_of(turning))).normalized();
+    if (joint.limit) joint.local = clamped(*joint.limit, joint.local);
+  }
+  for (const Column& column : columns_) {
+    if (!column.freedom.shift) continue;
+    tree.joints[at(column.freedom.joint)].offset += scale * column.turn * column.freedom.world;
+  }
+  tree.forward();
+}
+
+int LeastSquares::descend(Tree& tree, const Options& options) {
+  error_ = tree.errors(errors_);
+  if (tree.reached(options)) return 0;
+  double factor = 1;
+  int slow = 0;
+  bool fresh = true;
+  int iteration = 0;
+  while (iteration < options.iterations) {
+    ++iteration;
+    if (fresh) fill_columns(tree, options);
+    find_step(tree, factor * (0.5 * error_ + kBias));
+    double largest = 0;
+    for (const Turning& turning : turnings_) largest = std::max(largest, turn_of(turning).norm());
+    keep(tree, kept_, kept_root_);
+    take_step(tree, largest > kLargestTurn ? kLargestTurn / largest : 1.0);
+    const double error = tree.errors(tried_);
+    if (!(error < error_)) {
+      restore(tree, kept_, kept_root_);
+      tree.forward();
+      // fix_along() has turned the columns of limited joints, which is no matter to the next try.
+      factor *= 8;
+      fresh = true;
+      if (++slow >= kSlowSteps) break;
+      continue;
+    }
+    slow = error > (1 - kSlow) * error_ ? slow + 1 : 0;
+    error_ = error;
+    std::swap(errors_, tried_);
+    factor = std::max(1e-3, factor * 0.25);
+    if (tree.reached(options) || slow >= kSlowSteps) break;
+  }
+  return iteration;
+}
+
+int LeastSquares::solve(Tree& tree, const Options& options, int& starts) {
+  list_columns(tree, options);
+  starts = 1;
+  int iterations = 0;
+  if (columns_.empty() || tree.rows == 0) return iterations;
+  keep(tree, first_, best_root_);
+  const Vec3 first_root = best_root_;
+  iterations += descend(tree, options);
+  if (options.restarts <= 0 || tree.reached(options)) return iterations;
+  double best = error_;
+  keep(tree, best_, best_root_);
+  for (int restart = 1; restart <= options.restarts; ++restart) {
+    ++starts;
+    restore(tree, first_, first_root);
+    Random random(options.seed, static_cast<std::uint64_t>(restart));
+    for (const Turning& turning : turnings_) {
+      ChainJoint& joint = tree.joints[at(turning.joint)];
+      joint.local = random_rotation(joint, random);
+    }
+    tree.forward();
+    iterations += descend(tree, options);
+    if (error_ < best) {
+      best = error_;
+      keep(tree, best_, best_root_);
+    }
+    if (tree.reached(options)) return iterations;
+  }
+  restore(tree, best_, best_root_);
+  tree.forward();
+  return iterations;
+}
+
+}  // namespace krok::ik

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ik/normal_equations_internal.h"
+#include "ik/tree_internal.h"
+
+namespace krok::ik {
+
+// Method::least_squares; keeps its memory from solve to solve.
+class LeastSquares {
+ public:
+  // From the tree's pose, and from further starts, towards the goals. Returns the iterations made;
+  // `starts` is how many starts it took.
+  int solve(Tree& tree, const Options& options, int& starts);
+
+ private:
+  struct Column {
+    Freedom freedom;
+    double weight = 0;
+    double pull = 0;  // towards the start pose
+    double turn = 0;  // what the step shall be
+    bool fixed = false;
+    int first_row = 0, last_row = 0;
+  };
+  // One joint's columns: turns first, three of them or one, and three shifts of a root that moves.
+  struct Turning {
+    int joint = 0;
+    int first = 0, count = 0;
+    int fixed = 0;  // the last `fixed` of them are held by limits
+  };
+
+  int descend(Tree& tree, const Options& options);
+  void list_columns(const Tree& tree, const Options& options);
+  void fill_columns(Tree& tree, const Options& options);
+  void find_step(const Tree& tree, double damping);
+  void solve_step(const Tree& tree, double damping);
+  bool fix_at_limits(const Tree& tree);
+  bool fix_hinge(const ChainJoint& joint, Turning& turning);
+  bool fix_cone(const ChainJoint& joint, Turning& turning);
+  bool fix_along(Turning& turning, const Vec3& normal, const Vec3& wanted);
+  void take_step(Tree& tree, double scale) const;
+  Vec3 turn_of(const Turning& turning) const;
+  double* entries(std::size_t column) { return entries_.data() + column * stride_; }
+
+  std::vector<Column> columns_;
+  std::vector<Turning> turnings_;
+  std::vector<double> entries_;  // [columns x rows]
+  std::size_t stride_ = 0;
+  NormalEquations equations_, working_;
+  std::vector<double> errors_, tried_, right_side_, multipliers_;
+  std::vector<Quat> kept_, best_, first_;  // local rotations, [tree.joints]
+  Vec3 kept_root_ = Vec3::Zero(), best_root_ = Vec3::Zero();
+  bool pulls_ = false;
+  double error_ = 0;
+};
+
+}  // namespace krok::ik
