@@ -59,8 +59,11 @@ bool mean_turn(const Tree& tree, int j, Vec3& mean) {
 }  // namespace
 
 int solve_ccd(Tree& tree, const Options& options) {
+  std::vector<double> errors(at(tree.rows));
   int sweep = 0;
-  while (sweep < options.iterations && !tree.reached(options)) {
+  while (sweep < options.iterations) {
+    tree.errors(errors);
+    if (tree.reached(errors, options)) break;
     ++sweep;
     double moved = 0;
     for (int j = static_cast<int>(tree.joints.size()) - 1; j >= 0; --j) {
@@ -69,9 +72,11 @@ int solve_ccd(Tree& tree, const Options& options) {
       if (!joint.moves || !mean_turn(tree, j, turn)) continue;
       const Quat before = joint.local;
       Vec3 local = joint.weight * (joint.world.orientation.conjugate() * turn);
-      if (joint.is_hinge()) local = joint.limit->axis * joint.limit->axis.dot(local);
-      joint.local = (joint.local * from_rotation_vector(local)).normalized();
-      if (joint.limit) joint.local = clamped(*joint.limit, joint.local);
+      if (joint.is_hinge()) {
+        joint.set_twist(joint.twist + joint.limit->axis.dot(local));
+      } else {
+        joint.set_local((joint.local * from_rotation_vector(local)).normalized());
+      }
       moved = std::max(moved, angle_between(before, joint.local));
       tree.forward(j);
     }

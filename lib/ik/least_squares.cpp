@@ -20,15 +20,22 @@ constexpr int kSlowSteps = 4;
 
 constexpr double kBias = 1e-9;
 
-void keep(const Tree& tree, std::vector<Quat>& rotations, Vec3& root) {
-  rotations.resize(tree.joints.size());
-  for (std::size_t j = 0; j < rotations.size(); ++j) rotations[j] = tree.joints[j].local;
-  root = tree.joints.front().offset;
+template <typename State>
+void keep(const Tree& tree, State& state) {
+  state.turns.resize(tree.joints.size());
+  for (std::size_t j = 0; j < tree.joints.size(); ++j) {
+    state.turns[j] = {tree.joints[j].local, tree.joints[j].twist};
+  }
+  state.root = tree.joints.front().offset;
 }
 
-void restore(Tree& tree, const std::vector<Quat>& rotations, const Vec3& root) {
-  for (std::size_t j = 0; j < rotations.size(); ++j) tree.joints[j].local = rotations[j];
-  tree.joints.front().offset = root;
+template <typename State>
+void restore(Tree& tree, const State& state) {
+  for (std::size_t j = 0; j < tree.joints.size(); ++j) {
+    tree.joints[j].local = state.turns[j].local;
+    tree.joints[j].twist = state.turns[j].twist;
+  }
+  tree.joints.front().offset = state.root;
 }
 
 }  // namespace
@@ -144,7 +151,7 @@ bool LeastSquares::fix_hinge(const ChainJoint& joint, Turning& turning) {
   Column& column = columns_[at(turning.first)];
   const JointLimit& limit = *joint.limit;
   if (limit.max_twist - limit.min_twist >= 2 * kPi) return false;
-  const double now = measure(limit, joint.local).twist;
+  const double now = joint.twist;
   const double bounded = std::clamp(now + column.turn, limit.min_twist, limit.max_twist);
   if (std::abs(bounded - now - column.turn) < 1e-12) return false;
   column.turn = bounded - now;
@@ -250,8 +257,11 @@ void LeastSquares::find_step(const Tree& tree, double damping) {
 void LeastSquares::take_step(Tree& tree, double scale) const {
   for (const Turning& turning : turnings_) {
     ChainJoint& joint = tree.joints[at(turning.joint)];
-    joint.local = (joint.local * from_rotation_vector(scale * turn_of(turning))).normalized();
-    if (joint.limit) joint.local = clamped(*joint.limit, joint.local);
+    if (joint.is_hinge()) {
+      joint.set_twist(joint.twist + scale * columns_[at(turning.first)].turn);
+    } else {
+      joint.set_local((joint.local * from_rotation_vector(scale * turn_of(turning))).normalized());
+    }
   }
   for (const Column& column : columns_) {
     if (!column.freedom.shift) continue;
@@ -262,7 +272,7 @@ void LeastSquares::take_step(Tree& tree, double scale) const {
 
 int LeastSquares::descend(Tree& tree, const Options& options) {
   error_ = tree.errors(errors_);
-  if (tree.reached(options)) return 0;
+  if (tree.reached(errors_, options)) return 0;
   double factor = 1;
   int slow = 0;
   bool fresh = true;
@@ -273,11 +283,11 @@ int LeastSquares::descend(Tree& tree, const Options& options) {
     find_step(tree, factor * (0.5 * error_ + kBias));
     double largest = 0;
     for (const Turning& turning : turnings_) largest = std::max(largest, turn_of(turning).norm());
-    keep(tree, kept_, kept_root_);
+    keep(tree, kept_);
     take_step(tree, largest > kLargestTurn ? kLargestTurn / largest : 1.0);
     const double error = tree.errors(tried_);
     if (!(error < error_)) {
-      restore(tree, kept_, kept_root_);
+      restore(tree, kept_);
       tree.forward();
       // fix_along() has turned the columns of limited joints, which is no matter to the next try.
       factor *= 8;
@@ -289,7 +299,7 @@ int LeastSquares::descend(Tree& tree, const Options& options) {
     error_ = error;
     std::swap(errors_, tried_);
     factor = std::max(1e-3, factor * 0.25);
-    if (tree.reached(options) || slow >= kSlowSteps) break;
+    if (tree.reached(errors_, options) || slow >= kSlowSteps) break;
   }
   return iteration;
 }
@@ -299,29 +309,28 @@ int LeastSquares::solve(Tree& tree, const Options& options, int& starts) {
   starts = 1;
   int iterations = 0;
   if (columns_.empty() || tree.rows == 0) return iterations;
-  keep(tree, first_, best_root_);
-  const Vec3 first_root = best_root_;
+  keep(tree, first_);
   iterations += descend(tree, options);
-  if (options.restarts <= 0 || tree.reached(options)) return iterations;
+  if (options.restarts <= 0 || tree.reached(errors_, options)) return iterations;
   double best = error_;
-  keep(tree, best_, best_root_);
+  keep(tree, best_);
   for (int restart = 1; restart <= options.restarts; ++restart) {
     ++starts;
-    restore(tree, first_, first_root);
+    restore(tree, first_);
     Random random(options.seed, static_cast<std::uint64_t>(restart));
     for (const Turning& turning : turnings_) {
       ChainJoint& joint = tree.joints[at(turning.joint)];
-      joint.local = random_rotation(joint, random);
+      turn_at_random(joint, random);
     }
     tree.forward();
     iterations += descend(tree, options);
     if (error_ < best) {
       best = error_;
-      keep(tree, best_, best_root_);
+      keep(tree, best_);
     }
-    if (tree.reached(options)) return iterations;
+    if (tree.reached(errors_, options)) return iterations;
   }
-  restore(tree, best_, best_root_);
+  restore(tree, best_);
   tree.forward();
   return iterations;
 }

@@ -31,6 +31,16 @@ class LeastSquares {
     int fixed = 0;  // the last `fixed` of them are held by limits
   };
 
+  // The rotations of all joints of the tree, and where the root is.
+  struct PoseState {
+    struct Turn {
+      Quat local;
+      double twist;
+    };
+    std::vector<Turn> turns;
+    Vec3 root = Vec3::Zero();
+  };
+
   int descend(Tree& tree, const Options& options);
   void list_columns(const Tree& tree, const Options& options);
   void fill_columns(Tree& tree, const Options& options);
@@ -50,8 +60,7 @@ class LeastSquares {
   std::size_t stride_ = 0;
   NormalEquations equations_, working_;
   std::vector<double> errors_, tried_, right_side_, multipliers_;
-  std::vector<Quat> kept_, best_, first_;  // local rotations, [tree.joints]
-  Vec3 kept_root_ = Vec3::Zero(), best_root_ = Vec3::Zero();
+  PoseState kept_, best_, first_;
   bool pulls_ = false;
   double error_ = 0;
 };

@@ -14,8 +14,8 @@ void turn_joint(Tree& tree, int j, const Quat& world_turn) {
   ChainJoint& joint = tree.joints[at(j)];
   if (!joint.moves) return;
   const Quat& orientation = joint.world.orientation;
-  joint.local = (joint.local * (orientation.conjugate() * world_turn * orientation)).normalized();
-  if (joint.limit) joint.local = clamped(*joint.limit, joint.local);
+  const Quat turn = orientation.conjugate() * world_turn * orientation;
+  joint.set_local((joint.local * turn).normalized());
   tree.forward(j);
 }
 

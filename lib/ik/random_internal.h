@@ -27,16 +27,15 @@ class Random {
   std::uint64_t state_;
 };
 
-// A joint's rotation for another start: a hinge's anywhere in its range, others within a radian of
-// where they are, within their limits.
-inline Quat random_rotation(const ChainJoint& joint, Random& random) {
+// Turns a joint for another start: a hinge to anywhere in its range, others by up to a radian about
+// each axis, within their limits.
+inline void turn_at_random(ChainJoint& joint, Random& random) {
   if (joint.is_hinge()) {
-    const JointLimit& limit = *joint.limit;
-    return compose(limit, random.between(limit.min_twist, limit.max_twist), {0, 0});
+    joint.set_twist(random.between(joint.limit->min_twist, joint.limit->max_twist));
+    return;
   }
   const Vec3 turn(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-  const Quat turned = (joint.local * from_rotation_vector(turn)).normalized();
-  return joint.limit ? clamped(*joint.limit, turned) : turned;
+  joint.set_local((joint.local * from_rotation_vector(turn)).normalized());
 }
 
 }  // namespace krok::ik

@@ -225,9 +225,34 @@ Residual Tree::residual(const GoalRows& g, const Options& options) const {
   return residual;
 }
 
-bool Tree::reached(const Options& options) const {
-  return std::all_of(goals.begin(), goals.end(),
-                     [&](const GoalRows& g) { return residual(g, options).reached; });
+bool Tree::reached(std::span<const double> errors_of, const Options& options) const {
+  for (const GoalRows& g : goals) {
+    const double* const e = errors_of.data() + g.row;
+    const auto norm = [&](int first, int count) {
+      double sum = 0;
+      for (int i = first; i < first + count; ++i) sum += e[i] * e[i];
+      return std::sqrt(sum) / g.goal->weight;
+    };
+    double distance = 0, angle = 0;
+    switch (g.goal->kind) {
+      case Goal::Kind::position:
+      case Goal::Kind::balance:
+        distance = norm(0, g.rows);
+        break;
+      case Goal::Kind::pose:
+        distance = norm(0, 3);
+        angle = norm(3, 3);
+        break;
+      default:
+        angle = norm(0, g.rows);
+        break;
+    }
+    // A little less than residual() allows, which may round differently.
+    if (!(distance <= options.distance * (1 - 1e-9)) || !(angle <= options.angle * (1 - 1e-9))) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace krok::ik

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "core/index.h"
 #include "ik/tree_internal.h"
@@ -16,6 +17,25 @@ int row_count(Goal::Kind kind) {
     default:
       return 3;
   }
+}
+
+void ChainJoint::set_local(const Quat& joint_to_parent) {
+  if (is_hinge()) {
+    set_twist(measure(*limit, joint_to_parent).twist);
+  } else {
+    local = limit ? clamped(*limit, joint_to_parent) : joint_to_parent;
+  }
+}
+
+void ChainJoint::set_twist(double angle) {
+  const double middle = 0.5 * (limit->min_twist + limit->max_twist);
+  // Where a full turn is allowed the angle may go round.
+  twist = limit->max_twist - limit->min_twist >= 2 * kPi
+              ? angle - 2 * kPi * std::round((angle - middle) / (2 * kPi))
+              : std::clamp(angle, limit->min_twist, limit->max_twist);
+  const double half = 0.5 * twist, sine = std::sin(half);
+  local = limit->zero * Quat(std::cos(half), sine * limit->axis.x(), sine * limit->axis.y(),
+                             sine * limit->axis.z());
 }
 
 void Tree::prepare(std::span<const int> parents) {
@@ -85,7 +105,7 @@ void Tree::collect(std::span<const Goal> wanted, const Limits& limits, const Opt
   order_rows();
   for (ChainJoint& joint : joints) {
     joint.mobility = joint.moves ? joint.weight : 0;
-    if (joint.moves && joint.limit) joint.local = clamped(*joint.limit, joint.local);
+    if (joint.moves) joint.set_local(joint.local);
   }
   forward();
 }

@@ -19,6 +19,7 @@ struct ChainJoint {
   const JointLimit* limit = nullptr;  // nullptr: free
   Vec3 offset = Vec3::Zero();         // position in the parent's frame
   Quat local = Quat::Identity();      // joint_to_parent
+  double twist = 0;                   // of a hinge, from which `local` follows
   Quat start = Quat::Identity();      // joint_to_parent of the start pose
   Transform world;                    // joint_to_world
 
@@ -28,6 +29,10 @@ struct ChainJoint {
 
   bool is_hinge() const { return limit && limit->kind == JointLimit::Kind::hinge; }
   bool is_cone() const { return limit && limit->kind == JointLimit::Kind::cone; }
+
+  // Sets the rotation, brought within the limit. For joints that move.
+  void set_local(const Quat& joint_to_parent);
+  void set_twist(double angle);
 };
 
 // A goal as it is solved for: its chain, and its rows in the vector of all errors.
@@ -67,8 +72,9 @@ class Tree {
   // The derivatives of minus the errors by one freedom, added to a column that is zero, [rows].
   void column(const GoalRows& rows, const Freedom& freedom, double* column) const;
 
-  // Residuals from the world transforms as they are now.
-  bool reached(const Options& options) const;
+  // Whether all goals are reached, from errors().
+  bool reached(std::span<const double> errors, const Options& options) const;
+  // A goal's residual from the world transforms as they are now.
   Residual residual(const GoalRows& rows, const Options& options) const;
 
   // Puts joint_to_world of the chains, and of all joints that hang on them, into a pose.

@@ -78,8 +78,8 @@ inline ArmJoints joints_of(const Arm& arm) {
     limit.min_twist = link.lowest * kRadiansPerDegree;
     limit.max_twist = link.highest * kRadiansPerDegree;
     const double middle = 0.5 * (limit.min_twist + limit.max_twist);
-    world = world * before *
-            Transform{Vec3::Zero(), Quat(Eigen::AngleAxisd(middle, Vec3::UnitZ()))};
+    world =
+        world * before * Transform{Vec3::Zero(), Quat(Eigen::AngleAxisd(middle, Vec3::UnitZ()))};
     before = after_turn(link);
     joints.parents.push_back(static_cast<int>(i) - 1);
     joints.limits.push_back(limit);

@@ -67,7 +67,7 @@ void run_krok(const Arm& arm, const std::vector<std::vector<double>>& poses) {
   ik::Options options;
   options.distance = options.angle = kTolerance;
   options.iterations = 50;
-  options.restarts = 40;
+  options.restarts = 150;
   auto solver = ik::Solver::create(joints.parents, joints.limits, options);
   Scores scores;
   double worst_excess = 0;
@@ -87,8 +87,8 @@ void run_krok(const Arm& arm, const std::vector<std::vector<double>>& poses) {
     // Judged from the joints' angles by the arm's own parameters, not by what the solver says.
     std::vector<double> found;
     for (std::size_t j = 0; j < pose.size(); ++j) {
-      const Quat local = j == 0 ? pose[0].orientation
-                                : pose[j - 1].orientation.conjugate() * pose[j].orientation;
+      const Quat local =
+          j == 0 ? pose[0].orientation : pose[j - 1].orientation.conjugate() * pose[j].orientation;
       found.push_back(measure(joints.limits[j], local).twist);
       worst_excess = std::max(worst_excess, excess(joints.limits[j], local));
     }
@@ -112,8 +112,8 @@ void run_kdl(const Arm& arm, const std::vector<std::vector<double>>& poses) {
   KDL::JntArray lowest(count), highest(count), middle(count);
   for (unsigned i = 0; i < count; ++i) {
     const Link& link = arm.links[i];
-    chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::RotZ),
-                                  KDL::Frame::DH(link.a, link.alpha, link.d, 0)));
+    chain.addSegment(
+        KDL::Segment(KDL::Joint(KDL::Joint::RotZ), KDL::Frame::DH(link.a, link.alpha, link.d, 0)));
     lowest(i) = link.lowest * kRadiansPerDegree;
     highest(i) = link.highest * kRadiansPerDegree;
     middle(i) = 0.5 * (lowest(i) + highest(i));
