@@ -13,10 +13,9 @@ namespace krok::ik {
 namespace {
 
 constexpr double kStill = 0.05 * kRadiansPerDegree;
-constexpr double kHingePlay = 0.5 * kRadiansPerDegree;
 constexpr double kSameReference = 0.5 * kRadiansPerDegree;
 // Floats in a clip round angles to about this.
-constexpr double kRounding = 1e-6;
+constexpr double kRounding = 5e-7;
 
 // joint_to_parent of a joint in all frames, in the hemisphere of the first.
 std::vector<Quat> rotations_of(int joint, int parent, std::span<const Clip* const> clips) {
@@ -109,7 +108,7 @@ bool fit_hinge(const std::vector<Quat>& rotations, double margin, JointLimit& li
   double lowest = 0, highest = 0;
   for (const Quat& q : rotations) {
     const LimitAngles angles = measure(hinge, q);
-    if (angles.off_axis > kHingePlay) return false;
+    if (angles.off_axis > kRounding) return false;
     lowest = std::min(lowest, angles.twist);
     highest = std::max(highest, angles.twist);
   }

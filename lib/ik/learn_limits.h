@@ -15,9 +15,9 @@ struct LearnOptions {
 // The ranges that the joints of `skeleton` use in motions. The zero of each is the mean of the
 // rotations seen; the first swing axis is the direction in which the joint swings most; an ellipse
 // is the smallest of the shape of the extremes that holds all that was seen. A joint that turns
-// about one axis alone (within half a degree) becomes a hinge, one that never turns (within a
-// twentieth of a degree) is locked, the root is free. Every pose of the motions is within the
-// limits.
+// about one axis alone (but for the rounding of floats) becomes a hinge, one that never turns
+// (within a twentieth of a degree) is locked, the root is free. Every pose of the motions is within
+// the limits, hinges' rounding (under 1e-6 rad) apart.
 //
 // The clips have the joints of `skeleton` in the same order with the same reference orientations
 // (within half a degree): code limits-skeleton. No frames: limits-empty.

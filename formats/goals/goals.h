@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+#include "ik/goal_motion.h"
+#include "roles/roles.h"
+#include "scene/skeleton.h"
+
+// Reader for goals of inverse kinematics (JSON, hand-written); see formats/goals/SPEC.md.
+
+namespace krok::goals {
+
+// A goal whose keys are relative to a joint of another motion, which the caller opens.
+struct OtherMotion {
+  std::size_t goal = 0;  // index into GoalFile::goals
+  std::string path;      // relative to the goal file
+  std::string joint;     // by name or role
+  Location where;        // of the path in the file; without the file's name
+};
+
+struct GoalFile {
+  std::vector<ik::KeyedGoal> goals;
+  std::vector<OtherMotion> others;
+  std::vector<double> stiffness;  // [joints], or empty
+  bool root_moves = false;
+};
+
+// The result is in metres and seconds, with joints of `skeleton` by name or role. Goals for which
+// the file gives no depth get default_depth(). Safe for untrusted input. Codes, each with line and
+// column: json-syntax, json-limit, goals-structure, goals-value, goals-time (times that do not
+// increase), goals-joint (no such joint), goals-path.
+Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const RoleMap& roles);
+
+// A joint by its exact name, otherwise by role; -1 for none.
+int find_joint(std::string_view name, const Skeleton& skeleton, const RoleMap& roles);
+
+// From a joint up to, but without, the joint that carries the body: what a reach moves unless the
+// user says otherwise, so that the hips stay where they are. 0 (all) for the carrying joint itself
+// and joints above it.
+int default_depth(int joint, const Skeleton& skeleton, const RoleMap& roles);
+
+}  // namespace krok::goals

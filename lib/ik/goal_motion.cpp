@@ -1,0 +1,293 @@
+#include "ik/goal_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "core/parallel.h"
+#include "ik/faded_goal_internal.h"
+#include "math/quaternion.h"
+#include "motion/sample.h"
+
+namespace krok::ik {
+
+namespace {
+
+// Frames that one thread solves in a row.
+constexpr std::size_t kGrain = 32;
+// Passes for goals relative to joints that the solution moves.
+constexpr int kPasses = 5;
+constexpr double kSettled = 1e-6;  // metres
+
+Status check_keys(const KeyedGoal& goal) {
+  const auto wrong = [&](const char* what) {
+    return Error("ik-goal", fmt::format("goal '{}' {}", goal.name, what));
+  };
+  if (goal.keys.empty() && goal.goal.kind != Goal::Kind::balance) return wrong("has no keys");
+  for (std::size_t i = 0; i < goal.keys.size(); ++i) {
+    const GoalKey& key = goal.keys[i];
+    if (!std::isfinite(key.time) || (i > 0 && !(key.time > goal.keys[i - 1].time))) {
+      return wrong("has keys whose times do not increase");
+    }
+    if (!key.target.allFinite() || !(std::abs(key.orientation.norm() - 1) < 1e-6)) {
+      return wrong("has a key whose values are not finite");
+    }
+  }
+  if (!(goal.fade_in >= 0) || !(goal.fade_out >= 0)) return wrong("has a negative fade");
+  return {};
+}
+
+double cross_of(const Vec2& o, const Vec2& a, const Vec2& b) {
+  return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
+}
+
+}  // namespace
+
+std::vector<Vec2> outline(std::vector<Vec2> points) {
+  const auto before = [](const Vec2& a, const Vec2& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  };
+  std::sort(points.begin(), points.end(), before);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Vec2> hull;
+  const auto add = [&](const Vec2& point, std::size_t keep) {
+    while (hull.size() > keep && cross_of(hull[hull.size() - 2], hull.back(), point) <= 0) {
+      hull.pop_back();
+    }
+    hull.push_back(point);
+  };
+  for (const Vec2& point : points) add(point, 1);
+  const std::size_t lower = hull.size();
+  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
+  hull.pop_back();
+  return hull;
+}
+
+double strength_at(const KeyedGoal& goal, double time, double duration) {
+  // Some easings overshoot.
+  const auto eased = [&](double u) { return std::clamp(goal.fade.at(u), 0.0, 1.0); };
+  const double from = goal.from.value_or(goal.keys.empty() ? 0 : goal.keys.front().time);
+  const double to =
+      std::max(from, goal.to.value_or(goal.keys.empty() ? duration : goal.keys.back().time));
+  if (time < from) {
+    return goal.fade_in > 0 ? eased((time - from + goal.fade_in) / goal.fade_in) : 0;
+  }
+  if (time > to) {
+    return goal.fade_out > 0 ? eased((to + goal.fade_out - time) / goal.fade_out) : 0;
+  }
+  return 1;
+}
+
+GoalKey key_at(const KeyedGoal& goal, double time) {
+  if (goal.keys.empty()) return {};
+  const auto after = std::upper_bound(goal.keys.begin(), goal.keys.end(), time,
+                                      [](double t, const GoalKey& key) { return t < key.time; });
+  if (after == goal.keys.begin()) return goal.keys.front();
+  const GoalKey& one = *(after - 1);
+  if (after == goal.keys.end()) return one;
+  const double u = one.easing.at((time - one.time) / (after->time - one.time));
+  GoalKey key = one;
+  key.time = time;
+  key.target = one.target + u * (after->target - one.target);
+  key.orientation = slerp(one.orientation, after->orientation, u);
+  return key;
+}
+
+namespace {
+
+// Solves one frame after the other; one for each thread.
+class FrameSolver {
+ public:
+  FrameSolver(const Clip& clip, std::span<const KeyedGoal> goals, Solver solver)
+      : clip_(clip), goals_(goals), solver_(std::move(solver)) {
+    const std::size_t joints = clip.skeleton.names.size();
+    given_.resize(joints);
+    solved_.resize(joints);
+    for (const KeyedGoal& goal : goals) {
+      relative_ = relative_ || (goal.relative_to >= 0 && !goal.motion);
+      if (goal.motion) {
+        other_.resize(std::max(other_.size(), goal.motion->skeleton.names.size()));
+      }
+    }
+    scratch_.resize(3 * other_.size());
+  }
+
+  Status solve(int frame, std::span<GoalFrame> report, Clip& result, double& excess);
+
+ private:
+  Transform anchor(const KeyedGoal& goal, double time, const std::vector<Transform>& pose);
+  void list_goals(double time, const std::vector<Transform>& anchors_from);
+  void give_back_beyond_limits(double strength);
+  double excess_of_chains() const;
+
+  const Clip& clip_;
+  std::span<const KeyedGoal> goals_;
+  Solver solver_;
+  bool relative_ = false;
+  std::vector<Transform> given_, solved_, other_, scratch_;
+  std::vector<Goal> active_, before_;
+  std::vector<double> strengths_;
+};
+
+Transform FrameSolver::anchor(const KeyedGoal& goal, double time,
+                              const std::vector<Transform>& pose) {
+  if (goal.relative_to < 0) return {};
+  if (!goal.motion) return pose[at(goal.relative_to)];
+  const std::size_t joints = goal.motion->skeleton.names.size();
+  sample(*goal.motion, time, std::span(other_).first(joints), scratch_);
+  return other_[at(goal.relative_to)];
+}
+
+void FrameSolver::list_goals(double time, const std::vector<Transform>& anchors_from) {
+  active_.clear();
+  for (std::size_t g = 0; g < goals_.size(); ++g) {
+    if (!(strengths_[g] > 0)) continue;
+    const KeyedGoal& keyed = goals_[g];
+    Goal goal = keyed.goal;
+    const GoalKey key = key_at(keyed, time);
+    const Transform frame = anchor(keyed, time, anchors_from);
+    goal.target = frame * key.target;
+    goal.orientation = (frame.orientation * key.orientation).normalized();
+    if (!keyed.support_joints.empty()) {
+      std::vector<Vec2> points;
+      for (const int joint : keyed.support_joints) {
+        const Vec3& place = given_[at(joint)].position;
+        points.emplace_back(place.x(), place.z());
+      }
+      goal.support = outline(std::move(points));
+    }
+    if (strengths_[g] < 1) fade_goal(goal, strengths_[g], clip_.skeleton, given_);
+    active_.push_back(std::move(goal));
+  }
+}
+
+void FrameSolver::give_back_beyond_limits(double strength) {
+  const Limits& limits = solver_.limits();
+  if (limits.empty() || strength >= 1) return;
+  // Local rotations of both, then the solved pose anew with what clamping took off given back.
+  const auto& parents = clip_.skeleton.parents;
+  std::vector<Transform> local(given_.size()), before(given_.size());
+  world_to_local(parents, solved_, local);
+  world_to_local(parents, given_, before);
+  bool any = false;
+  for (std::size_t j = 1; j < local.size(); ++j) {
+    if (limits[j].kind == JointLimit::Kind::free || limits[j].kind == JointLimit::Kind::locked) {
+      continue;
+    }
+    if (angle_between(local[j].orientation, before[j].orientation) < 1e-9) continue;
+    const Quat allowed = clamped(limits[j], before[j].orientation);
+    const Quat beyond = allowed.conjugate() * before[j].orientation;
+    if (angle_between(beyond, Quat::Identity()) < 1e-9) continue;
+    local[j].orientation =
+        (local[j].orientation * slerp(Quat::Identity(), beyond, 1 - strength)).normalized();
+    any = true;
+  }
+  if (any) local_to_world(parents, local, solved_);
+}
+
+double FrameSolver::excess_of_chains() const {
+  const Limits& limits = solver_.limits();
+  double largest = 0;
+  for (std::size_t j = 1; j < limits.size(); ++j) {
+    const Transform& parent = solved_[at(clip_.skeleton.parents[j])];
+    const Transform& parent_before = given_[at(clip_.skeleton.parents[j])];
+    const Quat local = parent.orientation.conjugate() * solved_[j].orientation;
+    const Quat before = parent_before.orientation.conjugate() * given_[j].orientation;
+    if (angle_between(local, before) < 1e-9) continue;
+    largest = std::max(largest, excess(limits[j], local));
+  }
+  return largest;
+}
+
+Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, double& excess) {
+  const double time = frame / clip_.rate;
+  strengths_.clear();
+  double strength = 0;
+  for (const KeyedGoal& goal : goals_) {
+    strengths_.push_back(strength_at(goal, time, clip_.duration()));
+    strength = std::max(strength, strengths_.back());
+  }
+  if (!(strength > 0)) return {};
+  clip_.get_pose(frame, given_);
+  list_goals(time, given_);
+  const Outcome* outcome = nullptr;
+  for (int pass = 0; pass < (relative_ ? kPasses : 1); ++pass) {
+    if (pass > 0) {
+      before_ = active_;
+      list_goals(time, solved_);
+      double moved = 0;
+      for (std::size_t i = 0; i < active_.size(); ++i) {
+        moved = std::max({moved, (active_[i].target - before_[i].target).norm(),
+                          angle_between(active_[i].orientation, before_[i].orientation)});
+      }
+      if (moved < kSettled) break;
+    }
+    solved_ = given_;
+    const auto solution = solver_.solve(active_, solved_);
+    if (!solution) return solution.error();
+    outcome = *solution;
+  }
+  if (strength >= 1) excess = std::max(excess, excess_of_chains());
+  give_back_beyond_limits(strength);
+  result.set_pose(frame, solved_);
+  std::size_t next = 0;
+  for (std::size_t g = 0; g < goals_.size(); ++g) {
+    report[g] = {frame, strengths_[g], {}};
+    if (strengths_[g] > 0) report[g].residual = outcome->goals[next++];
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goals,
+                               const Limits& limits, const GoalMotionOptions& options) {
+  for (const KeyedGoal& goal : goals) {
+    if (Status status = check_keys(goal); !status) return status.error();
+  }
+  // Says now what is wrong with limits and options.
+  if (auto solver = Solver::create(clip.skeleton.parents, limits, options.solver); !solver) {
+    return solver.error();
+  }
+  GoalMotion result;
+  result.clip = clip;
+  const std::size_t frames = at(clip.frame_count());
+  std::vector<GoalFrame> report(frames * goals.size());
+  const std::size_t ranges = (frames + kGrain - 1) / kGrain;
+  std::vector<Status> failed(ranges);
+  std::vector<double> excesses(ranges, 0.0);
+  parallel_for(frames, kGrain, options.jobs, [&](std::size_t begin, std::size_t end) {
+    FrameSolver solver(clip, goals, *Solver::create(clip.skeleton.parents, limits, options.solver));
+    for (std::size_t f = begin; f < end && failed[begin / kGrain].ok(); ++f) {
+      failed[begin / kGrain] = solver.solve(
+          static_cast<int>(f), std::span(report).subspan(f * goals.size(), goals.size()),
+          result.clip, excesses[begin / kGrain]);
+    }
+  });
+  for (const Status& status : failed) {
+    if (!status) {
+      Status copy = status;
+      return copy.error();
+    }
+  }
+  for (const double excess : excesses) {
+    result.largest_excess = std::max(result.largest_excess, excess);
+  }
+  result.goals.resize(goals.size());
+  for (std::size_t f = 0; f < frames; ++f) {
+    bool changed = false;
+    for (std::size_t g = 0; g < goals.size(); ++g) {
+      const GoalFrame& one = report[f * goals.size() + g];
+      if (!(one.strength > 0)) continue;
+      changed = true;
+      result.goals[g].push_back(one);
+    }
+    result.changed_frames += changed ? 1 : 0;
+  }
+  return result;
+}
+
+}  // namespace krok::ik

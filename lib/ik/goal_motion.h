@@ -1,0 +1,91 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "core/result.h"
+#include "ik/solver.h"
+#include "scene/clip.h"
+#include "timeline/easing.h"
+
+// Goals over time, brought about in every frame of a motion.
+
+namespace krok::ik {
+
+struct GoalKey {
+  double time = 0;  // seconds
+  Vec3 target = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  timeline::Easing easing;  // to the next key
+};
+
+// A goal that moves through keys and fades in and out. While it fades, its target lies between what
+// the motion does by itself and the keys, so that it takes hold and lets go without a jump.
+struct KeyedGoal {
+  std::string name;  // for reports
+
+  // What is sought; target and orientation come from the keys.
+  Goal goal;
+
+  // The keys are in the frame of this joint: of `motion` where that is set, otherwise of the motion
+  // itself as it comes out. -1: in the world.
+  int relative_to = -1;
+  const Clip* motion = nullptr;
+
+  // Times increase, at least one key (balance needs none). Before the first key its values hold,
+  // after the last one the last one's.
+  std::vector<GoalKey> keys;
+
+  // Seconds: full strength from `from` to `to`, fading in before and out after. Absent: from the
+  // first key's time, to the last one's; for a goal without keys the whole motion.
+  std::optional<double> from, to;
+  double fade_in = 0.3, fade_out = 0.3;
+  timeline::Easing fade = {timeline::Curve::smoother, timeline::Ease::in_out};
+
+  // For balance: the support is the outline on the ground of these joints as they stand in each
+  // frame of the input.
+  std::vector<int> support_joints;
+};
+
+struct GoalFrame {
+  int frame = 0;
+  double strength = 0;  // 0 to 1
+  Residual residual;    // from the target of that frame
+};
+
+struct GoalMotion {
+  Clip clip;
+  std::vector<std::vector<GoalFrame>> goals;  // [goals], the frames in which each is active
+  int changed_frames = 0;
+  double largest_excess = 0;  // of limits, radians, by joints in chains at full strength
+};
+
+struct GoalMotionOptions {
+  Options solver;
+  int jobs = 0;
+  Progress* progress = nullptr;  // may be null
+};
+
+// The motion with the goals brought about as well as they can be. Each frame is solved from the
+// frame as it was, so that what goals leave open stays as captured and nothing builds up over time;
+// frames in which no goal is active stay bit for bit. A joint that the motion itself holds beyond
+// its limits is brought within them as the goals fade in.
+//
+// Codes: ik-goal for a goal that Solver refuses, keys whose times do not increase, no keys; those
+// of Solver::create.
+Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goals,
+                               const Limits& limits, const GoalMotionOptions& options = {});
+
+// Strength of a goal at a time, 0 to 1, for a motion that lasts `duration` seconds.
+double strength_at(const KeyedGoal& goal, double time, double duration);
+
+// Target and orientation of the keys at a time.
+GoalKey key_at(const KeyedGoal& goal, double time);
+
+// The convex outline of points on the ground, counter-clockwise (Andrew's monotone chain).
+std::vector<Vec2> outline(std::vector<Vec2> points);
+
+}  // namespace krok::ik
