@@ -128,6 +128,7 @@ class Reader {
   }
 
   Status read_direction(const Value& item, std::string_view what, Goal& goal) const {
+    goal.axis = facing_axis(goal.joint, skeleton_);
     const auto given = numbers(item, what, "axis", 3, goal.axis.data());
     if (!given) return given.error();
     if (!*given) return {};
@@ -380,6 +381,10 @@ int default_depth(int joint, const Skeleton& skeleton, const RoleMap& roles) {
     ++depth;
   }
   return 0;
+}
+
+Vec3 facing_axis(int joint, const Skeleton& skeleton) {
+  return skeleton.reference[at(joint)].orientation.normalized().conjugate() * Vec3::UnitZ();
 }
 
 Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const RoleMap& roles) {

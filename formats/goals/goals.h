@@ -42,4 +42,7 @@ int find_joint(std::string_view name, const Skeleton& skeleton, const RoleMap& r
 // and joints above it.
 int default_depth(int joint, const Skeleton& skeleton, const RoleMap& roles);
 
+// The direction in a joint's frame that faces forwards (+Z) in the reference pose.
+Vec3 facing_axis(int joint, const Skeleton& skeleton);
+
 }  // namespace krok::goals

@@ -29,6 +29,7 @@ constexpr std::array kVerbs = {
     Verb{"skin", "combine a model and a motion into glTF: a rig, a baked clip, a pose"},
     Verb{"morph", "pack, unpack and animate morph targets; key-frame meshes"},
     Verb{"retarget", "retarget a motion to another skeleton"},
+    Verb{"ik", "bring joints of a motion to goals by inverse kinematics"},
     Verb{"edit", "cut, clean, mirror, loop, join, scale and place motions"},
     Verb{"keys", "detect, print and edit foot contacts and gait keytimes"},
     Verb{"blend", "blend motions by weights and keytimes"},

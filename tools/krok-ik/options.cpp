@@ -1,0 +1,248 @@
+#include "tools/krok-ik/options.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+#include "core/numbers.h"
+#include "core/quantity.h"
+#include "core/text.h"
+#include "tools/common/option_kinds.h"
+#include "tools/common/orientation_option.h"
+#include "tools/common/role_input.h"
+
+namespace krok::ik_tool {
+
+namespace {
+
+Error usage(std::string message, std::string hint = {}) {
+  return {"usage", std::move(message), std::move(hint)};
+}
+
+void declare_goals(CommandOptions& command, Arguments& a) {
+  const char* group = "Goals";
+  command.add_option("--goals", a.goals, "Goals (.json, formats/goals/SPEC.md)")
+      .type_name("IN.json")
+      .group(group);
+  command
+      .add_option("--reach", a.reaches,
+                  "Bring a joint, given by name or role, to a point at a time: "
+                  "RightHand=0.4m,1.2m,0.3m@2s, or for a while: @2s..3.5s; repeatable")
+      .type_name("JOINT=X,Y,Z@TIME")
+      .one_each_time()
+      .group(group);
+  command
+      .add_option("--look-at", a.looks,
+                  "The same for what faces forwards in the reference pose, which then points to "
+                  "the place: head=0m,1.5m,4m@1s..3s")
+      .type_name("JOINT=X,Y,Z@TIME")
+      .one_each_time()
+      .group(group);
+  command
+      .add_option("--fade", a.fade,
+                  "Time in which --reach and --look-at take hold before, and let go after")
+      .type_name("TIME")
+      .default_str("0.5s")
+      .group(group);
+  add_map_option(command, a.map).group(group);
+}
+
+void declare_limits(CommandOptions& command, Arguments& a) {
+  const char* group = "Limits";
+  command
+      .add_option("--limits", a.limits,
+                  "Ranges of motion: a file (formats/limits/SPEC.md), or auto for published "
+                  "ranges of adults by the joints' roles")
+      .type_name("IN.json|auto")
+      .group(group);
+  command
+      .add_option("--learn-limits", a.captures,
+                  "Use the ranges that a motion of the same skeleton uses; repeatable")
+      .type_name("IN.anim")
+      .one_each_time()
+      .group(group);
+  command.add_option("--margin", a.margin, "Margin added to learnt ranges")
+      .type_name("ANGLE")
+      .default_str("0deg")
+      .group(group);
+  command
+      .add_option("--write-limits", a.write_limits,
+                  "Write the limits to a file; then neither goals nor -o are needed")
+      .type_name("OUT.limits.json")
+      .group(group);
+}
+
+void declare_solver(CommandOptions& command, Arguments& a) {
+  const char* group = "Solver";
+  add_choice<ik::Method>(command, "--method", a.method,
+                         {{"least-squares", ik::Method::least_squares},
+                          {"ccd", ik::Method::ccd},
+                          {"two-bone", ik::Method::two_bone}},
+                         "least-squares: all goals at once; ccd: joint by joint; two-bone: the "
+                         "joint's parent and grandparent in closed form",
+                         "METHOD", "least-squares")
+      .group(group);
+  command
+      .add_option("--stiffness", a.stiffness,
+                  "How much a joint resists, 0 to 1 (does not turn): spine=0.7; repeatable")
+      .type_name("JOINT=NUMBER")
+      .one_each_time()
+      .group(group);
+  add_whole(command, "--depth", a.depth,
+            "How many joints take part for each goal, from the joint's own upwards; 0: all; "
+            "default: all below the hips",
+            0, 10000)
+      .group(group);
+  command.add_flag("--root-moves", a.root_moves, "The root may be shifted to reach the goals")
+      .group(group);
+  add_whole(command, "--iterations", a.iterations, "Max iterations in a frame", 0, 100'000)
+      .default_str("60")
+      .group(group);
+  add_whole(command, "--restarts", a.restarts,
+            "Further starts in frames whose goals are not reached; may make a motion jump", 0, 1000)
+      .default_str("0")
+      .group(group);
+  command.add_option("--tolerance", a.tolerance, "A goal's position is reached within this")
+      .type_name("LENGTH")
+      .default_str("0.01mm")
+      .group(group);
+  command
+      .add_option("--angle-tolerance", a.angle_tolerance, "A goal's angle is reached within this")
+      .type_name("ANGLE")
+      .default_str("0.01deg")
+      .group(group);
+}
+
+// The text before and after the first `mark`.
+bool split(std::string_view text, std::string_view mark, std::string_view& before,
+           std::string_view& after) {
+  const std::size_t at = text.find(mark);
+  if (at == std::string_view::npos) return false;
+  before = text.substr(0, at);
+  after = text.substr(at + mark.size());
+  return true;
+}
+
+Result<double> value_of(const char* option, Result<double> parsed) {
+  if (parsed) return parsed;
+  return usage(fmt::format("{}: {}", option, parsed.error().message), parsed.error().hint);
+}
+
+// JOINT=X,Y,Z@TIME or @TIME..TIME.
+Result<PointGoal> parse_point(const std::string& option, const std::string& text,
+                              ik::Goal::Kind kind) {
+  const auto wrong = [&](const std::string& why) {
+    return usage(fmt::format("{} {}: {}", option, shown(text), why),
+                 "write RightHand=0.4m,1.2m,0.3m@2s or RightHand=0.4m,1.2m,0.3m@2s..3s");
+  };
+  PointGoal goal;
+  goal.option = option;
+  goal.kind = kind;
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0) return wrong("no joint is named");
+  goal.joint = text.substr(0, equals);
+  std::string_view place, times;
+  if (!split(std::string_view(text).substr(equals + 1), "@", place, times)) {
+    return wrong("it has no time");
+  }
+  for (int i = 0; i < 3; ++i) {
+    std::string_view one = place, rest;
+    if (i < 2 && !split(place, ",", one, rest)) return wrong("a place has three lengths");
+    const auto length = parse_length(one);
+    if (!length || !(std::abs(*length) <= 1e6)) {
+      return wrong(length ? std::string("the place is farther away than 1000 km")
+                          : length.error().message);
+    }
+    goal.target[i] = *length;
+    place = rest;
+  }
+  std::string_view begin = times, end = times;
+  split(times, "..", begin, end);
+  const auto from = parse_clip_time(begin), to = parse_clip_time(end);
+  if (!from || !to) return wrong((from ? to : from).error().message);
+  if (from->in_frames != to->in_frames) return wrong("one time is in frames, the other is not");
+  goal.from = from->value;
+  goal.to = to->value;
+  goal.in_frames = from->in_frames;
+  if (!(goal.from >= 0) || goal.to < goal.from) return wrong("it ends before it begins");
+  return goal;
+}
+
+Result<Stiffness> parse_stiffness(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  const auto value = equals == std::string::npos || equals == 0
+                         ? std::nullopt
+                         : parse_finite(std::string_view(text).substr(equals + 1));
+  if (!value || !(*value >= 0 && *value <= 1)) {
+    return usage(fmt::format("--stiffness {} is not a joint and a number from 0 to 1", shown(text)),
+                 "write spine=0.7");
+  }
+  return Stiffness{text.substr(0, equals), *value};
+}
+
+}  // namespace
+
+void declare(CommandOptions& command, Arguments& arguments) {
+  command
+      .add_option("input", arguments.input,
+                  "Motion, or a capture read as by krok-import (- is standard input)")
+      .type_name("IN.anim")
+      .required();
+  declare_goals(command, arguments);
+  declare_limits(command, arguments);
+  declare_solver(command, arguments);
+  add_orientation_option(command, arguments.orientation);
+}
+
+Result<Options> understand(const Arguments& a) {
+  Options options;
+  options.given = a;
+  for (const auto& [list, option, kind] :
+       {std::tuple(&a.reaches, "--reach", ik::Goal::Kind::position),
+        std::tuple(&a.looks, "--look-at", ik::Goal::Kind::look_at)}) {
+    for (const std::string& text : *list) {
+      auto goal = parse_point(option, text, kind);
+      if (!goal) return goal.error();
+      options.points.push_back(*goal);
+    }
+  }
+  for (const std::string& text : a.stiffness) {
+    auto stiffness = parse_stiffness(text);
+    if (!stiffness) return stiffness.error();
+    options.stiffness.push_back(*stiffness);
+  }
+  const auto fade = parse_clip_time(a.fade);
+  if (!fade || fade->in_frames || !(fade->value >= 0)) {
+    return usage(fmt::format("--fade {} is not a time of 0 or more seconds", shown(a.fade)));
+  }
+  options.fade = fade->value;
+  const auto margin = value_of("--margin", parse_angle(a.margin));
+  if (!margin) return margin.error();
+  const auto distance = value_of("--tolerance", parse_length(a.tolerance));
+  if (!distance) return distance.error();
+  const auto angle = value_of("--angle-tolerance", parse_angle(a.angle_tolerance));
+  if (!angle) return angle.error();
+  if (!(*margin >= 0) || !(*distance > 0) || !(*angle > 0)) {
+    return usage("--margin must be 0 or more, --tolerance and --angle-tolerance greater than 0");
+  }
+  if (!a.limits.empty() && !a.captures.empty()) {
+    return usage("--limits and --learn-limits cannot be combined");
+  }
+  if (!a.write_limits.empty() && a.limits.empty() && a.captures.empty()) {
+    return usage("--write-limits has no limits to write", "add --limits auto or --learn-limits");
+  }
+  if (!options.has_goals() && a.write_limits.empty()) {
+    return usage("no goals are given", "use --goals, --reach or --look-at");
+  }
+  options.margin = *margin;
+  options.solver.method = a.method;
+  options.solver.iterations = a.iterations;
+  options.solver.restarts = a.restarts;
+  options.solver.distance = *distance;
+  options.solver.angle = *angle;
+  options.solver.root_moves = a.root_moves;
+  return options;
+}
+
+}  // namespace krok::ik_tool

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "formats/container/packed_orientation.h"
+#include "ik/goal_motion.h"
+#include "tools/common/command_options.h"
+
+namespace krok::ik_tool {
+
+// The options as given on the command line.
+struct Arguments {
+  std::string input, map;
+  std::string goals;                        // a goal file, or empty
+  std::vector<std::string> reaches, looks;  // JOINT=X,Y,Z@TIME
+  std::string fade = "0.5s";
+  std::string limits;                 // a file, auto, or empty
+  std::vector<std::string> captures;  // to learn limits from
+  std::string margin = "0deg";
+  std::string write_limits;
+  ik::Method method = ik::Method::least_squares;
+  std::vector<std::string> stiffness;  // JOINT=NUMBER
+  std::optional<int> depth;
+  int iterations = 60;
+  int restarts = 0;
+  std::string tolerance = "0.01mm", angle_tolerance = "0.01deg";
+  bool root_moves = false;
+  OrientationEncoding orientation = OrientationEncoding::xyz;
+};
+
+// A goal of the command line: a point that a joint is to reach or to look at.
+struct PointGoal {
+  std::string option, joint;
+  ik::Goal::Kind kind = ik::Goal::Kind::position;
+  Vec3 target = Vec3::Zero();  // metres
+  double from = 0, to = 0;     // seconds, or frames
+  bool in_frames = false;
+};
+
+struct Stiffness {
+  std::string joint;
+  double value = 0;
+};
+
+// The parsed options.
+struct Options {
+  Arguments given;
+  std::vector<PointGoal> points;
+  std::vector<Stiffness> stiffness;
+  double fade = 0;  // seconds
+  double margin = 0;
+  ik::Options solver;
+
+  bool has_goals() const { return !given.goals.empty() || !points.empty(); }
+};
+
+void declare(CommandOptions& command, Arguments& arguments);
+
+// Code usage, and those of quantities; messages name the option.
+Result<Options> understand(const Arguments& arguments);
+
+}  // namespace krok::ik_tool

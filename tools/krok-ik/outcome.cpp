@@ -1,0 +1,193 @@
+#include "tools/krok-ik/outcome.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/index.h"
+#include "core/numbers.h"
+#include "core/text.h"
+
+namespace krok::ik_tool {
+
+namespace {
+
+std::string_view kind_name(ik::Goal::Kind kind) {
+  switch (kind) {
+    case ik::Goal::Kind::position:
+      return "position";
+    case ik::Goal::Kind::orientation:
+      return "orientation";
+    case ik::Goal::Kind::pose:
+      return "pose";
+    case ik::Goal::Kind::look_at:
+      return "look-at";
+    case ik::Goal::Kind::pole:
+      return "pole";
+    case ik::Goal::Kind::balance:
+      break;
+  }
+  return "balance";
+}
+
+struct Figures {
+  int reached = 0;
+  const ik::GoalFrame* worst = nullptr;  // missed by the most; nullptr if all are reached
+  double distance = 0, angle = 0;        // largest
+};
+
+Figures figures_of(const std::vector<ik::GoalFrame>& frames) {
+  Figures figures;
+  const auto miss = [](const ik::GoalFrame& f) { return f.residual.distance + f.residual.angle; };
+  for (const ik::GoalFrame& frame : frames) {
+    figures.distance = std::max(figures.distance, frame.residual.distance);
+    figures.angle = std::max(figures.angle, frame.residual.angle);
+    if (frame.residual.reached) {
+      ++figures.reached;
+    } else if (figures.worst == nullptr || miss(frame) > miss(*figures.worst)) {
+      figures.worst = &frame;
+    }
+  }
+  return figures;
+}
+
+std::string miss_text(double distance, double angle) {
+  std::string text;
+  if (distance > 0) text = readable(distance * 1000, 3) + " mm";
+  if (angle > 0) {
+    text += (text.empty() ? "" : " and ") + readable(angle / kRadiansPerDegree, 3) + " deg";
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+std::string holder_text(const Outcome& outcome, const ik::GoalFrame& frame) {
+  const int joint = frame.residual.held_by;
+  return joint < 0 ? std::string("it is out of reach")
+                   : fmt::format("held back by the limits of '{}'",
+                                 shown(outcome.input.skeleton.names[at(joint)]));
+}
+
+Json joint_name(const Outcome& outcome, int joint) {
+  return joint < 0 ? Json() : Json(outcome.input.skeleton.names[at(joint)]);
+}
+
+std::size_t count_of(const ik::Limits& limits, ik::JointLimit::Kind kind) {
+  return static_cast<std::size_t>(
+      std::count_if(limits.begin(), limits.end(),
+                    [kind](const ik::JointLimit& limit) { return limit.kind == kind; }));
+}
+
+}  // namespace
+
+std::string summary(const Outcome& outcome) {
+  std::size_t reached = 0, total = 0;
+  for (const auto& frames : outcome.motion.goals) {
+    total += frames.size();
+    reached += at(figures_of(frames).reached);
+  }
+  return fmt::format("{} in {} of {}, reached in {} of {}",
+                     counted(static_cast<long long>(outcome.goals.size()), "goal"),
+                     outcome.motion.changed_frames, counted(outcome.input.frame_count(), "frame"),
+                     reached, total);
+}
+
+std::string table(const Outcome& outcome) {
+  std::string text;
+  for (std::size_t g = 0; g < outcome.goals.size(); ++g) {
+    const auto& frames = outcome.motion.goals[g];
+    const Figures figures = figures_of(frames);
+    text += fmt::format("  {} ({}): reached in {} of {}, off by {} at most\n",
+                        shown(outcome.goals[g].name), kind_name(outcome.goals[g].goal.kind),
+                        figures.reached, counted(static_cast<long long>(frames.size()), "frame"),
+                        miss_text(figures.distance, figures.angle));
+  }
+  return text;
+}
+
+Diagnostics missed_goals(const Outcome& outcome) {
+  Diagnostics list;
+  for (std::size_t g = 0; g < outcome.goals.size(); ++g) {
+    const auto& frames = outcome.motion.goals[g];
+    const Figures figures = figures_of(frames);
+    Diagnostic warning;
+    warning.severity = Severity::warning;
+    if (frames.empty()) {
+      warning.code = "ik-never";
+      warning.message = fmt::format("goal '{}' is active in no frame of the motion",
+                                    shown(outcome.goals[g].name));
+      warning.hint = fmt::format("the motion lasts {} s", readable(outcome.input.duration(), 4));
+      list.push_back(std::move(warning));
+      continue;
+    }
+    if (figures.worst == nullptr) continue;
+    const ik::GoalFrame& worst = *figures.worst;
+    warning.code = "ik-missed";
+    warning.message = fmt::format("goal '{}' is missed in {} of {}, by up to {} in frame {}: {}",
+                                  shown(outcome.goals[g].name), frames.size() - at(figures.reached),
+                                  counted(static_cast<long long>(frames.size()), "frame"),
+                                  miss_text(worst.residual.distance, worst.residual.angle),
+                                  worst.frame, holder_text(outcome, worst));
+    warning.frame = worst.frame;
+    if (worst.residual.held_by >= 0) {
+      warning.joint = outcome.input.skeleton.names[at(worst.residual.held_by)];
+    }
+    list.push_back(std::move(warning));
+  }
+  return list;
+}
+
+Json to_json(const Outcome& outcome) {
+  Json json;
+  json["frames"] = outcome.input.frame_count();
+  json["changed_frames"] = outcome.motion.changed_frames;
+  json["goals"] = Json::array();
+  for (std::size_t g = 0; g < outcome.goals.size(); ++g) {
+    const ik::KeyedGoal& goal = outcome.goals[g];
+    const auto& frames = outcome.motion.goals[g];
+    const Figures figures = figures_of(frames);
+    Json entry;
+    entry["name"] = goal.name;
+    entry["kind"] = kind_name(goal.goal.kind);
+    const bool balance = goal.goal.kind == ik::Goal::Kind::balance;
+    entry["joint"] = joint_name(outcome, balance ? -1 : goal.goal.joint);
+    entry["active_frames"] = frames.size();
+    entry["reached_frames"] = figures.reached;
+    entry["largest_distance"] = figures.distance;
+    entry["largest_angle"] = figures.angle;
+    entry["worst_frame"] = figures.worst != nullptr ? Json(figures.worst->frame) : Json();
+    entry["held_by"] =
+        figures.worst != nullptr ? joint_name(outcome, figures.worst->residual.held_by) : Json();
+    entry["frames"] = Json::array();
+    for (const ik::GoalFrame& frame : frames) {
+      entry["frames"].push_back({{"frame", frame.frame},
+                                 {"strength", frame.strength},
+                                 {"distance", frame.residual.distance},
+                                 {"angle", frame.residual.angle},
+                                 {"reached", frame.residual.reached},
+                                 {"held_by", joint_name(outcome, frame.residual.held_by)}});
+    }
+    json["goals"].push_back(std::move(entry));
+  }
+  json["limits"] = limits_json(outcome.limits, outcome.input.skeleton);
+  json["limits"]["largest_excess"] = outcome.motion.largest_excess;
+  return json;
+}
+
+std::string limits_summary(const ik::Limits& limits) {
+  return fmt::format("limits of {}: {} with a cone, {} with a hinge, {} locked",
+                     counted(static_cast<long long>(limits.size()), "joint"),
+                     count_of(limits, ik::JointLimit::Kind::cone),
+                     count_of(limits, ik::JointLimit::Kind::hinge),
+                     count_of(limits, ik::JointLimit::Kind::locked));
+}
+
+Json limits_json(const ik::Limits& limits, const Skeleton& skeleton) {
+  Json json;
+  json["joints"] = skeleton.joint_count();
+  json["cones"] = count_of(limits, ik::JointLimit::Kind::cone);
+  json["hinges"] = count_of(limits, ik::JointLimit::Kind::hinge);
+  json["locked"] = count_of(limits, ik::JointLimit::Kind::locked);
+  return json;
+}
+
+}  // namespace krok::ik_tool
