@@ -17,6 +17,9 @@ constexpr double kLargestTurn = 1.0;
 // local minimum is near.
 constexpr double kSlow = 0.02;
 constexpr int kSlowSteps = 4;
+// The same for the last descent, from the best that was found: goals that cannot be reached are
+// come as near to as can be.
+constexpr double kSettledPart = 1e-7;
 
 constexpr double kBias = 1e-9;
 
@@ -79,14 +82,13 @@ void LeastSquares::list_columns(const Tree& tree, const Options& options) {
   for (auto* list : {&errors_, &tried_, &right_side_, &multipliers_}) list->assign(rows, 0.0);
 }
 
-void LeastSquares::fill_columns(Tree& tree, const Options& options) {
-  pulls_ = options.rest_pull > 0;
+void LeastSquares::fill_columns(Tree& tree) {
   for (Turning& turning : turnings_) {
     const ChainJoint& joint = tree.joints[at(turning.joint)];
     turning.fixed = 0;
     const Vec3 pull =
-        pulls_ ? Vec3(options.rest_pull * rotation_vector(joint.local.conjugate() * joint.start))
-               : Vec3(Vec3::Zero());
+        pull_part_ > 0 ? Vec3(pull_part_ * rotation_vector(joint.local.conjugate() * joint.start))
+                       : Vec3(Vec3::Zero());
     const Mat3 axes = joint.world.orientation.toRotationMatrix();
     for (int i = 0; i < turning.count; ++i) {
       Column& column = columns_[at(turning.first + i)];
@@ -115,7 +117,7 @@ void LeastSquares::fill_columns(Tree& tree, const Options& options) {
 
 // The step for the columns that are not fixed: turn = pull + W J^T (J W J^T + damping)^-1 (e - J
 // pull), where what fixed ones do is taken off the error.
-void LeastSquares::solve_step(const Tree& tree, double damping) {
+void LeastSquares::solve_step(double damping) {
   right_side_ = errors_;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const Column& column = columns_[c];
@@ -135,7 +137,6 @@ void LeastSquares::solve_step(const Tree& tree, double damping) {
     for (int r = column.first_row; r < column.last_row; ++r) sum += entry[r] * multipliers_[at(r)];
     column.turn = column.pull + column.weight * sum;
   }
-  (void)tree;
 }
 
 Vec3 LeastSquares::turn_of(const Turning& turning) const {
@@ -248,10 +249,10 @@ void LeastSquares::find_step(const Tree& tree, double damping) {
   for (Turning& turning : turnings_) turning.fixed = 0;
   // Each round fixes at least one more direction; beyond a few the clamping of the step does.
   for (int round = 0; round < 6; ++round) {
-    solve_step(tree, damping);
+    solve_step(damping);
     if (!fix_at_limits(tree)) return;
   }
-  solve_step(tree, damping);
+  solve_step(damping);
 }
 
 void LeastSquares::take_step(Tree& tree, double scale) const {
@@ -270,16 +271,17 @@ void LeastSquares::take_step(Tree& tree, double scale) const {
   tree.forward();
 }
 
-int LeastSquares::descend(Tree& tree, const Options& options) {
+int LeastSquares::descend(Tree& tree, const Options& options, int most, double slow_part) {
   error_ = tree.errors(errors_);
   if (tree.reached(errors_, options)) return 0;
   double factor = 1;
   int slow = 0;
-  bool fresh = true;
   int iteration = 0;
-  while (iteration < options.iterations) {
+  while (iteration < most) {
     ++iteration;
-    if (fresh) fill_columns(tree, options);
+    fill_columns(tree);
+    // Less from step to step, so that it does not keep goals from being met exactly.
+    pull_part_ *= 0.5;
     find_step(tree, factor * (0.5 * error_ + kBias));
     double largest = 0;
     for (const Turning& turning : turnings_) largest = std::max(largest, turn_of(turning).norm());
@@ -289,13 +291,11 @@ int LeastSquares::descend(Tree& tree, const Options& options) {
     if (!(error < error_)) {
       restore(tree, kept_);
       tree.forward();
-      // fix_along() has turned the columns of limited joints, which is no matter to the next try.
       factor *= 8;
-      fresh = true;
       if (++slow >= kSlowSteps) break;
       continue;
     }
-    slow = error > (1 - kSlow) * error_ ? slow + 1 : 0;
+    slow = error > (1 - slow_part) * error_ ? slow + 1 : 0;
     error_ = error;
     std::swap(errors_, tried_);
     factor = std::max(1e-3, factor * 0.25);
@@ -310,8 +310,10 @@ int LeastSquares::solve(Tree& tree, const Options& options, int& starts) {
   int iterations = 0;
   if (columns_.empty() || tree.rows == 0) return iterations;
   keep(tree, first_);
-  iterations += descend(tree, options);
-  if (options.restarts <= 0 || tree.reached(errors_, options)) return iterations;
+  pull_part_ = options.rest_pull;
+  int best_iterations = descend(tree, options, options.iterations, kSlow);
+  iterations += best_iterations;
+  if (tree.reached(errors_, options)) return iterations;
   double best = error_;
   keep(tree, best_);
   for (int restart = 1; restart <= options.restarts; ++restart) {
@@ -323,16 +325,20 @@ int LeastSquares::solve(Tree& tree, const Options& options, int& starts) {
       turn_at_random(joint, random);
     }
     tree.forward();
-    iterations += descend(tree, options);
+    pull_part_ = options.rest_pull;
+    const int made = descend(tree, options, options.iterations, kSlow);
+    iterations += made;
+    if (tree.reached(errors_, options)) return iterations;
     if (error_ < best) {
       best = error_;
+      best_iterations = made;
       keep(tree, best_);
     }
-    if (tree.reached(errors_, options)) return iterations;
   }
   restore(tree, best_);
   tree.forward();
-  return iterations;
+  pull_part_ = 0;
+  return iterations + descend(tree, options, options.iterations - best_iterations, kSettledPart);
 }
 
 }  // namespace krok::ik

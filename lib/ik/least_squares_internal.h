@@ -41,11 +41,13 @@ class LeastSquares {
     Vec3 root = Vec3::Zero();
   };
 
-  int descend(Tree& tree, const Options& options);
+  // At most `most` steps, until the goals are reached or several steps in a row lower the error by
+  // less than `slow_part` of it.
+  int descend(Tree& tree, const Options& options, int most, double slow_part);
   void list_columns(const Tree& tree, const Options& options);
-  void fill_columns(Tree& tree, const Options& options);
+  void fill_columns(Tree& tree);
   void find_step(const Tree& tree, double damping);
-  void solve_step(const Tree& tree, double damping);
+  void solve_step(double damping);
   bool fix_at_limits(const Tree& tree);
   bool fix_hinge(const ChainJoint& joint, Turning& turning);
   bool fix_cone(const ChainJoint& joint, Turning& turning);
@@ -61,7 +63,7 @@ class LeastSquares {
   NormalEquations equations_, working_;
   std::vector<double> errors_, tried_, right_side_, multipliers_;
   PoseState kept_, best_, first_;
-  bool pulls_ = false;
+  double pull_part_ = 0;  // of the way to the start pose
   double error_ = 0;
 };
 

@@ -45,7 +45,8 @@ struct Options {
   int restarts = 0;
   std::uint64_t seed = 1;
 
-  // How strongly what the goals leave open is drawn back to the start pose in each step, 0 to 1.
+  // How strongly what the goals leave open is drawn back to the start pose, 0 to 1; half as much
+  // from step to step.
   double rest_pull = 0.0;
 
   // Whether the root may move, for goals of a whole body; it always may turn.
