@@ -20,6 +20,8 @@ constexpr std::size_t kGrain = 32;
 // Passes for goals relative to joints that the solution moves.
 constexpr int kPasses = 5;
 constexpr double kSettled = 1e-6;  // metres
+// A motion that is beyond its limits by so much, radians, is blended by a goal's strength alone.
+constexpr double kWhollyBlended = 0.1;
 
 Status check_keys(const KeyedGoal& goal) {
   const auto wrong = [&](const char* what) {
@@ -120,14 +122,14 @@ class FrameSolver {
  private:
   Transform anchor(const KeyedGoal& goal, double time, const std::vector<Transform>& pose);
   void list_goals(double time, const std::vector<Transform>& anchors_from);
-  void give_back_beyond_limits(double strength);
+  bool blend_in(double strength);
   double excess_of_chains() const;
 
   const Clip& clip_;
   std::span<const KeyedGoal> goals_;
   Solver solver_;
   bool relative_ = false;
-  std::vector<Transform> given_, solved_, other_, scratch_;
+  std::vector<Transform> given_, solved_, other_, scratch_, local_, before_solving_;
   std::vector<Goal> active_, before_;
   std::vector<double> strengths_;
 };
@@ -164,28 +166,31 @@ void FrameSolver::list_goals(double time, const std::vector<Transform>& anchors_
   }
 }
 
-void FrameSolver::give_back_beyond_limits(double strength) {
+// Where the motion itself is beyond limits of a chain, the solution is another pose than the
+// motion's even as a goal only begins to count. The turns are then blended by the goal's strength;
+// the less the motion is beyond its limits, the less is blended, so that nothing jumps.
+bool FrameSolver::blend_in(double strength) {
   const Limits& limits = solver_.limits();
-  if (limits.empty() || strength >= 1) return;
-  // Local rotations of both, then the solved pose anew with what clamping took off given back.
+  if (limits.empty() || strength >= 1) return false;
   const auto& parents = clip_.skeleton.parents;
-  std::vector<Transform> local(given_.size()), before(given_.size());
-  world_to_local(parents, solved_, local);
-  world_to_local(parents, given_, before);
-  bool any = false;
-  for (std::size_t j = 1; j < local.size(); ++j) {
-    if (limits[j].kind == JointLimit::Kind::free || limits[j].kind == JointLimit::Kind::locked) {
-      continue;
-    }
-    if (angle_between(local[j].orientation, before[j].orientation) < 1e-9) continue;
-    const Quat allowed = clamped(limits[j], before[j].orientation);
-    const Quat beyond = allowed.conjugate() * before[j].orientation;
-    if (angle_between(beyond, Quat::Identity()) < 1e-9) continue;
-    local[j].orientation =
-        (local[j].orientation * slerp(Quat::Identity(), beyond, 1 - strength)).normalized();
-    any = true;
+  local_.resize(given_.size());
+  before_solving_.resize(given_.size());
+  world_to_local(parents, solved_, local_);
+  world_to_local(parents, given_, before_solving_);
+  double beyond = 0;
+  for (std::size_t j = 0; j < local_.size(); ++j) {
+    if (angle_between(local_[j].orientation, before_solving_[j].orientation) < 1e-9) continue;
+    beyond = std::max(beyond, excess(limits[j], before_solving_[j].orientation));
   }
-  if (any) local_to_world(parents, local, solved_);
+  if (!(beyond > 1e-9)) return false;
+  const double part = 1 + (strength - 1) * std::min(1.0, beyond / kWhollyBlended);
+  for (std::size_t j = 0; j < local_.size(); ++j) {
+    local_[j].orientation =
+        slerp(before_solving_[j].orientation, local_[j].orientation, part).normalized();
+    local_[j].position += (1 - part) * (before_solving_[j].position - local_[j].position);
+  }
+  local_to_world(parents, local_, solved_);
+  return true;
 }
 
 double FrameSolver::excess_of_chains() const {
@@ -231,12 +236,21 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
     outcome = *solution;
   }
   if (strength >= 1) excess = std::max(excess, excess_of_chains());
-  give_back_beyond_limits(strength);
+  std::vector<Residual> missed = outcome->goals;
+  if (blend_in(strength)) {
+    const auto& parents = clip_.skeleton.parents;
+    const auto blended = residuals(active_, parents, solved_, solver_.options());
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+      const int held_by = missed[i].held_by;
+      missed[i] = blended[i];
+      if (!missed[i].reached) missed[i].held_by = held_by;
+    }
+  }
   result.set_pose(frame, solved_);
   std::size_t next = 0;
   for (std::size_t g = 0; g < goals_.size(); ++g) {
     report[g] = {frame, strengths_[g], {}};
-    if (strengths_[g] > 0) report[g].residual = outcome->goals[next++];
+    if (strengths_[g] > 0) report[g].residual = missed[next++];
   }
   return {};
 }

@@ -1,0 +1,193 @@
+// If these fail, goals in a motion take hold with a jump, change frames that they have no part in,
+// follow the wrong joint, or come out differently on another number of threads.
+
+#include "ik/goal_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "ik/anatomical_limits.h"
+#include "ik/learn_limits.h"
+#include "math/quaternion.h"
+#include "roles/roles.h"
+#include "support/test_scenes.h"
+
+namespace krok::ik {
+namespace {
+
+Clip calm_human(int frames) {
+  Clip clip = krok::test::swinging_clip(krok::test::turned_human(), frames, 60);
+  return clip;
+}
+
+KeyedGoal reach_of(const Clip& clip, const char* joint, double time, const Vec3& target) {
+  KeyedGoal goal;
+  goal.name = joint;
+  goal.goal.joint = clip.skeleton.find(joint);
+  goal.goal.depth = 5;
+  goal.keys = {{time, target, Quat::Identity(), {}}};
+  return goal;
+}
+
+Vec3 place(const Clip& clip, int frame, const char* joint) {
+  return clip.frame_positions(frame)[at(clip.skeleton.find(joint))].cast<double>();
+}
+
+bool same_frame(const Clip& a, const Clip& b, int frame) {
+  const auto pa = a.frame_positions(frame), pb = b.frame_positions(frame);
+  const auto qa = a.frame_orientations(frame), qb = b.frame_orientations(frame);
+  for (std::size_t j = 0; j < pa.size(); ++j) {
+    if (pa[j] != pb[j] || qa[j].coeffs() != qb[j].coeffs()) return false;
+  }
+  return true;
+}
+
+TEST(GoalMotion, ReachesAtItsTimeAndLeavesOtherFramesBitForBit) {
+  const Clip clip = calm_human(120);
+  const Vec3 target = place(clip, 60, "LeftHand") + Vec3(-0.1, 0.1, 0.05);
+  const KeyedGoal goal = reach_of(clip, "LeftHand", 1.0, target);
+  const auto made = apply_goals(clip, {&goal, 1}, {});
+  ASSERT_TRUE(made.ok());
+  EXPECT_LT((place(made->clip, 60, "LeftHand") - target).norm(), 2e-4);
+  int changed = 0;
+  for (int f = 0; f < 120; ++f) {
+    const bool inside = std::abs(f / 60.0 - 1) < 0.3 - 1e-9;
+    EXPECT_EQ(same_frame(clip, made->clip, f), !inside) << f;
+    changed += inside ? 1 : 0;
+  }
+  EXPECT_EQ(made->changed_frames, changed);
+  EXPECT_EQ(made->goals[0].size(), at(changed));
+}
+
+// Acceleration of a hand that fades into a hold and out of it stays of the size of the way over the
+// time squared; a jump of a millimetre in a frame would be 3.6 m/s^2 alone.
+TEST(GoalMotion, TakesHoldAndLetsGoWithoutAJump) {
+  Clip clip = calm_human(180);
+  for (int f = 1; f < 180; ++f) {
+    std::vector<Transform> pose(clip.skeleton.names.size());
+    clip.get_pose(0, pose);
+    clip.set_pose(f, pose);
+  }
+  KeyedGoal goal = reach_of(clip, "RightHand", 1.5, place(clip, 0, "RightHand") + Vec3(0, 0.1, 0));
+  goal.fade_in = goal.fade_out = 0.5;
+  // Limits that the pose itself breaks must not make it jump either.
+  const RoleMap roles = find_roles(clip.skeleton);
+  for (const bool limited : {false, true}) {
+    const Limits limits = limited ? anatomical_limits(clip.skeleton, roles) : Limits();
+    const auto made = apply_goals(clip, {&goal, 1}, limits);
+    ASSERT_TRUE(made.ok());
+    for (int f = 1; f + 1 < 180; ++f) {
+      for (const char* joint : {"RightHand", "RightForeArm"}) {
+        const Vec3 second = place(made->clip, f + 1, joint) - 2 * place(made->clip, f, joint) +
+                            place(made->clip, f - 1, joint);
+        EXPECT_LT(second.norm() * 3600, limited ? 30 : 5) << f << " " << joint;
+      }
+    }
+  }
+}
+
+TEST(GoalMotion, MovesThroughItsKeysWithTheirEasing) {
+  const Clip clip = calm_human(61);
+  KeyedGoal goal = reach_of(clip, "LeftHand", 0.0, Vec3::Zero());
+  goal.keys = {{0.0, Vec3(0, 0, 0), Quat::Identity(), {timeline::Curve::linear, {}}},
+               {1.0, Vec3(1, 0, 0), Quat::Identity(), {timeline::Curve::smooth, {}}},
+               {2.0, Vec3(1, 1, 0), Quat::Identity(), {}}};
+  EXPECT_NEAR(key_at(goal, 0.25).target.x(), 0.25, 1e-12);
+  EXPECT_NEAR(key_at(goal, 1.25).target.y(), 3 * 0.0625 - 2 * 0.015625, 1e-12);
+  EXPECT_EQ(key_at(goal, -1).target, Vec3(0, 0, 0));
+  EXPECT_EQ(key_at(goal, 9).target, Vec3(1, 1, 0));
+  EXPECT_EQ(strength_at(goal, 1, 3), 1);
+  EXPECT_EQ(strength_at(goal, 2.31, 3), 0);
+  EXPECT_NEAR(strength_at(goal, 2.15, 3), 0.5, 1e-9);
+}
+
+TEST(GoalMotion, FollowsAJointThatMovesWithTheSolution) {
+  const Clip clip = calm_human(60);
+  // The right hand on the left one, while the left one reaches for a place.
+  std::vector<KeyedGoal> goals = {
+      reach_of(clip, "LeftHand", 0.5, place(clip, 30, "Spine2") + Vec3(0.1, -0.05, 0.3)),
+      reach_of(clip, "RightHand", 0.5, Vec3(0, 0.02, 0))};
+  goals[1].relative_to = clip.skeleton.find("LeftHand");
+  const auto made = apply_goals(clip, goals, {});
+  ASSERT_TRUE(made.ok());
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  made->clip.get_pose(30, pose);
+  const Vec3 wanted = pose[at(goals[1].relative_to)] * Vec3(0, 0.02, 0);
+  EXPECT_LT((place(made->clip, 30, "LeftHand") - goals[0].keys[0].target).norm(), 5e-4);
+  EXPECT_LT((place(made->clip, 30, "RightHand") - wanted).norm(), 1e-3);
+}
+
+TEST(GoalMotion, FollowsAJointOfAnotherMotion) {
+  const Clip clip = calm_human(60);
+  Clip other = krok::test::swinging_human(30);  // 30 Hz: sampled between its frames
+  for (Vec3f& position : other.positions) position += Vec3f(-0.05f, 0.03f, 0.05f);
+  KeyedGoal goal = reach_of(clip, "LeftHand", 0.5, Vec3(0, 0, 0));
+  goal.motion = &other;
+  goal.relative_to = other.skeleton.find("LeftHand");
+  const auto made = apply_goals(clip, {&goal, 1}, {});
+  ASSERT_TRUE(made.ok());
+  EXPECT_LT((place(made->clip, 30, "LeftHand") - place(other, 15, "LeftHand")).norm(), 5e-4);
+}
+
+TEST(GoalMotion, KeepsLimitsAtFullStrengthAndReportsWhatItMisses) {
+  const Clip clip = calm_human(90);
+  const Clip* one = &clip;
+  const auto limits = learn_limits(clip.skeleton, {&one, 1});
+  ASSERT_TRUE(limits.ok());
+  KeyedGoal goal = reach_of(clip, "RightHand", 0.5, place(clip, 30, "RightHand") + Vec3(2, 0, 0));
+  goal.to = 1.0;
+  const auto made = apply_goals(clip, {&goal, 1}, *limits);
+  ASSERT_TRUE(made.ok());
+  EXPECT_LE(made->largest_excess, 1e-6);
+  bool missed = false;
+  for (const GoalFrame& frame : made->goals[0]) {
+    if (frame.strength < 1) continue;
+    missed = true;
+    EXPECT_FALSE(frame.residual.reached);
+    EXPECT_GT(frame.residual.distance, 0.5);
+  }
+  EXPECT_TRUE(missed);
+}
+
+TEST(GoalMotion, TheSameForAnyNumberOfThreads) {
+  const Clip clip = calm_human(200);
+  const KeyedGoal goal = [&] {
+    KeyedGoal made = reach_of(clip, "LeftFoot", 0.5, place(clip, 30, "LeftFoot"));
+    made.to = 3;
+    return made;
+  }();
+  GoalMotionOptions options;
+  options.jobs = 1;
+  const auto one = apply_goals(clip, {&goal, 1}, {}, options);
+  options.jobs = 4;
+  const auto four = apply_goals(clip, {&goal, 1}, {}, options);
+  ASSERT_TRUE(one.ok() && four.ok());
+  for (int f = 0; f < 200; ++f) EXPECT_TRUE(same_frame(one->clip, four->clip, f)) << f;
+}
+
+TEST(GoalMotion, WrongKeysAreRefused) {
+  const Clip clip = calm_human(30);
+  std::vector<KeyedGoal> bad(4, reach_of(clip, "LeftHand", 0.5, Vec3(0, 1, 0)));
+  bad[0].keys.clear();
+  bad[1].keys.push_back(bad[1].keys[0]);
+  bad[2].fade_in = -1;
+  bad[3].goal.joint = 999;
+  for (const KeyedGoal& goal : bad) {
+    const auto made = apply_goals(clip, {&goal, 1}, {});
+    ASSERT_FALSE(made.ok());
+    EXPECT_EQ(made.error().code, "ik-goal");
+  }
+}
+
+TEST(GoalMotion, TheOutlineIsConvexAndHoldsAllPoints) {
+  const auto hull = outline({{0, 0}, {1, 0}, {0.5, 0.2}, {1, 1}, {0, 1}, {0.5, 0}, {1, 0}});
+  EXPECT_EQ(hull.size(), 4u);
+  EXPECT_EQ(outline({{1, 2}, {1, 2}}).size(), 1u);
+  EXPECT_EQ(outline({{0, 0}, {1, 1}, {2, 2}}).size(), 2u);
+}
+
+}  // namespace
+}  // namespace krok::ik
