@@ -1,0 +1,226 @@
+// If these fail, krok-ik writes another motion than its goals ask for, hides that a goal was missed
+// and why, or ends wrongly on wrong input.
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+#include "core/file.h"
+#include "core/index.h"
+#include "formats/anim/anim.h"
+#include "samples/generator/walk.h"
+
+namespace krok {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class KrokIk : public test::CliTest {
+ protected:
+  void SetUp() override {
+    samples::WalkOptions options;
+    options.steps = 3;
+    options.rate = 30;
+    walk_ = samples::make_walk(options)->clip;
+    write("walk.anim", walk_);
+  }
+
+  void write(const std::string& name, const Clip& clip) const {
+    auto file = OutputFile::create(path(name));
+    ASSERT_TRUE(file.ok());
+    anim::WriteOptions exact;
+    exact.orientation = OrientationEncoding::xyzw;
+    ASSERT_TRUE(anim::write(clip, exact, *file).ok());
+    ASSERT_TRUE(file->commit().ok());
+  }
+
+  void write_text(const std::string& name, const std::string& text) const {
+    auto file = OutputFile::create(path(name));
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE(file->write(std::as_bytes(std::span(text))).ok());
+    ASSERT_TRUE(file->commit().ok());
+  }
+
+  Clip read(const std::string& name) const {
+    const auto file = InputFile::open(path(name));
+    EXPECT_TRUE(file.ok()) << name;
+    auto clip = anim::read(file->bytes());
+    EXPECT_TRUE(clip.ok()) << name;
+    return std::move(*clip);
+  }
+
+  test::ToolRun ik(std::vector<std::string> arguments) const {
+    test::ToolOptions options;
+    options.folder = folder_.string();
+    return test::run_tool("krok-ik", std::move(arguments), options);
+  }
+
+  Vec3 place(const Clip& clip, int frame, const char* joint) const {
+    return clip.frame_positions(frame)[at(clip.skeleton.find(joint))].cast<double>();
+  }
+
+  // "RightHand=x,y,z@30f": the hand's place in frame 30, moved.
+  std::string reach(const Vec3& by, const std::string& time = "30f") const {
+    const Vec3 to = place(walk_, 30, "RightHand") + by;
+    return "RightHand=" + std::to_string(to.x()) + "m," + std::to_string(to.y()) + "m," +
+           std::to_string(to.z()) + "m@" + time;
+  }
+
+  Clip walk_;
+};
+
+TEST_F(KrokIk, AHandReachesAPlaceAtItsTimeAndTheRestStays) {
+  const auto run = ik({"walk.anim", "--reach", reach(Vec3(0, 0.1, 0.05)), "--fade", "200ms", "-o",
+                       "out.anim", "-v", "--orientation", "xyzw"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, HasSubstr("RightHand (position): reached in"));
+  const Clip out = read("out.anim");
+  const Vec3 wanted = place(walk_, 30, "RightHand") + Vec3(0, 0.1, 0.05);
+  EXPECT_LT((place(out, 30, "RightHand") - wanted).norm(), 1e-4);
+  EXPECT_EQ(place(out, 20, "RightHand"), place(walk_, 20, "RightHand"));
+  EXPECT_EQ(place(out, 30, "LeftFoot"), place(walk_, 30, "LeftFoot"));
+  EXPECT_EQ(out.provenance.tool, "krok-ik");
+  ASSERT_FALSE(out.provenance.conversions.empty());
+  EXPECT_THAT(out.provenance.conversions.back(), HasSubstr("inverse kinematics: 1 goal"));
+}
+
+TEST_F(KrokIk, WhatIsMissedIsToldWithTheJointThatHoldsBack) {
+  // As far as the arm and the trunk can never reach, then with an arm that may not bend.
+  const auto far = ik({"walk.anim", "--reach", reach(Vec3(5, 0, 0)), "-o", "far.anim", "--json"});
+  ASSERT_EQ(far.exit_code, 0) << far.err;
+  const json goal = json::parse(far.out)["result"]["goals"][0];
+  EXPECT_EQ(goal["joint"], "RightHand");
+  EXPECT_GT(goal["largest_distance"].get<double>(), 3);
+  EXPECT_TRUE(goal["held_by"].is_null());
+  EXPECT_EQ(goal["worst_frame"], 30);
+  EXPECT_EQ(goal["frames"].size(), goal["active_frames"]);
+  const json issue = json::parse(far.out)["issues"][0];
+  EXPECT_EQ(issue["code"], "ik-missed");
+  EXPECT_EQ(issue["frame"], 30);
+
+  write_text("stiff.limits.json",
+             R"({"schema": "krok.limits/1", "joints": {
+  "RightForeArm": {"kind": "hinge", "axis": [0, 1, 0], "range": [-1, 1]},
+  "RightShoulder": {"kind": "locked"}, "Spine": {"kind": "locked"},
+  "Spine1": {"kind": "locked"}, "Spine2": {"kind": "locked"}}})");
+  const Vec3 shoulder = place(walk_, 30, "RightArm");
+  const std::string near = "RightHand=" + std::to_string(shoulder.x()) + "," +
+                           std::to_string(shoulder.y() - 0.2) + "," +
+                           std::to_string(shoulder.z() + 0.1) + "@30f";
+  const auto held = ik({"walk.anim", "--reach", near, "--limits", "stiff.limits.json", "-o",
+                        "held.anim", "--json"});
+  ASSERT_EQ(held.exit_code, 0) << held.err;
+  const json result = json::parse(held.out)["result"];
+  EXPECT_EQ(result["goals"][0]["held_by"], "RightForeArm");
+  EXPECT_LE(result["limits"]["largest_excess"].get<double>(), 1e-6);
+}
+
+TEST_F(KrokIk, GoalsComeFromAFileAndFromAnotherMotion) {
+  Clip other = walk_;
+  for (Vec3f& position : other.positions) position += Vec3f(0, 0.05f, 0.03f);
+  write("other.anim", other);
+  write_text("goals.json", R"({"schema": "krok.goals/1", "rate": 30, "goals": [
+  {"name": "follow", "joint": "left_hand", "motion": "other.anim", "relative_to": "LeftHand",
+   "keys": [{"time": "20f", "target": [0, 0, 0]}], "to": "40f", "fade_in": 0.2}]})");
+  const auto run = ik({"walk.anim", "--goals", "goals.json", "-o", "out.anim"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Clip out = read("out.anim");
+  for (const int frame : {20, 33, 40}) {
+    EXPECT_LT((place(out, frame, "LeftHand") - place(other, frame, "LeftHand")).norm(), 1e-4);
+  }
+  EXPECT_EQ(out.provenance.sources.size(), 3u);
+}
+
+TEST_F(KrokIk, LimitsAreLearntAndWritten) {
+  const auto learn =
+      ik({"walk.anim", "--learn-limits", "walk.anim", "--write-limits", "actor.limits.json"});
+  ASSERT_EQ(learn.exit_code, 0) << learn.err;
+  EXPECT_THAT(learn.err, HasSubstr("actor.limits.json: limits of "));
+  const auto file = InputFile::open(path("actor.limits.json"));
+  ASSERT_TRUE(file.ok());
+  const json limits = json::parse(file->text());
+  EXPECT_EQ(limits["joints"]["LeftArm"]["kind"], "cone");
+}
+
+TEST_F(KrokIk, AutoLimitsAreWrittenAndReadAgain) {
+  const auto make = ik({"walk.anim", "--limits", "auto", "--write-limits", "auto.limits.json"});
+  ASSERT_EQ(make.exit_code, 0) << make.err;
+  const auto by_file = ik({"walk.anim", "--limits", "auto.limits.json", "--reach",
+                           reach(Vec3(0, 0.2, 0.2)), "-o", "a.anim", "--orientation", "xyzw"});
+  const auto by_name = ik({"walk.anim", "--limits", "auto", "--reach", reach(Vec3(0, 0.2, 0.2)),
+                           "-o", "b.anim", "--orientation", "xyzw"});
+  ASSERT_EQ(by_file.exit_code, 0) << by_file.err;
+  ASSERT_EQ(by_name.exit_code, 0) << by_name.err;
+  const Clip a = read("a.anim"), b = read("b.anim");
+  for (std::size_t i = 0; i < a.positions.size(); ++i) {
+    EXPECT_LT((a.positions[i] - b.positions[i]).norm(), 1e-5f);
+  }
+}
+
+TEST_F(KrokIk, EveryMethodReachesAnEasyGoal) {
+  for (const char* method : {"least-squares", "ccd", "two-bone"}) {
+    const auto run = ik({"walk.anim", "--reach", reach(Vec3(0, 0.05, 0.02)), "--method", method,
+                         "--iterations", "300", "-o", std::string(method) + ".anim"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const Vec3 wanted = place(walk_, 30, "RightHand") + Vec3(0, 0.05, 0.02);
+    EXPECT_LT((place(read(std::string(method) + ".anim"), 30, "RightHand") - wanted).norm(), 1e-4)
+        << method;
+  }
+}
+
+TEST_F(KrokIk, StiffnessAndDepthReachTheSolver) {
+  const Vec3 by(0.1, 0.2, 0.3);
+  const auto spine_moved = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = {"walk.anim", "--reach", reach(by), "-o", "out.anim",
+                                    "--orientation", "xyzw"};
+    all.insert(all.end(), more.begin(), more.end());
+    EXPECT_EQ(ik(all).exit_code, 0);
+    const Clip out = read("out.anim");
+    return (place(out, 30, "Neck") - place(walk_, 30, "Neck")).norm();
+  };
+  const double free = spine_moved({});
+  EXPECT_GT(free, 0.01);
+  EXPECT_LT(spine_moved({"--stiffness", "spine=0.9", "--stiffness", "chest=0.9"}), free);
+  EXPECT_EQ(spine_moved({"--depth", "4"}), 0);
+}
+
+TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {
+  write_text("bad.json", R"({"schema": "krok.goals/1", "goals": [
+  {"joint": "RightHnd", "keys": [{"time": 0, "target": [0, 0, 0]}]}]})");
+  write_text("bad.limits.json", R"({"schema": "krok.limits/1", "joints": {
+  "Head": {"kind": "cone"}}})");
+  const std::string good = reach(Vec3(0, 0.1, 0));
+  struct Case {
+    std::vector<std::string> arguments;
+    const char* says;
+  };
+  const Case cases[] = {
+      {{"walk.anim", "-o", "x.anim"}, "no goals"},
+      {{"walk.anim", "--reach", good}, "-o is missing"},
+      {{"walk.anim", "--reach", "RightHand=1,2@3s", "-o", "x.anim"}, "three lengths"},
+      {{"walk.anim", "--reach", "RightHand=1,2,3", "-o", "x.anim"}, "no time"},
+      {{"walk.anim", "--reach", "=1,2,3@1s", "-o", "x.anim"}, "no joint"},
+      {{"walk.anim", "--reach", "RightHand=1,2,nan@1s", "-o", "x.anim"}, "RightHand"},
+      {{"walk.anim", "--reach", "RightHand=1,2,3@2s..1s", "-o", "x.anim"}, "before it begins"},
+      {{"walk.anim", "--reach", "Nose=1,2,3@1s", "-o", "x.anim"}, "[ik-joint]"},
+      {{"walk.anim", "--reach", good, "--stiffness", "Spine=2", "-o", "x.anim"}, "0 to 1"},
+      {{"walk.anim", "--reach", good, "--fade", "-1s", "-o", "x.anim"}, "--fade"},
+      {{"walk.anim", "--reach", good, "--tolerance", "0mm", "-o", "x.anim"}, "--tolerance"},
+      {{"walk.anim", "--write-limits", "y.json"}, "no limits"},
+      {{"walk.anim", "--goals", "bad.json", "-o", "x.anim"}, "bad.json:2:13: error: "},
+      {{"walk.anim", "--reach", good, "--limits", "bad.limits.json", "-o", "x.anim"},
+       "bad.limits.json:2:11: error: "},
+      {{"walk.anim", "--reach", good, "-o", "x.bvh"}, "x.bvh"}};
+  for (const Case& one : cases) {
+    const auto run = ik(one.arguments);
+    EXPECT_EQ(run.exit_code, 2) << one.says;
+    EXPECT_THAT(run.err, HasSubstr(one.says));
+    EXPECT_FALSE(std::filesystem::exists(path("x.anim"))) << one.says;
+  }
+}
+
+}  // namespace
+}  // namespace krok
