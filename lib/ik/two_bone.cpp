@@ -11,24 +11,31 @@ namespace {
 
 constexpr double kTiny = 1e-12;
 
+// 0 times a number that is not finite is not 0; one sum is quicker than a test of each.
 bool finite(const TwoBoneChain& chain, const TwoBoneGoal& goal) {
-  return chain.root.allFinite() && chain.middle.allFinite() && chain.end.allFinite() &&
-         chain.hinge.allFinite() && goal.target.allFinite() && goal.pole.allFinite() &&
-         std::isfinite(goal.min_bend) && std::isfinite(goal.max_bend) &&
-         std::isfinite(goal.softness);
+  const Vec3 all = 0 * chain.root + 0 * chain.middle + 0 * chain.end + 0 * chain.hinge +
+                   0 * goal.target + 0 * goal.pole;
+  return all.sum() + 0 * goal.min_bend + 0 * goal.max_bend + 0 * goal.softness == 0;
+}
+
+// The length of v; exact where squares would overflow or underflow.
+double length_of(const Vec3& v) {
+  const double square = v.squaredNorm();
+  return square > 1e-200 && square < 1e200 ? std::sqrt(square) : v.stableNorm();
 }
 
 // The unit direction of v, or zero if v is too short relative to `scale`.
 Vec3 direction(const Vec3& v, double scale = 1.0) {
-  const double length = v.stableNorm();
-  return length > kTiny * scale ? Vec3(v / length) : Vec3(Vec3::Zero());
+  const double length = length_of(v);
+  return length > kTiny * scale ? Vec3(v * (1 / length)) : Vec3(Vec3::Zero());
 }
 
 // The unit part of v perpendicular to the unit vector `along`; zero if there is none.
 Vec3 perpendicular_part(const Vec3& v, const Vec3& along) {
-  const Vec3 unit = direction(v);
-  const Vec3 part = unit - along * along.dot(unit);
-  return part.norm() > 1e-6 ? Vec3(part.normalized()) : Vec3(Vec3::Zero());
+  const double length = length_of(v);
+  const Vec3 part = v - along * along.dot(v);
+  const double across = length_of(part);
+  return length > kTiny && across > 1e-6 * length ? Vec3(part * (1 / across)) : Vec3(Vec3::Zero());
 }
 
 Vec3 any_perpendicular(const Vec3& along) {
@@ -43,17 +50,42 @@ double soft_distance(double distance, double longest, double softness) {
   return start + softness * (1.0 - std::exp(-(distance - start) / softness));
 }
 
-// The rotation that maps bone and hinge from their present to their new directions. Both hinges are
-// orthogonalised to their bones.
+// The rotation that takes bone and hinge from where they are to where they shall be. The hinge is
+// squared to the bone where it is; where it shall be it is perpendicular to it.
 Quat frame_rotation(const Vec3& bone_from, const Vec3& hinge_from, const Vec3& bone_to,
                     const Vec3& hinge_to) {
   const Vec3 from = perpendicular_part(hinge_from, bone_from);
-  const Vec3 to = perpendicular_part(hinge_to, bone_to);
-  if (from.isZero() || to.isZero()) return shortest_arc(bone_from, bone_to);
-  Mat3 before, after;
-  before << bone_from, from, bone_from.cross(from);
-  after << bone_to, to, bone_to.cross(to);
-  return normalized_or_identity(Quat(Mat3(after * before.transpose())));
+  if (from.isZero()) return shortest_arc(bone_from, bone_to);
+  const double cosine = bone_from.dot(bone_to);
+  if (cosine > -0.9) {
+    // The bone by the shortest arc, then a turn about it: two half angles by their cosines and
+    // sines, which needs fewer square roots and branches than a matrix.
+    const Vec3 axis = bone_from.cross(bone_to);
+    const double w = 1 + cosine;
+    // `from` turned by the arc: from + axis x from + axis x (axis x from) / w.
+    const Vec3 across = axis.cross(from);
+    const Vec3 hinge = from + across + axis.cross(across) * (1 / w);
+    const double turn_cosine = hinge.dot(hinge_to);
+    if (turn_cosine > -0.9) {
+      const double turn_w = 1 + turn_cosine;
+      const double turn_sine = bone_to.dot(hinge.cross(hinge_to));
+      const Vec3 part = turn_w * axis + (turn_sine * w) * bone_to + turn_sine * bone_to.cross(axis);
+      const double scalar = turn_w * w - turn_sine * bone_to.dot(axis);
+      const double scale = 1 / std::sqrt(scalar * scalar + part.squaredNorm());
+      return {scale * scalar, scale * part.x(), scale * part.y(), scale * part.z()};
+    }
+  }
+  const Vec3 third_from = bone_from.cross(from), third_to = bone_to.cross(hinge_to);
+  const Mat3 turn = bone_to * bone_from.transpose() + hinge_to * from.transpose() +
+                    third_to * third_from.transpose();
+  return Quat(turn).normalized();
+}
+
+// two_bone_reach() with the two ends of the usual range known.
+double reach_at(double upper_length, double lower_length, double bend) {
+  if (bend <= 0) return upper_length + lower_length;
+  if (bend >= kPi) return std::abs(upper_length - lower_length);
+  return two_bone_reach(upper_length, lower_length, bend);
 }
 
 }  // namespace
@@ -85,11 +117,14 @@ TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goa
 
   const Vec3 upper = chain.middle - chain.root;
   const Vec3 lower = chain.end - chain.middle;
-  const double upper_length = upper.norm();
-  const double lower_length = lower.norm();
+  const double upper_length = length_of(upper);
+  const double lower_length = length_of(lower);
   const double sum = upper_length + lower_length;
-  const Vec3 upper_now = direction(upper);
-  const Vec3 lower_now = direction(lower);
+  const auto unit = [](const Vec3& v, double length) {
+    return length > kTiny ? Vec3(v * (1 / length)) : Vec3(Vec3::Zero());
+  };
+  const Vec3 upper_now = unit(upper, upper_length);
+  const Vec3 lower_now = unit(lower, lower_length);
   if (sum <= kTiny) {
     solution.reached = (chain.end - goal.target).norm() < 1e-9;
     return solution;
@@ -97,17 +132,24 @@ TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goa
 
   const double max_bend = std::clamp(goal.max_bend, 0.0, kPi);
   const double min_bend = std::clamp(goal.min_bend, 0.0, max_bend);
-  const double longest = two_bone_reach(upper_length, lower_length, min_bend);
-  const double shortest = two_bone_reach(upper_length, lower_length, max_bend);
+  const double longest = reach_at(upper_length, lower_length, min_bend);
+  const double shortest = reach_at(upper_length, lower_length, max_bend);
   const Vec3 to_target = goal.target - chain.root;
-  const double wanted = soft_distance(to_target.norm(), longest, goal.softness);
+  const double to_target_length = length_of(to_target);
+  const double wanted = soft_distance(to_target_length, longest, goal.softness);
   const double distance = std::clamp(wanted, shortest, longest);
-  // Clamped again so that rounding cannot exceed an exact limit.
-  solution.bend =
-      std::clamp(two_bone_bend(upper_length, lower_length, distance), min_bend, max_bend);
+  // tan^2(bend / 2) = open / folded.
+  const double difference = upper_length - lower_length;
+  const double open = std::max(0.0, (sum - distance) * (sum + distance));
+  const double folded =
+      std::max(0.0, (distance - std::abs(difference)) * (distance + std::abs(difference)));
+  const double bend = open == 0 ? 0.0 : 2.0 * std::atan2(std::sqrt(open), std::sqrt(folded));
+  // Clamped again: an exact limit must not be missed by rounding.
+  solution.bend = std::clamp(bend, min_bend, max_bend);
 
   // The line from root to end.
-  Vec3 line = direction(to_target, sum);
+  Vec3 line = to_target_length > kTiny * sum ? Vec3(to_target * (1 / to_target_length))
+                                             : Vec3(Vec3::Zero());
   if (line.isZero()) line = direction(chain.end - chain.root, sum);
   if (line.isZero()) line = upper_now.isZero() ? lower_now : upper_now;
 
@@ -125,10 +167,10 @@ TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goa
   double along = upper_length;
   double out = 0;
   if (distance > kTiny * sum) {
-    out = upper_length * lower_length * std::sin(solution.bend) / distance;
-    const double signed_along =
-        (upper_length * upper_length - lower_length * lower_length + distance * distance) /
-        (2.0 * distance);
+    // The height of the triangle, by Heron's formula: the sine of the bend without the bend.
+    out = solution.bend == bend ? 0.5 * std::sqrt(open * folded) / distance
+                                : upper_length * lower_length * std::sin(solution.bend) / distance;
+    const double signed_along = (sum * difference + distance * distance) / (2.0 * distance);
     along = std::copysign(std::sqrt(std::max(0.0, upper_length * upper_length - out * out)),
                           signed_along);
   } else {
@@ -139,8 +181,8 @@ TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goa
   solution.end = chain.root + line * distance;
   solution.reached = (solution.end - goal.target).norm() < 1e-9;
 
-  const Vec3 upper_new = direction(solution.middle - chain.root);
-  const Vec3 lower_new = direction(solution.end - solution.middle);
+  const Vec3 upper_new = unit(line * along + outward * out, upper_length);
+  const Vec3 lower_new = unit(line * (distance - along) - outward * out, lower_length);
   const auto turn = [&](const Vec3& now, const Vec3& then) {
     if (now.isZero() || then.isZero()) return Quat(Quat::Identity());
     if (present_hinge.isZero()) return shortest_arc(now, then);
