@@ -72,13 +72,13 @@ class Reader {
  private:
   void tell(Severity severity, const SourceText& source, std::string code, std::string message,
             std::string hint = {}) {
-    Diagnostic told;
-    told.severity = severity;
-    told.code = std::move(code);
-    told.message = std::move(message);
-    told.hint = std::move(hint);
-    told.where.file = source.file_name();
-    capture_.diagnostics.push_back(std::move(told));
+    Diagnostic diagnostic;
+    diagnostic.severity = severity;
+    diagnostic.code = std::move(code);
+    diagnostic.message = std::move(message);
+    diagnostic.hint = std::move(hint);
+    diagnostic.where.file = source.file_name();
+    capture_.diagnostics.push_back(std::move(diagnostic));
   }
 
   Status choose_conventions(const Kinematics& kinematics) {

@@ -32,12 +32,12 @@ std::vector<Error> far_frame_faults(std::string_view amc_text, const MotionFile&
                                     const Kinematics& kinematics, const FarValues& far,
                                     const Clip& clip, const std::vector<std::size_t>& places) {
   std::vector<Error> faults;
-  const auto add = [&](Error told, std::size_t frame, std::size_t joint) {
+  const auto add = [&](Error failure, std::size_t frame, std::size_t joint) {
     const std::int64_t line = line_of_frame(amc_text, motion.frame_numbers[frame]);
-    if (line > 0) told = std::move(told).at_line(line, 1);
-    told.joint = clip.skeleton.names[joint];
-    told.frame = static_cast<std::int64_t>(places[frame]);
-    faults.push_back(std::move(told));
+    if (line > 0) failure = std::move(failure).at_line(line, 1);
+    failure.joint = clip.skeleton.names[joint];
+    failure.frame = static_cast<std::int64_t>(places[frame]);
+    faults.push_back(std::move(failure));
   };
   if (far.rotations > 0) {
     if (const auto found = kinematics.far_rotation(motion.frame(far.first_rotation))) {

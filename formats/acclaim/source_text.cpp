@@ -24,10 +24,10 @@ Error SourceText::error(const TextLocation& place, std::string code, std::string
 void SourceText::warn(const TextLocation& place, std::string code, std::string message,
                       std::string hint, std::string joint) {
   if (++warnings_ > kMaxWarnings) return;
-  Error told = error(place, std::move(code), std::move(message), std::move(hint));
-  told.severity = Severity::warning;
-  told.joint = std::move(joint);
-  diagnostics_.push_back(std::move(told));
+  Error failure = error(place, std::move(code), std::move(message), std::move(hint));
+  failure.severity = Severity::warning;
+  failure.joint = std::move(joint);
+  diagnostics_.push_back(std::move(failure));
 }
 
 Status SourceText::fault(const TextLocation& place, std::string code, std::string message,

@@ -12,6 +12,7 @@
 #include "capture/rest_frame.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "formats/bvh/choose_conventions_internal.h"
 #include "formats/bvh/decimal_commas_internal.h"
 #include "formats/bvh/far_rows_internal.h"
@@ -234,10 +235,11 @@ class Reader {
 
   void report_rest_pose() {
     const RestPose rest = find_rest_pose(capture_.clip, capture_.roles);
-    Diagnostic note("bvh-reference", fmt::format("the reference pose (OFFSETs, no rotations) is {}",
-                                                 rest.reference));
+    Error note =
+        Error("bvh-reference",
+              fmt::format("the reference pose (OFFSETs, no rotations) is {}", rest.reference))
+            .in_file(file_name_);
     note.severity = Severity::note;
-    note.where.file = file_name_;
     capture_.diagnostics.push_back(std::move(note));
     capture_.rest_frame_found = rest.first_frame_is_rest;
     capture_.rest_frame_dropped =

@@ -46,26 +46,26 @@ class ConventionChooser {
     capture_.positions = positions.choice;
     if (file_.options.positions == Positions::automatic && positions.has_evidence) {
       const bool guess = positions.choice.confidence == Confidence::guess;
-      tell(guess ? Severity::warning : Severity::note, "bvh-positions",
-           fmt::format("position channels are {} ({}): {}", positions.choice.choice,
-                       confidence_name(positions.choice.confidence), positions.choice.reason),
-           guess ? "use --positions absolute or additive if this is wrong" : "");
+      report(guess ? Severity::warning : Severity::note, "bvh-positions",
+             fmt::format("position channels are {} ({}): {}", positions.choice.choice,
+                         confidence_name(positions.choice.confidence), positions.choice.reason),
+             guess ? "use --positions absolute or additive if this is wrong" : "");
     }
     if (Status status = make_conversion(); !status) return status.error();
     return chosen_;
   }
 
  private:
-  void tell(Severity severity, std::string code, std::string message, std::string hint = {},
-            Location where = {}) {
-    Diagnostic told;
-    told.severity = severity;
-    told.code = std::move(code);
-    told.message = std::move(message);
-    told.hint = std::move(hint);
-    told.where = std::move(where);
-    if (told.where.file.empty()) told.where.file = file_.file_name;
-    capture_.diagnostics.push_back(std::move(told));
+  void report(Severity severity, std::string code, std::string message, std::string hint = {},
+              Location where = {}) {
+    Diagnostic diagnostic;
+    diagnostic.severity = severity;
+    diagnostic.code = std::move(code);
+    diagnostic.message = std::move(message);
+    diagnostic.hint = std::move(hint);
+    diagnostic.where = std::move(where);
+    if (diagnostic.where.file.empty()) diagnostic.where.file = file_.file_name;
+    capture_.diagnostics.push_back(std::move(diagnostic));
   }
 
   void choose_rate() {
@@ -81,11 +81,11 @@ class ConventionChooser {
     const bool doubtful = printed.few_digits || printed.unusual;
     capture_.rate = {readable(rate), printed.reason,
                      doubtful ? Confidence::guess : Confidence::certain};
-    tell(doubtful ? Severity::warning : Severity::note, "bvh-rate",
-         fmt::format("{} frames per second: {}", readable(rate), printed.reason),
-         doubtful ? "set the rate with --fps N if this is wrong" : "",
-         doubtful ? locate(file_.text, file_.header.frame_time_offset, file_.file_name)
-                  : Location());
+    report(doubtful ? Severity::warning : Severity::note, "bvh-rate",
+           fmt::format("{} frames per second: {}", readable(rate), printed.reason),
+           doubtful ? "set the rate with --fps N if this is wrong" : "",
+           doubtful ? locate(file_.text, file_.header.frame_time_offset, file_.file_name)
+                    : Location());
   }
 
   // Up to kMaxSamples complete rows, evenly over the file.
@@ -121,9 +121,9 @@ class ConventionChooser {
     const auto exporter = recognise_exporter(names, traits);
     if (!exporter) return;
     capture_.exporter = {exporter->name, exporter->reason, exporter->confidence};
-    tell(Severity::note, "bvh-exporter",
-         fmt::format("{} ({}): {}", exporter->name, confidence_name(exporter->confidence),
-                     exporter->reason));
+    report(Severity::note, "bvh-exporter",
+           fmt::format("{} ({}): {}", exporter->name, confidence_name(exporter->confidence),
+                       exporter->reason));
   }
 
   void choose_angles(const SampleRows& samples) {
@@ -133,9 +133,9 @@ class ConventionChooser {
     }
     const auto reason = looks_like_radians(hierarchy_, samples);
     if (!reason) return;
-    tell(Severity::warning, "bvh-angles",
-         fmt::format("the angles may be radians, though BVH uses degrees: {}", *reason),
-         "use --angles radians if they are");
+    report(Severity::warning, "bvh-angles",
+           fmt::format("the angles may be radians, though BVH uses degrees: {}", *reason),
+           "use --angles radians if they are");
   }
 
   // Unit and axes, from the options or else detected from the data.

@@ -26,9 +26,9 @@ class FarRows {
     take(row);
     const auto found = frames_.kinematics().far_rotation(values_.data(), 1);
     const std::size_t channel = found ? found->channel : 0;
-    Error told = far_rotation("bvh-far-rotation", hierarchy_.channel_name(channel),
-                              found ? found->degrees : 0, count);
-    return placed(std::move(told), row, channel, hierarchy_.channels[channel].joint);
+    Error failure = far_rotation("bvh-far-rotation", hierarchy_.channel_name(channel),
+                                 found ? found->degrees : 0, count);
+    return placed(std::move(failure), row, channel, hierarchy_.channels[channel].joint);
   }
 
   Error position(std::size_t row, std::size_t count) {
@@ -46,9 +46,9 @@ class FarRows {
     const std::string number =
         fmt::format("{} is {}", hierarchy_.channel_name(channel), readable(values_[channel]));
     const bool moves = hierarchy_.channels[channel].kind == ChannelKind::position;
-    Error told = far_position("bvh-far-position", hierarchy_.joints[joint].name,
-                              pose[joint].position, count, moves ? number : "");
-    return placed(std::move(told), row, channel, static_cast<int>(joint));
+    Error failure = far_position("bvh-far-position", hierarchy_.joints[joint].name,
+                                 pose[joint].position, count, moves ? number : "");
+    return placed(std::move(failure), row, channel, static_cast<int>(joint));
   }
 
  private:
@@ -68,16 +68,16 @@ class FarRows {
     return 0;
   }
 
-  Error placed(Error told, std::size_t row, std::size_t channel, int joint) const {
+  Error placed(Error failure, std::size_t row, std::size_t channel, int joint) const {
     std::size_t at = frames_.rows()[row];
     for (std::size_t c = 0; c < channel; ++c) {
       at += word_at(text_, at).size();
       while (at < text_.size() && is_space(text_[at])) ++at;
     }
-    told.where = locate(text_, at, file_name_);
-    told.joint = hierarchy_.joints[static_cast<std::size_t>(joint)].name;
-    told.frame = static_cast<std::int64_t>(row);
-    return told;
+    failure.where = locate(text_, at, file_name_);
+    failure.joint = hierarchy_.joints[static_cast<std::size_t>(joint)].name;
+    failure.frame = static_cast<std::int64_t>(row);
+    return failure;
   }
 
   std::string_view text_;

@@ -10,6 +10,7 @@
 #include "core/numbers.h"
 #include "formats/bvh/channel_name_internal.h"
 #include "formats/bvh/file_kind.h"
+#include "formats/bvh/finish_hierarchy_internal.h"
 #include "formats/bvh/names.h"
 #include "formats/bvh/text_cursor.h"
 
@@ -49,14 +50,19 @@ class HierarchyParser {
     if (result_.joints.empty()) {
       return fail("bvh-syntax", "the hierarchy has no ROOT", "the file has no skeleton");
     }
-    if (Status status = check_channels(); !status) return status.error();
-    if (Status status = join_roots(); !status) return status.error();
+    if (Status status = check_channels(result_, file_name_, diagnostics_); !status) {
+      Error error = std::move(status).error();
+      error.where = locate_(cursor_.word_begin());
+      return error;
+    }
+    join_roots(result_, name_places_, file_name_, diagnostics_);
     if (warnings_ > kMaxWarnings) {
       report_in_file(Severity::warning, "bvh-syntax",
-                     fmt::format("{} more such warnings", warnings_ - kMaxWarnings));
+                     fmt::format("{} more such warnings", warnings_ - kMaxWarnings), file_name_,
+                     diagnostics_);
     }
-    name_joints();
-    count_zero_bones();
+    name_joints(result_, name_places_, text_, file_name_, diagnostics_);
+    report_zero_bones(result_, file_name_, diagnostics_);
     return std::move(result_);
   }
 
@@ -79,12 +85,6 @@ class HierarchyParser {
     warning.severity = Severity::warning;
     if (++warnings_ <= kMaxWarnings) diagnostics_.push_back(std::move(warning));
     return {};
-  }
-
-  void report_in_file(Severity severity, std::string code, std::string message) {
-    Error told = Error(std::move(code), std::move(message)).in_file(file_name_);
-    told.severity = severity;
-    diagnostics_.push_back(std::move(told));
   }
 
   // The text may begin with a byte-order mark. Lines before HIERARCHY and a missing HIERARCHY are
@@ -318,67 +318,6 @@ class HierarchyParser {
     if (channel.kind == ChannelKind::position) return fail("bvh-channels", std::move(twice));
     return warn_at(cursor_.word_begin(), "bvh-channels",
                    twice + "; both rotations are applied, in channel order", open_name());
-  }
-
-  // Without any known channel the character would not move, with no message.
-  Status check_channels() {
-    bool any = false;
-    bool positions = false;
-    for (const Channel& channel : result_.channels) {
-      any = any || channel.kind != ChannelKind::ignored;
-      positions = positions || channel.kind == ChannelKind::position;
-    }
-    if (!any && !result_.channels.empty()) {
-      return fail("bvh-channels",
-                  fmt::format("none of the {} channels is a position or a rotation",
-                              result_.channels.size()),
-                  "channels are named Xposition .. Zrotation");
-    }
-    if (any && !positions) {
-      report_in_file(Severity::note, "bvh-channels",
-                     "no joint has position channels: the motion is in place");
-    }
-    return {};
-  }
-
-  // A skeleton has one root: several roots get a static parent at the origin.
-  Status join_roots() {
-    std::size_t roots = 0;
-    for (const auto& joint : result_.joints) roots += joint.parent < 0 ? 1 : 0;
-    if (roots == 1) return {};
-    Hierarchy::Joint parent;
-    parent.name = "Roots";
-    result_.joints.insert(result_.joints.begin(), parent);
-    name_places_.insert(name_places_.begin(), 0);
-    for (std::size_t i = 1; i < result_.joints.size(); ++i) ++result_.joints[i].parent;
-    for (Channel& channel : result_.channels) ++channel.joint;
-    report_in_file(
-        Severity::warning, "bvh-roots",
-        fmt::format("the file has {} ROOTs; a common parent joint is added at the origin", roots));
-    return {};
-  }
-
-  void name_joints() {
-    std::vector<JointName> places;
-    places.reserve(result_.joints.size());
-    for (std::size_t i = 0; i < result_.joints.size(); ++i) {
-      auto& joint = result_.joints[i];
-      places.push_back({&joint.name, joint.parent, joint.end_site, name_places_[i]});
-    }
-    make_names_unique(places, text_, file_name_, diagnostics_);
-  }
-
-  void count_zero_bones() {
-    int zero = 0;
-    std::string first;
-    for (const auto& joint : result_.joints) {
-      if (joint.parent < 0 || joint.end_site || !joint.offset.isZero(0)) continue;
-      if (zero++ == 0) first = joint.name;
-    }
-    if (zero == 0) return;
-    report_in_file(Severity::note, "bvh-zero-bones",
-                   fmt::format("{} joint{} at the position of {} parent (the first: {})", zero,
-                               zero == 1 ? " is" : "s are", zero == 1 ? "its" : "their", first));
   }
 
   // Limits the number of messages.

@@ -61,11 +61,11 @@ class HeaderParser {
   }
 
   // A fault that is an error only if strict.
-  Status warn(Error told) {
-    if (options_.strictness == Strictness::strict) return told;
-    told.severity = Severity::warning;
-    told.hint.clear();
-    diagnostics_.push_back(std::move(told));
+  Status warn(Error failure) {
+    if (options_.strictness == Strictness::strict) return failure;
+    failure.severity = Severity::warning;
+    failure.hint.clear();
+    diagnostics_.push_back(std::move(failure));
     return {};
   }
 

@@ -48,9 +48,9 @@ class CarefulIndexer {
     return static_cast<long long>(result_.begins.size()) >= header_.frames;
   }
 
-  void tell(Severity severity, Error told) {
-    told.severity = severity;
-    diagnostics_.push_back(std::move(told));
+  void tell(Severity severity, Error failure) {
+    failure.severity = severity;
+    diagnostics_.push_back(std::move(failure));
   }
 
   // If any line has exactly as many words as there are channels, each line is a row: a wrapped row
@@ -116,12 +116,12 @@ class CarefulIndexer {
   Status text_between(const Line& line) {
     std::size_t end = line.begin;
     while (end < text_.size() && !is_line_end(text_[end])) ++end;
-    Error told = words_for_.error_at(
+    Error failure = words_for_.error_at(
         line.begin, "bvh-syntax",
         fmt::format("the line '{}' between the rows is ignored",
                     shown(trimmed(text_.substr(line.begin, end - line.begin)))));
-    if (strict()) return told;
-    if (++texts_between_ <= kMaxTold) tell(Severity::warning, std::move(told));
+    if (strict()) return failure;
+    if (++texts_between_ <= kMaxTold) tell(Severity::warning, std::move(failure));
     return {};
   }
 

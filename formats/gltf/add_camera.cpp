@@ -51,12 +51,12 @@ OrderedJson numbers(const Vector& vector) {
 }
 
 Diagnostic warning(std::string code, std::string message, std::string hint) {
-  Diagnostic told;
-  told.severity = Severity::warning;
-  told.code = std::move(code);
-  told.message = std::move(message);
-  told.hint = std::move(hint);
-  return told;
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = std::move(code);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  return diagnostic;
 }
 
 OrderedJson provenance_json(const Provenance& provenance) {

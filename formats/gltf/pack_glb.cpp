@@ -59,10 +59,10 @@ class Packer {
   void put_image(const std::string& uri, OrderedJson& image) {
     const auto file = open_beside(uri, "image", options_.folder, options_.most_bytes);
     if (!file) {
-      Diagnostic told = file.error();
-      told.severity = Severity::warning;
-      told.code = "gltf-image";
-      packed_.diagnostics.push_back(std::move(told));
+      Diagnostic diagnostic = file.error();
+      diagnostic.severity = Severity::warning;
+      diagnostic.code = "gltf-image";
+      packed_.diagnostics.push_back(std::move(diagnostic));
       image["uri"] = kGreyPixel;
       return;
     }

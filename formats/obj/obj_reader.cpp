@@ -285,12 +285,12 @@ class Reader {
   }
 
   void warn(const char* code, std::string message) {
-    Diagnostic told;
-    told.severity = Severity::warning;
-    told.code = code;
-    told.message = std::move(message);
-    told.where.file = path_;
-    shape_.diagnostics.push_back(std::move(told));
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::warning;
+    diagnostic.code = code;
+    diagnostic.message = std::move(message);
+    diagnostic.where.file = path_;
+    shape_.diagnostics.push_back(std::move(diagnostic));
   }
 
   Result<Shape> finish() {

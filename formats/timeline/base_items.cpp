@@ -171,24 +171,24 @@ Result<Change> Items::change(const Field& field) const {
     return kind.error();
   }
   Taker take(value, kChange);
-  take("kind", change.kind, [&](const Field& told) { return fields_.choice(told, kinds); });
+  take("kind", change.kind, [&](const Field& inner) { return fields_.choice(inner, kinds); });
   take.check("kind", [&](const Field&) { return check_change_keys(value, change.kind); });
-  take("duration", change.duration, [&](const Field& told) -> Result<double> {
-    auto lasts = fields_.duration(told, rate_);
-    if (lasts && !(*lasts > 0)) return fields_.wrong(told, "more than 0 s");
+  take("duration", change.duration, [&](const Field& inner) -> Result<double> {
+    auto lasts = fields_.duration(inner, rate_);
+    if (lasts && !(*lasts > 0)) return fields_.wrong(inner, "more than 0 s");
     return lasts;
   });
-  take("easing", change.easing, [&](const Field& told) { return easing(told); });
-  take("sync", change.sync, [&](const Field& told) {
-    return fields_.choice<timeline::Sync>(told, {{"auto", timeline::Sync::automatic},
-                                                 {"keytimes", timeline::Sync::keytimes},
-                                                 {"clock", timeline::Sync::clock}});
+  take("easing", change.easing, [&](const Field& inner) { return easing(inner); });
+  take("sync", change.sync, [&](const Field& inner) {
+    return fields_.choice<timeline::Sync>(inner, {{"auto", timeline::Sync::automatic},
+                                                  {"keytimes", timeline::Sync::keytimes},
+                                                  {"clock", timeline::Sync::clock}});
   });
-  take("align", change.align, [&](const Field& told) {
+  take("align", change.align, [&](const Field& inner) {
     return fields_.choice<timeline::Align>(
-        told, {{"root", timeline::Align::root}, {"stance", timeline::Align::stance}});
+        inner, {{"root", timeline::Align::root}, {"stance", timeline::Align::stance}});
   });
-  take("guard", change.guard, [&](const Field& told) { return fields_.truth(told); });
+  take("guard", change.guard, [&](const Field& inner) { return fields_.truth(inner); });
   if (Status status = take.done(); !status) return status.error();
   return change;
 }

@@ -23,7 +23,7 @@ constexpr std::size_t kMaxPoints = 10'000;
 // A duration, or an object.
 Result<Fade> Items::fade(const Field& field) const {
   Fade fade;
-  const auto seconds = [&](const Field& told) { return fields_.duration(told, rate_); };
+  const auto seconds = [&](const Field& inner) { return fields_.duration(inner, rate_); };
   if (field.value->kind != Kind::object) {
     const auto lasts = seconds(field);
     if (!lasts) return lasts.error();
@@ -35,7 +35,7 @@ Result<Fade> Items::fade(const Field& field) const {
   }
   Taker take(*field.value, field.key);
   take("duration", fade.duration, seconds);
-  take("easing", fade.easing, [&](const Field& told) { return easing(told); });
+  take("easing", fade.easing, [&](const Field& inner) { return easing(inner); });
   if (Status status = take.done(); !status) return status.error();
   return fade;
 }

@@ -97,14 +97,14 @@ void report_conventions(const Conventions& conventions, const GivenConventions& 
                           const std::string& reason) {
     if (is_given) return;
     const bool guess = confidence == Confidence::guess;
-    Diagnostic told;
-    told.severity = guess ? Severity::warning : Severity::note;
-    told.code = fmt::format("{}-{}", code_prefix, name);
-    told.message = fmt::format("{} is {} ({})", subject, value, confidence_name(confidence)) +
-                   (reason.empty() ? std::string() : ": " + reason);
-    if (guess) told.hint = fmt::format("set it with --{} if that is wrong", name);
-    told.where.file = file_name;
-    diagnostics.push_back(std::move(told));
+    Diagnostic diagnostic;
+    diagnostic.severity = guess ? Severity::warning : Severity::note;
+    diagnostic.code = fmt::format("{}-{}", code_prefix, name);
+    diagnostic.message = fmt::format("{} is {} ({})", subject, value, confidence_name(confidence)) +
+                         (reason.empty() ? std::string() : ": " + reason);
+    if (guess) diagnostic.hint = fmt::format("set it with --{} if that is wrong", name);
+    diagnostic.where.file = file_name;
+    diagnostics.push_back(std::move(diagnostic));
   };
   report(given.unit.has_value(), "unit", "the unit", conventions.unit.name,
          conventions.unit_confidence, conventions.unit_reason);

@@ -162,17 +162,17 @@ bool settle_rest_frame(const RestPose& rest, RestFrame wish, const std::string& 
     clip.provenance.conversions.emplace_back("the first frame, a rest pose, was dropped");
   }
   if (!drop && !rest.first_frame_is_rest) return drop;
-  Diagnostic told;
-  told.severity = drop ? Severity::note : Severity::warning;
-  told.code = prefix + "-rest-frame";
-  told.where.file = file_name;
+  Diagnostic diagnostic;
+  diagnostic.severity = drop ? Severity::note : Severity::warning;
+  diagnostic.code = prefix + "-rest-frame";
+  diagnostic.where.file = file_name;
   if (rest.first_frame_is_rest) {
-    told.message = fmt::format("{}; it {}", rest.reason, drop ? "was dropped" : "was kept");
-    if (!drop) told.hint = "drop it with --skip-rest-frame auto";
+    diagnostic.message = fmt::format("{}; it {}", rest.reason, drop ? "was dropped" : "was kept");
+    if (!drop) diagnostic.hint = "drop it with --skip-rest-frame auto";
   } else {
-    told.message = "the first frame was dropped as requested";
+    diagnostic.message = "the first frame was dropped as requested";
   }
-  capture.diagnostics.push_back(std::move(told));
+  capture.diagnostics.push_back(std::move(diagnostic));
   return drop;
 }
 

@@ -19,12 +19,12 @@ namespace {
 
 void report_joint(Diagnostics& diagnostics, Severity severity, std::string code,
                   std::string message, std::string joint = {}) {
-  Diagnostic told;
-  told.severity = severity;
-  told.code = std::move(code);
-  told.message = std::move(message);
-  told.joint = std::move(joint);
-  diagnostics.push_back(std::move(told));
+  Diagnostic diagnostic;
+  diagnostic.severity = severity;
+  diagnostic.code = std::move(code);
+  diagnostic.message = std::move(message);
+  diagnostic.joint = std::move(joint);
+  diagnostics.push_back(std::move(diagnostic));
 }
 
 // The rotation by multiples of 90 degrees nearest to another.

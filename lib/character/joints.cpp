@@ -225,14 +225,15 @@ void Chooser::report_choice(int chosen, const std::vector<std::vector<int>>& ske
     if (skeleton[0] == chosen || others.size() == kMaxNamed) continue;
     others.push_back(skin_label(skeleton[0]));
   }
-  Diagnostic told;
-  told.severity = by_name ? Severity::note : Severity::warning;
-  told.code = "scene-skeletons";
-  told.message = fmt::format("the file has {} skeletons; using that of {}{}", skeletons.size(),
-                             skin_label(chosen), by_name ? "" : ", which has the most joints");
-  told.hint = fmt::format("use --skin to select another: {}{}", fmt::join(others, ", "),
-                          others.size() + 1 < skeletons.size() ? ", ..." : "");
-  diagnostics_.push_back(std::move(told));
+  Diagnostic diagnostic;
+  diagnostic.severity = by_name ? Severity::note : Severity::warning;
+  diagnostic.code = "scene-skeletons";
+  diagnostic.message =
+      fmt::format("the file has {} skeletons; using that of {}{}", skeletons.size(),
+                  skin_label(chosen), by_name ? "" : ", which has the most joints");
+  diagnostic.hint = fmt::format("use --skin to select another: {}{}", fmt::join(others, ", "),
+                                others.size() + 1 < skeletons.size() ? ", ..." : "");
+  diagnostics_.push_back(std::move(diagnostic));
 }
 
 void Chooser::take_without_skin() {

@@ -48,16 +48,16 @@ void report_scale(const std::vector<Stretch>& worst_of_frames, const Rig& rig,
     frame = f;
   }
   if (worst.size < kStretchTold) return;
-  Diagnostic told;
-  told.severity = Severity::warning;
-  told.code = "scene-scale";
-  told.joint = rig.skeleton.names[at(worst.joint)];
-  told.frame = static_cast<std::int64_t>(frame);
-  told.message = fmt::format(
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = "scene-scale";
+  diagnostic.joint = rig.skeleton.names[at(worst.joint)];
+  diagnostic.frame = static_cast<std::int64_t>(frame);
+  diagnostic.message = fmt::format(
       "joint scales differ from the bind pose, which a motion cannot store; worst: {} by {}% in "
       "frame {}; joint positions are kept, scales are dropped",
-      shown(told.joint), readable(100 * worst.size, 3), frame);
-  diagnostics.push_back(std::move(told));
+      shown(diagnostic.joint), readable(100 * worst.size, 3), frame);
+  diagnostics.push_back(std::move(diagnostic));
 }
 
 // The field of view of a perspective camera at a time of an animation.
@@ -172,12 +172,13 @@ Result<CameraTrack> make_camera(const Scene& scene, const nodes::Evaluator& eval
   double field_of_view = lens.field_of_view;
   if (!lens.perspective) {
     field_of_view = kUsualFieldOfView;
-    Diagnostic told;
-    told.severity = Severity::warning;
-    told.code = "scene-camera";
-    told.message = fmt::format("{} is orthographic and has no field of view; 45 degrees is used",
-                               label("camera", scene.nodes[at(node)].camera, lens.name));
-    diagnostics.push_back(std::move(told));
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::warning;
+    diagnostic.code = "scene-camera";
+    diagnostic.message =
+        fmt::format("{} is orthographic and has no field of view; 45 degrees is used",
+                    label("camera", scene.nodes[at(node)].camera, lens.name));
+    diagnostics.push_back(std::move(diagnostic));
   }
   CameraTrack track;
   track.rate = sampling.rate;

@@ -12,12 +12,12 @@ namespace krok {
 // Appends a diagnostic about the file as a whole.
 inline void tell(Diagnostics& diagnostics, Severity severity, const char* code, std::string message,
                  std::string hint = {}) {
-  Diagnostic told;
-  told.severity = severity;
-  told.code = code;
-  told.message = std::move(message);
-  told.hint = std::move(hint);
-  diagnostics.push_back(std::move(told));
+  Diagnostic diagnostic;
+  diagnostic.severity = severity;
+  diagnostic.code = code;
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  diagnostics.push_back(std::move(diagnostic));
 }
 
 }  // namespace krok

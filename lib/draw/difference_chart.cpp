@@ -137,8 +137,8 @@ Panel difference_panel(const ChartedDifference& difference, Scale scale) {
       {"root mean square", difference.times, in_unit(difference.rms), style, blue, 1});
   if (difference.tolerance && !difference.times.empty()) {
     const double level = *difference.tolerance * unit;
-    const std::string told = readable(level, 4) + (difference.is_angle ? "" : " ") + name;
-    panel.series.push_back({"tolerance, " + told,
+    const std::string label = readable(level, 4) + (difference.is_angle ? "" : " ") + name;
+    panel.series.push_back({"tolerance, " + label,
                             {difference.times.front(), difference.times.back()},
                             {level, level},
                             SeriesStyle::line,

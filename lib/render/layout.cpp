@@ -107,6 +107,84 @@ Status check_options(const Sheet& sheet, const SheetOptions& options) {
   return {};
 }
 
+// What all rows show together.
+struct Extent {
+  std::vector<Window> rows;
+  double left = std::numeric_limits<double>::infinity();  // of all windows, metres
+  double right = -left;
+  double height = 0;  // of the tallest window, metres
+  std::size_t columns = 0;
+};
+
+Extent measure_rows(const Sheet& sheet, std::vector<RowLayout>& places) {
+  Extent extent;
+  for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
+    Window window = window_of(sheet.rows[r], places[r]);
+    extent.columns = std::max(extent.columns, sheet.rows[r].cells.size());
+    if (window.empty()) window.add(Vec2::Zero());
+    extent.left = std::min(extent.left, window.low.x());
+    extent.right = std::max(extent.right, window.high.x());
+    extent.height = std::max(extent.height, window.high.y() - window.low.y());
+    extent.rows.push_back(window);
+  }
+  return extent;
+}
+
+// One scale and cell width for all rows.
+void choose_scale(const Extent& extent, const SheetOptions& options, Layout& layout) {
+  Vec2 size(extent.right - extent.left, extent.height);
+  const auto scale = [](int pixels, double metres) { return (pixels - 2 * kAir) / metres; };
+  // A nominal size for characters of zero size, so that the scale is finite.
+  size = size.cwiseMax(size.maxCoeff() > 0 ? 1e-3 * size.maxCoeff() : 1.0);
+  layout.pixels_per_metre =
+      std::min(scale(options.row_height, size.y()), scale(options.cell_width, size.x()));
+  const double per_metre = layout.pixels_per_metre;
+  layout.height_step = round_step(kHeightLines / per_metre);
+  layout.cell_width = std::max(48, static_cast<int>(std::ceil(size.x() * per_metre)) + 2 * kAir);
+}
+
+Status check_image_size(double width, double height) {
+  if (width <= kMaxPixelsAcross && height <= kMaxPixelsAcross && width * height <= kMaxPixels) {
+    return {};
+  }
+  return Error("sheet-size",
+               fmt::format("the image would be at least {:.0f} x {:.0f} pixels; "
+                           "the limit is {} million pixels and {} in each direction",
+                           width, height, static_cast<int>(kMaxPixels / 1e6), kMaxPixelsAcross),
+               "reduce the size or the number of times, sides or files");
+}
+
+// Places a row from `y` down; `height` is that of its window, in pixels.
+void place_row(const SheetRow& row, const Window& window, double y, double height, double per_metre,
+               RowLayout& place) {
+  place.header = static_cast<int>(y);
+  place.top = place.header + (row.title.empty() && row.note.empty() ? 0 : kHeader);
+  place.bottom = static_cast<int>(place.top + std::ceil(height)) + 2 * kAir + kGroundBand;
+  // On a pixel boundary, so that the line is sharp.
+  place.ground = std::round(place.top + kAir + window.high.y() * per_metre);
+  place.low = (place.ground - place.bottom) / per_metre;
+  place.high = (place.ground - place.top) / per_metre;
+}
+
+// Adds the cells of a placed row; `centre` is the middle of all windows, metres.
+void add_cells(const SheetRow& row, std::size_t index, double centre, Layout& layout) {
+  const RowLayout& place = layout.rows[index];
+  const double per_metre = layout.pixels_per_metre;
+  for (std::size_t c = 0; c < row.cells.size(); ++c) {
+    CellLayout cell;
+    cell.row = static_cast<int>(index);
+    cell.column = static_cast<int>(c);
+    cell.left = kMargin + kGutter + static_cast<int>(c) * layout.cell_width;
+    cell.right = cell.left + layout.cell_width;
+    cell.top = place.top;
+    cell.bottom = place.bottom;
+    const double middle = 0.5 * (cell.left + cell.right) - centre * per_metre;
+    cell.camera = {row.cells[c].centre, row.yaw, row.elevation, per_metre,
+                   Vec2(middle, place.ground)};
+    layout.cells.push_back(cell);
+  }
+}
+
 }  // namespace
 
 double round_step(double least) {
@@ -121,66 +199,20 @@ Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options) {
   if (Status status = check_options(sheet, options); !status) return status.error();
   Layout layout;
   layout.rows.resize(sheet.rows.size());
-  std::vector<Window> windows;
-  Vec2 size = Vec2::Zero();  // of the widest and the tallest window, metres
-  double left = std::numeric_limits<double>::infinity();
-  double right = -left;
-  std::size_t columns = 0;
-  for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
-    Window window = window_of(sheet.rows[r], layout.rows[r]);
-    columns = std::max(columns, sheet.rows[r].cells.size());
-    if (window.empty()) window.add(Vec2::Zero());
-    left = std::min(left, window.low.x());
-    right = std::max(right, window.high.x());
-    size.y() = std::max(size.y(), window.high.y() - window.low.y());
-    windows.push_back(window);
-  }
-  size.x() = right - left;
-  const auto scale = [](int pixels, double metres) { return (pixels - 2 * kAir) / metres; };
-  // A nominal size for characters of zero size, so that the scale is finite.
-  size = size.cwiseMax(size.maxCoeff() > 0 ? 1e-3 * size.maxCoeff() : 1.0);
-  layout.pixels_per_metre =
-      std::min(scale(options.row_height, size.y()), scale(options.cell_width, size.x()));
-  const double per_metre = layout.pixels_per_metre;
-  layout.height_step = round_step(kHeightLines / per_metre);
-  layout.cell_width = std::max(48, static_cast<int>(std::ceil(size.x() * per_metre)) + 2 * kAir);
+  const Extent extent = measure_rows(sheet, layout.rows);
+  choose_scale(extent, options, layout);
 
   const double wide = 2.0 * kMargin + kGutter +
-                      static_cast<double>(columns) * static_cast<double>(layout.cell_width);
+                      static_cast<double>(extent.columns) * static_cast<double>(layout.cell_width);
   double y = kMargin;
   for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
-    const SheetRow& row = sheet.rows[r];
     RowLayout& place = layout.rows[r];
-    const Window& window = windows[r];
-    const double high = (window.high.y() - window.low.y()) * per_metre;
+    const Window& window = extent.rows[r];
+    const double high = (window.high.y() - window.low.y()) * layout.pixels_per_metre;
     const double bottom = y + kHeader + std::ceil(high) + 2 * kAir + kGroundBand;
-    if (wide > kMaxPixelsAcross || bottom > kMaxPixelsAcross || wide * bottom > kMaxPixels) {
-      return Error("sheet-size",
-                   fmt::format("the image would be at least {:.0f} x {:.0f} pixels; "
-                               "the limit is {} million pixels and {} in each direction",
-                               wide, bottom, static_cast<int>(kMaxPixels / 1e6), kMaxPixelsAcross),
-                   "reduce the size or the number of times, sides or files");
-    }
-    place.header = static_cast<int>(y);
-    place.top = place.header + (row.title.empty() && row.note.empty() ? 0 : kHeader);
-    place.bottom = static_cast<int>(place.top + std::ceil(high)) + 2 * kAir + kGroundBand;
-    // On a pixel boundary, so that the line is sharp.
-    place.ground = std::round(place.top + kAir + window.high.y() * per_metre);
-    place.low = (place.ground - place.bottom) / per_metre;
-    place.high = (place.ground - place.top) / per_metre;
-    for (std::size_t c = 0; c < row.cells.size(); ++c) {
-      CellLayout cell;
-      cell.row = static_cast<int>(r);
-      cell.column = static_cast<int>(c);
-      cell.left = kMargin + kGutter + static_cast<int>(c) * layout.cell_width;
-      cell.right = cell.left + layout.cell_width;
-      cell.top = place.top;
-      cell.bottom = place.bottom;
-      const double middle = 0.5 * (cell.left + cell.right) - 0.5 * (left + right) * per_metre;
-      cell.camera = {row.cells[c].centre, row.yaw, row.elevation, per_metre,
-                     Vec2(middle, place.ground)};
-      layout.cells.push_back(cell);
-    }
+    if (Status status = check_image_size(wide, bottom); !status) return status.error();
+    place_row(sheet.rows[r], window, y, high, layout.pixels_per_metre, place);
+    add_cells(sheet.rows[r], r, 0.5 * (extent.left + extent.right), layout);
     y = place.bottom + (place.has_labels ? kLabel : 0) + (place.has_notes ? kLabel : 0) + kRowGap;
   }
   layout.key_top = static_cast<int>(y);

@@ -17,14 +17,14 @@ BaseMotion::BaseMotion(const Timeline& timeline, std::span<const Source> sources
   for (std::size_t i = 0; i < items_.size(); ++i) {
     players_.emplace_back(source_of(i), items_[i].range, carrier_,
                           items_[i].play_time(items_[i].end));
-    const BaseItem& told = timeline.base[i];
+    const BaseItem& entry = timeline.base[i];
     if (i == 0) {
-      if (told.place) players_[0].put(0, *told.place);
+      if (entry.place) players_[0].put(0, *entry.place);
       continue;
     }
     bool on_feet = false;
     transitions_[i] = make_transition(
-        {players_[i - 1], players_[i], items_[i - 1], items_[i], told.change, told.place, rate},
+        {players_[i - 1], players_[i], items_[i - 1], items_[i], entry.change, entry.place, rate},
         on_feet);
     on_feet_[i] = on_feet ? 1 : 0;
   }

@@ -129,13 +129,13 @@ Result<LayerPlayer> LayerPlayer::create(const Layer& layer, std::span<const Sour
 
 double LayerPlayer::weight(std::size_t item, double time) const {
   const LayerTimes& times = items_[item];
-  const LayerItem& told = layer_->items[item];
+  const LayerItem& entry = layer_->items[item];
   if (!(time >= times.start) || time > times.end + kTimeRounding) return 0;
   const auto faded = [](const Fade& fade, double since) {
     return fade.duration > 0 ? fade.easing.at(since / fade.duration) : 1.0;
   };
-  return told.weight.at(time - times.start) * faded(told.fade_in, time - times.start) *
-         faded(told.fade_out, times.end - time);
+  return entry.weight.at(time - times.start) * faded(entry.fade_in, time - times.start) *
+         faded(entry.fade_out, times.end - time);
 }
 
 bool LayerPlayer::is_seen(double time) const {

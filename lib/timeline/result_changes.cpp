@@ -209,18 +209,18 @@ class ChangeFinder {
     if (!worst) return;
     const Pace& pace = paces[*worst];
     const bool speed = *worst == hips_speed || *worst == feet_speed;
-    Diagnostic told;
-    told.severity = Severity::warning;
-    told.code = "timeline-seam";
-    told.joint = parts_.clip.skeleton.names[at(parts_.hips_root.original(pace.joint))];
-    told.message = fmt::format(
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::warning;
+    diagnostic.code = "timeline-seam";
+    diagnostic.joint = parts_.clip.skeleton.names[at(parts_.hips_root.original(pace.joint))];
+    diagnostic.message = fmt::format(
         "{}: the loop has a seam: {} {} {:.1f} {}; 99 % of the frames of the motion stay below "
         "{:.1f}",
-        shown(parts_.timeline.base[i].name), told.joint, speed ? "moves at" : "is accelerated by",
-        pace.most, speed ? "m/s" : "m/s²", pace.usual);
-    told.hint = "use krok-edit --loop to make a seamless loop";
-    told.where = parts_.timeline.base[i].where;
-    warnings_.push_back(std::move(told));
+        shown(parts_.timeline.base[i].name), diagnostic.joint,
+        speed ? "moves at" : "is accelerated by", pace.most, speed ? "m/s" : "m/s²", pace.usual);
+    diagnostic.hint = "use krok-edit --loop to make a seamless loop";
+    diagnostic.where = parts_.timeline.base[i].where;
+    warnings_.push_back(std::move(diagnostic));
   }
 
   const Parts& parts_;

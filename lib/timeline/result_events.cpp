@@ -112,9 +112,9 @@ Result<std::vector<Event>> result_events(const Parts& parts, Diagnostics& warnin
   Events events(parts.clip.rate, parts.sources, warnings);
   for (std::size_t i = 0; i < parts.base.items().size(); ++i) {
     const ScheduledItem& item = parts.base.items()[i];
-    const BaseItem& told = parts.timeline.base[i];
+    const BaseItem& entry = parts.timeline.base[i];
     const Status status =
-        events.add({told.name, told.marks, told.where, item.range, -1, static_cast<int>(i),
+        events.add({entry.name, entry.marks, entry.where, item.range, -1, static_cast<int>(i),
                     item.start, item.end, item.skipped, item.play_time(item.end),
                     [&](double play) { return item.time_of(play); }});
     if (!status) return status.error();
@@ -122,9 +122,9 @@ Result<std::vector<Event>> result_events(const Parts& parts, Diagnostics& warnin
   for (std::size_t l = 0; l < parts.layers.size(); ++l) {
     for (std::size_t i = 0; i < parts.layers[l].items().size(); ++i) {
       const LayerTimes& times = parts.layers[l].items()[i];
-      const LayerItem& told = parts.timeline.layers[l].items[i];
+      const LayerItem& entry = parts.timeline.layers[l].items[i];
       const Status status =
-          events.add({told.name, told.marks, told.where, times.range, static_cast<int>(l),
+          events.add({entry.name, entry.marks, entry.where, times.range, static_cast<int>(l),
                       static_cast<int>(i), times.start, times.end, 0, times.end - times.start,
                       [&](double play) { return times.start + play; }});
       if (!status) return status.error();

@@ -49,12 +49,12 @@ class Scheduler {
   // When an item ends if nothing follows. `followed`: the next item has an explicit start time.
   Result<double> natural_end(std::size_t i, bool followed) {
     ScheduledItem& item = items_[i];
-    const BaseItem& told = timeline_.base[i];
-    if (item.range.loops_if_ended && (followed || told.play.until)) item.range.rounds = HUGE_VAL;
+    const BaseItem& entry = timeline_.base[i];
+    if (item.range.loops_if_ended && (followed || entry.play.until)) item.range.rounds = HUGE_VAL;
     const double lasts = item.range.duration();
     const double end = std::isfinite(lasts) ? item.time_of(lasts) : HUGE_VAL;
-    if (!told.play.until) return end;
-    const double until = told.play.until->seconds(rate_);
+    if (!entry.play.until) return end;
+    const double until = entry.play.until->seconds(rate_);
     if (!std::isfinite(until) || until > kLongest || until < item.start - kTimeRounding) {
       return Error("timeline-time", fmt::format("ends at {} s, before it starts at {} s",
                                                 readable(until), readable(item.start)));
@@ -90,17 +90,17 @@ class Scheduler {
   }
 
   Status add(std::size_t i) {
-    const BaseItem& told = timeline_.base[i];
-    auto range = resolve(told.play, sources_);
+    const BaseItem& entry = timeline_.base[i];
+    auto range = resolve(entry.play, sources_);
     if (!range) return range.error();
     ScheduledItem item;
     item.range = *range;
     if (i == 0) {
-      if (told.at && told.at->seconds(rate_) != 0) {
+      if (entry.at && entry.at->seconds(rate_) != 0) {
         return Error("timeline-time", "the first item must start at 0");
       }
     } else {
-      if (Status status = check_change(told.change); !status) return status;
+      if (Status status = check_change(entry.change); !status) return status;
       if (Status status = follow(i, item); !status) return status;
     }
     items_.push_back(std::move(item));
@@ -109,19 +109,19 @@ class Scheduler {
 
   // Ends the previous item and starts this one.
   Status follow(std::size_t i, ScheduledItem& item) {
-    const BaseItem& told = timeline_.base[i];
-    const Change& change = told.change;
+    const BaseItem& entry = timeline_.base[i];
+    const Change& change = entry.change;
     ScheduledItem& before = items_[i - 1];
-    const auto end = natural_end(i - 1, told.at.has_value());
+    const auto end = natural_end(i - 1, entry.at.has_value());
     if (!end) return end.error();
     const bool fades = change.kind == ChangeKind::crossfade;
-    if (!told.at && !std::isfinite(*end)) {
+    if (!entry.at && !std::isfinite(*end)) {
       return Error("timeline-endless",
                    fmt::format("{} never ends, so this item never starts",
                                shown(timeline_.base[i - 1].name)),
                    "add \"at\", or \"until\" or a number of rounds to the previous item");
     }
-    item.begin = told.at ? told.at->seconds(rate_) : *end - (fades ? change.duration : 0);
+    item.begin = entry.at ? entry.at->seconds(rate_) : *end - (fades ? change.duration : 0);
     if (!std::isfinite(item.begin) || item.begin > kLongest) {
       return Error("timeline-time", "the start time is not valid");
     }
@@ -144,13 +144,13 @@ class Scheduler {
     item.start = change.kind == ChangeKind::smooth ? item.settled : item.begin;
     before.end = needed;
     if (fades) {
-      if (Status status = keep_in_step(told, before, item); !status) return status;
+      if (Status status = keep_in_step(entry, before, item); !status) return status;
     }
     return check_length(i - 1);
   }
 
-  Status keep_in_step(const BaseItem& told, ScheduledItem& before, ScheduledItem& item) const {
-    const Change& change = told.change;
+  Status keep_in_step(const BaseItem& entry, ScheduledItem& before, ScheduledItem& item) const {
+    const Change& change = entry.change;
     if (change.sync == Sync::clock) return {};
     const auto keys = [&](const ScheduledItem& of) {
       return sources_[static_cast<std::size_t>(of.range.source)].keys;

@@ -20,6 +20,7 @@ ALLOWED = {
     "lib/capture": BASE | {"lib/roles"},
     "lib/character": BASE | {"lib/roles", "lib/capture", "lib/nodes"},
     "lib/tracks": BASE,
+    "lib/plant": BASE | {"lib/contacts", "lib/ik", "lib/motion", "lib/roles"},
     "lib/pose": BASE,
     "lib/motion": BASE | {"lib/roles"},
     "lib/blend": BASE | {"lib/roles", "lib/motion", "lib/pose"},

@@ -145,17 +145,17 @@ Status write_results(const Options& options, const std::vector<Motion>& motions,
 void warn_of_spread(const Blended& blended, ToolContext& context) {
   constexpr double kMax = kPi / 2;
   if (blended.widest_spread <= kMax) return;
-  Diagnostic told;
-  told.severity = Severity::warning;
-  told.code = "blend-spread";
-  told.joint = blended.clip.skeleton.names[static_cast<std::size_t>(blended.spread_joint)];
-  told.frame = blended.spread_frame;
-  told.message = fmt::format(
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = "blend-spread";
+  diagnostic.joint = blended.clip.skeleton.names[static_cast<std::size_t>(blended.spread_joint)];
+  diagnostic.frame = blended.spread_frame;
+  diagnostic.message = fmt::format(
       "the motions' rotations of {} differ by up to {:.0f} degrees (frame {}); blending "
       "rotations over 90 degrees apart is unreliable",
-      told.joint, blended.widest_spread / kRadiansPerDegree, told.frame);
-  told.hint = "check the result, and whether the keytimes correspond";
-  context.diagnose(std::move(told));
+      diagnostic.joint, blended.widest_spread / kRadiansPerDegree, diagnostic.frame);
+  diagnostic.hint = "check the result, and whether the keytimes correspond";
+  context.diagnose(std::move(diagnostic));
 }
 
 void report(const std::vector<Motion>& motions, const Correspondence& moments,

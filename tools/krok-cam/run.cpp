@@ -101,14 +101,14 @@ Result<int> find_joint(const std::string& name, const Skeleton& skeleton, const 
 
 void warn(ToolContext& context, const std::string& path, const char* code, std::string message,
           std::string hint, int frame) {
-  Diagnostic told;
-  told.severity = Severity::warning;
-  told.code = code;
-  told.message = std::move(message);
-  told.hint = std::move(hint);
-  told.where.file = path;
-  told.frame = frame;
-  context.diagnose(std::move(told));
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = code;
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  diagnostic.where.file = path;
+  diagnostic.frame = frame;
+  context.diagnose(std::move(diagnostic));
 }
 
 void report_faults(const ActorShot& shot, const std::string& path, ToolContext& context) {

@@ -38,13 +38,14 @@ int find_animation(const nodes::Scene& scene, int camera, Diagnostics& found) {
     if (count++ == 0) first = static_cast<int>(i);
   }
   if (count < 2) return first;
-  Diagnostic told;
-  told.severity = Severity::warning;
-  told.code = "cam-animations";
-  told.message = fmt::format("{} animations move the camera; using the first, {} ({})", count,
-                             first, shown(scene.animations[static_cast<std::size_t>(first)].name));
-  told.hint = "krok-import --cam selects another with --clip";
-  found.push_back(std::move(told));
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = "cam-animations";
+  diagnostic.message =
+      fmt::format("{} animations move the camera; using the first, {} ({})", count, first,
+                  shown(scene.animations[static_cast<std::size_t>(first)].name));
+  diagnostic.hint = "krok-import --cam selects another with --clip";
+  found.push_back(std::move(diagnostic));
   return first;
 }
 

@@ -163,8 +163,8 @@ std::string status_words(FileStatus status, const Options& options) {
 std::string to_text(const FolderOutcome& outcome, const Options& options, bool all) {
   std::string text;
   for (const FileResult& file : outcome.files) {
-    const bool told = file.status != FileStatus::same && file.status != FileStatus::not_compared;
-    if (!told && !all) continue;
+    const bool listed = file.status != FileStatus::same && file.status != FileStatus::not_compared;
+    if (!listed && !all) continue;
     text += fmt::format("{}: {}{}{}\n", status_words(file.status, options), safe(file.path),
                         file.what.empty() ? "" : ": ", safe(file.what));
   }

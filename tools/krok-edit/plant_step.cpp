@@ -4,7 +4,7 @@
 #include "plant/plant_feet.h"
 #include "tools/krok-edit/steps.h"
 
-namespace krok::edit {
+namespace krok::cli::edit {
 
 namespace {
 
@@ -60,4 +60,4 @@ Status plant(const Options& options, ToolContext& context, Edit& edit) {
   return {};
 }
 
-}  // namespace krok::edit
+}  // namespace krok::cli::edit

@@ -8,7 +8,7 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
-#include "tools/common/tool.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-edit/options.h"
 
 // The steps of an edit. A step does nothing unless its options are given, and notes what it did.

@@ -50,10 +50,10 @@ class MotionReader {
       error.hint += fmt::format("{}--keep-going leaves it out", error.hint.empty() ? "" : "; ");
       return error;
     }
-    Diagnostic told = error;
-    told.severity = Severity::warning;
-    told.hint = "left out";
-    context_.diagnose(std::move(told));
+    Diagnostic diagnostic = error;
+    diagnostic.severity = Severity::warning;
+    diagnostic.hint = "left out";
+    context_.diagnose(std::move(diagnostic));
     made_.refused.push_back({motion.path, std::move(error)});
     return {};
   }

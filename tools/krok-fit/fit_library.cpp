@@ -71,16 +71,16 @@ void warn_of_spread(const LibraryInput& input, const parametric::PackedExamples&
   const auto name = [&](int example) {
     return library.examples[static_cast<std::size_t>(example)].name;
   };
-  Diagnostic told;
-  told.severity = Severity::warning;
-  told.code = "fit-spread";
-  told.joint = library.skeleton.names[static_cast<std::size_t>(spread.joint)];
-  told.message = fmt::format(
+  Diagnostic diagnostic;
+  diagnostic.severity = Severity::warning;
+  diagnostic.code = "fit-spread";
+  diagnostic.joint = library.skeleton.names[static_cast<std::size_t>(spread.joint)];
+  diagnostic.message = fmt::format(
       "'{}' and '{}' differ in {} by {:.0f} degrees; blending rotations over 90 degrees apart is "
       "unreliable",
-      name(spread.first), name(spread.second), told.joint, spread.angle / kRadiansPerDegree);
-  told.hint = "check both; one may be another motion or have a wrong keytime";
-  context.diagnose(std::move(told));
+      name(spread.first), name(spread.second), diagnostic.joint, spread.angle / kRadiansPerDegree);
+  diagnostic.hint = "check both; one may be another motion or have a wrong keytime";
+  context.diagnose(std::move(diagnostic));
 }
 
 // Whether the user gave a tolerance.

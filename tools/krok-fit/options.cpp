@@ -9,14 +9,9 @@
 
 namespace krok::cli::fit {
 
-void declare(CommandOptions& command, Options& options) {
-  command
-      .add_option("library", options.library, "Library description (JSON): examples and parameters")
-      .type_name("IN.json")
-      .required();
-  command.add_flag("--keep-going", options.keep_going,
-                   "Leave out unsuitable motions, such as those on another skeleton, and exit with "
-                   "code 3");
+namespace {
+
+void declare_weights(CommandOptions& command, Options& options) {
   add_choice<rbf::Kernel>(command, "--kernel", options.kernel,
                           {{"cubic", rbf::Kernel::cubic},
                            {"linear", rbf::Kernel::linear},
@@ -45,6 +40,9 @@ void declare(CommandOptions& command, Options& options) {
                    : "'" + text + "' is neither auto nor a number from 0 to 1000000";
       })
       .group("Fit");
+}
+
+void declare_refinement(CommandOptions& command, Options& options) {
   add_whole(command, "--refine", options.refine,
             "Max number of points to insert, 0 for none (default: 40 per parameter)", 0,
             kMaxRefined)
@@ -74,6 +72,20 @@ void declare(CommandOptions& command, Options& options) {
                   "Continue the refinement of a library made from the same examples")
       .type_name("IN.steps")
       .group("Fit");
+}
+
+}  // namespace
+
+void declare(CommandOptions& command, Options& options) {
+  command
+      .add_option("library", options.library, "Library description (JSON): examples and parameters")
+      .type_name("IN.json")
+      .required();
+  command.add_flag("--keep-going", options.keep_going,
+                   "Leave out unsuitable motions, such as those on another skeleton, and exit with "
+                   "code 3");
+  declare_weights(command, options);
+  declare_refinement(command, options);
   command
       .add_option(
           "--plots", options.plots,

@@ -2,17 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+
 #include <array>
 #include <string_view>
 
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
-#include "tools/common/option_kinds.h"
-#include "tools/common/orientation_option.h"
-#include "tools/common/role_input.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-ik/run.h"
+#include "tools/shared/orientation_option.h"
+#include "tools/shared/role_input.h"
 
-namespace krok::ik_tool {
+namespace krok::cli::ik {
 
 namespace {
 
@@ -75,13 +78,14 @@ void declare_limits(CommandOptions& command, Arguments& a) {
 
 void declare_solver(CommandOptions& command, Arguments& a) {
   const char* group = "Solver";
-  add_choice<ik::Method>(command, "--method", a.method,
-                         {{"least-squares", ik::Method::least_squares},
-                          {"ccd", ik::Method::ccd},
-                          {"two-bone", ik::Method::two_bone}},
-                         "least-squares: all goals at once; ccd: joint by joint; two-bone: the "
-                         "joint's parent and grandparent in closed form",
-                         "METHOD", "least-squares")
+  add_choice<krok::ik::Method>(
+      command, "--method", a.method,
+      {{"least-squares", krok::ik::Method::least_squares},
+       {"ccd", krok::ik::Method::ccd},
+       {"two-bone", krok::ik::Method::two_bone}},
+      "least-squares: all goals at once; ccd: joint by joint; two-bone: the "
+      "joint's parent and grandparent in closed form",
+      "METHOD", "least-squares")
       .group(group);
   command
       .add_option("--stiffness", a.stiffness,
@@ -131,7 +135,7 @@ Result<double> value_of(const char* option, Result<double> parsed) {
 
 // JOINT=X,Y,Z@TIME or @TIME..TIME.
 Result<PointGoal> parse_point(const std::string& option, const std::string& text,
-                              ik::Goal::Kind kind) {
+                              krok::ik::Goal::Kind kind) {
   const auto wrong = [&](const std::string& why) {
     return usage(fmt::format("{} {}: {}", option, shown(text), why),
                  "write RightHand=0.4m,1.2m,0.3m@2s or RightHand=0.4m,1.2m,0.3m@2s..3s");
@@ -199,8 +203,8 @@ Result<Options> understand(const Arguments& a) {
   Options options;
   options.given = a;
   for (const auto& [list, option, kind] :
-       {std::tuple(&a.reaches, "--reach", ik::Goal::Kind::position),
-        std::tuple(&a.looks, "--look-at", ik::Goal::Kind::look_at)}) {
+       {std::tuple(&a.reaches, "--reach", krok::ik::Goal::Kind::position),
+        std::tuple(&a.looks, "--look-at", krok::ik::Goal::Kind::look_at)}) {
     for (const std::string& text : *list) {
       auto goal = parse_point(option, text, kind);
       if (!goal) return goal.error();
@@ -245,4 +249,26 @@ Result<Options> understand(const Arguments& a) {
   return options;
 }
 
-}  // namespace krok::ik_tool
+ToolSpec make_spec() {
+  const auto arguments = std::make_shared<Arguments>();
+  ToolSpec spec = spec_of("krok-ik", arguments, declare, understand, run);
+  spec.summary =
+      "Brings joints of a motion to goals by inverse kinematics, within the joints' ranges of "
+      "motion";
+  spec.inputs = "IN.anim";
+  spec.needs_output = false;  // --write-limits alone is enough
+  spec.examples = {
+      {"krok-ik walk.anim --reach RightHand=-0.4m,1.1m,0.5m@1s..1.5s -o touch.anim",
+       "the hand is at the place from 1 to 1.5 s and moves there and back in half a second each"},
+      {"krok-ik walk.anim --goals goals.json --limits auto -o reach.anim -v",
+       "goals keyed in time; limits from published ranges of motion"},
+      {"krok-ik walk.anim --look-at head=2m,1.5m,3m@0s..2s --stiffness spine=0.9 -o look.anim",
+       "the head turns to a place, mostly by the neck"},
+      {"krok-ik walk.anim --learn-limits run.anim --learn-limits dance.anim --write-limits "
+       "actor.limits.json",
+       "the ranges that an actor uses in captures, as a file for --limits"}};
+  spec.batch = {{".anim", ".bvh", ".amc"}, always(".anim")};
+  return spec;
+}
+
+}  // namespace krok::cli::ik

@@ -7,9 +7,9 @@
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
 #include "ik/goal_motion.h"
-#include "tools/common/command_options.h"
+#include "tools/cli/tool.h"
 
-namespace krok::ik_tool {
+namespace krok::cli::ik {
 
 // The options as given on the command line.
 struct Arguments {
@@ -21,7 +21,7 @@ struct Arguments {
   std::vector<std::string> captures;  // to learn limits from
   std::string margin = "0deg";
   std::string write_limits;
-  ik::Method method = ik::Method::least_squares;
+  krok::ik::Method method = krok::ik::Method::least_squares;
   std::vector<std::string> stiffness;  // JOINT=NUMBER
   std::optional<int> depth;
   int iterations = 60;
@@ -34,7 +34,7 @@ struct Arguments {
 // A goal of the command line: a point that a joint is to reach or to look at.
 struct PointGoal {
   std::string option, joint;
-  ik::Goal::Kind kind = ik::Goal::Kind::position;
+  krok::ik::Goal::Kind kind = krok::ik::Goal::Kind::position;
   Vec3 target = Vec3::Zero();  // metres
   double from = 0, to = 0;     // seconds, or frames
   bool in_frames = false;
@@ -52,7 +52,7 @@ struct Options {
   std::vector<Stiffness> stiffness;
   double fade = 0;  // seconds
   double margin = 0;
-  ik::Options solver;
+  krok::ik::Options solver;
 
   bool has_goals() const { return !given.goals.empty() || !points.empty(); }
 };
@@ -62,4 +62,7 @@ void declare(CommandOptions& command, Arguments& arguments);
 // Code usage, and those of quantities; messages name the option.
 Result<Options> understand(const Arguments& arguments);
 
-}  // namespace krok::ik_tool
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::ik

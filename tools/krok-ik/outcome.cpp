@@ -8,23 +8,23 @@
 #include "core/numbers.h"
 #include "core/text.h"
 
-namespace krok::ik_tool {
+namespace krok::cli::ik {
 
 namespace {
 
-std::string_view kind_name(ik::Goal::Kind kind) {
+std::string_view kind_name(krok::ik::Goal::Kind kind) {
   switch (kind) {
-    case ik::Goal::Kind::position:
+    case krok::ik::Goal::Kind::position:
       return "position";
-    case ik::Goal::Kind::orientation:
+    case krok::ik::Goal::Kind::orientation:
       return "orientation";
-    case ik::Goal::Kind::pose:
+    case krok::ik::Goal::Kind::pose:
       return "pose";
-    case ik::Goal::Kind::look_at:
+    case krok::ik::Goal::Kind::look_at:
       return "look-at";
-    case ik::Goal::Kind::pole:
+    case krok::ik::Goal::Kind::pole:
       return "pole";
-    case ik::Goal::Kind::balance:
+    case krok::ik::Goal::Kind::balance:
       break;
   }
   return "balance";
@@ -32,14 +32,16 @@ std::string_view kind_name(ik::Goal::Kind kind) {
 
 struct Figures {
   int reached = 0;
-  const ik::GoalFrame* worst = nullptr;  // missed by the most; nullptr if all are reached
-  double distance = 0, angle = 0;        // largest
+  const krok::ik::GoalFrame* worst = nullptr;  // missed by the most; nullptr if all are reached
+  double distance = 0, angle = 0;              // largest
 };
 
-Figures figures_of(const std::vector<ik::GoalFrame>& frames) {
+Figures figures_of(const std::vector<krok::ik::GoalFrame>& frames) {
   Figures figures;
-  const auto miss = [](const ik::GoalFrame& f) { return f.residual.distance + f.residual.angle; };
-  for (const ik::GoalFrame& frame : frames) {
+  const auto miss = [](const krok::ik::GoalFrame& f) {
+    return f.residual.distance + f.residual.angle;
+  };
+  for (const krok::ik::GoalFrame& frame : frames) {
     figures.distance = std::max(figures.distance, frame.residual.distance);
     figures.angle = std::max(figures.angle, frame.residual.angle);
     if (frame.residual.reached) {
@@ -60,7 +62,7 @@ std::string miss_text(double distance, double angle) {
   return text.empty() ? "nothing" : text;
 }
 
-std::string holder_text(const Outcome& outcome, const ik::GoalFrame& frame) {
+std::string holder_text(const Outcome& outcome, const krok::ik::GoalFrame& frame) {
   const int joint = frame.residual.held_by;
   return joint < 0 ? std::string("it is out of reach")
                    : fmt::format("held back by the limits of '{}'",
@@ -71,10 +73,10 @@ Json joint_name(const Outcome& outcome, int joint) {
   return joint < 0 ? Json() : Json(outcome.input.skeleton.names[at(joint)]);
 }
 
-std::size_t count_of(const ik::Limits& limits, ik::JointLimit::Kind kind) {
+std::size_t count_of(const krok::ik::Limits& limits, krok::ik::JointLimit::Kind kind) {
   return static_cast<std::size_t>(
       std::count_if(limits.begin(), limits.end(),
-                    [kind](const ik::JointLimit& limit) { return limit.kind == kind; }));
+                    [kind](const krok::ik::JointLimit& limit) { return limit.kind == kind; }));
 }
 
 }  // namespace
@@ -120,7 +122,7 @@ Diagnostics missed_goals(const Outcome& outcome) {
       continue;
     }
     if (figures.worst == nullptr) continue;
-    const ik::GoalFrame& worst = *figures.worst;
+    const krok::ik::GoalFrame& worst = *figures.worst;
     warning.code = "ik-missed";
     warning.message = fmt::format("goal '{}' is missed in {} of {}, by up to {} in frame {}: {}",
                                   shown(outcome.goals[g].name), frames.size() - at(figures.reached),
@@ -142,13 +144,13 @@ Json to_json(const Outcome& outcome) {
   json["changed_frames"] = outcome.motion.changed_frames;
   json["goals"] = Json::array();
   for (std::size_t g = 0; g < outcome.goals.size(); ++g) {
-    const ik::KeyedGoal& goal = outcome.goals[g];
+    const krok::ik::KeyedGoal& goal = outcome.goals[g];
     const auto& frames = outcome.motion.goals[g];
     const Figures figures = figures_of(frames);
     Json entry;
     entry["name"] = goal.name;
     entry["kind"] = kind_name(goal.goal.kind);
-    const bool balance = goal.goal.kind == ik::Goal::Kind::balance;
+    const bool balance = goal.goal.kind == krok::ik::Goal::Kind::balance;
     entry["joint"] = joint_name(outcome, balance ? -1 : goal.goal.joint);
     entry["active_frames"] = frames.size();
     entry["reached_frames"] = figures.reached;
@@ -158,7 +160,7 @@ Json to_json(const Outcome& outcome) {
     entry["held_by"] =
         figures.worst != nullptr ? joint_name(outcome, figures.worst->residual.held_by) : Json();
     entry["frames"] = Json::array();
-    for (const ik::GoalFrame& frame : frames) {
+    for (const krok::ik::GoalFrame& frame : frames) {
       entry["frames"].push_back({{"frame", frame.frame},
                                  {"strength", frame.strength},
                                  {"distance", frame.residual.distance},
@@ -173,21 +175,21 @@ Json to_json(const Outcome& outcome) {
   return json;
 }
 
-std::string limits_summary(const ik::Limits& limits) {
+std::string limits_summary(const krok::ik::Limits& limits) {
   return fmt::format("limits of {}: {} with a cone, {} with a hinge, {} locked",
                      counted(static_cast<long long>(limits.size()), "joint"),
-                     count_of(limits, ik::JointLimit::Kind::cone),
-                     count_of(limits, ik::JointLimit::Kind::hinge),
-                     count_of(limits, ik::JointLimit::Kind::locked));
+                     count_of(limits, krok::ik::JointLimit::Kind::cone),
+                     count_of(limits, krok::ik::JointLimit::Kind::hinge),
+                     count_of(limits, krok::ik::JointLimit::Kind::locked));
 }
 
-Json limits_json(const ik::Limits& limits, const Skeleton& skeleton) {
+Json limits_json(const krok::ik::Limits& limits, const Skeleton& skeleton) {
   Json json;
   json["joints"] = skeleton.joint_count();
-  json["cones"] = count_of(limits, ik::JointLimit::Kind::cone);
-  json["hinges"] = count_of(limits, ik::JointLimit::Kind::hinge);
-  json["locked"] = count_of(limits, ik::JointLimit::Kind::locked);
+  json["cones"] = count_of(limits, krok::ik::JointLimit::Kind::cone);
+  json["hinges"] = count_of(limits, krok::ik::JointLimit::Kind::hinge);
+  json["locked"] = count_of(limits, krok::ik::JointLimit::Kind::locked);
   return json;
 }
 
-}  // namespace krok::ik_tool
+}  // namespace krok::cli::ik

@@ -4,15 +4,15 @@
 #include <vector>
 
 #include "ik/goal_motion.h"
-#include "tools/common/report.h"
+#include "tools/cli/report.h"
 
-namespace krok::ik_tool {
+namespace krok::cli::ik {
 
 struct Outcome {
   const Clip& input;
-  const std::vector<ik::KeyedGoal>& goals;
-  const ik::Limits& limits;
-  const ik::GoalMotion& motion;
+  const std::vector<krok::ik::KeyedGoal>& goals;
+  const krok::ik::Limits& limits;
+  const krok::ik::GoalMotion& motion;
 };
 
 // One line for display.
@@ -28,7 +28,7 @@ Diagnostics missed_goals(const Outcome& outcome);
 // Goals with their residuals in each frame, and the limits.
 Json to_json(const Outcome& outcome);
 
-std::string limits_summary(const ik::Limits& limits);
-Json limits_json(const ik::Limits& limits, const Skeleton& skeleton);
+std::string limits_summary(const krok::ik::Limits& limits);
+Json limits_json(const krok::ik::Limits& limits, const Skeleton& skeleton);
 
-}  // namespace krok::ik_tool
+}  // namespace krok::cli::ik

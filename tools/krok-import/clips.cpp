@@ -64,14 +64,14 @@ Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const st
         .in_file(file);
   }
   if (clips.size() > 1) {
-    Diagnostic told;
-    told.severity = Severity::warning;
-    told.code = "import-clips";
-    told.message = fmt::format("using the first of {} animations, {}; available: {}", clips.size(),
-                               shown(clips[0].name), list_of(clips));
-    told.hint = "select another with --clip NAME or NUMBER, or all with --clip all";
-    told.where.file = file;
-    context.diagnose(std::move(told));
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::warning;
+    diagnostic.code = "import-clips";
+    diagnostic.message = fmt::format("using the first of {} animations, {}; available: {}",
+                                     clips.size(), shown(clips[0].name), list_of(clips));
+    diagnostic.hint = "select another with --clip NAME or NUMBER, or all with --clip all";
+    diagnostic.where.file = file;
+    context.diagnose(std::move(diagnostic));
   }
   clips.resize(1);
   return clips;

@@ -24,9 +24,7 @@ Result<std::optional<Direction>> direction_option(const std::string& text, const
   return std::optional<Direction>(*direction);
 }
 
-}  // namespace
-
-void declare(CommandOptions& command, Options& options) {
+void declare_inputs(CommandOptions& command, Options& options) {
   command
       .add_option("input", options.input,
                   "Motion capture (BVH; Acclaim motion, AMC; Acclaim skeleton, ASF) or character "
@@ -44,65 +42,68 @@ void declare(CommandOptions& command, Options& options) {
                   "Write the model: skeleton with reference pose, mesh and skin; for a capture the "
                   "skeleton without vertices")
       .type_name("OUT.model");
+}
 
-  const std::string scene = "Characters";
+void declare_characters(CommandOptions& command, Options& options) {
+  const std::string group = "Characters";
   command
       .add_option("--character", options.character,
                   "Write the whole character: OUT.character and beside it OUT.model, OUT.material, "
                   "textures in OUT_textures/, morph targets in OUT_morphs.exr; replaces --model "
                   "and --morphs")
       .type_name("OUT.character")
-      .group(scene);
+      .group(group);
   command
       .add_option("--clip", options.clip,
                   "Animation to import: name, number from 0, or all; for all, {clip} in the "
                   "output's name is the animation's name [the first]")
       .type_name("NAME")
-      .group(scene);
+      .group(group);
   command
       .add_option("--skin", options.skin,
                   "Use the skeleton of this skin (name or number) if the file has several [the one "
                   "with the most joints]")
       .type_name("NAME")
-      .group(scene);
+      .group(group);
   command.add_option("--cam", options.cam, "Write a camera of the file")
       .type_name("OUT.cam")
-      .group(scene);
+      .group(group);
   command
       .add_option("--camera", options.camera, "Camera to write: name or number from 0 [the first]")
       .type_name("NAME")
-      .group(scene);
-
+      .group(group);
   command
       .add_option("--morphs", options.morphs,
                   "Write the morph targets as a float texture (OpenEXR), for the vertices that "
                   "--model writes")
       .type_name("OUT.exr")
-      .group(scene);
+      .group(group);
   command
       .add_option("--morph-weights", options.weights,
                   "Write the morph target weights over time as a table")
       .type_name("OUT.csv")
-      .group(scene);
+      .group(group);
+}
 
-  const std::string space = "Conventions of the file";
+void declare_conventions(CommandOptions& command, Options& options) {
+  const std::string group = "Conventions of the file";
   command
       .add_option("--unit", options.unit,
                   "Unit of length: auto, m, dm, cm, mm, in, ft, cmu (of the CMU database) or a "
                   "length such as 5.64cm")
       .type_name("UNIT")
       .default_str("auto")
-      .group(space);
+      .group(group);
   command.add_option("--up", options.up, "Up axis: auto, x, y, z, -x, -y, -z")
       .type_name("AXIS")
       .default_str("auto")
-      .group(space);
+      .group(group);
   command
       .add_option("--forward", options.forward,
                   "Axis that the character faces in the reference pose: as --up")
       .type_name("AXIS")
       .default_str("auto")
-      .group(space);
+      .group(group);
   add_choice<bvh::Positions>(
       command, "--positions", options.positions,
       {{"auto", bvh::Positions::automatic},
@@ -110,38 +111,51 @@ void declare(CommandOptions& command, Options& options) {
        {"additive", bvh::Positions::additive}},
       "BVH: whether position channels replace OFFSETs (absolute) or are added to them (additive)",
       "HOW", "auto")
-      .group(space);
+      .group(group);
   add_choice<bvh::Angles>(command, "--angles", options.angles,
                           {{"degrees", bvh::Angles::degrees}, {"radians", bvh::Angles::radians}},
                           "BVH: unit of rotations: degrees, the format's unit, or radians", "UNIT",
                           "degrees")
-      .group(space);
+      .group(group);
+}
 
-  const std::string time = "Time";
+void declare_timing(CommandOptions& command, Options& options) {
+  const std::string group = "Time";
   add_rate(command, "--fps", options.fps, "Frame rate of the file, overrides the file's value")
-      .group(time);
+      .group(group);
   add_rate(command, "--resample", options.resample, "Resample the motion to N frames per second")
-      .group(time);
+      .group(group);
   add_choice<RestFrame>(
       command, "--skip-rest-frame", options.rest_frame,
       {{"no", RestFrame::keep}, {"auto", RestFrame::automatic}, {"yes", RestFrame::drop}},
       "Drop the first frame of a capture: auto (if it is a rest pose, not part of the motion), yes "
       "or no",
       "WHEN", "no")
-      .group(time);
+      .group(group);
+}
 
-  const std::string faults = "Errors in the file";
+void declare_faults(CommandOptions& command, Options& options) {
+  const std::string group = "Errors in the file";
   const CommandOption strict = command
                                    .add_flag("--strict", options.strict,
                                              "Fail on any error in the file; by default incomplete "
                                              "rows are dropped with a warning")
-                                   .group(faults);
+                                   .group(group);
   command
       .add_flag("--repair", options.repair,
                 "Fill damaged frames from their neighbours; each repair is listed")
       .excludes(strict)
-      .group(faults);
+      .group(group);
+}
 
+}  // namespace
+
+void declare(CommandOptions& command, Options& options) {
+  declare_inputs(command, options);
+  declare_characters(command, options);
+  declare_conventions(command, options);
+  declare_timing(command, options);
+  declare_faults(command, options);
   add_orientation_option(command, options.orientation);
 }
 

@@ -37,13 +37,13 @@ void SceneImporter::report_all(Diagnostics& found) {
 
 void SceneImporter::warn(const char* code, std::string message, std::string hint,
                          Severity severity) {
-  Diagnostic told;
-  told.severity = severity;
-  told.code = code;
-  told.message = std::move(message);
-  told.hint = std::move(hint);
-  told.where.file = path_;
-  context_.diagnose(std::move(told));
+  Diagnostic diagnostic;
+  diagnostic.severity = severity;
+  diagnostic.code = code;
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  diagnostic.where.file = path_;
+  context_.diagnose(std::move(diagnostic));
 }
 
 Error SceneImporter::missing(const std::string& what, const std::string& option, std::string hint) {

@@ -46,27 +46,27 @@ void warn_of_pops(const timeline::Timeline& timeline, const Mixed& mixed, ToolCo
   for (const ChangeFacts& change : mixed.changes) {
     if (!change.pops()) continue;
     const timeline::BaseItem& item = timeline.base[static_cast<std::size_t>(change.item)];
-    Diagnostic told;
-    told.severity = Severity::warning;
-    told.code = "mix-pop";
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::warning;
+    diagnostic.code = "mix-pop";
     const auto pace = worst_pace(change.paces);
-    told.joint = joint_name(mixed, pace ? change.paces[*pace].joint : change.fastest_joint);
-    told.frame = pace ? change.paces[*pace].frame : change.fastest_frame;
-    told.message = fmt::format(
+    diagnostic.joint = joint_name(mixed, pace ? change.paces[*pace].joint : change.fastest_joint);
+    diagnostic.frame = pace ? change.paces[*pace].frame : change.fastest_frame;
+    diagnostic.message = fmt::format(
         "the change ({}) into {} {} (frame {}); 99 % of the frames of the "
         "motions stay below {}",
         timeline::change_name(change.kind), shown(item.name),
-        pace ? pace_in_words(change.paces[*pace], *pace, told.joint)
-             : fmt::format("rotates {} at {:.0f} degrees per second", told.joint,
+        pace ? pace_in_words(change.paces[*pace], *pace, diagnostic.joint)
+             : fmt::format("rotates {} at {:.0f} degrees per second", diagnostic.joint,
                            change.fastest / kRadiansPerDegree),
-        told.frame,
+        diagnostic.frame,
         pace ? fmt::format("{:.2g}", change.paces[*pace].usual)
              : fmt::format("{:.0f}", change.usual / kRadiansPerDegree));
-    told.hint = change.kind == timeline::ChangeKind::cut
-                    ? "a change of kind inertial or crossfade is smooth"
-                    : "use a longer duration or another time";
-    told.where = item.where;
-    context.diagnose(std::move(told));
+    diagnostic.hint = change.kind == timeline::ChangeKind::cut
+                          ? "a change of kind inertial or crossfade is smooth"
+                          : "use a longer duration or another time";
+    diagnostic.where = item.where;
+    context.diagnose(std::move(diagnostic));
   }
 }
 

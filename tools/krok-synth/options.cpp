@@ -28,7 +28,13 @@ void declare(CommandOptions& command, Options& options) {
       .group("Parameters");
   command
       .add_flag("--extrapolate", options.extrapolate,
-                "Allow parameters outside the range of the examples, where the error is unknown")
+                "Allow parameters outside the range of the examples, and weights outside -0.25 to "
+                "1.25, where the error is unknown")
+      .group("Parameters");
+  command
+      .add_flag("--strict", options.strict,
+                "Exit with 1 if a motion differs from what was asked by more than the library's "
+                "tolerance (otherwise a warning)")
       .group("Parameters");
   add_choice<SideChoice>(
       command, "--side", options.side,
@@ -41,7 +47,8 @@ void declare(CommandOptions& command, Options& options) {
       .add_flag("--correct", options.correct,
                 "Correct the weights until the measured parameters match")
       .group("Motion");
-  add_rate(command, "--rate", options.rate, "Frames per second (default: the library's)")
+  add_rate(command, "--rate", options.rate,
+           "Frames per second (default: the library's, adjusted so that the duration is exact)")
       .group("Motion");
   add_orientation_option(command, options.orientation);
 }
@@ -61,6 +68,7 @@ Status check(const Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-synth", options, declare, check, run);
+  spec.exit_no = "with --strict: a motion differs from what was asked by more than the tolerance";
   spec.summary = "Makes a motion with given parameters from a step library";
   spec.inputs = "IN.steps";
   spec.examples = {{"krok-synth walking.steps --set length=70cm --set turn=15deg -o step.anim",

@@ -197,58 +197,6 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
 
 }  // namespace
 
-void declare(CommandOptions& command, Options& options) {
-  command.add_option("library", options.library, "Step library made by krok-fit")
-      .type_name("IN.steps")
-      .required();
-  command
-      .add_option("--set", options.set,
-                  "Value of a parameter: length=70cm, turn=15deg, duration=0.6s")
-      .type_name("NAME=VALUE")
-      .group("Parameters");
-  command
-      .add_option("--table", options.table,
-                  "Table (CSV) with a column per parameter; makes one motion per row, named as "
-                  "-o plus the row number")
-      .type_name("IN.csv")
-      .group("Parameters");
-  command
-      .add_flag("--extrapolate", options.extrapolate,
-                "Allow parameters outside the range of the examples, and weights outside -0.25 to "
-                "1.25, where the error is unknown")
-      .group("Parameters");
-  command
-      .add_flag("--strict", options.strict,
-                "Exit with 1 if a motion differs from what was asked by more than the library's "
-                "tolerance (otherwise a warning)")
-      .group("Parameters");
-  add_choice<SideChoice>(
-      command, "--side", options.side,
-      {{"library", SideChoice::library}, {"left", SideChoice::left}, {"right", SideChoice::right}},
-      "Swing foot: library (as in the library), left or "
-      "right",
-      "SIDE", "library")
-      .group("Motion");
-  command
-      .add_flag("--correct", options.correct,
-                "Correct the weights until the measured parameters match")
-      .group("Motion");
-  add_rate(command, "--rate", options.rate,
-           "Frames per second (default: the library's, adjusted so that the duration is exact)")
-      .group("Motion");
-  add_orientation_option(command, options.orientation);
-}
-
-Status check(const Options& options) {
-  if (options.set.empty() == options.table.empty()) {
-    return Error(
-        "usage",
-        options.set.empty() ? "no parameters given" : "--set and --table exclude each other",
-        "give each parameter with --set NAME=VALUE, or a table with --table IN.csv");
-  }
-  return {};
-}
-
 Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
     return status.error();

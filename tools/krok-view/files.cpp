@@ -89,7 +89,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       // A page cannot open external files, so buffers and images are packed.
       auto packed = gltf::pack_glb(input->bytes(), {.folder = folder_of(path)});
       if (!packed) return std::move(packed).error().in_file(path);
-      for (Diagnostic& told : packed->diagnostics) context.diagnose(std::move(told));
+      for (Diagnostic& diagnostic : packed->diagnostics) context.diagnose(std::move(diagnostic));
       for (const std::string& beside : packed->files) {
         if (auto opened = context.open_input(beside); !opened) return opened.error();
       }

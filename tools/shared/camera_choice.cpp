@@ -38,14 +38,14 @@ Result<int> choose_camera(const nodes::Scene& scene, std::span<const int> camera
                           ToolContext& context) {
   if (wanted.empty()) {
     if (cameras.size() == 1) return cameras[0];
-    Diagnostic told;
-    told.severity = Severity::warning;
-    told.code = "import-cameras";
-    told.message =
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::warning;
+    diagnostic.code = "import-cameras";
+    diagnostic.message =
         fmt::format("using the first of {} cameras: {}", cameras.size(), list_of(scene, cameras));
-    told.hint = "select another with --camera NAME or NUMBER";
-    told.where.file = path;
-    context.diagnose(std::move(told));
+    diagnostic.hint = "select another with --camera NAME or NUMBER";
+    diagnostic.where.file = path;
+    context.diagnose(std::move(diagnostic));
     return cameras[0];
   }
   for (const int camera : cameras) {

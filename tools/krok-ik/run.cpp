@@ -1,4 +1,4 @@
-#include "tools/krok-ik/ik_file.h"
+#include "tools/krok-ik/run.h"
 
 #include <fmt/format.h>
 
@@ -15,13 +15,13 @@
 #include "formats/limits/limits_format.h"
 #include "ik/anatomical_limits.h"
 #include "ik/learn_limits.h"
-#include "tools/common/output_kind.h"
-#include "tools/common/output_set.h"
-#include "tools/common/paths.h"
-#include "tools/common/role_input.h"
+#include "tools/cli/output_kind.h"
+#include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/krok-ik/outcome.h"
+#include "tools/shared/role_input.h"
 
-namespace krok::ik_tool {
+namespace krok::cli::ik {
 
 namespace {
 
@@ -41,17 +41,17 @@ class Run {
   Status add_points();
   Status set_stiffness();
   Result<int> joint_of(const std::string& option, const std::string& name) const;
-  Status write(const ik::GoalMotion* made);
+  Status write(const krok::ik::GoalMotion* made);
 
   const Options& options_;
   ToolContext& context_;
   Clip clip_;
   io::FindRoles find_roles_;
   RoleMap roles_;
-  ik::Limits limits_;
-  std::vector<ik::KeyedGoal> goals_;
+  krok::ik::Limits limits_;
+  std::vector<krok::ik::KeyedGoal> goals_;
   std::deque<Clip> others_;  // keep their places
-  ik::Options solver_;
+  krok::ik::Options solver_;
 };
 
 Status Run::read_motion() {
@@ -79,7 +79,7 @@ Status Run::learn() {
     clips.push_back(std::move(*clip));
     list.push_back(&clips.back());
   }
-  auto limits = ik::learn_limits(clip_.skeleton, list, {.margin = options_.margin});
+  auto limits = krok::ik::learn_limits(clip_.skeleton, list, {.margin = options_.margin});
   if (!limits) return std::move(limits).error().in_file(given().captures.front());
   limits_ = std::move(*limits);
   return {};
@@ -94,7 +94,7 @@ Status Run::read_limits() {
                    "krok-info -v lists the joints and their roles; --map assigns roles")
           .in_file(given().input);
     }
-    limits_ = ik::anatomical_limits(clip_.skeleton, roles_);
+    limits_ = krok::ik::anatomical_limits(clip_.skeleton, roles_);
     return {};
   }
   const auto file = context_.open_input(given().limits);
@@ -154,13 +154,13 @@ Status Run::add_points() {
   for (const PointGoal& point : options_.points) {
     const auto joint = joint_of(point.option, point.joint);
     if (!joint) return joint.error();
-    ik::KeyedGoal goal;
+    krok::ik::KeyedGoal goal;
     goal.name = clip_.skeleton.names[at(*joint)];
     goal.goal.kind = point.kind;
     goal.goal.joint = *joint;
     goal.goal.axis = goals::facing_axis(*joint, clip_.skeleton);
     goal.goal.depth = goals::default_depth(*joint, clip_.skeleton, roles_);
-    ik::GoalKey key;
+    krok::ik::GoalKey key;
     key.target = point.target;
     const double unit = point.in_frames ? 1 / clip_.rate : 1;
     key.time = point.from * unit;
@@ -171,7 +171,7 @@ Status Run::add_points() {
     goals_.push_back(std::move(goal));
   }
   if (given().depth) {
-    for (ik::KeyedGoal& goal : goals_) goal.goal.depth = *given().depth;
+    for (krok::ik::KeyedGoal& goal : goals_) goal.goal.depth = *given().depth;
   }
   return {};
 }
@@ -188,11 +188,11 @@ Status Run::set_stiffness() {
       solver_.stiffness[at(j)] = stiffness.value;
     }
   }
-  const ik::BodyMasses body = ik::body_masses(clip_.skeleton, roles_);
+  const krok::ik::BodyMasses body = krok::ik::body_masses(clip_.skeleton, roles_);
   solver_.masses = body.masses;
   solver_.mass_centres = body.centres;
-  for (const ik::KeyedGoal& goal : goals_) {
-    if (goal.goal.kind == ik::Goal::Kind::balance && !roles_.humanoid) {
+  for (const krok::ik::KeyedGoal& goal : goals_) {
+    if (goal.goal.kind == krok::ik::Goal::Kind::balance && !roles_.humanoid) {
       return Error(
                  "ik-roles",
                  fmt::format("goal '{}' balances a body that is not a humanoid", shown(goal.name)),
@@ -203,7 +203,7 @@ Status Run::set_stiffness() {
   return {};
 }
 
-Status Run::write(const ik::GoalMotion* made) {
+Status Run::write(const krok::ik::GoalMotion* made) {
   OutputSet outputs(context_);
   if (!given().write_limits.empty()) {
     const std::string text = limits::write(limits_, clip_.skeleton);
@@ -249,10 +249,10 @@ Result<int> Run::run() {
     context_.log(fmt::format("{}: {}", given().write_limits, limits_summary(limits_)));
     return kExitDone;
   }
-  ik::GoalMotionOptions how;
+  krok::ik::GoalMotionOptions how;
   how.solver = solver_;
   how.jobs = context_.jobs;
-  auto made = ik::apply_goals(clip_, goals_, limits_, how);
+  auto made = krok::ik::apply_goals(clip_, goals_, limits_, how);
   if (!made) {
     return std::move(made).error().in_file(given().goals.empty() ? given().input : given().goals);
   }
@@ -277,4 +277,4 @@ Result<int> run(const Options& options, ToolContext& context) {
   return Run(options, context).run();
 }
 
-}  // namespace krok::ik_tool
+}  // namespace krok::cli::ik

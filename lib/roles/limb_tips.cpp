@@ -1,0 +1,85 @@
+#include "roles/limb_tips_internal.h"
+
+#include <algorithm>
+#include <span>
+
+#include "roles/joint_names.h"
+
+namespace krok {
+
+namespace {
+
+// Whether an ancestor of `joint` on `side` is named as one of `parts`.
+bool hangs_under(const NamedJoints& joints, int joint, Side side, std::span<const Part> parts) {
+  for (int j = joints.parent(joint); j >= 0; j = joints.parent(j)) {
+    if (joints.side(j) == side &&
+        std::find(parts.begin(), parts.end(), joints.part(j)) != parts.end()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// The end joint of a limb: a joint named `tip` below a joint of that limb, else the main child of
+// the limb's last part, else a joint named `tip` anywhere.
+int find_tip(const NamedJoints& joints, Side side, Part tip, std::span<const Part> limb) {
+  const auto named = [&](int j) { return joints.part(j) == tip && joints.side(j) == side; };
+  int found = joints.nearest([&](int j) { return named(j) && hangs_under(joints, j, side, limb); });
+  if (found >= 0) return found;
+  const int last = joints.nearest(
+      [&](int j) { return joints.part(j) == limb.back() && joints.side(j) == side; });
+  if (last >= 0) return joints.main_child(last);
+  return joints.nearest(named);
+}
+
+// If both arms and legs are known by name, but no neck or head (only numbered vertebrae, for
+// example): the last joint of the single branch above the arms.
+int unnamed_head(const NamedJoints& joints, const LimbTips& tips) {
+  if (tips.hands[0] < 0 || tips.hands[1] < 0 || tips.feet[0] < 0 || tips.feet[1] < 0) return -1;
+  const auto may_lead_on = [&](int j) {
+    const bool named = joints.part(j) != Part::unknown && joints.part(j) != Part::spine;
+    return !joints.is_end(j) && !named && joints.side(j) == Side::middle;
+  };
+  const int chest = joints.common_ancestor(tips.hands[0], tips.hands[1]);
+  if (joints.descends(tips.feet[0], chest)) return -1;  // all limbs on one joint: up is unknown
+  int head = -1;
+  for (const int child : joints.children(chest)) {
+    if (joints.is_end(child) || joints.descends(tips.hands[0], child) ||
+        joints.descends(tips.hands[1], child)) {
+      continue;
+    }
+    if (head >= 0 || !may_lead_on(child)) return -1;
+    head = child;
+  }
+  while (head >= 0 && joints.children(head).size() == 1 && may_lead_on(joints.children(head)[0])) {
+    head = joints.children(head)[0];
+  }
+  return head;
+}
+
+}  // namespace
+
+LimbTips find_limb_tips(const NamedJoints& joints) {
+  constexpr std::array kArm = {Part::collar, Part::shoulder, Part::upper_arm, Part::arm,
+                               Part::lower_arm};
+  constexpr std::array kLeg = {Part::hip, Part::upper_leg, Part::leg, Part::lower_leg};
+  LimbTips tips;
+  tips.hands = {find_tip(joints, Side::left, Part::hand, kArm),
+                find_tip(joints, Side::right, Part::hand, kArm)};
+  tips.feet = {find_tip(joints, Side::left, Part::foot, kLeg),
+               find_tip(joints, Side::right, Part::foot, kLeg)};
+  tips.head = joints.nearest([&](int j) { return joints.part(j) == Part::head; });
+  tips.neck = joints.nearest([&](int j) { return joints.part(j) == Part::neck; });
+  if (tips.head < 0 && tips.neck >= 0) {
+    int last = tips.neck;
+    while (joints.main_child(last) >= 0 && joints.part(joints.main_child(last)) == Part::neck) {
+      last = joints.main_child(last);
+    }
+    tips.head = joints.main_child(last);
+    if (tips.head < 0 && last != tips.neck) tips.head = last;  // the last of several necks
+  }
+  if (tips.head < 0 && tips.neck < 0) tips.head = unnamed_head(joints, tips);
+  return tips;
+}
+
+}  // namespace krok
