@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "describe.h"
 #include "formats/steps/parameter_names.h"
 #include "formats/steps/steps.h"
 #include "parametric/bounds.h"
@@ -51,6 +54,74 @@ void add_weights(const steps::StepsFile& steps, Description& out) {
                          {"inserted", weights.inserted()}};
 }
 
+// A number of the fit report; nothing where it is not there, as the report may be from anywhere.
+std::optional<double> number_in(const Json& report, const std::string& pointer) {
+  const Json::json_pointer at(pointer);
+  if (!report.contains(at) || !report[at].is_number()) return std::nullopt;
+  return report[at].get<double>();
+}
+
+// Where the report has what was measured last.
+std::string last_errors(const Json& report) {
+  if (report.contains("/polished/after"_json_pointer)) return "/polished/after";
+  const Json rounds = report.value("rounds", Json::array());
+  if (rounds.is_array() && !rounds.empty()) {
+    return fmt::format("/rounds/{}/after", rounds.size() - 1);
+  }
+  return "/before";
+}
+
+// What the fit measured: held-out errors, the range of the weights, leave-one-out.
+void add_fit(const steps::StepsFile& steps, Description& out) {
+  const Json report = Json::parse(steps.report, nullptr, false);
+  if (!report.is_object()) return;
+  const std::string errors = last_errors(report);
+  Json json = Json::object();
+  const auto get = [&](const char* key, const std::string& pointer) {
+    const auto value = number_in(report, pointer);
+    if (value) json[key] = *value;
+    return value;
+  };
+  std::vector<std::string> lines;
+  const std::vector<std::string> names = steps::parameter_names(steps);
+  for (std::size_t d = 0; d < names.size(); ++d) {
+    // A name may hold the separators of a pointer.
+    Json::json_pointer within(errors + "/within");
+    within.push_back(names[d]);
+    const auto most = number_in(report, (within / "largest").to_string());
+    const auto mean = number_in(report, (within / "mean").to_string());
+    if (!most || !mean) continue;
+    const std::string_view unit = unit_of(steps.library.parameters[d]);
+    const double factor = unit == "rad" ? 1 / kRadiansPerDegree : 1000;
+    lines.push_back(fmt::format("{}: {} {} at most, {} in the mean (held-out points)", names[d],
+                                readable(*most * factor, 3),
+                                unit == "rad" ? "deg"
+                                : unit == "s" ? "ms"
+                                              : "mm",
+                                readable(*mean * factor, 3)));
+    json["errors"][names[d]] = {{"largest", *most}, {"mean", *mean}};
+  }
+  out.add("errors", std::move(lines));
+  const auto least = get("least_weight", errors + "/least_weight");
+  const auto largest = get("largest_weight", errors + "/largest_weight");
+  if (least && largest) {
+    out.add("range",
+            fmt::format("weights from {} to {}", readable(*least, 3), readable(*largest, 3)));
+  }
+  const auto smoothing = get("smoothing", "/smoothing");
+  if (smoothing && *smoothing > 0) out.add("smoothing", readable(*smoothing, 3));
+  const auto weighted = get("left_out", "/leave_one_out/weighted");
+  const auto linear = get("left_out_linear", "/leave_one_out/linear");
+  const auto nearest = get("left_out_nearest", "/leave_one_out/nearest");
+  if (weighted && linear && nearest) {
+    out.add("left out",
+            fmt::format("each example from the others: {} mm; affine fit {}, nearest {}",
+                        readable(*weighted * 1000, 3), readable(*linear * 1000, 3),
+                        readable(*nearest * 1000, 3)));
+  }
+  out.json["fit"] = std::move(json);
+}
+
 }  // namespace
 
 Result<Description> describe_steps(const InputFile& file, ToolContext&) {
@@ -78,6 +149,7 @@ Result<Description> describe_steps(const InputFile& file, ToolContext&) {
   }
   out.json["examples"] = std::move(examples);
   add_weights(*steps, out);
+  add_fit(*steps, out);
   add_provenance(steps->provenance, out);
   return out;
 }

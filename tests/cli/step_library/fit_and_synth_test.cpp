@@ -207,6 +207,23 @@ TEST_F(StepLibrary, CellsOfATableMayHaveUnits) {
   EXPECT_THAT(wrong.err, HasSubstr("points.csv:3:1: error")) << wrong.err;
 }
 
+// The figures of the fit, before the files that it was made of.
+TEST_F(StepLibrary, AnInfoTellsHowGoodItIs) {
+  fit_well({"--refine", "6", "--json=" + path("r.json")});
+  const ToolRun text = run_tool("krok-info", {path("out.steps")});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_LT(text.out.find("held-out"), text.out.find("krok-fit"));
+  for (const char* says : {"length: ", "weights from ", "nearest "}) {
+    EXPECT_THAT(text.out, HasSubstr(says));
+  }
+  const ToolRun info = run_tool("krok-info", {path("out.steps"), "--json"});
+  const json fit = json::parse(info.out)["result"]["files"][0]["fit"];
+  const json report = json::parse(InputFile::open(path("r.json"))->text())["result"];
+  EXPECT_EQ(fit["left_out"], report["leave_one_out"]["weighted"]);
+  EXPECT_LE(fit["errors"]["length"]["mean"], fit["errors"]["length"]["largest"]);
+  EXPECT_LT(fit["least_weight"], fit["largest_weight"]);
+}
+
 TEST_F(StepLibrary, TheSameBytesWhateverTheThreads) {
   fit_well({"--refine", "12", "--until", "0.001mm", "-j", "1"});
   const auto first = InputFile::open(path("out.steps"));
