@@ -19,6 +19,9 @@ namespace {
 // Of the leg: what jitter of the whole body is so large that contacts are found better without it.
 constexpr double kShakes = 0.003;
 
+// Of the leg: what heels and balls may move by while they stand for the clip to be left as it is.
+constexpr double kStands = 0.0005;
+
 void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing>& captured,
                 const std::vector<plant::Footing>& footings, PlantedFeet& planted) {
   for (std::size_t i = 0; i < body.legs.size(); ++i) {
@@ -75,6 +78,8 @@ Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
   }
   planted.clip = clip;
   auto footings = captured;
+  note_stays(*body, captured, captured, planted);
+  if (planted.drift_before <= kStands * found->leg_length) return planted;
   const double pelvis_jitter = plant::pelvis_jitter(*body, clip);
   // Twice: places are known better once the body is steady.
   for (int round = 0; round < 2; ++round) {
@@ -98,6 +103,8 @@ Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
   const std::vector<double> lowered = plant::lowering(planted.clip, *body, paths);
   planted.out_of_reach = plant::apply(*body, paths, lowered, planted.clip);
   planted.pelvis_lowered = *std::ranges::max_element(lowered);
+  planted.stays.clear();
+  planted.drift_before = planted.drift_after = 0;
   note_stays(*body, captured, footings, planted);
   if (planted.out_of_reach > 0) {
     planted.warnings.push_back(reach_warning(planted.out_of_reach, clip));

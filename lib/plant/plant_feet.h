@@ -55,6 +55,9 @@ struct PlantedFeet {
 //   lowered smoothly first.
 // - Legs are solved by solve_two_bone(). Bend that is added bends the knee about its usual axis.
 //
+// A clip in which no heel and no ball moves by more than 0.0005 of the leg while it stands is
+// returned as it is, so that planting twice with the same contacts is the same as once.
+//
 // Everything outside the legs keeps its orientation, and its position relative to the hips; joints
 // above the hips do not move. Bones keep their lengths. Independent of root and reference pose.
 // Frames of a rest pose before the capture, from which a foot jumps, are not fixed.

@@ -10,7 +10,8 @@ namespace krok::plant {
 namespace {
 
 constexpr double kFarFromPlace = 0.2;  // of the leg
-constexpr double kOffGround = 0.012;   // of the leg, at the ends of a stay
+constexpr double kBesideEnds = 0.15;   // seconds
+constexpr double kOffGround = 0.012;   // of the leg
 constexpr double kJitter = 0.002;      // metres, less does not matter to a place
 constexpr int kRounds = 200;
 constexpr double kExact = 1e-8;  // metres
@@ -133,7 +134,8 @@ class StayFixer {
     }
   }
 
-  void add(std::size_t point, double start, double end) {
+  // `found`: not given by anyone who may have looked.
+  void add(std::size_t point, double start, double end, bool found) {
     const int last_frame = clip_.frame_count() - 1;
     const std::vector<Vec3>& track = footing.tracks[point];
     FixedStay stay;
@@ -142,10 +144,14 @@ class StayFixer {
     stay.last = std::min(last_frame, static_cast<int>(std::floor(end * clip_.rate + 1e-3)));
     if (stay.first > stay.last) return;
     stay.place = median_place(track, stay.first, stay.last);
+    // Beside the clip's ends, too few frames tell when a point that was found to stand leaves.
+    const int beside = static_cast<int>(kBesideEnds * clip_.rate);
     const auto is_far = [&](int f) {
       const Vec3 off = track[static_cast<std::size_t>(f)] - stay.place;
+      const bool inexact = found && (f <= beside || f >= last_frame - beside);
       return off.norm() > kFarFromPlace * body_.leg_length ||
-             std::abs(off.y()) > kOffGround * body_.leg_length + 3 * height_jitter_[point];
+             (inexact &&
+              std::abs(off.y()) > kOffGround * body_.leg_length + 3 * height_jitter_[point]);
     };
     while (stay.first <= stay.last && is_far(stay.first)) ++stay.first;
     while (stay.first <= stay.last && is_far(stay.last)) --stay.last;
@@ -276,14 +282,14 @@ std::vector<Footing> fix_stays(const Clip& clip, const PlantedBody& body,
       const SolePoint& point = leg.points[p];
       if (contacts && is_named(point)) {
         for (const Contact& contact : *contacts) {
-          if (contact.joint == point.joint) fixer.add(p, contact.start, contact.end);
+          if (contact.joint == point.joint) fixer.add(p, contact.start, contact.end, false);
         }
         continue;
       }
       for (const Stay& stay : found) {
         const SolePoint& other = tracks[static_cast<std::size_t>(stay.track)].point;
         if (other.side == leg.side && other.part == point.part) {
-          fixer.add(p, stay.start, stay.end);
+          fixer.add(p, stay.start, stay.end, true);
         }
       }
     }

@@ -21,6 +21,7 @@
 #include "methods.h"
 #include "plant/plant_feet.h"
 #include "support/foot_skate.h"
+#include "support/planted_measures.h"
 
 namespace {
 
@@ -32,68 +33,7 @@ struct Sample {
   std::optional<Clip> clean;  // what the input was before slides and jitter
 };
 
-// Of one clip.
-struct Measures {
-  double drift = 0;                  // metres, largest
-  double knee_99 = 1, knee_max = 1;  // of the input's
-  double height = 0;                 // metres, largest
-  int stays = 0, high = 0;           // heels and balls; those whose height is off by over 1 mm
-  double stretch = 0;                // metres, largest
-};
-
-Vec3 place_of(const Clip& clip, int frame, const SolePoint& point) {
-  return test::joint_of(clip, frame, point.joint) * point.offset;
-}
-
-double median_height(const Clip& clip, const FixedStay& stay) {
-  std::vector<double> heights;
-  for (int f = stay.first; f <= stay.last; ++f) {
-    heights.push_back(place_of(clip, f, stay.point).y());
-  }
-  std::ranges::sort(heights);
-  return 0.5 * (heights[heights.size() / 2] + heights[(heights.size() - 1) / 2]);
-}
-
-Measures measure(const Sample& sample, const RoleMap& roles, const std::vector<FixedStay>& stays,
-                 const Clip& result) {
-  Measures measures;
-  for (const FixedStay& stay : stays) {
-    if (stay.point.part == FootPart::tip) continue;
-    const double height = median_height(sample.clean.value_or(sample.input), stay);
-    Vec3 low = place_of(result, stay.first, stay.point), high = low;
-    double off = 0;
-    for (int f = stay.first; f <= stay.last; ++f) {
-      const Vec3 place = place_of(result, f, stay.point);
-      low = low.cwiseMin(place);
-      high = high.cwiseMax(place);
-      off = std::max(off, std::abs(place.y() - height));
-    }
-    measures.drift = std::max(measures.drift, (high - low).norm());
-    measures.height = std::max(measures.height, off);
-    measures.stays += 1;
-    measures.high += off > 0.001 ? 1 : 0;
-  }
-  // Captures may begin with a rest pose.
-  const auto before = test::knee_acceleration(sample.input, roles, 1);
-  const auto after = test::knee_acceleration(result, roles, 1);
-  if (before.max > 0) {
-    measures.knee_99 = after.percentile_99 / before.percentile_99;
-    measures.knee_max = after.max / before.max;
-  }
-  for (int f = 0; f < result.frame_count(); ++f) {
-    for (int j = 1; j < result.joint_count(); ++j) {
-      const int parent = result.skeleton.parents[static_cast<std::size_t>(j)];
-      const auto length = [&](const Clip& clip) {
-        return (test::joint_of(clip, f, j).position - test::joint_of(clip, f, parent).position)
-            .norm();
-      };
-      if (parent == 0) continue;  // a root may be apart from the hips
-      measures.stretch =
-          std::max(measures.stretch, std::abs(length(result) - length(sample.input)));
-    }
-  }
-  return measures;
-}
+using test::Measures;
 
 using Method = std::function<Clip(const Clip&, const RoleMap&, const PlantedFeet&)>;
 struct Total {
@@ -144,7 +84,8 @@ void compare(const char* title, const std::vector<Sample>& samples, bool details
     hash = hash * 31 + xxh3(std::as_bytes(std::span(planted->clip.positions)));
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const Measures measures =
-          measure(sample, roles, planted->stays, methods[m].second(sample.input, roles, *planted));
+          test::measure(sample.input, sample.clean.value_or(sample.input), roles, planted->stays,
+                        methods[m].second(sample.input, roles, *planted));
       add(measures, totals[m]);
       if (details && m + 1 == methods.size()) {
         std::printf(

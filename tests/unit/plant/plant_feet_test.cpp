@@ -1,0 +1,230 @@
+// If these fail, --plant leaves feet sliding, or breaks something else to hold them: bones that
+// change their lengths, an upper body that turns, a foot that no longer rolls off over its ball.
+
+#include "plant/plant_feet.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "motion/ground_frame.h"
+#include "support/planted_measures.h"
+#include "unit/contacts/events.h"
+
+namespace krok {
+namespace {
+
+samples::Walk plain_walk() {
+  samples::WalkOptions options;
+  options.steps = 6;
+  return samples::make_walk(options).value();
+}
+
+PlantedFeet planted(const Clip& clip, std::optional<std::span<const Contact>> contacts = {}) {
+  auto result = plant_feet(clip, find_roles(clip.skeleton), contacts);
+  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
+  return result.ok() ? std::move(*result) : PlantedFeet{};
+}
+
+const FixedStay* stay_of(const PlantedFeet& feet, FootPart part, int after = 0) {
+  for (const FixedStay& stay : feet.stays) {
+    if (stay.point.part == part && stay.first > after) return &stay;
+  }
+  return nullptr;
+}
+
+TEST(PlantFeet, SlidesAndJitterAreGone) {
+  const samples::Walk walk = plain_walk();
+  const Clip input = test::with_skate(walk, {});
+  const PlantedFeet feet = planted(input);
+  const auto measures =
+      test::measure(input, walk.clip, find_roles(input.skeleton), feet.stays, feet.clip);
+  EXPECT_GT(feet.drift_before, 0.02);
+  EXPECT_LT(measures.drift, 0.0005);
+  EXPECT_LE(feet.drift_after, measures.drift + 1e-9);
+  EXPECT_LT(measures.knee_99, 1.2);
+  EXPECT_LT(measures.stretch, 2e-6);
+  EXPECT_GE(measures.stays, 12);
+  EXPECT_EQ(feet.out_of_reach, 0);
+  EXPECT_TRUE(check(feet.clip).ok());
+}
+
+// All walks of the generator, at all its rates, 20 mm of slides and 5 mm of jitter.
+TEST(PlantFeet, ManyWalks) {
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    const auto walk = samples::make_walk(test::varied_walk(seed));
+    ASSERT_TRUE(walk.ok());
+    const bool whole_body = seed % 2 == 0;
+    const Clip input = test::with_skate(*walk, {.body_jitter = whole_body ? 0.005 : 0,
+                                                .foot_jitter = whole_body ? 0 : 0.005,
+                                                .seed = seed});
+    const PlantedFeet feet = planted(input);
+    const auto measures =
+        test::measure(input, walk->clip, find_roles(input.skeleton), feet.stays, feet.clip);
+    EXPECT_LT(measures.drift, 0.0005) << seed;
+    EXPECT_LE(measures.knee_99, 1.2) << seed;
+    EXPECT_LT(measures.stretch, 5e-6) << seed;
+  }
+}
+
+TEST(PlantFeet, HeightsOverTheGroundStay) {
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    const auto walk = samples::make_walk(test::varied_walk(seed));
+    ASSERT_TRUE(walk.ok());
+    const Clip input = test::with_skate(*walk, {.body_jitter = 0, .seed = seed});
+    const PlantedFeet feet = planted(input);
+    const auto measures =
+        test::measure(input, walk->clip, find_roles(input.skeleton), feet.stays, feet.clip);
+    EXPECT_LT(measures.height, 0.001) << seed;
+    EXPECT_EQ(feet.body_steadied > 0.001, false) << seed;
+  }
+}
+
+TEST(PlantFeet, NothingElseMoves) {
+  const Clip input = test::with_skate(plain_walk(), {.body_jitter = 0});
+  const RoleMap roles = find_roles(input.skeleton);
+  const PlantedFeet feet = planted(input);
+  const int hips = carrying_joint(roles);
+  std::vector<std::uint8_t> in_leg(input.skeleton.names.size(), 0);
+  for (const test::LegRoles& leg : test::legs_of(roles)) {
+    const auto below = subtree(input.skeleton, leg.upper);
+    for (std::size_t j = 0; j < in_leg.size(); ++j) in_leg[j] |= below[j];
+  }
+  int outside = 0;
+  for (std::size_t j = 0; j < in_leg.size(); ++j) {
+    if (in_leg[j]) continue;
+    ++outside;
+    for (int f = 0; f < input.frame_count(); ++f) {
+      const auto h = static_cast<std::size_t>(hips);
+      EXPECT_EQ(input.frame_orientations(f)[j].coeffs(),
+                feet.clip.frame_orientations(f)[j].coeffs());
+      const Vec3f before = input.frame_positions(f)[j] - input.frame_positions(f)[h];
+      const Vec3f after = feet.clip.frame_positions(f)[j] - feet.clip.frame_positions(f)[h];
+      EXPECT_LT((before - after).norm(), 2e-6);
+    }
+  }
+  EXPECT_GT(outside, 10);
+}
+
+// The heel comes up as it did while the ball stays where it is.
+TEST(PlantFeet, RollOverTheBallStays) {
+  const Clip input = test::with_skate(plain_walk(), {.body_jitter = 0});
+  const PlantedFeet feet = planted(input);
+  const FixedStay* heel = stay_of(feet, FootPart::heel, 20);
+  ASSERT_NE(heel, nullptr);
+  const FixedStay* ball = nullptr;
+  for (const FixedStay& stay : feet.stays) {
+    const bool same = stay.point.part == FootPart::ball && stay.point.side == heel->point.side &&
+                      stay.first <= heel->last && stay.last > heel->last;
+    if (same) ball = &stay;
+  }
+  ASSERT_NE(ball, nullptr);
+  const double captured = test::place_of(input, ball->last, heel->point).y() - heel->place.y();
+  const double now = test::place_of(feet.clip, ball->last, heel->point).y() - heel->place.y();
+  EXPECT_GT(captured, 0.02);
+  EXPECT_GT(now, captured - 0.005);
+  EXPECT_LT(now, captured + 0.03);
+}
+
+TEST(PlantFeet, SkeletonsWithoutToes) {
+  const Clip whole = test::with_skate(plain_walk(), {});
+  for (const std::vector<std::string>& dropped :
+       {std::vector<std::string>{"ToeBase_end"}, std::vector<std::string>{"ToeBase"}}) {
+    const Clip input = test::without(whole, dropped);
+    const PlantedFeet feet = planted(input);
+    const auto measures =
+        test::measure(input, input, find_roles(input.skeleton), feet.stays, feet.clip);
+    EXPECT_GE(measures.stays, 12) << dropped[0];
+    EXPECT_LT(measures.drift, 0.0005) << dropped[0];
+    EXPECT_LE(measures.knee_99, 1.2) << dropped[0];
+  }
+}
+
+TEST(PlantFeet, ContactsGivenDecide) {
+  const Clip input = test::with_skate(plain_walk(), {.body_jitter = 0});
+  const RoleMap roles = find_roles(input.skeleton);
+  const int toes = roles.joints(Role::left_toes).front();
+  const std::vector<Contact> contacts = {{toes, 1.0, 1.2, Vec3::Zero()},
+                                         {roles.joint(Role::left_hand), 0.2, 0.9, Vec3::Zero()}};
+  const PlantedFeet feet = planted(input, contacts);
+  int balls = 0;
+  for (const FixedStay& stay : feet.stays) {
+    if (stay.point.joint != toes || stay.point.part != FootPart::ball) continue;
+    ++balls;
+    EXPECT_EQ(stay.first, 60);
+    EXPECT_EQ(stay.last, 72);
+    EXPECT_LT(stay.drift_after, 0.0005);
+  }
+  EXPECT_EQ(balls, 1);
+  for (const FixedStay& stay : feet.stays) EXPECT_EQ(stay.point.side, FootSide::left);
+}
+
+// A leg that is straight already, and whose foot is to stand behind where it is: the pelvis comes
+// down, the leg keeps its length.
+TEST(PlantFeet, PelvisIsLoweredBeforeALegIsStretched) {
+  samples::WalkOptions options;
+  options.steps = 6;
+  options.step_length = 0.9;
+  const samples::Walk walk = samples::make_walk(options).value();
+  const Clip input = test::with_skate(walk, {.slide = 0.06, .body_jitter = 0});
+  const PlantedFeet feet = planted(input);
+  EXPECT_GT(feet.pelvis_lowered, 0.001);
+  EXPECT_EQ(feet.out_of_reach, 0);
+  EXPECT_LT(feet.drift_after, 0.0005);
+  const auto measures =
+      test::measure(input, walk.clip, find_roles(input.skeleton), feet.stays, feet.clip);
+  EXPECT_LT(measures.stretch, 5e-6);
+}
+
+// A rest pose before the capture stands elsewhere; drawn there, the foot would tear the leg.
+TEST(PlantFeet, ARestPoseInTheFirstFrameIsLeftAlone) {
+  Clip input = test::with_skate(plain_walk(), {.body_jitter = 0});
+  std::vector<Transform> rest = input.skeleton.reference;
+  for (Transform& joint : rest) joint.position += Vec3(2, 0, 1);
+  input.set_pose(0, rest);
+  const PlantedFeet feet = planted(input);
+  for (const FixedStay& stay : feet.stays) EXPECT_GT(stay.first, 0);
+  for (std::size_t j = 0; j < rest.size(); ++j) {
+    EXPECT_LT((feet.clip.frame_positions(0)[j] - input.frame_positions(0)[j]).norm(), 0.05);
+  }
+}
+
+TEST(PlantFeet, ContactsOutOfReachAreReported) {
+  const Clip input = plain_walk().clip;
+  const int toes = find_roles(input.skeleton).joints(Role::left_toes).front();
+  // Over a whole swing: the foot cannot stay for so long.
+  const std::vector<Contact> contacts = {{toes, 0, input.duration(), Vec3::Zero()}};
+  const auto result = plant_feet(input, find_roles(input.skeleton), contacts);
+  ASSERT_TRUE(result.ok());
+  EXPECT_TRUE(check(result->clip).ok());
+  const auto measures = test::measure(input, input, find_roles(input.skeleton), {}, result->clip);
+  EXPECT_LT(measures.stretch, 5e-6);
+}
+
+TEST(PlantFeet, Errors) {
+  const Clip walk = plain_walk().clip;
+  const auto code = [](const Clip& clip, std::optional<std::span<const Contact>> contacts = {}) {
+    const auto result = plant_feet(clip, find_roles(clip.skeleton), contacts);
+    return result.ok() ? std::string() : result.error().code;
+  };
+  EXPECT_EQ(code(test::without(walk, {"Leg", "Foot", "Toe"})), "contacts-feet");
+  EXPECT_EQ(code(test::without(walk, {"RightLeg", "LeftLeg", "Foot", "Toe"})), "contacts-feet");
+  const std::vector<Contact> of_hand = {{walk.skeleton.find("LeftHand"), 0, 1, Vec3::Zero()}};
+  EXPECT_EQ(code(walk, of_hand), "plant-contacts");
+  EXPECT_EQ(code(walk, std::span<const Contact>()), "plant-contacts");
+  Clip flying = walk;
+  for (int f = 0; f < flying.frame_count(); ++f) {
+    for (Vec3f& position : flying.frame_positions(f)) position += Vec3f(0, 0, 0.1F * f);
+  }
+  EXPECT_EQ(code(flying), "plant-contacts");
+  Clip hurt = walk;
+  hurt.positions[500].y() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(code(hurt), "clip-value");
+  Clip empty = walk;
+  empty.resize(0);
+  EXPECT_EQ(code(empty), "plant-contacts");
+}
+
+}  // namespace
+}  // namespace krok
