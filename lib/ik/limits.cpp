@@ -31,7 +31,7 @@ std::array<double, 2> swing_of(const JointLimit& limit, const Quat& d) {
   const Vec3 y = d * limit.axis;
   const Vec3 second = limit.axis.cross(limit.swing_axis);
   const double a = -y.dot(second), b = y.dot(limit.swing_axis);
-  const double sine = std::hypot(a, b), cosine = y.dot(limit.axis);
+  const double sine = std::sqrt(a * a + b * b), cosine = y.dot(limit.axis);
   if (sine < 1e-12) return {cosine > 0 ? a : kPi, cosine > 0 ? b : 0.0};
   const double scale = std::atan2(sine, cosine) / sine;
   return {scale * a, scale * b};
@@ -77,8 +77,9 @@ LimitAngles measure(const JointLimit& limit, const Quat& joint_to_parent) {
   angles.twist = twist_of(d, limit.axis);
   if (limit.kind == JointLimit::Kind::hinge) {
     angles.twist = wrapped_about(angles.twist, 0.5 * (limit.min_twist + limit.max_twist));
-    angles.off_axis = 2 * std::atan2(d.vec().cross(limit.axis).norm(),
-                                     std::hypot(d.w(), d.vec().dot(limit.axis)));
+    const double along = d.vec().dot(limit.axis);
+    angles.off_axis =
+        2 * std::atan2(d.vec().cross(limit.axis).norm(), std::sqrt(d.w() * d.w() + along * along));
   } else {
     angles.swing = swing_of(limit, d);
   }
@@ -95,7 +96,8 @@ Quat compose(const JointLimit& limit, double twist, const std::array<double, 2>&
 std::array<double, 2> nearest_swing(const JointLimit& limit, const std::array<double, 2>& swing) {
   const double e0 = half_axis(limit, 0, swing[0]), e1 = half_axis(limit, 1, swing[1]);
   const double x = std::abs(swing[0]), y = std::abs(swing[1]);
-  if (std::hypot(x / e0, y / e1) <= 1 + 1e-12) return swing;
+  const double u = x / e0, v = y / e1;
+  if (u * u + v * v <= 1 + 1e-12) return swing;
   const auto nearest = nearest_on_ellipse(e0, e1, x, y);
   return {std::copysign(nearest[0], swing[0]), std::copysign(nearest[1], swing[1])};
 }

@@ -14,7 +14,7 @@ void NormalEquations::add(double w, const double* column, int first, int last) {
   const auto end = static_cast<std::size_t>(last);
   for (auto i = static_cast<std::size_t>(first); i < end; ++i) {
     const double scaled = w * column[i];
-    double* const row = upper_.data() + i * rows_;
+    double* __restrict const row = upper_.data() + i * rows_;
     for (std::size_t k = i; k < end; ++k) row[k] += scaled * column[k];
   }
 }
@@ -25,13 +25,13 @@ void NormalEquations::solve(double damping, const double* e, double* y) {
   std::copy(upper_.begin(), upper_.end(), factor_.begin());
   std::copy_n(e, n, y);
   for (std::size_t k = 0; k < n; ++k) {
-    double* const pivot_row = factor_.data() + k * n;
+    double* __restrict const pivot_row = factor_.data() + k * n;
     pivot_row[k] += damping;
     const double inverse = 1 / pivot_row[k];
     for (std::size_t i = k + 1; i < n; ++i) {
       if (pivot_row[i] == 0) continue;
       const double part = pivot_row[i] * inverse;
-      double* const row = factor_.data() + i * n;
+      double* __restrict const row = factor_.data() + i * n;
       for (std::size_t c = i; c < n; ++c) row[c] -= part * pivot_row[c];
       y[i] -= part * y[k];
     }

@@ -30,12 +30,26 @@ Vec3 direction(const Vec3& v, double scale = 1.0) {
   return length > kTiny * scale ? Vec3(v * (1 / length)) : Vec3(Vec3::Zero());
 }
 
-// The unit part of v perpendicular to the unit vector `along`; zero if there is none.
+// v, or v brought to length 1 where its square would overflow or underflow; zero where it is too
+// short to have a direction.
+Vec3 squarable(const Vec3& v) {
+  const double square = v.squaredNorm();
+  if (square > 1e-200 && square < 1e200) return square > kTiny * kTiny ? v : Vec3(Vec3::Zero());
+  return direction(v);
+}
+
+// The part of v perpendicular to the unit vector `along`; zero where there is none.
+Vec3 unscaled_perpendicular(const Vec3& v, const Vec3& along) {
+  const Vec3 whole = squarable(v);
+  const Vec3 part = whole - along * along.dot(whole);
+  return part.squaredNorm() > 1e-12 * whole.squaredNorm() ? part : Vec3(Vec3::Zero());
+}
+
+// The same, of length 1.
 Vec3 perpendicular_part(const Vec3& v, const Vec3& along) {
-  const double length = length_of(v);
-  const Vec3 part = v - along * along.dot(v);
-  const double across = length_of(part);
-  return length > kTiny && across > 1e-6 * length ? Vec3(part * (1 / across)) : Vec3(Vec3::Zero());
+  const Vec3 part = unscaled_perpendicular(v, along);
+  const double square = part.squaredNorm();
+  return square > 0 ? Vec3(part * (1 / std::sqrt(square))) : part;
 }
 
 Vec3 any_perpendicular(const Vec3& along) {
@@ -50,34 +64,32 @@ double soft_distance(double distance, double longest, double softness) {
   return start + softness * (1.0 - std::exp(-(distance - start) / softness));
 }
 
-// The rotation that takes bone and hinge from where they are to where they shall be. The hinge is
-// squared to the bone where it is; where it shall be it is perpendicular to it.
+// The rotation that takes bone and hinge from where they are to where they shall be. The hinge, of
+// any length, is squared to the bone where it is; where it shall be it is perpendicular to it.
 Quat frame_rotation(const Vec3& bone_from, const Vec3& hinge_from, const Vec3& bone_to,
                     const Vec3& hinge_to) {
-  const Vec3 from = perpendicular_part(hinge_from, bone_from);
-  if (from.isZero()) return shortest_arc(bone_from, bone_to);
-  const double cosine = bone_from.dot(bone_to);
-  if (cosine > -0.9) {
-    // The bone by the shortest arc, then a turn about it: two half angles by their cosines and
-    // sines, which needs fewer square roots and branches than a matrix.
-    const Vec3 axis = bone_from.cross(bone_to);
-    const double w = 1 + cosine;
-    // `from` turned by the arc: from + axis x from + axis x (axis x from) / w.
-    const Vec3 across = axis.cross(from);
-    const Vec3 hinge = from + across + axis.cross(across) * (1 / w);
-    const double turn_cosine = hinge.dot(hinge_to);
-    if (turn_cosine > -0.9) {
-      const double turn_w = 1 + turn_cosine;
-      const double turn_sine = bone_to.dot(hinge.cross(hinge_to));
-      const Vec3 part = turn_w * axis + (turn_sine * w) * bone_to + turn_sine * bone_to.cross(axis);
-      const double scalar = turn_w * w - turn_sine * bone_to.dot(axis);
-      const double scale = 1 / std::sqrt(scalar * scalar + part.squaredNorm());
-      return {scale * scalar, scale * part.x(), scale * part.y(), scale * part.z()};
-    }
+  const Vec3 from = unscaled_perpendicular(hinge_from, bone_from);
+  const double square = from.squaredNorm();
+  if (square == 0) return shortest_arc(bone_from, bone_to);
+  // The bone by the shortest arc, then a turn about it: two half angles by their cosines and sines,
+  // all of them scaled alike, so that one division at the end is enough.
+  const double w = 1 + bone_from.dot(bone_to);
+  const Vec3 axis = bone_from.cross(bone_to);
+  const Vec3 across = axis.cross(from);
+  // `from` turned by the arc, times w.
+  const Vec3 hinge = w * (from + across) + axis.cross(across);
+  const double length = w * std::sqrt(square);
+  const double turn_w = length + hinge.dot(hinge_to);
+  if (w > 0.1 && turn_w > 0.1 * length) {
+    const double turn_sine = bone_to.dot(hinge.cross(hinge_to));
+    const Vec3 part = turn_w * axis + (turn_sine * w) * bone_to + turn_sine * bone_to.cross(axis);
+    const double scalar = turn_w * w - turn_sine * bone_to.dot(axis);
+    const double scale = 1 / std::sqrt(scalar * scalar + part.squaredNorm());
+    return {scale * scalar, scale * part.x(), scale * part.y(), scale * part.z()};
   }
-  const Vec3 third_from = bone_from.cross(from), third_to = bone_to.cross(hinge_to);
-  const Mat3 turn = bone_to * bone_from.transpose() + hinge_to * from.transpose() +
-                    third_to * third_from.transpose();
+  const Vec3 unit = from * (1 / std::sqrt(square));
+  const Mat3 turn = bone_to * bone_from.transpose() + hinge_to * unit.transpose() +
+                    bone_to.cross(hinge_to) * bone_from.cross(unit).transpose();
   return Quat(turn).normalized();
 }
 
@@ -153,8 +165,8 @@ TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goa
   if (line.isZero()) line = direction(chain.end - chain.root, sum);
   if (line.isZero()) line = upper_now.isZero() ? lower_now : upper_now;
 
-  // The direction in which the middle joint points out, and the matching hinge.
-  Vec3 present_hinge = direction(chain.hinge);
+  // The way the middle points out, and the hinge that goes with it.
+  Vec3 present_hinge = squarable(chain.hinge);
   if (present_hinge.isZero()) present_hinge = perpendicular_part(upper_now.cross(lower_now), line);
   Vec3 outward = perpendicular_part(goal.pole, line);
   if (outward.isZero()) outward = perpendicular_part(upper - lower, line);
