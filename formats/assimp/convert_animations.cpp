@@ -45,6 +45,11 @@ class AnimationBuilder {
   void add_channels(int node, NodeTracks tracks);
   template <typename Value>
   void add_channel(int node, Path path, const Track<Value>& track, const Value& at_rest);
+  template <typename Value>
+  void push_channel(int node, Path path, int width, const Track<Value>& track);
+  int morphed_node(const aiMeshMorphAnim& source);
+  Track<std::vector<double>> weights_track(const aiMeshMorphAnim& source,
+                                           const std::vector<double>& at_rest);
   void add_weights(const aiMeshMorphAnim& source);
 
   Conversion& to_;
@@ -185,22 +190,27 @@ bool nearly(const Quat& a, const Quat& b) {
 }
 
 template <typename Value>
-void AnimationBuilder::add_channel(int node, Path path, const Track<Value>& track,
-                                   const Value& at_rest) {
-  // Importers add constant tracks.
-  const bool moves = std::any_of(track.values.begin(), track.values.end(),
-                                 [&](const Value& value) { return !nearly(value, at_rest); });
-  if (!moves && track.times.size() < 2) return;
+void AnimationBuilder::push_channel(int node, Path path, int width, const Track<Value>& track) {
   Channel channel;
   channel.node = node;
   channel.path = path;
-  channel.width = path == Path::rotation ? 4 : 3;
+  channel.width = width;
   std::vector<float> times, values;
   for (const double time : track.times) times.push_back(static_cast<float>(time));
   for (const Value& value : track.values) append(values, value);
   channel.times = std::make_shared<const std::vector<float>>(std::move(times));
   channel.values = std::make_shared<const std::vector<float>>(std::move(values));
   animation_.channels.push_back(std::move(channel));
+}
+
+template <typename Value>
+void AnimationBuilder::add_channel(int node, Path path, const Track<Value>& track,
+                                   const Value& at_rest) {
+  // Importers add constant tracks.
+  const bool moves = std::any_of(track.values.begin(), track.values.end(),
+                                 [&](const Value& value) { return !nearly(value, at_rest); });
+  if (!moves && track.times.size() < 2) return;
+  push_channel(node, path, path == Path::rotation ? 4 : 3, track);
 }
 
 void AnimationBuilder::add_channels(int node, NodeTracks tracks) {
@@ -213,8 +223,8 @@ void AnimationBuilder::add_channels(int node, NodeTracks tracks) {
   add_channel(node, Path::scale, tracks.scale, rest.scale);
 }
 
-// A key lists only the targets that have a key at its time.
-void AnimationBuilder::add_weights(const aiMeshMorphAnim& source) {
+// The node whose mesh the channel animates; -1 if there is none.
+int AnimationBuilder::morphed_node(const aiMeshMorphAnim& source) {
   std::string name = to_text(source.mName);
   auto found = to_.node_by_name.find(name);
   if (found == to_.node_by_name.end() && name.rfind('*') != std::string::npos) {
@@ -222,7 +232,7 @@ void AnimationBuilder::add_weights(const aiMeshMorphAnim& source) {
   }
   if (found == to_.node_by_name.end()) {
     ++unknown_nodes_;
-    return;
+    return -1;
   }
   int node = found->second;
   if (to_.scene.nodes[static_cast<std::size_t>(node)].mesh == -1) {
@@ -230,10 +240,13 @@ void AnimationBuilder::add_weights(const aiMeshMorphAnim& source) {
     const auto below = to_.node_by_name.find(geometry);
     if (below != to_.node_by_name.end()) node = below->second;
   }
-  const int mesh = to_.scene.nodes[static_cast<std::size_t>(node)].mesh;
-  if (mesh == -1) return;
-  const std::vector<double>& at_rest = to_.scene.meshes[static_cast<std::size_t>(mesh)].weights;
-  if (at_rest.empty()) return;
+  return to_.scene.nodes[static_cast<std::size_t>(node)].mesh == -1 ? -1 : node;
+}
+
+// All targets' weights at each time at which any has a key. A key lists only the targets that have
+// a key at its time.
+Track<std::vector<double>> AnimationBuilder::weights_track(const aiMeshMorphAnim& source,
+                                                           const std::vector<double>& at_rest) {
   std::vector<Track<double>> of_target(at_rest.size());
   std::set<double> times;
   for (unsigned k = 0; k < source.mNumKeys; ++k) {
@@ -265,17 +278,17 @@ void AnimationBuilder::add_weights(const aiMeshMorphAnim& source) {
     track.times.push_back(time);
     track.values.push_back(std::move(weights));
   }
-  if (track.empty()) return;
-  Channel channel;
-  channel.node = node;
-  channel.path = Path::weights;
-  channel.width = static_cast<int>(at_rest.size());
-  std::vector<float> key_times, values;
-  for (const double time : track.times) key_times.push_back(static_cast<float>(time));
-  for (const auto& weights : track.values) append(values, weights);
-  channel.times = std::make_shared<const std::vector<float>>(std::move(key_times));
-  channel.values = std::make_shared<const std::vector<float>>(std::move(values));
-  animation_.channels.push_back(std::move(channel));
+  return track;
+}
+
+void AnimationBuilder::add_weights(const aiMeshMorphAnim& source) {
+  const int node = morphed_node(source);
+  if (node == -1) return;
+  const int mesh = to_.scene.nodes[static_cast<std::size_t>(node)].mesh;
+  const std::vector<double>& at_rest = to_.scene.meshes[static_cast<std::size_t>(mesh)].weights;
+  if (at_rest.empty()) return;
+  const auto track = weights_track(source, at_rest);
+  if (!track.empty()) push_channel(node, Path::weights, static_cast<int>(at_rest.size()), track);
 }
 
 Animation AnimationBuilder::build() {

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -89,6 +90,37 @@ struct OutputFile::State {
   void open(int to, bool is_stream) {
     descriptor = to;
     bytes = AppendedBytes(to, is_stream);
+  }
+
+  // Opens a file in the target's folder: one without a name if none is replaced and the file system
+  // supports that, otherwise one with a temporary name.
+  Status open_beside_target(std::optional<mode_t> replaced_mode) {
+    const std::string folder = folder_of(target);
+    if (!replaced_mode) {
+      open(create_unnamed(folder), false);
+      unnamed = descriptor >= 0;
+      if (unnamed) {
+        unnamed_path = path_of_unnamed(descriptor);
+        return {};
+      }
+    }
+    Temporary created = create_temporary(folder);
+    if (created.descriptor < 0) {
+      const int why = errno;
+      std::error_code unknown;
+      if (!std::filesystem::is_directory(folder, unknown)) {
+        return file_error("file-unwritable", path, fmt::format("folder {} does not exist", folder),
+                          "create the folder first");
+      }
+      return file_error("file-unwritable", path,
+                        fmt::format("cannot be created: {}", system_text(why)));
+    }
+    open(created.descriptor, false);
+    temporary = std::move(created.path);
+    slot = created.slot;
+    // The mode of the replaced file, or the default; without the setuid, setgid and sticky bits.
+    (void)fchmod(descriptor, replaced_mode ? (*replaced_mode & 0777) : (0666 & ~mode_mask()));
+    return {};
   }
 
   void close() {
@@ -256,31 +288,8 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
     return file_error("file-unwritable", path,
                       fmt::format("cannot be replaced: {}", system_text(errno)));
   }
-  const std::string folder = folder_of(state->target);
-  if (!exists) {
-    state->open(create_unnamed(folder), false);
-    state->unnamed = state->descriptor >= 0;
-    if (state->unnamed) {
-      state->unnamed_path = path_of_unnamed(state->descriptor);
-      return OutputFile(std::move(state));
-    }
-  }
-  Temporary temporary = create_temporary(folder);
-  if (temporary.descriptor < 0) {
-    const int why = errno;
-    std::error_code unknown;
-    if (!std::filesystem::is_directory(folder, unknown)) {
-      return file_error("file-unwritable", path, fmt::format("folder {} does not exist", folder),
-                        "create the folder first");
-    }
-    return file_error("file-unwritable", path,
-                      fmt::format("cannot be created: {}", system_text(why)));
-  }
-  state->open(temporary.descriptor, false);
-  state->temporary = std::move(temporary.path);
-  state->slot = temporary.slot;
-  // The mode of the replaced file, or the default; without the setuid, setgid and sticky bits.
-  (void)fchmod(state->descriptor, exists ? (status.st_mode & 0777) : (0666 & ~mode_mask()));
+  const auto replaced_mode = exists ? std::optional(status.st_mode) : std::nullopt;
+  if (Status opened = state->open_beside_target(replaced_mode); !opened) return opened.error();
   return OutputFile(std::move(state));
 }
 

@@ -144,14 +144,14 @@ void choose_scale(const Extent& extent, const SheetOptions& options, Layout& lay
 }
 
 Status check_image_size(double width, double height) {
-  if (width <= kMaxPixelsAcross && height <= kMaxPixelsAcross && width * height <= kMaxPixels) {
-    return {};
+  if (width > kMaxPixelsAcross || height > kMaxPixelsAcross || width * height > kMaxPixels) {
+    return Error("sheet-size",
+                 fmt::format("the image would be at least {:.0f} x {:.0f} pixels; "
+                             "the limit is {} million pixels and {} in each direction",
+                             width, height, static_cast<int>(kMaxPixels / 1e6), kMaxPixelsAcross),
+                 "reduce the size or the number of times, sides or files");
   }
-  return Error("sheet-size",
-               fmt::format("the image would be at least {:.0f} x {:.0f} pixels; "
-                           "the limit is {} million pixels and {} in each direction",
-                           width, height, static_cast<int>(kMaxPixels / 1e6), kMaxPixelsAcross),
-               "reduce the size or the number of times, sides or files");
+  return {};
 }
 
 // Places a row from `y` down; `height` is that of its window, in pixels.

@@ -8,6 +8,7 @@
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "retarget/actor_measure_internal.h"
+#include "retarget/actor_view_internal.h"
 
 namespace krok::retarget {
 
@@ -48,134 +49,12 @@ Quat swing(const Vec3& from, const Vec3& to, const Vec3& axis) {
   return shortest_arc(half * from, to) * half;
 }
 
-struct ArmRoles {
-  Role upper, lower, hand, fingers;
-};
-struct LegRoles {
-  Role upper, lower, foot;
-};
 constexpr std::array kArms = {
     ArmRoles{Role::left_upper_arm, Role::left_lower_arm, Role::left_hand, Role::left_fingers},
     ArmRoles{Role::right_upper_arm, Role::right_lower_arm, Role::right_hand, Role::right_fingers}};
 constexpr std::array kLegs = {
     LegRoles{Role::left_upper_leg, Role::left_lower_leg, Role::left_foot},
     LegRoles{Role::right_upper_leg, Role::right_lower_leg, Role::right_foot}};
-
-class View {
- public:
-  explicit View(const Actor& actor) : actor_(actor), children_(actor.skeleton.children()) {}
-
-  const RoleMap& roles() const { return actor_.roles; }
-  const Skeleton& skeleton() const { return actor_.skeleton; }
-  int joint(Role role) const { return actor_.roles.joint(role); }
-  Vec3 place(int joint) const { return actor_.pose[at(joint)].position; }
-
-  // The unit direction between two joints; empty if either is missing or they coincide.
-  std::optional<Vec3> direction(int from, int to) const {
-    if (from < 0 || to < 0) return std::nullopt;
-    const Vec3 along = place(to) - place(from);
-    const double length = along.norm();
-    if (!(length > 1e-9)) return std::nullopt;
-    return Vec3(along / length);
-  }
-
-  Vec3 middle(int a, int b) const {
-    if (a < 0 || b < 0) return place(std::max(a, b));
-    return 0.5 * (place(a) + place(b));
-  }
-
-  // The direction to the character's left, from the legs or the arms.
-  std::optional<Vec3> left(Role left_role, Role right_role) const {
-    return direction(joint(right_role), joint(left_role));
-  }
-
-  int neck() const {
-    const int neck = joint(Role::neck);
-    return neck >= 0 ? neck : joint(Role::head);
-  }
-
-  std::optional<Vec3> hips_up() const {
-    const int chest = joint(Role::chest);
-    const int top = chest >= 0 ? chest : neck();
-    if (top < 0) return std::nullopt;
-    const Vec3 along =
-        place(top) - middle(joint(Role::left_upper_leg), joint(Role::right_upper_leg));
-    return along.norm() > 1e-9 ? std::optional<Vec3>(along.normalized()) : std::nullopt;
-  }
-
-  std::optional<Vec3> chest_up() const {
-    const int chest = joint(Role::chest);
-    return direction(chest >= 0 ? chest : joint(Role::hips), neck());
-  }
-
-  // The end of a joint's bone: its only child that is not a helper, or -1.
-  int only_child(int joint) const {
-    int only = -1;
-    for (const int child : children_[at(joint)]) {
-      if (roles().roles[at(child)] == Role::helper) continue;
-      if (only >= 0) return -1;
-      only = child;
-    }
-    return only;
-  }
-
-  const std::vector<int>& children(int joint) const { return children_[at(joint)]; }
-
-  // The first joint of a finger beyond the palm, otherwise its metacarpal, or -1.
-  int knuckle(Role fingers, Finger finger) const {
-    for (const int phalanx : {1, FingerJoint::kMetacarpal}) {
-      const int joint = roles().finger_joint(fingers, {finger, phalanx});
-      if (joint >= 0) return joint;
-    }
-    return -1;
-  }
-
-  // From the wrist to the mean of the knuckles, or without knuckles to the end of the hand if that
-  // is along the forearm.
-  std::optional<Vec3> hand_direction(const ArmRoles& arm) const {
-    const int wrist = joint(arm.hand);
-    if (wrist < 0) return std::nullopt;
-    Vec3 sum = Vec3::Zero();
-    int count = 0;
-    for (const Finger finger : {Finger::index, Finger::middle, Finger::ring, Finger::little}) {
-      const int found = knuckle(arm.fingers, finger);
-      if (found < 0) continue;
-      sum += place(found) - place(wrist);
-      ++count;
-    }
-    if (count > 0 && sum.norm() > 1e-9) return Vec3(sum.normalized());
-    const auto forearm = direction(joint(arm.lower), wrist);
-    for (const int child : children(wrist)) {
-      if (roles().fingers[at(child)].finger == Finger::thumb) continue;
-      const auto along = direction(wrist, child);
-      if (along && forearm && along->dot(*forearm) > std::cos(degrees(40))) return along;
-    }
-    return std::nullopt;
-  }
-
-  // From the little or ring finger's knuckle to the index finger's.
-  std::optional<Vec3> knuckle_line(const ArmRoles& arm) const {
-    for (const Finger outer : {Finger::little, Finger::ring}) {
-      const auto line = direction(knuckle(arm.fingers, outer), knuckle(arm.fingers, Finger::index));
-      if (line) return line;
-    }
-    return std::nullopt;
-  }
-
-  std::optional<Vec3> thumb_line(const ArmRoles& arm) const {
-    const int wrist = joint(arm.hand);
-    int last = -1;
-    for (const int phalanx : {1, 2, 3}) {
-      const int found = roles().finger_joint(arm.fingers, {Finger::thumb, phalanx});
-      if (found >= 0) last = found;
-    }
-    return direction(wrist, last);
-  }
-
- private:
-  const Actor& actor_;
-  std::vector<std::vector<int>> children_;
-};
 
 class Aligner {
  public:
@@ -349,8 +228,8 @@ class Aligner {
     }
   }
 
-  View source_;
-  View target_;
+  ActorView source_;
+  ActorView target_;
   const JointMapping& mapping_;
   std::vector<Quat> turns_;
   std::vector<char> set_;
@@ -384,8 +263,8 @@ std::vector<Quat> align_by_roles(const Actor& source, const Actor& target,
 
 std::vector<Quat> align_by_names(const Actor& source, const Actor& target,
                                  const JointMapping& mapping) {
-  const View from(target);
-  const View to(source);
+  const ActorView from(target);
+  const ActorView to(source);
   const auto children = target.skeleton.children();
   std::vector<Quat> turns(mapping.size(), Quat::Identity());
   for (int k = 0; k < target.skeleton.joint_count(); ++k) {

@@ -1,0 +1,165 @@
+#include "retarget/frame_transfer_internal.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+#include "core/index.h"
+#include "core/parallel.h"
+#include "math/quaternion.h"
+
+namespace krok::retarget {
+
+namespace {
+
+constexpr std::size_t kFramesATime = 64;
+
+class FrameTransfer {
+ public:
+  FrameTransfer(const Clip& source, const Skeleton& target, const TransferPlan& plan,
+                const Options& options)
+      : source_(source), target_(target), plan_(plan), options_(options) {}
+
+  Clip run(Report& report) {
+    find_below_anchor();
+    Clip clip;
+    clip.skeleton = target_;
+    clip.rate = source_.rate;
+    const auto frames = at(source_.frame_count());
+    clip.resize(source_.frame_count());
+    if (options_.progress != nullptr) {
+      options_.progress->begin("retargeting", (plan_.legs.empty() ? 1 : 2) * frames);
+    }
+    const std::vector<double> drops = plan_.legs.empty() ? std::vector<double>() : find_drops();
+    std::vector<std::array<LegPlacement::Outcome, 2>> outcomes(frames);
+    for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
+      if (!drops.empty()) lower(drops[f], pose);
+      for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
+        outcomes[f][i] =
+            plan_.legs[i].placement.place(from, plan_.local, plan_.legs[i].standing[f], pose);
+      }
+      clip.set_pose(static_cast<int>(f), pose);
+    });
+    if (options_.progress != nullptr) options_.progress->end();
+    for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
+      (plan_.legs[i].is_left ? report.left_foot : report.right_foot) = summary(outcomes, i);
+    }
+    if (!drops.empty()) report.largest_drop = *std::max_element(drops.begin(), drops.end());
+    return clip;
+  }
+
+ private:
+  // The rotation of a source joint since the reference pose.
+  Quat turn_of(std::span<const Transform> pose, int joint) const {
+    return pose[at(joint)].orientation * plan_.rest_back[at(joint)];
+  }
+
+  // joint_to_world of the target, with its anchor at its reference position.
+  void pose_of(std::span<const Transform> source_pose, std::span<Transform> pose) const {
+    for (int k = 0; k < target_.joint_count(); ++k) {
+      const JointSource& from = plan_.mapping[at(k)];
+      const int parent = target_.parents[at(k)];
+      if (parent < 0) {
+        pose[at(k)] = target_.reference[at(k)];
+      } else {
+        pose[at(k)] = pose[at(parent)] * plan_.local[at(k)];
+      }
+      if (from.first < 0) continue;
+      Quat turn = turn_of(source_pose, from.first);
+      if (from.second >= 0) turn = slerp(turn, turn_of(source_pose, from.second), from.share);
+      pose[at(k)].orientation = (turn * plan_.aligned[at(k)]).normalized();
+    }
+  }
+
+  Vec3 middle(std::span<const Transform> pose, const std::array<int, 2>& sides) const {
+    return 0.5 * (pose[at(sides[0])].position + pose[at(sides[1])].position);
+  }
+
+  // Moves the anchor and its descendants.
+  void place(std::span<const Transform> source_pose, std::span<Transform> pose) const {
+    const Vec3 goal =
+        plan_.scale * middle(source_pose, plan_.source_sides) + plan_.rise * Vec3::UnitY();
+    const Vec3 shift = goal - middle(pose, plan_.target_sides);
+    for (std::size_t k = 0; k < pose.size(); ++k) {
+      if (below_anchor_[k] != 0) pose[k].position += shift;
+    }
+  }
+
+  void find_below_anchor() {
+    below_anchor_.assign(target_.names.size(), 0);
+    below_anchor_[at(plan_.anchor)] = 1;
+    for (int k = plan_.anchor + 1; k < target_.joint_count(); ++k) {
+      below_anchor_[at(k)] = below_anchor_[at(target_.parents[at(k)])];
+    }
+  }
+
+  // Calls body(frame, source_pose, pose) for all frames, with the target's pose as given by
+  // rotations and hips.
+  template <typename Body>
+  void for_frames(const Body& body) const {
+    const auto frames = at(source_.frame_count());
+    parallel_for(frames, kFramesATime, options_.jobs, [&](std::size_t begin, std::size_t end) {
+      std::vector<Transform> source_pose(source_.skeleton.names.size());
+      std::vector<Transform> pose(target_.names.size());
+      for (std::size_t f = begin; f < end; ++f) {
+        source_.get_pose(static_cast<int>(f), source_pose);
+        pose_of(source_pose, pose);
+        place(source_pose, pose);
+        body(f, source_pose, pose);
+      }
+      if (options_.progress != nullptr) options_.progress->advance(end - begin);
+    });
+  }
+
+  void lower(double by, std::span<Transform> pose) const {
+    for (std::size_t k = 0; k < pose.size(); ++k) {
+      if (below_anchor_[k] != 0) pose[k].position.y() -= by;
+    }
+  }
+
+  // How far the hips are lowered in each frame so that planted feet reach the floor.
+  std::vector<double> find_drops() const {
+    std::vector<double> drops(at(source_.frame_count()), 0.0);
+    for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
+      for (const PlacedLeg& leg : plan_.legs) {
+        drops[f] = std::max(drops[f], leg.placement.lack(from, pose, leg.standing[f]));
+      }
+    });
+    const double most = 0.06 * plan_.leg_length;
+    for (double& drop : drops) drop = std::min(drop, most);
+    if (std::all_of(drops.begin(), drops.end(), [](double drop) { return drop == 0; })) return {};
+    return softened(drops, softening_reach(source_.rate));
+  }
+
+  static FootReport summary(const std::vector<std::array<LegPlacement::Outcome, 2>>& outcomes,
+                            std::size_t side) {
+    FootReport report;
+    for (std::size_t f = 0; f < outcomes.size(); ++f) {
+      const LegPlacement::Outcome& outcome = outcomes[f][side];
+      if (outcome.correction > report.largest_correction) {
+        report.largest_correction = outcome.correction;
+        report.largest_correction_frame = static_cast<int>(f);
+      }
+      if (outcome.miss > report.largest_miss) {
+        report.largest_miss = outcome.miss;
+        report.largest_miss_frame = static_cast<int>(f);
+      }
+    }
+    return report;
+  }
+
+  const Clip& source_;
+  const Skeleton& target_;
+  const TransferPlan& plan_;
+  const Options& options_;
+  std::vector<char> below_anchor_;  // [target joints]
+};
+
+}  // namespace
+
+Clip transfer_frames(const Clip& source, const Skeleton& target, const TransferPlan& plan,
+                     const Options& options, Report& report) {
+  return FrameTransfer(source, target, plan, options).run(report);
+}
+
+}  // namespace krok::retarget

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "math/types.h"
+#include "retarget/foot_placement.h"
+#include "retarget/joint_mapping.h"
+#include "retarget/retarget.h"
+#include "scene/clip.h"
+#include "scene/skeleton.h"
+
+namespace krok::retarget {
+
+struct PlacedLeg {
+  LegPlacement placement;
+  std::vector<double> standing;  // [frames]
+  bool is_left = false;
+};
+
+// How the frames of a motion are transferred; the same for all of them.
+struct TransferPlan {
+  JointMapping mapping;          // [target joints]
+  std::vector<Quat> rest_back;   // [source joints], conjugated orientations of the reference pose
+  std::vector<Transform> local;  // [target joints], reference joint_to_parent
+  std::vector<Quat> aligned;     // [target joints], orientations of the aligned reference pose
+  int anchor = 0;                // the target joint that carries the root motion
+  std::array<int, 2> source_sides = {0, 0};  // joints whose midpoint is transferred
+  std::array<int, 2> target_sides = {0, 0};
+  double scale = 1;             // lengths of the target over those of the source
+  double rise = 0;              // metres the target's hips are raised for the height of its ankles
+  std::vector<PlacedLeg> legs;  // empty with Feet::free
+  double leg_length = 0;        // metres, of the target; unused without legs
+};
+
+// The motion of `source` on the skeleton `target`. Sets in `report` what the legs needed: the two
+// feet and largest_drop.
+Clip transfer_frames(const Clip& source, const Skeleton& target, const TransferPlan& plan,
+                     const Options& options, Report& report);
+
+}  // namespace krok::retarget
