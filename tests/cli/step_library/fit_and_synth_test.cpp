@@ -7,61 +7,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
-#include "core/file.h"
+#include "cli/step_library/library_fixture.h"
 #include "formats/steps/steps.h"
 
 namespace krok::test {
 namespace {
 
-class StepLibrary : public CliTest {
- protected:
-  // Four walks, two lengths of step by two slopes.
-  void SetUp() override {
-    CliTest::SetUp();
-    for (const char* length : {"50", "70"}) {
-      for (const char* rise : {"0", "8"}) {
-        const ToolRun made =
-            run({KROK_MAKE_WALK, "--steps", "4", "--step-length", std::string(length) + "cm",
-                 "--rise", std::string(rise) + "cm", "--ground", "slope", "-q", "-o",
-                 path(std::string("walk_") + length + "_" + rise + ".bvh")});
-        ASSERT_EQ(made.exit_code, 0) << made.err;
-      }
-    }
-  }
-  void describe(const std::string& more = R"("examples": [{"clip": "walk_*.bvh"}])") const {
-    write("library.json",
-          R"({"schema": "krok.library/1", "steps": "auto",
- "parameters": [{"name": "length", "measures": "step.length"}, {"measures": "step.height"}],
- )" + more + "}");
-  }
-  void write(const std::string& name, const std::string& text) const {
-    ASSERT_TRUE(write_file(path(name), text).ok());
-  }
-  ToolRun fit(std::vector<std::string> arguments = {}) const {
-    arguments.insert(arguments.begin(), path("library.json"));
-    arguments.insert(arguments.end(), {"-o", path("out.steps")});
-    return run_tool("krok-fit", arguments);
-  }
-  void fit_well(const std::vector<std::string>& arguments = {}) const {
-    describe();
-    const ToolRun run = fit(arguments);
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-  }
-  ToolRun synth(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), path("out.steps"));
-    if (!testing::Value(arguments, Contains("-o"))) {
-      arguments.insert(arguments.end(), {"-o", path("step.anim")});
-    }
-    return run_tool("krok-synth", arguments);
-  }
-  json synthesised(std::vector<std::string> arguments) const {
-    arguments.emplace_back("--json");
-    const ToolRun run = synth(arguments);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    return run.exit_code == 0 ? json::parse(run.out)["result"]["motions"] : json();
-  }
-};
+using nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
 
 TEST_F(StepLibrary, MakesWhatIsAskedForAndTellsWhatItMeasures) {
   fit_well();
@@ -153,77 +108,7 @@ TEST_F(StepLibrary, ATableMakesAMotionForEachRow) {
 }
 
 // What was made is measured, not what the weights promise.
-TEST_F(StepLibrary, WhatIsNotAsAskedIsTold) {
-  write("library.json", R"({"schema": "krok.library/1", "steps": "auto",
- "parameters": [{"name": "length", "measures": "step.length", "tolerance": "0.005mm"},
-                {"measures": "step.height"}], "examples": [{"clip": "walk_*.bvh"}]})");
-  ASSERT_EQ(fit({"--refine", "0"}).exit_code, 0);
-  std::vector<std::string> set = {"--set", "length=57cm", "--set", "height=3cm"};
-  const ToolRun plain = synth(set);
-  EXPECT_EQ(plain.exit_code, 0);
-  EXPECT_TRUE(has_code(plain.err, "synth-missed")) << plain.err;
-  EXPECT_THAT(plain.err, HasSubstr("was asked for"));
-  EXPECT_THAT(plain.err, HasSubstr("--correct"));
-  set.emplace_back("--strict");
-  EXPECT_EQ(synth(set).exit_code, 1);
-  EXPECT_THAT(listing(), Contains("step.anim"));
-  set.emplace_back("--correct");
-  const ToolRun corrected = synth(set);
-  EXPECT_EQ(corrected.exit_code, 0);
-  EXPECT_FALSE(has_code(corrected.err, "synth-missed")) << corrected.err;
-}
-
-TEST_F(StepLibrary, DurationsAreExact) {
-  write("library.json", R"({"schema": "krok.library/1", "steps": "auto",
- "parameters": [{"measures": "duration"}], "examples": [{"clip": "walk_*.bvh"}]})");
-  const ToolRun run = fit();
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const json made = synthesised({"--set", "duration=0.5731s", "--correct", "--strict"});
-  EXPECT_NEAR(made[0]["duration"].get<double>(), 0.5731, 1e-5);
-  EXPECT_NEAR(made[0]["measured"]["duration"].get<double>(), 0.5731, 1e-5);
-  const ToolRun rounded =
-      synth({"--set", "duration=0.5731s", "--correct", "--strict", "--rate", "60"});
-  EXPECT_EQ(rounded.exit_code, 1);
-  EXPECT_TRUE(has_code(rounded.err, "synth-missed")) << rounded.err;
-}
-
-TEST_F(StepLibrary, CellsOfATableMayHaveUnits) {
-  for (const char* turn : {"0", "20"}) {
-    ASSERT_EQ(run({KROK_MAKE_WALK, "--steps", "4", "--turn", std::string(turn) + "deg", "-q", "-o",
-                   path(std::string("bend_") + turn + ".bvh")})
-                  .exit_code,
-              0);
-  }
-  write("library.json", R"({"schema": "krok.library/1", "steps": "auto",
- "parameters": [{"name": "turn", "measures": "step.turn"}], "examples": [{"clip": "bend_*.bvh"}]})");
-  ASSERT_EQ(fit().exit_code, 0);
-  write("points.csv", "turn [deg]\n16\n16\u00B0\n16deg\n0.279253rad\n");
-  const json made = synthesised({"--table", path("points.csv"), "-o", path("s.anim")});
-  ASSERT_EQ(made.size(), 4u);
-  for (const json& one : made) EXPECT_NEAR(one["asked"]["turn"].get<double>(), 0.279253, 1e-6);
-  write("points.csv", "turn [deg]\n8\n8cm\n");
-  const ToolRun wrong = synth({"--table", path("points.csv"), "-o", path("s.anim")});
-  EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.err, HasSubstr("points.csv:3:1: error")) << wrong.err;
-}
-
 // The figures of the fit, before the files that it was made of.
-TEST_F(StepLibrary, AnInfoTellsHowGoodItIs) {
-  fit_well({"--refine", "6", "--json=" + path("r.json")});
-  const ToolRun text = run_tool("krok-info", {path("out.steps")});
-  ASSERT_EQ(text.exit_code, 0) << text.err;
-  EXPECT_LT(text.out.find("held-out"), text.out.find("krok-fit"));
-  for (const char* says : {"length: ", "weights from ", "nearest "}) {
-    EXPECT_THAT(text.out, HasSubstr(says));
-  }
-  const ToolRun info = run_tool("krok-info", {path("out.steps"), "--json"});
-  const json fit = json::parse(info.out)["result"]["files"][0]["fit"];
-  const json report = json::parse(InputFile::open(path("r.json"))->text())["result"];
-  EXPECT_EQ(fit["left_out"], report["leave_one_out"]["weighted"]);
-  EXPECT_LE(fit["errors"]["length"]["mean"], fit["errors"]["length"]["largest"]);
-  EXPECT_LT(fit["least_weight"], fit["largest_weight"]);
-}
-
 TEST_F(StepLibrary, TheSameBytesWhateverTheThreads) {
   fit_well({"--refine", "12", "--until", "0.001mm", "-j", "1"});
   const auto first = InputFile::open(path("out.steps"));
