@@ -34,36 +34,37 @@ struct PlantedFeet {
   Diagnostics warnings;
 };
 
-// Moves the feet so that heel and ball do not move while they stand, and nothing else more than
-// that needs. `contacts` tells when they stand, as a sidecar does (contacts of other joints are
-// left out; a point that no joint marks takes its stays from find_contacts()); without it
-// find_contacts() tells all.
+// Moves the feet so that heel and ball do not move while they stand, and the rest of the body no
+// more than that needs. `contacts` tells when they stand, as a sidecar does: contacts of other
+// joints are left out, and points that no joint marks, such as the ball of a foot without a toe
+// joint, take their stays from find_contacts(). Without contacts find_contacts() tells all.
 //
 // - Each stay has one place: the median of the point over its frames. Heel and ball keep their
-//   distance. Heights of one point over all stays are drawn together as far as jitter alone
-//   explains their difference (shrinkage by James and Stein), so that stairs and slopes keep
-//   theirs.
-// - While heel and ball both stand the foot is turned onto their places by the shortest rotation;
-//   while one of them stands the foot turns about it as captured: the roll over the heel and over
-//   the ball stays. While the tip alone stands the foot turns about the tip.
-// - Between stays, correction of place and rotation is the curve of least curvature, drawn to zero
-//   where stays are far apart: no frame is more than a second from where it bends.
-// - Jitter that feet and pelvis share is taken out of the whole body, for a leg between a fixed
-// foot
-//   and a pelvis that jitters would shake.
-// - Where a leg would be stretched further than captured, and is nearly straight, the pelvis is
-//   lowered smoothly first.
-// - Legs are solved by solve_two_bone(). Bend that is added bends the knee about its usual axis.
+//   distance. Heights of one part over all stays are drawn to a common plane as far as jitter alone
+//   explains their difference (shrinkage, James and Stein 1961), so that stairs keep theirs.
+// - While heel and ball both stand, the foot is turned onto their places by the shortest rotation.
+//   While one of them stands, the foot turns about it as captured: the roll over heel and ball
+//   stays. While the tip alone stands, the foot nearly turns about the tip. Toes keep lying flat.
+// - Between stays the correction is the curve of least curvature under a little tension, drawn to
+// zero
+//   where stays are far apart.
+// - Jitter that feet and pelvis share is taken out of the whole body: a leg between a fixed foot
+// and a
+//   pelvis that jitters would shake.
+// - A leg that is nearly straight is not stretched further than captured: the heel comes up further
+//   while ball or tip stand (15 degrees at most), and then the pelvis is lowered, smoothly.
+// - Legs are solved by solve_two_bone(). Bend that is added is about the knee's usual axis.
 //
 // A clip in which no heel and no ball moves by more than 0.0005 of the leg while it stands is
 // returned as it is, so that planting twice with the same contacts is the same as once.
 //
 // Everything outside the legs keeps its orientation, and its position relative to the hips; joints
-// above the hips do not move. Bones keep their lengths. Independent of root and reference pose.
+// above the hips do not move. Bones keep their lengths. Root and reference pose do not matter.
 // Frames of a rest pose before the capture, from which a foot jumps, are not fixed.
 //
-// Codes: those of check(Clip); contacts-feet where the roles know no whole leg; plant-contacts
-// where no foot stands at any frame. Warnings: plant-reach, and those of find_contacts().
+// Codes: those of check(Clip); contacts-feet where the roles know no leg from hip to foot;
+// plant-contacts where no foot stands at any frame. Warnings: plant-reach (a leg is too short for
+// its place), and those of find_contacts().
 Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
                                std::optional<std::span<const Contact>> contacts = {});
 

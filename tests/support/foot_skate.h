@@ -68,10 +68,50 @@ struct Skate {
   unsigned seed = 1;
 };
 
-// Slides begin and end at rest, each in a direction of its own along the ground. Where a leg is too
-// short for them they are less.
-inline Clip with_skate(const samples::Walk& walk, const Skate& skate) {
-  Clip clip = walk.clip;
+// A stance of one foot, seconds.
+struct Stance {
+  std::size_t side = 0;
+  double start = 0, end = 0;
+};
+
+inline std::vector<Stance> stances_of(const samples::Walk& walk) {
+  std::vector<Stance> stances;
+  for (const samples::Footprint& print : walk.prints) {
+    stances.push_back({static_cast<std::size_t>(print.side), print.strike, print.off});
+  }
+  return stances;
+}
+
+// From the first touch of any point of a foot to the last, as found.
+inline std::vector<Stance> stances_of(const Clip& clip, const RoleMap& roles) {
+  std::vector<Stance> stances;
+  const auto found = find_contacts(clip, roles);
+  if (!found) return stances;
+  for (const std::size_t side : {0U, 1U}) {
+    std::vector<Stance> own;
+    for (const Stay& stay : found->stays) {
+      const SolePoint& point = found->tracks[static_cast<std::size_t>(stay.track)].point;
+      if (static_cast<std::size_t>(point.side) == side) own.push_back({side, stay.start, stay.end});
+    }
+    std::ranges::sort(own, {}, &Stance::start);
+    for (const Stance& stance : own) {
+      const bool again = !stances.empty() && stances.back().side == side &&
+                         stance.start < stances.back().end + 0.1;
+      if (again) {
+        stances.back().end = std::max(stances.back().end, stance.end);
+      } else {
+        stances.push_back(stance);
+      }
+    }
+  }
+  return stances;
+}
+
+// Slides begin and end at rest, each in a direction of its own along the ground, and are taken back
+// in the swing. Where a leg is too short for them they are less.
+inline Clip with_skate(const Clip& clean, const std::vector<Stance>& stances, const Skate& skate) {
+  constexpr double kSwing = 0.2;  // seconds
+  Clip clip = clean;
   std::mt19937 random(skate.seed);
   std::normal_distribution<double> normal;
   const auto vector = [&](double size) {
@@ -84,7 +124,7 @@ inline Clip with_skate(const samples::Walk& walk, const Skate& skate) {
     return u * u * (3 - 2 * u);
   };
   std::vector<Vec3> directions;
-  for (std::size_t i = 0; i < walk.prints.size(); ++i) {
+  for (std::size_t i = 0; i < stances.size(); ++i) {
     const double angle = 2 * kPi * static_cast<double>(random()) / 4294967296.0;
     directions.emplace_back(std::sin(angle), 0, std::cos(angle));
   }
@@ -92,12 +132,10 @@ inline Clip with_skate(const samples::Walk& walk, const Skate& skate) {
     const double time = f / clip.rate;
     for (const std::size_t side : {0U, 1U}) {
       Vec3 shift = vector(skate.foot_jitter);
-      for (std::size_t i = 0; i < walk.prints.size(); ++i) {
-        const samples::Footprint& print = walk.prints[i];
-        if (static_cast<std::size_t>(print.side) != side) continue;
-        const double swing = 0.35 * walk.step_time;
-        const double part = ease((time - print.strike) / (print.off - print.strike)) -
-                            ease((time - print.off) / swing);
+      for (std::size_t i = 0; i < stances.size(); ++i) {
+        if (stances[i].side != side) continue;
+        const double part = ease((time - stances[i].start) / (stances[i].end - stances[i].start)) -
+                            ease((time - stances[i].end) / kSwing);
         shift += skate.slide * part * directions[i];
       }
       for (int i = 0; i < 6 && !shift.isZero(); ++i, shift *= 0.7) {
@@ -108,6 +146,9 @@ inline Clip with_skate(const samples::Walk& walk, const Skate& skate) {
     for (Vec3f& position : clip.frame_positions(f)) position += all;
   }
   return clip;
+}
+inline Clip with_skate(const samples::Walk& walk, const Skate& skate) {
+  return with_skate(walk.clip, stances_of(walk), skate);
 }
 
 // The generator's walks over its whole range: lengths, turns, slopes, stairs, statures and rates.

@@ -255,8 +255,9 @@ ToolSpec make_spec() {
   ToolSpec spec;
   spec.name = "krok-edit";
   spec.summary =
-      "Cleans, plants the feet of, cuts, mirrors, retimes, joins, loops, scales and positions a "
-      "motion. Steps run in the order listed here, regardless of the order of the options";
+      "Cleans, cuts, mirrors, retimes, joins, loops, scales and positions a motion, and removes "
+      "foot "
+      "skate. Steps run in the order listed here, regardless of the order of the options";
   spec.inputs = "IN.anim|IN.bvh|IN.amc";
   spec.examples = {
       {"krok-edit take.anim -o clean.anim --spikes --filter butterworth --cutoff 8Hz",

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "math/quaternion.h"
+#include "motion/cut.h"
 #include "motion/place.h"
 #include "plant/plant_feet.h"
 #include "samples/generator/gesture.h"
@@ -132,6 +133,38 @@ TEST(PlantedFeet, LittleIsLeftForContactsFoundAnew) {
     const PlantedFeet once = planted(sliding_walk(seed));
     const PlantedFeet again = planted(once.clip);
     EXPECT_LT(again.drift_before, 0.6 * once.drift_before) << seed;
+  }
+}
+
+// Contacts of any kind, right or not: bones keep their lengths, and values stay finite.
+TEST(PlantedFeet, NoContactsBreakBones) {
+  std::mt19937 random(7);
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    Clip walk = sliding_walk(seed % kWalks);
+    if (seed % 4 == 0) walk = cut(walk, 0, static_cast<int>(seed / 4 % 4));
+    const RoleMap roles = find_roles(walk.skeleton);
+    std::vector<Contact> contacts;
+    for (const Role role : {Role::left_foot, Role::left_toes, Role::right_foot, Role::right_toes}) {
+      for (int i = 0; i < 3; ++i) {
+        const double a = random() % 1000 / 1000.0 * walk.duration();
+        const double b = random() % 1000 / 1000.0 * walk.duration();
+        contacts.push_back({roles.joint(role), std::min(a, b), std::max(a, b), Vec3::Zero()});
+      }
+    }
+    contacts.push_back({roles.joint(Role::left_foot), 0, walk.duration(), Vec3::Zero()});
+    const auto result = plant_feet(walk, roles, contacts);
+    ASSERT_TRUE(result.ok()) << result.error().message;
+    EXPECT_TRUE(check(result->clip).ok());
+    for (int f = 0; f < walk.frame_count(); ++f) {
+      for (int j = 1; j < walk.joint_count(); ++j) {
+        const int parent = walk.skeleton.parents[static_cast<std::size_t>(j)];
+        const auto length = [&](const Clip& clip) {
+          return (test::joint_of(clip, f, j).position - test::joint_of(clip, f, parent).position)
+              .norm();
+        };
+        ASSERT_NEAR(length(walk), length(result->clip), 5e-6) << seed << " " << f << " " << j;
+      }
+    }
   }
 }
 
