@@ -250,44 +250,4 @@ Result<int> run(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
-ToolSpec make_spec() {
-  const auto arguments = std::make_shared<Arguments>();
-  ToolSpec spec;
-  spec.name = "krok-edit";
-  spec.summary =
-      "Cleans, cuts, mirrors, retimes, joins, loops, scales and positions a motion, and removes "
-      "foot "
-      "skate. Steps run in the order listed here, regardless of the order of the options";
-  spec.inputs = "IN.anim|IN.bvh|IN.amc";
-  spec.examples = {
-      {"krok-edit take.anim -o clean.anim --spikes --filter butterworth --cutoff 8Hz",
-       "replaces spikes and removes jitter without time shift"},
-      {"krok-edit take.anim -o walk.anim --from 1.5s --to 187f --loop --treadmill",
-       "a seamless walk cycle in place"},
-      {"krok-edit take.anim -o 'take_{sequence}.anim' --sequences take.json",
-       "every sequence listed in a file, at its speed, looped if the file says so"},
-      {"krok-edit walk.anim --plant -o planted.anim",
-       "feet that stay where they stand; contacts from walk.keys.json if it exists"},
-      {"krok-edit walk.anim -o both.anim --append turn.anim --blend 0.3s --at-origin --heading 0",
-       "two motions in sequence, from the origin towards +Z"}};
-  spec.needs_output = false;  // --list-sequences writes nothing
-  spec.batch = {{".anim", ".bvh", ".amc"}, [arguments]() -> Result<std::string> {
-                  if (arguments->list_sequences) {
-                    return Error(
-                        "usage",
-                        "--list-sequences has no outputs; --out-dir and --manifest cannot be used",
-                        "give a single input");
-                  }
-                  const bool several = !arguments->sequences.empty() && arguments->sequence.empty();
-                  return std::string(several ? "_{sequence}.anim" : ".anim");
-                }};
-  spec.declare = [arguments](CommandOptions& command) { declare(command, *arguments); };
-  spec.check = [arguments]() -> Status {
-    const auto options = understand(*arguments);
-    return options ? Status() : options.error();
-  };
-  spec.run = [arguments](ToolContext& context) { return run_typed(*arguments, context); };
-  return spec;
-}
-
-}  // namespace krok::edit
+}  // namespace krok::cli::edit

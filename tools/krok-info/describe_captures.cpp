@@ -50,8 +50,8 @@ Result<Description> describe_acclaim(const InputFile& file, const SkeletonOption
   reading.jobs = context.jobs;
   reading.progress = context.progress;
   Description out;
-  const Status status = io::use_capture(
-      file, context, reading, true, [&](const io::OpenedCapture& opened) -> Status {
+  const Status status =
+      io::use_capture(file, context, reading, true, [&](const io::OpenedCapture& opened) -> Status {
         const Capture& capture = *opened.capture;
         const bool is_motion = opened.details.skeleton.has_value();
         out.what = is_motion ? "a capture (AMC), as read by krok-import"

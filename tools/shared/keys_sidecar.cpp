@@ -16,7 +16,7 @@ std::string keys_sidecar_path(const std::string& motion_path) {
 }
 
 Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
-                                     ToolContext& context) {
+                                           ToolContext& context) {
   const auto input = context.open_input(path);
   if (!input) return input.error();
   auto sidecar = krok::keys::read_sidecar(input->text(), path, clip.skeleton, clip.duration());
@@ -36,7 +36,8 @@ Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& 
 }
 
 Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& motion_path,
-                                                      const Clip& clip, ToolContext& context) {
+                                                            const Clip& clip,
+                                                            ToolContext& context) {
   const std::string path = keys_sidecar_path(motion_path);
   if (path.empty()) return std::optional<krok::keys::Sidecar>();
   context.depends_on_neighbours(motion_path, base_name(path));

@@ -19,11 +19,11 @@ std::string keys_sidecar_path(const std::string& motion_path);
 // Reads the file `path`, opened by context.open_input. Warns (code keys-stale) if the file was made
 // for a motion of another duration.
 Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
-                                     ToolContext& context);
+                                           ToolContext& context);
 
 // Reads the sidecar of a motion read from `motion_path`; empty if there is none.
 Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& motion_path,
-                                                      const Clip& clip, ToolContext& context);
+                                                            const Clip& clip, ToolContext& context);
 
 // Detects contacts and keytimes as krok-keys does, with warnings for doubtful results. Code:
 // contacts-feet.

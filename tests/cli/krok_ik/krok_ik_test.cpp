@@ -110,8 +110,8 @@ TEST_F(KrokIk, WhatIsMissedIsToldWithTheJointThatHoldsBack) {
   const std::string near = "RightHand=" + std::to_string(shoulder.x()) + "," +
                            std::to_string(shoulder.y() - 0.2) + "," +
                            std::to_string(shoulder.z() + 0.1) + "@30f";
-  const auto held = ik({"walk.anim", "--reach", near, "--limits", "stiff.limits.json", "-o",
-                        "held.anim", "--json"});
+  const auto held = ik(
+      {"walk.anim", "--reach", near, "--limits", "stiff.limits.json", "-o", "held.anim", "--json"});
   ASSERT_EQ(held.exit_code, 0) << held.err;
   const json result = json::parse(held.out)["result"];
   EXPECT_EQ(result["goals"][0]["held_by"], "RightForeArm");
@@ -175,8 +175,8 @@ TEST_F(KrokIk, EveryMethodReachesAnEasyGoal) {
 TEST_F(KrokIk, StiffnessAndDepthReachTheSolver) {
   const Vec3 by(0.1, 0.2, 0.3);
   const auto spine_moved = [&](std::vector<std::string> more) {
-    std::vector<std::string> all = {"walk.anim", "--reach", reach(by), "-o", "out.anim",
-                                    "--orientation", "xyzw"};
+    std::vector<std::string> all = {"walk.anim", "--reach",       reach(by), "-o",
+                                    "out.anim",  "--orientation", "xyzw"};
     all.insert(all.end(), more.begin(), more.end());
     EXPECT_EQ(ik(all).exit_code, 0);
     const Clip out = read("out.anim");

@@ -7,9 +7,9 @@
 #include <new>
 #include <thread>
 
-#include "tools/batch/manifest.h"
 #include "core/glob.h"
 #include "core/in_order.h"
+#include "tools/batch/manifest.h"
 
 namespace krok::cli::batch {
 namespace {
