@@ -247,8 +247,9 @@ void LeastSquares::find_step(const Tree& tree, double damping) {
   working_ = equations_;
   for (Column& column : columns_) column.fixed = false;
   for (Turning& turning : turnings_) turning.fixed = 0;
-  // Each round fixes at least one more direction; beyond a few the clamping of the step does.
-  for (int round = 0; round < 6; ++round) {
+  // Each round fixes what would pass a limit. More than two gain nothing: what a last solution
+  // still takes beyond a limit is clamped as the step is taken, and fixed in the next one.
+  for (int round = 0; round < 2; ++round) {
     solve_step(damping);
     if (!fix_at_limits(tree)) return;
   }

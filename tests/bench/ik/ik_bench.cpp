@@ -3,9 +3,10 @@
 // (metres and radians) and have 5 ms. Beside Orocos KDL's solver on the same poses in the same run,
 // where it is installed. Prints rates, times of this machine and a hash of the results.
 
-#include <chrono>
+#include <algorithm>
 #include <cstdio>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "bench/ik/arms.h"
@@ -160,9 +161,11 @@ void arms() {
 
 }  // namespace krok::bench
 
-int main() {
-  krok::bench::arms();
-  krok::bench::two_bones();
-  krok::bench::whole_bodies();
+// All parts, or the one that is named: arms, limbs, bodies.
+int main(int argc, char** argv) {
+  const std::string part = argc > 1 ? argv[1] : "";
+  if (part.empty() || part == "arms") krok::bench::arms();
+  if (part.empty() || part == "limbs") krok::bench::two_bones();
+  if (part.empty() || part == "bodies") krok::bench::whole_bodies();
   return 0;
 }
