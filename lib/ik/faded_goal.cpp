@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "core/index.h"
 #include "ik/faded_goal_internal.h"

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <memory>
-
-#include <array>
+#include <cmath>
 #include <string_view>
+#include <tuple>
 
 #include "core/numbers.h"
 #include "core/quantity.h"

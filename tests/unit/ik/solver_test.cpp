@@ -252,6 +252,29 @@ TEST(IkSolver, AGoalOutOfReachIsComeNearTo) {
   EXPECT_NEAR((*outcome)->goals[0].distance, 2.1, 2e-3);
 }
 
+// Frame by frame from the same start, as a motion is solved: a target that circles out of reach.
+TEST(IkSolver, WhatIsOutOfReachIsFollowedSmoothly) {
+  Dice dice(16);
+  const Chain start = test::bent_chain(5, dice, 0.6);
+  Solver solver = test::solver_for(start);
+  constexpr double kStep = 0.01;
+  Vec3 before = Vec3::Zero();
+  for (int i = 0; i < 200; ++i) {
+    const double angle = 0.3 + kStep * i;
+    const Goal goal = test::reach(4, 2.5 * Vec3(std::sin(angle), std::cos(angle), 0.2));
+    auto pose = start.pose;
+    const auto outcome = solver.solve({&goal, 1}, pose);
+    ASSERT_TRUE(outcome.ok());
+    EXPECT_FALSE((*outcome)->reached);
+    // The chain is 1.2 m long, so that its end goes 12 mm a step.
+    if (i > 0) {
+      EXPECT_LT((pose[4].position - before).norm(), 2 * 1.2 * kStep) << i;
+    }
+    EXPECT_GT(pose[4].position.norm(), 1.19) << i;
+    before = pose[4].position;
+  }
+}
+
 TEST(IkSolver, NamesTheJointWhoseLimitHoldsBack) {
   // Joint 2 may bend by 0.3 alone; the others of the chain freely, but they are kept straight.
   Chain chain = test::straight_chain(4);
