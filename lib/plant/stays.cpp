@@ -13,7 +13,7 @@ constexpr double kFarFromPlace = 0.2;  // of the leg
 constexpr double kBesideEnds = 0.15;   // seconds
 constexpr double kOffGround = 0.012;   // of the leg
 constexpr double kJitter = 0.002;      // metres, less does not matter to a place
-constexpr int kRounds = 200;
+constexpr int kDistanceRounds = 200;
 constexpr double kExact = 1e-8;  // metres
 
 double median(std::vector<double> values) {
@@ -229,7 +229,7 @@ void keep_distances(const Leg& leg, Footing& footing) {
   close();
   // Stays overlap as a chain, so that rounds converge.
   double moved = 1;
-  for (int round = 0; round < kRounds && moved > kExact; ++round) {
+  for (int round = 0; round < kDistanceRounds && moved > kExact; ++round) {
     moved = 0;
     for (const Pair& pair : pairs) {
       const Vec3 before = footing.stays[static_cast<std::size_t>(pair.heel)].place;
