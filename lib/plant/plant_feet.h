@@ -55,6 +55,9 @@ struct PlantedFeet {
 //   while ball or tip stand (15 degrees at most), and then the pelvis is lowered, smoothly.
 // - Legs are solved by solve_two_bone(). Bend that is added is about the knee's usual axis.
 //
+// Feet that stand still show longer stays than feet that slide. Where stays are found, they are
+// looked for again on the result, and held as well.
+//
 // A clip in which no heel and no ball moves by more than 0.0005 of the leg while it stands is
 // returned as it is, so that planting twice with the same contacts is the same as once.
 //

@@ -97,26 +97,26 @@ std::vector<double> running_mean(std::span<const double> values, int reach) {
 
 }  // namespace
 
-double jitter_of(const KnownCurve& curve) {
+double jitter_of(const KnownCurve& curve, int axis) {
   // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance, that of movement
   // is small for most frames; the median of |x| of a Gaussian is 0.6745 of its deviation.
-  double squares = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> differences;
-    for (std::size_t f = 3; f < curve.values.size(); ++f) {
-      if (!curve.is_exact(f - 3) || !curve.is_exact(f - 2) || !curve.is_exact(f - 1) ||
-          !curve.is_exact(f)) {
-        continue;
-      }
-      const auto at = [&](std::size_t frame) { return curve.values[frame][axis]; };
-      differences.push_back(std::abs(at(f) - 3 * at(f - 1) + 3 * at(f - 2) - at(f - 3)));
-    }
-    if (differences.empty()) return 0;
-    const auto half = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-    std::nth_element(differences.begin(), half, differences.end());
-    squares += *half * *half / (0.6745 * 0.6745 * 20);
+  std::vector<double> differences;
+  differences.reserve(curve.values.size());
+  int known = 0;  // in a row
+  for (std::size_t f = 0; f < curve.values.size(); ++f) {
+    known = curve.is_exact(f) ? known + 1 : 0;
+    if (known < 4) continue;
+    const auto at = [&](std::size_t frame) { return curve.values[frame][axis]; };
+    differences.push_back(std::abs(at(f) - 3 * at(f - 1) + 3 * at(f - 2) - at(f - 3)));
   }
-  return std::sqrt(squares / 3);
+  if (differences.empty()) return 0;
+  const auto half = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), half, differences.end());
+  return *half / (0.6745 * std::sqrt(20.0));
+}
+
+double jitter_of(const KnownCurve& curve) {
+  return std::hypot(jitter_of(curve, 0), jitter_of(curve, 1), jitter_of(curve, 2)) / std::sqrt(3.0);
 }
 
 double cutoff_against(double deviation, double speed, double rate) {

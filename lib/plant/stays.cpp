@@ -126,9 +126,6 @@ class StayFixer {
       for (int f = 0; f < clip.frame_count(); ++f) {
         track.push_back(joint_at(clip, f, point.joint) * point.offset);
       }
-      KnownCurve heights(track.size());
-      for (std::size_t f = 0; f < track.size(); ++f) heights.set(f, Vec3(0, track[f].y(), 0));
-      height_jitter_.push_back(std::sqrt(3.0) * jitter_of(heights));
       footing.tracks.push_back(std::move(track));
       footing.parts.push_back(point.part);
     }
@@ -146,12 +143,14 @@ class StayFixer {
     stay.place = median_place(track, stay.first, stay.last);
     // Beside the clip's ends, too few frames tell when a point that was found to stand leaves.
     const int beside = static_cast<int>(kBesideEnds * clip_.rate);
+    const bool inexact = found && (stay.first <= beside || stay.last >= last_frame - beside);
+    const double rise =
+        inexact ? kOffGround * body_.leg_length + 3 * height_jitter_in(track, stay) : 0;
     const auto is_far = [&](int f) {
       const Vec3 off = track[static_cast<std::size_t>(f)] - stay.place;
-      const bool inexact = found && (f <= beside || f >= last_frame - beside);
+      const bool at_end = f <= beside || f >= last_frame - beside;
       return off.norm() > kFarFromPlace * body_.leg_length ||
-             (inexact &&
-              std::abs(off.y()) > kOffGround * body_.leg_length + 3 * height_jitter_[point]);
+             (inexact && at_end && std::abs(off.y()) > rise);
     };
     while (stay.first <= stay.last && is_far(stay.first)) ++stay.first;
     while (stay.first <= stay.last && is_far(stay.last)) --stay.last;
@@ -195,17 +194,24 @@ class StayFixer {
       for (std::size_t f = 0; f < footing.tracks[p].size(); ++f) {
         if (footing.stay_at[p][f] >= 0) heights.set(f, Vec3(0, footing.tracks[p][f].y(), 0));
       }
-      footing.jitter.push_back(std::sqrt(3.0) * jitter_of(heights));  // of one axis of three
+      footing.jitter.push_back(jitter_of(heights, 1));
     }
   }
 
   Footing footing;
 
  private:
+  static double height_jitter_in(const std::vector<Vec3>& track, const FixedStay& stay) {
+    KnownCurve heights(static_cast<std::size_t>(stay.last - stay.first + 1));
+    for (std::size_t i = 0; i < heights.values.size(); ++i) {
+      heights.set(i, track[static_cast<std::size_t>(stay.first) + i]);
+    }
+    return jitter_of(heights, 1);
+  }
+
   const Clip& clip_;
   const PlantedBody& body_;
   const Leg& leg_;
-  std::vector<double> height_jitter_;  // [points], over all frames
 };
 
 void keep_distances(const Leg& leg, Footing& footing) {
