@@ -20,7 +20,7 @@ namespace {
 constexpr double kShakes = 0.003;
 
 // Of the leg: what heels and balls may move by while they stand for the clip to be left as it is.
-constexpr double kStands = 0.0005;
+constexpr double kStands = 0.0004;
 
 // Feet that stand still show longer stays than feet that slide: times that these are looked at.
 constexpr int kRounds = 3;

@@ -58,7 +58,7 @@ struct PlantedFeet {
 // Feet that stand still show longer stays than feet that slide. Where stays are found, they are
 // looked for again on the result, and held as well.
 //
-// A clip in which no heel and no ball moves by more than 0.0005 of the leg while it stands is
+// A clip in which no heel and no ball moves by more than 0.0004 of the leg while it stands is
 // returned as it is, so that planting twice with the same contacts is the same as once.
 //
 // Everything outside the legs keeps its orientation, and its position relative to the hips; joints

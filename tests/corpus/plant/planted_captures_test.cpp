@@ -44,7 +44,7 @@ TEST_P(PlantedCaptures, StandStillAndBendAsBefore) {
   // In this one single frames of the feet jump by 4 mm while they stand and the rest of the leg
   // does not: the knee has to take that up.
   const bool jumps = name == "optitrack_arena_bvh-matlab/walk.bvh";
-  EXPECT_LE(measures.knee_99, jumps ? 2.0 : 1.2);
+  EXPECT_LE(measures.knee_99, jumps ? 2.3 : 1.2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Walks, PlantedCaptures,
