@@ -12,7 +12,7 @@
 
 #include "cli/story_test.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,4 +73,4 @@ TEST_F(BlendWalks, ToolsThatAreNotThereAreNamed) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

@@ -14,7 +14,7 @@
 
 #include "cli/story_test.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,4 +67,4 @@ TEST_F(CandyWrapper, ToolsThatAreNotThereAreNamed) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

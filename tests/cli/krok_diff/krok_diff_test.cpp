@@ -16,7 +16,7 @@
 #include "math/quaternion.h"
 #include "support/glb_builder.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -246,4 +246,4 @@ TEST_F(KrokDiff, HelpNamesTolerancesAndExitCodes) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

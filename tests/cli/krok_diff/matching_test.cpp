@@ -17,7 +17,7 @@
 #include "support/glb_builder.h"
 #include "support/run_tool.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 class KrokDiffMatching : public test::FolderTest {
@@ -287,4 +287,4 @@ TEST_F(KrokDiffMatching, OtherColoursAreToldAndWithMaterialsADifference) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

@@ -15,7 +15,7 @@
 #include "motion/place.h"
 #include "samples/generator/walk.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 class KrokEdit : public test::CliTest {
@@ -443,4 +443,4 @@ TEST_F(KrokEdit, TheSameBytesForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

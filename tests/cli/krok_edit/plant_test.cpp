@@ -10,7 +10,7 @@
 #include "formats/anim/anim.h"
 #include "support/planted_measures.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 using testing::HasSubstr;
@@ -133,4 +133,4 @@ TEST_F(KrokEditPlant, WhatCannotBePlantedIsAnError) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

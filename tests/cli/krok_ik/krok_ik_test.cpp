@@ -11,7 +11,7 @@
 #include "formats/anim/anim.h"
 #include "samples/generator/walk.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 using nlohmann::json;
@@ -224,4 +224,4 @@ TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

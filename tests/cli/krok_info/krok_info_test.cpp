@@ -15,7 +15,7 @@
 #include "golden/samples/samples.h"
 #include "support/human_skeleton.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
@@ -259,4 +259,4 @@ TEST_F(KrokInfo, UsageErrors) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

@@ -15,7 +15,7 @@
 #include "support/skeleton_text.h"
 #include "support/test_scenes.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 class KrokRetarget : public test::CliTest {
@@ -238,4 +238,4 @@ TEST_F(KrokRetarget, ManyMotionsGoOntoOneActor) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

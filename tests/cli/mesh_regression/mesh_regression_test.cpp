@@ -5,7 +5,7 @@
 
 #include "cli/story_test.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,4 +42,4 @@ TEST_F(MeshRegression, ToolsThatAreNotThereAreNamed) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test

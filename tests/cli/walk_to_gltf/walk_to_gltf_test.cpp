@@ -10,7 +10,7 @@
 #include "support/folder_test.h"
 #include "support/run_tool.h"
 
-namespace krok {
+namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +103,4 @@ TEST_F(WalkToGltf, ToolsThatAreNotThereAreNamed) {
 }
 
 }  // namespace
-}  // namespace krok
+}  // namespace krok::test
