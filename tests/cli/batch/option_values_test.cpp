@@ -64,7 +64,10 @@ const std::vector<Value>& values() {
       {"krok-edit", {"--from", "-1s"}, "usage"},
       {"krok-edit", {"--turn", "5m"}, "quantity-unit"},
       {"krok-edit", {"--move", "1,2"}, "usage"},
-      {"krok-edit", {"--loop", "--rounds", "0"}, "usage"}};
+      {"krok-edit", {"--loop", "--rounds", "0"}, "usage"},
+      {"krok-ik", {"--depth", "-1"}, "usage"},
+      {"krok-ik", {"--reach", "Hand=0m,0m,0m@1s", "--fade", "-1s"}, "usage"},
+      {"krok-ik", {"--reach", "Hand=0m,0m@1s"}, "usage"}};
   return list;
 }
 

@@ -27,7 +27,7 @@ struct Change {
 constexpr int kFrames = 60;
 
 // A square that leans as its tangents turn about Z, each frame of them a morph target.
-GlbBuilder baked(const Change& change = {}) {
+GlbBuilder baked_bend(const Change& change = {}) {
   GlbBuilder builder = square();
   json targets = json::array();
   for (int f = 1; f < kFrames; ++f) {
@@ -57,7 +57,7 @@ GlbBuilder baked(const Change& change = {}) {
 
 class DiffTangents : public CliTest {
  protected:
-  void SetUp() override { write("golden.glb", baked()); }
+  void SetUp() override { write("golden.glb", baked_bend()); }
 
   void write(const std::string& name, const GlbBuilder& builder) {
     put(name, text_of(builder.glb()));
@@ -81,7 +81,7 @@ TEST_F(DiffTangents, TheSameFilesAreTheSame) {
 }
 
 TEST_F(DiffTangents, OneTurnedByADegreeInFrame37IsFoundAndNamed) {
-  write("changed.glb", baked({37, 2, kRadiansPerDegree}));
+  write("changed.glb", baked_bend({37, 2, kRadiansPerDegree}));
   for (const char* match : {"auto", "nearest"}) {
     const ToolRun done = diff("changed.glb", {"--match", match});
     EXPECT_EQ(done.exit_code, 1) << done.err;
@@ -109,7 +109,7 @@ TEST_F(DiffTangents, OneTurnedByADegreeInFrame37IsFoundAndNamed) {
 }
 
 TEST_F(DiffTangents, TheOtherHandednessIsNamed) {
-  write("flipped.glb", baked({.vertex = 3, .flipped = true}));
+  write("flipped.glb", baked_bend({.vertex = 3, .flipped = true}));
   // Nearest points are looked for both ways.
   for (const auto& [match, found] : {std::pair{"auto", "60 of 240"}, {"nearest", "120 of 480"}}) {
     const ToolRun done = diff("flipped.glb", {"--match", match, "--normals", "180deg"});
@@ -135,7 +135,7 @@ TEST_F(DiffTangents, TheOtherHandednessIsNamed) {
 }
 
 TEST_F(DiffTangents, ATangentThatIsZeroIsFoundAndTheOthersAreStillCompared) {
-  write("zero.glb", baked({.vertex = 1, .zero = true}));
+  write("zero.glb", baked_bend({.vertex = 1, .zero = true}));
   const ToolRun done = diff("zero.glb");
   EXPECT_EQ(done.exit_code, 1);
   EXPECT_THAT(done.err, HasSubstr("1 of 4 tangents are zero, the first at vertex 1"));
@@ -149,7 +149,7 @@ TEST_F(DiffTangents, AFileWithoutThemIsToldAndADifferenceWhereANormalTextureNeed
     for (auto& target : primitive["targets"]) target.erase("TANGENT");
     return builder;
   };
-  write("none.glb", without(baked()));
+  write("none.glb", without(baked_bend()));
   const ToolRun told = diff("none.glb");
   EXPECT_EQ(told.exit_code, 0) << told.err;
   EXPECT_THAT(told.out, HasSubstr("note: mesh Body: only the first has tangents, so they are not "
@@ -162,8 +162,8 @@ TEST_F(DiffTangents, AFileWithoutThemIsToldAndADifferenceWhereANormalTextureNeed
     builder.json["meshes"][0]["primitives"][0]["material"] = 0;
     return builder;
   };
-  write("golden.glb", bumpy(baked()));
-  write("none.glb", bumpy(without(baked())));
+  write("golden.glb", bumpy(baked_bend()));
+  write("none.glb", bumpy(without(baked_bend())));
   const ToolRun shown = diff("none.glb");
   EXPECT_EQ(shown.exit_code, 1) << shown.err;
   EXPECT_THAT(shown.out, HasSubstr("differs: mesh Body: only the first has tangents, which normal "
