@@ -29,10 +29,10 @@ constexpr int kCorrections = 4;  // two are enough near the library; far outside
 struct Motion {
   std::string path;
   std::vector<double> asked;
-  parametric::Synthesis synthesis;
-  parametric::BlendedMotion::Made made;
-  std::vector<double> measured;  // on the clip
-  double error = 0;              // largest difference to what was asked, in tolerances
+  parametric::Synthesis synthesis = {};
+  parametric::BlendedMotion::Made made = {};
+  std::vector<double> measured = {};  // on the clip
+  double error = 0;                   // largest difference to what was asked, in tolerances
 };
 
 Result<steps::StepsFile> read_steps(const Options& options, ToolContext& context) {
