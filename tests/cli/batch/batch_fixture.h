@@ -59,8 +59,8 @@ class BatchTest : public CliTest {
   // How many of each status a report counts: {"done": 2, ...} without those that are 0.
   static std::map<std::string, int> counts(const std::string& report) {
     std::map<std::string, int> result;
-    const Json json = Json::parse(report);
-    for (const auto& file : json["files"]) {
+    const Json parsed = Json::parse(report);
+    for (const auto& file : parsed["files"]) {
       ++result[file["status"].get<std::string>()];
     }
     return result;
