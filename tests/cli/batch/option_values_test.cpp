@@ -65,9 +65,9 @@ const std::vector<Value>& values() {
       {"krok-edit", {"--turn", "5m"}, "quantity-unit"},
       {"krok-edit", {"--move", "1,2"}, "usage"},
       {"krok-edit", {"--loop", "--rounds", "0"}, "usage"},
-      {"krok-ik", {"--depth", "-1"}, "usage"},
-      {"krok-ik", {"--reach", "Hand=0m,0m,0m@1s", "--fade", "-1s"}, "usage"},
-      {"krok-ik", {"--reach", "Hand=0m,0m@1s"}, "usage"}};
+      {"krok-ik", {"--goals", "x.goals", "--depth", "-1"}, "usage"},
+      {"krok-ik", {"--goals", "x.goals", "--fade", "-1s"}, "usage"},
+      {"krok-ik", {"--goals", "x.goals", "--reach", "Hand=0m,0m@1s"}, "usage"}};
   return list;
 }
 
@@ -99,7 +99,8 @@ TEST_P(OptionValues, OfALineHaveItsPlace) {
   // Positionals and what is required stand on the command line.
   Names arguments, words;
   for (std::size_t i = 0; i < options.size(); ++i) {
-    const bool of_all = options[i] == "x.model" || options[i] == "--onto";
+    const bool of_all = options[i] == "x.model" || options[i] == "--onto" ||
+                        options[i] == "x.goals" || options[i] == "--goals";
     (of_all ? arguments : words).push_back(options[i]);
   }
   std::string list = "a.anim\tout/a.x\n\nb.anim\tout/b.x\t";
