@@ -23,10 +23,28 @@ constexpr double kSettled = 1e-6;  // metres
 // A motion that is beyond its limits by so much, radians, is blended by a goal's strength alone.
 constexpr double kWhollyBlended = 0.1;
 
-Status check_keys(const KeyedGoal& goal) {
+Status check_goal(const KeyedGoal& goal, const Skeleton& skeleton) {
   const auto wrong = [&](const char* what) {
     return Error("ik-goal", fmt::format("goal '{}' {}", goal.name, what));
   };
+  // A goal that fades reads the pose before the solver checks the goal.
+  const auto lacks = [](const Skeleton& of, int joint) {
+    return joint < 0 || joint >= of.joint_count();
+  };
+  const Goal::Kind kind = goal.goal.kind;
+  if (kind != Goal::Kind::balance && lacks(skeleton, goal.goal.joint)) {
+    return wrong("is for a joint that does not exist");
+  }
+  if (goal.goal.upper >= skeleton.joint_count() || goal.goal.lower >= skeleton.joint_count()) {
+    return wrong("is a pole between joints that do not exist");
+  }
+  if (goal.relative_to >= 0 &&
+      lacks(goal.motion != nullptr ? goal.motion->skeleton : skeleton, goal.relative_to)) {
+    return wrong("is relative to a joint that does not exist");
+  }
+  for (const int joint : goal.support_joints) {
+    if (lacks(skeleton, joint)) return wrong("is supported by a joint that does not exist");
+  }
   if (goal.keys.empty() && goal.goal.kind != Goal::Kind::balance) return wrong("has no keys");
   for (std::size_t i = 0; i < goal.keys.size(); ++i) {
     const GoalKey& key = goal.keys[i];
@@ -260,7 +278,7 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
 Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goals,
                                const Limits& limits, const GoalMotionOptions& options) {
   for (const KeyedGoal& goal : goals) {
-    if (Status status = check_keys(goal); !status) return status.error();
+    if (Status status = check_goal(goal, clip.skeleton); !status) return status.error();
   }
   // Says now what is wrong with limits and options.
   if (auto solver = Solver::create(clip.skeleton.parents, limits, options.solver); !solver) {

@@ -170,11 +170,13 @@ TEST(GoalMotion, TheSameForAnyNumberOfThreads) {
 
 TEST(GoalMotion, WrongKeysAreRefused) {
   const Clip clip = calm_human(30);
-  std::vector<KeyedGoal> bad(4, reach_of(clip, "LeftHand", 0.5, Vec3(0, 1, 0)));
+  std::vector<KeyedGoal> bad(6, reach_of(clip, "LeftHand", 0.5, Vec3(0, 1, 0)));
   bad[0].keys.clear();
   bad[1].keys.push_back(bad[1].keys[0]);
   bad[2].fade_in = -1;
   bad[3].goal.joint = 999;
+  bad[4].relative_to = 999;
+  bad[5].support_joints = {999};
   for (const KeyedGoal& goal : bad) {
     const auto made = apply_goals(clip, {&goal, 1}, {});
     ASSERT_FALSE(made.ok());
