@@ -1,0 +1,31 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "math/types.h"
+
+// The ground: what a walker stands on.
+
+namespace krok {
+
+// A point of a surface that can be stood on.
+struct GroundPoint {
+  double height = 0;            // metres, +Y
+  Vec3 normal = Vec3::UnitY();  // unit vector, normal.y() > 0
+};
+
+// A surface over the ground plane (x, z), metres, world space. There may be several surfaces above
+// one another (a bridge), none (a hole, beyond the edge), and edges where the height jumps
+// (stairs). Immutable, so that threads may share it.
+class Terrain {
+ public:
+  virtual ~Terrain() = default;
+
+  // The highest surface at (x, z) that is not above `below` metres; empty if there is none, and for
+  // values that are not finite.
+  virtual std::optional<GroundPoint> at(
+      double x, double z, double below = std::numeric_limits<double>::infinity()) const = 0;
+};
+
+}  // namespace krok
