@@ -16,7 +16,7 @@ struct Print {
   double x = 0, z = 0;           // of the heel, metres, world
   double heading = 0;            // of the toes, radians about +Y: 0 faces +Z, a quarter turn +X
   std::optional<double> height;  // of the heel, metres; empty: the ground's
-  std::optional<double> time;    // of the strike, seconds from the first frame; empty: the library's
+  std::optional<double> time;  // of the strike, seconds from the first frame; empty: the library's
 };
 
 // A footprint on the ground: the line from heel to ball of a flat foot, and which way its sole

@@ -23,9 +23,8 @@ class StepLibrary {
 
   const std::string& name() const { return name_; }
   const RoleMap& roles() const { return roles_; }
-  const Skeleton& skeleton() const { return libraries_[0]->skeleton; }
-  double rate() const { return libraries_[0]->rate; }
-  const parametric::FootShape& foot(FootSide side) const { return libraries_[0]->foot(side); }
+  // As fitted, with the swing foot of its examples.
+  const parametric::Library& library() const { return *libraries_[static_cast<std::size_t>(own_)]; }
   // Steps whose swing foot is `swing`.
   const parametric::Synthesiser& steps(FootSide swing) const {
     return *synthesisers_[static_cast<std::size_t>(swing)];
@@ -36,6 +35,7 @@ class StepLibrary {
 
   std::string name_;
   RoleMap roles_;
+  FootSide own_ = FootSide::left;
   std::array<std::unique_ptr<const parametric::Library>, 2> libraries_;  // [swing side]
   std::array<std::unique_ptr<const parametric::Synthesiser>, 2> synthesisers_;
 };

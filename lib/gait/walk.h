@@ -18,28 +18,30 @@
 namespace krok::gait {
 
 struct WalkOptions {
-  double rate = 0;        // frames per second of the result; 0: the libraries'
-  double speed = 1;       // of the steps, relative to the library's durations; prints with times win
+  double rate = 0;   // frames per second of the result; 0: the libraries'
+  double speed = 1;  // of the steps, relative to the library's durations; prints with times win
   bool extrapolate = false;  // steps outside the range of the library's examples
   // Instead of refusing a print that cannot be reached, moves it (and all after it by as much) to
   // the nearest that can.
   bool adapt = false;
-  double stretch = 0;     // metres by which a leg may be lengthened in place of a knee pop
+  double stretch = 0;        // metres by which a leg may be lengthened in place of a knee pop
   double clearance = 0.015;  // metres of the swing foot over the ground
   int jobs = 1;
 };
 
-// One step: the swing foot goes from print `from` to print `to`, over the stance foot on `stance`.
+// One step: the swing foot goes from the print before the stance foot's to the one after it.
 struct StepReport {
-  int from = 0, stance = 0, to = 0;        // indices of prints
-  double start = 0, end = 0;               // seconds, strike of the stance foot and of the swing foot
-  std::string library;                     // name of the library that made it; "start", "stop"
-  std::vector<double> asked, made;         // parameters of that library: metres, radians, seconds
-  double moved = 0;                        // metres by which `adapt` moved the print
-  double clearance = 0;                    // least of the swing foot over the ground, metres
-  double pelvis_lowered = 0;               // most, metres
-  double leg_extension = 0;                // largest, of the leg's length
-  std::string why_moved;                   // empty unless moved
+  int stance = 0;                   // index of the stance print; from the one before it
+                                    // to the one after it
+  double start = 0, end = 0;        // seconds, strike of the stance foot and of the swing foot
+  std::string library;              // name of the library that made it
+  std::vector<double> asked, made;  // parameters of that library: metres, radians, seconds
+  double moved = 0;                 // metres by which `adapt` moved the print
+  double clearance = 0;             // least of the swing foot over the ground, metres
+  double pelvis_lowered = 0;        // most, metres
+  double leg_extension = 0;         // largest, of the leg's length
+  double missed = 0;                // metres by which a foot does not reach its print
+  std::string why_moved;            // empty unless moved
 };
 
 struct Walk {

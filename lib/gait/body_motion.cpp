@@ -1,0 +1,287 @@
+#include "gait/body_motion_internal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/index.h"
+#include "core/numbers.h"
+#include "gait/smooth_internal.h"
+#include "math/euler.h"
+#include "motion/ground_frame.h"
+
+namespace krok::gait {
+
+namespace {
+
+constexpr double kLead = 0.4;      // seconds of weight shift before the first foot leaves
+constexpr double kTail = 0.4;      // seconds after the last strike
+constexpr double kFlatPart = 0.4;  // of the swing, when the stance foot is flat
+constexpr double kBeside = 0.5;    // of the swing: where the swing foot is beside the other
+constexpr double kLifted = 0.4;    // share of the blend in the middle of an only step
+constexpr double kShortestStep = 0.2, kLongestStep = 10;  // seconds
+constexpr double kShortest = 1.0 / 120;  // seconds between poses that a velocity is taken from
+constexpr double kVelocityWidth = 0.12;  // seconds in which a difference in velocity fades
+
+// From rest at 0 to slope 2 at 1, no acceleration at both ends.
+double speed_up(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * s * (2 - s);
+}
+
+struct EndState {
+  PoseVector value, velocity;
+};
+// `inwards`: +1 at the start of the step, -1 at its end. The parabola through three poses: longer
+// fits would count what a strike shakes as a velocity.
+EndState end_state(const BodyStep& step, double time, double inwards, double spacing) {
+  auto scratch = step.motion.make_scratch();
+  EndState end;
+  PoseVector next, far;
+  step.pose(time, end.value, scratch);
+  step.pose(time + inwards * spacing, next, scratch);
+  step.pose(time + inwards * 2 * spacing, far, scratch);
+  end.velocity = inwards / (2 * spacing) * (4 * next - far - 3 * end.value);
+  return end;
+}
+
+std::size_t off_of(const parametric::Library& library) {
+  return static_cast<std::size_t>(std::ranges::find(library.keytimes, "swing_off") -
+                                  library.keytimes.begin());
+}
+
+void match_signs(PoseVector& pose, const PoseVector& to) {
+  for (int j = 0; j < pose.size() / kPoseValues; ++j) {
+    if (rotation_of(pose, j).dot(rotation_of(to, j)) < 0) rotation_of(pose, j) *= -1;
+  }
+}
+
+// Where the blend is set so that its stance foot, when flat, is on the print. (Captures tell a
+// strike while the foot still moves, and the footprint of that moment lies behind.)
+Transform stance_frame(const Walker& walker, const GroundedPrint& print, const BodyStep& step) {
+  BodyStep plain{.motion = step.motion};
+  plain.stand = walker.stand;
+  auto scratch = step.motion.make_scratch();
+  PoseVector pose;
+  const std::vector<double>& times = step.motion.keytimes();
+  const double off = times[times.size() - 2];
+  plain.pose(off + kFlatPart * (times.back() - off), pose, scratch);
+  const Leg& leg = walker.leg(print.side);
+  const Transform foot = walker.joint_to_world(pose, leg.foot);
+  const Vec3 forward = foot.orientation * (leg.sole.sole * Vec3::UnitZ());
+  const Transform flat{foot * leg.sole.heel,
+                       axis_rotation(Axis::y, std::atan2(forward.x(), forward.z()))};
+  return Transform{print.heel, axis_rotation(Axis::y, print.heading)} * flat.inverse();
+}
+
+}  // namespace
+
+Transform flat_foot(const Leg& leg, const GroundedPrint& print) {
+  Mat3 axes;
+  axes << print.up.cross(print.forward), print.up, print.forward;
+  const Quat orientation = Quat(axes) * leg.sole.sole.conjugate();
+  return {print.heel - orientation * leg.sole.heel, orientation};
+}
+
+PoseVector standing_on(const Walker& walker, const GroundedPrint& one, const GroundedPrint& two) {
+  const Vec3 a = flat_foot(walker.leg(one.side), one).position;
+  const Vec3 b = flat_foot(walker.leg(two.side), two).position;
+  const double heading = one.heading + 0.5 * wrapped(two.heading - one.heading);
+  Vec3 middle = 0.5 * (a + b);
+  middle.y() = 0.5 * (one.heel.y() + two.heel.y());
+  const Transform place{middle, axis_rotation(Axis::y, heading)};
+  PoseVector pose = walker.stand;
+  const Transform root = place * joint_of(pose, 0);
+  position_of(pose, 0) = root.position;
+  rotation_of(pose, 0) = root.orientation.coeffs();
+  return pose;
+}
+
+void BodyStep::pose(double time, PoseVector& pose,
+                    parametric::BlendedMotion::Scratch& scratch) const {
+  double inside = (time - start) / scale, part = 1;
+  const double length = motion.duration();
+  if (kind == Kind::first) {
+    const double moves = 2 * (length - rest);
+    inside = rest + (length - rest) * speed_up((time - start - lead) / scale / moves);
+    part = smooth((time - start) / (lead + 0.9 * moves * scale));
+  } else if (kind == Kind::last) {
+    const double moves = 2 * rest;
+    inside = rest * (1 - speed_up(1 - inside / moves));
+    const double from = start + 0.2 * moves * scale;
+    part = 1 - smooth((time - from) / (finish - from));
+  } else if (kind == Kind::only) {
+    inside = rest;
+  }
+  std::array<PoseBlock, 16> blocks_here;
+  std::vector<PoseBlock> many;
+  std::span<PoseBlock> blocks(blocks_here);
+  if (scratch.reference.size() > blocks.size()) {
+    many.resize(scratch.reference.size());
+    blocks = many;
+  }
+  blocks = blocks.first(scratch.reference.size());
+  motion.pose(inside, blocks, scratch);
+  const auto joints = static_cast<int>(stand.size() / kPoseValues);
+  pose.resize(stand.size());
+  for (int j = 0; j < joints; ++j) {
+    const PoseBlock& block = blocks[at(j / PoseBlock::kLanes)];
+    const int lane = j % PoseBlock::kLanes;
+    double* values = pose.data() + kPoseValues * j;
+    for (int c = 0; c < 3; ++c) values[c] = block.position[c][lane];
+    for (int c = 0; c < 4; ++c) values[3 + c] = block.rotation[c][lane];
+  }
+  position_of(pose, 0) = stance_to_world * Vec3(position_of(pose, 0));
+  Quat turn;
+  turn.coeffs() = rotation_of(pose, 0);
+  rotation_of(pose, 0) = (stance_to_world.orientation * turn).coeffs();
+  if (kind == Kind::only) {
+    const double u = smooth((time - start) / (finish - start));
+    const double lifted = 4 * kLifted * u * (1 - u);
+    pose = lifted * pose + (1 - lifted) * ((1 - u) * stand + u * stand_after);
+  } else if (part < 1) {
+    pose = part * pose + (1 - part) * stand;
+  }
+}
+
+Gap BodyMotion::gap_between(const BodyStep& before, const BodyStep& after, double rate) {
+  const double spacing =
+      std::clamp(1 / rate, kShortest,
+                 0.1 * std::min(before.strike - before.start, after.strike - after.start));
+  const EndState a = end_state(before, before.strike, -1, spacing);
+  const EndState b = end_state(after, after.start, 1, spacing);
+  Gap gap;
+  gap.sign = PoseVector::Ones(a.value.size());
+  for (int j = 0; j < a.value.size() / kPoseValues; ++j) {
+    if (rotation_of(a.value, j).dot(rotation_of(b.value, j)) < 0) {
+      rotation_of(gap.sign, j).setConstant(-1);
+    }
+  }
+  gap.value = gap.sign.cwiseProduct(b.value) - a.value;
+  gap.velocity = gap.sign.cwiseProduct(b.velocity) - a.velocity;
+  gap.before = 0.5 * (before.strike - before.start);
+  gap.after = 0.5 * (after.strike - after.start);
+  return gap;
+}
+
+void BodyMotion::pose(std::size_t step, double time, PoseVector& pose,
+                      parametric::BlendedMotion::Scratch& scratch) const {
+  steps_[step].pose(time, pose, scratch);
+  if (step > 0) {
+    const Gap& gap = gaps_[step - 1];
+    const double since = time - steps_[step].start, narrow = std::min(gap.after, kVelocityWidth);
+    const Fading wide = fading(since / gap.after);
+    if (wide.value != 0) {
+      pose -= 0.5 * gap.sign.cwiseProduct(wide.value * gap.value +
+                                          narrow * fading(since / narrow).slope * gap.velocity);
+    }
+  }
+  if (step < gaps_.size()) {
+    const Gap& gap = gaps_[step];
+    const double left = steps_[step].strike - time, narrow = std::min(gap.before, kVelocityWidth);
+    const Fading wide = fading(left / gap.before);
+    if (wide.value != 0) {
+      pose += 0.5 * (wide.value * gap.value - narrow * fading(left / narrow).slope * gap.velocity);
+    }
+  }
+}
+
+Status BodyMotion::set_times(const PlannedWalk& plan, double off, double speed,
+                             BodyStep& step) const {
+  using enum BodyStep::Kind;
+  step.start = steps_.empty() ? 0 : steps_.back().strike;
+  const double length = step.motion.duration();
+  double moving = length, lead = 0, tail = 0;  // seconds at the blend's pace
+  if (step.kind == first) moving = 2 * (length - step.rest);
+  if (step.kind == last) moving = 2 * step.rest;
+  if (step.kind == first || step.kind == only) lead = kLead;
+  if (step.kind == last || step.kind == only) tail = kTail;
+  step.scale = 1 / speed;
+  const auto& time = plan.prints[at(step.stance) + 1].time;
+  if (time) {
+    const double wanted = *time - step.start;
+    if (!(wanted >= kShortestStep && wanted <= kLongestStep)) {
+      return Error("walk-time",
+                   fmt::format("print {}: the step would last {} s, {} to {} s are possible",
+                               step.stance + 2, readable(wanted, 3), kShortestStep, kLongestStep),
+                   "times are of the strikes, in seconds from the first frame");
+    }
+    step.scale = wanted / (lead + moving);
+  }
+  step.lead = lead * step.scale;
+  step.strike = step.start + (lead + moving) * step.scale;
+  step.finish = step.strike + tail * step.scale;
+  if (lead > 0) {
+    step.off = step.start + step.lead + 0.05 * moving * step.scale;
+  } else if (step.kind == last) {
+    // When the blend, which slows down, comes to its off: by bisection.
+    double low = 0, high = 1;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (low + high);
+      (step.rest * (1 - speed_up(1 - middle)) < off ? low : high) = middle;
+    }
+    step.off = step.start + high * moving * step.scale;
+  } else {
+    step.off = step.start + off * step.scale;
+  }
+  return {};
+}
+
+Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker& walker,
+                            const PlannedWalk& plan, std::size_t index,
+                            const WalkOptions& options) {
+  const PlannedStep& planned = plan.steps[index];
+  const std::size_t stance = at(planned.stance);
+  const GroundedPrint& print = plan.grounded[stance];
+  const parametric::Synthesiser& maker = libraries[at(planned.library)].steps(other(print.side));
+  auto motion = maker.motion(planned.weights);
+  if (!motion) return motion.error();
+  BodyStep step{.motion = *std::move(motion)};
+  step.start = steps_.empty() ? 0 : steps_.back().strike;
+  const double off = walker.ball_off * step.motion.keytimes()[off_of(maker.library())];
+  step.rest = off + kBeside * (step.motion.duration() - off);
+  step.stand = walker.stand;
+  step.stance = planned.stance;
+  const bool is_first = index == 0, is_last = index + 1 == plan.steps.size();
+  if (is_first) step.stand = standing_on(walker, plan.grounded[stance - 1], print);
+  if (is_last && !is_first) step.stand = standing_on(walker, print, plan.grounded[stance + 1]);
+  if (is_last && is_first) step.stand_after = standing_on(walker, print, plan.grounded[stance + 1]);
+  step.kind = is_first && is_last ? BodyStep::Kind::only
+              : is_first          ? BodyStep::Kind::first
+              : is_last           ? BodyStep::Kind::last
+                                  : BodyStep::Kind::middle;
+  if (Status status = set_times(plan, off, options.speed, step); !status) return status;
+  step.stance_to_world = stance_frame(walker, print, step);
+  if (step.kind != BodyStep::Kind::middle) {
+    PoseVector sample;
+    auto scratch = step.motion.make_scratch();
+    BodyStep plain{.motion = step.motion};
+    plain.stance_to_world = step.stance_to_world;
+    plain.stand = step.stand;
+    plain.pose(step.rest, sample, scratch);
+    match_signs(step.stand, sample);
+    if (step.stand_after.size() > 0) match_signs(step.stand_after, sample);
+  }
+  steps_.push_back(std::move(step));
+  return {};
+}
+
+Result<BodyMotion> BodyMotion::create(std::span<const StepLibrary> libraries, const Walker& walker,
+                                      const PlannedWalk& plan, const WalkOptions& options) {
+  BodyMotion body;
+  body.steps_.reserve(plan.steps.size());
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    if (Status status = body.add_step(libraries, walker, plan, i, options); !status) {
+      return status.error();
+    }
+  }
+  for (std::size_t i = 0; i + 1 < body.steps_.size(); ++i) {
+    body.gaps_.push_back(
+        body.gap_between(body.steps_[i], body.steps_[i + 1], libraries[0].library().rate));
+  }
+  return body;
+}
+
+}  // namespace krok::gait

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "gait/plan_steps_internal.h"
+
+// The motion of the whole body over all steps, joined, before the feet are set on their prints.
+// Used by walk().
+
+namespace krok::gait {
+
+// A step's blend in the world and in the walk's time. The first step begins standing: it starts
+// with the swing foot beside the stance foot, slowly, out of the standing pose; the last ends so. A
+// walk of one step goes from standing to standing.
+struct BodyStep {
+  enum class Kind : unsigned char { middle, first, last, only };
+
+  parametric::BlendedMotion motion;
+  Kind kind = Kind::middle;
+  int stance = 0;  // print
+  Transform stance_to_world;
+  double start = 0, off = 0, strike = 0;  // seconds: of the step, the swing foot's off and strike
+  double finish = 0;                      // seconds, strike but for the last step
+  double scale = 1;                       // seconds of the walk for a second of the blend
+  double rest = 0;         // seconds of the blend where it rests beside the stance foot
+  double lead = 0;         // seconds from the start to where the blend begins to move
+  PoseVector stand;        // in the world, before the first step or after the last
+  PoseVector stand_after;  // after an only step
+
+  // Before joining, clamped to the step.
+  void pose(double time, PoseVector& pose, parametric::BlendedMotion::Scratch& scratch) const;
+};
+
+// The gap between two steps and its derivative, after less before, in the signs that the
+// quaternions have before.
+struct Gap {
+  PoseVector value, velocity;
+  PoseVector sign;               // of quaternions after, by value
+  double before = 0, after = 0;  // seconds that the correction takes on either side
+};
+
+class BodyMotion {
+ public:
+  static Result<BodyMotion> create(std::span<const StepLibrary> libraries, const Walker& walker,
+                                   const PlannedWalk& plan, const WalkOptions& options);
+
+  const std::vector<BodyStep>& steps() const { return steps_; }
+  // The pose in a step at a time within it.
+  void pose(std::size_t step, double time, PoseVector& pose,
+            parametric::BlendedMotion::Scratch& scratch) const;
+
+ private:
+  BodyMotion() = default;
+  Status add_step(std::span<const StepLibrary> libraries, const Walker& walker,
+                  const PlannedWalk& plan, std::size_t index, const WalkOptions& options);
+  Status set_times(const PlannedWalk& plan, double off, double speed, BodyStep& step) const;
+  static Gap gap_between(const BodyStep& before, const BodyStep& after, double rate);
+
+  std::vector<BodyStep> steps_;
+  std::vector<Gap> gaps_;  // between step i and i + 1
+};
+
+// The standing pose on two prints, in the world.
+PoseVector standing_on(const Walker& walker, const GroundedPrint& one, const GroundedPrint& two);
+
+// The foot's transform when flat on a print.
+Transform flat_foot(const Leg& leg, const GroundedPrint& print);
+
+}  // namespace krok::gait

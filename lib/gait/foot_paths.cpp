@@ -1,0 +1,167 @@
+#include "gait/foot_paths_internal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "gait/smooth_internal.h"
+#include "math/quaternion.h"
+
+namespace krok::gait {
+
+namespace {
+
+constexpr double kTipUp = 0.25;  // of the swing, after which the tip of the toes is off the ground
+constexpr double kMatching = 0.16;  // seconds
+constexpr double kRamp = 0.5;       // of the time from strike to flat, and from flat to off
+
+// The bump u^a (1 - u)^b, scaled to a peak of 1.
+double bump(double u, int a, int b) {
+  const double peak = static_cast<double>(a) / (a + b);
+  return std::pow(u / peak, a) * std::pow((1 - u) / (1 - peak), b);
+}
+
+}  // namespace
+
+FootPose foot_of(const Leg& leg, std::span<const Transform> joint_to_world) {
+  FootPose foot;
+  foot.foot = joint_to_world[at(leg.foot)];
+  foot.toes = leg.toes >= 0 ? joint_to_world[at(leg.toes)].orientation : foot.foot.orientation;
+  return foot;
+}
+
+std::array<Vec3, 3> sole_points(const Leg& leg, const FootPose& foot) {
+  // Ball and tip are the toes'.
+  const Quat front =
+      leg.toes >= 0 ? foot.toes * leg.flat_toes : foot.foot.orientation * leg.sole.sole;
+  const Vec3 ball = foot.foot * leg.sole.pivot +
+                    front * (leg.sole.sole.conjugate() * (leg.sole.ball - leg.sole.pivot));
+  return {foot.foot * leg.sole.heel, ball, ball + front * Vec3(0, 0, leg.sole.tip)};
+}
+
+FootPose in_signs_of(const Leg& leg, const Quat& reference, FootPose foot) {
+  foot.foot.orientation = in_hemisphere_of(reference, foot.foot.orientation);
+  const Quat flat = foot.foot.orientation * leg.sole.sole * leg.flat_toes.conjugate();
+  foot.toes = in_hemisphere_of(flat, foot.toes);
+  return foot;
+}
+
+Stance::Stance(const Leg& leg, const GroundedPrint& print, const FootPose& middle)
+    : leg_(&leg), flat_(flat_foot(leg, print)), middle_(middle.foot.orientation) {
+  axes_ = flat_.orientation * leg.sole.sole;
+  heel_ = flat_ * leg.sole.heel;
+  pivot_ = flat_ * leg.sole.pivot;
+}
+
+Vec3 Stance::deviation(const FootPose& blend) const {
+  return axes_.conjugate() * rotation_vector(blend.foot.orientation * middle_.conjugate());
+}
+
+FootPose Stance::at(double time, const FootPose& blend) const {
+  double part = 0;
+  if (time < flat_from) {
+    part = smooth((flat_from - time) / (kRamp * (flat_from - strike)));
+  } else if (time > flat_to && off > flat_to) {
+    part = smooth((time - flat_to) / (kRamp * (off - flat_to)));
+  }
+  FootPose foot{flat_, axes_ * leg_->flat_toes.conjugate()};
+  if (part == 0) return foot;
+  const Vec3 turn = part * deviation(blend);
+  const Quat rotation = axes_ * from_rotation_vector(turn) * axes_.conjugate();
+  const bool on_ball = turn.x() > 0;
+  foot.foot.orientation = rotation * flat_.orientation;
+  foot.foot.position = on_ball ? pivot_ - foot.foot.orientation * leg_->sole.pivot
+                               : heel_ - foot.foot.orientation * leg_->sole.heel;
+  if (!on_ball) foot.toes = rotation * foot.toes;
+  return foot;
+}
+
+Swing::Offset Swing::offset_of(const FootPose& blend, const FootPose& wanted) {
+  Offset offset;
+  offset.head<3>() = wanted.foot.position - blend.foot.position;
+  offset.segment<4>(3) =
+      in_hemisphere_of(blend.foot.orientation, wanted.foot.orientation).coeffs() -
+      blend.foot.orientation.coeffs();
+  const Quat in_blend = blend.foot.orientation.conjugate() * blend.toes;
+  const Quat in_wanted = wanted.foot.orientation.conjugate() * wanted.toes;
+  offset.tail<4>() = in_hemisphere_of(in_blend, in_wanted).coeffs() - in_blend.coeffs();
+  return offset;
+}
+
+void Swing::set_ends(const Ends& off, const Ends& strike) {
+  const auto derive = [&](const Ends& ends, double inwards, std::array<Offset, 3>& to) {
+    std::array<Offset, 3> values;
+    for (std::size_t i = 0; i < 3; ++i) values[i] = offset_of(ends.blend[i], ends.wanted[i]);
+    const double h = ends.spacing;
+    to[0] = values[0];
+    to[1] = inwards * (3 * values[0] - 4 * values[1] + values[2]) / (2 * h);
+    to[2] = (values[0] - 2 * values[1] + values[2]) / (h * h);
+  };
+  derive(off, 1, start_);
+  derive(strike, -1, end_);
+}
+
+double Swing::lift(double part) const {
+  return lift_ == 0 || part <= 0 || part >= 1 ? 0 : lift_ * bump(part, rise_, fall_);
+}
+
+FootPose Swing::at(double time, const FootPose& blend) const {
+  const double length = strike_ - off_, since = time - off_, left = strike_ - time;
+  // Velocities are matched within a short time: blends come to their prints later than at the
+  // strike, and leave them earlier than at the off.
+  const double width = std::min(kMatching, 0.5 * length);
+  const Fading start = fading(since / width), end = fading(left / width);
+  const Offset offset =
+      fading(since / length).value * start_[0] + fading(left / length).value * end_[0] +
+      width * (start.slope * start_[1] - end.slope * end_[1]) +
+      width * width * (start.acceleration * start_[2] + end.acceleration * end_[2]);
+  FootPose foot;
+  foot.foot.position = blend.foot.position + offset.head<3>();
+  foot.foot.position.y() += lift(since / length);
+  foot.foot.orientation.coeffs() =
+      (blend.foot.orientation.coeffs() + offset.segment<4>(3)).normalized();
+  Quat toes = blend.foot.orientation.conjugate() * blend.toes;
+  toes.coeffs() = (toes.coeffs() + offset.tail<4>()).normalized();
+  foot.toes = foot.foot.orientation * toes;
+  return foot;
+}
+
+void Swing::clear(const Terrain& ground, std::span<const double> times,
+                  std::span<const FootPose> blend, double clearance, double from) {
+  struct Lack {
+    double part, height;
+  };
+  std::vector<Lack> lacks;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double u = (times[i] - off_) / (strike_ - off_);
+    if (!(u > 0 && u < 1)) continue;
+    const double wanted = clearance * smooth(u / 0.25) * smooth((1 - u) / 0.25);
+    // The tip of the toes rolls over the ground as the foot leaves.
+    const auto points = sole_points(*leg_, at(times[i], blend[i]));
+    const std::size_t count = u < kTipUp ? 2 : 3;
+    for (const Vec3& point : std::span(points).first(count)) {
+      const auto found = ground_near(ground, point.x(), point.z(), from, leg_->length);
+      if (!found) continue;
+      const double over = point.y() - found->height;
+      if (over < wanted) lacks.push_back({u, wanted - over});
+    }
+  }
+  constexpr int kShapes[][2] = {{3, 3}, {3, 5}, {5, 3}, {3, 9}, {9, 3}};
+  constexpr double kEdge = 0.1;  // of the bump: nearer to the ends it cannot raise the foot
+  double best = 0;
+  for (const auto& shape : kShapes) {
+    double height = 0;
+    for (const Lack& lack : lacks) {
+      const double value = bump(lack.part, shape[0], shape[1]);
+      if (value > kEdge) height = std::max(height, lack.height / value);
+    }
+    if (best == 0 || height < best) {
+      best = height;
+      rise_ = shape[0];
+      fall_ = shape[1];
+    }
+  }
+  lift_ = std::min(best, 0.6 * leg_->length);
+}
+
+}  // namespace krok::gait

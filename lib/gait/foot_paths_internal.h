@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "gait/body_motion_internal.h"
+
+// Where the feet go: fixed on their prints, rolling over heel and ball as in the blend, and over
+// the ground in between. Used by walk().
+
+namespace krok::gait {
+
+// A foot in the world.
+struct FootPose {
+  Transform foot;
+  Quat toes = Quat::Identity();  // of the toes' joint
+};
+
+// The frames of a step.
+struct SampledStep {
+  int first = 0;                                // frame of the walk
+  std::vector<PoseVector> poses;                // joined, [frames]
+  std::vector<std::array<FootPose, 2>> blend;   // the feet of these poses
+  std::vector<std::array<FootPose, 2>> target;  // where they shall be
+  std::vector<double> lowering;                 // metres that the pelvis needs, [frames]
+};
+
+// A foot on a print.
+class Stance {
+ public:
+  Stance() = default;
+  // `middle`: the foot of the blend when it is flat.
+  Stance(const Leg& leg, const GroundedPrint& print, const FootPose& middle);
+
+  // Radians that the foot of the blend is turned about its ball, toes down, > 0, or its heel, < 0.
+  double pitch(const FootPose& blend) const { return deviation(blend).x(); }
+
+  double strike = 0, flat_from = 0, flat_to = 0, off = 0;  // seconds
+  FootPose at(double time, const FootPose& blend) const;
+
+ private:
+  Vec3 deviation(const FootPose& blend) const;  // rotation vector in the sole's axes
+
+  const Leg* leg_ = nullptr;
+  Transform flat_;  // foot_to_world
+  Quat axes_;       // sole_to_world
+  Quat middle_;
+  Vec3 heel_ = Vec3::Zero(), pivot_ = Vec3::Zero();  // world
+};
+
+// The way of a foot from print to print: what is added to the blend's.
+class Swing {
+ public:
+  Swing(const Leg& leg, double off, double strike) : leg_(&leg), off_(off), strike_(strike) {}
+
+  // What the foot on a print is off the blend's, at the off and 1 and 2 `spacing` seconds before,
+  // or at the strike and after.
+  struct Ends {
+    std::array<FootPose, 3> blend, wanted;
+    double spacing = 0;
+  };
+  void set_ends(const Ends& off, const Ends& strike);
+
+  // Raises the foot over the ground: `blend` are its poses at `times` of the swing. `from` is the
+  // height of the higher print.
+  void clear(const Terrain& ground, std::span<const double> times, std::span<const FootPose> blend,
+             double clearance, double from);
+
+  FootPose at(double time, const FootPose& blend) const;
+
+ private:
+  using Offset = Eigen::Matrix<double, 11, 1>;  // position, rotation, toes' rotation in the foot
+  static Offset offset_of(const FootPose& blend, const FootPose& wanted);
+  double lift(double part) const;
+
+  const Leg* leg_;
+  double off_, strike_;
+  std::array<Offset, 3> start_ = {}, end_ = {};  // value and two derivatives by time
+  double lift_ = 0;                              // metres
+  int rise_ = 3, fall_ = 3;                      // exponents of the bump
+};
+
+// The points of a sole that touch the ground: heel, ball, tip; world.
+std::array<Vec3, 3> sole_points(const Leg& leg, const FootPose& foot);
+
+// The same foot with its quaternions in the hemisphere of `reference`, so that differences of them
+// are continuous.
+FootPose in_signs_of(const Leg& leg, const Quat& reference, FootPose foot);
+
+FootPose foot_of(const Leg& leg, std::span<const Transform> joint_to_world);
+
+}  // namespace krok::gait

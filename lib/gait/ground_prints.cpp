@@ -1,0 +1,91 @@
+#include "gait/ground_prints_internal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+
+namespace krok::gait {
+
+namespace {
+
+constexpr double kStep = 0.6;  // of the leg: what is higher is overhead, or a wall
+constexpr double kSteepest = 42 * kRadiansPerDegree;
+constexpr double kMaxRoll = 32 * kRadiansPerDegree;
+constexpr double kShortSole = 0.1;  // metres, where the ball is not known
+constexpr int kRounds = 8;          // of the search for the ball
+
+Vec3 ahead(double heading) {
+  return {std::sin(heading), 0, std::cos(heading)};
+}
+
+Error no_ground(int number, double x, double z) {
+  return {"walk-ground",
+          fmt::format("print {}: there is no ground at x {} m, z {} m", number + 1, readable(x, 4),
+                      readable(z, 4)),
+          "move the print, or give a larger ground"};
+}
+
+}  // namespace
+
+std::optional<GroundPoint> ground_near(const Terrain& ground, double x, double z, double from,
+                                       double leg_length) {
+  return ground.at(x, z, from + kStep * leg_length);
+}
+
+Result<GroundedPrint> set_on_ground(const Print& print, int number, const Walker& walker,
+                                    const Terrain& ground, double from) {
+  const Leg& leg = walker.leg(print.side);
+  GroundedPrint result;
+  result.side = print.side;
+  result.heading = print.heading;
+  const auto at_heel = ground_near(ground, print.x, print.z, from, leg.length);
+  if (!at_heel && !print.height) return no_ground(number, print.x, print.z);
+  const double height = print.height ? *print.height : at_heel->height;
+  result.heel = {print.x, height, print.z};
+  const Vec3 way = ahead(print.heading), left = {way.z(), 0, -way.x()};
+  // What is given a height of its own lies level where the ground is elsewhere.
+  const double raised = print.height && at_heel ? height - at_heel->height : 0;
+  const auto height_at = [&](const Vec3& point) -> std::optional<double> {
+    if (print.height && (!at_heel || std::abs(raised) > 0.01)) return height;
+    const auto found = ground_near(ground, point.x(), point.z(), height, 0.5 * leg.length);
+    if (!found) return {};
+    return found->height + raised;
+  };
+  const double length = leg.sole.length > 0 ? leg.sole.length : kShortSole;
+  double level = length;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto ball = height_at(result.heel + level * way);
+    if (!ball)
+      return no_ground(number, result.heel.x() + level * way.x(),
+                       result.heel.z() + level * way.z());
+    const double slope = std::atan2(*ball - height, level);
+    if (std::abs(slope) > kSteepest) {
+      return Error("walk-too-steep",
+                   fmt::format("print {}: between heel and ball the ground {} by {} cm, too steep "
+                               "to stand on",
+                               number + 1, slope > 0 ? "rises" : "falls",
+                               readable(100 * std::abs(*ball - height), 3)),
+                   "move the print off the edge, or onto flatter ground");
+    }
+    result.forward = (level * way + Vec3(0, *ball - height, 0)).normalized();
+    level = length * std::hypot(result.forward.x(), result.forward.z());
+  }
+  double rise = 0;
+  int pairs = 0;
+  for (const double along : {0.0, level}) {
+    const Vec3 centre = result.heel + along * way;
+    const auto a = height_at(centre + 0.5 * walker.sole_width * left);
+    const auto b = height_at(centre - 0.5 * walker.sole_width * left);
+    if (!a || !b || std::abs(*a - *b) > walker.sole_width * std::tan(kMaxRoll)) continue;
+    rise += *a - *b;
+    ++pairs;
+  }
+  const double lateral = pairs > 0 ? rise / (pairs * walker.sole_width) : 0;
+  result.up = result.forward.cross(left + Vec3(0, lateral, 0)).normalized();
+  return result;
+}
+
+}  // namespace krok::gait

@@ -1,0 +1,320 @@
+#include "gait/plan_steps_internal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/numbers.h"
+#include "gait/reach_internal.h"
+
+namespace krok::gait {
+
+namespace {
+
+using parametric::Quantity;
+
+constexpr int kCorrections = 3;
+constexpr double kFarOutside = 0.45;  // of the leg: how far a step may be from the nearest example
+constexpr double kFarTurn = 60 * kRadiansPerDegree;
+constexpr int kBisections = 20;
+constexpr int kBlendTries = 6;
+
+// What is not asked for: the examples' own, those nearest in what is asked weighing most.
+double usual_value(const parametric::Library& library, std::span<const double> asked,
+                   std::span<const std::uint8_t> is_asked, const parametric::Bounds& bounds,
+                   std::size_t dimension) {
+  double sum = 0, weights = 0;
+  for (const parametric::Example& example : library.examples) {
+    double far = 0.01;
+    for (std::size_t d = 0; d < asked.size(); ++d) {
+      if (!is_asked[d]) continue;
+      const double range = std::max(bounds.upper[d] - bounds.lower[d], 1e-9);
+      far += std::pow((example.parameters[d] - asked[d]) / range, 2);
+    }
+    sum += example.parameters[dimension] / (far * far);
+    weights += 1 / (far * far);
+  }
+  return sum / weights;
+}
+
+std::vector<double> parameters_for(const parametric::Library& library,
+                                   const parametric::Bounds& bounds, const StepShape& shape,
+                                   double duration) {
+  std::vector<double> asked(library.parameters.size(), 0);
+  std::vector<std::uint8_t> is_asked(asked.size(), 1);
+  for (std::size_t d = 0; d < asked.size(); ++d) {
+    switch (library.parameters[d].quantity) {
+      case Quantity::step_length:
+        asked[d] = shape.along;
+        break;
+      case Quantity::step_width:
+        asked[d] = shape.across;
+        break;
+      case Quantity::step_height:
+        asked[d] = shape.up;
+        break;
+      case Quantity::step_turn:
+        asked[d] = shape.turn;
+        break;
+      case Quantity::duration:
+        asked[d] = duration;
+        is_asked[d] = duration > 0 ? 1 : 0;
+        break;
+      case Quantity::joint:
+        is_asked[d] = 0;
+    }
+  }
+  for (std::size_t d = 0; d < asked.size(); ++d) {
+    if (!is_asked[d]) asked[d] = usual_value(library, asked, is_asked, bounds, d);
+  }
+  return asked;
+}
+
+// How far parameters are apart: metres of the foot's place, and radians of its heading.
+struct Apart {
+  double place = 0, turn = 0;
+};
+Apart apart(const parametric::Library& library, std::span<const double> a,
+            std::span<const double> b) {
+  Apart result;
+  for (std::size_t d = 0; d < a.size(); ++d) {
+    switch (library.parameters[d].quantity) {
+      case Quantity::step_length:
+      case Quantity::step_width:
+      case Quantity::step_height:
+        result.place = std::hypot(result.place, a[d] - b[d]);
+        break;
+      case Quantity::step_turn:
+        result.turn = std::abs(a[d] - b[d]);
+        break;
+      case Quantity::duration:
+      case Quantity::joint:
+        break;
+    }
+  }
+  return result;
+}
+
+class Planner {
+ public:
+  Planner(std::span<const StepLibrary> libraries, const Walker& walker, const Terrain& ground,
+          const WalkOptions& options)
+      : libraries_(libraries), walker_(walker), ground_(ground), options_(options) {}
+
+  Result<PlannedWalk> plan(std::span<const Print> prints);
+
+ private:
+  Status check_prints(std::span<const Print> prints) const;
+  Status add_print(std::size_t number, Print print);
+  Status try_print(std::size_t number, const Print& print, GroundedPrint& grounded,
+                   PlannedStep& step) const;
+  Status choose(const StepShape& shape, double duration, int number, PlannedStep& step) const;
+  Status adapt(std::size_t number, const Print& wanted, const Error& why);
+  Status make_weights(PlannedStep& step) const;
+
+  std::span<const StepLibrary> libraries_;
+  const Walker& walker_;
+  const Terrain& ground_;
+  const WalkOptions& options_;
+  int count_ = 0;  // of prints
+  PlannedWalk walk_;
+};
+
+Status Planner::check_prints(std::span<const Print> prints) const {
+  if (prints.size() < 3) {
+    return Error(
+        "walk-prints",
+        fmt::format("{} prints are no walk: the walker stands on the first two", prints.size()),
+        "give at least three prints");
+  }
+  for (std::size_t k = 0; k < prints.size(); ++k) {
+    const Print& print = prints[k];
+    const bool finite = std::isfinite(print.x) && std::isfinite(print.z) &&
+                        std::isfinite(print.heading) && std::isfinite(print.height.value_or(0)) &&
+                        std::isfinite(print.time.value_or(0));
+    const double far = std::max(std::abs(print.x), std::abs(print.z));
+    if (!finite || far > 1e6 || std::abs(print.heading) > 1e6) {
+      return Error("walk-prints",
+                   fmt::format("print {}: a value is no number, or out of range", k + 1));
+    }
+    if (k > 0 && print.side == prints[k - 1].side) {
+      return Error("walk-prints",
+                   fmt::format("print {}: a second {} foot in a row", k + 1, name_of(print.side)),
+                   "sides alternate");
+    }
+  }
+  return {};
+}
+
+Status Planner::choose(const StepShape& shape, double duration, int number,
+                       PlannedStep& step) const {
+  const FootSide swing = walk_.grounded[static_cast<std::size_t>(number - 1)].side == FootSide::left
+                             ? FootSide::right
+                             : FootSide::left;
+  double least = std::numeric_limits<double>::infinity();
+  Apart far;
+  for (std::size_t i = 0; i < libraries_.size(); ++i) {
+    const parametric::Synthesiser& steps = libraries_[i].steps(swing);
+    auto asked = parameters_for(steps.library(), steps.bounds(), shape, duration);
+    auto off = parametric::outside(steps.bounds(), asked);
+    if (off.distance >= least) continue;
+    least = off.distance;
+    far = apart(steps.library(), asked, off.nearest);
+    step.library = static_cast<int>(i);
+    step.asked = std::move(asked);
+    step.nearest = options_.extrapolate ? step.asked : std::move(off.nearest);
+  }
+  // The first and the last step are blended with standing: what they ask is not made by examples.
+  if (options_.extrapolate || number == 2 || number + 1 == count_) return {};
+  if (far.place <= kFarOutside * walker_.leg(swing).length && far.turn <= kFarTurn) return {};
+  return Error("walk-outside",
+               far.turn > kFarTurn
+                   ? fmt::format("print {}: the step turns by {}° more than the library's",
+                                 number + 1, readable(far.turn / kRadiansPerDegree, 3))
+                   : fmt::format("print {}: the step is {} m from the nearest that the library has",
+                                 number + 1, readable(far.place, 3)),
+               "add examples of such steps, or use --adapt");
+}
+
+Status Planner::try_print(std::size_t number, const Print& print, GroundedPrint& grounded,
+                          PlannedStep& step) const {
+  const GroundedPrint& stance = walk_.grounded[number - 1];
+  auto found = set_on_ground(print, static_cast<int>(number), walker_, ground_, stance.heel.y());
+  if (!found) return found.error();
+  grounded = *std::move(found);
+  const GroundedPrint& from = walk_.grounded[number - 2];
+  if (Status status =
+          check_reach(from, stance, grounded, static_cast<int>(number), walker_, ground_);
+      !status) {
+    return status;
+  }
+  const auto& before = walk_.prints[number - 1].time;
+  const double duration = print.time && before ? *print.time - *before : 0;
+  return choose(shape_of(stance, grounded), duration, static_cast<int>(number), step);
+}
+
+// The nearest print on the straight way from the foot's easiest place that can be stepped on.
+Status Planner::adapt(std::size_t number, const Print& wanted, const Error& why) {
+  const GroundedPrint& stance = walk_.grounded[number - 1];
+  const double side = wanted.side == FootSide::left ? 1 : -1;
+  Print easy = wanted;
+  const double across = side * 2.2 * walker_.sole_width;
+  const Vec3 ahead(std::sin(stance.heading), 0, std::cos(stance.heading));
+  const Vec3 to_wanted(wanted.x - stance.heel.x(), 0, wanted.z - stance.heel.z());
+  const double along =
+      std::clamp(to_wanted.dot(ahead), -0.3, 0.5) * walker_.leg(wanted.side).length;
+  easy.x = stance.heel.x() + along * ahead.x() + across * ahead.z();
+  easy.z = stance.heel.z() + along * ahead.z() - across * ahead.x();
+  easy.heading = stance.heading;
+  easy.height.reset();
+  const auto between = [&](double part) {
+    Print print = wanted;
+    print.x = easy.x + part * (wanted.x - easy.x);
+    print.z = easy.z + part * (wanted.z - easy.z);
+    const double turn = std::remainder(wanted.heading - easy.heading, 2 * kPi);
+    print.heading = easy.heading + part * turn;
+    if (part < 1) print.height.reset();
+    return print;
+  };
+  GroundedPrint grounded;
+  PlannedStep step;
+  if (!try_print(number, easy, grounded, step)) return why;
+  double low = 0, high = 1;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    (try_print(number, between(middle), grounded, step) ? low : high) = middle;
+  }
+  const Print moved = between(low);
+  if (Status status = try_print(number, moved, grounded, step); !status) return status;
+  step.stance = static_cast<int>(number) - 1;
+  walk_.prints.push_back(moved);
+  walk_.grounded.push_back(grounded);
+  walk_.steps.push_back(std::move(step));
+  walk_.moved.push_back(std::hypot(moved.x - wanted.x, moved.z - wanted.z));
+  walk_.why_moved.push_back(why.message);
+  return {};
+}
+
+Status Planner::add_print(std::size_t number, Print print) {
+  if (number < 2) {
+    const double from = number == 0 ? print.height.value_or(1e6) : walk_.grounded[0].heel.y();
+    auto grounded = set_on_ground(print, static_cast<int>(number), walker_, ground_, from);
+    if (!grounded) return grounded.error();
+    walk_.prints.push_back(print);
+    walk_.grounded.push_back(*std::move(grounded));
+    walk_.moved.push_back(0);
+    walk_.why_moved.emplace_back();
+    return {};
+  }
+  GroundedPrint grounded;
+  PlannedStep step;
+  const Status status = try_print(number, print, grounded, step);
+  if (!status) {
+    if (!options_.adapt) return status;
+    return adapt(number, print, status.error());
+  }
+  step.stance = static_cast<int>(number) - 1;
+  walk_.prints.push_back(print);
+  walk_.grounded.push_back(grounded);
+  walk_.steps.push_back(std::move(step));
+  walk_.moved.push_back(0);
+  walk_.why_moved.emplace_back();
+  return {};
+}
+
+// Where the weights would go too far, a step nearer to the middle of the examples.
+Status Planner::make_weights(PlannedStep& step) const {
+  const GroundedPrint& to = walk_.grounded[static_cast<std::size_t>(step.stance) + 1];
+  const parametric::Synthesiser& steps =
+      libraries_[static_cast<std::size_t>(step.library)].steps(to.side);
+  const parametric::SynthesisOptions how{options_.extrapolate, kCorrections};
+  std::vector<double> middle(step.nearest.size(), 0);
+  for (const parametric::Example& example : steps.library().examples) {
+    for (std::size_t d = 0; d < middle.size(); ++d) {
+      middle[d] += example.parameters[d] / static_cast<double>(steps.library().examples.size());
+    }
+  }
+  Status last;
+  for (int i = 0; i <= kBlendTries; ++i) {
+    const double part = static_cast<double>(i) / kBlendTries;
+    std::vector<double> point = step.nearest;
+    for (std::size_t d = 0; d < point.size(); ++d) point[d] += part * (middle[d] - point[d]);
+    auto made = steps.weights(point, how);
+    if (made) {
+      auto motion = steps.motion(made->weights);
+      if (motion) {
+        step.weights = std::move(made->weights);
+        step.made = std::move(made->parameters);
+        return {};
+      }
+      last = motion.error();
+    } else {
+      last = made.error();
+    }
+  }
+  return last;
+}
+
+Result<PlannedWalk> Planner::plan(std::span<const Print> prints) {
+  if (Status status = check_prints(prints); !status) return status.error();
+  count_ = static_cast<int>(prints.size());
+  for (std::size_t k = 0; k < prints.size(); ++k) {
+    if (Status status = add_print(k, prints[k]); !status) return status.error();
+  }
+  for (PlannedStep& step : walk_.steps) {
+    if (Status status = make_weights(step); !status) return status.error();
+  }
+  return std::move(walk_);
+}
+
+}  // namespace
+
+Result<PlannedWalk> plan_steps(std::span<const StepLibrary> libraries, const Walker& walker,
+                               std::span<const Print> prints, const Terrain& ground,
+                               const WalkOptions& options) {
+  return Planner(libraries, walker, ground, options).plan(prints);
+}
+
+}  // namespace krok::gait

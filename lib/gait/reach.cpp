@@ -1,0 +1,96 @@
+#include "gait/reach_internal.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/numbers.h"
+#include "motion/ground_frame.h"
+
+namespace krok::gait {
+
+namespace {
+
+// Of the leg's length (thigh and shank).
+constexpr double kLongest = 1.3;
+constexpr double kHighest = 0.55;
+constexpr double kWall = 0.6;
+constexpr double kCrossing = 0.25;  // behind or before the stance foot
+
+constexpr double kMaxTurnOut = 100 * kRadiansPerDegree, kMaxTurnIn = 60 * kRadiansPerDegree;
+constexpr int kSamples = 24;  // of the way, when looking for walls
+
+std::string metres(double value) {
+  return readable(value, 3) + " m";
+}
+
+bool overlap(const StepShape& shape, const Walker& walker, double length) {
+  const double sole = length > 0 ? 1.3 * length : 0.2;
+  return std::abs(shape.along) < sole && shape.across < 0.5 * walker.sole_width;
+}
+
+}  // namespace
+
+StepShape shape_of(const GroundedPrint& stance, const GroundedPrint& to) {
+  const double side = to.side == FootSide::left ? 1 : -1;
+  const Vec3 way = to.heel - stance.heel;
+  const Vec3 ahead(std::sin(stance.heading), 0, std::cos(stance.heading));
+  const Vec3 left(ahead.z(), 0, -ahead.x());
+  return {way.dot(ahead), side * way.dot(left), way.y(),
+          side * wrapped(to.heading - stance.heading)};
+}
+
+Status check_reach(const GroundedPrint& from, const GroundedPrint& stance, const GroundedPrint& to,
+                   int number, const Walker& walker, const Terrain& ground) {
+  const double leg = walker.leg(to.side).length;
+  const StepShape shape = shape_of(stance, to);
+  const auto refuse = [&](const char* code, const std::string& what, const std::string& hint) {
+    return Error(code, fmt::format("print {}: {}", number + 1, what), hint);
+  };
+  const double far = std::hypot(shape.along, shape.across);
+  if (far > kLongest * leg) {
+    return refuse("walk-too-long",
+                  fmt::format("the step is {} long, this walker can do {}", metres(far),
+                              metres(kLongest * leg)),
+                  "put prints between, or use --adapt");
+  }
+  if (std::abs(shape.up) > kHighest * leg) {
+    return refuse(
+        "walk-too-high",
+        fmt::format("the step goes {} by {}, this walker can do {}", shape.up > 0 ? "up" : "down",
+                    metres(std::abs(shape.up)), metres(kHighest * leg)),
+        "put prints between, or use --adapt");
+  }
+  if (shape.turn > kMaxTurnOut || shape.turn < -kMaxTurnIn) {
+    return refuse("walk-heading",
+                  fmt::format("the foot turns by {}° against the other one",
+                              readable(std::abs(shape.turn) / kRadiansPerDegree, 3)),
+                  "turn in several steps, or use --adapt");
+  }
+  if (overlap(shape, walker, walker.leg(to.side).sole.length) || shape.across < -kCrossing * leg) {
+    return refuse("walk-crossing",
+                  shape.across < -kCrossing * leg
+                      ? fmt::format("the legs would cross by {}", metres(-shape.across))
+                      : "the foot would step on the other one",
+                  "move the print to its own side, or use --adapt");
+  }
+  const double top = std::max({from.heel.y(), stance.heel.y(), to.heel.y()});
+  for (const GroundedPrint* start : {&from, &stance}) {
+    for (int i = 1; i < kSamples; ++i) {
+      const Vec3 point = start->heel + (to.heel - start->heel) * (double(i) / kSamples);
+      // From high above the walker: a wall reaches over the head as well as a low one.
+      const auto found = ground.at(point.x(), point.z(), top + 2 * leg);
+      if (!found || found->height < top + kWall * leg) continue;
+      const auto below = ground_near(ground, point.x(), point.z(), top, leg);
+      if (below && below->height > top - 2 * leg) continue;  // something overhead, ground below
+      return refuse(
+          "walk-wall",
+          fmt::format("a wall {} high is in the way at x {} m, z {} m", metres(found->height - top),
+                      readable(point.x(), 3), readable(point.z(), 3)),
+          "lead the way around it");
+    }
+  }
+  return {};
+}
+
+}  // namespace krok::gait

@@ -1,0 +1,213 @@
+#include "gait/walker_internal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/index.h"
+#include "math/quaternion.h"
+#include "pose/sample_pose.h"
+
+namespace krok::gait {
+
+namespace {
+
+constexpr int kMeanSamples = 32;      // of a step, for means over it
+constexpr double kRaised = 0.004;     // metres
+constexpr double kEarliestOff = 0.3;  // of the time to the off
+constexpr double kToeShare = 0.35;    // of the sole, from the ball to the tip, where no end site is
+
+// A pose of the reference motion of a library: the mean of its examples.
+PoseVector mean_pose(const parametric::PackedExamples& packed, double generic) {
+  std::vector<PoseBlock> blocks(at(packed.reference.blocks_per_pose()));
+  std::vector<Transform> local(at(packed.reference.joints));
+  sample_pose(packed.reference, generic, blocks);
+  unpack_pose(blocks, local);
+  PoseVector pose(kPoseValues * packed.reference.joints);
+  for (int j = 0; j < packed.reference.joints; ++j) {
+    position_of(pose, j) = local[at(j)].position;
+    rotation_of(pose, j) = local[at(j)].orientation.coeffs();
+  }
+  return pose;
+}
+
+double middle_of_swing(const parametric::PackedExamples& packed,
+                       const parametric::Library& library) {
+  const auto off = std::ranges::find(library.keytimes, "swing_off") - library.keytimes.begin();
+  return 0.6 * packed.generic[static_cast<std::size_t>(off)] + 0.4 * packed.generic.back();
+}
+
+FootGeometry geometry_of(const parametric::FootShape& shape, const Vec3& up) {
+  FootGeometry foot;
+  foot.heel = shape.heel;
+  foot.ball = ball_of(shape);
+  foot.length = shape.length;
+  const Vec3 left = up.cross(shape.forward).normalized();
+  Mat3 axes;
+  axes << left, shape.forward.cross(left), shape.forward;
+  foot.sole = Quat(axes);
+  return foot;
+}
+
+// The distance from the ball to the tip of the toes: the farthest joint below the foot, along the
+// sole.
+double toe_length(const Skeleton& skeleton, int foot, const FootGeometry& sole) {
+  double farthest = 0;
+  const Transform to_foot = skeleton.reference[at(foot)].inverse();
+  for (int j = foot + 1; j < skeleton.joint_count(); ++j) {
+    int above = j;
+    while (above > foot) above = skeleton.parents[at(above)];
+    if (above != foot) continue;
+    const Vec3 point = to_foot * skeleton.reference[at(j)].position;
+    farthest = std::max(farthest, (sole.sole.conjugate() * (point - sole.ball)).z());
+  }
+  return farthest > 0.1 * sole.length ? farthest : kToeShare * sole.length;
+}
+
+// What a leg does in the middle of the stance of the mean step: the foot is flat.
+void learn_flat_foot(const StepLibrary& steps, FootSide side, Walker& walker) {
+  const parametric::Synthesiser& stance = steps.steps(other(side));
+  const PoseVector pose =
+      mean_pose(stance.packed(), middle_of_swing(stance.packed(), stance.library()));
+  std::vector<Transform> world(walker.skeleton->names.size());
+  walker.to_world(pose, world);
+  Leg& leg = walker.legs[index_of(side)];
+  const Transform& foot = world[at(leg.foot)];
+  const Vec3 up = foot.orientation.conjugate() * Vec3::UnitY();
+  leg.sole = geometry_of(steps.library().foot(side), up);
+  leg.sole.pivot = leg.sole.ball;
+  leg.sole.tip = toe_length(*walker.skeleton, leg.foot, leg.sole);
+  if (leg.toes >= 0) {
+    leg.sole.pivot = foot.inverse() * world[at(leg.toes)].position;
+    leg.flat_toes =
+        world[at(leg.toes)].orientation.conjugate() * (foot.orientation * leg.sole.sole);
+  }
+}
+
+void learn_knee(const StepLibrary& steps, FootSide side, Walker& walker) {
+  Leg& leg = walker.legs[index_of(side)];
+  std::vector<Transform> world(walker.skeleton->names.size());
+  Vec3 sum = Vec3::Zero();
+  for (const FootSide swing : {FootSide::left, FootSide::right}) {
+    const parametric::PackedExamples& packed = steps.steps(swing).packed();
+    for (int i = 0; i <= kMeanSamples; ++i) {
+      walker.to_world(mean_pose(packed, packed.generic.back() * i / kMeanSamples), world);
+      const Transform& hip = world[at(leg.upper)];
+      const Vec3& knee = world[at(leg.lower)].position;
+      const Vec3 thigh = knee - hip.position, shank = world[at(leg.foot)].position - knee;
+      leg.length = thigh.norm() + shank.norm();
+      sum += hip.orientation.conjugate() * thigh.cross(shank);
+    }
+  }
+  if (sum.norm() > 1e-9) leg.knee_axis = sum.normalized();
+}
+
+// The ball is off the ground when it has come up by kRaised in the mean step.
+double find_ball_off(const StepLibrary& steps, const Walker& walker) {
+  const parametric::Synthesiser& step = steps.steps(steps.library().swing);
+  const parametric::PackedExamples& packed = step.packed();
+  const auto off =
+      std::ranges::find(step.library().keytimes, "swing_off") - step.library().keytimes.begin();
+  const Leg& leg = walker.leg(steps.library().swing);
+  std::vector<Transform> world(walker.skeleton->names.size());
+  double first = 0;
+  for (int i = 0; i <= kMeanSamples; ++i) {
+    const double part = static_cast<double>(i) / kMeanSamples;
+    walker.to_world(mean_pose(packed, packed.generic[static_cast<std::size_t>(off)] * part), world);
+    const double height = (world[at(leg.foot)] * leg.sole.pivot).y();
+    if (i == 0) first = height;
+    if (height - first > kRaised) return std::max(part, kEarliestOff);
+  }
+  return 1;
+}
+
+// The mean pose over a step of each foot: upright, the arms down. Its root is above the middle of
+// the ankles, as high as in the middle of a stance.
+PoseVector standing_pose(const StepLibrary& steps, const Walker& walker) {
+  PoseVector sum;
+  double height = 0;
+  std::vector<Transform> world(walker.skeleton->names.size());
+  for (const FootSide swing : {FootSide::left, FootSide::right}) {
+    const parametric::Synthesiser& step = steps.steps(swing);
+    const parametric::PackedExamples& packed = step.packed();
+    for (int i = 0; i < kMeanSamples; ++i) {
+      const PoseVector pose = mean_pose(packed, packed.generic.back() * i / kMeanSamples);
+      if (sum.size() == 0) {
+        sum = pose;
+        continue;
+      }
+      for (int j = 0; j < walker.skeleton->joint_count(); ++j) {
+        position_of(sum, j) += position_of(pose, j);
+        const double sign = rotation_of(sum, j).dot(rotation_of(pose, j)) < 0 ? -1 : 1;
+        rotation_of(sum, j) += sign * rotation_of(pose, j);
+      }
+    }
+    const PoseVector middle = mean_pose(packed, middle_of_swing(packed, step.library()));
+    walker.to_world(middle, world);
+    const Leg& leg = walker.leg(other(swing));
+    const Transform& foot = world[at(leg.foot)];
+    height += 0.5 * (position_of(middle, 0).y() - (foot * leg.sole.heel).y());
+  }
+  for (int j = 0; j < walker.skeleton->joint_count(); ++j) {
+    position_of(sum, j) /= 2 * kMeanSamples;
+    rotation_of(sum, j).normalize();
+  }
+  position_of(sum, 0) = Vec3(0, height, 0);
+  return sum;
+}
+
+}  // namespace
+
+Transform joint_of(const PoseVector& pose, int joint) {
+  Transform result;
+  result.position = position_of(pose, joint);
+  result.orientation.coeffs() = rotation_of(pose, joint).normalized();
+  return result;
+}
+
+Transform Walker::joint_to_world(const PoseVector& pose, int joint) const {
+  Transform result;
+  for (int j = joint; j >= 0; j = skeleton->parents[at(j)]) result = joint_of(pose, j) * result;
+  return result;
+}
+
+void Walker::to_world(const PoseVector& pose, std::span<Transform> joint_to_world) const {
+  for (std::size_t j = 0; j < joint_to_world.size(); ++j) {
+    const int parent = skeleton->parents[j];
+    const Transform local = joint_of(pose, static_cast<int>(j));
+    joint_to_world[j] = parent < 0 ? local : joint_to_world[at(parent)] * local;
+  }
+}
+
+Result<Walker> make_walker(const StepLibrary& steps) {
+  using enum Role;
+  Walker walker;
+  walker.skeleton = &steps.steps(FootSide::left).packed().skeleton;
+  constexpr Role kLegs[2][4] = {{left_upper_leg, left_lower_leg, left_foot, left_toes},
+                                {right_upper_leg, right_lower_leg, right_foot, right_toes}};
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    Leg& leg = walker.legs[index_of(side)];
+    const auto& roles = kLegs[index_of(side)];
+    leg.upper = steps.roles().joint(roles[0]);
+    leg.lower = steps.roles().joint(roles[1]);
+    leg.foot = steps.roles().joint(roles[2]);
+    for (const int toes : steps.roles().joints(roles[3])) {
+      if (leg.toes < 0) leg.toes = toes;
+    }
+    if (leg.upper < 0 || leg.lower < 0 || leg.foot != steps.library().foot(side).joint) {
+      return Error("walk-legs", "the skeleton has no known legs of thigh, shank and foot",
+                   "assign their joints with --map");
+    }
+    for (int j = leg.toes >= 0 ? leg.toes : leg.foot; j >= leg.upper;
+         j = walker.skeleton->parents[at(j)]) {
+      leg.path.insert(leg.path.begin(), j);
+    }
+    learn_flat_foot(steps, side, walker);
+  }
+  for (const FootSide side : {FootSide::left, FootSide::right}) learn_knee(steps, side, walker);
+  walker.ball_off = find_ball_off(steps, walker);
+  walker.stand = standing_pose(steps, walker);
+  return walker;
+}
+
+}  // namespace krok::gait

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "gait/step_library.h"
+#include "math/transform.h"
+
+// The body that walks: what is the same in all its steps. Used by walk().
+//
+// A pose is one vector: joint_to_parent of each joint of the libraries' packed skeleton (rooted at
+// the hips), position x, y, z and quaternion x, y, z, w; the root's is joint_to_world. Corrections
+// are added to it, quaternions too, and normalised afterwards, so that sums of curves with two
+// continuous derivatives have them as well.
+
+namespace krok::gait {
+
+using PoseVector = Eigen::VectorXd;
+inline constexpr int kPoseValues = 7;  // a joint
+
+inline auto position_of(const PoseVector& pose, int joint) {
+  return pose.segment<3>(kPoseValues * joint);
+}
+inline auto position_of(PoseVector& pose, int joint) {
+  return pose.segment<3>(kPoseValues * joint);
+}
+inline auto rotation_of(const PoseVector& pose, int joint) {
+  return pose.segment<4>(kPoseValues * joint + 3);
+}
+inline auto rotation_of(PoseVector& pose, int joint) {
+  return pose.segment<4>(kPoseValues * joint + 3);
+}
+Transform joint_of(const PoseVector& pose, int joint);  // rotation normalised
+
+constexpr std::size_t index_of(FootSide side) {
+  return static_cast<std::size_t>(side);
+}
+constexpr FootSide other(FootSide side) {
+  return side == FootSide::left ? FootSide::right : FootSide::left;
+}
+
+// A foot, in the frame of its joint (the ankle).
+struct FootGeometry {
+  Vec3 heel = Vec3::Zero(), ball = Vec3::Zero();  // of the sole
+  // What the foot turns about when the heel is up: the toes' joint, or the ball.
+  Vec3 pivot = Vec3::Zero();
+  Quat sole = Quat::Identity();  // sole_to_foot: x to the left, y up, z from heel to ball
+  double length = 0;             // metres, heel to ball; 0: the ball is not known
+  double tip = 0;                // metres from the ball to the tip of the toes
+};
+
+struct Leg {
+  int upper = -1, lower = -1, foot = -1;
+  int toes = -1;                   // the joint at the ball, or -1
+  std::vector<int> path;           // joints from the thigh to the toes, or the foot
+  Vec3 knee_axis = Vec3::UnitX();  // cross(thigh, shank), in the thigh's frame
+  double length = 0;               // metres, thigh and shank
+  FootGeometry sole;
+  Quat flat_toes = Quat::Identity();  // sole_to_toes: of the toes while the foot is flat
+};
+
+struct Walker {
+  const Skeleton* skeleton = nullptr;  // of the poses
+  std::array<Leg, 2> legs;             // [FootSide]
+  PoseVector stand;                    // the root relative to the point below the ankles, facing +Z
+  double sole_width = 0.08;            // metres
+  // Where in the time from the other foot's strike to this one's off, as captures tell it, its ball
+  // leaves the ground: the toes go on for a while.
+  double ball_off = 1;
+
+  const Leg& leg(FootSide side) const { return legs[index_of(side)]; }
+  Transform joint_to_world(const PoseVector& pose, int joint) const;
+  // joint_to_world of all joints.
+  void to_world(const PoseVector& pose, std::span<Transform> joint_to_world) const;
+};
+
+// Code walk-legs if the skeleton has no legs of thigh, shank and foot.
+Result<Walker> make_walker(const StepLibrary& library);
+
+}  // namespace krok::gait
