@@ -97,12 +97,21 @@ void Swing::set_ends(const Ends& off, const Ends& strike) {
     to[1] = inwards * (3 * values[0] - 4 * values[1] + values[2]) / (2 * h);
     to[2] = (values[0] - 2 * values[1] + values[2]) / (h * h);
   };
+  way_ = strike.wanted[0].foot.position - off.wanted[0].foot.position;
+  way_.y() = 0;
+  way_ /= std::max(way_.norm(), 1e-9);
   derive(off, 1, start_);
   derive(strike, -1, end_);
 }
 
-double Swing::lift(double part) const {
-  return lift_ == 0 || part <= 0 || part >= 1 ? 0 : lift_ * bump(part, rise_, fall_);
+Vec3 Swing::detour_at(double part, const Detour& detour) const {
+  if (!(part > 0 && part < 1)) return Vec3::Zero();
+  Vec3 result = Vec3::Zero();
+  if (detour.lift != 0) result.y() = detour.lift * bump(part, detour.rise, detour.fall);
+  if (detour.hold != 0) {
+    result += detour.hold * (detour.hold < 0 ? bump(part, 3, 6) : bump(part, 6, 3)) * way_;
+  }
+  return result;
 }
 
 FootPose Swing::at(double time, const FootPose& blend) const {
@@ -117,7 +126,7 @@ FootPose Swing::at(double time, const FootPose& blend) const {
       width * width * (start.acceleration * start_[2] + end.acceleration * end_[2]);
   FootPose foot;
   foot.foot.position = blend.foot.position + offset.head<3>();
-  foot.foot.position.y() += lift(since / length);
+  foot.foot.position += detour_at(since / length, detour_);
   foot.foot.orientation.coeffs() =
       (blend.foot.orientation.coeffs() + offset.segment<4>(3)).normalized();
   Quat toes = blend.foot.orientation.conjugate() * blend.toes;
@@ -126,12 +135,10 @@ FootPose Swing::at(double time, const FootPose& blend) const {
   return foot;
 }
 
-void Swing::clear(const Terrain& ground, std::span<const double> times,
-                  std::span<const FootPose> blend, double clearance, double from) {
-  struct Lack {
-    double part, height;
-  };
-  std::vector<Lack> lacks;
+std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const double> times,
+                                      std::span<const FootPose> blend, double clearance,
+                                      double from) const {
+  std::vector<Lack> result;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double u = (times[i] - off_) / (strike_ - off_);
     if (!(u > 0 && u < 1)) continue;
@@ -141,27 +148,44 @@ void Swing::clear(const Terrain& ground, std::span<const double> times,
     const std::size_t count = u < kTipUp ? 2 : 3;
     for (const Vec3& point : std::span(points).first(count)) {
       const auto found = ground_near(ground, point.x(), point.z(), from, leg_->length);
-      if (!found) continue;
-      const double over = point.y() - found->height;
-      if (over < wanted) lacks.push_back({u, wanted - over});
+      if (!found || point.y() - found->height >= wanted) continue;
+      result.push_back({u, wanted - (point.y() - found->height)});
     }
   }
-  constexpr int kShapes[][2] = {{3, 3}, {3, 5}, {5, 3}, {3, 9}, {9, 3}};
-  constexpr double kEdge = 0.1;  // of the bump: nearer to the ends it cannot raise the foot
-  double best = 0;
-  for (const auto& shape : kShapes) {
-    double height = 0;
-    for (const Lack& lack : lacks) {
-      const double value = bump(lack.part, shape[0], shape[1]);
-      if (value > kEdge) height = std::max(height, lack.height / value);
+  return result;
+}
+
+void Swing::clear(const Terrain& ground, std::span<const double> times,
+                  std::span<const FootPose> blend, double clearance, double from) {
+  constexpr int kShapes[][2] = {{3, 3}, {3, 5}, {5, 3}, {3, 9}, {9, 3}, {3, 15}, {15, 3}};
+  constexpr double kHolds[] = {0,    -0.04, 0.04,  -0.08, 0.08, -0.12,
+                               0.12, -0.16, 0.16,  -0.2,  0.2,  -0.26, 0.26};  // metres
+  constexpr double kEdge = 0.08;      // of the bump: below, it does not raise the foot
+  constexpr double kEnough = 0.03;    // metres: what is raised less needs no holding
+  constexpr double kHoldCost = 0.3, kLeftCost = 30;
+  Detour best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double hold : kHolds) {
+    detour_ = {.hold = hold};
+    const std::vector<Lack> missing = lacks(ground, times, blend, clearance, from);
+    for (const auto& [rise, fall] : kShapes) {
+      double height = 0, left = 0;
+      for (const Lack& lack : missing) {
+        const double value = bump(lack.part, rise, fall);
+        if (value > kEdge) {
+          height = std::max(height, lack.height / value);
+        } else {
+          left = std::max(left, lack.height);
+        }
+      }
+      const double cost = height + kHoldCost * std::abs(hold) + kLeftCost * left;
+      if (cost >= least) continue;
+      least = cost;
+      best = {std::min(height, 0.6 * leg_->length), hold, rise, fall};
     }
-    if (best == 0 || height < best) {
-      best = height;
-      rise_ = shape[0];
-      fall_ = shape[1];
-    }
+    if (hold == 0 && least < kEnough) break;
   }
-  lift_ = std::min(best, 0.6 * leg_->length);
+  detour_ = best;
 }
 
 }  // namespace krok::gait

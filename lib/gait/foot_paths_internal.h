@@ -61,23 +61,34 @@ class Swing {
   };
   void set_ends(const Ends& off, const Ends& strike);
 
-  // Raises the foot over the ground: `blend` are its poses at `times` of the swing. `from` is the
-  // height of the higher print.
-  void clear(const Terrain& ground, std::span<const double> times, std::span<const FootPose> blend,
-             double clearance, double from);
+  // Leads the foot over the ground: raises it, and where edges of stairs are in the way, holds it
+  // back until it is up, or carries it on before it goes down. `blend` are its poses at `times` of
+  // the swing, `from` is the height of the higher print.
+  void clear(const Terrain& ground, std::span<const double> times,
+             std::span<const FootPose> blend, double clearance, double from);
 
   FootPose at(double time, const FootPose& blend) const;
 
  private:
   using Offset = Eigen::Matrix<double, 11, 1>;  // position, rotation, toes' rotation in the foot
   static Offset offset_of(const FootPose& blend, const FootPose& wanted);
-  double lift(double part) const;
+  // What leads the foot over the ground: bumps u^a (1 - u)^b over the part u of the swing.
+  struct Detour {
+    double lift = 0, hold = 0;  // metres up, and along the swing
+    int rise = 3, fall = 3;     // exponents of the lift
+  };
+  struct Lack {
+    double part, height;
+  };
+  Vec3 detour_at(double part, const Detour& detour) const;
+  std::vector<Lack> lacks(const Terrain& ground, std::span<const double> times,
+                          std::span<const FootPose> blend, double clearance, double from) const;
 
   const Leg* leg_;
   double off_, strike_;
   std::array<Offset, 3> start_ = {}, end_ = {};  // value and two derivatives by time
-  double lift_ = 0;                              // metres
-  int rise_ = 3, fall_ = 3;                      // exponents of the bump
+  Vec3 way_ = Vec3::Zero();                      // level, from print to print, unit vector
+  Detour detour_;
 };
 
 // The points of a sole that touch the ground: heel, ball, tip; world.
