@@ -37,6 +37,7 @@ ALLOWED = {
     "lib/ik": BASE | {"lib/roles", "lib/motion", "lib/timeline"},
     "lib/retarget": BASE | {"lib/roles", "lib/ik", "lib/motion"},
     "lib/skin": BASE,
+    "lib/terrain": BASE,
     "lib/body": BASE | {"lib/roles"},
     "lib/compare": BASE,
     "lib/draw": BASE | {"lib/roles", "lib/motion", "lib/compare", "lib/retarget"},

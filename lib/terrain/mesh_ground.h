@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/result.h"
+#include "terrain/terrain.h"
+
+namespace krok::terrain {
+
+// Counter-clockwise seen from the side that can be stood on; metres, world.
+using GroundTriangle = std::array<Vec3, 3>;
+
+inline constexpr std::size_t kMostGroundTriangles = 50'000'000;
+
+// The triangles that face up as ground: others, the undersides of bridges and walls, do not carry.
+// If triangles that face down cover more than twice as much, the winding is taken to be reversed
+// and `reversed` (if given) is set. Along an edge that two triangles share there is no gap. Heights
+// are computed in doubles. Found by a tree of boxes (Embree).
+// Codes: ground-empty if nothing faces up; ground-value for corners that are not finite or farther
+// than 1e6 m from the origin; ground-size for too many triangles.
+Result<std::unique_ptr<Terrain>> mesh_ground(std::vector<GroundTriangle> triangles,
+                                             bool* reversed = nullptr);
+
+}  // namespace krok::terrain
