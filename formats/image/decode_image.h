@@ -29,4 +29,16 @@ inline constexpr std::size_t kMaxPixels = std::size_t{1} << 26;
 // picture-damaged if decoding fails; picture-kind for a CMYK JPEG.
 Result<Pixels> decode(std::span<const std::byte> file, std::size_t most_pixels = kMaxPixels);
 
+struct GreyPixels {
+  int width = 0, height = 0;  // >= 1
+  std::vector<std::uint16_t>
+      values;  // [height x width], row by row from the upper left, 0 to 65535
+  std::vector<std::uint16_t> opacity;  // the same of the alpha channel; empty if there is none
+};
+
+// The values of a grey PNG file with all their bits; those of 8 bits and less are spread to 0 to
+// 65535. Codes: those of decode(); picture-kind for JPEG and for images in colour.
+Result<GreyPixels> decode_grey(std::span<const std::byte> file,
+                               std::size_t most_pixels = kMaxPixels);
+
 }  // namespace krok::image

@@ -33,7 +33,8 @@ constexpr std::string_view kTypes[] = {"box2f",       "box2i",    "chlist",     
 
 class Scan {
  public:
-  explicit Scan(std::span<const std::byte> file) : file_(file), in_(file) {}
+  Scan(std::span<const std::byte> file, int bytes_per_texel)
+      : file_(file), in_(file), bytes_per_texel_(static_cast<std::uint64_t>(bytes_per_texel)) {}
 
   Result<HeaderFacts> run() {
     if (in_.read<std::uint32_t>() != kMagic) return fail("not an OpenEXR file");
@@ -106,7 +107,7 @@ class Scan {
     if (texels == 0) return fail("the header has no data window");
     // Each block of up to 16 lines has an offset and a header, 8 bytes each.
     const std::uint64_t blocks = (facts_.height + 15) / 16;
-    if (texels * 12 > kMaxExpansion * file_.size() || blocks * 16 > file_.size()) {
+    if (texels * bytes_per_texel_ > kMaxExpansion * file_.size() || blocks * 16 > file_.size()) {
       return fail(fmt::format("{} by {} texels are not possible in {} bytes", facts_.width,
                               facts_.height, file_.size()));
     }
@@ -115,13 +116,14 @@ class Scan {
 
   std::span<const std::byte> file_;
   ByteReader in_;
+  std::uint64_t bytes_per_texel_;
   HeaderFacts facts_;
 };
 
 }  // namespace
 
-Result<HeaderFacts> scan_header(std::span<const std::byte> file) {
-  return Scan(file).run();
+Result<HeaderFacts> scan_header(std::span<const std::byte> file, int bytes_per_texel) {
+  return Scan(file, bytes_per_texel).run();
 }
 
 }  // namespace krok::morph_exr
