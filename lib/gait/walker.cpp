@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/index.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr int kMeanSamples = 32;      // of a step, for means over it
 constexpr double kRaised = 0.004;     // metres
 constexpr double kEarliestOff = 0.3;  // of the time to the off
+constexpr double kStandingLeg = 0.98;   // of the leg's length
 constexpr double kToeShare = 0.35;    // of the sole, from the ball to the tip, where no end site is
 
 // A pose of the reference motion of a library: the mean of its examples.
@@ -122,10 +124,9 @@ double find_ball_off(const StepLibrary& steps, const Walker& walker) {
 }
 
 // The mean pose over a step of each foot: upright, the arms down. Its root is above the middle of
-// the ankles, as high as in the middle of a stance.
+// the ankles.
 PoseVector standing_pose(const StepLibrary& steps, const Walker& walker) {
   PoseVector sum;
-  double height = 0;
   std::vector<Transform> world(walker.skeleton->names.size());
   for (const FootSide swing : {FootSide::left, FootSide::right}) {
     const parametric::Synthesiser& step = steps.steps(swing);
@@ -142,15 +143,18 @@ PoseVector standing_pose(const StepLibrary& steps, const Walker& walker) {
         rotation_of(sum, j) += sign * rotation_of(pose, j);
       }
     }
-    const PoseVector middle = mean_pose(packed, middle_of_swing(packed, step.library()));
-    walker.to_world(middle, world);
-    const Leg& leg = walker.leg(other(swing));
-    const Transform& foot = world[at(leg.foot)];
-    height += 0.5 * (position_of(middle, 0).y() - (foot * leg.sole.heel).y());
   }
   for (int j = 0; j < walker.skeleton->joint_count(); ++j) {
     position_of(sum, j) /= 2 * kMeanSamples;
     rotation_of(sum, j).normalize();
+  }
+  // The hips as high as legs that are nearly straight carry them.
+  position_of(sum, 0) = Vec3::Zero();
+  walker.to_world(sum, world);
+  double height = std::numeric_limits<double>::infinity();
+  for (const Leg& leg : walker.legs) {
+    const double sole = (leg.sole.sole.conjugate() * -leg.sole.heel).y();  // under the ankle
+    height = std::min(height, sole + kStandingLeg * leg.length - world[at(leg.upper)].position.y());
   }
   position_of(sum, 0) = Vec3(0, height, 0);
   return sum;
