@@ -61,8 +61,7 @@ void match_signs(PoseVector& pose, const PoseVector& to) {
 // Where the blend is set so that its stance foot, when flat, is on the print. (Captures tell a
 // strike while the foot still moves, and the footprint of that moment lies behind.)
 Transform stance_frame(const Walker& walker, const GroundedPrint& print, const BodyStep& step) {
-  BodyStep plain{.motion = step.motion};
-  plain.stand = walker.stand;
+  const BodyStep plain(step.motion, step.joints);
   auto scratch = step.motion.make_scratch();
   PoseVector pose;
   const std::vector<double>& times = step.motion.keytimes();
@@ -124,8 +123,7 @@ void BodyStep::pose(double time, PoseVector& pose,
   }
   blocks = blocks.first(scratch.reference.size());
   motion.pose(inside, blocks, scratch);
-  const auto joints = static_cast<int>(stand.size() / kPoseValues);
-  pose.resize(stand.size());
+  pose.resize(kPoseValues * joints);
   for (int j = 0; j < joints; ++j) {
     const PoseBlock& block = blocks[at(j / PoseBlock::kLanes)];
     const int lane = j % PoseBlock::kLanes;
@@ -146,9 +144,11 @@ void BodyStep::pose(double time, PoseVector& pose,
   }
 }
 
-Gap BodyMotion::gap_between(const BodyStep& before, const BodyStep& after, double rate) {
+Gap BodyMotion::gap_after(std::size_t step) const {
+  const BodyStep& before = steps_[step];
+  const BodyStep& after = steps_[step + 1];
   const double spacing =
-      std::clamp(1 / rate, kShortest,
+      std::clamp(1 / rate_, kShortest,
                  0.1 * std::min(before.strike - before.start, after.strike - after.start));
   const EndState a = end_state(before, before.strike, -1, spacing);
   const EndState b = end_state(after, after.start, 1, spacing);
@@ -166,24 +166,23 @@ Gap BodyMotion::gap_between(const BodyStep& before, const BodyStep& after, doubl
   return gap;
 }
 
-void BodyMotion::pose(std::size_t step, double time, PoseVector& pose,
-                      parametric::BlendedMotion::Scratch& scratch) const {
-  steps_[step].pose(time, pose, scratch);
-  if (step > 0) {
-    const Gap& gap = gaps_[step - 1];
-    const double since = time - steps_[step].start, narrow = std::min(gap.after, kVelocityWidth);
-    const Fading wide = fading(since / gap.after);
-    if (wide.value != 0) {
-      pose -= 0.5 * gap.sign.cwiseProduct(wide.value * gap.value +
-                                          narrow * fading(since / narrow).slope * gap.velocity);
+void joined_pose(const BodyStep& step, double time, const Gap* before, const Gap* after,
+                 PoseVector& pose, parametric::BlendedMotion::Scratch& scratch) {
+  step.pose(time, pose, scratch);
+  if (before != nullptr) {
+    const double since = time - step.start, narrow = std::min(before->after, kVelocityWidth);
+    const double wide = fading(since / before->after).value;
+    if (wide != 0) {
+      pose -=
+          0.5 * before->sign.cwiseProduct(wide * before->value +
+                                          narrow * fading(since / narrow).slope * before->velocity);
     }
   }
-  if (step < gaps_.size()) {
-    const Gap& gap = gaps_[step];
-    const double left = steps_[step].strike - time, narrow = std::min(gap.before, kVelocityWidth);
-    const Fading wide = fading(left / gap.before);
-    if (wide.value != 0) {
-      pose += 0.5 * (wide.value * gap.value - narrow * fading(left / narrow).slope * gap.velocity);
+  if (after != nullptr) {
+    const double left = step.strike - time, narrow = std::min(after->before, kVelocityWidth);
+    const double wide = fading(left / after->before).value;
+    if (wide != 0) {
+      pose += 0.5 * (wide * after->value - narrow * fading(left / narrow).slope * after->velocity);
     }
   }
 }
@@ -238,11 +237,10 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   const parametric::Synthesiser& maker = libraries[at(planned.library)].steps(other(print.side));
   auto motion = maker.motion(planned.weights);
   if (!motion) return motion.error();
-  BodyStep step{.motion = *std::move(motion)};
+  BodyStep step(*std::move(motion), walker.skeleton->joint_count());
   step.start = steps_.empty() ? 0 : steps_.back().strike;
   const double off = walker.ball_off * step.motion.keytimes()[off_of(maker.library())];
   step.rest = off + kBeside * (step.motion.duration() - off);
-  step.stand = walker.stand;
   step.stance = planned.stance;
   const bool is_first = index == 0, is_last = index + 1 == plan.steps.size();
   if (is_first) step.stand = standing_on(walker, plan.grounded[stance - 1], print);
@@ -257,9 +255,8 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   if (step.kind != BodyStep::Kind::middle) {
     PoseVector sample;
     auto scratch = step.motion.make_scratch();
-    BodyStep plain{.motion = step.motion};
+    BodyStep plain(step.motion, step.joints);
     plain.stance_to_world = step.stance_to_world;
-    plain.stand = step.stand;
     plain.pose(step.rest, sample, scratch);
     match_signs(step.stand, sample);
     if (step.stand_after.size() > 0) match_signs(step.stand_after, sample);
@@ -271,15 +268,12 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
 Result<BodyMotion> BodyMotion::create(std::span<const StepLibrary> libraries, const Walker& walker,
                                       const PlannedWalk& plan, const WalkOptions& options) {
   BodyMotion body;
+  body.rate_ = libraries[0].library().rate;
   body.steps_.reserve(plan.steps.size());
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     if (Status status = body.add_step(libraries, walker, plan, i, options); !status) {
       return status.error();
     }
-  }
-  for (std::size_t i = 0; i + 1 < body.steps_.size(); ++i) {
-    body.gaps_.push_back(
-        body.gap_between(body.steps_[i], body.steps_[i + 1], libraries[0].library().rate));
   }
   return body;
 }

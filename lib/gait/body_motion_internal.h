@@ -15,7 +15,11 @@ namespace krok::gait {
 struct BodyStep {
   enum class Kind : unsigned char { middle, first, last, only };
 
+  BodyStep(parametric::BlendedMotion blend, int joint_count)
+      : motion(std::move(blend)), joints(joint_count) {}
+
   parametric::BlendedMotion motion;
+  int joints = 0;
   Kind kind = Kind::middle;
   int stance = 0;  // print
   Transform stance_to_world;
@@ -45,20 +49,22 @@ class BodyMotion {
                                    const PlannedWalk& plan, const WalkOptions& options);
 
   const std::vector<BodyStep>& steps() const { return steps_; }
-  // The pose in a step at a time within it.
-  void pose(std::size_t step, double time, PoseVector& pose,
-            parametric::BlendedMotion::Scratch& scratch) const;
+  // The gap after a step that is not the last.
+  Gap gap_after(std::size_t step) const;
 
  private:
   BodyMotion() = default;
   Status add_step(std::span<const StepLibrary> libraries, const Walker& walker,
                   const PlannedWalk& plan, std::size_t index, const WalkOptions& options);
   Status set_times(const PlannedWalk& plan, double off, double speed, BodyStep& step) const;
-  static Gap gap_between(const BodyStep& before, const BodyStep& after, double rate);
 
   std::vector<BodyStep> steps_;
-  std::vector<Gap> gaps_;  // between step i and i + 1
+  double rate_ = 30;  // of the examples
 };
+
+// The pose of a step joined to those beside it; gaps are null at the ends of the walk.
+void joined_pose(const BodyStep& step, double time, const Gap* before, const Gap* after,
+                 PoseVector& pose, parametric::BlendedMotion::Scratch& scratch);
 
 // The standing pose on two prints, in the world.
 PoseVector standing_on(const Walker& walker, const GroundedPrint& one, const GroundedPrint& two);

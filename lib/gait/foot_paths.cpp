@@ -158,10 +158,10 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
 void Swing::clear(const Terrain& ground, std::span<const double> times,
                   std::span<const FootPose> blend, double clearance, double from) {
   constexpr int kShapes[][2] = {{3, 3}, {3, 5}, {5, 3}, {3, 9}, {9, 3}, {3, 15}, {15, 3}};
-  constexpr double kHolds[] = {0,    -0.04, 0.04,  -0.08, 0.08, -0.12,
-                               0.12, -0.16, 0.16,  -0.2,  0.2,  -0.26, 0.26};  // metres
-  constexpr double kEdge = 0.08;      // of the bump: below, it does not raise the foot
-  constexpr double kEnough = 0.03;    // metres: what is raised less needs no holding
+  constexpr double kHolds[] = {0,     -0.04, 0.04, -0.08, 0.08,  -0.12, 0.12,
+                               -0.16, 0.16,  -0.2, 0.2,   -0.26, 0.26};  // metres
+  constexpr double kEdge = 0.08;    // of the bump: below, it does not raise the foot
+  constexpr double kEnough = 0.03;  // metres: what is raised less needs no holding
   constexpr double kHoldCost = 0.3, kLeftCost = 30;
   Detour best;
   double least = std::numeric_limits<double>::infinity();

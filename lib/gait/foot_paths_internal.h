@@ -64,8 +64,8 @@ class Swing {
   // Leads the foot over the ground: raises it, and where edges of stairs are in the way, holds it
   // back until it is up, or carries it on before it goes down. `blend` are its poses at `times` of
   // the swing, `from` is the height of the higher print.
-  void clear(const Terrain& ground, std::span<const double> times,
-             std::span<const FootPose> blend, double clearance, double from);
+  void clear(const Terrain& ground, std::span<const double> times, std::span<const FootPose> blend,
+             double clearance, double from);
 
   FootPose at(double time, const FootPose& blend) const;
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "core/progress.h"
 #include "core/result.h"
 #include "gait/print.h"
 #include "gait/step_library.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/motion_keys.h"
 #include "terrain/terrain.h"
 
@@ -26,7 +26,6 @@ struct WalkOptions {
   bool adapt = false;
   double stretch = 0;        // metres by which a leg may be lengthened in place of a knee pop
   double clearance = 0.015;  // metres of the swing foot over the ground
-  int jobs = 1;
 };
 
 // One step: the swing foot goes from the print before the stance foot's to the one after it.
@@ -44,19 +43,45 @@ struct StepReport {
   std::string why_moved;            // empty unless moved
 };
 
-struct Walk {
-  Clip clip;
-  MotionKeys keys;  // contacts of heels and balls, keytimes of the gait
+// What is known of a walk once its frames have been made.
+struct WalkDetails {
+  MotionKeys keys;  // contacts of feet and toes, keytimes of the gait
   std::vector<GroundedPrint> prints;
   std::vector<StepReport> steps;
   Diagnostics warnings;
 };
 
-// Walks along `prints`: the walker stands on the first two, steps from print to print, and comes to
-// stand on the last two. Sides alternate.
-// Codes: walk-prints, walk-ground, walk-too-long, walk-too-high, walk-too-steep, walk-crossing,
-// walk-wall, walk-heading, walk-time, with the number of the print, counted from 1.
-Result<Walk> walk(std::span<const StepLibrary> libraries, std::span<const Print> prints,
-                  const Terrain& ground, const WalkOptions& options, Progress* progress = nullptr);
+// A walk along `prints`: the walker stands on the first two, steps from print to print, and comes
+// to stand on the last two. Sides alternate.
+class Walk {
+ public:
+  // Plans the walk. Libraries and ground must outlive it; the libraries share one skeleton. Codes:
+  // walk-library; walk-legs; parametric-skeleton; walk-prints (fewer than three, sides that do not
+  // alternate, values out of range); with the number of the print, counted from 1: walk-ground,
+  // walk-too-long, walk-too-high, walk-too-steep, walk-crossing, walk-wall, walk-heading,
+  // walk-outside, walk-time; clip-too-long.
+  static Result<Walk> plan(std::span<const StepLibrary> libraries, std::span<const Print> prints,
+                           const Terrain& ground, const WalkOptions& options);
+
+  // Frames are made in blocks of some minutes at most, which are kept until they are released; the
+  // same however they are divided and on however many threads. Valid as long as the walk.
+  const FrameSource& frames() const;
+
+  // After all frames have been read.
+  WalkDetails details() const;
+
+ private:
+  struct State;
+  explicit Walk(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  std::shared_ptr<State> state_;
+};
+
+// All frames at once.
+struct WholeWalk {
+  Clip clip;
+  WalkDetails details;
+};
+Result<WholeWalk> walk(std::span<const StepLibrary> libraries, std::span<const Print> prints,
+                       const Terrain& ground, const WalkOptions& options, int jobs = 1);
 
 }  // namespace krok::gait

@@ -13,11 +13,11 @@ namespace krok::gait {
 
 namespace {
 
-constexpr int kMeanSamples = 32;      // of a step, for means over it
-constexpr double kRaised = 0.004;     // metres
-constexpr double kEarliestOff = 0.3;  // of the time to the off
-constexpr double kStandingLeg = 0.98;   // of the leg's length
-constexpr double kToeShare = 0.35;    // of the sole, from the ball to the tip, where no end site is
+constexpr int kMeanSamples = 32;       // of a step, for means over it
+constexpr double kRaised = 0.004;      // metres
+constexpr double kEarliestOff = 0.3;   // of the time to the off
+constexpr double kStandingLeg = 0.98;  // of the leg's length
+constexpr double kToeShare = 0.35;  // of the sole, from the ball to the tip, where no end site is
 
 // A pose of the reference motion of a library: the mean of its examples.
 PoseVector mean_pose(const parametric::PackedExamples& packed, double generic) {

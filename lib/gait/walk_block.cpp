@@ -1,0 +1,264 @@
+#include "gait/walk_block_internal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/index.h"
+#include "math/quaternion.h"
+
+namespace krok::gait {
+
+namespace {
+
+constexpr double kFlat = 2 * kRadiansPerDegree;  // turns of a flat foot less than this
+constexpr double kSpacing = 0.01;                // seconds, of derivatives at the ends of a swing
+constexpr double kLoweringReach = 0.1;           // seconds over which the pelvis is lowered
+constexpr std::size_t kAround = 3;               // steps on either side of a block
+constexpr double kMiddle = 0.4;                  // of the single support: the foot is flat
+
+// When `pitch` comes to kFlat between two frames.
+double crossing(double from, double to, double pitch_from, double pitch_to) {
+  const double a = std::abs(pitch_from), b = std::abs(pitch_to);
+  if (a == b) return to;
+  return from + (to - from) * std::clamp((a - kFlat) / (a - b), 0.0, 1.0);
+}
+
+}  // namespace
+
+int WalkParts::first_frame(std::size_t step) const {
+  const std::vector<BodyStep>& steps = body.steps();
+  if (step >= steps.size()) return frames;
+  return static_cast<int>(std::ceil(steps[step].start * rate - 1e-9));
+}
+
+WalkBlock::WalkBlock(const WalkParts& parts, std::size_t first_step, std::size_t end_step)
+    : parts_(parts),
+      first_(first_step),
+      end_(end_step),
+      low_(first_step - std::min<std::size_t>(first_step, kAround)),
+      high_(std::min(end_step + kAround, parts.body.steps().size())) {
+  for (std::size_t step = low_ == 0 ? 0 : low_ - 1; step < high_; ++step) {
+    if (step + 1 < parts.body.steps().size()) gaps_.push_back(parts.body.gap_after(step));
+  }
+  sampled_.resize(high_ - low_);
+  stances_.resize(high_ - low_ + 2);
+  needs_.assign(at(parts.first_frame(high_) - parts.first_frame(low_)), 0);
+}
+
+const Gap* WalkBlock::gap_after(std::size_t step) const {
+  const std::size_t index = step - (low_ == 0 ? 0 : low_ - 1);
+  return step + 1 < parts_.body.steps().size() ? &gaps_[index] : nullptr;
+}
+
+SampledStep WalkBlock::sample(std::size_t step) const {
+  const BodyStep& now = parts_.body.steps()[step];
+  SampledStep result;
+  result.first = parts_.first_frame(step);
+  const int end = parts_.first_frame(step + 1);
+  auto scratch = now.motion.make_scratch();
+  std::vector<Transform> world(parts_.walker.skeleton->names.size());
+  for (int f = result.first; f < end; ++f) {
+    PoseVector& pose = result.poses.emplace_back();
+    joined_pose(now, parts_.time_of(f), step > 0 ? gap_after(step - 1) : nullptr, gap_after(step),
+                pose, scratch);
+    parts_.walker.to_world(pose, world);
+    result.blend.push_back(
+        {foot_of(parts_.walker.legs[0], world), foot_of(parts_.walker.legs[1], world)});
+  }
+  return result;
+}
+
+FootPose WalkBlock::blend_foot(std::size_t step, double time, FootSide side,
+                               const Quat& signs) const {
+  const BodyStep& now = parts_.body.steps()[step];
+  auto scratch = now.motion.make_scratch();
+  PoseVector pose;
+  joined_pose(now, time, step > 0 ? gap_after(step - 1) : nullptr, gap_after(step), pose, scratch);
+  const Leg& leg = parts_.walker.leg(side);
+  FootPose foot;
+  foot.foot = parts_.walker.joint_to_world(pose, leg.foot);
+  foot.toes = leg.toes < 0 ? foot.foot.orientation
+                           : parts_.walker.joint_to_world(pose, leg.toes).orientation;
+  return in_signs_of(leg, signs, foot);
+}
+
+const FootPose& WalkBlock::nearest(std::size_t step, double time, FootSide side) const {
+  const SampledStep& frames = sampled(step);
+  const int last = static_cast<int>(frames.blend.size()) - 1;
+  const int f =
+      std::clamp(static_cast<int>(std::lround(time * parts_.rate)) - frames.first, 0, last);
+  return frames.blend[at(f)][index_of(side)];
+}
+
+// When the foot that strikes print `print` comes to lie flat. The step over it has been sampled.
+void WalkBlock::begin_stance(std::size_t print) {
+  const std::vector<BodyStep>& steps = parts_.body.steps();
+  const std::size_t over = print == 0 ? 0 : std::min(print - 1, steps.size() - 1);
+  const BodyStep& step = steps[over];
+  const SampledStep& frames = sampled(over);
+  const FootSide side = parts_.side_of(print);
+  const bool is_first = print < 2, is_last = print + 1 == parts_.plan.grounded.size();
+  double middle = step.off + kMiddle * (step.strike - step.off);
+  if (is_first) middle = 0;
+  if (is_last) middle = step.finish;
+  Stance stance(parts_.walker.leg(side), parts_.plan.grounded[print], nearest(over, middle, side));
+  stance.strike = is_first ? 0 : is_last ? step.strike : step.start;
+  stance.flat_from = stance.strike;
+  stance.flat_to = stance.off = steps.back().finish + 1;
+  double before = 0, time_before = 0;
+  for (std::size_t i = 0; i < frames.blend.size() && !is_first; ++i) {
+    const double time = parts_.time_of(frames.first + static_cast<int>(i));
+    if (time < stance.strike) continue;
+    const double pitch = stance.pitch(frames.blend[i][index_of(side)]);
+    if (std::abs(pitch) < kFlat || time >= middle) {
+      if (time_before > 0) stance.flat_from = crossing(time_before, time, before, pitch);
+      break;
+    }
+    before = pitch;
+    time_before = time;
+  }
+  changed_stance(print) = stance;
+}
+
+// When its heel comes up and its toes leave the ground, in the next step, which has been sampled.
+void WalkBlock::finish_stance(std::size_t print) {
+  const std::vector<BodyStep>& steps = parts_.body.steps();
+  if (print >= steps.size()) return;  // the walk ends on it
+  Stance& stance = changed_stance(print);
+  const FootSide side = parts_.side_of(print);
+  stance.off = steps[print].off;
+  stance.flat_to = stance.off;
+  double after = 0, time_after = 0;
+  // Backwards from the off to the frame that is flat.
+  for (std::size_t s = print + 1; s-- > (print == 0 ? 0 : print - 1);) {
+    const SampledStep& frames = sampled(s);
+    for (std::size_t i = frames.blend.size(); i-- > 0;) {
+      const double time = parts_.time_of(frames.first + static_cast<int>(i));
+      if (time > stance.off) continue;
+      const double pitch = stance.pitch(frames.blend[i][index_of(side)]);
+      if (std::abs(pitch) < kFlat || time <= stance.flat_from) {
+        stance.flat_to = time_after > 0 ? crossing(time_after, time, after, pitch) : time;
+        stance.flat_to = std::max(stance.flat_to, stance.flat_from);
+        return;
+      }
+      after = pitch;
+      time_after = time;
+    }
+  }
+}
+
+Swing WalkBlock::make_swing(std::size_t step) const {
+  const BodyStep& now = parts_.body.steps()[step];
+  const Stance& from = stance(step);
+  const Stance& to = stance(step + 2);
+  const FootSide side = parts_.side_of(step);
+  const Quat signs = flat_foot(parts_.leg_of(step), parts_.plan.grounded[step]).orientation;
+  Swing swing(parts_.leg_of(step), now.off, now.strike);
+  Swing::Ends off, strike;
+  const bool is_last = step + 1 == parts_.body.steps().size();
+  off.spacing = std::min(kSpacing, (now.off - now.start) / 3);
+  strike.spacing = kSpacing;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double time = now.off - off.spacing * static_cast<double>(i);
+    off.blend[i] = blend_foot(step, time, side, signs);
+    off.wanted[i] = from.at(time, off.blend[i]);
+    const double later = now.strike + strike.spacing * static_cast<double>(i);
+    strike.blend[i] = blend_foot(is_last ? step : step + 1, later, side, signs);
+    strike.wanted[i] = to.at(later, strike.blend[i]);
+  }
+  swing.set_ends(off, strike);
+  const SampledStep& frames = sampled(step);
+  std::vector<double> times;
+  std::vector<FootPose> blend;
+  for (std::size_t i = 0; i < frames.blend.size(); ++i) {
+    times.push_back(parts_.time_of(frames.first + static_cast<int>(i)));
+    blend.push_back(in_signs_of(parts_.leg_of(step), signs, frames.blend[i][index_of(side)]));
+  }
+  const double height =
+      std::max(parts_.plan.grounded[step].heel.y(), parts_.plan.grounded[step + 2].heel.y());
+  swing.clear(parts_.ground, times, blend, parts_.options.clearance, height);
+  return swing;
+}
+
+void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
+  const BodyStep& now = parts_.body.steps()[step];
+  SampledStep& frames = sampled(step);
+  const Swing swing = make_swing(step);
+  const FootSide moving = parts_.side_of(step), standing = parts_.side_of(step + 1);
+  const Quat signs = flat_foot(parts_.leg_of(step), parts_.plan.grounded[step]).orientation;
+  std::vector<Transform> world(parts_.walker.skeleton->names.size());
+  double clearance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < frames.poses.size(); ++i) {
+    const double time = parts_.time_of(frames.first + static_cast<int>(i));
+    auto& target = frames.target.emplace_back();
+    target[index_of(standing)] = stance(step + 1).at(time, frames.blend[i][index_of(standing)]);
+    const FootPose blend =
+        in_signs_of(parts_.leg_of(step), signs, frames.blend[i][index_of(moving)]);
+    FootPose& foot = target[index_of(moving)];
+    if (time <= now.off) {
+      foot = stance(step).at(time, blend);
+    } else if (time >= now.strike) {
+      foot = stance(step + 2).at(time, blend);
+    } else {
+      foot = swing.at(time, blend);
+      const double part = (time - now.off) / (now.strike - now.off);
+      for (const Vec3& point : sole_points(parts_.leg_of(step), foot)) {
+        if (part < 0.25 || part > 0.75) break;
+        const auto found = ground_near(parts_.ground, point.x(), point.z(), point.y(), 0.3);
+        if (found) clearance = std::min(clearance, point.y() - found->height);
+      }
+    }
+    parts_.walker.to_world(frames.poses[i], world);
+    need(frames.first + static_cast<int>(i)) = lowering_for(parts_.walker, world, target);
+  }
+  made.clearance = std::isfinite(clearance) ? clearance : 0;
+}
+
+void WalkBlock::emit(std::size_t step, Clip& clip, MadeStep& made) {
+  SampledStep& frames = sampled(step);
+  const int count = static_cast<int>(frames.poses.size());
+  const int reach = std::max(2, static_cast<int>(std::lround(kLoweringReach * parts_.rate)));
+  const int low = parts_.first_frame(low_), high = parts_.first_frame(high_);
+  const int from = std::max(low, frames.first - 2 * reach - 2);
+  const int to = std::min(high, frames.first + count + 2 * reach + 2);
+  const auto lowered =
+      smooth_above(std::span(needs_).subspan(at(from - low), at(to - from)), reach);
+  std::vector<Transform> world(parts_.walker.skeleton->names.size());
+  for (int i = 0; i < count; ++i) {
+    PoseVector& pose = frames.poses[at(i)];
+    const double down = lowered[at(frames.first + i - from)];
+    position_of(pose, 0).y() -= down;
+    parts_.walker.to_world(pose, world);
+    const SolvedLegs legs =
+        solve_legs(parts_.walker, frames.target[at(i)], parts_.options.stretch, pose, world);
+    parts_.walker.to_world(pose, world);
+    clip.set_pose(frames.first + i - parts_.first_frame(first_), world);
+    made.lowered = std::max(made.lowered, down);
+    made.extension = std::max(made.extension, legs.extension);
+    made.missed = std::max(made.missed, legs.missed);
+  }
+  frames = {};
+}
+
+void WalkBlock::make(Clip& clip, std::span<MadeStep> steps) {
+  const std::size_t last = parts_.body.steps().size();
+  MadeStep unused;
+  for (std::size_t step = low_; step < high_; ++step) sampled(step) = sample(step);
+  // Of the steps at the ends of the block, which are left out, not all is known.
+  for (std::size_t print = low_ == 0 ? 0 : low_ + 1; print < high_ + 2; ++print) {
+    const bool is_known = print < high_ + 1 || high_ == last;
+    if (is_known) begin_stance(print);
+  }
+  for (std::size_t print = low_ == 0 ? 0 : low_ + 1; print < high_ || print < 1; ++print) {
+    finish_stance(print);
+  }
+  const std::size_t from = first_ - std::min<std::size_t>(first_ - low_, 1);
+  const std::size_t to = std::min(end_ + 1, last);
+  for (std::size_t step = from; step < to; ++step) {
+    place_feet(step, step >= first_ && step < end_ ? steps[step] : unused);
+  }
+  for (std::size_t step = first_; step < end_; ++step) emit(step, clip, steps[step]);
+}
+
+}  // namespace krok::gait
