@@ -60,7 +60,8 @@ void match_signs(PoseVector& pose, const PoseVector& to) {
 
 // Where the blend is set so that its stance foot, when flat, is on the print. (Captures tell a
 // strike while the foot still moves, and the footprint of that moment lies behind.)
-Transform stance_frame(const Walker& walker, const GroundedPrint& print, const BodyStep& step) {
+Transform stance_frame(const Walker& walker, const GroundedPrint& print, double toe_out,
+                       const BodyStep& step) {
   const BodyStep plain(step.motion, step.joints);
   auto scratch = step.motion.make_scratch();
   PoseVector pose;
@@ -68,11 +69,12 @@ Transform stance_frame(const Walker& walker, const GroundedPrint& print, const B
   const double off = times[times.size() - 2];
   plain.pose(off + kFlatPart * (times.back() - off), pose, scratch);
   const Leg& leg = walker.leg(print.side);
-  const Transform foot = walker.joint_to_world(pose, leg.foot);
+  const Transform foot = joint_to_world(*walker.skeleton, pose, leg.foot);
   const Vec3 forward = foot.orientation * (leg.sole.sole * Vec3::UnitZ());
   const Transform flat{foot * leg.sole.heel,
                        axis_rotation(Axis::y, std::atan2(forward.x(), forward.z()))};
-  return Transform{print.heel, axis_rotation(Axis::y, print.heading)} * flat.inverse();
+  const double toes = print.facing + (print.side == FootSide::left ? 1 : -1) * toe_out;
+  return Transform{print.heel, axis_rotation(Axis::y, toes)} * flat.inverse();
 }
 
 }  // namespace
@@ -87,7 +89,7 @@ Transform flat_foot(const Leg& leg, const GroundedPrint& print) {
 PoseVector standing_on(const Walker& walker, const GroundedPrint& one, const GroundedPrint& two) {
   const Vec3 a = flat_foot(walker.leg(one.side), one).position;
   const Vec3 b = flat_foot(walker.leg(two.side), two).position;
-  const double heading = one.heading + 0.5 * wrapped(two.heading - one.heading);
+  const double heading = one.facing + 0.5 * wrapped(two.facing - one.facing);
   Vec3 middle = 0.5 * (a + b);
   middle.y() = 0.5 * (one.heel.y() + two.heel.y());
   const Transform place{middle, axis_rotation(Axis::y, heading)};
@@ -163,27 +165,47 @@ Gap BodyMotion::gap_after(std::size_t step) const {
   gap.velocity = gap.sign.cwiseProduct(b.velocity) - a.velocity;
   gap.before = 0.5 * (before.strike - before.start);
   gap.after = 0.5 * (after.strike - after.start);
+  // The first step and the last, which are no blends alone, take all: they may be short.
+  if (before.kind == BodyStep::Kind::first && after.kind == BodyStep::Kind::middle) {
+    gap.share = 1;
+    gap.before = before.strike - before.start;
+  } else if (after.kind == BodyStep::Kind::last && before.kind == BodyStep::Kind::middle) {
+    gap.share = 0;
+    gap.after = after.strike - after.start;
+  }
   return gap;
 }
+
+namespace {
+
+// What closes a gap `since` seconds from it on one side.
+void add_correction(const Gap& gap, double since, double width, double inwards, double part,
+                    PoseVector& pose) {
+  const Fading wide = fading(since / width);
+  if (wide.value == 0) return;
+  const double narrow = std::min(width, kVelocityWidth);
+  const double slope = inwards * narrow * fading(since / narrow).slope;
+  const auto rest = pose.size() - kPoseValues;
+  // The body takes its time, the limbs, which swing, do not.
+  pose.head<kPoseValues>() +=
+      part * (wide.value * gap.value.head<kPoseValues>() +
+              inwards * width * wide.slope * gap.velocity.head<kPoseValues>());
+  pose.tail(rest) += part * (wide.value * gap.value.tail(rest) + slope * gap.velocity.tail(rest));
+}
+
+}  // namespace
 
 void joined_pose(const BodyStep& step, double time, const Gap* before, const Gap* after,
                  PoseVector& pose, parametric::BlendedMotion::Scratch& scratch) {
   step.pose(time, pose, scratch);
   if (before != nullptr) {
-    const double since = time - step.start, narrow = std::min(before->after, kVelocityWidth);
-    const double wide = fading(since / before->after).value;
-    if (wide != 0) {
-      pose -=
-          0.5 * before->sign.cwiseProduct(wide * before->value +
-                                          narrow * fading(since / narrow).slope * before->velocity);
-    }
+    // In the signs of the step before.
+    pose = before->sign.cwiseProduct(pose);
+    add_correction(*before, time - step.start, before->after, 1, before->share - 1, pose);
+    pose = before->sign.cwiseProduct(pose);
   }
   if (after != nullptr) {
-    const double left = step.strike - time, narrow = std::min(after->before, kVelocityWidth);
-    const double wide = fading(left / after->before).value;
-    if (wide != 0) {
-      pose += 0.5 * (wide * after->value - narrow * fading(left / narrow).slope * after->velocity);
-    }
+    add_correction(*after, step.strike - time, after->before, -1, after->share, pose);
   }
 }
 
@@ -251,7 +273,8 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
               : is_last           ? BodyStep::Kind::last
                                   : BodyStep::Kind::middle;
   if (Status status = set_times(plan, off, options.speed, step); !status) return status;
-  step.stance_to_world = stance_frame(walker, print, step);
+  step.stance_to_world =
+      stance_frame(walker, print, libraries[at(planned.library)].toe_out(), step);
   if (step.kind != BodyStep::Kind::middle) {
     PoseVector sample;
     auto scratch = step.motion.make_scratch();

@@ -41,6 +41,7 @@ struct Gap {
   PoseVector value, velocity;
   PoseVector sign;               // of quaternions after, by value
   double before = 0, after = 0;  // seconds that the correction takes on either side
+  double share = 0.5;            // of the correction that the step before takes
 };
 
 class BodyMotion {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTipUp = 0.25;  // of the swing, after which the tip of the toes is off the ground
 constexpr double kMatching = 0.16;  // seconds
-constexpr double kRamp = 0.5;       // of the time from strike to flat, and from flat to off
+constexpr double kRamp = 0.35;      // of the time from strike to flat, and from flat to off
 
 // The bump u^a (1 - u)^b, scaled to a peak of 1.
 double bump(double u, int a, int b) {

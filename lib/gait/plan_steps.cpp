@@ -8,6 +8,7 @@
 
 #include "core/numbers.h"
 #include "gait/reach_internal.h"
+#include "motion/ground_frame.h"
 
 namespace krok::gait {
 
@@ -97,6 +98,20 @@ Apart apart(const parametric::Library& library, std::span<const double> a,
   return result;
 }
 
+// Where the body faces above each print: the mean of the feet's headings, so that it does not
+// matter by how much they turn out.
+std::vector<double> facing_of(std::span<const Print> prints) {
+  std::vector<double> result;
+  for (std::size_t k = 0; k < prints.size(); ++k) {
+    const double heading = prints[k].heading;
+    const double before = k == 0 ? 0 : wrapped(prints[k - 1].heading - heading);
+    const double after = k + 1 == prints.size() ? 0 : wrapped(prints[k + 1].heading - heading);
+    const bool is_end = k == 0 || k + 1 == prints.size();
+    result.push_back(heading + (is_end ? 0.5 : 0.25) * (before + after));
+  }
+  return result;
+}
+
 class Planner {
  public:
   Planner(std::span<const StepLibrary> libraries, const Walker& walker, const Terrain& ground,
@@ -110,7 +125,7 @@ class Planner {
   Status add_print(std::size_t number, Print print);
   Status try_print(std::size_t number, const Print& print, GroundedPrint& grounded,
                    PlannedStep& step) const;
-  Status choose(const StepShape& shape, double duration, int number, PlannedStep& step) const;
+  Status choose(const GroundedPrint& to, double duration, int number, PlannedStep& step) const;
   Status adapt(std::size_t number, const Print& wanted, const Error& why);
   Status make_weights(PlannedStep& step) const;
 
@@ -118,7 +133,8 @@ class Planner {
   const Walker& walker_;
   const Terrain& ground_;
   const WalkOptions& options_;
-  int count_ = 0;  // of prints
+  int count_ = 0;               // of prints
+  std::vector<double> facing_;  // radians, [prints]
   PlannedWalk walk_;
 };
 
@@ -148,15 +164,15 @@ Status Planner::check_prints(std::span<const Print> prints) const {
   return {};
 }
 
-Status Planner::choose(const StepShape& shape, double duration, int number,
+Status Planner::choose(const GroundedPrint& to, double duration, int number,
                        PlannedStep& step) const {
-  const FootSide swing = walk_.grounded[static_cast<std::size_t>(number - 1)].side == FootSide::left
-                             ? FootSide::right
-                             : FootSide::left;
+  const GroundedPrint& stance = walk_.grounded[static_cast<std::size_t>(number - 1)];
+  const FootSide swing = to.side;
   double least = std::numeric_limits<double>::infinity();
   Apart far;
   for (std::size_t i = 0; i < libraries_.size(); ++i) {
     const parametric::Synthesiser& steps = libraries_[i].steps(swing);
+    const StepShape shape = shape_of(stance, to, libraries_[i].toe_out());
     auto asked = parameters_for(steps.library(), steps.bounds(), shape, duration);
     auto off = parametric::outside(steps.bounds(), asked);
     if (off.distance >= least) continue;
@@ -184,6 +200,7 @@ Status Planner::try_print(std::size_t number, const Print& print, GroundedPrint&
   auto found = set_on_ground(print, static_cast<int>(number), walker_, ground_, stance.heel.y());
   if (!found) return found.error();
   grounded = *std::move(found);
+  grounded.facing = facing_[number];
   const GroundedPrint& from = walk_.grounded[number - 2];
   if (Status status =
           check_reach(from, stance, grounded, static_cast<int>(number), walker_, ground_);
@@ -192,7 +209,7 @@ Status Planner::try_print(std::size_t number, const Print& print, GroundedPrint&
   }
   const auto& before = walk_.prints[number - 1].time;
   const double duration = print.time && before ? *print.time - *before : 0;
-  return choose(shape_of(stance, grounded), duration, static_cast<int>(number), step);
+  return choose(grounded, duration, static_cast<int>(number), step);
 }
 
 // The nearest print on the straight way from the foot's easiest place that can be stepped on.
@@ -201,13 +218,13 @@ Status Planner::adapt(std::size_t number, const Print& wanted, const Error& why)
   const double side = wanted.side == FootSide::left ? 1 : -1;
   Print easy = wanted;
   const double across = side * 2.2 * walker_.sole_width;
-  const Vec3 ahead(std::sin(stance.heading), 0, std::cos(stance.heading));
+  const Vec3 ahead(std::sin(stance.facing), 0, std::cos(stance.facing));
   const Vec3 to_wanted(wanted.x - stance.heel.x(), 0, wanted.z - stance.heel.z());
   const double along =
       std::clamp(to_wanted.dot(ahead), -0.3, 0.5) * walker_.leg(wanted.side).length;
   easy.x = stance.heel.x() + along * ahead.x() + across * ahead.z();
   easy.z = stance.heel.z() + along * ahead.z() - across * ahead.x();
-  easy.heading = stance.heading;
+  easy.heading = stance.facing;
   easy.height.reset();
   const auto between = [&](double part) {
     Print print = wanted;
@@ -242,6 +259,7 @@ Status Planner::add_print(std::size_t number, Print print) {
     const double from = number == 0 ? print.height.value_or(1e6) : walk_.grounded[0].heel.y();
     auto grounded = set_on_ground(print, static_cast<int>(number), walker_, ground_, from);
     if (!grounded) return grounded.error();
+    grounded->facing = facing_[number];
     walk_.prints.push_back(print);
     walk_.grounded.push_back(*std::move(grounded));
     walk_.moved.push_back(0);
@@ -300,6 +318,7 @@ Status Planner::make_weights(PlannedStep& step) const {
 Result<PlannedWalk> Planner::plan(std::span<const Print> prints) {
   if (Status status = check_prints(prints); !status) return status.error();
   count_ = static_cast<int>(prints.size());
+  facing_ = facing_of(prints);
   for (std::size_t k = 0; k < prints.size(); ++k) {
     if (Status status = add_print(k, prints[k]); !status) return status.error();
   }

@@ -27,6 +27,7 @@ struct GroundedPrint {
   Vec3 forward = Vec3::UnitZ();  // from heel to ball, unit vector
   Vec3 up = Vec3::UnitY();       // normal of the sole, unit vector, perpendicular to `forward`
   double heading = 0;            // radians, of `forward`
+  double facing = 0;             // radians, of the body above it: toes turn out from it
   double strike = 0;             // seconds; 0 for the two prints the walk starts on
   double off = 0;                // seconds, when the toes leave it; the end for the last two
 };

@@ -31,19 +31,19 @@ bool overlap(const StepShape& shape, const Walker& walker, double length) {
 
 }  // namespace
 
-StepShape shape_of(const GroundedPrint& stance, const GroundedPrint& to) {
+StepShape shape_of(const GroundedPrint& stance, const GroundedPrint& to, double toe_out) {
   const double side = to.side == FootSide::left ? 1 : -1;
+  const double toes = stance.facing - side * toe_out;
   const Vec3 way = to.heel - stance.heel;
-  const Vec3 ahead(std::sin(stance.heading), 0, std::cos(stance.heading));
-  const Vec3 left(ahead.z(), 0, -ahead.x());
+  const Vec3 ahead(std::sin(toes), 0, std::cos(toes)), left(ahead.z(), 0, -ahead.x());
   return {way.dot(ahead), side * way.dot(left), way.y(),
-          side * wrapped(to.heading - stance.heading)};
+          side * wrapped(to.facing - stance.facing) + 2 * toe_out};
 }
 
 Status check_reach(const GroundedPrint& from, const GroundedPrint& stance, const GroundedPrint& to,
                    int number, const Walker& walker, const Terrain& ground) {
   const double leg = walker.leg(to.side).length;
-  const StepShape shape = shape_of(stance, to);
+  const StepShape shape = shape_of(stance, to, 0);
   const auto refuse = [&](const char* code, const std::string& what, const std::string& hint) {
     return Error(code, fmt::format("print {}: {}", number + 1, what), hint);
   };
@@ -61,10 +61,11 @@ Status check_reach(const GroundedPrint& from, const GroundedPrint& stance, const
                     metres(std::abs(shape.up)), metres(kHighest * leg)),
         "put prints between, or use --adapt");
   }
-  if (shape.turn > kMaxTurnOut || shape.turn < -kMaxTurnIn) {
+  const double turn = (to.side == FootSide::left ? 1 : -1) * wrapped(to.heading - stance.heading);
+  if (turn > kMaxTurnOut || turn < -kMaxTurnIn) {
     return refuse("walk-heading",
                   fmt::format("the foot turns by {}° against the other one",
-                              readable(std::abs(shape.turn) / kRadiansPerDegree, 3)),
+                              readable(std::abs(turn) / kRadiansPerDegree, 3)),
                   "turn in several steps, or use --adapt");
   }
   if (overlap(shape, walker, walker.leg(to.side).sole.length) || shape.across < -kCrossing * leg) {

@@ -6,12 +6,13 @@
 
 namespace krok::gait {
 
-// A step as the walker sees it, relative to the stance print: metres and radians.
+// A step as a library measures it, relative to the stance foot: metres and radians. `toe_out` is
+// what its feet turn out by: prints may have any.
 struct StepShape {
   double along = 0, across = 0, up = 0;  // across: to the side of the swing foot
   double turn = 0;                       // to that side
 };
-StepShape shape_of(const GroundedPrint& stance, const GroundedPrint& to);
+StepShape shape_of(const GroundedPrint& stance, const GroundedPrint& to, double toe_out);
 
 // Refuses what no one can step. `number`: of the print that is stepped to, from 0. Codes
 // walk-too-long, walk-too-high, walk-crossing, walk-heading, walk-wall.

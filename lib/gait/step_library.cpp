@@ -1,8 +1,32 @@
 #include "gait/step_library.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "gait/mean_step_internal.h"
+#include "motion/ground_frame.h"
 
 namespace krok::gait {
+
+namespace {
+
+constexpr double kShortWay = 0.1;  // metres: of steps on the spot
+
+// The angle between the stance foot, when flat, and the hips' way over the mean step.
+double mean_toe_out(const parametric::Synthesiser& steps) {
+  const parametric::PackedExamples& packed = steps.packed();
+  const parametric::Library& library = steps.library();
+  const Vec3 way = position_of(mean_pose(packed, packed.generic.back()), 0) -
+                   position_of(mean_pose(packed, 0), 0);
+  const PoseVector flat = mean_pose(packed, middle_of_swing(packed, library));
+  const parametric::FootShape& foot = library.foot(library.stance());
+  const Vec3 toes = joint_to_world(packed.skeleton, flat, foot.joint).orientation * foot.forward;
+  if (std::hypot(way.x(), way.z()) < kShortWay) return 0;
+  const double angle = std::atan2(toes.x(), toes.z()) - std::atan2(way.x(), way.z());
+  return (library.stance() == FootSide::left ? 1 : -1) * wrapped(angle);
+}
+
+}  // namespace
 
 Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library library,
                                         const rbf::WeightFunction& weights, const RoleMap& roles) {
@@ -35,6 +59,7 @@ Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library li
     result.synthesisers_[side] =
         std::make_unique<const parametric::Synthesiser>(*std::move(synthesiser));
   }
+  result.toe_out_ = mean_toe_out(result.steps(result.own_));
   return result;
 }
 

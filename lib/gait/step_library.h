@@ -25,6 +25,9 @@ class StepLibrary {
   const RoleMap& roles() const { return roles_; }
   // As fitted, with the swing foot of its examples.
   const parametric::Library& library() const { return *libraries_[static_cast<std::size_t>(own_)]; }
+  // Radians by which the feet of the mean step point outwards from the way it goes.
+  double toe_out() const { return toe_out_; }
+
   // Steps whose swing foot is `swing`.
   const parametric::Synthesiser& steps(FootSide swing) const {
     return *synthesisers_[static_cast<std::size_t>(swing)];
@@ -36,6 +39,7 @@ class StepLibrary {
   std::string name_;
   RoleMap roles_;
   FootSide own_ = FootSide::left;
+  double toe_out_ = 0;
   std::array<std::unique_ptr<const parametric::Library>, 2> libraries_;  // [swing side]
   std::array<std::unique_ptr<const parametric::Synthesiser>, 2> synthesisers_;
 };

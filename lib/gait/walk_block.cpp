@@ -11,17 +11,36 @@ namespace krok::gait {
 
 namespace {
 
-constexpr double kFlat = 2 * kRadiansPerDegree;  // turns of a flat foot less than this
-constexpr double kSpacing = 0.01;                // seconds, of derivatives at the ends of a swing
-constexpr double kLoweringReach = 0.1;           // seconds over which the pelvis is lowered
-constexpr std::size_t kAround = 3;               // steps on either side of a block
-constexpr double kMiddle = 0.4;                  // of the single support: the foot is flat
+constexpr double kSpacing = 0.01;       // seconds, of derivatives at the ends of a swing
+constexpr double kLoweringReach = 0.2;  // seconds over which the pelvis is lowered
+// Steps on either side of a block: what is lowered depends on 0.4 s of them, and they on others.
+constexpr std::size_t kLookedAt = 3, kAround = kLookedAt + 2;
+constexpr double kMiddle = 0.4;  // of the single support: the foot is flat
 
-// When `pitch` comes to kFlat between two frames.
-double crossing(double from, double to, double pitch_from, double pitch_to) {
-  const double a = std::abs(pitch_from), b = std::abs(pitch_to);
-  if (a == b) return to;
-  return from + (to - from) * std::clamp((a - kFlat) / (a - b), 0.0, 1.0);
+struct PitchAt {
+  double time = 0, pitch = 0;
+};
+
+// When a foot that rolls comes to lie flat: `series` goes from the strike to the middle of the
+// stance, or back from the off to it. A foot that is never as flat as all that (captures) is flat
+// when it is nearly so.
+double time_of_flat(std::span<const PitchAt> series) {
+  struct Limit {
+    double pitch, part;  // part of the series within which it is to be
+  };
+  constexpr Limit kLimits[] = {{0.5, 0.5}, {1, 0.6}, {2, 0.8}, {4, 0.95}};  // degrees
+  const double from = series.front().time, to = series.back().time;
+  for (const Limit& limit : kLimits) {
+    const double flat = limit.pitch * kRadiansPerDegree;
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      if (std::abs(series[i].pitch) >= flat) continue;
+      if (std::abs(series[i].time - from) > limit.part * std::abs(to - from)) break;
+      if (i == 0) return from;
+      const double a = std::abs(series[i - 1].pitch), b = std::abs(series[i].pitch);
+      return std::lerp(series[i - 1].time, series[i].time, (a - flat) / (a - b));
+    }
+  }
+  return to;
 }
 
 }  // namespace
@@ -77,9 +96,9 @@ FootPose WalkBlock::blend_foot(std::size_t step, double time, FootSide side,
   joined_pose(now, time, step > 0 ? gap_after(step - 1) : nullptr, gap_after(step), pose, scratch);
   const Leg& leg = parts_.walker.leg(side);
   FootPose foot;
-  foot.foot = parts_.walker.joint_to_world(pose, leg.foot);
+  foot.foot = joint_to_world(*parts_.walker.skeleton, pose, leg.foot);
   foot.toes = leg.toes < 0 ? foot.foot.orientation
-                           : parts_.walker.joint_to_world(pose, leg.toes).orientation;
+                           : joint_to_world(*parts_.walker.skeleton, pose, leg.toes).orientation;
   return in_signs_of(leg, signs, foot);
 }
 
@@ -106,17 +125,15 @@ void WalkBlock::begin_stance(std::size_t print) {
   stance.strike = is_first ? 0 : is_last ? step.strike : step.start;
   stance.flat_from = stance.strike;
   stance.flat_to = stance.off = steps.back().finish + 1;
-  double before = 0, time_before = 0;
+  std::vector<PitchAt> series;
   for (std::size_t i = 0; i < frames.blend.size() && !is_first; ++i) {
     const double time = parts_.time_of(frames.first + static_cast<int>(i));
-    if (time < stance.strike) continue;
-    const double pitch = stance.pitch(frames.blend[i][index_of(side)]);
-    if (std::abs(pitch) < kFlat || time >= middle) {
-      if (time_before > 0) stance.flat_from = crossing(time_before, time, before, pitch);
-      break;
-    }
-    before = pitch;
-    time_before = time;
+    if (time < stance.strike || time > middle) continue;
+    series.push_back({time, stance.pitch(frames.blend[i][index_of(side)])});
+  }
+  if (!series.empty()) {
+    series.front().time = stance.strike;
+    stance.flat_from = time_of_flat(series);
   }
   changed_stance(print) = stance;
 }
@@ -129,23 +146,21 @@ void WalkBlock::finish_stance(std::size_t print) {
   const FootSide side = parts_.side_of(print);
   stance.off = steps[print].off;
   stance.flat_to = stance.off;
-  double after = 0, time_after = 0;
-  // Backwards from the off to the frame that is flat.
+  std::vector<PitchAt> series;
+  const double middle = print == 0 ? 0
+                                   : steps[print - 1].off +
+                                         kMiddle * (steps[print - 1].strike - steps[print - 1].off);
   for (std::size_t s = print + 1; s-- > (print == 0 ? 0 : print - 1);) {
     const SampledStep& frames = sampled(s);
     for (std::size_t i = frames.blend.size(); i-- > 0;) {
       const double time = parts_.time_of(frames.first + static_cast<int>(i));
-      if (time > stance.off) continue;
-      const double pitch = stance.pitch(frames.blend[i][index_of(side)]);
-      if (std::abs(pitch) < kFlat || time <= stance.flat_from) {
-        stance.flat_to = time_after > 0 ? crossing(time_after, time, after, pitch) : time;
-        stance.flat_to = std::max(stance.flat_to, stance.flat_from);
-        return;
-      }
-      after = pitch;
-      time_after = time;
+      if (time > stance.off || time < std::max(middle, stance.flat_from)) continue;
+      series.push_back({time, stance.pitch(frames.blend[i][index_of(side)])});
     }
   }
+  if (series.empty()) return;
+  series.front().time = stance.off;
+  stance.flat_to = std::max(time_of_flat(series), stance.flat_from);
 }
 
 Swing WalkBlock::make_swing(std::size_t step) const {
@@ -253,8 +268,8 @@ void WalkBlock::make(Clip& clip, std::span<MadeStep> steps) {
   for (std::size_t print = low_ == 0 ? 0 : low_ + 1; print < high_ || print < 1; ++print) {
     finish_stance(print);
   }
-  const std::size_t from = first_ - std::min<std::size_t>(first_ - low_, 1);
-  const std::size_t to = std::min(end_ + 1, last);
+  const std::size_t from = first_ - std::min(first_, kLookedAt);
+  const std::size_t to = std::min(end_ + kLookedAt, last);
   for (std::size_t step = from; step < to; ++step) {
     place_feet(step, step >= first_ && step < end_ ? steps[step] : unused);
   }

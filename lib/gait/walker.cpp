@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/index.h"
+#include "gait/mean_step_internal.h"
 #include "math/quaternion.h"
-#include "pose/sample_pose.h"
 
 namespace krok::gait {
 
@@ -18,26 +18,6 @@ constexpr double kRaised = 0.004;      // metres
 constexpr double kEarliestOff = 0.3;   // of the time to the off
 constexpr double kStandingLeg = 0.98;  // of the leg's length
 constexpr double kToeShare = 0.35;  // of the sole, from the ball to the tip, where no end site is
-
-// A pose of the reference motion of a library: the mean of its examples.
-PoseVector mean_pose(const parametric::PackedExamples& packed, double generic) {
-  std::vector<PoseBlock> blocks(at(packed.reference.blocks_per_pose()));
-  std::vector<Transform> local(at(packed.reference.joints));
-  sample_pose(packed.reference, generic, blocks);
-  unpack_pose(blocks, local);
-  PoseVector pose(kPoseValues * packed.reference.joints);
-  for (int j = 0; j < packed.reference.joints; ++j) {
-    position_of(pose, j) = local[at(j)].position;
-    rotation_of(pose, j) = local[at(j)].orientation.coeffs();
-  }
-  return pose;
-}
-
-double middle_of_swing(const parametric::PackedExamples& packed,
-                       const parametric::Library& library) {
-  const auto off = std::ranges::find(library.keytimes, "swing_off") - library.keytimes.begin();
-  return 0.6 * packed.generic[static_cast<std::size_t>(off)] + 0.4 * packed.generic.back();
-}
 
 FootGeometry geometry_of(const parametric::FootShape& shape, const Vec3& up) {
   FootGeometry foot;
@@ -161,19 +141,6 @@ PoseVector standing_pose(const StepLibrary& steps, const Walker& walker) {
 }
 
 }  // namespace
-
-Transform joint_of(const PoseVector& pose, int joint) {
-  Transform result;
-  result.position = position_of(pose, joint);
-  result.orientation.coeffs() = rotation_of(pose, joint).normalized();
-  return result;
-}
-
-Transform Walker::joint_to_world(const PoseVector& pose, int joint) const {
-  Transform result;
-  for (int j = joint; j >= 0; j = skeleton->parents[at(j)]) result = joint_of(pose, j) * result;
-  return result;
-}
 
 void Walker::to_world(const PoseVector& pose, std::span<Transform> joint_to_world) const {
   for (std::size_t j = 0; j < joint_to_world.size(); ++j) {
