@@ -21,7 +21,16 @@ Vec3 ahead(double heading) {
   return {std::sin(heading), 0, std::cos(heading)};
 }
 
-Error no_ground(int number, double x, double z) {
+// Nothing to step on at (x, z) from a height of `from` metres: too high, or not there.
+Error no_ground(const Terrain& ground, int number, double x, double z, double from) {
+  const auto above = ground.at(x, z);
+  if (above) {
+    return {"walk-too-high",
+            fmt::format("print {}: the ground at x {} m, z {} m is {} m higher than the other foot",
+                        number + 1, readable(x, 4), readable(z, 4),
+                        readable(above->height - from, 3)),
+            "lead the way around it, or put steps before it"};
+  }
   return {"walk-ground",
           fmt::format("print {}: there is no ground at x {} m, z {} m", number + 1, readable(x, 4),
                       readable(z, 4)),
@@ -42,7 +51,7 @@ Result<GroundedPrint> set_on_ground(const Print& print, int number, const Walker
   result.side = print.side;
   result.heading = print.heading;
   const auto at_heel = ground_near(ground, print.x, print.z, from, leg.length);
-  if (!at_heel && !print.height) return no_ground(number, print.x, print.z);
+  if (!at_heel && !print.height) return no_ground(ground, number, print.x, print.z, from);
   const double height = print.height ? *print.height : at_heel->height;
   result.heel = {print.x, height, print.z};
   const Vec3 way = ahead(print.heading), left = {way.z(), 0, -way.x()};
@@ -57,10 +66,13 @@ Result<GroundedPrint> set_on_ground(const Print& print, int number, const Walker
   const double length = leg.sole.length > 0 ? leg.sole.length : kShortSole;
   double level = length;
   for (int round = 0; round < kRounds; ++round) {
-    const auto ball = height_at(result.heel + level * way);
-    if (!ball)
-      return no_ground(number, result.heel.x() + level * way.x(),
-                       result.heel.z() + level * way.z());
+    auto ball = height_at(result.heel + level * way);
+    if (!ball) {
+      const Vec3 there = result.heel + level * way;
+      const auto above = ground.at(there.x(), there.z());
+      if (!above) return no_ground(ground, number, there.x(), there.z(), height);
+      ball = above->height;
+    }
     const double slope = std::atan2(*ball - height, level);
     if (std::abs(slope) > kSteepest) {
       return Error("walk-too-steep",

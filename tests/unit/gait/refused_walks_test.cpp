@@ -1,0 +1,141 @@
+// Footprints that no one can walk along are refused, with the number of the print. If these fail,
+// krok-walk makes a motion that looks broken and exits with 0.
+
+#include <gtest/gtest.h>
+
+#include "unit/gait/walkers.h"
+
+namespace krok::gait {
+namespace {
+
+using test::Ground;
+using test::prints_of;
+using test::walking;
+
+const Ground kLevel([](double, double) { return 0.0; });
+
+struct Refused {
+  std::string name, code;
+  std::function<void(std::vector<Print>&)> spoil;
+  std::function<double(double, double)> height;
+  int number = 0;  // of the print in the message; 0: none
+};
+
+class RefusedWalk : public testing::TestWithParam<Refused> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Prints, RefusedWalk,
+    testing::Values(
+        Refused{"TooFew", "walk-prints", [](auto& prints) { prints.resize(2); }, {}},
+        Refused{"SameSideTwice",
+                "walk-prints",
+                [](auto& prints) { prints[3].side = prints[2].side; },
+                {},
+                4},
+        Refused{"NotANumber", "walk-prints", [](auto& prints) { prints[2].x = NAN; }, {}, 3},
+        Refused{"BeyondTheWorld", "walk-prints", [](auto& prints) { prints[2].z = 1e300; }, {}, 3},
+        Refused{"TooLong", "walk-too-long", [](auto& prints) { prints[4].z += 1.2; }, {}, 5},
+        Refused{"TooHigh", "walk-too-high", [](auto&) {},
+                [](double, double z) { return z > 1.3 ? 0.7 : 0.0; }, 0},
+        Refused{"IntoAPit", "walk-too-high", [](auto&) {},
+                [](double, double z) { return z > 1.3 ? -0.9 : 0.0; }, 0},
+        Refused{"TooSteep", "walk-too-steep", [](auto&) {},
+                [](double, double z) { return z > 1 ? z - 1 : 0.0; }, 0},
+        Refused{"AcrossAnEdge", "walk-too-steep", [](auto& prints) { prints[4].z = 1.9; },
+                [](double, double z) { return z > 2 ? 0.3 : 0.0; }, 5},
+        Refused{"Hole", "walk-ground", [](auto&) {},
+                [](double, double z) { return z > 1.3 && z < 1.7 ? NAN : 0.0; }, 0},
+        Refused{"Crossing", "walk-crossing", [](auto& prints) { prints[4].x -= 0.5; }, {}, 5},
+        Refused{"OnTheOtherFoot",
+                "walk-crossing",
+                [](auto& prints) {
+                  prints[4].x = prints[3].x;
+                  prints[4].z = prints[3].z + 0.05;
+                },
+                {},
+                5},
+        Refused{"FootTurnedBack",
+                "walk-heading",
+                [](auto& prints) { prints[4].heading += kPi; },
+                {},
+                5},
+        Refused{"BackInTime",
+                "walk-time",
+                [](auto& prints) {
+                  prints[3].time = 2;
+                  prints[4].time = 1;
+                },
+                {},
+                5},
+        Refused{"AtOnce",
+                "walk-time",
+                [](auto& prints) {
+                  prints[3].time = 2;
+                  prints[4].time = 2.05;
+                },
+                {},
+                5}),
+    [](const auto& given) { return given.param.name; });
+
+TEST_P(RefusedWalk, NamesThePrintAndTheReason) {
+  std::vector<Print> prints = prints_of({.steps = 6});
+  GetParam().spoil(prints);
+  const Ground ground(GetParam().height ? GetParam().height : [](double, double) { return 0.0; });
+  const auto made = walk(walking(), prints, ground, {});
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, GetParam().code) << made.error().message;
+  if (GetParam().number > 0) {
+    const std::string number = "print " + std::to_string(GetParam().number) + ":";
+    EXPECT_NE(made.error().message.find(number), std::string::npos) << made.error().message;
+  }
+}
+
+// What is too far is moved as far as the walker can reach, and said.
+TEST(AdaptedWalk, TakesTheNearestPrintThatCanBeReached) {
+  std::vector<Print> prints = prints_of({.steps = 6});
+  for (std::size_t k = 5; k < prints.size(); ++k) prints[k].z += 0.8;
+  ASSERT_FALSE(walk(walking(), prints, kLevel, {}).ok());
+  const auto made = walk(walking(), prints, kLevel, {.adapt = true});
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  double moved = 0;
+  int count = 0;
+  for (const StepReport& step : made->details.steps) {
+    if (step.moved == 0) continue;
+    ++count;
+    EXPECT_FALSE(step.why_moved.empty());
+    moved = std::max(moved, step.moved);
+  }
+  EXPECT_GE(count, 1);
+  EXPECT_GT(moved, 0.1);
+  EXPECT_LT(moved, 0.8);
+}
+
+// Times of prints are kept; others follow at the library's pace.
+TEST(TimedWalk, StrikesWhenAsked) {
+  std::vector<Print> prints = prints_of({.steps = 6});
+  prints[2].time = 1.5;
+  prints[4].time = 2.9;
+  const auto made = walk(walking(), prints, kLevel, {});
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  EXPECT_NEAR(made->details.prints[2].strike, 1.5, 1e-9);
+  EXPECT_NEAR(made->details.prints[4].strike, 2.9, 1e-9);
+}
+
+TEST(FasterWalk, TakesLessTime) {
+  const auto prints = prints_of({.steps = 6});
+  const auto usual = walk(walking(), prints, kLevel, {});
+  const auto fast = walk(walking(), prints, kLevel, {.speed = 2});
+  ASSERT_TRUE(usual.ok() && fast.ok());
+  EXPECT_NEAR(fast->details.prints[5].strike, usual->details.prints[5].strike / 2, 1e-6);
+  EXPECT_EQ(walk(walking(), prints, kLevel, {.speed = 0}).error().code, "walk-time");
+}
+
+TEST(ShortWalk, OfOneStepGoesFromStandingToStanding) {
+  const auto prints = prints_of({.steps = 0});
+  const auto made = walk(walking(), prints, kLevel, {});
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  EXPECT_GT(made->clip.frame_count(), 10);
+}
+
+}  // namespace
+}  // namespace krok::gait
