@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <vector>
 
+#include "core/text.h"
 #include "formats/io/readers_internal.h"
 
 namespace krok::io {
@@ -11,7 +14,7 @@ namespace {
 
 using registry::Kind;
 
-constexpr auto kFormats = std::to_array<Format>({
+constexpr auto kOwnFormats = std::to_array<Format>({
     {.kind = Kind::anim, .read_motion = read_anim},
     {.kind = Kind::bvh, .open_capture = open_bvh},
     {.kind = Kind::amc, .open_capture = open_amc},
@@ -32,19 +35,38 @@ constexpr auto kFormats = std::to_array<Format>({
 
 constexpr Format kNone;
 
+std::vector<Format>& table() {
+  static std::vector<Format> rows(kOwnFormats.begin(), kOwnFormats.end());
+  return rows;
+}
+
 }  // namespace
 
 std::span<const Format> formats() {
-  return kFormats;
+  return table();
+}
+
+void add_format(const Format& format) {
+  table().push_back(format);
 }
 
 const Format& format_of(Kind kind) {
-  const auto found = std::ranges::find(kFormats, kind, &Format::kind);
-  return found == kFormats.end() ? kNone : *found;
+  if (kind == Kind::unknown) return kNone;
+  const auto found = std::ranges::find(table(), kind, &Format::kind);
+  return found == table().end() ? kNone : *found;
 }
 
 const Format& format_of(const InputFile& file) {
-  return format_of(registry::identify(file.path(), file.bytes()));
+  const Kind kind = registry::identify(file.path(), file.bytes());
+  if (kind != Kind::unknown) return format_of(kind);
+  for (const Format& format : table()) {
+    if (format.recognises != nullptr && format.recognises(file.bytes())) return format;
+  }
+  const std::string ending = extension(file.path());
+  for (const Format& format : table()) {
+    if (!format.ending.empty() && ending == "." + std::string(format.ending)) return format;
+  }
+  return kNone;
 }
 
 }  // namespace krok::io

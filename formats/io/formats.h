@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <string_view>
 
 #include "formats/io/inputs.h"
 #include "formats/io/open_capture.h"
@@ -19,6 +21,11 @@ namespace krok::io {
 struct Format {
   registry::Kind kind = registry::Kind::unknown;
 
+  // For formats without a kind in formats/registry: the ending, in lower case without a dot, and
+  // whether a file's bytes are such. A known kind goes before.
+  std::string_view ending = {};
+  bool (*recognises)(std::span<const std::byte> content) = nullptr;
+
   // Null for what the format cannot hold. The file is open already and of this kind.
   Result<Clip> (*read_motion)(const InputFile& file, Inputs& inputs,
                               const MotionOptions& options) = nullptr;
@@ -32,6 +39,9 @@ struct Format {
 };
 
 std::span<const Format> formats();
+
+// Adds a row for a program's own format, with an ending. Not while files are being opened.
+void add_format(const Format& format);
 
 // The row of a kind; one without any function for kinds that are not in the table.
 const Format& format_of(registry::Kind kind);

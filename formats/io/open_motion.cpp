@@ -43,7 +43,7 @@ Result<Clip> open_motion(const InputFile& file, Inputs& inputs, const MotionOpti
     return Error("usage", "is a skeleton without a motion", "give the .amc file beside it")
         .in_file(file.path());
   }
-  const Format& format = format_of(kind);
+  const Format& format = format_of(file);
   if (format.open_capture == nullptr) {
     return (format.read_motion != nullptr ? format.read_motion : read_anim)(file, inputs, options);
   }

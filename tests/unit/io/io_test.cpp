@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <sstream>
 
 #include "formats/io/formats.h"
 #include "formats/io/open_scene.h"
@@ -38,6 +39,7 @@ using OpenFiles = test::FolderTest;
 TEST(Formats, EachRowReadsSomethingAndHasAName) {
   std::set<Kind> kinds;
   for (const Format& format : formats()) {
+    if (format.kind == Kind::unknown) continue;  // added by another test
     EXPECT_TRUE(kinds.insert(format.kind).second) << registry::kind_name(format.kind);
     EXPECT_NE(registry::kind_name(format.kind), "unknown");
     EXPECT_TRUE(format.read_motion || format.open_capture || format.read_scene ||
@@ -49,6 +51,52 @@ TEST(Formats, EachRowReadsSomethingAndHasAName) {
   }
   EXPECT_EQ(format_of(Kind::unknown).read_motion, nullptr);
   EXPECT_EQ(format_of(Kind::unknown).open_capture, nullptr);
+}
+
+// A made-up format: "dots", then the height of a single joint in each frame.
+Result<Clip> read_dots(const InputFile& file, Inputs& /*inputs*/,
+                       const MotionOptions& /*options*/) {
+  Clip clip;
+  clip.skeleton.add("Dot", -1, {});
+  std::istringstream text{std::string(file.text())};
+  std::string word;
+  text >> word;
+  for (float height = 0; text >> height;) {
+    clip.positions.emplace_back(0.0F, height, 0.0F);
+    clip.orientations.push_back(Quatf::Identity());
+  }
+  if (Status status = check(clip); !status) return std::move(status).error().in_file(file.path());
+  return clip;
+}
+
+// A new format is a reader and a row: what opens motions takes it by its content, or by its ending.
+TEST_F(OpenFiles, AFormatThatIsAddedIsReadLikeAnyOther) {
+  put("a.txt", "dots 1 2 3");
+  put("b.dots", "# 1 2");
+  RecordedInputs inputs;
+  ASSERT_FALSE(open_motion(path("a.txt"), inputs));
+  add_format({.ending = "dots",
+              .recognises =
+                  [](std::span<const std::byte> content) {
+                    return std::string_view(reinterpret_cast<const char*>(content.data()),
+                                            content.size())
+                        .starts_with("dots");
+                  },
+              .read_motion = read_dots});
+  const auto by_content = open_motion(path("a.txt"), inputs);
+  ASSERT_TRUE(by_content) << by_content.error().message;
+  EXPECT_EQ(by_content->frame_count(), 3);
+  EXPECT_EQ(by_content->positions[2].y(), 3);
+  const auto by_ending = open_motion(path("b.dots"), inputs);
+  ASSERT_TRUE(by_ending) << by_ending.error().message;
+  int frames = 0;
+  ASSERT_TRUE(stream_motion(path("a.txt"), inputs, [&](const FrameSource& source) -> Status {
+    frames = source.frame_count;
+    return {};
+  }));
+  EXPECT_EQ(frames, 3);
+  // What is known goes before what a program added.
+  EXPECT_GT(open_motion(capture(), inputs)->frame_count(), 3);
 }
 
 TEST(Formats, AStreamHasTheFramesOfTheClip) {
