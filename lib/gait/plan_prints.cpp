@@ -1,0 +1,344 @@
+#include "gait/plan_prints.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/numbers.h"
+#include "gait/sole_place_internal.h"
+
+namespace krok::gait {
+
+namespace {
+
+constexpr double kPlanGrid = 0.01;       // metres, of places for feet on uneven ground
+constexpr double kMostPlanPlaces = 5e6;  // of them
+constexpr double kStorey = 0.6;          // metres: what is higher than this is overhead
+constexpr double kEndRange = 0.4;        // metres by which the last prints may be short of the end
+constexpr double kToesOutCost = 0.3;     // of a step's length squared
+constexpr double kShortOfEndCost = 4;    // per metre
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+FootSide other_foot(FootSide side) {
+  return side == FootSide::left ? FootSide::right : FootSide::left;
+}
+
+Status check_plan_options(const PlanOptions& options) {
+  const auto wrong = [](const char* what) {
+    return Error("plan-options", what, "check step length, width and turn");
+  };
+  if (!(options.least_step > 0.01 && options.least_step <= options.step_length &&
+        options.step_length <= options.most_step && options.most_step < 10)) {
+    return wrong(
+        "steps must be above 1 cm, the least at most as long as asked, and the most at least");
+  }
+  if (!(options.step_width >= 0 && options.step_width < 2))
+    return wrong("the step width is not 0 to 2 m");
+  if (!(options.most_turn > 0.01 && options.most_rise > 0))
+    return wrong("turn and rise must be above 0");
+  if (!(options.heel_to_ball >= 0 && options.heel_to_toes >= options.heel_to_ball &&
+        options.sole_width >= 0 && options.heel_to_toes < 1)) {
+    return wrong("the sole's measures are not those of a foot");
+  }
+  return {};
+}
+
+// A micrometre and a millionth of a degree, as files have them, so that prints that were saved and
+// read again are the same.
+Print rounded(Print print) {
+  constexpr double kUnits = 1e6;
+  print.x = std::round(print.x * kUnits) / kUnits;
+  print.z = std::round(print.z * kUnits) / kUnits;
+  const double degrees = std::remainder(print.heading, 2 * kPi) / kRadiansPerDegree;
+  print.heading = std::round(degrees * kUnits) / kUnits * kRadiansPerDegree;
+  if (print.time) print.time = std::round(*print.time * kUnits) / kUnits;
+  return print;
+}
+
+// A foot on a place of the grid.
+struct PlaceState {
+  SoleGround sole;
+  double cost = kNever;  // of the steps up to here
+  int from = -1;         // place of the foot before
+};
+using PlaceStates = std::array<std::vector<PlaceState>, 2>;  // [FootSide][place]
+
+class PrintPlanner {
+ public:
+  PrintPlanner(const Path& path, const Terrain& ground, const PlanOptions& options)
+      : path_(path), ground_(ground), options_(options) {}
+
+  Result<PlannedPrints> plan() {
+    if (Status status = check_plan_options(options_); !status) return status.error();
+    count_steps();
+    if (Status status = follow_ground(); !status) return status.error();
+    std::vector<double> places = even_places();
+    PlannedPrints result;
+    if (!all_fit(places)) {
+      auto fitted = fitted_places();
+      if (!fitted) return fitted.error();
+      places = *std::move(fitted);
+      result.fitted_to_ground = true;
+    }
+    result.prints = prints_at(places);
+    return result;
+  }
+
+ private:
+  // Steps from the begin to places every spacing_: where the way is straight, one in step_length.
+  void count_steps();
+  Status follow_ground();
+  double ground_near(double length) const;
+  double length_of(std::size_t place) const {
+    return std::min(static_cast<double>(place) * spacing_, path_.length());
+  }
+  std::vector<double> even_places() const;
+  Print print_at(double length, FootSide side) const;
+  bool all_fit(const std::vector<double>& places) const;
+  PlaceStates possible_places() const;
+  // Sets the costs of all places; the farthest that can be reached.
+  std::size_t find_ways(PlaceStates& states) const;
+  struct End {
+    double cost = kNever;
+    std::size_t place = 0, side = 0;
+  };
+  End best_end(const PlaceStates& states) const;
+  Result<std::vector<double>> fitted_places() const;
+  std::vector<Print> prints_at(const std::vector<double>& places) const;
+
+  const Path& path_;
+  const Terrain& ground_;
+  const PlanOptions& options_;
+  double spacing_ = kPlanGrid;
+  std::vector<double> steps_;    // at i * spacing_
+  std::vector<double> heights_;  // of the ground under the path, the same
+};
+
+void PrintPlanner::count_steps() {
+  spacing_ = std::max(kPlanGrid, path_.length() / kMostPlanPlaces);
+  const auto count = static_cast<std::size_t>(std::ceil(path_.length() / spacing_)) + 1;
+  steps_.assign(count, 0);
+  for (std::size_t i = 1; i < count; ++i) {
+    const double width = std::min(spacing_, path_.length() - static_cast<double>(i - 1) * spacing_);
+    const double turn = std::abs(path_.at(static_cast<double>(i) * spacing_).heading -
+                                 path_.at(static_cast<double>(i - 1) * spacing_).heading);
+    steps_[i] = steps_[i - 1] + std::max(width / options_.step_length, turn / options_.most_turn);
+  }
+}
+
+Status PrintPlanner::follow_ground() {
+  const PathPlace begin = path_.at(0);
+  // Prints stand beside the path: over a gap in the middle, the ground last seen counts.
+  auto found = ground_.at(begin.x, begin.z);
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    const Print print = print_at(0, side);
+    if (!found) found = ground_.at(print.x, print.z);
+  }
+  if (!found) {
+    return Error("plan-ground",
+                 fmt::format("there is no ground at the begin of the path, x {} m, z {} m",
+                             readable(begin.x, 4), readable(begin.z, 4)),
+                 "move the path, or give a larger ground");
+  }
+  heights_.resize(steps_.size());
+  double height = found->height;
+  for (std::size_t i = 0; i < heights_.size(); ++i) {
+    const PathPlace place = path_.at(static_cast<double>(i) * spacing_);
+    const auto here = ground_.at(place.x, place.z, height + kStorey);
+    if (here && here->height > height - 2 * kStorey) height = here->height;
+    heights_[i] = height;
+  }
+  return {};
+}
+
+double PrintPlanner::ground_near(double length) const {
+  return heights_[std::min(static_cast<std::size_t>(length / spacing_ + 0.5), heights_.size() - 1)];
+}
+
+std::vector<double> PrintPlanner::even_places() const {
+  const double all = steps_.back();
+  double count = std::max(1.0, std::round(all));
+  // Fewer steps than counted are longer ones, and turn more where that is what limits them.
+  const bool turns = all > path_.length() / options_.step_length + 0.01;
+  if (turns || all / count * options_.step_length > options_.most_step) {
+    count = std::ceil(all - 1e-9);
+  }
+  std::vector<double> places;
+  std::size_t i = 0;
+  for (int k = 1; k < static_cast<int>(count); ++k) {
+    const double wanted = all * k / count;
+    while (i + 2 < steps_.size() && steps_[i + 1] < wanted) ++i;
+    const double part = (wanted - steps_[i]) / std::max(steps_[i + 1] - steps_[i], 1e-12);
+    places.push_back((static_cast<double>(i) + std::clamp(part, 0.0, 1.0)) * spacing_);
+  }
+  places.push_back(path_.length());
+  return places;
+}
+
+Print PrintPlanner::print_at(double length, FootSide side) const {
+  const PathPlace place = path_.at(length);
+  const double out = (side == FootSide::left ? 0.5 : -0.5) * options_.step_width;
+  Print print;
+  print.side = side;
+  print.x = place.x + out * std::cos(place.heading);
+  print.z = place.z - out * std::sin(place.heading);
+  print.heading = place.heading + options_.toe_out[static_cast<std::size_t>(side)];
+  if (length > 0) print.time = place.time;
+  return print;
+}
+
+bool PrintPlanner::all_fit(const std::vector<double>& places) const {
+  FootSide side = other_foot(options_.first);
+  const auto under = [&](double length, FootSide foot) {
+    return ground_under_sole(print_at(length, foot), ground_near(length), ground_, options_);
+  };
+  SoleGround last = under(0, side);
+  if (last.place != SolePlace::whole || under(0, options_.first).place != SolePlace::whole) {
+    return false;
+  }
+  for (const double place : places) {
+    side = other_foot(side);
+    const SoleGround next = under(place, side);
+    if (next.place != SolePlace::whole) return false;
+    if (std::abs(next.height - last.height) > options_.most_rise) return false;
+    last = next;
+  }
+  return under(places.back(), other_foot(side)).place == SolePlace::whole;
+}
+
+PlaceStates PrintPlanner::possible_places() const {
+  PlaceStates states;
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    auto& of_side = states[static_cast<std::size_t>(side)];
+    of_side.resize(steps_.size());
+    for (std::size_t i = 0; i < of_side.size(); ++i) {
+      const double length = length_of(i);
+      of_side[i].sole =
+          ground_under_sole(print_at(length, side), ground_near(length), ground_, options_);
+    }
+  }
+  return states;
+}
+
+std::size_t PrintPlanner::find_ways(PlaceStates& states) const {
+  const auto reach = static_cast<std::size_t>(std::ceil(options_.most_step / spacing_));
+  std::size_t farthest = 0;
+  for (std::size_t i = 1; i < steps_.size(); ++i) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      PlaceState& state = states[side][i];
+      if (state.sole.place == SolePlace::none) continue;
+      const double toes = state.sole.place == SolePlace::whole ? 0 : kToesOutCost;
+      for (std::size_t j = i > reach ? i - reach : 0; j < i; ++j) {
+        const PlaceState& before = states[1 - side][j];
+        const double step = length_of(i) - length_of(j);
+        if (before.cost == kNever || step < options_.least_step || step > options_.most_step ||
+            std::abs(state.sole.height - before.sole.height) > options_.most_rise) {
+          continue;
+        }
+        const double off = steps_[i] - steps_[j] - 1;
+        const double cost = before.cost + off * off + toes;
+        if (cost >= state.cost) continue;
+        state.cost = cost;
+        state.from = static_cast<int>(j);
+        farthest = i;
+      }
+    }
+  }
+  return farthest;
+}
+
+PrintPlanner::End PrintPlanner::best_end(const PlaceStates& states) const {
+  End best;
+  for (std::size_t i = steps_.size(); i-- > 1;) {
+    const double missing = path_.length() - length_of(i);
+    if (missing > kEndRange) break;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const PlaceState& beside = states[1 - side][i];
+      const double cost = states[side][i].cost + kShortOfEndCost * missing;
+      const double rise = std::abs(beside.sole.height - states[side][i].sole.height);
+      if (!(cost < best.cost) || beside.sole.place == SolePlace::none ||
+          rise > options_.most_rise) {
+        continue;
+      }
+      best = {cost, i, side};
+    }
+  }
+  return best;
+}
+
+// The cheapest sequence of places by dynamic programming: a state is a foot on a place of the grid.
+Result<std::vector<double>> PrintPlanner::fitted_places() const {
+  PlaceStates states = possible_places();
+  for (const auto& side : states) {
+    if (side[0].sole.place != SolePlace::none) continue;
+    const PathPlace begin = path_.at(0);
+    return Error(
+        "plan-ground",
+        fmt::format("a foot would stand on an edge or over a hole at the begin of the path, "
+                    "x {} m, z {} m",
+                    readable(begin.x, 4), readable(begin.z, 4)),
+        "begin the path elsewhere");
+  }
+  states[static_cast<std::size_t>(other_foot(options_.first))][0].cost = 0;
+  const std::size_t farthest = find_ways(states);
+  const End end = best_end(states);
+  if (end.cost == kNever) {
+    const PathPlace place = path_.at(length_of(farthest));
+    return Error(
+        "plan-ground",
+        fmt::format(
+            "no place for a foot follows x {} m, z {} m ({} m along the path): within {} to "
+            "{} m a sole would lie across an edge or over a hole, or the step be higher than "
+            "{} m",
+            readable(place.x, 4), readable(place.z, 4), readable(length_of(farthest), 4),
+            readable(options_.least_step), readable(options_.most_step),
+            readable(options_.most_rise)),
+        "lead the path elsewhere, or give footprints");
+  }
+  std::vector<double> places;
+  std::size_t side = end.side;
+  for (std::size_t i = end.place; i > 0; side = 1 - side) {
+    places.push_back(length_of(i));
+    i = static_cast<std::size_t>(states[side][i].from);
+  }
+  std::reverse(places.begin(), places.end());
+  return places;
+}
+
+std::vector<Print> PrintPlanner::prints_at(const std::vector<double>& places) const {
+  std::vector<Print> prints = {print_at(0, options_.first),
+                               print_at(0, other_foot(options_.first))};
+  FootSide side = options_.first;
+  for (const double place : places) {
+    prints.push_back(print_at(place, side));
+    side = other_foot(side);
+  }
+  prints.push_back(print_at(places.back(), side));
+  // The last foot is set beside the other one: later, but the path does not say when.
+  prints.back().time.reset();
+  std::size_t index = 0;
+  for (Print& print : prints) {
+    const double length = index < 2 ? 0 : places[std::min(index - 2, places.size() - 1)];
+    const double near = ground_near(length);
+    print = rounded(print);
+    // Where something is overhead, the print says on which storey it is.
+    const auto top = ground_.at(print.x, print.z);
+    const SoleGround sole = ground_under_sole(print, near, ground_, options_);
+    if (top && sole.place != SolePlace::none && top->height > sole.height + 1e-9) {
+      print.height = sole.height;
+    }
+    ++index;
+  }
+  return prints;
+}
+
+}  // namespace
+
+Result<PlannedPrints> plan_prints(const Path& path, const Terrain& ground,
+                                  const PlanOptions& options) {
+  return PrintPlanner(path, ground, options).plan();
+}
+
+}  // namespace krok::gait
