@@ -25,11 +25,11 @@ Vec3 ahead(double heading) {
 Error no_ground(const Terrain& ground, int number, double x, double z, double from) {
   const auto above = ground.at(x, z);
   if (above) {
-    return {"walk-too-high",
-            fmt::format("print {}: the ground at x {} m, z {} m is {} m higher than the other foot",
-                        number + 1, readable(x, 4), readable(z, 4),
-                        readable(above->height - from, 3)),
-            "lead the way around it, or put steps before it"};
+    return {
+        "walk-too-high",
+        fmt::format("print {}: the ground at x {} m, z {} m is {} m higher than the other foot",
+                    number + 1, readable(x, 4), readable(z, 4), readable(above->height - from, 3)),
+        "lead the way around it, or put steps before it"};
   }
   return {"walk-ground",
           fmt::format("print {}: there is no ground at x {} m, z {} m", number + 1, readable(x, 4),

@@ -24,6 +24,35 @@ std::string metres(double value) {
   return readable(value, 3) + " m";
 }
 
+// Nothing solid between where the body is before the step and after it, up to the head, and nothing
+// that the swing foot cannot be lifted over.
+Status check_way(const GroundedPrint& from, const GroundedPrint& stance, const GroundedPrint& to,
+                 int number, double leg, const Terrain& ground) {
+  const double top = std::max({from.heel.y(), stance.heel.y(), to.heel.y()});
+  const auto wall = [&](const Vec3& at) {
+    return Error("walk-wall",
+                 fmt::format("print {}: a wall is in the way at x {} m, z {} m", number + 1,
+                             readable(at.x(), 3), readable(at.z(), 3)),
+                 "lead the way around it");
+  };
+  for (const GroundedPrint* start : {&from, &stance}) {
+    for (int i = 1; i < kSamples; ++i) {
+      const Vec3 point = start->heel + (to.heel - start->heel) * (double(i) / kSamples);
+      // Higher than a step, and nothing to walk on below it.
+      const auto found = ground.at(point.x(), point.z());
+      if (!found || found->height < top + kWall * leg) continue;
+      if (!ground.at(point.x(), point.z(), top + kWall * leg)) return wall(point);
+    }
+  }
+  const Vec3 before = 0.5 * (from.heel + stance.heel), after = 0.5 * (stance.heel + to.heel);
+  for (const double height : {0.8, 1.2, 1.6, 1.9}) {  // of the leg
+    const Vec3 start(before.x(), top + height * leg, before.z());
+    const Vec3 end(after.x(), top + height * leg, after.z());
+    if (ground.is_blocked(start, end)) return wall(after);
+  }
+  return {};
+}
+
 bool overlap(const StepShape& shape, const Walker& walker, double length) {
   const double sole = length > 0 ? 1.3 * length : 0.2;
   return std::abs(shape.along) < sole && shape.across < 0.5 * walker.sole_width;
@@ -75,23 +104,7 @@ Status check_reach(const GroundedPrint& from, const GroundedPrint& stance, const
                       : "the foot would step on the other one",
                   "move the print to its own side, or use --adapt");
   }
-  const double top = std::max({from.heel.y(), stance.heel.y(), to.heel.y()});
-  for (const GroundedPrint* start : {&from, &stance}) {
-    for (int i = 1; i < kSamples; ++i) {
-      const Vec3 point = start->heel + (to.heel - start->heel) * (double(i) / kSamples);
-      // From high above the walker: a wall reaches over the head as well as a low one.
-      const auto found = ground.at(point.x(), point.z(), top + 2 * leg);
-      if (!found || found->height < top + kWall * leg) continue;
-      const auto below = ground_near(ground, point.x(), point.z(), top, leg);
-      if (below && below->height > top - 2 * leg) continue;  // something overhead, ground below
-      return refuse(
-          "walk-wall",
-          fmt::format("a wall {} high is in the way at x {} m, z {} m", metres(found->height - top),
-                      readable(point.x(), 3), readable(point.z(), 3)),
-          "lead the way around it");
-    }
-  }
-  return {};
+  return check_way(from, stance, to, number, leg, ground);
 }
 
 }  // namespace krok::gait

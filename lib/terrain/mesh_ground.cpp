@@ -42,7 +42,9 @@ struct Search : RTCIntersectContext {
 
 class MeshGround final : public Terrain {
  public:
-  explicit MeshGround(std::vector<GroundTriangle> triangles) : triangles_(std::move(triangles)) {
+  // `all`: the faces that do not carry, too.
+  MeshGround(std::vector<GroundTriangle> triangles, std::vector<GroundTriangle> all)
+      : triangles_(std::move(triangles)), solid_(std::move(all)) {
     Eigen::AlignedBox3d box;
     for (const GroundTriangle& triangle : triangles_) {
       for (const Vec3& corner : triangle) box.extend(corner);
@@ -56,10 +58,25 @@ class MeshGround final : public Terrain {
   MeshGround& operator=(const MeshGround&) = delete;
   ~MeshGround() override {
     if (scene_ != nullptr) rtcReleaseScene(scene_);
+    if (solid_scene_ != nullptr) rtcReleaseScene(solid_scene_);
     if (device_ != nullptr) rtcReleaseDevice(device_);
   }
 
   bool build();
+
+  bool is_blocked(const Vec3& from, const Vec3& to) const override {
+    if (!from.allFinite() || !to.allFinite()) return false;
+    RTCRay ray{};
+    const Vec3f origin = (from - centre_).cast<float>(), way = (to - from).cast<float>();
+    ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
+    ray.dir_x = way.x(), ray.dir_y = way.y(), ray.dir_z = way.z();
+    ray.tfar = 1;
+    ray.mask = 0xFFFFFFFFu;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(solid_scene_, &context, &ray);
+    return ray.tfar < 0;
+  }
 
   std::optional<GroundPoint> at(double x, double z, double below) const override {
     if (!std::isfinite(x) || !std::isfinite(z) || !(below >= bottom_)) return std::nullopt;
@@ -81,15 +98,43 @@ class MeshGround final : public Terrain {
   }
 
  private:
+  bool build_solid();
   void look_at(unsigned index, RTCRay& ray, Found& found) const;
 
   std::vector<GroundTriangle> triangles_;
+  std::vector<GroundTriangle> solid_;  // only while building
   Vec3 centre_;
   double top_ = 0, bottom_ = 0;
   double touching_ = 0;
   RTCDevice device_ = nullptr;
-  RTCScene scene_ = nullptr;
+  RTCScene scene_ = nullptr, solid_scene_ = nullptr;
 };
+
+// Plain triangles, for rays in any direction.
+bool MeshGround::build_solid() {
+  solid_scene_ = rtcNewScene(device_);
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                              RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                              3 * solid_.size()));
+  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), solid_.size()));
+  if (corners == nullptr || indices == nullptr) return false;
+  unsigned next = 0;
+  for (const GroundTriangle& triangle : solid_) {
+    for (const Vec3& corner : triangle) {
+      const Vec3f at = (corner - centre_).cast<float>();
+      corners = std::copy_n(at.data(), 3, corners);
+      *indices++ = next++;
+    }
+  }
+  solid_ = {};
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(solid_scene_, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(solid_scene_);
+  return rtcGetDeviceError(device_) == RTC_ERROR_NONE;
+}
 
 bool MeshGround::build() {
   device_ = rtcNewDevice(kDevice);
@@ -123,7 +168,7 @@ bool MeshGround::build() {
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene_);
-  return rtcGetDeviceError(device_) == RTC_ERROR_NONE;
+  return rtcGetDeviceError(device_) == RTC_ERROR_NONE && build_solid();
 }
 
 void MeshGround::look_at(unsigned index, RTCRay& ray, Found& found) const {
@@ -168,12 +213,13 @@ Result<std::unique_ptr<Terrain>> mesh_ground(std::vector<GroundTriangle> triangl
   if (turn) {
     for (GroundTriangle& triangle : triangles) std::swap(triangle[1], triangle[2]);
   }
+  std::vector<GroundTriangle> all = triangles;
   std::erase_if(triangles, [](const GroundTriangle& triangle) { return !(area_up(triangle) > 0); });
   if (triangles.empty()) {
     return Error("ground-empty", "no triangle of the mesh faces up", "check which axis is up");
   }
   triangles.shrink_to_fit();
-  auto ground = std::make_unique<MeshGround>(std::move(triangles));
+  auto ground = std::make_unique<MeshGround>(std::move(triangles), std::move(all));
   if (!ground->build()) return Error("ground-memory", "Embree could not build the mesh's tree");
   return std::unique_ptr<Terrain>(std::move(ground));
 }

@@ -26,6 +26,10 @@ class Terrain {
   // values that are not finite.
   virtual std::optional<GroundPoint> at(
       double x, double z, double below = std::numeric_limits<double>::infinity()) const = 0;
+
+  // Whether something solid, which need not be ground, is between two points: a wall, a railing.
+  // Kinds whose surfaces are heights over (x, z) have nothing else and answer no.
+  virtual bool is_blocked(const Vec3& /*from*/, const Vec3& /*to*/) const { return false; }
 };
 
 }  // namespace krok

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "terrain/mesh_ground.h"
 #include "unit/gait/walkers.h"
 
 namespace krok::gait {
@@ -88,6 +89,28 @@ TEST_P(RefusedWalk, NamesThePrintAndTheReason) {
     const std::string number = "print " + std::to_string(GetParam().number) + ":";
     EXPECT_NE(made.error().message.find(number), std::string::npos) << made.error().message;
   }
+}
+
+// A thin wall that reaches to the floor, where the floor goes on below it.
+TEST(WalkIntoAWall, IsRefused) {
+  const auto quad = [](Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    return std::vector<terrain::GroundTriangle>{{a, b, c}, {a, c, d}};
+  };
+  std::vector<terrain::GroundTriangle> mesh = quad({-9, 0, -9}, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9});
+  for (const double z : {1.6, 1.602}) {
+    for (const auto& triangle : quad({-3, 0, z}, {3, 0, z}, {3, 2.5, z}, {-3, 2.5, z})) {
+      mesh.push_back(triangle);
+    }
+  }
+  const auto ground = terrain::mesh_ground(mesh);
+  ASSERT_TRUE(ground.ok());
+  const auto made = walk(walking(), prints_of({.steps = 6}), **ground, {});
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, "walk-wall") << made.error().message;
+  // Beside it there is a way.
+  std::vector<Print> beside = prints_of({.steps = 6});
+  for (Print& print : beside) print.x += 4;
+  EXPECT_TRUE(walk(walking(), beside, **ground, {}).ok());
 }
 
 // What is too far is moved as far as the walker can reach, and said.

@@ -214,6 +214,26 @@ TEST(Terrain, MeshHasNoGapsAndFullAccuracy) {
 }
 
 // Would fail if a mesh wound the other way round did not carry, or walls did.
+// If this fails, walkers go through walls, or stop at what is overhead.
+TEST(Terrain, MeshBlocksTheWayThroughWallsOnly) {
+  const auto quad = [](Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    return std::vector<terrain::GroundTriangle>{{a, b, c}, {a, c, d}};
+  };
+  std::vector<terrain::GroundTriangle> mesh = quad({-5, 0, -5}, {-5, 0, 5}, {5, 0, 5}, {5, 0, -5});
+  for (const auto& triangle : quad({-5, 0, 2}, {5, 0, 2}, {5, 2.5, 2}, {-5, 2.5, 2})) {
+    mesh.push_back(triangle);
+  }
+  const auto ground = terrain::mesh_ground(mesh);
+  ASSERT_TRUE(ground.ok());
+  EXPECT_TRUE((*ground)->is_blocked({0, 1, 1}, {0, 1, 3}));
+  EXPECT_TRUE((*ground)->is_blocked({0, 1, 3}, {0, 1, 1})) << "from behind";
+  EXPECT_FALSE((*ground)->is_blocked({0, 1, 1}, {0, 1, 1.9}));
+  EXPECT_FALSE((*ground)->is_blocked({0, 2.6, 1}, {0, 2.6, 3})) << "over it";
+  EXPECT_FALSE((*ground)->is_blocked({0, NAN, 1}, {0, 1, 3}));
+  // It stands on the floor, which goes on below it and is no less ground for that.
+  EXPECT_NEAR((*ground)->at(0, 2, 1)->height, 0, 1e-9);
+}
+
 TEST(Terrain, MeshThatFacesDownIsTurned) {
   std::vector<terrain::GroundTriangle> mesh;
   add_quad(mesh, 0, 0, 1, 1, 0.5, false);
