@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "ik/two_bone.h"
 #include "math/quaternion.h"
 #include "methods.h"
 #include "motion/ground_frame.h"
