@@ -62,16 +62,26 @@ Series side_line(const ChartedMotion& motion, std::size_t place, Side side,
   return series;
 }
 
-std::vector<LegendEntry> motion_legend(std::span<const ChartedMotion> motions, bool sides) {
+std::vector<LegendEntry> motion_legend(std::span<const ChartedMotion> motions,
+                                       std::span<const Panel> panels) {
   std::vector<LegendEntry> legend;
-  if (sides) {
-    legend.push_back({"left", kLeftColour, 0});
-    legend.push_back({"right", kRightColour, 0});
+  for (const Panel& panel : panels) {
+    if (panel.legend) continue;
+    for (const Series& series : panel.series) {
+      if (series.name.empty() || series.style == SeriesStyle::points) continue;
+      const bool side = series.colour == kLeftColour || series.colour == kRightColour;
+      if (motions.size() < 2 && !side) continue;
+      const bool known = std::ranges::any_of(legend, [&](const LegendEntry& entry) {
+        return entry.colour == series.colour && entry.dash == series.dash;
+      });
+      if (known) continue;
+      LegendEntry entry{series.name, series.colour, series.dash};
+      if (motions.size() < 2) entry.name = series.colour == kLeftColour ? "left" : "right";
+      legend.push_back(std::move(entry));
+    }
   }
-  if (motions.size() < 2) return legend;
-  for (std::size_t m = 0; m < motions.size(); ++m) {
-    legend.push_back({motions[m].name, motion_colour(m), static_cast<int>(m)});
-  }
+  // Motion by motion, whatever panel comes first.
+  std::ranges::stable_sort(legend, {}, &LegendEntry::dash);
   return legend;
 }
 

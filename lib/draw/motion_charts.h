@@ -14,8 +14,8 @@
 #include "scene/motion_keys.h"
 
 // Charts of motions: panels for a Chart. Several motions share the same panels. Each side has its
-// own colour in all panels, and each motion its own dash pattern, so that motion_legend covers
-// every panel; lines that are neither left nor right take the colour of their motion.
+// own colour in all panels, and each motion its own dash pattern; lines that are neither left nor
+// right take the colour of their motion. motion_legend covers every panel.
 
 namespace krok::draw {
 
@@ -29,8 +29,11 @@ struct ChartedMotion {
   MotionKeys keys;
 };
 
-// Legend entries: left and right if `sides`, and the motions if there is more than one.
-std::vector<LegendEntry> motion_legend(std::span<const ChartedMotion> motions, bool sides);
+// An entry for each kind of line in the panels that have no legend of their own, with the line's
+// own colour and dash pattern: left and right of each motion, and the motions themselves where
+// lines are neither. For one motion, whose name the chart gives, left and right alone.
+std::vector<LegendEntry> motion_legend(std::span<const ChartedMotion> motions,
+                                       std::span<const Panel> panels);
 
 // Top view of the path of the hips (of the root if no joint has the hips role), with +Z to the
 // right and +X, the left of a character that faces +Z, upwards. The path ends in an arrow; dots

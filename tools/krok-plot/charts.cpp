@@ -66,7 +66,7 @@ class MotionChart {
       if (Status status = add(chart); !status) return status.error();
     }
     if (chart_.panels.empty()) return nothing_to_show();
-    chart_.legend = draw::motion_legend(motions_.charted, sides_);
+    chart_.legend = draw::motion_legend(motions_.charted, chart_.panels);
     return std::move(chart_);
   }
 
@@ -107,7 +107,6 @@ class MotionChart {
       context_.warn("plot-roles", fmt::format("no joint has a role for the {}", what),
                     "--map assigns joint roles; --joint NAME shows any joint");
     }
-    sides_ = sides_ || !panels.empty();
     append(chart_.panels, std::move(panels));
   }
 
@@ -201,7 +200,6 @@ class MotionChart {
   ToolContext& context_;
   std::vector<std::string> joints_;
   draw::Chart chart_;
-  bool sides_ = false;
 };
 
 }  // namespace

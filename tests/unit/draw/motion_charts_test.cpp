@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "unit/draw/moving_actors.h"
@@ -126,7 +127,7 @@ TEST(MotionCharts, SidesHaveTheSameColoursInAllPanels) {
     EXPECT_EQ(panel.series[0].colour, panels[0].series[0].colour);
     EXPECT_EQ(panel.series[1].colour, panels[0].series[1].colour);
   }
-  const auto legend = motion_legend({&a.charted, 1}, true);
+  const auto legend = motion_legend({&a.charted, 1}, panels);
   ASSERT_THAT(legend, SizeIs(2));
   EXPECT_EQ(legend[0].name, "left");
   EXPECT_EQ(legend[0].colour, panels[0].series[0].colour);
@@ -141,10 +142,40 @@ TEST(MotionCharts, TwoMotionsShareAPanelAndDifferByPattern) {
   ASSERT_THAT(panels[0].series, SizeIs(4));
   EXPECT_EQ(panels[0].series[0].colour, panels[0].series[2].colour);
   EXPECT_NE(panels[0].series[0].dash, panels[0].series[2].dash);
-  const auto legend = motion_legend(both, true);
-  ASSERT_THAT(legend, SizeIs(4));
+}
+
+// A sample in another colour than the line leaves the reader to guess which motion it is.
+TEST(MotionCharts, TheLegendHasTheColourAndPatternOfEveryLine) {
+  const Shown a(sliding()), b(sliding(), "b.bvh"), c(sliding(), "c.bvh");
+  const std::vector<ChartedMotion> all = {a.charted, b.charted, c.charted};
+  const std::vector<std::string> joints = {"Head"};
+  const auto expect_complete = [&](const std::vector<Panel>& panels) {
+    const auto legend = motion_legend(all, panels);
+    std::size_t lines = 0;
+    for (const Panel& panel : panels) {
+      for (const Series& series : panel.series) {
+        if (series.name.empty()) continue;
+        ++lines;
+        const auto same = [&](const LegendEntry& entry) {
+          return entry.name == series.name && entry.colour == series.colour &&
+                 entry.dash == series.dash;
+        };
+        EXPECT_EQ(std::count_if(legend.begin(), legend.end(), same), 1)
+            << panel.title << " " << series.name;
+      }
+    }
+    EXPECT_GE(lines, legend.size());
+    return legend;
+  };
+  std::vector<Panel> panels = path_panels(all);
+  for (const Panel& panel : body_angle_panels(all)) panels.push_back(panel);
+  const auto legend = expect_complete(panels);
+  ASSERT_THAT(legend, SizeIs(9));
   EXPECT_EQ(legend[3].name, "b.bvh");
-  EXPECT_EQ(legend[3].dash, panels[0].series[2].dash);
+  EXPECT_EQ(legend[4].name, "left, b.bvh");
+  // Without sided lines there is nothing about sides, without others nothing of the motion alone.
+  EXPECT_THAT(expect_complete(position_panels(all, joints)), SizeIs(3));
+  EXPECT_THAT(expect_complete(foot_panels(all, Scale::linear)), SizeIs(6));
 }
 
 TEST(JointCharts, ShowPositionsOfTheClip) {
