@@ -5,6 +5,7 @@
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-edit/run.h"
 #include "tools/shared/orientation_option.h"
+#include "tools/shared/planting.h"
 #include "tools/shared/role_input.h"
 
 namespace krok::cli::edit {
@@ -60,13 +61,7 @@ void declare_cleaning(CommandOptions& command, Arguments& a) {
                 "Remove foot skate: heel and ball stay where they stand, the pelvis is lowered "
                 "where a leg would be stretched")
       .group(group);
-  command
-      .add_option("--contacts", a.contacts,
-                  "When the feet stand: a file, find, or auto, which uses NAME.keys.json next to "
-                  "the motion if it exists")
-      .type_name("IN.json|auto|find")
-      .default_str(a.contacts)
-      .group(group);
+  add_contacts_option(command, a.contacts).group(group);
 }
 
 void declare_cut(CommandOptions& command, Arguments& a) {

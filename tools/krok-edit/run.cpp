@@ -16,7 +16,7 @@
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-edit/steps.h"
-#include "tools/shared/keys_sidecar.h"
+#include "tools/shared/planting.h"
 #include "tools/shared/role_input.h"
 
 namespace krok::cli::edit {
@@ -98,23 +98,6 @@ Result<int> list_sequences(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
-// The contacts of a sidecar; none where they are to be found.
-Result<std::optional<std::vector<Contact>>> read_contacts(const Options& options, const Clip& clip,
-                                                          ToolContext& context) {
-  std::optional<keys::Sidecar> sidecar;
-  if (options.contacts == "auto") {
-    auto beside = read_keys_beside(options.input, clip, context);
-    if (!beside) return beside.error();
-    sidecar = std::move(*beside);
-  } else if (options.contacts != "find") {
-    auto file = read_keys_file(options.contacts, clip, context);
-    if (!file) return file.error();
-    sidecar = std::move(*file);
-  }
-  if (!sidecar) return std::optional<std::vector<Contact>>();
-  return std::optional(std::move(sidecar->keys.contacts));
-}
-
 // Reads all inputs, each opened once.
 Result<Edit> read_inputs(const Options& options, ToolContext& context) {
   Edit edit;
@@ -128,7 +111,7 @@ Result<Edit> read_inputs(const Options& options, ToolContext& context) {
   edit.roles = std::move(*roles);
   edit.carrier = carrying_joint(edit.roles);
   if (options.plant) {
-    auto contacts = read_contacts(options, edit.clip, context);
+    auto contacts = read_planting_contacts(options.contacts, options.input, edit.clip, context);
     if (!contacts) return contacts.error();
     edit.contacts = std::move(*contacts);
   }

@@ -6,12 +6,14 @@
 #include <string_view>
 #include <tuple>
 
+#include "core/file.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-ik/run.h"
 #include "tools/shared/orientation_option.h"
+#include "tools/shared/planting.h"
 #include "tools/shared/role_input.h"
 
 namespace krok::cli::ik {
@@ -48,6 +50,16 @@ void declare_goals(CommandOptions& command, Arguments& a) {
       .default_str("0.5s")
       .group(group);
   add_map_option(command, a.map).group(group);
+}
+
+void declare_planting(CommandOptions& command, Arguments& a) {
+  const char* group = "Feet";
+  command
+      .add_flag("--plant", a.plant,
+                "Remove foot skate before the goals are brought about: heel and ball stay where "
+                "they stand, the pelvis is lowered where a leg would be stretched")
+      .group(group);
+  add_contacts_option(command, a.contacts).needs("--plant").group(group);
 }
 
 void declare_limits(CommandOptions& command, Arguments& a) {
@@ -193,9 +205,15 @@ void declare(CommandOptions& command, Arguments& arguments) {
       .type_name("IN.anim")
       .required();
   declare_goals(command, arguments);
+  declare_planting(command, arguments);
   declare_limits(command, arguments);
   declare_solver(command, arguments);
   add_orientation_option(command, arguments.orientation);
+  command
+      .add_option("--plot", arguments.plot,
+                  "Write a chart: by how much each goal is missed over time, which joints' limits "
+                  "hold it back, rotations beyond limits before and after")
+      .type_name("OUT.svg");
 }
 
 Result<Options> understand(const Arguments& a) {
@@ -235,8 +253,15 @@ Result<Options> understand(const Arguments& a) {
   if (!a.write_limits.empty() && a.limits.empty() && a.captures.empty()) {
     return usage("--write-limits has no limits to write", "add --limits auto or --learn-limits");
   }
-  if (!options.has_goals() && a.write_limits.empty()) {
-    return usage("no goals are given", "use --goals, --reach or --look-at");
+  if (!options.changes_motion() && a.write_limits.empty()) {
+    return usage("no goals are given", "use --goals, --reach, --look-at or --plant");
+  }
+  if (!options.has_goals() && !a.plot.empty()) {
+    return usage("--plot has no goals to show", "use --goals, --reach or --look-at");
+  }
+  if (!a.plot.empty() && extension(a.plot) != ".svg") {
+    return usage(fmt::format("--plot {}: the chart is SVG", shown(a.plot)),
+                 "use the extension .svg");
   }
   options.margin = *margin;
   options.solver.method = a.method;
@@ -253,7 +278,7 @@ ToolSpec make_spec() {
   ToolSpec spec = spec_of("krok-ik", arguments, declare, understand, run);
   spec.summary =
       "Brings joints of a motion to goals by inverse kinematics, within the joints' ranges of "
-      "motion";
+      "motion; keeps feet where they stand";
   spec.inputs = "IN.anim";
   spec.needs_output = false;  // --write-limits alone is enough
   spec.examples = {
@@ -263,6 +288,8 @@ ToolSpec make_spec() {
        "goals keyed in time; limits from published ranges of motion"},
       {"krok-ik walk.anim --look-at head=2m,1.5m,3m@0s..2s --stiffness spine=0.9 -o look.anim",
        "the head turns to a place, mostly by the neck"},
+      {"krok-ik walk.anim --plant --goals goals.json -o reach.anim --plot reach.svg",
+       "feet that stay where they stand, then goals; a chart of what is missed"},
       {"krok-ik walk.anim --learn-limits run.anim --learn-limits dance.anim --write-limits "
        "actor.limits.json",
        "the ranges that an actor uses in captures, as a file for --limits"}};

@@ -28,6 +28,9 @@ struct Arguments {
   int restarts = 0;
   std::string tolerance = "0.01mm", angle_tolerance = "0.01deg";
   bool root_moves = false;
+  bool plant = false;
+  std::string contacts = "auto";
+  std::string plot;  // an SVG file, or empty
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 
@@ -55,6 +58,7 @@ struct Options {
   krok::ik::Options solver;
 
   bool has_goals() const { return !given.goals.empty() || !points.empty(); }
+  bool changes_motion() const { return has_goals() || given.plant; }
 };
 
 void declare(CommandOptions& command, Arguments& arguments);

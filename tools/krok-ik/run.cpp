@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <deque>
-#include <filesystem>
-
 #include "core/index.h"
 #include "core/nearest_name.h"
 #include "core/numbers.h"
@@ -15,10 +12,13 @@
 #include "formats/limits/limits_format.h"
 #include "ik/anatomical_limits.h"
 #include "ik/learn_limits.h"
+#include "tools/cli/file_name.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
-#include "tools/cli/paths.h"
+#include "tools/krok-ik/chart.h"
 #include "tools/krok-ik/outcome.h"
+#include "tools/shared/goal_input.h"
+#include "tools/shared/planting.h"
 #include "tools/shared/role_input.h"
 
 namespace krok::cli::ik {
@@ -33,15 +33,18 @@ class Run {
 
  private:
   const Arguments& given() const { return options_.given; }
+  Status check_outputs() const;
   Status read_motion();
   Status read_limits();
   Status learn();
   Status read_goals();
-  Status open_other(const goals::OtherMotion& other);
   Status add_points();
   Status set_stiffness();
+  Status plant_first();
+  Result<int> finish_without_goals();
+  void note_provenance(Clip& clip, const std::string& line) const;
   Result<int> joint_of(const std::string& option, const std::string& name) const;
-  Status write(const krok::ik::GoalMotion* made);
+  Status write(const Clip* made, const std::string& chart = {});
 
   const Options& options_;
   ToolContext& context_;
@@ -50,8 +53,10 @@ class Run {
   RoleMap roles_;
   krok::ik::Limits limits_;
   std::vector<krok::ik::KeyedGoal> goals_;
-  std::deque<Clip> others_;  // keep their places
+  OpenedGoals opened_;  // goals_ point to its motions
   krok::ik::Options solver_;
+  Json planting_;
+  std::string planting_line_;
 };
 
 Status Run::read_motion() {
@@ -115,38 +120,14 @@ Result<int> Run::joint_of(const std::string& option, const std::string& name) co
       .in_file(given().input);
 }
 
-Status Run::open_other(const goals::OtherMotion& other) {
-  const std::string folder = std::filesystem::path(given().goals).parent_path().string();
-  auto clip = io::open_motion(below(folder, other.path), context_);
-  if (!clip) return clip.error();
-  const auto roles = find_roles(clip->skeleton);
-  const int joint = goals::find_joint(other.joint, clip->skeleton, roles);
-  if (joint < 0) {
-    Error error("goals-joint",
-                fmt::format("'{}' has no joint '{}', nor one of that role", shown(other.path),
-                            shown(other.joint)),
-                nearest_hint(other.joint, clip->skeleton.names));
-    error.where = other.where;
-    return std::move(error).in_file(given().goals);
-  }
-  others_.push_back(std::move(*clip));
-  goals_[other.goal].motion = &others_.back();
-  goals_[other.goal].relative_to = joint;
-  return {};
-}
-
 Status Run::read_goals() {
   if (given().goals.empty()) return {};
-  const auto file = context_.open_input(given().goals);
-  if (!file) return file.error();
-  auto read = goals::read(file->text(), clip_.skeleton, roles_);
-  if (!read) return std::move(read).error().in_file(given().goals);
-  goals_ = std::move(read->goals);
-  solver_.stiffness = std::move(read->stiffness);
-  solver_.root_moves = solver_.root_moves || read->root_moves;
-  for (const goals::OtherMotion& other : read->others) {
-    if (Status status = open_other(other); !status) return status;
-  }
+  auto opened = open_goals(given().goals, clip_.skeleton, roles_, context_);
+  if (!opened) return opened.error();
+  opened_ = std::move(*opened);
+  goals_ = opened_.goals;
+  solver_.stiffness = opened_.stiffness;
+  solver_.root_moves = solver_.root_moves || opened_.root_moves;
   return {};
 }
 
@@ -203,7 +184,45 @@ Status Run::set_stiffness() {
   return {};
 }
 
-Status Run::write(const krok::ik::GoalMotion* made) {
+// The goals are for the motion with its feet planted.
+Status Run::plant_first() {
+  if (!given().plant) return {};
+  const auto contacts = read_planting_contacts(given().contacts, given().input, clip_, context_);
+  if (!contacts) return contacts.error();
+  auto planted = plant(clip_, roles_, *contacts, context_);
+  if (!planted) return std::move(planted).error().in_file(given().input);
+  planting_ = planting_json(*planted, contacts->has_value());
+  planting_line_ = planting_line(*planted);
+  clip_ = std::move(planted->clip);
+  return {};
+}
+
+// What was done to the motion, after what it says of itself.
+void Run::note_provenance(Clip& clip, const std::string& line) const {
+  clip.provenance = context_.provenance();
+  clip.provenance.conversions = clip_.provenance.conversions;
+  for (const std::string& done : {planting_line_, line}) {
+    if (!done.empty()) clip.provenance.conversions.push_back(done);
+  }
+}
+
+Result<int> Run::finish_without_goals() {
+  if (!given().plant) {
+    if (Status status = write(nullptr); !status) return status.error();
+    context_.report.result = limits_json(limits_, clip_.skeleton);
+    context_.log(fmt::format("{}: {}", given().write_limits, limits_summary(limits_)));
+    return kExitDone;
+  }
+  Clip planted = clip_;
+  note_provenance(planted, {});
+  if (Status status = write(&planted); !status) return status.error();
+  context_.report.result["frames"] = planted.frame_count();
+  context_.report.result["plant"] = std::move(planting_);
+  context_.log(fmt::format("{}: {}", context_.output, planting_line_));
+  return kExitDone;
+}
+
+Status Run::write(const Clip* made, const std::string& chart) {
   OutputSet outputs(context_);
   if (!given().write_limits.empty()) {
     const std::string text = limits::write(limits_, clip_.skeleton);
@@ -218,9 +237,16 @@ Status Run::write(const krok::ik::GoalMotion* made) {
     anim::WriteOptions writing;
     writing.orientation = given().orientation;
     writing.jobs = context_.jobs;
-    if (Status status =
-            outputs.add(context_.output,
-                        [&](OutputFile& file) { return anim::write(made->clip, writing, file); });
+    if (Status status = outputs.add(
+            context_.output, [&](OutputFile& file) { return anim::write(*made, writing, file); });
+        !status) {
+      return status;
+    }
+  }
+  if (!given().plot.empty()) {
+    if (Status status = outputs.add(
+            given().plot,
+            [&](OutputFile& file) { return file.write(std::as_bytes(std::span(chart))); });
         !status) {
       return status;
     }
@@ -228,27 +254,28 @@ Status Run::write(const krok::ik::GoalMotion* made) {
   return outputs.finish();
 }
 
-Result<int> Run::run() {
-  if (options_.has_goals() && context_.output.empty()) {
+Status Run::check_outputs() const {
+  if (!given().plot.empty() && context_.one_of_many != nullptr) {
+    return Error("usage", "--plot cannot be used in batch mode");
+  }
+  if (options_.changes_motion() && context_.output.empty()) {
     return Error("usage", "-o is missing", "it names the motion to write");
   }
-  if (!options_.has_goals() && !context_.output.empty()) {
-    return Error("usage", "-o is given, but no goals", "use --goals, --reach or --look-at");
+  if (!options_.changes_motion() && !context_.output.empty()) {
+    return Error("usage", "-o is given, but no goals",
+                 "use --goals, --reach, --look-at or --plant");
   }
-  if (Status status = check_output_kind(context_.output, "-o", registry::Kind::anim); !status) {
-    return status.error();
-  }
+  return check_output_kind(context_.output, "-o", registry::Kind::anim);
+}
+
+Result<int> Run::run() {
+  if (Status status = check_outputs(); !status) return status.error();
   solver_ = options_.solver;
   for (const auto step : {&Run::read_motion, &Run::read_limits, &Run::read_goals, &Run::add_points,
-                          &Run::set_stiffness}) {
+                          &Run::set_stiffness, &Run::plant_first}) {
     if (Status status = (this->*step)(); !status) return status.error();
   }
-  if (!options_.has_goals()) {
-    if (Status status = write(nullptr); !status) return status.error();
-    context_.report.result = limits_json(limits_, clip_.skeleton);
-    context_.log(fmt::format("{}: {}", given().write_limits, limits_summary(limits_)));
-    return kExitDone;
-  }
+  if (!options_.has_goals()) return finish_without_goals();
   krok::ik::GoalMotionOptions how;
   how.solver = solver_;
   how.jobs = context_.jobs;
@@ -261,11 +288,19 @@ Result<int> Run::run() {
     missed.where.file = given().input;
     context_.diagnose(std::move(missed));
   }
-  made->clip.provenance = context_.provenance();
-  made->clip.provenance.conversions = clip_.provenance.conversions;
-  made->clip.provenance.conversions.push_back("inverse kinematics: " + summary(outcome));
-  if (Status status = write(&*made); !status) return status.error();
+  note_provenance(made->clip, "inverse kinematics: " + summary(outcome));
+  std::string chart;
+  if (!given().plot.empty()) {
+    auto svg = draw::to_svg(chart_of(outcome, name_of_input(given().input)));
+    if (!svg) return svg.error();
+    chart = std::move(*svg);
+  }
+  if (Status status = write(&made->clip, chart); !status) return status.error();
   context_.report.result = to_json(outcome);
+  if (given().plant) {
+    context_.report.result["plant"] = std::move(planting_);
+    context_.log(fmt::format("{}: {}", context_.output, planting_line_));
+  }
   context_.log(fmt::format("{}: {}", context_.output, summary(outcome)));
   if (context_.verbose) context_.log(table(outcome));
   return kExitDone;

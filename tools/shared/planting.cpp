@@ -1,0 +1,98 @@
+#include "tools/shared/planting.h"
+
+#include <fmt/format.h>
+
+#include <span>
+
+#include "core/numbers.h"
+#include "tools/shared/keys_sidecar.h"
+
+namespace krok::cli {
+
+namespace {
+
+Json stay_json(const FixedStay& stay, const Clip& clip) {
+  Json json;
+  json["joint"] = clip.skeleton.names[static_cast<std::size_t>(stay.point.joint)];
+  json["part"] = name_of(stay.point.part);
+  json["side"] = name_of(stay.point.side);
+  json["first_frame"] = stay.first;
+  json["last_frame"] = stay.last;
+  json["place"] = {stay.place.x(), stay.place.y(), stay.place.z()};
+  json["drift_before"] = stay.drift_before;
+  json["drift"] = stay.drift_after;
+  return json;
+}
+
+std::string millimetres(double metres) {
+  return readable(metres * 1000, 3) + " mm";
+}
+
+}  // namespace
+
+CommandOption add_contacts_option(CommandOptions& command, std::string& contacts) {
+  return command
+      .add_option("--contacts", contacts,
+                  "When the feet stand: a file, find, or auto, which uses NAME.keys.json next to "
+                  "the motion if it exists")
+      .type_name("IN.json|auto|find")
+      .default_str(contacts);
+}
+
+Result<std::optional<std::vector<Contact>>> read_planting_contacts(const std::string& contacts,
+                                                                   const std::string& motion_path,
+                                                                   const Clip& clip,
+                                                                   ToolContext& context) {
+  std::optional<krok::keys::Sidecar> sidecar;
+  if (contacts == "auto") {
+    auto beside = read_keys_beside(motion_path, clip, context);
+    if (!beside) return beside.error();
+    sidecar = std::move(*beside);
+  } else if (contacts != "find") {
+    auto file = read_keys_file(contacts, clip, context);
+    if (!file) return file.error();
+    sidecar = std::move(*file);
+  }
+  if (!sidecar) return std::optional<std::vector<Contact>>();
+  return std::optional(std::move(sidecar->keys.contacts));
+}
+
+Result<PlantedFeet> plant(const Clip& clip, const RoleMap& roles,
+                          const std::optional<std::vector<Contact>>& contacts,
+                          ToolContext& context) {
+  std::optional<std::span<const Contact>> given;
+  if (contacts) given = *contacts;
+  auto planted = plant_feet(clip, roles, given);
+  if (planted) context.diagnose(planted->warnings);
+  return planted;
+}
+
+Json planting_json(const PlantedFeet& planted, bool contacts_given) {
+  Json json;
+  json["contacts"] = contacts_given ? "file" : "found";
+  json["drift_before"] = planted.drift_before;
+  json["drift"] = planted.drift_after;
+  json["pelvis_lowered"] = planted.pelvis_lowered;
+  json["body_steadied"] = planted.body_steadied;
+  json["frames_out_of_reach"] = planted.out_of_reach;
+  json["stays"] = Json::array();
+  for (const FixedStay& stay : planted.stays)
+    json["stays"].push_back(stay_json(stay, planted.clip));
+  return json;
+}
+
+std::string planting_line(const PlantedFeet& planted) {
+  std::string line =
+      fmt::format("feet planted in {}: largest drift {} instead of {}",
+                  counted(static_cast<long long>(planted.stays.size()), "stay"),
+                  millimetres(planted.drift_after), millimetres(planted.drift_before));
+  if (planted.pelvis_lowered > 5e-4) {
+    line += fmt::format("; pelvis lowered by up to {}", millimetres(planted.pelvis_lowered));
+  }
+  if (planted.body_steadied > 5e-4) {
+    line += fmt::format("; jitter of {} taken out of the body", millimetres(planted.body_steadied));
+  }
+  return line;
+}
+
+}  // namespace krok::cli
