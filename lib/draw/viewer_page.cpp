@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base64.h"
 #include "draw/pack_motion_internal.h"
 #include "draw/page_text_internal.h"
@@ -32,6 +34,35 @@ struct Parts {
     scripts += "</script>\n";
   }
 };
+
+// Nine numbers a frame: from, to, strength, distance, angle.
+Status add_goals(const ViewedMotion& viewed, Json& item, Blob& blob) {
+  Json goals = Json::array();
+  for (const ViewedGoal& goal : viewed.goals) {
+    const bool joints = std::ranges::all_of(
+        goal.chain, [&](int joint) { return joint >= 0 && joint < viewed.clip->joint_count(); });
+    if (!joints || goal.frames.size() != static_cast<std::size_t>(viewed.clip->frame_count())) {
+      return Error("viewer-goal",
+                   fmt::format("the goal '{}' is not one of the motion's", goal.name));
+    }
+    std::vector<float> numbers;
+    for (const ViewedGoal::Frame& frame : goal.frames) {
+      for (const double number :
+           {frame.from.x(), frame.from.y(), frame.from.z(), frame.to.x(), frame.to.y(),
+            frame.to.z(), frame.strength, frame.distance, frame.angle}) {
+        numbers.push_back(static_cast<float>(number));
+      }
+    }
+    Json entry;
+    entry["name"] = goal.name;
+    entry["kind"] = goal.kind;
+    entry["chain"] = goal.chain;
+    entry["frames"] = blob.add(std::span<const float>(numbers));
+    goals.push_back(std::move(entry));
+  }
+  if (!goals.empty()) item["goals"] = std::move(goals);
+  return {};
+}
 
 Status add_motion(const ViewedMotion& viewed, Parts& parts) {
   const Clip& clip = *viewed.clip;
@@ -68,6 +99,7 @@ Status add_motion(const ViewedMotion& viewed, Parts& parts) {
     keytimes.push_back({{"time", key.time}, {"name", key.name}});
   }
   if (!keytimes.empty()) item["keytimes"] = std::move(keytimes);
+  if (Status status = add_goals(viewed, item, blob); !status) return status;
   parts.finish(std::move(item), blob.base64());
   return {};
 }

@@ -17,6 +17,22 @@
 
 namespace krok::draw {
 
+// A goal of inverse kinematics, and how a motion meets it: a marker at its place, a line to it, the
+// joints that take part, and by how much it is missed.
+struct ViewedGoal {
+  std::string name;
+  std::string kind;        // "position"; shown beside the name
+  std::vector<int> chain;  // joints that take part, from the end effector upwards; may be empty
+  struct Frame {
+    Vec3 from = Vec3::Zero();  // metres, world: what is moved
+    Vec3 to = Vec3::Zero();    // where it is to be
+    double strength = 0;       // 0 (not active) to 1; between them the goal fades in or out
+    double distance = 0;       // metres by which it is missed
+    double angle = 0;          // radians
+  };
+  std::vector<Frame> frames;  // [frames]
+};
+
 // A motion shown as a skeleton, and as a skinned character if a body is given.
 struct ViewedMotion {
   std::string name;   // display name, such as the file name
@@ -28,6 +44,7 @@ struct ViewedMotion {
   // grey; without any material the body has a default colour. Images need texture coordinates.
   std::span<const Material> materials;
   MotionKeys keys;  // coloured and marked on the timeline
+  std::vector<ViewedGoal> goals;
 };
 
 struct ViewedCamera {
@@ -58,7 +75,8 @@ struct ViewerPage {
 // The page as HTML, in UTF-8. Rotations are stored to 1.5e-4 radians relative to the parent,
 // positions as floats; one minute of 60 joints at 60 fps takes less than 3 MB. Output is
 // deterministic. Codes: those of check() for clips, models, materials, cameras and keys, and of
-// picture_facts(); viewer-body if the joints of a body are not those of the clip.
+// picture_facts(); viewer-body if the joints of a body are not those of the clip; viewer-goal if a
+// goal has another number of frames than its clip, or joints that the clip has not.
 Result<std::string> write_viewer_page(const ViewerPage& page);
 
 }  // namespace krok::draw

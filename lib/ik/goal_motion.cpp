@@ -59,6 +59,24 @@ Status check_goal(const KeyedGoal& goal, const Skeleton& skeleton) {
   return {};
 }
 
+// The goal at a time, with its keys in `frame`, on the support joints of a pose.
+Goal placed(const KeyedGoal& keyed, double time, const Transform& frame,
+            std::span<const Transform> pose) {
+  Goal goal = keyed.goal;
+  const GoalKey key = key_at(keyed, time);
+  goal.target = frame * key.target;
+  goal.orientation = (frame.orientation * key.orientation).normalized();
+  if (!keyed.support_joints.empty()) {
+    std::vector<Vec2> points;
+    for (const int joint : keyed.support_joints) {
+      const Vec3& place = pose[at(joint)].position;
+      points.emplace_back(place.x(), place.z());
+    }
+    goal.support = outline(std::move(points));
+  }
+  return goal;
+}
+
 double cross_of(const Vec2& o, const Vec2& a, const Vec2& b) {
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
 }
@@ -116,6 +134,21 @@ GoalKey key_at(const KeyedGoal& goal, double time) {
   return key;
 }
 
+Goal goal_in_frame(const KeyedGoal& goal, const Clip& clip, int frame) {
+  const double time = frame / clip.rate;
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  clip.get_pose(frame, pose);
+  Transform anchor;
+  if (goal.motion != nullptr && goal.relative_to >= 0) {
+    std::vector<Transform> other(goal.motion->skeleton.names.size()), scratch(3 * other.size());
+    sample(*goal.motion, time, other, scratch);
+    anchor = other[at(goal.relative_to)];
+  } else if (goal.relative_to >= 0) {
+    anchor = pose[at(goal.relative_to)];
+  }
+  return placed(goal, time, anchor, pose);
+}
+
 namespace {
 
 // Solves one frame after the other; one for each thread.
@@ -166,19 +199,7 @@ void FrameSolver::list_goals(double time, const std::vector<Transform>& anchors_
   for (std::size_t g = 0; g < goals_.size(); ++g) {
     if (!(strengths_[g] > 0)) continue;
     const KeyedGoal& keyed = goals_[g];
-    Goal goal = keyed.goal;
-    const GoalKey key = key_at(keyed, time);
-    const Transform frame = anchor(keyed, time, anchors_from);
-    goal.target = frame * key.target;
-    goal.orientation = (frame.orientation * key.orientation).normalized();
-    if (!keyed.support_joints.empty()) {
-      std::vector<Vec2> points;
-      for (const int joint : keyed.support_joints) {
-        const Vec3& place = given_[at(joint)].position;
-        points.emplace_back(place.x(), place.z());
-      }
-      goal.support = outline(std::move(points));
-    }
+    Goal goal = placed(keyed, time, anchor(keyed, time, anchors_from), given_);
     if (strengths_[g] < 1) fade_goal(goal, strengths_[g], clip_.skeleton, given_);
     active_.push_back(std::move(goal));
   }

@@ -79,6 +79,10 @@ struct GoalMotionOptions {
 Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goals,
                                const Limits& limits, const GoalMotionOptions& options = {});
 
+// A goal as it stands in a frame of a motion, whatever its strength: target and orientation in the
+// world, the support where its joints stand. The goal is one that apply_goals() takes.
+Goal goal_in_frame(const KeyedGoal& goal, const Clip& clip, int frame);
+
 // Strength of a goal at a time, 0 to 1, for a motion that lasts `duration` seconds.
 double strength_at(const KeyedGoal& goal, double time, double duration);
 

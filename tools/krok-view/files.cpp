@@ -15,6 +15,7 @@
 #include "formats/io/open_motion.h"
 #include "formats/registry/registry.h"
 #include "tools/cli/file_name.h"
+#include "tools/krok-view/goals.h"
 #include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::view {
@@ -102,7 +103,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       auto keys = keys_of(path, *clip, choice, context);
       if (!keys) return std::move(keys).error().in_file(path);
       files.motions.push_back(
-          {path, name_of_input(path), std::move(*clip), nullptr, {}, std::move(*keys)});
+          {path, name_of_input(path), std::move(*clip), nullptr, {}, std::move(*keys), {}});
       return {};
     }
   }
@@ -121,7 +122,7 @@ void share_models(Files& files) {
   }
   for (Files::Character& character : files.models) {
     if (character.used) continue;
-    Files::Motion still{character.path, character.name, {}, nullptr, {}, {}};
+    Files::Motion still{character.path, character.name, {}, nullptr, {}, {}, {}};
     still.clip.skeleton = character.shown.model.skeleton;
     if (!character.shown.model.triangles.empty()) {
       still.body = &character.shown.model;
@@ -150,6 +151,19 @@ Status build_bodies(const Options& options, ToolContext& context, Files& files) 
   return {};
 }
 
+Status add_goals(const Options& options, ToolContext& context, Files& files) {
+  if (options.goals.empty()) return {};
+  if (files.motions.empty()) {
+    return Error("usage", "--goals needs a motion", "give the .anim that krok-ik wrote");
+  }
+  for (Files::Motion& motion : files.motions) {
+    auto goals = viewed_goals(options.goals, motion.clip, context);
+    if (!goals) return goals.error();
+    motion.goals = std::move(*goals);
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Files> read_files(const Options& options, ToolContext& context) {
@@ -169,6 +183,7 @@ Result<Files> read_files(const Options& options, ToolContext& context) {
   }
   share_models(files);
   if (Status status = build_bodies(options, context, files); !status) return status.error();
+  if (Status status = add_goals(options, context, files); !status) return status.error();
   return files;
 }
 

@@ -25,6 +25,7 @@ struct Files {
     const Model* body = nullptr;  // points into `models` or `bodies`
     std::span<const Material> materials;
     MotionKeys keys;
+    std::vector<draw::ViewedGoal> goals;
   };
   struct Glb {
     std::string name;

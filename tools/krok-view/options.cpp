@@ -44,6 +44,12 @@ void declare(CommandOptions& command, Options& options) {
                                      {"find", KeysChoice::find},
                                      {"none", KeysChoice::none}}))
       .default_str("auto");
+  command
+      .add_option(
+          "--goals", options.goals,
+          "Show the goals of a krok-ik file (formats/goals/SPEC.md) on all motions: places, "
+          "chains of joints, and by how much each is missed")
+      .type_name("IN.json");
   command.add_option("--title", options.title, "The page's title; default: the first file's name")
       .type_name("WORDS");
 }
@@ -61,6 +67,8 @@ ToolSpec make_spec() {
                     "distance"},
                    {"krok-view hero.model walk.anim shot.cam -o shot.html",
                     "an animated model, viewed through a recorded camera"},
+                   {"krok-view walk.anim reach.anim --goals goals.json -o goals.html",
+                    "a motion before and after krok-ik, with its goals"},
                    {"krok-view hero.character walk.anim -o hero.html",
                     "an animated character with its materials; without a motion, in "
                     "its reference pose"}};

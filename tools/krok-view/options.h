@@ -18,6 +18,7 @@ struct Options {
   BodyChoice body = BodyChoice::automatic;
   KeysChoice keys = KeysChoice::automatic;
   bool difference = false;
+  std::string goals;  // a goal file, or empty
   std::string title;
 };
 

@@ -34,6 +34,7 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
     viewed.body = motion.body;
     viewed.materials = motion.materials;
     viewed.keys = motion.keys;
+    viewed.goals = motion.goals;
     page.motions.push_back(std::move(viewed));
   }
   for (const Files::Glb& glb : files.glbs) {
@@ -89,7 +90,8 @@ Result<int> run(const Options& options, ToolContext& context) {
                      {"vertices", motion.body ? motion.body->vertex_count() : 0},
                      {"materials", motion.materials.size()},
                      {"contacts", motion.keys.contacts.size()},
-                     {"keytimes", motion.keys.keytimes.size()}});
+                     {"keytimes", motion.keys.keytimes.size()},
+                     {"goals", motion.goals.size()}});
   }
   context.report.result["motions"] = std::move(shown);
   context.report.result["files"] = files->glbs.size();

@@ -20,6 +20,7 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
+import { Goals } from './goals.js';
 import { makeMaterials } from './look.js';
 import { view } from './motion.js';
 import { reachBeyond, widen } from './reach.js';
@@ -78,6 +79,10 @@ export class Figure {
     this.size = this.measure();
     this.makeSkeleton();
     if (item.body) this.makeBody(item.body, bytes);
+    if (item.goals) {
+      this.goals = new Goals(item.goals, motion, bytes, this.size);
+      this.group.add(this.goals.group);
+    }
   }
 
   // The character's extent in its reference pose or first frame, which sets the size of bones and
@@ -217,7 +222,8 @@ export class Figure {
   }
 
   // Shows or hides bones, joints and body. Without a body, the skeleton is always shown.
-  show({ skeleton, body }) {
+  show({ skeleton, body, goals }) {
+    if (this.goals) this.goals.group.visible = goals;
     const hasBody = Boolean(this.body);
     this.skeleton.visible = skeleton || !hasBody;
     if (hasBody) {
@@ -248,6 +254,7 @@ export class Figure {
     if (this.body && this.body.visible) {
       this.bodyBones.forEach((bone, joint) => motion.matrix(joint, bone.matrixWorld));
     }
+    this.goals?.update(time);
   }
 
   placeSkeleton(time) {

@@ -3,6 +3,7 @@
 
 import { Box3, CameraHelper, PerspectiveCamera, Vector3 } from 'three';
 import { COLOURS, CONTACT_COLOUR, Figure } from './figure.js';
+import { missText } from './goals.js';
 import { GltfFigure } from './gltf_figure.js';
 import { Lanes } from './lanes.js';
 import { CameraTrack, Motion, blobBytes } from './motion.js';
@@ -22,7 +23,7 @@ class Player {
     this.speed = 1;
     this.playing = false;
     this.loop = true;
-    this.shown = { skeleton: true, body: true, apart: false, difference: false, follow: false };
+    this.shown = { skeleton: true, body: true, apart: false, difference: false, follow: false, goals: true };
     this.lastRoot = null;
   }
 
@@ -292,6 +293,7 @@ class Interface {
     find('time').max = String(this.player.duration);
     find('time').step = String(1 / this.player.rate / 10);
     find('difference-section').hidden = !this.player.shown.difference;
+    this.listGoals();
   }
 
   makeSwitches() {
@@ -306,6 +308,7 @@ class Interface {
       ['body', 'Body (b)', hasBody],
       ['apart', 'Side by side (a)', figures.length > 1],
       ['difference', 'Colour the difference (d)', figures.length > 1],
+      ['goals', 'Goals (o)', figures.some(({ figure }) => figure.goals)],
       ['follow', 'Follow (f)', figures.length > 0],
       ['grid', 'Ground (g)', true],
     ];
@@ -390,6 +393,35 @@ class Interface {
     find('trails').replaceChildren(...rows);
   }
 
+  // Each visible motion's goals, with its colour and by how much it is missed now.
+  listGoals() {
+    const { player } = this;
+    const figures = player.figures().filter(({ figure }) => figure.goals);
+    find('goals-section').hidden = !player.shown.goals || figures.length === 0;
+    this.goalRows = [];
+    for (const { name, figure } of figures) {
+      for (const goal of figure.goals.goals) {
+        const row = document.createElement('li');
+        const swatch = document.createElement('span');
+        swatch.className = 'swatch';
+        swatch.style.background = goal.colour;
+        const label = document.createElement('span');
+        label.textContent = `${goal.name} (${goal.kind})`;
+        const facts = document.createElement('span');
+        facts.className = 'facts';
+        label.append(facts);
+        row.append(swatch, label);
+        this.goalRows.push({ row, facts, goal, of: figures.length > 1 ? `${name}: ` : '' });
+      }
+    }
+    find('goals').replaceChildren(...this.goalRows.map(({ row }) => row));
+    this.showMisses();
+  }
+
+  showMisses() {
+    for (const { facts, goal, of } of this.goalRows ?? []) facts.textContent = of + missText(goal);
+  }
+
   makeCameras() {
     const place = find('cameras');
     const add = (text, does) => {
@@ -467,10 +499,11 @@ class Interface {
       ['+', null, null, () => this.changeSpeed(1)],
       ['=', null, null, () => this.changeSpeed(1)],
       ['h', 'h', 'frame all', () => this.frame()],
-      ['s', 's b a d f g', 'toggle the options above', () => this.flip('skeleton')],
+      ['s', 's b a d o f g', 'toggle the options above', () => this.flip('skeleton')],
       ['b', null, null, () => this.flip('body')],
       ['a', null, null, () => this.flip('apart')],
       ['d', null, null, () => this.flip('difference')],
+      ['o', null, null, () => this.flip('goals')],
       ['f', null, null, () => this.flip('follow')],
       ['g', null, null, () => this.flip('grid')],
       ['c', 'c', 'view through the recorded camera', () => this.tracks[0] && this.fly(this.tracks[0])],
@@ -555,6 +588,7 @@ class Interface {
     const clock = `${player.time.toFixed(2)} / ${player.duration.toFixed(2)} s · frame ${frame}`;
     slider.setAttribute('aria-valuetext', `${player.time.toFixed(2)} seconds, frame ${frame}`);
     find('clock').textContent = clock;
+    this.showMisses();
     if (player.shown.difference) {
       const d = player.difference;
       find('difference').textContent = d
@@ -595,6 +629,11 @@ async function main() {
     get playing() { return player.playing; },
     get drawn() { return drawn; },
     setTime: (time) => player.setTime(time),
+    // A file's goals at this time.
+    goals: (item = 0) => (items[item].figure.goals?.goals ?? []).map(
+      ({ name, kind, chain, from, to, strength, distance, angle }) =>
+        ({ name, kind, chain, from: from.toArray(), to: to.toArray(), strength, distance, angle }),
+    ),
     // World positions of a file's joints, without the side-by-side offset.
     joints: (item = 0) => {
       const { figure } = items[item];
