@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "core/quantity.h"
 #include "formats/bvh/bvh_writer.h"
+#include "samples/generator/foot_slides.h"
 #include "samples/generator/ground_truth.h"
 #include "samples/generator/rig.h"
 #include "samples/generator/walk.h"
@@ -21,7 +22,7 @@ constexpr int kDecimals = 4;
 
 struct Arguments {
   samples::WalkOptions walk;
-  std::string stature, step_length, step_width, turn, rise, noise_angle, noise_position;
+  std::string stature, step_length, step_width, turn, rise, noise_angle, noise_position, slide;
   std::string ground = "stairs";
   std::string first = "left";
   std::string rig = "hips";
@@ -83,7 +84,9 @@ void declare(CommandOptions& command, Arguments& arguments) {
         "Standard deviation of joint rotations");
   noise("--noise-position", arguments.noise_position, "LENGTH", "0mm",
         "Standard deviation of the root position");
-  command.add_option("--seed", walk.seed, "Random seed of the noise")
+  noise("--slide", arguments.slide, "LENGTH", "0mm",
+        "How far feet slide over each stance, in a random direction; the ground truth is without");
+  command.add_option("--seed", walk.seed, "Random seed of noise and slides")
       .type_name("N")
       .capture_default_str()
       .group("Capture");
@@ -142,6 +145,16 @@ Result<int> run(ToolContext& context, Arguments& arguments) {
   if (Status status = read_quantities(arguments); !status) return std::move(status).error();
   Result<samples::Walk> walk = samples::make_walk(arguments.walk);
   if (!walk) return std::move(walk).error();
+
+  double slide = 0;
+  if (Status status = set(arguments.slide, parse_length, slide); !status) {
+    return std::move(status).error();
+  }
+  if (!(slide >= 0 && slide <= 0.2)) {
+    return Error("walk-option", fmt::format("slide is {:.6g} m, outside 0 to 0.2 m", slide),
+                 "give a value within the range");
+  }
+  if (slide > 0) walk->clip = samples::with_slides(*walk, slide, arguments.walk.seed);
 
   Result<OutputFile> capture = OutputFile::create(context.output, context.output_options());
   if (!capture) return std::move(capture).error();

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "contacts/contacts.h"
-#include "ik/two_bone.h"
 #include "math/quaternion.h"
 #include "roles/roles.h"
+#include "samples/generator/foot_slides.h"
 #include "samples/generator/walk.h"
 #include "scene/clip.h"
 
@@ -24,42 +24,11 @@ inline Transform joint_of(const Clip& clip, int frame, int joint) {
       clip.frame_orientations(frame)[static_cast<std::size_t>(joint)].cast<double>().normalized()};
 }
 
-struct LegRoles {
-  int upper = -1, lower = -1, foot = -1;
-};
-inline std::array<LegRoles, 2> legs_of(const RoleMap& roles) {
-  return {LegRoles{roles.joint(Role::left_upper_leg), roles.joint(Role::left_lower_leg),
-                   roles.joint(Role::left_foot)},
-          LegRoles{roles.joint(Role::right_upper_leg), roles.joint(Role::right_lower_leg),
-                   roles.joint(Role::right_foot)}};
-}
-
-// Moves a foot in one frame by two-bone inverse kinematics, its orientation kept; joints below the
-// foot go along. False where the leg is too short; then nothing is done, or what it reaches.
-inline bool move_foot(Clip& clip, int frame, const LegRoles& leg, const Vec3& shift,
-                      bool as_far_as_it_reaches = false) {
-  const Transform upper = joint_of(clip, frame, leg.upper),
-                  lower = joint_of(clip, frame, leg.lower), foot = joint_of(clip, frame, leg.foot);
-  const TwoBoneSolution solution = solve_two_bone(
-      {upper.position, lower.position, foot.position, Vec3::Zero()}, {foot.position + shift});
-  if (!solution.reached && !as_far_as_it_reaches) return false;
-  std::vector<int> part(clip.skeleton.names.size(), 0);
-  for (std::size_t j = 0; j < part.size(); ++j) {
-    const int parent = clip.skeleton.parents[j], joint = static_cast<int>(j);
-    if (parent >= 0) part[j] = part[static_cast<std::size_t>(parent)];
-    part[j] = joint == leg.upper ? 1 : joint == leg.lower ? 2 : joint == leg.foot ? 3 : part[j];
-    if (part[j] == 0) continue;
-    const Quat turn = part[j] == 1   ? solution.root_rotation
-                      : part[j] == 2 ? solution.middle_rotation
-                                     : Quat::Identity();
-    const Vec3 from = part[j] == 1 ? upper.position : part[j] == 2 ? lower.position : foot.position;
-    const Vec3 to = part[j] == 1 ? upper.position : part[j] == 2 ? solution.middle : solution.end;
-    const Transform now = joint_of(clip, frame, joint);
-    clip.frame_positions(frame)[j] = (to + turn * Vec3(now.position - from)).cast<float>();
-    clip.frame_orientations(frame)[j] = (turn * now.orientation).cast<float>();
-  }
-  return solution.reached;
-}
+using samples::LegRoles;
+using samples::legs_of;
+using samples::move_foot;
+using samples::Stance;
+using samples::stances_of;
 
 struct Skate {
   double slide = 0.02;         // metres that a foot slides over a stance, and back in the swing
@@ -67,20 +36,6 @@ struct Skate {
   double foot_jitter = 0;      // the same, of each foot for itself
   unsigned seed = 1;
 };
-
-// A stance of one foot, seconds.
-struct Stance {
-  std::size_t side = 0;
-  double start = 0, end = 0;
-};
-
-inline std::vector<Stance> stances_of(const samples::Walk& walk) {
-  std::vector<Stance> stances;
-  for (const samples::Footprint& print : walk.prints) {
-    stances.push_back({static_cast<std::size_t>(print.side), print.strike, print.off});
-  }
-  return stances;
-}
 
 // From the first touch of any point of a foot to the last, as found.
 inline std::vector<Stance> stances_of(const Clip& clip, const RoleMap& roles) {
@@ -110,7 +65,6 @@ inline std::vector<Stance> stances_of(const Clip& clip, const RoleMap& roles) {
 // Slides begin and end at rest, each in a direction of its own along the ground, and are taken back
 // in the swing. Where a leg is too short for them they are less.
 inline Clip with_skate(const Clip& clean, const std::vector<Stance>& stances, const Skate& skate) {
-  constexpr double kSwing = 0.2;  // seconds
   Clip clip = clean;
   std::mt19937 random(skate.seed);
   std::normal_distribution<double> normal;
@@ -119,10 +73,6 @@ inline Clip with_skate(const Clip& clean, const std::vector<Stance>& stances, co
     return Vec3(size * Vec3(x, y, z));
   };
   const auto legs = legs_of(find_roles(clip.skeleton));
-  const auto ease = [](double u) {
-    u = std::clamp(u, 0.0, 1.0);
-    return u * u * (3 - 2 * u);
-  };
   std::vector<Vec3> directions;
   for (std::size_t i = 0; i < stances.size(); ++i) {
     const double angle = 2 * kPi * static_cast<double>(random()) / 4294967296.0;
@@ -132,15 +82,8 @@ inline Clip with_skate(const Clip& clean, const std::vector<Stance>& stances, co
     const double time = f / clip.rate;
     for (const std::size_t side : {0U, 1U}) {
       Vec3 shift = vector(skate.foot_jitter);
-      for (std::size_t i = 0; i < stances.size(); ++i) {
-        if (stances[i].side != side) continue;
-        const double part = ease((time - stances[i].start) / (stances[i].end - stances[i].start)) -
-                            ease((time - stances[i].end) / kSwing);
-        shift += skate.slide * part * directions[i];
-      }
-      for (int i = 0; i < 6 && !shift.isZero(); ++i, shift *= 0.7) {
-        if (move_foot(clip, f, legs[side], shift)) break;
-      }
+      shift += skate.slide * samples::slide_at(stances, directions, side, time);
+      samples::move_foot_within_reach(clip, f, legs[side], shift);
     }
     const Vec3f all = vector(skate.body_jitter).cast<float>();
     for (Vec3f& position : clip.frame_positions(f)) position += all;
