@@ -20,6 +20,11 @@ constexpr double kMostLift = 15 * kRadiansPerDegree;
 constexpr double kLeastLever = 0.2;  // of the way from ball to ankle
 constexpr double kLiftCutoff = 6;    // Hz
 
+constexpr double kCalmCutoff = 6;      // Hz
+constexpr double kCalmJitter = 0.001;  // metres
+constexpr double kCalmJoin = 0.05;  // seconds
+constexpr double kMostCalm = 4 * kRadiansPerDegree;
+
 class FootSolver {
  public:
   FootSolver(const Clip& clip, const PlantedBody& body, const Leg& leg, const Footing& footing)
@@ -86,7 +91,60 @@ class FootSolver {
     }
   }
 
+  // Where heel or ball stands alone, the ankle would take over what the foot jitters by about it,
+  // and the knee would shake. Its shift is smoothed instead, and the foot turned to where its point
+  // stands; less so where the ankle itself was captured with jitter, which the shift takes out.
+  void calm_ankle(FootPath& path) const {
+    const std::vector<double> parts = apart_from_flat();
+    const double jitter = jitter_of_ankle(parts) / kCalmJitter;
+    const double share = 1 / (1 + jitter * jitter);
+    const std::vector<Vec3> calm =
+        smooth_curve(shifts(path.turn), {.rate = clip_.rate, .cutoff = kCalmCutoff});
+    KnownCurve more(frames_);
+    for (std::size_t f = 0; f < frames_; ++f) {
+      const FixedStay *heel = stay(0, f), *ball = ball_ < 0 ? nullptr : stay(ball_, f);
+      if (!heel && !ball) continue;
+      const Vec3 ankle = joint_at(clip_, static_cast<int>(f), leg_.foot).position;
+      const Vec3 arm = turned(heel ? 0 : ball_, f, path.turn[f]) - ankle;
+      const Vec3 wanted = (heel ? heel : ball)->place - ankle - calm[f];
+      const Vec3 turn = rotation_vector(shortest_arc(arm, wanted));
+      more.set(f, turn * (share * parts[f] * std::min(1.0, kMostCalm / std::max(turn.norm(), 1e-12))));
+    }
+    const std::vector<Vec3> turns = curve_through(more, {.rate = clip_.rate});
+    for (std::size_t f = 0; f < frames_; ++f) {
+      path.turn[f] = rotation_vector(from_rotation_vector(turns[f]) *
+                                     from_rotation_vector(path.turn[f]));
+    }
+  }
+
  private:
+  // The deviation of the captured ankle's jitter while heel or ball stands alone, metres.
+  double jitter_of_ankle(const std::vector<double>& parts) const {
+    KnownCurve captured(frames_);
+    for (std::size_t f = 0; f < frames_; ++f) {
+      if (parts[f] == 0 || (!stay(0, f) && (ball_ < 0 || !stay(ball_, f)))) continue;
+      captured.set(f, joint_at(clip_, static_cast<int>(f), leg_.foot).position);
+    }
+    return jitter_of(captured);
+  }
+
+  // 0 where heel and ball both stand, which leaves the foot no turn, 1 from kCalmJoin on.
+  std::vector<double> apart_from_flat() const {
+    std::vector<double> parts(frames_, 1);
+    const int reach = std::max(1, static_cast<int>(std::lround(kCalmJoin * clip_.rate)));
+    for (std::size_t f = 0; f < frames_; ++f) {
+      if (!stay(0, f) || ball_ < 0 || !stay(ball_, f)) continue;
+      for (int i = -reach; i <= reach; ++i) {
+        const auto g = static_cast<std::ptrdiff_t>(f) + i;
+        if (g < 0 || g >= static_cast<std::ptrdiff_t>(frames_)) continue;
+        const double u = static_cast<double>(std::abs(i)) / reach;
+        double& part = parts[static_cast<std::size_t>(g)];
+        part = std::min(part, u * u * (3 - 2 * u));
+      }
+    }
+    return parts;
+  }
+
   // About this axis the heel comes up.
   Vec3 sideways(std::size_t f) const {
     const Vec3 ankle = joint_at(clip_, static_cast<int>(f), leg_.foot).position;
@@ -188,6 +246,8 @@ FootPath foot_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
   path.turn = solver.turns();
   path.shift = solver.through(solver.shifts(path.turn), solver.speed());
   solver.lift_heel(path);
+  path.shift = solver.through(solver.shifts(path.turn), solver.speed());
+  solver.calm_ankle(path);
   path.shift = solver.through(solver.shifts(path.turn), solver.speed());
   return path;
 }

@@ -184,6 +184,37 @@ TEST(GoalMotion, WrongKeysAreRefused) {
   }
 }
 
+// What viewers draw: otherwise markers are elsewhere than where the solver brought the joints.
+TEST(GoalMotion, AGoalOfAFrameIsWhereTheSolverSoughtIt) {
+  const Clip clip = calm_human(120);
+  Clip other = clip;
+  for (Vec3f& position : other.positions) position += Vec3f(0, 0.04f, 0.02f);
+  std::vector<KeyedGoal> goals(3, reach_of(clip, "LeftHand", 0.5, Vec3::Zero()));
+  goals[0].keys = {{0.5, place(clip, 30, "LeftHand"), Quat::Identity(), {}},
+                   {1.5, place(clip, 90, "LeftHand"), Quat::Identity(), {}}};
+  goals[1].motion = &other;
+  goals[1].relative_to = clip.skeleton.find("LeftHand");
+  goals[2].relative_to = clip.skeleton.find("LeftArm");
+  goals[2].keys[0].target = Vec3(0.1, -0.3, 0.1);
+  goals[2].goal.depth = 3;
+  for (KeyedGoal& goal : goals) {
+    goal.to = 1.5;
+    const auto made = apply_goals(clip, {&goal, 1}, {});
+    ASSERT_TRUE(made.ok());
+    for (const int f : {30, 47, 60, 90}) {
+      const Vec3 sought = goal_in_frame(goal, made->clip, f).target;
+      EXPECT_LT((place(made->clip, f, "LeftHand") - sought).norm(), 2e-4) << f;
+    }
+  }
+  // The support is where its joints stand in that frame.
+  KeyedGoal balance;
+  balance.goal.kind = Goal::Kind::balance;
+  balance.support_joints = {clip.skeleton.find("LeftHand")};
+  const auto support = goal_in_frame(balance, clip, 30).support;
+  ASSERT_EQ(support.size(), 1u);
+  EXPECT_NEAR(support[0].x(), place(clip, 30, "LeftHand").x(), 1e-9);
+}
+
 TEST(GoalMotion, TheOutlineIsConvexAndHoldsAllPoints) {
   const auto hull = outline({{0, 0}, {1, 0}, {0.5, 0.2}, {1, 1}, {0, 1}, {0.5, 0}, {1, 0}});
   EXPECT_EQ(hull.size(), 4u);
