@@ -19,6 +19,9 @@ constexpr double kJitterSpeed = 0.06;  // metres per second
 constexpr double kJitterTimes = 2;
 constexpr double kLowestCutoff = 5;     // Hz
 constexpr double kRefineWindow = 0.12;  // seconds
+constexpr double kEndWindow = 0.2;      // seconds
+constexpr double kOffGround = 0.004;    // metres
+constexpr double kOffJitter = 3;        // deviations of jitter
 
 // A run of frames in which a point is still; edges in fractional frames.
 struct Run {
@@ -33,7 +36,8 @@ struct Run {
 struct Tracks {
   double rate = 30;
   std::vector<std::vector<Vec3>> raw, smooth;
-  std::vector<double> jitter;  // metres per second, left after smoothing
+  std::vector<double> deviation;  // of the jitter, metres
+  std::vector<double> jitter;     // metres per second, left after smoothing
 };
 
 // The fractional frame between f - 1 and f at which a value crosses `threshold`.
@@ -106,7 +110,10 @@ class ContactFinder {
     take_tracks();
     for (std::size_t t = 0; t < found_.tracks.size(); ++t) find_runs(static_cast<int>(t));
     leave_out_air();
-    for (Run& run : runs_) refine(run);
+    for (Run& run : runs_) {
+      if (options_.refine) cut_at_ends(run);
+      refine(run);
+    }
     set_heights();
     for (const Run& run : runs_) {
       found_.stays.push_back({run.track, run.first / clip_.rate, run.last / clip_.rate,
@@ -125,6 +132,7 @@ class ContactFinder {
       const double cutoff =
           std::clamp(wanted, std::min(kLowestCutoff, options_.cutoff), options_.cutoff);
       tracks_.smooth.push_back(contacts::smoothed(tracks_.raw.back(), clip_.rate, cutoff));
+      tracks_.deviation.push_back(jitter);
       tracks_.jitter.push_back(contacts::speed_jitter(jitter, cutoff, clip_.rate));
       track.speed = contacts::norms(contacts::velocities(tracks_.smooth.back(), clip_.rate));
     }
@@ -241,6 +249,27 @@ class ContactFinder {
       if (!floor_is_lower(run, squares) && !other_foot_bears(run)) kept.push_back(run);
     }
     runs_ = std::move(kept);
+  }
+
+  // A point that comes down or leaves just beside the clip's ends is not fast enough there to be
+  // off by its speed. It is off where it is higher than the rest of its run.
+  void cut_at_ends(Run& run) const {
+    const auto& raw = tracks_.raw[static_cast<std::size_t>(run.track)];
+    const double high = run.place.y() + kOffGround * scale_ +
+                        kOffJitter * tracks_.deviation[static_cast<std::size_t>(run.track)];
+    const double window = kEndWindow * clip_.rate;
+    const int first = static_cast<int>(std::ceil(run.first)),
+              last = static_cast<int>(std::floor(run.last));
+    const auto is_high = [&](int f) { return raw[static_cast<std::size_t>(f)].y() > high; };
+    int from = first, to = last;
+    if (run.open_start) {
+      while (from < to && from - first < window && is_high(from)) ++from;
+    }
+    if (run.open_end) {
+      while (to > from && last - to < window && is_high(to)) --to;
+    }
+    if (from > first) run.first = from, run.open_start = false;
+    if (to < last) run.last = to, run.open_end = false;
   }
 
   void refine(Run& run) const {

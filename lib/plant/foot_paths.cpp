@@ -22,7 +22,7 @@ constexpr double kLiftCutoff = 6;    // Hz
 
 constexpr double kCalmCutoff = 6;      // Hz
 constexpr double kCalmJitter = 0.001;  // metres
-constexpr double kCalmJoin = 0.05;  // seconds
+constexpr double kCalmJoin = 0.05;     // seconds
 constexpr double kMostCalm = 4 * kRadiansPerDegree;
 
 class FootSolver {
@@ -108,12 +108,13 @@ class FootSolver {
       const Vec3 arm = turned(heel ? 0 : ball_, f, path.turn[f]) - ankle;
       const Vec3 wanted = (heel ? heel : ball)->place - ankle - calm[f];
       const Vec3 turn = rotation_vector(shortest_arc(arm, wanted));
-      more.set(f, turn * (share * parts[f] * std::min(1.0, kMostCalm / std::max(turn.norm(), 1e-12))));
+      more.set(f,
+               turn * (share * parts[f] * std::min(1.0, kMostCalm / std::max(turn.norm(), 1e-12))));
     }
     const std::vector<Vec3> turns = curve_through(more, {.rate = clip_.rate});
     for (std::size_t f = 0; f < frames_; ++f) {
-      path.turn[f] = rotation_vector(from_rotation_vector(turns[f]) *
-                                     from_rotation_vector(path.turn[f]));
+      path.turn[f] =
+          rotation_vector(from_rotation_vector(turns[f]) * from_rotation_vector(path.turn[f]));
     }
   }
 

@@ -13,6 +13,7 @@ constexpr double kFarFromPlace = 0.2;  // of the leg
 constexpr double kBesideEnds = 0.15;   // seconds
 constexpr double kOffGround = 0.012;   // of the leg
 constexpr double kJitter = 0.002;      // metres, less does not matter to a place
+constexpr double kUneven = 1.5;          // deviations
 constexpr int kDistanceRounds = 200;
 constexpr double kExact = 1e-8;  // metres
 
@@ -32,6 +33,22 @@ Vec3 median_place(const std::vector<Vec3>& track, int first, int last) {
   }
   return place;
 }
+
+// The mean height of a stay without a tenth of its frames at either end of the order: more exact
+// than the median where heights jitter evenly.
+double trimmed_height(const std::vector<Vec3>& track, int first, int last) {
+  std::vector<double> heights;
+  for (int f = first; f <= last; ++f) heights.push_back(track[static_cast<std::size_t>(f)].y());
+  std::ranges::sort(heights);
+  const std::size_t cut = heights.size() / 10;
+  double sum = 0;
+  for (std::size_t i = cut; i < heights.size() - cut; ++i) sum += heights[i];
+  return sum / static_cast<double>(heights.size() - 2 * cut);
+}
+
+// Variances of n Gaussian values' median, of that mean and of the difference of both, of theirs /
+// n.
+constexpr double kOfMedian = 0.5 * kPi, kOfTrimmed = 1.06, kOfDifference = 0.45;
 
 // Places of heels and balls that stand together, brought to the distance that they have in the
 // foot; heights stay, where they allow it.
@@ -250,18 +267,30 @@ void keep_distances(const Leg& leg, Footing& footing) {
 // jitter alone explains what they are off it by.
 void draw_heights_together(FootPart part, std::vector<Footing>& footings) {
   std::vector<FixedStay*> own;
-  std::vector<PlacedHeight> heights;
+  std::vector<double> errors, trimmed;  // variances of one frame's height / n; metres
+  double apart = 0, expected = 0;
   for (Footing& footing : footings) {
     for (FixedStay& stay : footing.stays) {
       if (stay.point.part != part) continue;
-      const double jitter = footing.jitter[footing.index_of(part)];
+      const std::size_t p = footing.index_of(part);
+      const double jitter = footing.jitter[p];
       if (jitter < kJitter) return;
       own.push_back(&stay);
-      // The median of n values has 1.57 / n of their variance.
-      heights.push_back({stay.place, 0.5 * kPi * jitter * jitter / (stay.last - stay.first + 1)});
+      errors.push_back(jitter * jitter / (stay.last - stay.first + 1));
+      trimmed.push_back(trimmed_height(footing.tracks[p], stay.first, stay.last));
+      apart += trimmed.back() - stay.place.y();
+      expected += kOfDifference * errors.back();
     }
   }
   if (own.size() < 2) return;
+  // Feet that jitter up more than down, as at the end of a leg that is straight, have means that
+  // are off to one side of the medians.
+  const bool even = apart * apart < kUneven * kUneven * expected;
+  std::vector<PlacedHeight> heights;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (even) own[i]->place.y() = trimmed[i];
+    heights.push_back({own[i]->place, (even ? kOfTrimmed : kOfMedian) * errors[i]});
+  }
   const std::vector<double> drawn = drawn_together(heights);
   for (std::size_t i = 0; i < own.size(); ++i) own[i]->place.y() = drawn[i];
 }

@@ -1,0 +1,74 @@
+// If these fail, a heel that has just left the ground, or is about to come down, counts as standing
+// beside the ends of a clip, and foot clean-up holds it in the air.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "contacts/contacts.h"
+#include "motion/cut.h"
+#include "samples/generator/walk.h"
+
+namespace krok {
+namespace {
+
+constexpr double kRate = 60;
+
+// How high, in metres above its place, the heel of a print is found to stand in a part of the walk
+// that begins or ends beside its stance.
+double highest_stand(const samples::Walk& walk, const samples::Footprint& print, int first,
+                     int last) {
+  const Clip part = cut(walk.clip, first, last);
+  const auto found = find_contacts(part, find_roles(part.skeleton));
+  EXPECT_TRUE(found.ok());
+  double highest = -1;
+  for (const Stay& stay : found->stays) {
+    const SolePoint& point = found->tracks[static_cast<std::size_t>(stay.track)].point;
+    const double start = stay.start + first / kRate, end = stay.end + first / kRate;
+    if (point.part != FootPart::heel ||
+        static_cast<int>(point.side) != static_cast<int>(print.side) || end < print.strike ||
+        start > print.heel_rise) {
+      continue;
+    }
+    const std::vector<Vec3> track = track_of(part, point, found->leg_length);
+    for (const double time : {stay.start, stay.end}) {
+      const auto frame = static_cast<std::size_t>(std::lround(time * kRate));
+      highest = std::max(highest, track[std::min(frame, track.size() - 1)].y() - stay.place.y());
+    }
+  }
+  return highest;
+}
+
+TEST(ContactsAtClipEnds, HeelsInTheAirDoNotStand) {
+  int tested = 0;
+  double worst = 0;
+  for (const double length : {0.45, 0.6, 0.75}) {
+    samples::WalkOptions options;
+    options.steps = 8;
+    options.step_length = length;
+    options.rate = kRate;
+    const auto walk = samples::make_walk(options);
+    ASSERT_TRUE(walk.ok());
+    for (const samples::Footprint& print : walk->prints) {
+      const int rise = static_cast<int>(std::ceil(print.heel_rise * kRate)),
+                strike = static_cast<int>(std::floor(print.strike * kRate));
+      for (int frames = 4; frames <= 12; ++frames) {
+        const int last = rise + frames, first = strike - frames;
+        for (const auto& [from, to] :
+             {std::pair(std::max(0, last - 90), last),
+              std::pair(first, std::min(first + 90, walk->clip.frame_count() - 1))}) {
+          if (from < 0 || to >= walk->clip.frame_count() || to - from < 60) continue;
+          const double metres = highest_stand(*walk, print, from, to);
+          tested += metres >= 0 ? 1 : 0;
+          worst = std::max(worst, metres);
+        }
+      }
+    }
+  }
+  EXPECT_GT(tested, 150);
+  EXPECT_LT(worst, 0.006);
+}
+
+}  // namespace
+}  // namespace krok
