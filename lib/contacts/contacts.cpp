@@ -20,7 +20,8 @@ constexpr double kJitterTimes = 2;
 constexpr double kLowestCutoff = 5;     // Hz
 constexpr double kRefineWindow = 0.12;  // seconds
 constexpr double kEndWindow = 0.2;      // seconds
-constexpr double kOffGround = 0.004;    // metres
+constexpr double kOffGround = 0.006;    // metres
+constexpr double kNotDown = 0.012;      // metres; heels give way as they take load
 constexpr double kOffJitter = 3;        // deviations of jitter
 
 // A run of frames in which a point is still; edges in fractional frames.
@@ -255,18 +256,20 @@ class ContactFinder {
   // off by its speed. It is off where it is higher than the rest of its run.
   void cut_at_ends(Run& run) const {
     const auto& raw = tracks_.raw[static_cast<std::size_t>(run.track)];
-    const double high = run.place.y() + kOffGround * scale_ +
-                        kOffJitter * tracks_.deviation[static_cast<std::size_t>(run.track)];
+    const double level =
+        run.place.y() + kOffJitter * tracks_.deviation[static_cast<std::size_t>(run.track)];
     const double window = kEndWindow * clip_.rate;
     const int first = static_cast<int>(std::ceil(run.first)),
               last = static_cast<int>(std::floor(run.last));
-    const auto is_high = [&](int f) { return raw[static_cast<std::size_t>(f)].y() > high; };
+    const auto is_above = [&](double height, int f) {
+      return raw[static_cast<std::size_t>(f)].y() > level + height * scale_;
+    };
     int from = first, to = last;
     if (run.open_start) {
-      while (from < to && from - first < window && is_high(from)) ++from;
+      while (from < to && from - first < window && is_above(kNotDown, from)) ++from;
     }
     if (run.open_end) {
-      while (to > from && last - to < window && is_high(to)) --to;
+      while (to > from && last - to < window && is_above(kOffGround, to)) --to;
     }
     if (from > first) run.first = from, run.open_start = false;
     if (to < last) run.last = to, run.open_end = false;

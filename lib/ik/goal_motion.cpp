@@ -18,7 +18,7 @@ namespace {
 // Frames that one thread solves in a row.
 constexpr std::size_t kGrain = 32;
 // Passes for goals relative to joints that the solution moves.
-constexpr int kPasses = 5;
+constexpr int kPasses = 20;
 constexpr double kSettled = 1e-6;  // metres
 // A motion that is beyond its limits by so much, radians, is blended by a goal's strength alone.
 constexpr double kWhollyBlended = 0.1;
