@@ -39,12 +39,15 @@ struct PlantedFeet {
 // joints are left out, and points that no joint marks, such as the ball of a foot without a toe
 // joint, take their stays from find_contacts(). Without contacts find_contacts() tells all.
 //
-// - Each stay has one place: the median of the point over its frames. Heel and ball keep their
-//   distance. Heights of one part over all stays are drawn to a common plane as far as jitter alone
-//   explains their difference (shrinkage, James and Stein 1961), so that stairs keep theirs.
+// - Each stay has one place: the median of the point over its frames, of heights that jitter evenly
+//   their trimmed mean. Heel and ball keep their distance. Heights of one part over all stays are
+//   drawn to a common plane as far as jitter alone explains their difference (shrinkage, James and
+//   Stein 1961), so that stairs keep theirs.
 // - While heel and ball both stand, the foot is turned onto their places by the shortest rotation.
 //   While one of them stands, the foot turns about it as captured: the roll over heel and ball
-//   stays. While the tip alone stands, the foot nearly turns about the tip. Toes keep lying flat.
+//   stays. Its ankle is led smoothly there, and the foot turned a little more or less, so that
+//   knees do not take over what feet shake by. While the tip alone stands, the foot nearly turns
+//   about the tip. Toes keep lying flat.
 // - Between stays the correction is the curve of least curvature under a little tension, drawn to
 // zero
 //   where stays are far apart.

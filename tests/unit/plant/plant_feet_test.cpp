@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "motion/ground_frame.h"
 #include "support/planted_measures.h"
@@ -48,6 +49,36 @@ TEST(PlantFeet, SlidesAndJitterAreGone) {
   EXPECT_GE(measures.stays, 12);
   EXPECT_EQ(feet.out_of_reach, 0);
   EXPECT_TRUE(check(feet.clip).ok());
+}
+
+// Feet that shake about their ankles: their points jitter, ankles and knees do not. If the ankle
+// took over what the point is held by, knees would shake that were still.
+TEST(PlantFeet, KneesDoNotTakeOverWhatFeetShakeBy) {
+  std::mt19937 random(5);
+  const auto small = [&] { return (static_cast<double>(random()) / 4294967296.0 - 0.5) * 0.05; };
+  const samples::Walk walk = plain_walk();
+  const RoleMap roles = find_roles(walk.clip.skeleton);
+  Clip input = walk.clip;
+  for (int f = 0; f < input.frame_count(); ++f) {
+    for (const test::LegRoles& leg : test::legs_of(roles)) {
+      const double x = small(), y = small(), z = small();
+      const Transform foot = test::joint_of(input, f, leg.foot);
+      const Quat turn = from_rotation_vector(Vec3(x, y, z));
+      const auto within = subtree(input.skeleton, leg.foot);
+      for (std::size_t j = 0; j < within.size(); ++j) {
+        if (within[j] == 0) continue;
+        const Transform now = test::joint_of(input, f, static_cast<int>(j));
+        input.frame_positions(f)[j] =
+            (foot.position + turn * Vec3(now.position - foot.position)).cast<float>();
+        input.frame_orientations(f)[j] = (turn * now.orientation).cast<float>();
+      }
+    }
+  }
+  const PlantedFeet feet = planted(input);
+  const auto measures = test::measure(input, walk.clip, roles, feet.stays, feet.clip);
+  EXPECT_GT(feet.drift_before, 0.005);
+  EXPECT_LT(measures.drift, 0.0005);
+  EXPECT_LT(measures.knee_99, 1.2);
 }
 
 // All walks of the generator, at all its rates, 20 mm of slides and 5 mm of jitter.
