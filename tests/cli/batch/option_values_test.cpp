@@ -67,7 +67,7 @@ const std::vector<Value>& values() {
       {"krok-edit", {"--loop", "--rounds", "0"}, "usage"},
       {"krok-ik", {"--goals", "x.goals", "--depth", "-1"}, "usage"},
       {"krok-ik", {"--goals", "x.goals", "--fade", "-1s"}, "usage"},
-      {"krok-ik", {"--plant", "--plot", "x.svg"}, "usage"},
+      {"krok-ik", {"--goals", "x.goals", "--plot", "x.png"}, "usage"},
       {"krok-ik", {"--goals", "x.goals", "--reach", "Hand=0m,0m@1s"}, "usage"}};
   return list;
 }
