@@ -18,10 +18,11 @@ constexpr double kTipForward = 0.236;
 constexpr double kTipHeight = 0.012;
 constexpr double kLowestAnkle = 0.04, kHighestAnkle = 0.16;
 
-constexpr double kStillSpeed = 0.17;  // leg lengths per second: 0.15 m/s for a leg of 0.86 m
-constexpr double kJump = 0.1;         // leg lengths
-constexpr double kLowest = 0.2;       // of all frames
-constexpr int kFewest = 5;            // frames
+constexpr double kStillSpeed = 0.17;    // leg lengths per second: 0.15 m/s for a leg of 0.86 m
+constexpr double kJump = 0.1;           // leg lengths
+constexpr double kLowest = 0.2;         // of all frames
+constexpr int kFewest = 5;              // frames
+constexpr double kShortestToes = 0.02;  // leg lengths
 
 struct Leg {
   int upper = -1, lower = -1, foot = -1, toes = -1, tip = -1;
@@ -45,6 +46,11 @@ int furthest(const Skeleton& skeleton, int from, const std::vector<int>& candida
     if (best < 0 || apart(skeleton, from, joint) > apart(skeleton, from, best) + 1e-9) best = joint;
   }
   return best;
+}
+
+double length_of(const Skeleton& skeleton, const Leg& leg) {
+  if (leg.upper < 0 || leg.lower < 0 || leg.foot < 0) return 0;
+  return apart(skeleton, leg.upper, leg.lower) + apart(skeleton, leg.lower, leg.foot);
 }
 
 Leg find_leg(const Skeleton& skeleton, const RoleMap& roles, FootSide side) {
@@ -83,12 +89,12 @@ Leg find_leg(const Skeleton& skeleton, const RoleMap& roles, FootSide side) {
   beyond.insert(beyond.end(), ends.begin(), ends.end());
   leg.tip = furthest(skeleton, leg.foot, beyond);
   if (leg.tip >= 0 && apart(skeleton, leg.foot, leg.tip) < 1e-6) leg.tip = -1;
+  // Many exporters put an end site at the toe joint itself, which shows no tip.
+  const bool at_toes =
+      leg.tip >= 0 && leg.toes >= 0 &&
+      apart(skeleton, leg.toes, leg.tip) < kShortestToes * length_of(skeleton, leg);
+  if (at_toes) leg.tip = -1;
   return leg;
-}
-
-double length_of(const Skeleton& skeleton, const Leg& leg) {
-  if (leg.upper < 0 || leg.lower < 0 || leg.foot < 0) return 0;
-  return apart(skeleton, leg.upper, leg.lower) + apart(skeleton, leg.lower, leg.foot);
 }
 
 Vec3 position(const Clip& clip, int frame, int joint) {

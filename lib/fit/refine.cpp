@@ -28,9 +28,11 @@ using rbf::WeightSolver;
 
 constexpr int kPointsPerParameter = 40;  // per parameter
 constexpr double kGrowth = 1.25;  // max mean square held-out error, relative to its min so far
-constexpr int kStalledRounds = 3;
+constexpr int kStalledRounds = 10;
 constexpr double kLowerOnTheWay = 0.02;
 constexpr int kRefusedRounds = 2;  // rounds before a refused point may be tried again
+// Distance of new points to refused ones, in usual distances; grows with each round in vain.
+constexpr double kAvoid = detail::kNear, kMostAvoid = 4 * detail::kNear;
 
 using detail::Found;
 
@@ -59,6 +61,8 @@ class Refiner {
     return {solver_.function(), *evaluator_, measure_, options_.inside, options_.jobs};
   }
   double limit() const { return detail::low_limit(options_); }
+  // Rounds since the last one that inserted a point.
+  int rounds_in_vain() const;
   std::vector<Found> seek(double usual, double& worst) const;
   // Returns false if no error is left.
   Result<bool> make_round();
@@ -147,10 +151,7 @@ std::optional<Stop> Refiner::stop(std::size_t rounds_before) const {
   const bool low = lowest_ < limit() && (rounds.empty() || rounds.back().inserted > 0);
   if (is_good() && !low) return Stop::tolerance;
   if (points_left() <= 0) return Stop::points;
-  const bool stalled = rounds.size() >= kStalledRounds &&
-                       std::all_of(rounds.end() - kStalledRounds, rounds.end(),
-                                   [](const RefineRound& round) { return round.inserted == 0; });
-  if (stalled) return Stop::stalled;
+  if (rounds_in_vain() >= kStalledRounds) return Stop::stalled;
   if (options_.rounds > 0 &&
       rounds.size() - rounds_before >= static_cast<std::size_t>(options_.rounds)) {
     return Stop::rounds;
@@ -179,6 +180,13 @@ Status Refiner::run(Progress& progress) {
   return {};
 }
 
+int Refiner::rounds_in_vain() const {
+  const auto& rounds = state_.rounds;
+  const auto last = std::find_if(rounds.rbegin(), rounds.rend(),
+                                 [](const RefineRound& round) { return round.inserted > 0; });
+  return static_cast<int>(last - rounds.rbegin());
+}
+
 // The points with the largest errors, worst first, at most as many as a round takes. `worst`:
 // receives the largest error of the sweep.
 std::vector<Found> Refiner::seek(double usual, double& worst) const {
@@ -186,9 +194,13 @@ std::vector<Found> Refiner::seek(double usual, double& worst) const {
   const std::vector<double> sweep_places = detail::places_within(
       solver_.function(), sweep,
       detail::seed_for(options_.seed, detail::Use::sweep, state_.rounds.size()), options_.inside);
+  // Where points are refused round after round, the search goes on elsewhere.
+  const int in_vain = rounds_in_vain();
+  const int kept = std::max(kRefusedRounds, in_vain);
+  const double avoid = std::min(kAvoid * (1 + std::max(0, in_vain - 1)), kMostAvoid) * usual;
   std::vector<detail::ErrorPoint> avoided;
   for (const RefusedPoint& refused : state_.refused) {
-    if (refused.round + kRefusedRounds < static_cast<int>(state_.rounds.size())) continue;
+    if (refused.round + kept < static_cast<int>(state_.rounds.size())) continue;
     avoided.push_back({std::vector<double>(d_), 0});
     solver_.function().scale(refused.point, avoided.back().place);
   }
@@ -202,14 +214,15 @@ std::vector<Found> Refiner::seek(double usual, double& worst) const {
     found.back().sought = error;
     found.back().low = low;
   };
-  for (std::vector<double>& place :
-       detail::low_places(solver_.function(), *evaluator_, sweep_places, avoided, (wanted + 1) / 2,
-                          limit(), usual)) {
+  // If low weights cannot be raised, every other round is for errors alone.
+  const std::size_t low_wanted = in_vain % 2 == 0 ? (wanted + 1) / 2 : 0;
+  for (std::vector<double>& place : detail::low_places(
+           solver_.function(), *evaluator_, sweep_places, avoided, low_wanted, limit(), usual)) {
     avoided.push_back({place, 0});
     take(std::move(place), field().lengths(field().at(avoided.back().place)).front(), true);
   }
-  for (detail::ErrorPoint& top :
-       detail::worst_points(field(), sweep_places, avoided, wanted - found.size(), usual, worst)) {
+  for (detail::ErrorPoint& top : detail::worst_points(field(), sweep_places, avoided,
+                                                      wanted - found.size(), usual, avoid, worst)) {
     if (!is_good()) take(std::move(top.place), top.error, false);
   }
   return found;

@@ -26,6 +26,9 @@
 // square error grows to more than 1.25 times its minimum so far, or the lowest weight falls below
 // `lowest` (or, if it was below at first, by more than 0.02 below that).
 //
+// After a round in vain, points keep an increasing distance from those refused, so that the search
+// goes on elsewhere.
+//
 // If weights are below `lowest` at first (cubic reaches -0.17 between five examples in a row, -0.3
 // between captured ones), up to half of a round's points are placed there, with the second kind of
 // row.
@@ -112,7 +115,7 @@ enum class Stop : unsigned char {
   points,     // RefineOptions::points were inserted
   tolerance,  // reached
   exact,      // all errors are below a billionth of the ranges
-  stalled     // no point was accepted in three consecutive rounds
+  stalled     // no point was accepted in ten consecutive rounds
 };
 // "rounds", "points", ...
 std::string_view stop_name(Stop stop);

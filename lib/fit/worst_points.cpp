@@ -47,7 +47,7 @@ double usual_distance(const rbf::WeightFunction& function) {
 
 std::vector<ErrorPoint> worst_points(const ErrorField& field, std::span<const double> sweep,
                                      const std::vector<ErrorPoint>& avoided, std::size_t wanted,
-                                     double usual, double& worst) {
+                                     double usual, double avoid, double& worst) {
   const std::size_t d = field.dimensions();
   const std::vector<double> lengths = field.lengths(field.at(sweep));
   std::vector<std::size_t> order(lengths.size());
@@ -61,7 +61,7 @@ std::vector<ErrorPoint> worst_points(const ErrorField& field, std::span<const do
   for (const std::size_t p : order) {
     if (starts.size() >= std::max(2 * wanted, kMinStarts) || !(lengths[p] > kNegligible)) break;
     const auto place = sweep.subspan(p * d, d);
-    if (!is_apart(place, starts, kApart * usual) || !is_apart(place, avoided, kNear * usual)) {
+    if (!is_apart(place, starts, kApart * usual) || !is_apart(place, avoided, avoid)) {
       continue;
     }
     starts.push_back({{place.begin(), place.end()}, lengths[p]});
@@ -71,7 +71,7 @@ std::vector<ErrorPoint> worst_points(const ErrorField& field, std::span<const do
   // If a climb ends near an avoided point, its start may still be usable.
   for (std::size_t s = 0; s < starts.size(); ++s) {
     const auto top = std::span(climbing).subspan(s * d, d);
-    if (!is_apart(top, avoided, kNear * usual)) continue;
+    if (!is_apart(top, avoided, avoid)) continue;
     starts[s] = {{top.begin(), top.end()}, heights[s]};
   }
   std::ranges::stable_sort(

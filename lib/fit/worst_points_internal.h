@@ -25,10 +25,10 @@ struct ErrorPoint {
 bool is_apart(std::span<const double> place, std::span<const ErrorPoint> others, double least);
 
 // Climbs from the worst places of a sweep, [places x d], that are spaced apart; returns the worst
-// few, at most `wanted`, worst first, none near those avoided. `usual`: usual distance; `worst`:
-// receives the largest error of the sweep.
+// few, at most `wanted`, worst first, none closer than `avoid` to those avoided. `usual`: usual
+// distance; `worst`: receives the largest error of the sweep.
 std::vector<ErrorPoint> worst_points(const ErrorField& field, std::span<const double> sweep,
                                      const std::vector<ErrorPoint>& avoided, std::size_t wanted,
-                                     double usual, double& worst);
+                                     double usual, double avoid, double& worst);
 
 }  // namespace krok::fit::detail

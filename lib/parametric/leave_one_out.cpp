@@ -1,107 +1,17 @@
 #include "parametric/leave_one_out.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 
 #include "core/parallel.h"
-#include "math/dense_solve.h"
-#include "parametric/blended_motion.h"
 #include "parametric/bounds.h"
+#include "parametric/left_out_internal.h"
 #include "rbf/weight_evaluator.h"
 
 namespace krok::parametric {
 
 namespace {
-
-constexpr int kParts = 16;  // samples per interval between keytimes
-
-std::vector<double> parameters_of(const Library& library) {
-  std::vector<double> all;
-  for (const Example& example : library.examples) {
-    all.insert(all.end(), example.parameters.begin(), example.parameters.end());
-  }
-  return all;
-}
-
-Result<rbf::WeightFunction> weights_of(const Library& library, rbf::Kernel kernel,
-                                       double smoothing) {
-  rbf::SolverOptions options;
-  options.kernel = kernel;
-  options.smoothing = smoothing;
-  const auto solver =
-      rbf::WeightSolver::create(library.dimensions(), parameters_of(library), options);
-  if (!solver) return solver.error();
-  return solver->function();
-}
-
-// Values of the least-squares affine fit of the examples' weights at a point.
-std::vector<double> plane_weights(const Bounds& bounds, std::span<const double> point) {
-  const Eigen::Index d = bounds.dimensions;
-  const auto n = static_cast<Eigen::Index>(bounds.points.size()) / d;
-  Eigen::MatrixXd planes(n, d + 1);
-  planes.col(0).setOnes();
-  planes.rightCols(d) = Eigen::Map<const Eigen::MatrixXd>(bounds.points.data(), d, n).transpose();
-  Eigen::VectorXd at(d + 1);
-  at[0] = 1;
-  bounds.scale(point, {at.data() + 1, static_cast<std::size_t>(d)});
-  const Eigen::VectorXd weights = solve_minimum_norm(planes.transpose(), at);
-  return {weights.begin(), weights.end()};
-}
-
-std::vector<double> nearest_weights(const Bounds& bounds, std::span<const double> point) {
-  const auto d = static_cast<std::size_t>(bounds.dimensions);
-  std::vector<double> scaled(d), weights(bounds.points.size() / d, 0);
-  bounds.scale(point, scaled);
-  std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    double square = 0;
-    for (std::size_t k = 0; k < d; ++k) {
-      square += (bounds.points[i * d + k] - scaled[k]) * (bounds.points[i * d + k] - scaled[k]);
-    }
-    if (square >= least) continue;
-    least = square;
-    best = i;
-  }
-  weights[best] = 1;
-  return weights;
-}
-
-// Positions at fractions of a motion's intervals, [samples x joints], without the joints above the
-// hips.
-std::vector<Vec3> poses_of(const BlendedMotion& motion, const PackedExamples& packed) {
-  const Skeleton& skeleton = packed.skeleton;
-  const std::vector<std::uint8_t>& below = packed.hips_root.below();
-  auto scratch = motion.make_scratch();
-  std::vector<PoseBlock> pose(scratch.reference.size());
-  std::vector<Transform> world(skeleton.names.size());
-  std::vector<Vec3> positions;
-  const auto& keytimes = motion.keytimes();
-  for (std::size_t k = 0; k + 1 < keytimes.size(); ++k) {
-    for (int part = 0; part < kParts; ++part) {
-      const double lasts = keytimes[k + 1] - keytimes[k];
-      motion.pose(keytimes[k] + lasts * (part + 0.5) / kParts, pose, scratch);
-      unpack_pose(pose, world);
-      local_to_world(skeleton.parents, world, world);
-      for (std::size_t j = 0; j < below.size(); ++j) {
-        if (below[j] != 0) positions.push_back(world[j].position);
-      }
-    }
-  }
-  return positions;
-}
-
-std::optional<double> distance(const Library& library, const PackedExamples& packed,
-                               std::span<const double> weights, const std::vector<Vec3>& wanted) {
-  const auto motion = BlendedMotion::create(library, packed, weights);
-  if (!motion) return std::nullopt;
-  const auto found = poses_of(*motion, packed);
-  double sum = 0;
-  for (std::size_t i = 0; i < found.size(); ++i) sum += (found[i] - wanted[i]).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(found.size()));
-}
 
 // A library without one of its examples, and that example.
 struct Gap {
@@ -111,17 +21,9 @@ struct Gap {
   std::vector<Vec3> wanted;
 };
 
-std::vector<Vec3> example_poses(const Library& library, std::size_t index) {
-  Library alone = library;
-  alone.examples.assign(1, library.examples[index]);
-  const PackedExamples packed = pack_examples(alone);
-  const double all = 1;
-  return poses_of(*BlendedMotion::create(alone, packed, {&all, 1}), packed);
-}
-
 Gap gap_of(const Library& library, std::size_t index) {
   Gap gap;
-  gap.wanted = example_poses(library, index);
+  gap.wanted = detail::example_poses(library, index);
   gap.point = library.examples[index].parameters;
   gap.others = library;
   gap.others.examples.erase(gap.others.examples.begin() + static_cast<std::ptrdiff_t>(index));
@@ -131,13 +33,13 @@ Gap gap_of(const Library& library, std::size_t index) {
 
 // Distance of the motion by the weight function of the others.
 std::optional<double> weighted_distance(const Gap& gap, rbf::Kernel kernel, double smoothing) {
-  const auto function = weights_of(gap.others, kernel, smoothing);
+  const auto function = detail::weights_of(gap.others, kernel, smoothing);
   if (!function) return std::nullopt;
   const auto evaluator = rbf::WeightEvaluator::create(*function);
   if (!evaluator) return std::nullopt;
   std::vector<double> weights(gap.others.examples.size());
   evaluator->weights(gap.point, weights);
-  return distance(gap.others, gap.packed, weights, gap.wanted);
+  return detail::distance(gap.others, gap.packed, weights, gap.wanted);
 }
 
 HeldOut hold_out(const Library& library, std::size_t index, rbf::Kernel kernel, double smoothing) {
@@ -147,11 +49,11 @@ HeldOut hold_out(const Library& library, std::size_t index, rbf::Kernel kernel, 
   result.example = static_cast<int>(index);
   result.inside = outside(bounds, gap.point).distance == 0;
   const auto of = [&](const std::vector<double>& weights) {
-    return distance(gap.others, gap.packed, weights, gap.wanted);
+    return detail::distance(gap.others, gap.packed, weights, gap.wanted);
   };
   const auto weighted = weighted_distance(gap, kernel, smoothing);
-  const auto linear = of(plane_weights(bounds, gap.point));
-  const auto nearest = of(nearest_weights(bounds, gap.point));
+  const auto linear = of(detail::plane_weights(bounds, gap.point));
+  const auto nearest = of(detail::nearest_weights(bounds, gap.point));
   result.failed = !weighted || !linear || !nearest;
   if (result.failed) return result;
   result.weighted = *weighted;
@@ -165,7 +67,7 @@ HeldOut hold_out(const Library& library, std::size_t index, rbf::Kernel kernel, 
 Result<std::vector<HeldOut>> leave_one_out(const Library& library, rbf::Kernel kernel,
                                            double smoothing, int jobs) {
   if (Status status = check(library); !status) return status.error();
-  if (const auto all = weights_of(library, kernel, smoothing); !all) return all.error();
+  if (const auto all = detail::weights_of(library, kernel, smoothing); !all) return all.error();
   std::vector<HeldOut> results(library.examples.size());
   parallel_for(results.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -204,8 +106,9 @@ Result<std::vector<double>> distances_to_examples(const Library& library,
   std::vector<double> weights(library.examples.size()), distances;
   for (std::size_t i = 0; i < library.examples.size(); ++i) {
     evaluator->weights(library.examples[i].parameters, weights);
-    distances.push_back(distance(library, packed, weights, example_poses(library, i))
-                            .value_or(std::numeric_limits<double>::infinity()));
+    distances.push_back(
+        detail::distance(library, packed, weights, detail::example_poses(library, i))
+            .value_or(std::numeric_limits<double>::infinity()));
   }
   return distances;
 }
@@ -214,7 +117,7 @@ Result<std::vector<SmoothingTrial>> try_smoothings(const Library& library, rbf::
                                                    std::span<const double> smoothings, int jobs) {
   if (Status status = check(library); !status) return status.error();
   for (const double smoothing : smoothings) {
-    if (const auto all = weights_of(library, kernel, smoothing); !all) return all.error();
+    if (const auto all = detail::weights_of(library, kernel, smoothing); !all) return all.error();
   }
   const std::size_t tried = smoothings.size();
   std::vector<std::optional<double>> distances(library.examples.size() * tried);

@@ -120,11 +120,12 @@ rbf::Measure measure_of(const parametric::Measure& measure) {
 }
 
 Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& options,
-                                  SmoothingChoice smoothing, const krok::fit::Refined* start,
+                                  WeightsChoice choice, const krok::fit::Refined* start,
                                   ToolContext& context) {
   const Library& library = input.library;
   FittedLibrary fitted;
-  fitted.smoothing = std::move(smoothing);
+  fitted.choice = std::move(choice);
+  fitted.exact_spacing = input.exact_spacing;
   fitted.packed = parametric::pack_examples(library);
   fitted.tolerances = tolerances_of(library, options);
   warn_of_spread(input, fitted.packed, context);
@@ -133,7 +134,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   } else {
     const auto solver = rbf::WeightSolver::create(
         library.dimensions(), parameters_of(library),
-        {options.kernel, input.lower, input.upper, fitted.smoothing.smoothing});
+        {fitted.choice.kernel, input.lower, input.upper, fitted.choice.smoothing});
     if (!solver) return explained(solver.error(), input).in_file(options.library);
     fitted.start.function = solver->function();
   }

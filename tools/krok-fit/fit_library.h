@@ -6,7 +6,7 @@
 #include "fit/refine.h"
 #include "parametric/leave_one_out.h"
 #include "parametric/measure.h"
-#include "tools/krok-fit/choose_smoothing.h"
+#include "tools/krok-fit/choose_weights.h"
 #include "tools/krok-fit/library_input.h"
 #include "tools/krok-fit/options.h"
 
@@ -19,7 +19,8 @@ struct FittedLibrary {
   krok::fit::Refined start;        // before this run's refinement
   krok::fit::Refined refined;
   double seconds = 0;  // time of refinement; not written to any file
-  SmoothingChoice smoothing;
+  WeightsChoice choice;
+  double exact_spacing = 0;  // see LibraryInput
   // Leave-one-out errors with unrefined weights; empty for more than kMaxLeftOut examples.
   std::vector<parametric::HeldOut> left_out;
   double example_distance =
@@ -32,7 +33,7 @@ rbf::Measure measure_of(const parametric::Measure& measure);
 // Weights for the examples alone or from `start`, refined and polished according to the options.
 // Codes: those of rbf::WeightSolver, with the names of the examples, and of krok::fit::refine.
 Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& options,
-                                  SmoothingChoice smoothing, const krok::fit::Refined* start,
+                                  WeightsChoice choice, const krok::fit::Refined* start,
                                   ToolContext& context);
 
 }  // namespace krok::cli::fit

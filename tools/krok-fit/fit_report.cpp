@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/numbers.h"
-#include "tools/krok-fit/choose_smoothing.h"
+#include "tools/krok-fit/choose_weights.h"
 #include "tools/krok-fit/parameter_text.h"
 
 namespace krok::cli::fit {
@@ -84,13 +85,22 @@ Json refused_json(const FittedLibrary& fitted) {
   return list;
 }
 
-Json smoothings_json(const SmoothingChoice& choice) {
+Json trials_json(const parametric::WeightTrials& trials) {
   Json list = Json::array();
-  for (const parametric::SmoothingTrial& trial : choice.tried) {
-    list.push_back(
-        {{"smoothing", trial.smoothing}, {"inside", trial.examples}, {"weighted", trial.weighted}});
+  for (const parametric::WeightTrial& trial : trials.tried) {
+    list.push_back({{"kernel", std::string(rbf::kernel_name(trial.candidate.kernel))},
+                    {"smoothing", trial.candidate.smoothing},
+                    {"spacing", trial.candidate.spacing},
+                    {"failed", trial.failed},
+                    {"error", trial.distance}});
   }
-  return list;
+  Json result;
+  result["examples"] = trials.examples;
+  result["clips"] = trials.groups;
+  result["planes"] = trials.planes;
+  result["nearest"] = trials.nearest;
+  result["weights"] = std::move(list);
+  return result;
 }
 
 Json left_out_json(const std::vector<parametric::HeldOut>& left_out) {
@@ -156,10 +166,45 @@ void say_polish(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   context.log(fmt::format("  polished together; before that, errors were {}", text));
 }
 
+std::string trial_text(const parametric::WeightTrial& trial) {
+  if (trial.failed > 0) return "none";
+  return readable(1e3 * trial.distance, 3);
+}
+
+// What was compared to choose the weights: one line for kernels that reproduce the examples, one
+// for each kernel with smoothing.
+void say_trials(const FittedLibrary& fitted, ToolContext& context) {
+  const parametric::WeightTrials& trials = fitted.choice.trials;
+  if (trials.examples == 0) return;
+  std::string exact;
+  std::map<rbf::Kernel, std::string> smoothed;
+  for (const parametric::WeightTrial& trial : trials.tried) {
+    const auto& [kernel, smoothing, spacing] = trial.candidate;
+    if (smoothing > 0) {
+      smoothed[kernel] += fmt::format("{}{}: {}", smoothed[kernel].empty() ? "" : ", ",
+                                      readable(smoothing), trial_text(trial));
+    } else {
+      exact +=
+          fmt::format("{}{}{} {}", exact.empty() ? "" : ", ", rbf::kernel_name(kernel),
+                      spacing > fitted.exact_spacing ? " (thinned out)" : "", trial_text(trial));
+    }
+  }
+  context.log(
+      fmt::format("  weights: {}, smoothing {}; errors of {} of {} left out in turn (mm): planes "
+                  "{}, nearest {}",
+                  rbf::kernel_name(fitted.choice.kernel), readable(fitted.choice.smoothing),
+                  counted(trials.examples, "example"), counted(trials.groups, "clip"),
+                  readable(1e3 * trials.planes, 3), readable(1e3 * trials.nearest, 3)));
+  if (!exact.empty()) context.log("    examples reproduced: " + exact);
+  for (const auto& [kernel, text] : smoothed) {
+    context.log(fmt::format("    {} with smoothing {}", rbf::kernel_name(kernel), text));
+  }
+}
+
 void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolContext& context) {
   const double smoothing = fitted.refined.function.smoothing;
   if (!(smoothing > 0)) {
-    if (input.all_steps.empty()) return;
+    if (input.all_examples.empty()) return;
     const parametric::LeftOutMeans means = parametric::means_of(fitted.left_out);
     if (!contradict_each_other(means)) return;
     return context.warn(
@@ -169,16 +214,10 @@ void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolC
                     readable(1e3 * means.weighted, 3), readable(1e3 * means.linear, 3)),
         "--smooth auto averages them; examples are then not reproduced exactly");
   }
-  std::string text = fmt::format("  smoothing {}", readable(smoothing));
-  if (fitted.smoothing.exact) {
-    text +=
-        fmt::format(", because examples contradict each other (leave-one-out error {} mm without)",
-                    readable(1e3 * fitted.smoothing.exact->weighted, 3));
-  }
   context.log(
-      fmt::format("{}: mean error of the examples' joints is {} mm; --smooth 0 reproduces "
-                  "them exactly",
-                  text, readable(1e3 * fitted.example_distance, 3)));
+      fmt::format("  smoothing {}: mean error of the examples' joints is {} mm; --smooth 0 "
+                  "reproduces them exactly",
+                  readable(smoothing), readable(1e3 * fitted.example_distance, 3)));
 }
 
 }  // namespace
@@ -207,9 +246,8 @@ Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
   result["kernel"] = std::string(rbf::kernel_name(fitted.refined.function.kernel));
   result["smoothing"] = fitted.refined.function.smoothing;
   result["example_distance"] = fitted.example_distance;
-  if (fitted.smoothing.exact) {
-    result["exact_left_out"] = fitted.smoothing.exact->weighted;
-    result["smoothings_tried"] = smoothings_json(fitted.smoothing);
+  if (fitted.choice.trials.examples > 0) {
+    result["clips_left_out"] = trials_json(fitted.choice.trials);
   }
   result["inserted"] = fitted.refined.function.inserted();
   result["example_error_of_range"] = fitted.refined.example_error;
@@ -260,6 +298,7 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
                     counted(means.examples, "inner example"), readable(1e3 * means.weighted, 3),
                     readable(1e3 * means.linear, 3), readable(1e3 * means.nearest, 3)));
   }
+  say_trials(fitted, context);
   say_smoothing(input, fitted, context);
   say_polish(input, fitted, context);
   context.log(fmt::format("  {} inserted in {} ({:.2g} s): {}; weights {} to {}",

@@ -16,8 +16,6 @@ using library::LibraryDescription;
 using library::ParameterEntry;
 using parametric::Library;
 
-constexpr double kUsualSpacing = 0.15;
-constexpr double kSmoothedSpacing = 0.01;
 constexpr double kUsualTolerance = 0.1;  // relative to the usual tolerance: refining is cheap
 
 void thin_out(LibraryInput& input, double spacing) {
@@ -225,16 +223,19 @@ class Reader {
     return times;
   }
 
-  // Thins out the detected steps.
+  // Thins out detected steps, and other examples if the description says so.
   Status choose() {
     Library& library = input_.library;
     input_.found = static_cast<int>(library.examples.size());
     const bool all_found =
         std::ranges::all_of(motions_, [](const ExampleMotion& m) { return m.entry->automatic; });
     if (all_found) {
-      if (!description().spacing) input_.all_steps = library.examples;
-      thin_out(input_, description().spacing.value_or(kUsualSpacing));
+      input_.exact_spacing = description().spacing.value_or(kUsualSpacing);
+    } else {
+      input_.exact_spacing = description().spacing.value_or(0);
     }
+    if (!description().spacing) input_.all_examples = library.examples;
+    thin_out(input_, input_.exact_spacing);
     count_mirrored(input_);
     return {};
   }
@@ -253,13 +254,12 @@ Result<LibraryInput> read_library(const std::string& path, bool keep_going, Tool
   return Reader(path, keep_going, context).read();
 }
 
-void take_all_steps(LibraryInput& input) {
-  if (input.all_steps.empty()) return;
-  input.library.examples = std::move(input.all_steps);
-  input.all_steps.clear();
-  thin_out(input, kSmoothedSpacing);
+void take_examples(LibraryInput& input, double spacing) {
+  if (input.all_examples.empty()) return;
+  input.library.examples = input.all_examples;
+  thin_out(input, spacing);
   count_mirrored(input);
-  // Cannot fail: fewer steps already had a range in each parameter.
+  // Cannot fail: thinning keeps the extremes of each parameter nearly as they are.
   (void)find_range(input).ok();
 }
 

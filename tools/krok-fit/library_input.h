@@ -21,8 +21,11 @@ struct LibraryInput {
   std::vector<double> lower, upper;  // [parameters], the requested range
   std::vector<parametric::DroppedStep> dropped;
   int found = 0;  // examples before thinning out
-  // All detected steps, if the description gives no spacing.
-  std::vector<parametric::Example> all_steps;
+  // Of examples nearer to each other than this, in parameters scaled by their ranges, weights that
+  // interpolate use one.
+  double exact_spacing = 0;
+  // All examples, if the description gives no spacing.
+  std::vector<parametric::Example> all_examples;
   int mirrored = 0;  // number of mirrored examples
   std::vector<RefusedClip> refused;
 };
@@ -33,7 +36,11 @@ struct LibraryInput {
 // library-keytimes, library-examples; those of parametric::cut_steps and make_example.
 Result<LibraryInput> read_library(const std::string& path, bool keep_going, ToolContext& context);
 
-// Uses all detected steps as examples, for smoothed weights; of duplicates only one.
-void take_all_steps(LibraryInput& input);
+// Spacing of detected steps that weights interpolate, and of examples that they smooth.
+inline constexpr double kUsualSpacing = 0.15;
+inline constexpr double kSmoothedSpacing = 0.01;
+
+// Uses the examples with another spacing, unless the description gives one.
+void take_examples(LibraryInput& input, double spacing);
 
 }  // namespace krok::cli::fit

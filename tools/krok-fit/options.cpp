@@ -12,15 +12,15 @@ namespace krok::cli::fit {
 namespace {
 
 void declare_weights(CommandOptions& command, Options& options) {
-  add_choice<rbf::Kernel>(command, "--kernel", options.kernel,
-                          {{"cubic", rbf::Kernel::cubic},
-                           {"linear", rbf::Kernel::linear},
-                           {"gaussian", rbf::Kernel::gaussian},
-                           {"bspline", rbf::Kernel::bspline},
-                           {"wendland", rbf::Kernel::wendland}},
-                          "Radial basis function of the weights: cubic, linear, gaussian, "
-                          "bspline or wendland",
-                          "KERNEL", "cubic")
+  command
+      .add_option_function(
+          "--kernel",
+          [&options](const std::string& text) { options.kernel = rbf::kernel_named(text); },
+          "Radial basis function of the weights: cubic, linear, gaussian, bspline or wendland. "
+          "auto: cubic, unless another one predicts clips that are left out clearly better")
+      .type_name("KERNEL")
+      .default_str("auto")
+      .transform(one_of_words({"auto", "cubic", "linear", "gaussian", "bspline", "wendland"}))
       .group("Fit");
   command
       .add_option_function(
@@ -29,10 +29,10 @@ void declare_weights(CommandOptions& command, Options& options) {
             options.smooth = text == "auto" ? std::nullopt : parse_finite(text);
           },
           "Smoothing. 0: examples are reproduced exactly. More: contradictory examples "
-          "are averaged, from 0.001 (hardly) to 10 (almost affine). auto: 0, unless smoothing "
-          "clearly reduces the leave-one-out error of detected steps")
+          "are averaged, from 0.001 (hardly) to 10 (almost affine). auto: 0, unless "
+          "smoothing predicts clips that are left out clearly better")
       .type_name("auto|N")
-      .default_str("0")
+      .default_str("auto")
       .check([](std::string& text) {
         const auto number = parse_finite(text);
         return text == "auto" || (number && *number >= 0 && *number <= 1e6)

@@ -14,11 +14,11 @@ namespace krok::cli::fit {
 struct Options {
   std::string library;  // path of the description
   bool keep_going = false;
-  rbf::Kernel kernel = rbf::Kernel::cubic;
-  std::optional<int> refine;           // max points to insert; not set: 40 per parameter
-  std::optional<double> smooth = 0.0;  // 0: interpolate; not set: automatic
-  std::string until;                   // a length: accepted error of length parameters
-  int held_out = 0;                    // 0: default of refine()
+  std::optional<rbf::Kernel> kernel;  // not set: automatic
+  std::optional<int> refine;          // max points to insert; not set: 40 per parameter
+  std::optional<double> smooth;       // 0: interpolate; not set: automatic
+  std::string until;                  // a length: accepted error of length parameters
+  int held_out = 0;                   // 0: default of refine()
   std::uint64_t seed = 1;
   bool polish = true;  // optimise inserted weights jointly after refinement
   std::string resume;  // a library to continue from

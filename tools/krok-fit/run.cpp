@@ -1,5 +1,6 @@
 #include "tools/krok-fit/run.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -16,6 +17,14 @@ namespace krok::cli::fit {
 
 namespace {
 
+bool has_examples_of(const parametric::Library& library, const parametric::Library& saved) {
+  return saved.parameters == library.parameters &&
+         std::ranges::equal(library.examples, saved.examples,
+                            [](const parametric::Example& a, const parametric::Example& b) {
+                              return a.name == b.name && a.parameters == b.parameters;
+                            });
+}
+
 // The refinement state of a library with the same examples.
 Result<krok::fit::Refined> resumed(const std::string& path, LibraryInput& input,
                                    ToolContext& context) {
@@ -23,15 +32,14 @@ Result<krok::fit::Refined> resumed(const std::string& path, LibraryInput& input,
   if (!file) return file.error();
   const auto saved = steps::read(file->bytes());
   if (!saved) return Error(saved.error()).in_file(path);
-  if (saved->weights && saved->weights->smoothing > 0) take_all_steps(input);
-  const parametric::Library& library = input.library;
-  bool same = saved->weights && saved->library.parameters == library.parameters &&
-              saved->library.examples.size() == library.examples.size();
-  for (std::size_t i = 0; same && i < library.examples.size(); ++i) {
-    const parametric::Example& was = saved->library.examples[i];
-    same = was.name == library.examples[i].name && was.parameters == library.examples[i].parameters;
+  const bool smoothed = saved->weights && saved->weights->smoothing > 0;
+  if (smoothed) take_examples(input, kSmoothedSpacing);
+  bool same = has_examples_of(input.library, saved->library);
+  if (!same && !smoothed && input.exact_spacing < kUsualSpacing) {
+    take_examples(input, kUsualSpacing);
+    same = has_examples_of(input.library, saved->library);
   }
-  if (!same) {
+  if (!same || !saved->weights) {
     return Error("fit-resume", "made from other examples or for other parameters",
                  "fit without --resume")
         .in_file(path);
@@ -82,16 +90,15 @@ Result<int> run(const Options& options, ToolContext& context) {
     if (!saved) return saved.error();
     start = *std::move(saved);
   }
-  SmoothingChoice smoothing;
+  WeightsChoice choice;
   if (!start) {
-    auto choice = choose_smoothing(*input, options, context);
-    if (!choice) return choice.error();
-    smoothing = *std::move(choice);
+    choice = choose_weights(*input, options, context);
   } else {
-    smoothing.smoothing = start->function.smoothing;
+    choice.kernel = start->function.kernel;
+    choice.smoothing = start->function.smoothing;
   }
   const auto fitted =
-      fit_library(*input, options, std::move(smoothing), start ? &*start : nullptr, context);
+      fit_library(*input, options, std::move(choice), start ? &*start : nullptr, context);
   if (!fitted) return fitted.error();
   if (Status status = write_results(options, *input, *fitted, context); !status) {
     return status.error();

@@ -1,0 +1,179 @@
+#include "parametric/try_weights.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "core/parallel.h"
+#include "parametric/left_out_internal.h"
+#include "parametric/thin_out.h"
+#include "rbf/weight_evaluator.h"
+
+namespace krok::parametric {
+
+namespace {
+
+constexpr int kMostParts = 10;            // of the captures
+constexpr std::size_t kMostLeftOut = 20;  // of each part
+
+// Examples to make motions of.
+struct Material {
+  Library library;
+  PackedExamples packed;
+
+  explicit Material(Library examples)
+      : library(std::move(examples)), packed(pack_examples(library)) {}
+};
+
+Library thinned(const Library& library, double spacing) {
+  Library result = library;
+  result.examples.clear();
+  for (const int i : thin_out(library, spacing)) {
+    result.examples.push_back(library.examples[static_cast<std::size_t>(i)]);
+  }
+  return result;
+}
+
+// The distances for one example left out; nullopt if a candidate makes no motion.
+struct Prediction {
+  int group = 0;
+  double planes = 0, nearest = 0;
+  std::vector<std::optional<double>> by;  // [candidates]
+};
+
+class Part {
+ public:
+  Part(const Library& library, std::span<const int> groups,
+       std::span<const WeightCandidate> candidates, int part, int parts)
+      : library_(library), groups_(groups), candidates_(candidates) {
+    for (std::size_t i = 0; i < library.examples.size(); ++i) {
+      if (groups[i] % parts == part) left_out_.push_back(i);
+    }
+    const std::size_t stride = (left_out_.size() + kMostLeftOut - 1) / kMostLeftOut;
+    for (std::size_t i = 0; i < left_out_.size(); i += std::max<std::size_t>(stride, 1)) {
+      asked_.push_back(left_out_[i]);
+    }
+  }
+
+  std::vector<Prediction> predict() const {
+    Library others = library_;
+    others.examples.clear();
+    for (std::size_t i = 0; i < library_.examples.size(); ++i) {
+      if (!std::ranges::binary_search(left_out_, i)) {
+        others.examples.push_back(library_.examples[i]);
+      }
+    }
+    std::vector<Prediction> predictions;
+    if (others.examples.empty()) return predictions;
+    const Material all(std::move(others));
+    const Bounds bounds = bounds_of(all.library);
+    std::vector<std::vector<Vec3>> wanted;
+    std::vector<std::size_t> inside;
+    for (const std::size_t i : asked_) {
+      const std::vector<double>& point = library_.examples[i].parameters;
+      if (outside(bounds, point).distance > 0) continue;
+      std::vector<Vec3> poses = detail::example_poses(library_, i);
+      const auto planes =
+          detail::distance(all.library, all.packed, detail::plane_weights(bounds, point), poses);
+      const auto nearest =
+          detail::distance(all.library, all.packed, detail::nearest_weights(bounds, point), poses);
+      if (!planes || !nearest) continue;
+      predictions.push_back({groups_[i], *planes, *nearest, {}});
+      wanted.push_back(std::move(poses));
+      inside.push_back(i);
+    }
+    if (!inside.empty()) try_all(all, inside, wanted, predictions);
+    return predictions;
+  }
+
+ private:
+  void try_all(const Material& all, const std::vector<std::size_t>& inside,
+               const std::vector<std::vector<Vec3>>& wanted,
+               std::vector<Prediction>& predictions) const {
+    std::map<double, Material> by_spacing;
+    for (const WeightCandidate& candidate : candidates_) {
+      auto found = by_spacing.find(candidate.spacing);
+      if (found == by_spacing.end()) {
+        found =
+            by_spacing.emplace(candidate.spacing, thinned(all.library, candidate.spacing)).first;
+      }
+      const auto evaluator = evaluator_of(found->second.library, candidate);
+      for (std::size_t p = 0; p < inside.size(); ++p) {
+        std::optional<double> apart;
+        if (evaluator) {
+          std::vector<double> weights(found->second.library.examples.size());
+          evaluator->weights(library_.examples[inside[p]].parameters, weights);
+          apart = detail::distance(found->second.library, found->second.packed, weights, wanted[p]);
+        }
+        predictions[p].by.push_back(apart);
+      }
+    }
+  }
+
+  static std::optional<rbf::WeightEvaluator> evaluator_of(const Library& library,
+                                                          const WeightCandidate& candidate) {
+    const auto function = detail::weights_of(library, candidate.kernel, candidate.smoothing);
+    if (!function) return std::nullopt;
+    auto evaluator = rbf::WeightEvaluator::create(*function);
+    if (!evaluator) return std::nullopt;
+    return *std::move(evaluator);
+  }
+
+  const Library& library_;
+  std::span<const int> groups_;
+  std::span<const WeightCandidate> candidates_;
+  std::vector<std::size_t> left_out_, asked_;  // indices of examples, ascending
+};
+
+WeightTrials means_of(const std::vector<std::vector<Prediction>>& parts,
+                      std::span<const WeightCandidate> candidates) {
+  WeightTrials trials;
+  for (const WeightCandidate& candidate : candidates) trials.tried.push_back({candidate, 0, 0});
+  std::set<int> groups;
+  for (const auto& part : parts) {
+    for (const Prediction& one : part) {
+      ++trials.examples;
+      groups.insert(one.group);
+      trials.planes += one.planes;
+      trials.nearest += one.nearest;
+      for (std::size_t c = 0; c < candidates.size(); ++c) {
+        if (one.by[c]) {
+          trials.tried[c].distance += *one.by[c];
+        } else {
+          ++trials.tried[c].failed;
+        }
+      }
+    }
+  }
+  trials.groups = static_cast<int>(groups.size());
+  const double count = std::max(1, trials.examples);
+  trials.planes /= count;
+  trials.nearest /= count;
+  for (WeightTrial& trial : trials.tried) {
+    trial.distance /= std::max(1, trials.examples - trial.failed);
+  }
+  return trials;
+}
+
+}  // namespace
+
+Result<WeightTrials> try_weights(const Library& library, std::span<const int> groups,
+                                 std::span<const WeightCandidate> candidates, int jobs) {
+  if (Status status = check(library); !status) return status.error();
+  if (groups.size() != library.examples.size() ||
+      std::ranges::any_of(groups, [](int group) { return group < 0; })) {
+    return Error("parametric-groups", "each example needs a capture, counted from 0");
+  }
+  const int last = groups.empty() ? -1 : std::ranges::max(groups);
+  const int parts = std::min(kMostParts, last + 1);
+  std::vector<std::vector<Prediction>> predictions(static_cast<std::size_t>(parts));
+  parallel_for(predictions.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      predictions[i] = Part(library, groups, candidates, static_cast<int>(i), parts).predict();
+    }
+  });
+  return means_of(predictions, candidates);
+}
+
+}  // namespace krok::parametric
