@@ -14,10 +14,11 @@ Nothing here is from Krok: another reader of BVH, other points of the foot, anot
 sole is a line from behind the heel over the ball to the tip of the toes, all placed from the frames
 in which the foot lies still; a foot is down while the slowest point of that line is slow. The heel
 reaches the ground at up to 1 m/s (Winter, "Foot trajectory in human gait", Phys. Ther. 72, 1992),
-and a stop seen through a low-pass filter passes half its speed when it happens: the events are
-where the slowest point passes 0.12 of its speed in swing, which is 0.5 m/s at usual speed (for a leg
-of 0.86 m). Against the true events of generated walks, slow to fast and turning, that is within
-20 ms.
+and a stop seen through a low-pass filter passes half its speed when it happens: a strike is where
+the slowest point passes 0.12 of its speed in swing, which is 0.5 m/s at usual speed (for a leg of
+0.86 m). Toes leave gradually: the off is half-way from there to where the slowest point accelerates
+most. Against the true events of generated walks, slow to fast and turning, both are within 30 ms:
+strikes 9 to 29 ms early, offs 8 to 23 ms late.
 """
 
 import argparse
@@ -236,8 +237,18 @@ class Body:
             if a > 0:
                 strikes.append(self.crossing(slowest - limit, a - 1, a) / RATE)
             if b < len(slow) - 1:
-                offs.append(self.crossing(slowest - limit, b, b + 1) / RATE)
+                offs.append(0.5 * (self.crossing(slowest - limit, b, b + 1)
+                                   + self.steepest(slowest, b)) / RATE)
         return strikes, offs
+
+    def steepest(self, curve, b):
+        """Where the curve rises most, soon after b."""
+        rise = np.diff(curve[b - int(0.02 * RATE):b + int(0.1 * RATE)])
+        first = int(np.argmax(rise))
+        # The first such place: a foot that is off goes on speeding up.
+        high = np.flatnonzero((rise[1:-1] >= rise[:-2]) & (rise[1:-1] >= rise[2:])
+                              & (rise[1:-1] > 0.6 * rise[first]))
+        return b - int(0.02 * RATE) + (high[0] + 1 if len(high) else first) + 0.5
 
     def crossing(self, curve, a, b):
         return a - curve[a] / (curve[b] - curve[a])
