@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "contacts/event_pairing_internal.h"
 #include "contacts/series_internal.h"
@@ -33,7 +34,7 @@ class KeytimeFinder {
     for (const bool strikes : {true, false}) take_events(strikes, gait);
     std::erase_if(gait.keytimes, [&](const Keytime& key) { return !feet_.upright(key.time); });
     std::ranges::stable_sort(gait.keytimes, {}, &Keytime::time);
-    make_alternate(gait.keytimes);
+    make_alternate(gait);
     for (std::size_t i = 1; i < gait.keytimes.size(); ++i) {
       gait.keytimes[i].time = std::max(gait.keytimes[i].time, gait.keytimes[i - 1].time + kApart);
     }
@@ -41,8 +42,52 @@ class KeytimeFinder {
   }
 
  private:
-  // Of two consecutive strikes of a foot keeps the first, of two toe-offs the last.
-  static void make_alternate(std::vector<Keytime>& keytimes) {
+  // The median time from the strikes of both feet to their next toe-offs, or from toe-offs to
+  // strikes; 0 if there is none.
+  static double usual_length(const std::vector<Keytime>& keytimes, bool of_stances) {
+    std::vector<double> lengths;
+    for (const std::string side : {"left", "right"}) {
+      const Keytime* before = nullptr;
+      for (const Keytime& key : keytimes) {
+        if (!key.name.starts_with(side)) continue;
+        const bool begins = before != nullptr && before->name.ends_with("strike") == of_stances;
+        if (begins && before->name != key.name) lengths.push_back(key.time - before->time);
+        before = &key;
+      }
+    }
+    return lengths.empty() ? 0 : contacts::middle(lengths);
+  }
+
+  // Of two consecutive strikes of a foot that belong to one stance keeps the first, of two toe-offs
+  // the last. Where they are a cycle apart and the foot moves in between, the event between them is
+  // missing: it is placed by the usual length of stances or swings.
+  void make_alternate(Gait& gait) const {
+    const double stance = usual_length(gait.keytimes, true);
+    const double swing = usual_length(gait.keytimes, false);
+    std::vector<Keytime> missing;
+    for (std::size_t s = 0; s < 2 && stance > 0 && swing > 0; ++s) {
+      const std::string side = name_of(static_cast<FootSide>(s));
+      const Keytime* before = nullptr;
+      for (const Keytime& key : gait.keytimes) {
+        if (!key.name.starts_with(side)) continue;
+        const bool again = before != nullptr && before->name == key.name;
+        if (again && key.time - before->time > kWhole * (stance + swing) &&
+            feet_.moves(feet_.foot(s), before->time, key.time)) {
+          const bool strikes = key.name.ends_with("strike");
+          const double part = (strikes ? stance : swing) / (stance + swing);
+          missing.push_back({before->time + part * (key.time - before->time),
+                             side + (strikes ? "_off" : "_strike")});
+        }
+        before = &key;
+      }
+    }
+    gait.from_seeds += static_cast<int>(missing.size());
+    gait.keytimes.insert(gait.keytimes.end(), missing.begin(), missing.end());
+    std::ranges::stable_sort(gait.keytimes, {}, &Keytime::time);
+    leave_out_repeated(gait.keytimes);
+  }
+
+  static void leave_out_repeated(std::vector<Keytime>& keytimes) {
     std::vector<std::uint8_t> kept(keytimes.size(), 1);
     for (const char* side : {"left", "right"}) {
       std::size_t before = keytimes.size();

@@ -14,10 +14,24 @@ constexpr double kGravity = 9.81;  // metres per second squared
 // Froude numbers, speed squared over gravity times leg length: above kRun people run; kFastest is
 // the limit for a leg that vaults.
 constexpr double kRun = 0.5, kFastest = 1;
-constexpr double kFlat = 0.003;        // leg lengths, rise of the pelvis over a step
-constexpr double kFlatBefore = 0.35;   // cycles, from flat foot to toe-off
-constexpr double kPitched = 0.06;      // leg lengths, heel above toes
-constexpr double kTurnsWithin = 0.15;  // seconds, of the toes around the foot's back seed
+constexpr double kFlat = 0.003;       // leg lengths, rise of the pelvis over a step
+constexpr double kFlatBefore = 0.35;  // cycles, from flat foot to toe-off
+constexpr double kPitched = 0.06;     // leg lengths, heel above toes
+// In a run the foot lands and leaves while its slowest point is at this fraction of its max speed,
+// at most this long from where its contacts begin or end.
+constexpr double kLanding = 0.12;
+constexpr double kLandingWithin = 0.08;  // seconds
+constexpr double kJog = 0.15;            // Froude number, 1.1 m/s: jumps on the spot are no run
+constexpr double kTurnsWithin = 0.15;    // seconds, of the toes around the foot's back seed
+
+// The fractional frame between a slow frame and its neighbour at which the speed passes `slow`.
+template <typename Speed>
+double crossed_at(const Speed& speed, int slow_frame, int fast_frame, double slow) {
+  const double rise = speed(fast_frame) - speed(slow_frame);
+  if (!(rise > 1e-9)) return slow_frame;
+  const double part = std::clamp((slow - speed(slow_frame)) / rise, 0.0, 1.0);
+  return slow_frame + part * (fast_frame - slow_frame);
+}
 
 }  // namespace
 
@@ -56,10 +70,60 @@ bool WalkingFeet::is_pitched(const Foot& foot, double seed) const {
   return rise(seed) - rise(seed - kFlatBefore * foot.cycle) > kPitched * leg_;
 }
 
-bool WalkingFeet::rolls_off(const Foot& foot, double seed) const {
-  const double speed = speeds_[frame_at(seed)];
+bool WalkingFeet::runs(double time) const {
+  const double speed = speeds_[frame_at(time)];
   const double fastest = carriage_ == Carriage::vaults ? kFastest : kRun;
-  if (carriage_ == Carriage::bounces || speed * speed > fastest * kGravity * leg_) return false;
+  return carriage_ == Carriage::bounces || speed * speed > fastest * kGravity * leg_;
+}
+
+void WalkingFeet::to_landings(Foot& foot) const {
+  const int frames = clip_.frame_count();
+  const auto slowest = [&](int f) {
+    double least = 1e9;
+    for (const std::size_t t : foot.tracks) {
+      least = std::min(least, found_.tracks[t].speed[static_cast<std::size_t>(f)]);
+    }
+    return least;
+  };
+  const int reach = static_cast<int>(kLandingWithin * clip_.rate) + 1;
+  for (std::size_t i = 0; i < foot.stances.size(); ++i) {
+    Stance& stance = foot.stances[i];
+    const double middle = 0.5 * (stance.start + stance.end);
+    const double speed = speeds_[frame_at(middle)];
+    if (stance.slides || !runs(middle) || speed * speed < kJog * kGravity * leg_) continue;
+    double fastest = 0;
+    const int cycle = static_cast<int>(foot.cycle * clip_.rate);
+    const int around = static_cast<int>(frame_at(middle));
+    for (int f = std::max(0, around - cycle); f < std::min(frames, around + cycle); ++f) {
+      fastest = std::max(fastest, slowest(f));
+    }
+    const double slow = kLanding * fastest;
+    if (!stance.open_start) {
+      const int last = static_cast<int>(stance.start * clip_.rate) - reach;
+      int f = static_cast<int>(std::ceil(stance.start * clip_.rate));
+      while (f > std::max(0, last) && slowest(f - 1) <= slow) --f;
+      const double before = i == 0 ? 0 : foot.stances[i - 1].end;
+      if (f > std::max(0, last)) {
+        const double landed = crossed_at(slowest, f, f - 1, slow) / clip_.rate;
+        if (landed > before) stance.start = std::min(stance.start, landed);
+      }
+    }
+    if (!stance.open_end) {
+      const int last = static_cast<int>(std::ceil(stance.end * clip_.rate)) + reach;
+      int f = static_cast<int>(stance.end * clip_.rate);
+      while (f < std::min(frames - 1, last) && slowest(f + 1) <= slow) ++f;
+      const double after =
+          i + 1 == foot.stances.size() ? clip_.duration() : foot.stances[i + 1].start;
+      if (f < std::min(frames - 1, last)) {
+        const double left = crossed_at(slowest, f, f + 1, slow) / clip_.rate;
+        if (left < after) stance.end = std::max(stance.end, left);
+      }
+    }
+  }
+}
+
+bool WalkingFeet::rolls_off(const Foot& foot, double seed) const {
+  if (runs(seed)) return false;
   return forward_[frame_at(seed)] != 0 && stays_level(foot, seed) && is_pitched(foot, seed);
 }
 

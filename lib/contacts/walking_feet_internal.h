@@ -38,6 +38,7 @@ class WalkingFeet {
   // is lowest over the standing foot (in walking it is highest there: Cavagna, Heglund and Taylor
   // 1977), or, if the pelvis is inconclusive, if it is faster than people walk.
   bool rolls_off(const Foot& foot, double seed) const;
+  bool runs(double time) const;
   double toes_back(const Foot& foot, double seed) const;
   // Whether the positions of the foot's points at two times differ.
   bool moves(const Foot& foot, double from, double to) const;
@@ -75,6 +76,9 @@ class WalkingFeet {
   // not known well enough, and toes that are not captured do not stay. The touches are where a
   // point, before or after its contact, is slower than anything in a swing.
   void to_touches(const Foot& foot, double before, double after, Stance& stance) const;
+  // In a run, extends stances to where the foot has nearly stopped and where it has hardly left: it
+  // lands at a metre per second within a frame or two, so that contacts begin late and end early.
+  void to_landings(Foot& foot) const;
   double touch(std::size_t t, double from, double limit, bool first) const;
   // The fractional frame at which a heel that is slow around `frame` is stopped. If it comes to
   // rest, at `rest`, after slowing throughout, it is that. Mostly its position on the foot is

@@ -216,8 +216,8 @@ class Body:
         return found
 
     def of_foot(self, points):
-        slowest = np.min([np.linalg.norm(np.gradient(p, axis=0), axis=1) * RATE for p in points],
-                         axis=0)
+        speeds = [np.linalg.norm(np.gradient(p, axis=0), axis=1) * RATE for p in points]
+        slowest = np.min(speeds, axis=0)
         limit = np.clip(SLOW * np.percentile(slowest, 97), 0.1, 0.8)
         slow = slowest < limit
         low = np.min([p[:, 1] for p in points], axis=0)
@@ -237,8 +237,10 @@ class Body:
             if a > 0:
                 strikes.append(self.crossing(slowest - limit, a - 1, a) / RATE)
             if b < len(slow) - 1:
-                offs.append(0.5 * (self.crossing(slowest - limit, b, b + 1)
-                                   + self.steepest(slowest, b)) / RATE)
+                off = self.crossing(slowest - limit, b, b + 1)
+                if np.argmin([s[b] for s in speeds]) >= 4:  # not backwards, over the heel
+                    off = 0.5 * (off + self.steepest(slowest, b))
+                offs.append(off / RATE)
         return strikes, offs
 
     def steepest(self, curve, b):
