@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "contacts/doubled_rate_internal.h"
 #include "contacts/event_pairing_internal.h"
 #include "contacts/series_internal.h"
 #include "contacts/walking_feet_internal.h"
@@ -22,6 +23,7 @@ constexpr double kApart = 1e-5;      // seconds
 constexpr double kFrame = 1.0 / 60;  // seconds
 constexpr double kWhole = 0.75;      // of a stance
 constexpr double kJerk = 0.1;        // seconds
+constexpr double kLowRate = 45;      // frames per second; below it, frames are interpolated
 
 class KeytimeFinder {
  public:
@@ -240,11 +242,23 @@ class KeytimeFinder {
 
 }  // namespace
 
+namespace {
+
+Gait find_between_frames(const Clip& clip, const RoleMap& roles, const GaitOptions& options) {
+  const Clip dense = contacts::doubled_rate(clip);
+  const auto found = find_contacts(dense, roles);
+  return found ? KeytimeFinder(dense, roles, *found, options).find() : Gait();
+}
+
+}  // namespace
+
 Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
                const GaitOptions& options) {
   Gait gait;
   if (clip.frame_count() >= 3 && !found.tracks.empty() && found.leg_length > 0) {
-    gait = KeytimeFinder(clip, roles, found, options).find();
+    gait = clip.rate < kLowRate && clip.frame_count() >= 4
+               ? find_between_frames(clip, roles, options)
+               : KeytimeFinder(clip, roles, found, options).find();
   }
   const auto warn = [&](std::string code, std::string message, std::string hint) {
     Diagnostic diagnostic;

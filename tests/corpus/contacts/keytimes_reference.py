@@ -109,7 +109,7 @@ def joint(names, words, side):
         plain = name.split(":")[-1]
         first = side[0]
         of_side = (side in plain.lower() or plain.endswith("_" + first.upper())
-                   or re.match(first + "[A-Z]", plain))
+                   or "_" + first.upper() + "_" in plain or re.match(first + "[A-Z]", plain))
         if of_side and any(word in plain.lower() for word in words):
             return j
     return -1
