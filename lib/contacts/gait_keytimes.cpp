@@ -9,8 +9,10 @@
 
 #include "contacts/doubled_rate_internal.h"
 #include "contacts/event_pairing_internal.h"
+#include "contacts/gait_plausibility.h"
 #include "contacts/series_internal.h"
 #include "contacts/walking_feet_internal.h"
+#include "motion/ground_frame.h"
 
 namespace krok {
 
@@ -250,6 +252,19 @@ Gait find_between_frames(const Clip& clip, const RoleMap& roles, const GaitOptio
   return found ? KeytimeFinder(dense, roles, *found, options).find() : Gait();
 }
 
+// Metres per second, over the whole clip and along its path.
+double travel_speed(const Clip& clip, const RoleMap& roles) {
+  const auto carrier = static_cast<std::size_t>(carrying_joint(roles));
+  const int part = std::max(1, static_cast<int>(clip.rate));  // a second: sway does not count
+  double way = 0;
+  for (int f = 0; f + 1 < clip.frame_count(); f += part) {
+    const int to = std::min(f + part, clip.frame_count() - 1);
+    const Vec3f moved = clip.frame_positions(to)[carrier] - clip.frame_positions(f)[carrier];
+    way += std::hypot(static_cast<double>(moved.x()), static_cast<double>(moved.z()));
+  }
+  return way / std::max(1e-9, clip.duration());
+}
+
 }  // namespace
 
 Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
@@ -281,6 +296,12 @@ Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& foun
                      gait.keytimes.size()),
          "they are estimated from the foot's extremes relative to the pelvis; check them with "
          "--plot");
+  }
+  if (!found.contacts.empty()) {
+    for (Diagnostic& implausible :
+         check_gait(gait_metrics(gait.keytimes), travel_speed(clip, roles), found.leg_length)) {
+      gait.warnings.push_back(std::move(implausible));
+    }
   }
   return gait;
 }

@@ -64,7 +64,12 @@ struct Gait {
 // A clip cut at a strike has that strike at its start or end. Nothing is found while the pelvis is
 // low: sitting, lying, crawling.
 //
-// Warnings: gait-none (no step), gait-seeds (strikes or toe-offs without a contact), gait-in-place
+// Below 45 frames per second events are found between frames, on a clip of twice the rate. In runs
+// contacts begin late and end early, since feet land and leave fast: the events are where the
+// slowest point of the foot passes 0.12 of its max speed. Where an event between two strikes or two
+// toe-offs a cycle apart is missing, it is placed by the usual lengths of stance and swing.
+//
+// Warnings: gait-none (no step), gait-implausible (see check_gait()), gait-seeds (strikes or toe-offs without a contact), gait-in-place
 // (steps without any contact: the character walks on a moving ground).
 Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
                const GaitOptions& options = {});

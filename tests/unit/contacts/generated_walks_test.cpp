@@ -140,6 +140,47 @@ TEST(GeneratedWalks, WithTheAnkleElsewhereInTheFoot) {
   }
 }
 
+// Exporters put an end site at the toe joint itself: it marks no tip, and toe-offs were early by a
+// tenth of a second.
+TEST(GeneratedWalks, WithAnEndSiteAtTheToeJoint) {
+  WalkHits hits;
+  for (const Kind& kind : travelling()) {
+    const auto made = samples::make_walk(kind.options);
+    ASSERT_TRUE(made.ok());
+    Clip clip = made->clip;
+    for (const std::string side : {"Left", "Right"}) {
+      const auto toes = static_cast<std::size_t>(clip.skeleton.find(side + "ToeBase"));
+      const auto tip = static_cast<std::size_t>(clip.skeleton.find(side + "ToeBase_end"));
+      clip.skeleton.reference[tip] = clip.skeleton.reference[toes];
+      for (int f = 0; f < clip.frame_count(); ++f) {
+        clip.frame_positions(f)[tip] = clip.frame_positions(f)[toes];
+      }
+    }
+    match(*made, test::keytimes_of(clip), hits);
+  }
+  EXPECT_GE(hits.strikes.share(), 0.97);
+  EXPECT_GE(hits.offs.share(), 0.95);
+}
+
+// At 30 frames per second events are where they are at 60: strikes of captures were late by most of
+// a frame.
+TEST(GeneratedWalks, ALowRateMovesNoEvent) {
+  for (Kind kind : {Kind{"ordinary", walk(0.7)}, Kind{"fast", walk(0.9)}}) {
+    kind.options.rate = 60;
+    const auto full = samples::make_walk(kind.options);
+    kind.options.rate = 30;
+    const auto half = samples::make_walk(kind.options);
+    ASSERT_TRUE(full.ok() && half.ok());
+    const auto keys = test::keytimes_of(full->clip), other = test::keytimes_of(half->clip);
+    for (const char* name : {"left_strike", "right_strike"}) {
+      test::Hits hits;
+      test::match(test::times_of(keys, name), test::times_of(other, name), hits);
+      EXPECT_GE(hits.share(), 0.9) << kind.name;
+      EXPECT_LE(hits.rms(), 0.01) << kind.name;
+    }
+  }
+}
+
 // Many skeletons have no joint that bends the toes, or captures leave it as it is: the tip of such
 // a stiff foot goes down into the ground while the ball still stands, and leaves early.
 TEST(GeneratedWalks, WithStiffToes) {
