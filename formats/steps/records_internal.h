@@ -21,7 +21,7 @@ struct Info {
   std::uint32_t parameters;
   std::uint32_t examples;
   std::uint32_t swing;  // 0 left, 1 right
-  std::uint32_t reserved;
+  float ground;         // metres
 };
 static_assert(sizeof(Info) == 32);
 

@@ -31,7 +31,8 @@ Result<Info> read_info(const ContainerReader& container) {
   const auto info = ByteReader(section->bytes).read<Info>();
   if (info.joints >= 1 && info.joints <= kMaxFileJoints && info.keytimes >= 2 &&
       info.keytimes <= kMaxKeytimes && info.parameters >= 1 && info.parameters <= kMaxParameters &&
-      info.examples >= 1 && info.examples <= kMaxExamples && info.swing <= 1) {
+      info.examples >= 1 && info.examples <= kMaxExamples && info.swing <= 1 &&
+      std::isfinite(info.ground)) {
     return info;
   }
   return invalid(
@@ -46,6 +47,7 @@ Status read_frame(const ContainerReader& container, const Info& info, Library& l
   if (!skeleton) return skeleton.error();
   library.skeleton = *std::move(skeleton);
   library.rate = info.rate;
+  library.ground = static_cast<double>(info.ground);
   library.swing = info.swing == 0 ? FootSide::left : FootSide::right;
   std::vector<Foot> feet;
   if (Status status = read_array(container, "FEET", 2, feet); !status) return status;

@@ -161,7 +161,7 @@ Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& fi
                      static_cast<std::uint32_t>(library.parameters.size()),
                      static_cast<std::uint32_t>(library.examples.size()),
                      static_cast<std::uint32_t>(library.swing),
-                     0};
+                     static_cast<float>(library.ground)};
   std::size_t sections = 12 + kSkeletonSections;
   if (steps.weights) sections += weight_sections(*steps.weights);
   ContainerWriter container(file, kStepsFormat, orientation_flags(options.orientation), sections);

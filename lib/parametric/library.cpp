@@ -152,6 +152,7 @@ Result<Example> make_example(const Library& library, std::string name, const Cli
 
   Example example;
   example.name = std::move(name);
+  example.ground = print.place.y();
   example.motion = motion;
   example.motion.skeleton = library.skeleton;
   example.motion.provenance = {};
@@ -173,6 +174,16 @@ Result<Example> make_example(const Library& library, std::string name, const Cli
   return example;
 }
 
+double ground_of(const Library& library) {
+  constexpr double kLevel = 0.05;  // metres
+  std::vector<double> heights;
+  for (const Example& example : library.examples) heights.push_back(example.ground);
+  if (heights.empty()) return 0;
+  std::ranges::sort(heights);
+  if (heights.back() - heights.front() > kLevel) return 0;
+  return heights[heights.size() / 2];
+}
+
 Status check(const Library& library) {
   if (Status status = check(library.skeleton); !status) return status;
   for (const FootShape& foot : library.feet) {
@@ -186,6 +197,9 @@ Status check(const Library& library) {
   if (library.keytimes.size() < 2 ||
       std::ranges::any_of(library.keytimes, [](const auto& name) { return name.empty(); })) {
     return Error("parametric-keytimes", "a library needs at least two named keytimes");
+  }
+  if (!std::isfinite(library.ground)) {
+    return Error("parametric-example", "the height of the ground is not a number");
   }
   if (!(library.rate > 0) || !std::isfinite(library.rate)) {
     return Error("clip-rate", "the rate of a library must be a positive number");

@@ -24,6 +24,7 @@ struct Example {
   std::vector<Contact> contacts;  // in the frame and time of `motion`
   bool mirrored = false;
   std::vector<double> parameters;  // measured, [parameters]: metres, radians, seconds
+  double ground = 0;  // height of that footprint in the capture, metres; not saved in a file
 };
 
 struct Library {
@@ -34,6 +35,9 @@ struct Library {
   std::vector<Parameter> parameters;  // what is measured
   double rate = 30;                   // frames per second of synthesised motions
   std::vector<Example> examples;
+  // Height of footprints in the captures, metres: of soles, which are estimated, above the origin.
+  // Motions are relative to the footprint, and lie where the captures do if moved up by this.
+  double ground = 0;
 
   FootSide stance() const { return swing == FootSide::left ? FootSide::right : FootSide::left; }
   const FootShape& foot(FootSide side) const { return feet[static_cast<std::size_t>(side)]; }
@@ -59,6 +63,9 @@ Status same_skeleton(const Skeleton& library, const Skeleton& other);
 // shortest_interval(), or lie outside the motion; parametric-foot as in Measure.
 Result<Example> make_example(const Library& library, std::string name, const Clip& motion,
                              std::vector<double> keytimes, std::vector<Contact> contacts = {});
+
+// The median height of the examples' footprints; 0 if they are not on one level (over 5 cm apart).
+double ground_of(const Library& library);
 
 // Validates a library: the invariants above hold, feet have joints, all examples have frames and
 // finite parameters, and names have 1 to 1,000 bytes. A library may be empty. Codes: those of

@@ -7,6 +7,7 @@
 #include "tools/krok-blend/run.h"
 #include "tools/krok-blend/weighted_input.h"
 #include "tools/shared/orientation_option.h"
+#include "tools/shared/plant_result.h"
 #include "tools/shared/role_input.h"
 
 namespace krok::cli::blend {
@@ -31,16 +32,18 @@ void declare(CommandOptions& command, Options& options) {
       .group("Time");
   add_rate(command, "--rate", options.rate, "Frames per second (default: the first motion's)")
       .group("Time");
-  add_choice<krok::blend::Align>(
+  add_choice<AlignChoice>(
       command, "--align", options.align,
-      {{"root", krok::blend::Align::root},
-       {"stance", krok::blend::Align::stance},
-       {"none", krok::blend::Align::none}},
+      {{"auto", AlignChoice::automatic},
+       {"root", AlignChoice::root},
+       {"stance", AlignChoice::stance},
+       {"none", AlignChoice::none}},
       "Root motion: root (blended relative to the heading, so that turns blend), "
-      "stance (the same, and planted feet are locked), none (root transforms "
-      "are blended in world space)",
-      "HOW", "root")
+      "stance (the same, and planted feet are locked), auto (stance if all motions have "
+      "contacts, otherwise root), none (root transforms are blended in world space)",
+      "HOW", "auto")
       .group("Space");
+  command.add_flag("--plant", options.plant, kPlantHelp).group("Space");
   command
       .add_flag("--modifier", options.modifier,
                 "Allow weights that do not sum to 1, for additive motions")

@@ -11,13 +11,16 @@
 
 namespace krok::cli::blend {
 
+// Automatic: stance if all motions have contacts, otherwise root.
+enum class AlignChoice : unsigned char { automatic, root, stance, none };
 enum class WarpChoice : unsigned char { pchip, linear, dtw };
 
 struct Options {
   std::vector<std::string> inputs;  // PATH:WEIGHT
   KeysChoice keys = KeysChoice::automatic;
   WarpChoice warp = WarpChoice::pchip;
-  krok::blend::Align align = krok::blend::Align::root;
+  AlignChoice align = AlignChoice::automatic;
+  bool plant = false;
   double rate = 0;  // 0: the first motion's
   bool modifier = false;
   std::string map;

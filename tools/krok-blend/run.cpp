@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "blend/warp_by_shape.h"
 #include "core/numbers.h"
@@ -17,6 +18,7 @@
 #include "tools/cli/output_set.h"
 #include "tools/krok-blend/weighted_input.h"
 #include "tools/shared/keys_sidecar.h"
+#include "tools/shared/plant_result.h"
 
 namespace krok::cli::blend {
 
@@ -158,6 +160,20 @@ void warn_of_spread(const Blended& blended, ToolContext& context) {
   context.diagnose(std::move(diagnostic));
 }
 
+krok::blend::Align align_of(AlignChoice choice, bool all_stand) {
+  using krok::blend::Align;
+  switch (choice) {
+    case AlignChoice::root:
+      return Align::root;
+    case AlignChoice::stance:
+      return Align::stance;
+    case AlignChoice::none:
+      return Align::none;
+    default:
+      return all_stand ? Align::stance : Align::root;
+  }
+}
+
 void report(const std::vector<Motion>& motions, const Correspondence& moments,
             const Blended& blended, ToolContext& context) {
   Json list = Json::array();
@@ -199,7 +215,8 @@ Result<int> run(const Options& options, ToolContext& context) {
         {motion.name, &motion.clip, motion.has_keys ? &motion.keys : nullptr, motion.weight});
   }
   const auto stands = [](const Motion& motion) { return !motion.keys.contacts.empty(); };
-  if (options.align == krok::blend::Align::stance && !std::ranges::all_of(*motions, stands)) {
+  const bool all_stand = std::ranges::all_of(*motions, stands);
+  if (options.align == AlignChoice::stance && !all_stand) {
     context.warn("blend-stance",
                  fmt::format("{} has no contacts; its feet are not locked",
                              std::ranges::find_if_not(*motions, stands)->name),
@@ -208,17 +225,27 @@ Result<int> run(const Options& options, ToolContext& context) {
   krok::blend::BlendOptions how;
   how.warp =
       options.warp == WarpChoice::linear ? krok::blend::Warp::linear : krok::blend::Warp::pchip;
-  how.align = options.align;
+  how.align = align_of(options.align, all_stand);
   how.rate = options.rate;
   how.any_sum = options.modifier;
   how.jobs = context.jobs;
   auto blended = krok::blend::blend_clips(inputs, *roles, *moments, how);
   if (!blended) return blended.error();
   warn_of_spread(*blended, context);
+  std::optional<PlantDrift> drift;
+  if (options.plant) {
+    auto planted = plant_result(blended->clip, blended->keys, *roles, context);
+    if (!planted) return planted.error();
+    drift = *planted;
+  }
   if (Status status = write_results(options, *motions, *blended, context); !status) {
     return status.error();
   }
   report(*motions, *moments, *blended, context);
+  if (drift) {
+    context.report.result["planted"] = to_json(*drift);
+    context.log(text_of(*drift));
+  }
   context.log(fmt::format("{} -> {}: {} at {} fps ({} s), {} matched times",
                           counted(static_cast<long long>(motions->size()), "motion"),
                           context.output, counted(blended->clip.frame_count(), "frame"),

@@ -131,6 +131,7 @@ class Reader {
     if (library.examples.empty()) {
       return Error("library-examples", "the library has no examples").in_file(path_);
     }
+    library.ground = parametric::ground_of(library);
     return parametric::check(library);
   }
 

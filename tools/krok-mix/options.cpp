@@ -4,6 +4,7 @@
 
 #include "tools/krok-mix/run.h"
 #include "tools/shared/orientation_option.h"
+#include "tools/shared/plant_result.h"
 #include "tools/shared/role_input.h"
 
 namespace krok::cli::mix {
@@ -19,6 +20,7 @@ void declare(CommandOptions& command, Options& options) {
       .required();
   add_keys_option(command, options.keys).group("Time");
   add_map_option(command, options.map).group("Space");
+  command.add_flag("--plant", options.plant, kPlantHelp).group("Space");
   add_orientation_option(command, options.orientation);
 }
 

@@ -13,6 +13,7 @@ struct Options {
   std::string input;
   KeysChoice keys = KeysChoice::automatic;
   std::string map;
+  bool plant = false;
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 

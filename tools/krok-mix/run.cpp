@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 
 #include "core/numbers.h"
 #include "core/parallel.h"
@@ -15,6 +16,7 @@
 #include "tools/cli/output_set.h"
 #include "tools/krok-mix/timeline_sources.h"
 #include "tools/shared/keys_sidecar.h"
+#include "tools/shared/plant_result.h"
 
 namespace krok::cli::mix {
 
@@ -195,10 +197,20 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!mixed) return Error(mixed.error()).in_file(options.input);
   context.diagnose(mixed->warnings);
   warn_of_pops(timeline, *mixed, context);
+  std::optional<PlantDrift> drift;
+  if (options.plant) {
+    auto planted = plant_result(mixed->clip, mixed->keys, *roles, context);
+    if (!planted) return planted.error();
+    drift = *planted;
+  }
   if (Status status = write_results(options, *motions, *mixed, context); !status) {
     return status.error();
   }
   report(timeline, *mixed, context);
+  if (drift) {
+    context.report.result["planted"] = to_json(*drift);
+    context.log(text_of(*drift));
+  }
   context.log(fmt::format("{} -> {}: {} and {} on {}, {} at {} fps ({} s)", options.input,
                           context.output,
                           counted(static_cast<long long>(timeline.base.size()), "item"),

@@ -6,6 +6,7 @@
 #include "tools/krok-synth/asked_parameters.h"
 #include "tools/krok-synth/run.h"
 #include "tools/shared/orientation_option.h"
+#include "tools/shared/plant_result.h"
 
 namespace krok::cli::synth {
 
@@ -47,6 +48,7 @@ void declare(CommandOptions& command, Options& options) {
       .add_flag("--correct", options.correct,
                 "Correct the weights until the measured parameters match")
       .group("Motion");
+  command.add_flag("--plant", options.plant, kPlantHelp).group("Motion");
   add_rate(command, "--rate", options.rate,
            "Frames per second (default: the library's, adjusted so that the duration is exact)")
       .group("Motion");

@@ -19,6 +19,7 @@ struct Options {
   bool correct = false;
   bool extrapolate = false;
   bool strict = false;
+  bool plant = false;
   double rate = 0;  // 0: the library's
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "core/numbers.h"
 #include "core/parallel.h"
@@ -19,11 +20,13 @@
 #include "tools/krok-synth/asked_parameters.h"
 #include "tools/shared/keys_choice.h"
 #include "tools/shared/keys_sidecar.h"
+#include "tools/shared/plant_result.h"
 
 namespace krok::cli::synth {
 
 namespace {
 
+constexpr int kPlantings = 4;    // attempts to meet what is asked with planted feet
 constexpr int kCorrections = 4;  // two are enough near the library; far outside more are needed
 
 struct Motion {
@@ -32,7 +35,9 @@ struct Motion {
   parametric::Synthesis synthesis = {};
   parametric::BlendedMotion::Made made = {};
   std::vector<double> measured = {};  // on the clip
+  std::vector<double> keytimes = {};  // of the clip, seconds
   double error = 0;                   // largest difference to what was asked, in tolerances
+  std::optional<PlantDrift> drift = {};
 };
 
 Result<steps::StepsFile> read_steps(const Options& options, ToolContext& context) {
@@ -62,23 +67,63 @@ std::string numbered(const std::string& path, std::size_t number, std::size_t co
   return (whole.parent_path() / name).string();
 }
 
-// Makes the motion and measures it as if it were captured: what weights promise is not taken for
-// granted.
+// To where the captures have the ground.
+void raise(double height, parametric::BlendedMotion::Made& made) {
+  for (Vec3f& position : made.clip.positions) position.y() += static_cast<float>(height);
+  for (Contact& contact : made.keys.contacts) contact.place.y() += height;
+}
+
 Status make(const parametric::Synthesiser& synthesiser, const Options& options, Motion& motion) {
   const auto blended = synthesiser.motion(motion.synthesis.weights);
   if (!blended) return blended.error();
   auto made = blended->make(options.rate);
   if (!made) return made.error();
   motion.made = *std::move(made);
-  const Clip& clip = motion.made.clip;
-  std::vector<double> keytimes = blended->keytimes();
-  for (double& time : keytimes) {
-    time = std::min(time * clip.duration() / blended->duration(), clip.duration());
+  motion.keytimes = blended->keytimes();
+  const double duration = motion.made.clip.duration();
+  for (double& time : motion.keytimes) {
+    time = std::min(time * duration / blended->duration(), duration);
   }
-  auto measured = parametric::make_example(synthesiser.library(), motion.path, clip, keytimes);
+  return {};
+}
+
+// Measures the motion as if it were captured: what weights promise is not taken for granted.
+Status measure(const parametric::Synthesiser& synthesiser, Motion& motion) {
+  const parametric::Library& library = synthesiser.library();
+  auto measured = parametric::make_example(library, motion.path, motion.made.clip, motion.keytimes);
   if (!measured) return measured.error();
   motion.measured = std::move(measured->parameters);
   motion.error = synthesiser.error_of(motion.asked, motion.measured);
+  raise(library.ground, motion.made);
+  return {};
+}
+
+Status plant_and_measure(const parametric::Synthesiser& synthesiser, Motion& motion,
+                         ToolContext& context) {
+  const RoleMap roles = find_roles(synthesiser.library().skeleton);
+  const auto drift = plant_result(motion.made.clip, motion.made.keys, roles, context);
+  if (!drift) return drift.error();
+  motion.drift = *drift;
+  return measure(synthesiser, motion);
+}
+
+// Plants the feet. Feet that drifted end up elsewhere, by millimetres: what is asked of the library
+// is moved by the difference.
+Status plant(const parametric::Synthesiser& synthesiser, const Options& options,
+             const parametric::SynthesisOptions& how, Motion& motion, ToolContext& context) {
+  if (Status status = plant_and_measure(synthesiser, motion, context); !status) return status;
+  std::vector<double> aim = motion.asked;
+  for (int i = 0; i < kPlantings && motion.error > 1; ++i) {
+    for (std::size_t d = 0; d < aim.size(); ++d) aim[d] += motion.asked[d] - motion.measured[d];
+    Motion again{.path = motion.path, .asked = motion.asked};
+    auto synthesis = synthesiser.weights(aim, how);
+    if (!synthesis) break;
+    again.synthesis = *std::move(synthesis);
+    Status status = make(synthesiser, options, again);
+    if (status) status = plant_and_measure(synthesiser, again, context);
+    if (!status || again.error >= motion.error) break;
+    motion = std::move(again);
+  }
   return {};
 }
 
@@ -98,10 +143,15 @@ Status make_all(const parametric::Synthesiser& synthesiser, const Options& optio
       }
       motions[i].synthesis = *std::move(synthesis);
       done[i] = make(synthesiser, options, motions[i]);
+      if (done[i] && !options.plant) done[i] = measure(synthesiser, motions[i]);
       context.progress->advance(1);
     }
   });
   context.progress->end();
+  // One by one: planting reports warnings.
+  for (std::size_t i = 0; options.plant && i < motions.size(); ++i) {
+    if (done[i]) done[i] = plant(synthesiser, options, how, motions[i], context);
+  }
   for (std::size_t i = 0; i < motions.size(); ++i) {
     if (done[i]) continue;
     Error error = std::move(done[i]).error();
@@ -187,6 +237,10 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
     entry["error_before_correction"] = motion.synthesis.error_before;
     entry["corrections"] = motion.synthesis.corrections;
     entry["weights"] = motion.synthesis.weights;
+    if (motion.drift) {
+      entry["planted"] = to_json(*motion.drift);
+      line += "; " + text_of(*motion.drift);
+    }
     entry["duration"] = motion.made.clip.duration();
     entry["frames"] = motion.made.clip.frame_count();
     list.push_back(std::move(entry));
