@@ -75,9 +75,11 @@ class KeytimeFinder {
       for (const Keytime& key : gait.keytimes) {
         if (!key.name.starts_with(side)) continue;
         const bool again = before != nullptr && before->name == key.name;
+        const bool strikes = key.name.ends_with("strike");
+        const auto& foot = feet_.foot(s);
         if (again && key.time - before->time > kWhole * (stance + swing) &&
-            feet_.moves(feet_.foot(s), before->time, key.time)) {
-          const bool strikes = key.name.ends_with("strike");
+            feet_.moves(foot, before->time, key.time) &&
+            feet_.stays_low(foot, strikes ? before->time : key.time, strikes)) {
           const double part = (strikes ? stance : swing) / (stance + swing);
           missing.push_back({before->time + part * (key.time - before->time),
                              side + (strikes ? "_off" : "_strike")});

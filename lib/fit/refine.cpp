@@ -31,7 +31,9 @@ constexpr double kGrowth = 1.25;  // max mean square held-out error, relative to
 constexpr int kStalledRounds = 10;
 constexpr double kLowerOnTheWay = 0.02;
 constexpr int kRefusedRounds = 2;  // rounds before a refused point may be tried again
-// Distance of new points to refused ones, in usual distances; grows with each round in vain.
+// Distance of new points to refused ones, in usual distances; grows with each round in vain after
+// the first ones.
+constexpr int kPatience = 2;
 constexpr double kAvoid = detail::kNear, kMostAvoid = 4 * detail::kNear;
 
 using detail::Found;
@@ -197,7 +199,7 @@ std::vector<Found> Refiner::seek(double usual, double& worst) const {
   // Where points are refused round after round, the search goes on elsewhere.
   const int in_vain = rounds_in_vain();
   const int kept = std::max(kRefusedRounds, in_vain);
-  const double avoid = std::min(kAvoid * (1 + std::max(0, in_vain - 1)), kMostAvoid) * usual;
+  const double avoid = std::min(kAvoid * (1 + std::max(0, in_vain - kPatience)), kMostAvoid) * usual;
   std::vector<detail::ErrorPoint> avoided;
   for (const RefusedPoint& refused : state_.refused) {
     if (refused.round + kept < static_cast<int>(state_.rounds.size())) continue;
@@ -215,7 +217,8 @@ std::vector<Found> Refiner::seek(double usual, double& worst) const {
     found.back().low = low;
   };
   // If low weights cannot be raised, every other round is for errors alone.
-  const std::size_t low_wanted = in_vain % 2 == 0 ? (wanted + 1) / 2 : 0;
+  const bool low_too = in_vain < kPatience || in_vain % 2 == 0;
+  const std::size_t low_wanted = low_too ? (wanted + 1) / 2 : 0;
   for (std::vector<double>& place : detail::low_places(
            solver_.function(), *evaluator_, sweep_places, avoided, low_wanted, limit(), usual)) {
     avoided.push_back({place, 0});

@@ -147,6 +147,44 @@ TEST_F(KrokBlend, WithoutContactsNothingCanBeKeptInPlaceAndThatIsSaid) {
   EXPECT_FALSE(has_code(known.err, "blend-stance")) << known.err;
 }
 
+// Feet of a blend drift by millimetres, which is seen; the figures are those of what is written.
+TEST_F(KrokBlend, FeetArePlantedWhereThatIsAskedFor) {
+  const auto drift_of = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {walk("0.5"), quick("0.5"), "--json"});
+    const ToolRun run = blend(more);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return json::parse(run.out)["result"];
+  };
+  EXPECT_FALSE(drift_of({}).contains("planted"));
+  const json planted = drift_of({"--plant"})["planted"];
+  EXPECT_LE(planted["drift"].get<double>(), 1e-3);
+  EXPECT_LE(planted["drift"], planted["drift_before"]);
+  // Nothing is left to do.
+  const ToolRun again =
+      run_tool("krok-edit", {path("out.anim"), "--plant", "-o", path("again.anim"), "--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const ToolRun diff =
+      run_tool("krok-diff", {path("out.anim"), path("again.anim"), "--tolerance", "1mm"});
+  EXPECT_EQ(diff.exit_code, 0) << diff.out << diff.err;
+}
+
+// Planted feet are locked unless told otherwise; without contacts that goes without a warning.
+TEST_F(KrokBlend, FeetAreLockedUnlessToldOtherwise) {
+  const auto bytes_with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {walk("0.5"), quick("0.5")});
+    const ToolRun run = blend(more);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_FALSE(has_code(run.err, "blend-stance")) << run.err;
+    const ToolRun bvh = run_tool("krok-export", {path("out.anim"), "-o", path("out.bvh"), "-q"});
+    EXPECT_EQ(bvh.exit_code, 0) << bvh.err;
+    return get(path("out.bvh"));
+  };
+  const std::string usual = bytes_with({});
+  EXPECT_TRUE(usual == bytes_with({"--align", "stance"}));
+  EXPECT_FALSE(usual == bytes_with({"--align", "root"}));
+  EXPECT_TRUE(bytes_with({"--keys", "none"}) == bytes_with({"--keys", "none", "--align", "root"}));
+}
+
 TEST_F(KrokBlend, KeytimesThatAPersonWroteStay) {
   put("out.keys.json", "{\"schema\": \"something else\"}\n");
   const ToolRun run = blend({walk("0.5"), quick("0.5")});

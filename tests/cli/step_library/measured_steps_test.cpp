@@ -10,6 +10,17 @@ using nlohmann::json;
 using testing::Contains;
 using testing::HasSubstr;
 
+// Planted steps are still what was asked for, and their feet do not drift.
+TEST_F(StepLibrary, PlantedStepsAreAsAsked) {
+  fit_well();
+  const json made =
+      synthesised({"--set", "length=57cm", "--set", "height=3cm", "--plant", "--correct"});
+  EXPECT_LE(made[0]["planted"]["drift"].get<double>(), 1e-3);
+  EXPECT_LE(made[0]["planted"]["drift"], made[0]["planted"]["drift_before"]);
+  EXPECT_NEAR(made[0]["measured"]["length"].get<double>(), 0.57, 1e-3);
+  EXPECT_NEAR(made[0]["measured"]["height"].get<double>(), 0.03, 1e-3);
+}
+
 TEST_F(StepLibrary, WhatIsNotAsAskedIsTold) {
   write("library.json", R"({"schema": "krok.library/1", "steps": "auto",
  "parameters": [{"name": "length", "measures": "step.length", "tolerance": "0.005mm"},

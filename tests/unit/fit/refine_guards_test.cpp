@@ -106,6 +106,32 @@ TEST(RefineGuards, RefusesWhatNoWeightsGive) {
   EXPECT_NEAR(result.example_error, 0.3, 1e-12);  // the last example is none
 }
 
+// Errors that no weights remove, in one half, and errors that they do, in the other: the search
+// does not stop at the former.
+TEST(RefineGuards, GoesOnElsewhereWherePointsAreRefused) {
+  const rbf::Measure half = [](std::span<const double> w, std::span<double> out,
+                               std::span<double> jacobian) -> Status {
+    // Beyond 0.6 nothing but 0.6 and 1; below, the blend sags.
+    const double sum = 0.3 * w[1] + 0.7 * w[2] + w[3];
+    const bool stuck = sum > 0.6 && sum < 0.999;
+    const double sag = 0.05 * w[0] * w[1] * (stuck ? 0 : 1);
+    out[0] = stuck ? 0.6 : sum - sag;
+    if (jacobian.empty()) return {};
+    const double slope = stuck ? 0 : 1;
+    jacobian[0] = -0.05 * w[1] * slope;
+    jacobian[1] = (0.3 - 0.05 * w[0]) * slope;
+    jacobian[2] = 0.7 * slope;
+    jacobian[3] = slope;
+    return {};
+  };
+  const Refined result = refined(start_of(1, {0, 0.3, 0.7, 1}), half, with_points(8));
+  EXPECT_GT(result.refused.size(), 0u);
+  EXPECT_GT(result.function.inserted(), 0);
+  for (int k = result.function.examples; k < result.function.centre_count(); ++k) {
+    EXPECT_LT(result.function.centre(k)[0], 0.6);
+  }
+}
+
 TEST(RefineGuards, TakesBackWhatMakesOtherPlacesWorse) {
   // Ripples much finer than the points can follow.
   const rbf::Measure rippled = straight(2, kSquare, [](std::span<const double> w) {

@@ -4,6 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include <numeric>
+
+#include "parametric/try_weights.h"
 #include "rbf/weight_solver.h"
 #include "walks.h"
 
@@ -136,6 +139,71 @@ TEST(LeaveOneOut, TellsHowFarOffExamplesComeBack) {
     EXPECT_EQ(distances_to_examples(length_and_height_library(), solver->function()).error().code,
               "parametric-weights");
   }
+}
+
+// The captures of the grid, a step of each.
+std::vector<int> each_alone(const Library& library) {
+  std::vector<int> groups(library.examples.size());
+  std::iota(groups.begin(), groups.end(), 0);
+  return groups;
+}
+
+const WeightCandidate kTried[] = {{rbf::Kernel::cubic, 0, 0},
+                                  {rbf::Kernel::linear, 0, 0},
+                                  {rbf::Kernel::cubic, 0.1, 0},
+                                  {rbf::Kernel::cubic, 100, 0}};
+
+// One clip left out at a time is leaving one out.
+TEST(TryWeights, AgreesWithLeavingOneOut) {
+  const Library& library = length_and_height_library();
+  const auto trials = try_weights(library, each_alone(library), kTried);
+  ASSERT_TRUE(trials.ok()) << trials.error().message;
+  const LeftOutMeans one = means_of(*leave_one_out(library, rbf::Kernel::cubic));
+  EXPECT_EQ(trials->examples, one.examples);
+  EXPECT_EQ(trials->groups, one.examples);
+  EXPECT_NEAR(trials->tried[0].distance, one.weighted, 1e-9);
+  EXPECT_NEAR(trials->planes, one.linear, 1e-9);
+  EXPECT_NEAR(trials->nearest, one.nearest, 1e-9);
+  // Much smoothing is an affine fit.
+  EXPECT_NEAR(trials->tried[3].distance, trials->planes, 0.02 * trials->planes);
+  for (const WeightTrial& trial : trials->tried) EXPECT_EQ(trial.failed, 0);
+  const auto parallel = try_weights(library, each_alone(library), kTried, 2);
+  for (std::size_t c = 0; c < std::size(kTried); ++c) {
+    EXPECT_EQ(parallel->tried[c].distance, trials->tried[c].distance);
+  }
+}
+
+// Where examples agree, weights that meet them are best, and where they contradict each other,
+// those that average them: a choice by these figures is right in both.
+TEST(TryWeights, TellsContradictionFromAgreement) {
+  const Library& agree = length_and_height_library();
+  const auto clean = try_weights(agree, each_alone(agree), kTried);
+  ASSERT_TRUE(clean.ok());
+  EXPECT_LT(clean->tried[0].distance, clean->tried[2].distance);
+  EXPECT_LT(clean->tried[0].distance, clean->planes);
+  const Library noisy = contradicting();
+  const auto told = try_weights(noisy, each_alone(noisy), kTried);
+  ASSERT_TRUE(told.ok()) << told.error().message;
+  EXPECT_GT(told->tried[0].distance, 1.2 * told->tried[2].distance);
+}
+
+// The other steps of a capture tell too much of the one left out.
+TEST(TryWeights, LeavesOutWholeCaptures) {
+  Library twice = length_and_height_library();
+  std::vector<int> groups = each_alone(twice);
+  const std::size_t count = twice.examples.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    twice.examples.push_back(twice.examples[i]);
+    twice.examples.back().parameters[0] += 2e-3;
+    groups.push_back(groups[i]);
+  }
+  const auto apart = try_weights(twice, each_alone(twice), kTried);
+  const auto together = try_weights(twice, groups, kTried);
+  ASSERT_TRUE(apart.ok() && together.ok());
+  EXPECT_LT(apart->nearest, 1e-3);
+  EXPECT_GT(together->nearest, 0.01);
+  groups.pop_back();
+  EXPECT_EQ(try_weights(twice, groups, kTried).error().code, "parametric-groups");
 }
 
 }  // namespace

@@ -74,6 +74,15 @@ TEST(Steps, SmoothingIsKept) {
   EXPECT_EQ(check(odd).error().code, "rbf-number");
 }
 
+// Without it steps would sink into the floor that their captures stand on.
+TEST(Steps, TheGroundOfTheCapturesIsKept) {
+  StepsFile file = walk_library(rbf::Kernel::cubic);
+  file.library.ground = 0.0215;
+  const auto back = read(samples::bytes_of(file));
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_NEAR(back->library.ground, 0.0215, 1e-8);
+}
+
 TEST(Steps, ReadAndWrittenAgainItIsTheSameFile) {
   const auto bytes = samples::bytes_of(walk_library(rbf::Kernel::cubic));
   EXPECT_EQ(samples::bytes_of(*read(bytes)), bytes);
