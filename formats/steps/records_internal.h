@@ -27,7 +27,7 @@ static_assert(sizeof(Info) == 32);
 
 struct Foot {
   std::int32_t joint;
-  std::uint32_t reserved;
+  float toe_out;  // radians
   std::array<double, 3> heel;
   std::array<double, 3> forward;
   double length;

@@ -52,8 +52,8 @@ Status read_frame(const ContainerReader& container, const Info& info, Library& l
   std::vector<Foot> feet;
   if (Status status = read_array(container, "FEET", 2, feet); !status) return status;
   for (std::size_t f = 0; f < 2; ++f) {
-    library.feet[f] = {feet[f].joint, vector(feet[f].heel), vector(feet[f].forward),
-                       feet[f].length};
+    library.feet[f] = {feet[f].joint, vector(feet[f].heel), vector(feet[f].forward), feet[f].length,
+                       static_cast<double>(feet[f].toe_out)};
   }
   auto keytimes = read_texts(container, "KEYNAMES", info.keytimes);
   if (!keytimes) return keytimes.error();
@@ -62,7 +62,7 @@ Status read_frame(const ContainerReader& container, const Info& info, Library& l
   if (Status status = read_array(container, "PARAMS", info.parameters, records); !status)
     return status;
   for (const ParameterRecord& record : records) {
-    if (record.quantity > static_cast<std::uint32_t>(parametric::Quantity::joint) ||
+    if (record.quantity > static_cast<std::uint32_t>(parametric::Quantity::path_turn) ||
         record.direction > static_cast<std::uint32_t>(parametric::Direction::along)) {
       return invalid(container, "PARAMS", "has a parameter of unknown kind");
     }

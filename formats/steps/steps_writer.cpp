@@ -31,7 +31,8 @@ std::array<double, 3> numbers(const Vec3& v) {
 std::vector<Foot> feet_of(const Library& library) {
   std::vector<Foot> feet;
   for (const auto& foot : library.feet) {
-    feet.push_back({foot.joint, 0, numbers(foot.heel), numbers(foot.forward), foot.length});
+    feet.push_back({foot.joint, static_cast<float>(foot.toe_out), numbers(foot.heel),
+                    numbers(foot.forward), foot.length});
   }
   return feet;
 }

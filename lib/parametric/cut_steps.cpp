@@ -123,6 +123,19 @@ std::optional<double> pass_of(const Clip& piece, const Library& library, double 
   return passes;
 }
 
+void find_toe_out(std::span<const Walk> walks, std::array<FootShape, 2>& feet) {
+  std::vector<std::vector<WalkPrint>> prints;
+  for (const Walk& walk : walks) {
+    auto& list = prints.emplace_back();
+    for (const Strike& strike : strikes_of(*walk.keys)) {
+      const FootShape& foot = feet[static_cast<std::size_t>(strike.side)];
+      list.push_back({strike.side, print_at(foot, *walk.clip, strike.time)});
+    }
+  }
+  const auto toe_out = toe_out_of(prints);
+  for (std::size_t s = 0; s < feet.size(); ++s) feet[s].toe_out = toe_out[s];
+}
+
 class Cutter {
  public:
   Cutter(const RoleMap& roles, const CutOptions& options) : roles_(roles), options_(options) {}
@@ -144,6 +157,7 @@ class Cutter {
     auto feet = find_foot_shapes(clips, roles_);
     if (!feet) return feet.error();
     library.feet = *feet;
+    find_toe_out(walks, library.feet);
     for (const std::string& name : parameters) {
       auto parameter = parse_parameter(name, library.skeleton, library.keytimes);
       if (!parameter) return parameter.error();

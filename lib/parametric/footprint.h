@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "contacts/contacts.h"
 #include "core/result.h"
@@ -20,6 +21,9 @@ struct FootShape {
   Vec3 heel = Vec3::Zero();      // of the sole, metres
   Vec3 forward = Vec3::UnitZ();  // along the sole, unit vector
   double length = 0;             // from heel to ball, metres; 0 if the ball is not known
+  // Mean heading of the sole relative to the direction of travel, radians about +Y: positive for a
+  // left foot and negative for a right foot whose toes point outward.
+  double toe_out = 0;
 };
 
 // Position on the ground and direction of the toes.
@@ -51,5 +55,17 @@ struct ClipContacts {
 };
 Result<std::array<FootShape, 2>> find_foot_shapes(std::span<const ClipContacts> clips,
                                                   const RoleMap& roles);
+
+// One footprint of a walk, in the order of strikes.
+struct WalkPrint {
+  FootSide side = FootSide::left;
+  Footprint print;
+};
+
+// Mean toe_out of both feet, [FootSide], radians, over walks: the direction of travel at a
+// footprint is that from the other foot's footprint before to the one after, which holds on a curve
+// as well. 0 for both if there are fewer than three such footprints of either foot, with steps of
+// over 0.1 m.
+std::array<double, 2> toe_out_of(std::span<const std::vector<WalkPrint>> walks);
 
 }  // namespace krok::parametric

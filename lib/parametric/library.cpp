@@ -102,7 +102,7 @@ FootShape mirrored_foot(const FootShape& foot, const std::vector<Quat>& axes, in
   const auto across = [&](const Vec3& v) -> Vec3 {
     return axes[at(partner)].conjugate() * image(v);
   };
-  return {partner, across(foot.heel), across(foot.forward), foot.length};
+  return {partner, across(foot.heel), across(foot.forward), foot.length, -foot.toe_out};
 }
 
 }  // namespace
@@ -184,11 +184,15 @@ double ground_of(const Library& library) {
   return heights[heights.size() / 2];
 }
 
+Footprint print_at(const FootShape& foot, const Clip& motion, double time) {
+  return footprint(foot, pose_of_joint(motion, foot.joint, time));
+}
+
 Status check(const Library& library) {
   if (Status status = check(library.skeleton); !status) return status;
   for (const FootShape& foot : library.feet) {
     if (foot.joint >= 0 && foot.joint < library.skeleton.joint_count() && foot.heel.allFinite() &&
-        foot.length >= 0 && std::isfinite(foot.length) &&
+        foot.length >= 0 && std::isfinite(foot.length) && std::isfinite(foot.toe_out) &&
         std::abs(foot.forward.norm() - 1) <= 1e-4) {
       continue;
     }

@@ -64,6 +64,9 @@ Status same_skeleton(const Skeleton& library, const Skeleton& other);
 Result<Example> make_example(const Library& library, std::string name, const Clip& motion,
                              std::vector<double> keytimes, std::vector<Contact> contacts = {});
 
+// The footprint of a foot in a motion, at `time` (seconds).
+Footprint print_at(const FootShape& foot, const Clip& motion, double time);
+
 // The median height of the examples' footprints; 0 if they are not on one level (over 5 cm apart).
 double ground_of(const Library& library);
 

@@ -169,8 +169,10 @@ Status Measure::evaluate(const Parameter& parameter, const Print& stance, Scratc
     place = print.print.place;
   }
   const double heading = stance.print.heading;
-  if (parameter.quantity == Quantity::step_turn) {
-    value = side_ * wrapped(print.print.heading - heading);
+  if (is_turn(parameter.quantity)) {
+    const bool path = parameter.quantity == Quantity::path_turn;
+    const double toes = path ? swing_.toe_out - stance_.toe_out : 0;
+    value = side_ * wrapped(print.print.heading - heading - toes);
     if (!gradient) return {};
     pull(print, Vec3::Zero(), side_, scratch);
     pull(stance, Vec3::Zero(), -side_, scratch);

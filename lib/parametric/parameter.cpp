@@ -16,8 +16,8 @@ namespace krok::parametric {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> kQuantities = {"step.length", "step.width", "step.height",
-                                                         "step.turn", "duration"};
+constexpr std::array<std::string_view, 7> kQuantities = {
+    "step.length", "step.width", "step.height", "step.turn", "duration", "", "step.path_turn"};
 constexpr std::array<std::string_view, 3> kDirections = {"across", "up", "along"};
 
 Error wrong(std::string message, std::string hint) {
@@ -32,7 +32,7 @@ std::optional<int> index_of(const Names& names, std::string_view name) {
 }
 
 bool is_step(Quantity quantity) {
-  return quantity <= Quantity::step_turn;
+  return quantity <= Quantity::step_turn || quantity == Quantity::path_turn;
 }
 
 // Parses "LeftHand.up".
@@ -41,9 +41,11 @@ Status parse_joint(std::string_view name, const Skeleton& skeleton, Parameter& p
   const auto axis =
       dot == std::string_view::npos ? std::nullopt : index_of(kDirections, name.substr(dot + 1));
   if (!axis) {
-    return wrong(fmt::format("unknown parameter {}", shown(name)),
-                 "use step.length, step.width, step.height, step.turn, duration, or a joint "
-                 "with .across, .up or .along, @ and a keytime");
+    return wrong(
+        fmt::format("unknown parameter {}", shown(name)),
+        "use step.length, step.width, step.height, step.turn, step.path_turn, duration, or "
+        "a joint "
+        "with .across, .up or .along, @ and a keytime");
   }
   parameter.quantity = Quantity::joint;
   parameter.direction = static_cast<Direction>(*axis);
@@ -56,12 +58,12 @@ Status parse_joint(std::string_view name, const Skeleton& skeleton, Parameter& p
 }  // namespace
 
 std::string_view unit_of(const Parameter& parameter) {
-  if (parameter.quantity == Quantity::step_turn) return "rad";
+  if (is_turn(parameter.quantity)) return "rad";
   return parameter.quantity == Quantity::duration ? "s" : "m";
 }
 
 double usual_tolerance(Quantity quantity) {
-  return quantity == Quantity::step_turn ? 0.1 * kRadiansPerDegree : 1e-3;
+  return is_turn(quantity) ? 0.1 * kRadiansPerDegree : 1e-3;
 }
 
 std::string name_of(const Parameter& parameter, const Skeleton& skeleton,
@@ -83,7 +85,7 @@ Result<Parameter> parse_parameter(std::string_view name, const Skeleton& skeleto
   Parameter parameter;
   const auto at = name.rfind('@');
   const std::string_view what = name.substr(0, at);
-  if (const auto quantity = index_of(kQuantities, what)) {
+  if (const auto quantity = index_of(kQuantities, what); quantity && !what.empty()) {
     parameter.quantity = static_cast<Quantity>(*quantity);
   } else if (Status status = parse_joint(what, skeleton, parameter); !status) {
     return status.error();
@@ -106,7 +108,7 @@ Status check(std::span<const Parameter> parameters, const Skeleton& skeleton,
   if (parameters.empty()) return wrong("no parameters", "name at least one");
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& one = parameters[i];
-    const bool known = one.quantity <= Quantity::joint && one.direction <= Direction::along;
+    const bool known = one.quantity <= Quantity::path_turn && one.direction <= Direction::along;
     const bool joint =
         one.quantity != Quantity::joint || (one.joint >= 0 && one.joint < skeleton.joint_count());
     const bool keytime = one.keytime >= 0 && one.keytime < static_cast<int>(keytimes.size());

@@ -23,8 +23,13 @@ enum class Quantity : unsigned char {
   step_height,  // up, metres
   step_turn,    // change of the swing foot's heading, radians, positive to its side
   duration,     // from the first keytime to the last, seconds
-  joint         // position of a joint at a keytime along one axis, metres
+  joint,        // position of a joint at a keytime along one axis, metres
+  path_turn     // as step_turn, of the direction of travel: without FootShape::toe_out
 };
+
+inline bool is_turn(Quantity quantity) {
+  return quantity == Quantity::step_turn || quantity == Quantity::path_turn;
+}
 
 enum class Direction : unsigned char { across, up, along };
 
@@ -45,7 +50,8 @@ std::string_view unit_of(const Parameter& parameter);
 // 1 mm, 0.1 degrees, 1 ms.
 double usual_tolerance(Quantity quantity);
 
-// "step.length", "step.width", "step.height", "step.turn", "duration", or "LeftHand.up@swing_off".
+// "step.length", "step.width", "step.height", "step.turn", "step.path_turn", "duration", or
+// "LeftHand.up@swing_off".
 std::string name_of(const Parameter& parameter, const Skeleton& skeleton,
                     std::span<const std::string> keytimes);
 

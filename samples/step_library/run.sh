@@ -38,7 +38,22 @@ say "3. Libraries with three parameters (turn) and four (width)"
 "$bin/krok-fit" library_turns.json -o turning.steps --plots charts_turns --json=fit_turns.json
 "$bin/krok-fit" library_widths.json -o any.steps --plots charts_widths --json=fit_widths.json
 
-say "4. Synthesise steps"
+say "4. A library of steps that contradict each other, as captured ones do"
+seed=0
+for length in 50 55 60 65 70 75 80; do
+  for cadence in 90 115; do
+    seed=$((seed + 1))
+    # The same person never walks twice alike: other widths and turns, which are no parameters here,
+    # and jitter of the capture.
+    "$generators/make-walk" -q --steps 6 --step-length ${length}cm --cadence $cadence \
+      --step-width $((6 + seed * 7 % 15))cm --turn $((seed * 5 % 9 - 4))deg --rate 30 \
+      --noise-angle 0.2deg --noise-position 0.5mm --seed $seed -o captured_${length}_$cadence.bvh
+  done
+done
+"$bin/krok-fit" library_captured.json -o captured.steps --json=fit_captured.json
+"$bin/krok-fit" library_captured.json -o exact.steps --kernel cubic --smooth 0 --json=fit_exact.json
+
+say "5. Synthesise steps"
 "$bin/krok-synth" walking.steps --set length=57cm --set height=3cm -o step.anim
 "$bin/krok-synth" walking.steps --set length=57cm --set height=3cm --correct --side right \
   -o step_right.anim
@@ -46,6 +61,8 @@ mkdir -p sheet
 "$bin/krok-synth" walking.steps --table "$story/points.csv" -o sheet/step.anim
 "$bin/krok-synth" turning.steps --set length=60cm --set height=0 --set turn=14deg -o bend.anim
 
-say "5. Images"
+"$bin/krok-synth" captured.steps --set length=62cm --set duration=0.6s --plant -o captured.anim
+
+say "6. Images"
 "$bin/krok-plot" -q --sheet=steps.png --sides left --moments 5 --size 150 sheet/step_*.anim
 echo "  steps.png, charts/*.svg, charts_turns/*.svg, charts_widths/*.svg"

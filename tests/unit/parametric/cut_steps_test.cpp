@@ -16,6 +16,41 @@ using testing::HasSubstr;
 constexpr double kMillimetre = 1e-3;
 constexpr double kTenthDegree = 0.1 * kRadiansPerDegree;
 
+// A straight step of feet that point outward turns by nothing, and one of a curve by what the path
+// turns, for either foot.
+TEST(CutSteps, ThePathTurnsWithoutTheToes) {
+  for (const double turn : {0.0, 15.0}) {
+    WalkOptions walk;
+    walk.steps = 12;
+    walk.step_length = 0.6;
+    walk.turn = turn * kRadiansPerDegree;
+    std::vector<test::KeyedWalk> walks;
+    walks.push_back(test::keyed_walk(walk));
+    for (const FootSide swing : {FootSide::left, FootSide::right}) {
+      CutOptions options;
+      options.swing = swing;
+      options.mirror = false;
+      const Library library =
+          test::library_of(walks, {"step.turn", "step.path_turn"}, options).library;
+      ASSERT_GE(library.examples.size(), 3u);
+      const double toes = library.foot(swing).toe_out - library.foot(library.stance()).toe_out;
+      const double side = swing == FootSide::left ? 1 : -1;
+      EXPECT_GT(std::abs(toes), 5 * kRadiansPerDegree);
+      for (const Example& example : library.examples) {
+        EXPECT_NEAR(example.parameters[1], side * walk.turn, 1.5 * kRadiansPerDegree);
+        EXPECT_NEAR(example.parameters[0] - example.parameters[1], side * toes, 1e-9);
+      }
+      // The mirrored library measures the same.
+      const auto other = mirrored(library, find_roles(library.skeleton));
+      ASSERT_TRUE(other.ok());
+      const auto again =
+          make_example(*other, "again", other->examples[0].motion, other->examples[0].keytimes);
+      ASSERT_TRUE(again.ok()) << again.error().message;
+      EXPECT_NEAR(again->parameters[1], library.examples[0].parameters[1], 1e-6);
+    }
+  }
+}
+
 class CutWalk : public testing::TestWithParam<WalkOptions> {};
 
 TEST_P(CutWalk, StepsAreAsTheyWerePlanned) {

@@ -24,7 +24,7 @@ Skeleton skeleton() {
 
 TEST(Parameter, NamesAreReadAndWrittenAlike) {
   for (const char* name :
-       {"step.length", "step.width", "step.height", "step.turn", "duration",
+       {"step.length", "step.width", "step.height", "step.turn", "step.path_turn", "duration",
         "step.length@swing_off", "Hips.up@swing_off", "mixamorig:Left.Hand.across@stance_strike",
         "mixamorig:Left.Hand.along@swing_strike"}) {
     const auto parameter = parse_parameter(name, skeleton(), kKeytimes);

@@ -78,9 +78,11 @@ TEST(Steps, SmoothingIsKept) {
 TEST(Steps, TheGroundOfTheCapturesIsKept) {
   StepsFile file = walk_library(rbf::Kernel::cubic);
   file.library.ground = 0.0215;
+  file.library.feet[0].toe_out = 0.1;
   const auto back = read(samples::bytes_of(file));
   ASSERT_TRUE(back.ok()) << back.error().message;
   EXPECT_NEAR(back->library.ground, 0.0215, 1e-8);
+  EXPECT_NEAR(back->library.feet[0].toe_out, 0.1, 1e-7);
 }
 
 TEST(Steps, ReadAndWrittenAgainItIsTheSameFile) {
@@ -177,7 +179,7 @@ TEST(Steps, ReaderNamesThePlaceOfWhatIsWrong) {
   EXPECT_EQ(changed("INFO", 24, u32(2)), "steps-shape");
   EXPECT_EQ(changed("FEET", 0, u32(3)), "parametric-feet");
   EXPECT_EQ(changed("FEET", 56, -1.0), "parametric-feet");
-  EXPECT_EQ(changed("PARAMS", 0, u32(6)), "steps-shape");
+  EXPECT_EQ(changed("PARAMS", 0, u32(7)), "steps-shape");
   EXPECT_EQ(changed("PARAMS", 16, 0.0), "parametric-parameter");
   EXPECT_EQ(changed("EXAMPLES", 8, u32(0)), "steps-shape");
   EXPECT_EQ(changed("EXAMPLES", 16, u32(2)), "steps-shape");
