@@ -59,6 +59,9 @@ std::vector<double> parameters_for(const parametric::Library& library,
       case Quantity::step_turn:
         asked[d] = shape.turn;
         break;
+      case Quantity::path_turn:
+        asked[d] = shape.path_turn;
+        break;
       case Quantity::duration:
         asked[d] = duration;
         is_asked[d] = duration > 0 ? 1 : 0;
@@ -88,6 +91,7 @@ Apart apart(const parametric::Library& library, std::span<const double> a,
         result.place = std::hypot(result.place, a[d] - b[d]);
         break;
       case Quantity::step_turn:
+      case Quantity::path_turn:
         result.turn = std::abs(a[d] - b[d]);
         break;
       case Quantity::duration:

@@ -65,8 +65,8 @@ StepShape shape_of(const GroundedPrint& stance, const GroundedPrint& to, double 
   const double toes = stance.facing - side * toe_out;
   const Vec3 way = to.heel - stance.heel;
   const Vec3 ahead(std::sin(toes), 0, std::cos(toes)), left(ahead.z(), 0, -ahead.x());
-  return {way.dot(ahead), side * way.dot(left), way.y(),
-          side * wrapped(to.facing - stance.facing) + 2 * toe_out};
+  const double turn = side * wrapped(to.facing - stance.facing);
+  return {way.dot(ahead), side * way.dot(left), way.y(), turn + 2 * toe_out, turn};
 }
 
 Status check_reach(const GroundedPrint& from, const GroundedPrint& stance, const GroundedPrint& to,

@@ -10,7 +10,8 @@ namespace krok::gait {
 // what its feet turn out by: prints may have any.
 struct StepShape {
   double along = 0, across = 0, up = 0;  // across: to the side of the swing foot
-  double turn = 0;                       // to that side
+  double turn = 0;                       // of the toes, to that side
+  double path_turn = 0;                  // of the body
 };
 StepShape shape_of(const GroundedPrint& stance, const GroundedPrint& to, double toe_out);
 
