@@ -14,6 +14,7 @@ namespace {
 constexpr double kShortestPath = 0.05, kLongestPath = 1e6, kFarthestPoint = 1e6;
 constexpr double kSamePoint = 1e-6;
 constexpr double kPathSpacing = 0.02;
+constexpr double kWayStep = 0.1;  // metres between points of a motion's way
 constexpr double kMostPathSamples = 4e6;
 
 double heading_of(const Vec2& way) {
@@ -179,8 +180,19 @@ std::vector<PathPoint> way_of(const Clip& clip, int joint, double window) {
           (sums[to + 1] - sums[from]) / static_cast<double>(2 * half + 1);
     }
   }
+  // Of standing about only the place counts.
   std::vector<PathPoint> way;
-  for (const Vec2& place : places) way.push_back({place.x(), place.y(), {}});
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const bool last = i + 1 == places.size();
+    if (!way.empty()) {
+      const Vec2 kept(way.back().x, way.back().z);
+      if ((places[i] - kept).norm() < kWayStep) {
+        if (!last || way.size() < 2) continue;
+        way.pop_back();
+      }
+    }
+    way.push_back({places[i].x(), places[i].y(), {}});
+  }
   return way;
 }
 

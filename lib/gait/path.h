@@ -62,7 +62,8 @@ std::vector<PathPoint> way_to_goals(double x, double z, double heading, std::spa
                                     double radius = 0.8);
 
 // The way of a joint, such as the hips, over the ground: its place in each frame, averaged
-// twice over `window` seconds, about a stride, which takes out the sway of steps. Without times.
+// twice over `window` seconds, about a stride, which takes out the sway of steps, and kept every 10
+// cm. Without times.
 std::vector<PathPoint> way_of(const Clip& clip, int joint, double window = 1.1);
 
 }  // namespace krok::gait

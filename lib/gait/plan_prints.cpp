@@ -13,7 +13,7 @@ namespace krok::gait {
 
 namespace {
 
-constexpr double kPlanGrid = 0.01;       // metres, of places for feet on uneven ground
+constexpr double kPlanGrid = 0.005;      // metres, of places for feet on uneven ground
 constexpr double kMostPlanPlaces = 5e6;  // of them
 constexpr double kStorey = 0.6;          // metres: what is higher than this is overhead
 constexpr double kEndRange = 0.4;        // metres by which the last prints may be short of the end

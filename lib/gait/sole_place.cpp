@@ -26,14 +26,16 @@ SoleGround ground_under_sole(const Print& print, double near, const Terrain& gro
   const double half = 0.5 * options.sole_width;
   std::array<double, 3> last = {at_heel->height, at_heel->height, at_heel->height};
   bool first = true;
-  const double end = options.heel_to_toes + kSoleMargin;
+  const double end = options.heel_to_toes;
   const int samples = static_cast<int>(std::ceil((end + kSoleMargin) / kSoleSample));
   for (int i = 0; i <= samples; ++i) {
     const double along = std::min(i * kSoleSample - kSoleMargin, end);
     std::array<double, 3> heights{};
     double edge = 0;  // 0: none, otherwise up or down
     for (std::size_t line = 0; line < 3; ++line) {
-      const double across = (static_cast<double>(line) - 1) * half;
+      // Toes are round: half as wide at the tip.
+      const double narrow = along > options.heel_to_ball ? 0.5 : 1;
+      const double across = (static_cast<double>(line) - 1) * half * narrow;
       const double x = print.x + along * ahead.x() + across * left.x();
       const double z = print.z + along * ahead.y() + across * left.y();
       const auto found = ground.at(x, z, last[line] + kOverhead);

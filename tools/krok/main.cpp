@@ -37,6 +37,7 @@ constexpr std::array kVerbs = {
     Verb{"cam", "create cameras: keyframed, following, orbiting, static"},
     Verb{"fit", "fit a step library to example motions"},
     Verb{"synth", "synthesise motions from a step library for given parameters"},
+    Verb{"walk", "walk a character along footprints, a way or to goals, on any ground"},
     Verb{"view", "create a web page that plays motions"},
     Verb{"plot", "plot charts of motions and tables"},
     Verb{"diff", "compare two files: differences and where they are"},

@@ -124,10 +124,14 @@ TEST(WayOf, TakesOutTheSway) {
         Vec3f(static_cast<float>(0.03 * std::sin(2 * kPi * time)), 1, static_cast<float>(time));
   }
   const auto way = way_of(clip, 0);
-  ASSERT_EQ(way.size(), 300U);
-  for (std::size_t i = 72; i < 228; ++i) {
-    EXPECT_LT(std::abs(way[i].x), 0.006);
-    EXPECT_NEAR(way[i].z, static_cast<double>(i) / 60, 1e-4);
+  ASSERT_GT(way.size(), 40U);
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (way[i].z > 1.2 && way[i].z < 3.8) {
+      EXPECT_LT(std::abs(way[i].x), 0.006);
+    }
+    if (i > 0 && i + 1 < way.size()) {
+      EXPECT_NEAR(way[i].z - way[i - 1].z, 0.1, 0.02);
+    }
   }
   EXPECT_NEAR(way.front().z, 0, 1e-6);
   EXPECT_NEAR(way.back().z, 299 / 60.0, 1e-5);

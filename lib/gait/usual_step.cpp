@@ -1,0 +1,85 @@
+#include "gait/usual_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gait/walker_internal.h"
+
+namespace krok::gait {
+
+namespace {
+
+constexpr double kLevelStep = 0.05;    // metres: what rises less is a step on level ground
+constexpr double kMostToeOut = 0.35;   // radians: more is a turn
+constexpr double kToesPerBall = 1.45;  // from heel to toes, of heel to ball
+constexpr double kUnknownSole = 0.16;  // metres from heel to ball, where the ball is not known
+constexpr double kMoreLength = 0.03;   // metres beyond the longest example
+
+// The swing footprint at the last keytime, in the frame of the stance footprint: metres along its
+// toes, to the swing side, up; radians to that side.
+struct FoundStep {
+  double along = 0, across = 0, up = 0, turn = 0;
+};
+
+FoundStep step_of(const parametric::Library& library, const parametric::Example& example) {
+  const Clip& clip = example.motion;
+  const int frame = std::clamp(static_cast<int>(std::lround(example.keytimes.back() * clip.rate)),
+                               0, clip.frame_count() - 1);
+  std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
+  clip.get_pose(frame, pose);
+  const parametric::FootShape& foot = library.foot(library.swing);
+  const auto print = parametric::footprint(foot, pose[static_cast<std::size_t>(foot.joint)]);
+  const double side = library.swing == FootSide::left ? 1 : -1;
+  return {print.place.z(), side * print.place.x(), print.place.y(), side * print.heading};
+}
+
+}  // namespace
+
+Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
+  PlanOptions options;
+  double longest = 0, most_turn = 0;
+  for (const StepLibrary& one : libraries) {
+    const parametric::Library& library = one.library();
+    for (std::size_t d = 0; d < library.parameters.size(); ++d) {
+      const auto quantity = library.parameters[d].quantity;
+      for (const parametric::Example& example : library.examples) {
+        const double value = example.parameters[d];
+        if (quantity == parametric::Quantity::step_length) longest = std::max(longest, value);
+        if (quantity == parametric::Quantity::step_turn) most_turn = std::max(most_turn, value);
+      }
+    }
+  }
+  const parametric::Library& library = libraries.front().library();
+  FoundStep level, other;
+  int level_count = 0;
+  for (const parametric::Example& example : library.examples) {
+    const FoundStep step = step_of(library, example);
+    const bool is_level = std::abs(step.up) < kLevelStep;
+    FoundStep& sum = is_level ? level : other;
+    sum.along += step.along;
+    sum.across += step.across;
+    sum.turn += step.turn;
+    level_count += is_level ? 1 : 0;
+  }
+  const double count = level_count > 0 ? level_count : static_cast<double>(library.examples.size());
+  const FoundStep& sum = level_count > 0 ? level : other;
+  // Prints are planned along the way, which lies between the directions of the toes.
+  const double out = std::clamp(0.5 * sum.turn / count, -kMostToeOut, kMostToeOut);
+  const double along = sum.along / count, across = sum.across / count;
+  options.step_length = along * std::cos(out) + across * std::sin(out);
+  options.step_width = std::max(0.0, across * std::cos(out) - along * std::sin(out));
+  options.toe_out = {out, -out};
+  options.most_step = std::max(longest, options.step_length) + kMoreLength;
+  if (most_turn > 0.1) options.most_turn = most_turn;
+  const auto walker = make_walker(libraries.front());
+  if (!walker) return walker.error();
+  const FootGeometry& sole = walker->leg(FootSide::left).sole;
+  options.heel_to_ball = sole.length > 0 ? sole.length : kUnknownSole;
+  options.heel_to_toes =
+      sole.tip > 0 ? options.heel_to_ball + sole.tip : kToesPerBall * options.heel_to_ball;
+  options.sole_width = walker->sole_width;
+  options.least_step = std::min(options.least_step, options.step_length);
+  return options;
+}
+
+}  // namespace krok::gait

@@ -1,0 +1,170 @@
+// If these fail, krok-walk walks elsewhere than asked, on other ground, hides what it could not do,
+// or ends wrongly on wrong input.
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "cli/step_library/library_fixture.h"
+#include "formats/anim/anim.h"
+#include "formats/prints/prints.h"
+#include "support/height_images.h"
+
+namespace krok::test {
+namespace {
+
+// The library of generated walks, and walks with it.
+class KrokWalk : public StepLibrary {
+ protected:
+  void SetUp() override {
+    StepLibrary::SetUp();
+    fit_well();
+  }
+  ToolRun walk(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), path("out.steps"));
+    if (!testing::Value(arguments, Contains("-o"))) {
+      arguments.insert(arguments.end(), {"-o", path("walk.anim")});
+    }
+    return run_tool("krok-walk", arguments);
+  }
+  nlohmann::json walked(std::vector<std::string> arguments) const {
+    arguments.emplace_back("--json");
+    const ToolRun run = walk(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.exit_code == 0 ? nlohmann::json::parse(run.out)["result"] : nlohmann::json();
+  }
+  void refused(const std::vector<std::string>& arguments, const std::string& code,
+               const std::string& says) const {
+    const ToolRun run = walk(arguments);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("[" + code + "]"));
+    EXPECT_THAT(run.err, HasSubstr(says));
+    EXPECT_THAT(listing(), Not(Contains("walk.anim")));
+  }
+  std::vector<gait::Print> prints(const std::string& name) const {
+    const auto read = krok::prints::read(get(path(name)), name);
+    EXPECT_TRUE(read) << (read ? "" : read.error().message);
+    return read ? *read : std::vector<gait::Print>();
+  }
+  Clip clip(const std::string& name) const {
+    const std::string bytes = get(path(name));
+    return *anim::read(std::as_bytes(std::span(bytes)));
+  }
+};
+
+// Would fail if the goal were missed, if the files beside the motion were missing, or if prints
+// that were saved and handed back made another walk.
+TEST_F(KrokWalk, WalksToAGoalAndFromItsOwnPrints) {
+  const auto report = walked({"--to", "1m,4m", "--save-prints", path("prints.csv")});
+  EXPECT_THAT(listing(), testing::IsSupersetOf({"walk.anim", "walk.keys.json", "prints.csv"}));
+  const auto set = prints("prints.csv");
+  ASSERT_EQ(report["prints"], set.size());
+  EXPECT_EQ(report["steps"].size(), set.size() - 2);
+  EXPECT_LT(report["largest_miss"], 1e-4);
+  EXPECT_NEAR(0.5 * (set.back().x + set[set.size() - 2].x), 1, 0.02);
+  EXPECT_NEAR(0.5 * (set.back().z + set[set.size() - 2].z), 4, 0.02);
+  const Clip made = clip("walk.anim");
+  const Vec3f hips = made.frame_positions(made.frame_count() - 1)[0];
+  EXPECT_NEAR(hips.x(), 1, 0.15);
+  EXPECT_NEAR(hips.z(), 4, 0.15);
+  const auto again = walked({"--prints", path("prints.csv"), "-o", path("again.anim"),
+                             "--save-prints", path("prints.json")});
+  EXPECT_EQ(again["duration"], report["duration"]);
+  const Clip second = clip("again.anim");
+  ASSERT_EQ(second.frame_count(), made.frame_count());
+  for (std::size_t i = 0; i < made.positions.size(); ++i) {
+    ASSERT_LT((made.positions[i] - second.positions[i]).norm(), 1e-5f);
+  }
+  EXPECT_EQ(prints("prints.json").size(), set.size());
+}
+
+// Would fail if a drawing were walked mirrored, in another unit, or only its first part.
+TEST_F(KrokWalk, FollowsADrawing) {
+  put("way.svg",
+      "<svg><path id='a' d='M0 0L9 9'/><path id='b' d='M100 100L100 300Q100 500 300 500'/></svg>");
+  walked({"--path", path("way.svg"), "--path-id", "b", "--save-prints", path("p.csv")});
+  const auto set = prints("p.csv");
+  EXPECT_NEAR(0.5 * (set[0].x + set[1].x), 1, 0.01);
+  EXPECT_NEAR(0.5 * (set[0].z + set[1].z), 1, 0.01);
+  EXPECT_NEAR(set.back().x, 3, 0.1);
+  EXPECT_NEAR(set.back().z, 5, 0.15);
+  EXPECT_NEAR(set.back().heading, kPi / 2, 0.3);
+  walked({"--path", path("way.svg"), "--path-id", "b", "--path-scale", "2cm", "--save-prints",
+          path("q.csv")});
+  EXPECT_NEAR(prints("q.csv").back().x, 6, 0.2);
+  // The way of a motion is another walk's.
+  walked({"--path", path("walk.anim"), "-o", path("copy.anim"), "--save-prints", path("r.csv")});
+  EXPECT_NEAR(prints("r.csv").back().z, prints("q.csv").back().z, 0.3);
+}
+
+// Would fail if a ground were not the one that was named: each raises the end of the walk by a
+// height that is known.
+TEST_F(KrokWalk, StandsOnEveryKindOfGround) {
+  const auto hips_rise = [&](const std::vector<std::string>& ground) {
+    std::vector<std::string> arguments = {"--to", "0,4m"};
+    arguments.insert(arguments.end(), ground.begin(), ground.end());
+    walked(arguments);
+    const Clip made = clip("walk.anim");
+    return made.frame_positions(made.frame_count() - 1)[0].y() - made.frame_positions(0)[0].y();
+  };
+  EXPECT_NEAR(hips_rise({}), 0, 0.005);
+  EXPECT_NEAR(hips_rise({"--ground", "slope:6deg"}), 3 * std::tan(6 * kRadiansPerDegree), 0.03);
+  EXPECT_NEAR(hips_rise({"--ground", "stairs:rise=-10cm,run=40cm,count=4"}), -0.4, 0.01);
+  put("hill.exr", exr_image(2, 2, {{"Y", {0, 0, 1, 1}}}));
+  EXPECT_NEAR(
+      hips_rise({"--ground", path("hill.exr"), "--ground-size", "20x20", "--ground-range", "0,2m"}),
+      0.4, 0.02);
+  put("ramp.obj", "v -9 0 -9\nv -9 0.9 9\nv 9 0.9 9\nv 9 0 -9\nf 1 2 3 4\n");
+  EXPECT_NEAR(hips_rise({"--ground", path("ramp.obj")}), 0.2, 0.02);
+}
+
+// Would fail if what no one can do were done in silence, or the message did not say which print.
+TEST_F(KrokWalk, RefusesOrAdaptsWhatIsTooFar) {
+  const std::string good = "side,x,z,heading\nleft,0.05,0,0\nright,-0.05,0,0\nleft,0.05,0.6,0\n";
+  put("far.csv", good + "right,-0.05,3,0\nleft,0.05,3,0\n");
+  refused({"--prints", path("far.csv")}, "walk-too-long", "print 4");
+  const auto adapted =
+      walked({"--prints", path("far.csv"), "--adapt", "--save-prints", path("near.csv")});
+  EXPECT_EQ(adapted["moved_prints"], 2);
+  EXPECT_GT(adapted["steps"][1]["moved"], 1);
+  EXPECT_THAT(adapted["steps"][1]["why_moved"].get<std::string>(), HasSubstr("print 4"));
+  EXPECT_LT(prints("near.csv")[3].z, 2);
+}
+
+TEST_F(KrokWalk, RefusesWrongInput) {
+  refused({}, "usage", "no way is given");
+  refused({"--to", "1,2", "--path", "x.svg"}, "usage", "exclude each other");
+  refused({"--to", "1"}, "usage", "too few");
+  refused({"--to", "1,2,3"}, "usage", "too many");
+  refused({"--to", "1kg,2"}, "usage", "kg");
+  refused({"--to", "0,0"}, "path-short", "5 cm");
+  refused({"--to", "0,3", "--ground", "stars"}, "ground-kind", "stairs");
+  refused({"--to", "0,3", "--ground", path("none.exr")}, "file-missing", "none.exr");
+  refused({"--to", "0,3", "--ground-size", "3"}, "usage", "too few");
+  refused({"--to", "0,3", "--ground-size", "3x3"}, "usage", "height fields");
+  refused({"--to", "0,3", "--speed", "0"}, "usage", "--speed");
+  refused({"--to", "0,3", "--save-prints", "p.txt"}, "usage", ".csv");
+  refused({"--prints", path("walk_50_0.bvh")}, "prints-column", "side");
+  refused({"--prints", put("p.csv", "side,x,z,heading\nleft,nan,0,0\n")}, "prints-value",
+          "p.csv:2:6");
+  refused({"--prints", put("p.csv", "side,x,z,heading\nleft,0,0,0\n")}, "walk-prints", "three");
+  refused({"--path", put("p.svg", "<svg><path d='M0 0X'/></svg>")}, "path-data", "p.svg:1:19");
+  const ToolRun other =
+      run_tool("krok-walk", {path("walk_50_0.bvh"), "--to", "0,3", "-o", path("w.anim")});
+  EXPECT_EQ(other.exit_code, 2) << other.err;
+}
+
+// Would fail if the number of threads changed a walk.
+TEST_F(KrokWalk, IsTheSameOnAnyNumberOfThreads) {
+  walked({"--to", "3m,20m", "-j", "1"});
+  walked({"--to", "3m,20m", "-j", "2", "-o", path("two.anim")});
+  const Clip one = clip("walk.anim"), two = clip("two.anim");
+  ASSERT_EQ(one.positions.size(), two.positions.size());
+  for (std::size_t i = 0; i < one.positions.size(); ++i) {
+    ASSERT_EQ(one.positions[i], two.positions[i]);
+    ASSERT_EQ(one.orientations[i].coeffs(), two.orientations[i].coeffs());
+  }
+}
+
+}  // namespace
+}  // namespace krok::test

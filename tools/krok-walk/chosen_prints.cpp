@@ -1,0 +1,72 @@
+#include "tools/krok-walk/chosen_prints.h"
+
+#include <algorithm>
+
+#include "formats/io/open_motion.h"
+#include "formats/path/path_format.h"
+#include "formats/prints/prints.h"
+#include "formats/registry/registry.h"
+#include "gait/plan_prints.h"
+#include "gait/usual_step.h"
+#include "motion/ground_frame.h"
+#include "roles/roles.h"
+
+namespace krok::cli::walk {
+
+namespace {
+
+Result<std::vector<gait::PathPoint>> read_way(const Options& options, ToolContext& context) {
+  const auto file = context.open_input(options.path);
+  if (!file) return file.error();
+  if (registry::kind_of_content(file->bytes()) == registry::Kind::unknown) {
+    return path_file::read(file->text(), options.path, {options.path_scale, options.path_id});
+  }
+  const auto clip = io::open_motion(*file, context);
+  if (!clip) return clip.error();
+  return gait::way_of(*clip, carrying_joint(find_roles(clip->skeleton)));
+}
+
+Result<gait::Path> make_path(const Options& options, ToolContext& context) {
+  if (options.path.empty()) {
+    return gait::Path::create(
+        gait::way_to_goals(options.from.x(), options.from.y(), options.heading, options.goals));
+  }
+  const auto way = read_way(options, context);
+  if (!way) return way.error();
+  auto path = gait::Path::create(*way);
+  if (!path) return std::move(path.error()).in_file(options.path);
+  return path;
+}
+
+}  // namespace
+
+Result<std::vector<gait::Print>> choose_prints(const Options& options,
+                                               std::span<const gait::StepLibrary> libraries,
+                                               const Terrain& ground, ToolContext& context) {
+  if (!options.prints.empty()) {
+    const auto file = context.open_input(options.prints);
+    if (!file) return file.error();
+    return prints::read(file->text(), options.prints);
+  }
+  const auto path = make_path(options, context);
+  if (!path) return path.error();
+  auto usual = gait::usual_steps(libraries);
+  if (!usual) return usual.error();
+  gait::PlanOptions& plan = *usual;
+  plan.first = options.first;
+  if (options.step_width) plan.step_width = *options.step_width;
+  if (options.step_length) {
+    plan.step_length = *options.step_length;
+    plan.most_step = std::max(plan.most_step, plan.step_length);
+    plan.least_step = std::min(plan.least_step, plan.step_length);
+  }
+  const auto planned = gait::plan_prints(*path, ground, plan);
+  if (!planned) return Error(planned.error()).in_file(options.path);
+  context.report.result["way"] = {{"length", path->length()},
+                                  {"step_length", plan.step_length},
+                                  {"step_width", plan.step_width},
+                                  {"fitted_to_ground", planned->fitted_to_ground}};
+  return planned->prints;
+}
+
+}  // namespace krok::cli::walk

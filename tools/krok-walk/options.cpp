@@ -1,0 +1,288 @@
+#include "tools/krok-walk/options.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "core/file.h"
+#include "core/quantity.h"
+#include "core/text.h"
+#include "terrain/spec.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-walk/run.h"
+#include "tools/shared/orientation_option.h"
+#include "tools/shared/role_input.h"
+
+namespace krok::cli::walk {
+
+namespace {
+
+Error usage(std::string message, std::string hint = {}) {
+  return {"usage", std::move(message), std::move(hint)};
+}
+
+void declare_way(CommandOptions& command, Arguments& a) {
+  const char* group = "Where to";
+  command
+      .add_option("--path", a.path,
+                  "Way to follow: an SVG, a table (.csv) or .json (formats/path/SPEC.md), or "
+                  "another motion, whose way is taken")
+      .type_name("IN")
+      .group(group);
+  command.add_option("--path-id", a.path_id, "Element of the SVG (default: the first path)")
+      .type_name("ID")
+      .group(group);
+  command.add_option("--path-scale", a.path_scale, "Length of a unit of the SVG")
+      .type_name("LENGTH")
+      .capture_default_str()
+      .group(group);
+  command
+      .add_option("--prints", a.prints,
+                  "Footprints, .csv or .json (formats/prints/SPEC.md); the walker stands on the "
+                  "first two")
+      .type_name("IN")
+      .group(group);
+  command
+      .add_option("--to", a.to,
+                  "Goal on the ground, as x (to the left of a walker who faces +Z) and z: 2m,6m; "
+                  "repeat the option for several in a row")
+      .type_name("X,Z")
+      .one_each_time()
+      .group(group);
+  command
+      .add_option("--from", a.from,
+                  "Where --to begins, and which way the walker faces there, from +Z towards +X")
+      .type_name("X,Z[,ANGLE]")
+      .default_str("0,0,0deg")
+      .group(group);
+  command
+      .add_option("--save-prints", a.save_prints,
+                  "Write the footprints that are walked, .csv or .json, to be edited and handed "
+                  "back with --prints")
+      .type_name("OUT")
+      .group(group);
+}
+
+void declare_ground(CommandOptions& command, Arguments& a) {
+  const char* group = "Ground";
+  command
+      .add_option("--ground", a.ground,
+                  "A height field (.exr, 16-bit .png), a mesh (.gltf, .glb, .obj), or one of " +
+                      std::string(terrain::kSpecForms) +
+                      "; stairs and slopes begin 1 m ahead along +Z")
+      .type_name("IN")
+      .capture_default_str()
+      .group(group);
+  command
+      .add_option("--ground-size", a.ground_size,
+                  "Size of a height field along X and Z; otherwise from its sidecar "
+                  "NAME.ground.json (formats/height_field/SPEC.md)")
+      .type_name("WIDTHxDEPTH")
+      .group(group);
+  command
+      .add_option("--ground-range", a.ground_range,
+                  "Heights of black and white of a height field, or of 0 and 1: 0,1.5m")
+      .type_name("LOW,HIGH")
+      .group(group);
+}
+
+void declare_steps(CommandOptions& command, Arguments& a) {
+  const char* group = "Steps";
+  command
+      .add_option("--step-length", a.step_length,
+                  "Length of steps planned on straight ways (default: as in the library)")
+      .type_name("LENGTH")
+      .group(group);
+  command
+      .add_option("--step-width", a.step_width,
+                  "Distance of planned footprints across the way (default: as in the library)")
+      .type_name("LENGTH")
+      .group(group);
+  add_choice<FootSide>(command, "--first", a.first,
+                       {{"left", FootSide::left}, {"right", FootSide::right}},
+                       "Foot that steps first where footprints are planned", "SIDE", "left")
+      .group(group);
+  add_number(command, "--speed", a.speed,
+             "Speed of the steps relative to the library's; footprints with times have theirs")
+      .capture_default_str()
+      .group(group);
+  command
+      .add_flag("--adapt", a.adapt,
+                "Take the nearest footprint that can be reached where one cannot, and move those "
+                "after it as much; reported")
+      .group(group);
+  command
+      .add_flag("--extrapolate", a.extrapolate,
+                "Allow steps outside the range of the examples, where they are unproven")
+      .group(group);
+  command.add_option("--clearance", a.clearance, "Least height of the swing foot over the ground")
+      .type_name("LENGTH")
+      .capture_default_str()
+      .group(group);
+  command
+      .add_option("--stretch", a.stretch,
+                  "Length by which a leg may grow rather than its knee snap straight")
+      .type_name("LENGTH")
+      .capture_default_str()
+      .group(group);
+  add_map_option(command, a.map).group(group);
+}
+
+void declare(CommandOptions& command, Arguments& a) {
+  command
+      .add_option("libraries", a.libraries,
+                  "Step libraries made by krok-fit, on one skeleton; each step is taken from the "
+                  "one whose examples are nearest")
+      .type_name("IN.steps")
+      .required();
+  declare_way(command, a);
+  declare_ground(command, a);
+  declare_steps(command, a);
+  add_rate(command, "--rate", a.rate, "Frames per second (default: the library's)").group("Output");
+  add_orientation_option(command, a.orientation);
+}
+
+// Numbers of a text "a,b" or "AxB".
+Result<std::vector<double>> quantities(
+    const std::string& option, const std::string& text, char between, std::size_t least,
+    std::initializer_list<Result<double> (*)(std::string_view)> parsers) {
+  std::vector<double> values;
+  std::string_view rest = text;
+  for (const auto parser : parsers) {
+    if (rest.empty()) break;
+    const std::size_t end = rest.find(between);
+    const auto value = parser(trimmed(rest.substr(0, end)));
+    if (!value) {
+      return usage(fmt::format("{}: {}", option, value.error().message), value.error().hint);
+    }
+    values.push_back(*value);
+    rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
+  }
+  if (!rest.empty() || values.size() < least) {
+    return usage(
+        fmt::format("{}: '{}' has {} values", option, text, rest.empty() ? "too few" : "too many"),
+        fmt::format("separate them by '{}'", between));
+  }
+  return values;
+}
+
+Status take_length(const char* option, const std::string& text, double least, double most,
+                   double& into) {
+  const auto length = parse_length(text);
+  if (!length) {
+    return usage(fmt::format("{}: {}", option, length.error().message), length.error().hint);
+  }
+  if (!(*length >= least && *length <= most)) {
+    return usage(fmt::format("{}: {} is not from {} to {} m", option, text, least, most));
+  }
+  into = *length;
+  return {};
+}
+
+Status take_ground(const Arguments& a, Options& options) {
+  options.ground = a.ground;
+  if (!a.ground_size.empty()) {
+    const auto size =
+        quantities("--ground-size", a.ground_size, 'x', 2, {parse_length, parse_length});
+    if (!size) return size.error();
+    options.placement.size = {(*size)[0], (*size)[1]};
+  }
+  if (!a.ground_range.empty()) {
+    const auto range =
+        quantities("--ground-range", a.ground_range, ',', 2, {parse_length, parse_length});
+    if (!range) return range.error();
+    options.placement.range = {(*range)[0], (*range)[1]};
+  }
+  return {};
+}
+
+Status take_way(const Arguments& a, Options& options) {
+  const int ways = (a.path.empty() ? 0 : 1) + (a.prints.empty() ? 0 : 1) + (a.to.empty() ? 0 : 1);
+  if (ways != 1) {
+    return usage(ways == 0 ? "no way is given" : "--path, --prints and --to exclude each other",
+                 "give a way with --path, footprints with --prints, or goals with --to X,Z");
+  }
+  options.path = a.path;
+  options.path_id = a.path_id;
+  options.prints = a.prints;
+  for (const std::string& text : a.to) {
+    const auto goal = quantities("--to", text, ',', 2, {parse_length, parse_length});
+    if (!goal) return goal.error();
+    options.goals.emplace_back((*goal)[0], (*goal)[1]);
+  }
+  if (!a.from.empty()) {
+    if (a.to.empty()) return usage("--from is for --to");
+    const auto from =
+        quantities("--from", a.from, ',', 2, {parse_length, parse_length, parse_angle});
+    if (!from) return from.error();
+    options.from = {(*from)[0], (*from)[1]};
+    if (from->size() > 2) options.heading = (*from)[2];
+  }
+  const bool plans = a.prints.empty();
+  if (!plans && (!a.step_length.empty() || !a.step_width.empty())) {
+    return usage("--step-length and --step-width are for planned footprints, not for --prints");
+  }
+  const std::string ending = extension(a.save_prints);
+  if (!a.save_prints.empty() && ending != ".csv" && ending != ".json") {
+    return usage(fmt::format("--save-prints: '{}' is neither .csv nor .json", a.save_prints));
+  }
+  options.save_prints = a.save_prints;
+  return take_length("--path-scale", a.path_scale, 1e-6, 1e4, options.path_scale);
+}
+
+Result<Options> understand(const Arguments& a) {
+  Options options;
+  options.libraries = a.libraries;
+  options.map = a.map;
+  options.first = a.first;
+  options.rate = a.rate;
+  options.adapt = a.adapt;
+  options.extrapolate = a.extrapolate;
+  options.orientation = a.orientation;
+  if (!(a.speed >= 0.1 && a.speed <= 10)) {
+    return usage(fmt::format("--speed: {} is not from 0.1 to 10", a.speed));
+  }
+  options.speed = a.speed;
+  if (Status status = take_way(a, options); !status) return status.error();
+  if (Status status = take_ground(a, options); !status) return status.error();
+  if (Status status = take_length("--stretch", a.stretch, 0, 0.1, options.stretch); !status) {
+    return status.error();
+  }
+  if (Status status = take_length("--clearance", a.clearance, 0, 0.5, options.clearance); !status) {
+    return status.error();
+  }
+  double length = 0;
+  if (!a.step_length.empty()) {
+    if (Status status = take_length("--step-length", a.step_length, 0.05, 2, length); !status) {
+      return status.error();
+    }
+    options.step_length = length;
+  }
+  if (!a.step_width.empty()) {
+    if (Status status = take_length("--step-width", a.step_width, 0, 1, length); !status) {
+      return status.error();
+    }
+    options.step_width = length;
+  }
+  return options;
+}
+
+}  // namespace
+
+ToolSpec make_spec() {
+  const auto arguments = std::make_shared<Arguments>();
+  ToolSpec spec = spec_of("krok-walk", arguments, declare, understand, run);
+  spec.summary = "Walks a character along footprints, a way or to goals, on any ground";
+  spec.inputs = "IN.steps...";
+  spec.examples = {
+      {"krok-walk walking.steps --to 2m,6m -o walk.anim", "to a place on level ground"},
+      {"krok-walk walking.steps --path way.svg --ground hills.exr --save-prints prints.csv "
+       "-o walk.anim",
+       "along a way that is drawn, over a height field; keeps the footprints"},
+      {"krok-walk level.steps stairs.steps --prints prints.csv --ground "
+       "stairs:rise=17cm,run=29cm -o walk.anim",
+       "on given footprints up stairs, with steps from two libraries"}};
+  return spec;
+}
+
+}  // namespace krok::cli::walk
