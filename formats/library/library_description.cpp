@@ -133,7 +133,8 @@ class Reader {
     if (status) status = take_flag(root, "the file", "mirror", library_.mirror);
     if (status) status = take_positive(root, "the file", "rate", library_.rate);
     if (status) status = read_swing(root);
-    if (status) status = read_steps(root, "the file", all_automatic_);
+    if (status) status = read_runs(root);
+    if (status && !library_.runs) status = read_steps(root, "the file", all_automatic_);
     if (status) status = read_keytimes(root);
     if (status) {
       status = take_positive(root, "the file", "outlier_deviations", library_.outlier_deviations);
@@ -164,6 +165,15 @@ class Reader {
     return {};
   }
 
+  // "steps": "runs", for the whole file alone: walks and runs have different keytimes.
+  Status read_runs(const Value& root) {
+    const auto found = members_.find(root, "the file", "steps", Kind::string);
+    if (!found) return found.error();
+    library_.runs = *found != nullptr && (*found)->text == "runs";
+    all_automatic_ = library_.runs;
+    return {};
+  }
+
   // "steps": "auto".
   Status read_steps(const Value& object, std::string_view what, bool& automatic) const {
     const auto found = members_.find(object, what, "steps", Kind::string);
@@ -171,8 +181,9 @@ class Reader {
     if (*found == nullptr) return {};
     automatic = (*found)->text == "auto";
     if (automatic || (*found)->text == "one") return {};
-    return members_.wrong(**found, fmt::format("\"steps\" of {} is '{}', expected auto or one",
-                                               what, shown((*found)->text)));
+    return members_.wrong(
+        **found, fmt::format("\"steps\" of {} is '{}', expected {}", what, shown((*found)->text),
+                             what == "the file" ? "auto, runs or one" : "auto or one"));
   }
 
   Status read_keytimes(const Value& root) {

@@ -44,6 +44,7 @@ struct LibraryDescription {
   std::string skeleton;               // path of a motion or model; empty: the first example's
   std::string map;                    // path of a role map; may be empty
   Side swing = Side::left;            // the swing foot
+  bool runs = false;                  // detected steps are those of runs
   bool mirror = false;                // use steps of the other side too, mirrored
   std::vector<std::string> keytimes;  // names, at least two; empty: those of a step
   std::optional<double> rate;         // frames per second of generated motions, > 0

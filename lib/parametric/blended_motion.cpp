@@ -43,6 +43,7 @@ double part_at(double value, double from, double from_slope, double to, double t
 std::string walk_name(const std::string& keytime, const Library& library) {
   if (keytime == "stance_strike") return fmt::format("{}_strike", name_of(library.stance()));
   if (keytime == "swing_strike") return fmt::format("{}_strike", name_of(library.swing));
+  if (keytime == "stance_off") return fmt::format("{}_off", name_of(library.stance()));
   if (keytime == "swing_off") return fmt::format("{}_off", name_of(library.swing));
   return keytime;
 }

@@ -56,7 +56,8 @@ std::vector<Found> find_steps(const MotionKeys& keys, const CutOptions& options)
     if (step.swing != options.swing && !options.mirror) continue;
     step.start = strikes[i].time;
     step.end = strikes[i + 1].time;
-    const std::string off = fmt::format("{}_off", name_of(step.swing));
+    const bool runs = options.gait == StepGait::run;
+    const std::string off = fmt::format("{}_off", name_of(runs ? strikes[i].side : step.swing));
     int offs = 0;
     for (const Keytime& key : keys.keytimes) {
       if (key.name != off || key.time <= step.start || key.time >= step.end) continue;
@@ -145,7 +146,8 @@ class Cutter {
     library.skeleton = walks.front().clip->skeleton;
     library.rate = walks.front().clip->rate;
     library.swing = options_.swing;
-    library.keytimes = {"stance_strike", "swing_off", "swing_strike"};
+    const bool runs = options_.gait == StepGait::run;
+    library.keytimes = {"stance_strike", runs ? "stance_off" : "swing_off", "swing_strike"};
     if (options_.pass) library.keytimes.insert(library.keytimes.end() - 1, "swing_pass");
     std::vector<ClipContacts> clips;
     for (const Walk& walk : walks) {

@@ -21,7 +21,13 @@ struct Walk {
   const FoundContacts* found = nullptr;  // may be null; used to find the soles
 };
 
+// What is cut: steps of walks have the keytimes stance_strike, swing_off, swing_strike. In a run
+// the stance foot leaves the ground before the swing foot strikes: stance_strike, stance_off,
+// swing_strike.
+enum class StepGait : unsigned char { walk, run };
+
 struct CutOptions {
+  StepGait gait = StepGait::walk;
   FootSide swing = FootSide::left;  // the stepping foot
   // Whether steps of the other foot are mirrored and used too.
   bool mirror = true;
@@ -48,9 +54,9 @@ struct StepLibrary {
 };
 
 // Builds the library of all steps. Skeleton and rate are those of the first walk, keytimes are
-// stance_strike, swing_off, swing_strike. `parameters` are names for parse_parameter().
+// those of the gait. `parameters` are names for parse_parameter().
 //
-// Drops steps with no or several offs of the swing foot between the strikes; steps that are too
+// Drops steps with no or several offs of that foot between the strikes; steps that are too
 // short or too long; steps with a jump in the pose (a joint rotates by more than 60 degrees or the
 // root moves by more than 0.3 m between frames, as after a rest pose before the capture); steps
 // with a parameter that cannot be measured; and outliers.

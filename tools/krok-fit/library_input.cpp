@@ -144,6 +144,7 @@ class Reader {
     }
     parametric::CutOptions options;
     options.swing = swing();
+    if (description().runs) options.gait = parametric::StepGait::run;
     options.mirror = description().mirror;
     if (description().outlier_deviations) options.outlier = *description().outlier_deviations;
     auto cut = parametric::cut_steps(walks, input_.roles, measures(), options);

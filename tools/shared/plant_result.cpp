@@ -14,6 +14,10 @@ Result<PlantDrift> plant_result(Clip& clip, MotionKeys& keys, const RoleMap& rol
   std::optional<std::span<const Contact>> contacts;
   if (!keys.contacts.empty()) contacts = keys.contacts;
   auto planted = plant_feet(clip, roles, contacts);
+  if (!planted && planted.error().code == "plant-contacts") {
+    context.warn(planted.error().code, planted.error().message, planted.error().hint);
+    return PlantDrift{};
+  }
   if (!planted) return std::move(planted).error();
   context.diagnose(planted->warnings);
   planted->clip.provenance = std::move(clip.provenance);

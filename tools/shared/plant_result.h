@@ -16,7 +16,8 @@ inline constexpr const char* kPlantHelp =
 
 // Plants the feet of a motion that was made, where its contacts say that they stand, or where they
 // are found if it has none, and moves the contacts' positions with them. Returns largest drifts of
-// heels and balls before and after, for a report, in metres. Codes: those of plant_feet().
+// heels and balls before and after, for a report, in metres. Warning plant-contacts if no foot
+// stands anywhere. Codes: the other ones of plant_feet().
 struct PlantDrift {
   double before = 0, after = 0;
 };

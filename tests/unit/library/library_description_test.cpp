@@ -113,6 +113,22 @@ TEST(LibraryDescription, ReadsTheExamplesOfItsPage) {
   EXPECT_EQ(examples, 2);
 }
 
+// Runs have other keytimes than walks, so that one library has either.
+TEST(LibraryDescription, RunsAreForTheWholeFile) {
+  const std::string head = R"({"schema": "krok.library/1", "parameters": [{"measures": "duration"}],
+    "steps": )";
+  const auto runs = library::read(head + R"("runs", "examples": [{"clip": "a.bvh"}]})", "l.json");
+  ASSERT_TRUE(runs.ok()) << runs.error().message;
+  EXPECT_TRUE(runs->runs);
+  EXPECT_TRUE(runs->examples[0].automatic);
+  const auto walks = library::read(head + R"("auto", "examples": [{"clip": "a.bvh"}]})", "l.json");
+  ASSERT_TRUE(walks.ok());
+  EXPECT_FALSE(walks->runs);
+  const auto one = library::read(
+      head + R"("auto", "examples": [{"clip": "a.bvh", "steps": "runs"}]})", "l.json");
+  EXPECT_FALSE(one.ok());
+}
+
 TEST(LibraryDescription, EveryMistakeIsToldWithItsPlace) {
   const test::Mistake mistakes[] = {
       {"library/1", "library/2", "library-structure 2:13", "krok.library/2"},
@@ -133,7 +149,7 @@ TEST(LibraryDescription, EveryMistakeIsToldWithItsPlace) {
       {"\"stride\"", "\"turn\"", "library-value 8:5", "duplicate parameter"},
       {"\"measures\": \"step.turn\", ", "", "library-structure 8:5", "measures"},
       {"\"5ms\"", "\"5f\"", "library-value 9:43", "frames"},
-      {"\"auto\"", "\"all\"", "library-value 11:12", "auto or one"},
+      {"\"auto\"", "\"all\"", "library-value 11:12", "auto, runs or one"},
       {"\"clip\": \"walks/*.bvh\", ", "", "library-structure 13:5", "clip"},
       {"\"1.5s\"", "\"1.5m\"", "library-value 13:37", "'m'"},
       {"\"1.5s\"", "-1", "library-value 13:37", "before 0"},

@@ -51,6 +51,37 @@ TEST(CutSteps, ThePathTurnsWithoutTheToes) {
   }
 }
 
+// Where a foot is off before the other one strikes, as in a run, steps have that as their keytime.
+TEST(CutSteps, RunsHaveAFlight) {
+  std::vector<test::KeyedWalk> walks;
+  walks.push_back(test::keyed_walk({}));
+  auto& keys = walks[0].keys.keytimes;
+  for (Keytime& key : keys) {
+    if (key.name.ends_with("off")) key.time -= 0.2;
+  }
+  std::erase_if(keys, [](const Keytime& key) { return key.time < 0; });
+  std::ranges::sort(keys, {}, &Keytime::time);
+  CutOptions options;
+  options.gait = StepGait::run;
+  options.outlier = 0;
+  const StepLibrary cut = test::library_of(walks, {"step.length"}, options);
+  EXPECT_THAT(cut.library.keytimes,
+              testing::ElementsAre("stance_strike", "stance_off", "swing_strike"));
+  EXPECT_GE(cut.library.examples.size(), 5u);
+  EXPECT_TRUE(check(cut.library));
+  for (const Example& example : cut.library.examples) {
+    EXPECT_GT(example.keytimes[1] - example.keytimes[0], 0.2);
+    EXPECT_LT(example.keytimes[1], example.keytimes[2] - 0.05);
+  }
+  // As steps of a walk they lack a keytime.
+  options.gait = StepGait::walk;
+  const Walk walk = {"run", &walks[0].walk.clip, &walks[0].keys, &walks[0].found};
+  const std::vector<std::string> length = {"step.length"};
+  const auto none = cut_steps({&walk, 1}, find_roles(walk.clip->skeleton), length, options);
+  ASSERT_FALSE(none.ok());
+  EXPECT_EQ(none.error().code, "parametric-none");
+}
+
 class CutWalk : public testing::TestWithParam<WalkOptions> {};
 
 TEST_P(CutWalk, StepsAreAsTheyWerePlanned) {
