@@ -66,9 +66,12 @@ FootPose Stance::at(double time, const FootPose& blend) const {
   }
   FootPose foot{flat_, axes_ * leg_->flat_toes.conjugate()};
   if (part == 0) return foot;
-  const Vec3 turn = part * deviation(blend);
+  Vec3 turn = part * deviation(blend);
+  // Once the heel is up the ball stays.
+  const bool is_leaving = time > flat_to;
+  if (is_leaving) turn.x() = std::max(turn.x(), 0.0);
+  const bool on_ball = is_leaving || turn.x() > 0;
   const Quat rotation = axes_ * from_rotation_vector(turn) * axes_.conjugate();
-  const bool on_ball = turn.x() > 0;
   foot.foot.orientation = rotation * flat_.orientation;
   foot.foot.position = on_ball ? pivot_ - foot.foot.orientation * leg_->sole.pivot
                                : heel_ - foot.foot.orientation * leg_->sole.heel;

@@ -119,7 +119,8 @@ void WalkBlock::begin_stance(std::size_t print) {
   const FootSide side = parts_.side_of(print);
   const bool is_first = print < 2, is_last = print + 1 == parts_.plan.grounded.size();
   double middle = step.off + kMiddle * (step.strike - step.off);
-  if (is_first) middle = 0;
+  // The foot that leaves first stands flat before.
+  if (print == 0) middle = 0;
   if (is_last) middle = step.finish;
   Stance stance(parts_.walker.leg(side), parts_.plan.grounded[print], nearest(over, middle, side));
   stance.strike = is_first ? 0 : is_last ? step.strike : step.start;
