@@ -102,6 +102,7 @@ WeightsChoice choose_weights(LibraryInput& input, const Options& options, ToolCo
   }
   double spacing = input.exact_spacing;
   if (choice.trials.examples >= kMinInside && choice.trials.groups >= kMinCaptures) {
+    choice.is_chosen = true;
     const WeightCandidate best = best_of(choice.trials).candidate;
     choice.kernel = best.kernel;
     choice.smoothing = best.smoothing;

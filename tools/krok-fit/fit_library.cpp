@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "core/quantity.h"
 #include "fit/polish.h"
@@ -177,8 +176,15 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   if (fitted.refined.function.smoothing > 0) {
     const auto distances = parametric::distances_to_examples(library, fitted.refined.function);
     if (!distances) return distances.error();
-    fitted.example_distance = std::accumulate(distances->begin(), distances->end(), 0.0) /
-                              static_cast<double>(distances->size());
+    // Some examples may have no such motion: their distance is infinite.
+    double sum = 0;
+    int made = 0;
+    for (const double distance : *distances) {
+      if (!std::isfinite(distance)) continue;
+      sum += distance;
+      ++made;
+    }
+    fitted.example_distance = sum / std::max(1, made);
   }
   if (library.examples.size() <= kMaxLeftOut) {
     // Some libraries cannot be fitted without one of the examples, which is not an error here.

@@ -206,7 +206,10 @@ void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolC
   if (!(smoothing > 0)) {
     if (input.all_examples.empty()) return;
     const parametric::LeftOutMeans means = parametric::means_of(fitted.left_out);
-    if (!contradict_each_other(means)) return;
+    const bool compared = std::ranges::any_of(
+        fitted.choice.trials.tried,
+        [](const parametric::WeightTrial& trial) { return trial.candidate.smoothing > 0; });
+    if (!contradict_each_other(means) || (compared && fitted.choice.is_chosen)) return;
     return context.warn(
         "fit-contradictions",
         fmt::format("steps with similar parameters differ: leave-one-out error is {} mm with "
