@@ -5,7 +5,7 @@
 #
 # Exit code 77 (skipped) without NumPy.
 set -euo pipefail
-bin=$1 make_walk=$2 source=$3 count=${4:-8}
+bin=$1 make_walk=$2 source=$3 count=${4:-6}
 python=/usr/bin/python3
 "$python" -c "import numpy" 2>/dev/null || { echo "skipped: NumPy is not installed"; exit 77; }
 folder=$(mktemp -d)
