@@ -22,6 +22,9 @@ constexpr double kFlatPart = 0.4;  // of the swing, when the stance foot is flat
 constexpr double kBeside = 0.5;    // of the swing: where the swing foot is beside the other
 constexpr double kLifted = 0.4;    // share of the blend in the middle of an only step
 constexpr double kShortestStep = 0.2, kLongestStep = 10;  // seconds
+// Metres that a step is from the examples where it begins to be blended with standing, and where it
+// is nothing else: steps on the spot, to the side.
+constexpr double kNear = 0.12, kFar = 0.55;
 constexpr double kShortest = 1.0 / 120;  // seconds between poses that a velocity is taken from
 constexpr double kVelocityWidth = 0.12;  // seconds in which a difference in velocity fades
 
@@ -141,6 +144,9 @@ void BodyStep::pose(double time, PoseVector& pose,
     const double u = smooth((time - start) / (finish - start));
     const double lifted = 4 * kLifted * u * (1 - u);
     pose = lifted * pose + (1 - lifted) * ((1 - u) * stand + u * stand_after);
+  } else if (standing > 0) {
+    const double u = smooth((time - start) / (finish - start));
+    pose = (1 - standing) * pose + standing * ((1 - u) * stand + u * stand_after);
   } else if (part < 1) {
     pose = part * pose + (1 - part) * stand;
   }
@@ -265,6 +271,13 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   step.rest = off + kBeside * (step.motion.duration() - off);
   step.stance = planned.stance;
   const bool is_first = index == 0, is_last = index + 1 == plan.steps.size();
+  if (!is_first && !is_last) {
+    step.standing = smooth((planned.far - kNear) / (kFar - kNear));
+    if (step.standing > 0) {
+      step.stand = standing_on(walker, plan.grounded[stance - 1], print);
+      step.stand_after = standing_on(walker, print, plan.grounded[stance + 1]);
+    }
+  }
   if (is_first) step.stand = standing_on(walker, plan.grounded[stance - 1], print);
   if (is_last && !is_first) step.stand = standing_on(walker, print, plan.grounded[stance + 1]);
   if (is_last && is_first) step.stand_after = standing_on(walker, print, plan.grounded[stance + 1]);
@@ -275,7 +288,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   if (Status status = set_times(plan, off, options.speed, step); !status) return status;
   step.stance_to_world =
       stance_frame(walker, print, libraries[at(planned.library)].toe_out(), step);
-  if (step.kind != BodyStep::Kind::middle) {
+  if (step.stand.size() > 0) {
     PoseVector sample;
     auto scratch = step.motion.make_scratch();
     BodyStep plain(step.motion, step.joints);

@@ -29,7 +29,8 @@ struct BodyStep {
   double rest = 0;         // seconds of the blend where it rests beside the stance foot
   double lead = 0;         // seconds from the start to where the blend begins to move
   PoseVector stand;        // in the world, before the first step or after the last
-  PoseVector stand_after;  // after an only step
+  double standing = 0;     // share of standing in a step that no example is near
+  PoseVector stand_after;  // after an only step, and where standing > 0
 
   // Before joining, clamped to the step.
   void pose(double time, PoseVector& pose, parametric::BlendedMotion::Scratch& scratch) const;

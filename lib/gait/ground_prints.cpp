@@ -85,6 +85,16 @@ Result<GroundedPrint> set_on_ground(const Print& print, int number, const Walker
     result.forward = (level * way + Vec3(0, *ball - height, 0)).normalized();
     level = length * std::hypot(result.forward.x(), result.forward.z());
   }
+  // Across the foot as along it: what is too steep under heel and ball alike is no edge.
+  const auto at_ball = ground_near(ground, result.heel.x() + level * way.x(),
+                                   result.heel.z() + level * way.z(), height, leg.length);
+  if (at_heel && at_ball &&
+      std::max(at_heel->normal.y(), at_ball->normal.y()) < std::cos(kSteepest)) {
+    return Error("walk-too-steep",
+                 fmt::format("print {}: the ground is {}° steep", number + 1,
+                             readable(std::acos(at_heel->normal.y()) / kRadiansPerDegree, 3)),
+                 "lead the way over flatter ground");
+  }
   double rise = 0;
   int pairs = 0;
   for (const double along : {0.0, level}) {

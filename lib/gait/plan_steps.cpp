@@ -17,7 +17,7 @@ namespace {
 using parametric::Quantity;
 
 constexpr int kCorrections = 3;
-constexpr double kFarOutside = 0.45;  // of the leg: how far a step may be from the nearest example
+constexpr double kFarOutside = 0.62;  // of the leg: how far a step may be from the nearest example
 constexpr double kFarTurn = 60 * kRadiansPerDegree;
 constexpr int kBisections = 20;
 constexpr int kBlendTries = 6;
@@ -186,6 +186,7 @@ Status Planner::choose(const GroundedPrint& to, double duration, int number,
     step.asked = std::move(asked);
     step.nearest = options_.extrapolate ? step.asked : std::move(off.nearest);
   }
+  step.far = options_.extrapolate ? 0 : far.place;
   // The first and the last step are blended with standing: what they ask is not made by examples.
   if (options_.extrapolate || number == 2 || number + 1 == count_) return {};
   if (far.place <= kFarOutside * walker_.leg(swing).length && far.turn <= kFarTurn) return {};

@@ -17,6 +17,7 @@ struct PlannedStep {
   int library = 0;
   std::vector<double> asked;    // parameters by the prints
   std::vector<double> nearest;  // the nearest inside the examples' range
+  double far = 0;               // metres from `asked` to `nearest`
   std::vector<double> weights;
   std::vector<double> made;  // parameters of the blend
 };
