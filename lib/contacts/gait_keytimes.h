@@ -69,8 +69,9 @@ struct Gait {
 // slowest point of the foot passes 0.12 of its max speed. Where an event between two strikes or two
 // toe-offs a cycle apart is missing, it is placed by the usual lengths of stance and swing.
 //
-// Warnings: gait-none (no step), gait-implausible (see check_gait()), gait-seeds (strikes or toe-offs without a contact), gait-in-place
-// (steps without any contact: the character walks on a moving ground).
+// Warnings: gait-none (no step), gait-implausible (see check_gait()), gait-seeds (strikes or
+// toe-offs without a contact), gait-in-place (steps without any contact: the character walks on a
+// moving ground).
 Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
                const GaitOptions& options = {});
 

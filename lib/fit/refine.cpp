@@ -199,7 +199,8 @@ std::vector<Found> Refiner::seek(double usual, double& worst) const {
   // Where points are refused round after round, the search goes on elsewhere.
   const int in_vain = rounds_in_vain();
   const int kept = std::max(kRefusedRounds, in_vain);
-  const double avoid = std::min(kAvoid * (1 + std::max(0, in_vain - kPatience)), kMostAvoid) * usual;
+  const double avoid =
+      std::min(kAvoid * (1 + std::max(0, in_vain - kPatience)), kMostAvoid) * usual;
   std::vector<detail::ErrorPoint> avoided;
   for (const RefusedPoint& refused : state_.refused) {
     if (refused.round + kept < static_cast<int>(state_.rounds.size())) continue;

@@ -26,8 +26,8 @@
 // square error grows to more than 1.25 times its minimum so far, or the lowest weight falls below
 // `lowest` (or, if it was below at first, by more than 0.02 below that).
 //
-// After a few rounds in vain, points keep an increasing distance from those refused, so that the search
-// goes on elsewhere.
+// After a few rounds in vain, points keep an increasing distance from those refused, so that the
+// search goes on elsewhere.
 //
 // If weights are below `lowest` at first (cubic reaches -0.17 between five examples in a row, -0.3
 // between captured ones), up to half of a round's points are placed there, with the second kind of

@@ -3,7 +3,6 @@
 
 #include "math/types.h"
 #include "motion/ground_frame.h"
-#include "motion/ground_frame.h"
 #include "parametric/footprint.h"
 
 namespace krok::parametric {

@@ -13,7 +13,7 @@ namespace krok::cli::fit {
 struct WeightsChoice {
   rbf::Kernel kernel = rbf::Kernel::cubic;
   double smoothing = 0;
-  bool is_chosen = false;  // by the trials
+  bool is_chosen = false;           // by the trials
   parametric::WeightTrials trials;  // what was compared; no examples: nothing
 };
 
