@@ -139,7 +139,9 @@ Ground open_terrain(const std::string& ground, const height_field::Placement& pl
   }
   auto made = terrain::from_spec(ground);
   if (!made && made.error().code == "ground-kind") {
-    made.error().hint += fmt::format("; ground is a file, or {}", terrain::kSpecForms);
+    made.error().hint =
+        fmt::format("{}{} ground is a file, or {}", made.error().hint,
+                    made.error().hint.ends_with('?') ? "" : ";", terrain::kSpecForms);
   }
   return made;
 }
