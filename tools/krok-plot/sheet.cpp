@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
+#include <memory>
 
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/quantity.h"
+#include "formats/io/open_terrain.h"
 #include "render/strip.h"
 #include "tools/cli/one_of.h"
 #include "tools/shared/skin_method_option.h"
@@ -21,6 +24,10 @@ constexpr int kSheetMoments = 8;
 constexpr int kStripMoments = 10;
 constexpr int kStripWidth = 2400;
 constexpr int kPathPoints = 400;
+constexpr int kNetSquares = 14;        // from the actor to the edge of the ground that is shown
+constexpr double kNetSpacing = 0.025;  // metres
+constexpr float kBorder = 0.06F;       // metres
+constexpr render::Colour kGroundColour = render::colour(0x8fa39a);
 
 // A character at the times shown.
 struct Shown {
@@ -65,7 +72,58 @@ Result<ImageSpan> span_of(const MovingActor& actor, const SheetOptions& options)
   return span;
 }
 
-Result<Shown> show(const MovingActor& source, const SheetOptions& options, int moments, int jobs) {
+// The ground around an actor, as a net of squares; nothing that is higher than `top` metres.
+render::Surface ground_around(const Terrain& ground, const Vec3& centre, double top) {
+  render::Surface surface;
+  surface.colours = {kGroundColour};
+  auto triangles = std::make_shared<render::Triangles>();
+  std::vector<std::int64_t> numbers;  // of the vertices; -1 where there is no ground
+  for (int row = 0; row <= 2 * kNetSquares; ++row) {
+    for (int column = 0; column <= 2 * kNetSquares; ++column) {
+      const double x = centre.x() + kNetSpacing * (column - kNetSquares);
+      const double z = centre.z() + kNetSpacing * (row - kNetSquares);
+      const auto point = ground.at(x, z, top);
+      numbers.push_back(point ? static_cast<std::int64_t>(surface.positions.size()) : -1);
+      if (!point) continue;
+      surface.positions.push_back(Vec3(x, point->height, z).cast<float>());
+    }
+  }
+  constexpr int kColumns = 2 * kNetSquares + 1;
+  for (int i = 0; i + kColumns + 1 < static_cast<int>(numbers.size()); ++i) {
+    if (i % kColumns == kColumns - 1) continue;
+    const auto corner = [&](int to) { return numbers[static_cast<std::size_t>(i + to)]; };
+    const std::array corners = {corner(0), corner(1), corner(kColumns), corner(kColumns + 1)};
+    if (std::ranges::min(corners) < 0) continue;
+    const auto a = [&](std::size_t k) { return static_cast<std::uint32_t>(corners[k]); };
+    triangles->push_back({a(0), a(2), a(1)});
+    triangles->push_back({a(1), a(2), a(3)});
+  }
+  // A border that goes down, so that the ground is seen from the side.
+  const auto border = [&](int from, int to) {
+    const std::int64_t one = numbers[static_cast<std::size_t>(from)];
+    const std::int64_t two = numbers[static_cast<std::size_t>(to)];
+    if (one < 0 || two < 0) return;
+    const auto low = static_cast<std::uint32_t>(surface.positions.size());
+    for (const std::int64_t corner : {one, two}) {
+      const Vec3f above = surface.positions[static_cast<std::size_t>(corner)];
+      surface.positions.emplace_back(above - Vec3f(0, kBorder, 0));
+    }
+    const auto a = static_cast<std::uint32_t>(one), b = static_cast<std::uint32_t>(two);
+    triangles->push_back({a, b, low});
+    triangles->push_back({b, low + 1, low});
+  };
+  for (int i = 0; i + 1 < kColumns; ++i) {
+    border(i, i + 1);
+    border(kColumns * (kColumns - 1) + i, kColumns * (kColumns - 1) + i + 1);
+    border(i * kColumns, (i + 1) * kColumns);
+    border(i * kColumns + kColumns - 1, (i + 1) * kColumns + kColumns - 1);
+  }
+  surface.triangles = std::move(triangles);
+  return surface;
+}
+
+Result<Shown> show(const MovingActor& source, const SheetOptions& options, const Terrain* ground,
+                   int moments, int jobs) {
   Shown shown;
   shown.source = &source;
   const auto span = span_of(source, options);
@@ -75,9 +133,14 @@ Result<Shown> show(const MovingActor& source, const SheetOptions& options, int m
   if (!chosen) return std::move(chosen).error().in_file(source.path);
   shown.moments = std::move(*chosen);
   shown.actors.resize(shown.moments.size());
-  parallel_for(shown.moments.size(), 1, jobs, [&shown](std::size_t begin, std::size_t end) {
+  parallel_for(shown.moments.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      shown.actors[i] = shown.source->at(shown.moments[i].time);
+      const double time = shown.moments[i].time;
+      shown.actors[i] = shown.source->at(time);
+      if (ground == nullptr) continue;
+      render::Surface around =
+          ground_around(*ground, shown.actors[i].centre, shown.source->carrier(time).y());
+      if (!around.positions.empty()) shown.actors[i].surfaces.push_back(std::move(around));
     }
   });
   return shown;
@@ -86,10 +149,10 @@ Result<Shown> show(const MovingActor& source, const SheetOptions& options, int m
 using ShownActors = std::vector<Shown>;
 
 Result<ShownActors> show_all(const std::vector<MovingActor>& actors, const SheetOptions& options,
-                             int moments, int jobs) {
+                             const Terrain* ground, int moments, int jobs) {
   ShownActors all;
   for (const MovingActor& actor : actors) {
-    auto shown = show(actor, options, moments, jobs);
+    auto shown = show(actor, options, ground, moments, jobs);
     if (!shown) return shown.error();
     all.push_back(std::move(*shown));
   }
@@ -194,8 +257,8 @@ Status write(const render::Sheet& sheet, const render::SheetOptions& options,
 }
 
 Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
-                  const SheetOptions& options, ToolContext& context) {
-  const auto all = show_all(actors, options, kSheetMoments, context.jobs);
+                  const SheetOptions& options, const Terrain* ground, ToolContext& context) {
+  const auto all = show_all(actors, options, ground, kSheetMoments, context.jobs);
   if (!all) return all.error();
   render::SheetOptions how;
   how.row_height = options.image.size;
@@ -205,8 +268,8 @@ Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<Imag
 }
 
 Status make_strip(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
-                  const SheetOptions& options, ToolContext& context) {
-  const auto all = show_all(actors, options, kStripMoments, context.jobs);
+                  const SheetOptions& options, const Terrain* ground, ToolContext& context) {
+  const auto all = show_all(actors, options, ground, kStripMoments, context.jobs);
   if (!all) return all.error();
   std::deque<render::StripCells> cells;
   render::Sheet sheet;
@@ -247,6 +310,11 @@ void declare_sheet(CommandOptions& command, SheetOptions& options) {
                   "Motion strip as PNG: a character at several times in one image, earlier "
                   "ones fainter")
       .type_name("OUT.png");
+  command
+      .add_option("--ground", options.ground,
+                  "Ground to show below each actor, as for krok-walk: a mesh, a height field, or "
+                  "stairs:rise=17cm,run=29cm, slope:12deg, rough:seed=1,height=8cm")
+      .type_name("IN");
   declare_image_options(command, options.image, kSheetMoments);
   command
       .add_option("--front", options.front,
@@ -274,10 +342,17 @@ Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& o
   }
   const auto actors = read_actors(inputs, options.body, options.method, context);
   if (!actors) return actors.error();
-  if (!options.sheet.empty()) {
-    if (Status status = make_sheet(*actors, *sides, options, context); !status) return status;
+  std::unique_ptr<Terrain> ground;
+  if (!options.ground.empty()) {
+    auto opened = io::open_terrain(options.ground, {}, context);
+    if (!opened) return opened.error();
+    ground = *std::move(opened);
   }
-  if (!options.strip.empty()) return make_strip(*actors, *sides, options, context);
+  if (!options.sheet.empty()) {
+    if (Status status = make_sheet(*actors, *sides, options, ground.get(), context); !status)
+      return status;
+  }
+  if (!options.strip.empty()) return make_strip(*actors, *sides, options, ground.get(), context);
   return {};
 }
 

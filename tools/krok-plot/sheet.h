@@ -22,6 +22,7 @@ struct SheetOptions {
   std::string sheet, strip;  // paths; empty for none
   ImageOptions image;
   std::string from, to;
+  std::string ground;  // what io::open_terrain() takes; empty: level at 0
   Front front = Front::actor;
   BodyChoice body = BodyChoice::automatic;
   SkinMethod method = SkinMethod::linear;
