@@ -1,0 +1,301 @@
+#include "ragdoll/bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "ik/anatomical_limits.h"
+#include "math/quaternion.h"
+#include "ragdoll/fit_shapes_internal.h"
+
+namespace krok::ragdoll {
+
+namespace {
+
+// Shares of the stature, by the widths and girths of Drillis and Contini.
+constexpr double kUpperArm = 0.027, kLowerArm = 0.021, kThigh = 0.042, kShank = 0.029;
+constexpr double kHead = 0.052, kDepth = 0.058;
+
+class Maker {
+ public:
+  Maker(const Skeleton& skeleton, const RoleMap& roles) : skeleton_(skeleton), roles_(roles) {}
+
+  bool frame_found();
+  void make();
+  std::vector<Body> take() { return std::move(bodies_); }
+
+ private:
+  Vec3 place(int joint) const { return skeleton_.reference[at(joint)].position; }
+  Vec3 place(Role role) const { return place(roles_.joint(role)); }
+  int body_above(int joint) const;
+  Vec3 farthest_below(int joint) const;
+  void add(std::string name, int joint, const Shape& shape, const Transform& to_world);
+  void add_box(std::string name, int joint, const Vec3& low, const Vec3& high, double half_width,
+               double half_depth);
+  void add_limb(std::string name, Role from, const Vec3& end, double radius);
+  void add_trunk();
+  void add_head();
+  void add_hand(std::string name, Role role, Role above);
+  void add_foot(std::string name, Role role);
+
+  const Skeleton& skeleton_;
+  const RoleMap& roles_;
+  std::vector<Body> bodies_;
+  Quat trunk_;  // x to the left, y up, z forwards, in the reference pose
+  Vec3 hips_ = Vec3::Zero();
+  double stature_ = 0;
+};
+
+int Maker::body_above(int joint) const {
+  for (int j = skeleton_.parents[at(joint)]; j >= 0; j = skeleton_.parents[at(j)]) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (bodies_[b].joint == j) return static_cast<int>(b);
+    }
+  }
+  return -1;
+}
+
+// The joint below that is farthest away; the joint itself if there is none.
+Vec3 Maker::farthest_below(int joint) const {
+  std::vector<bool> below(skeleton_.names.size(), false);
+  below[at(joint)] = true;
+  Vec3 best = place(joint);
+  for (int j = joint + 1; j < skeleton_.joint_count(); ++j) {
+    const int parent = skeleton_.parents[at(j)];
+    if (parent < 0 || !below[at(parent)]) continue;
+    below[at(j)] = true;
+    if ((place(j) - place(joint)).norm() > (best - place(joint)).norm()) best = place(j);
+  }
+  return best;
+}
+
+bool Maker::frame_found() {
+  hips_ = 0.5 * (place(Role::left_upper_leg) + place(Role::right_upper_leg));
+  const int top =
+      roles_.joint(Role::neck) >= 0 ? roles_.joint(Role::neck) : roles_.joint(Role::head);
+  const Vec3 left = (place(Role::left_upper_leg) - place(Role::right_upper_leg)).normalized();
+  const Vec3 forward = left.cross(place(top) - hips_).normalized();
+  Mat3 axes;
+  axes << left, forward.cross(left), forward;
+  trunk_ = Quat(axes).normalized();
+  // Thigh and shank are 0.491 of the stature, hips to neck 0.32.
+  const double leg = (place(Role::left_lower_leg) - place(Role::left_upper_leg)).norm() +
+                     (place(Role::left_foot) - place(Role::left_lower_leg)).norm();
+  stature_ = (leg + (place(top) - hips_).norm()) / 0.81;
+  return trunk_.coeffs().allFinite() && leg > 0 && std::isfinite(stature_);
+}
+
+void Maker::add(std::string name, int joint, const Shape& shape, const Transform& to_world) {
+  Body body;
+  body.name = std::move(name);
+  body.joint = joint;
+  body.parent = body_above(joint);
+  body.shape = shape;
+  body.to_joint = skeleton_.reference[at(joint)].inverse() * to_world;
+  body.to_joint.orientation.normalize();
+  bodies_.push_back(std::move(body));
+}
+
+// A box of the trunk between two points of its middle.
+void Maker::add_box(std::string name, int joint, const Vec3& low, const Vec3& high,
+                    double half_width, double half_depth) {
+  Shape shape;
+  shape.half = Vec3(half_width, std::max(0.5 * (high - low).norm(), 0.02 * stature_), half_depth);
+  const Quat turn = shortest_arc(trunk_ * Vec3(Vec3::UnitY()), high - low);
+  add(std::move(name), joint, shape, {0.5 * (low + high), turn * trunk_});
+}
+
+void Maker::add_limb(std::string name, Role from, const Vec3& end, double radius) {
+  const int joint = roles_.joint(from);
+  if (joint < 0) return;
+  const Vec3 bone = end - place(joint);
+  Shape shape;
+  shape.kind = Shape::Kind::capsule;
+  shape.radius = std::min(radius, 0.45 * bone.norm());
+  shape.half_length = 0.5 * bone.norm() - shape.radius;
+  const Quat turn = shortest_arc(trunk_ * Vec3(-Vec3::UnitY()), bone);
+  add(std::move(name), joint, shape, {place(joint) + 0.5 * bone, turn * trunk_});
+}
+
+void Maker::add_trunk() {
+  const Vec3 up = trunk_ * Vec3(Vec3::UnitY());
+  const double wide = 0.5 * (place(Role::left_upper_leg) - place(Role::right_upper_leg)).norm();
+  const int top =
+      roles_.joint(Role::neck) >= 0 ? roles_.joint(Role::neck) : roles_.joint(Role::head);
+  std::vector<int> trunk = roles_.joints(Role::spine);
+  for (const int joint : roles_.joints(Role::chest)) trunk.push_back(joint);
+  std::sort(trunk.begin(), trunk.end());
+  const double depth = kDepth * stature_, low = 0.035 * stature_;
+  const Vec3 begin = trunk.empty() ? Vec3(hips_ + 0.06 * stature_ * up) : place(trunk.front());
+  add_box("pelvis", roles_.joint(Role::hips), hips_ - low * up,
+          hips_ + std::max((begin - hips_).dot(up), low) * up, wide + 0.035 * stature_, depth);
+  if (trunk.empty()) return;
+  const double shoulders =
+      0.5 * (place(Role::left_upper_arm) - place(Role::right_upper_arm)).norm();
+  const double chest_width = std::max(shoulders - kUpperArm * stature_, wide);
+  // The last joint that leaves enough of the trunk above it and below it.
+  int chest = -1;
+  const double whole = (place(top) - begin).norm();
+  for (const int joint : trunk) {
+    const double below = (place(joint) - begin).norm();
+    if (below > 0.25 * whole && below < 0.75 * whole) chest = joint;
+  }
+  if (chest < 0) {
+    add_box("chest", trunk.front(), begin, place(top), chest_width, depth);
+    return;
+  }
+  add_box("abdomen", trunk.front(), begin, place(chest), wide + 0.025 * stature_, 0.9 * depth);
+  add_box("chest", chest, place(chest), place(top), chest_width, depth);
+}
+
+// With the neck, which follows or leads it.
+void Maker::add_head() {
+  const Vec3 up = trunk_ * Vec3(Vec3::UnitY());
+  int joint = roles_.joint(Role::neck);
+  const int head = roles_.joint(Role::head);
+  if (joint < 0) joint = head;
+  const Vec3 base = place(head >= 0 ? head : joint);
+  const double radius = kHead * stature_;
+  Shape shape;
+  shape.kind = Shape::Kind::capsule;
+  shape.radius = radius;
+  shape.half_length = 0.012 * stature_;
+  add("head", joint, shape, {base + 0.065 * stature_ * up, trunk_});
+}
+
+void Maker::add_hand(std::string name, Role role, Role above) {
+  const int joint = roles_.joint(role);
+  if (joint < 0) return;
+  Vec3 bone = farthest_below(joint) - place(joint);
+  const double length = 0.1 * stature_;  // to the middle of the bent fingers
+  const int arm = roles_.joint(above);
+  if (bone.norm() < 0.01 * stature_ && arm >= 0) bone = place(joint) - place(arm);
+  if (bone.norm() < 1e-6) return;
+  bone *= std::min(1.0, length / bone.norm());
+  if (bone.norm() < 0.6 * length) bone *= 0.6 * length / bone.norm();
+  Shape shape;
+  shape.half = Vec3(0.012 * stature_, 0.5 * bone.norm(), 0.024 * stature_);
+  const Quat turn = shortest_arc(trunk_ * Vec3(-Vec3::UnitY()), bone);
+  add(std::move(name), joint, shape, {place(joint) + 0.5 * bone, turn * trunk_});
+}
+
+// From heel to toes, upright in the reference pose.
+void Maker::add_foot(std::string name, Role role) {
+  const int joint = roles_.joint(role);
+  if (joint < 0) return;
+  const Vec3 up = trunk_ * Vec3(Vec3::UnitY());
+  Vec3 toes = farthest_below(joint) - place(joint);
+  const double height = std::max(-toes.dot(up), 0.036 * stature_);
+  toes -= toes.dot(up) * up;
+  const double ahead = toes.norm();
+  if (ahead < 0.02 * stature_) toes = trunk_ * Vec3(Vec3::UnitZ());
+  const Vec3 forward = toes.normalized();
+  const double length = std::max(ahead, 0.1 * stature_), heel = 0.036 * stature_;
+  Shape shape;
+  shape.half = Vec3(0.026 * stature_, 0.45 * height, 0.5 * (length + heel));
+  Mat3 axes;
+  axes << up.cross(forward), up, forward;
+  const Vec3 centre =
+      place(joint) + 0.5 * (length - heel) * forward - (height - shape.half.y()) * up;
+  add(std::move(name), joint, shape, {centre, Quat(axes).normalized()});
+}
+
+void Maker::make() {
+  add_trunk();
+  add_head();
+  const auto limbs = [&](const std::string& side, Role arm, Role elbow, Role hand, Role leg,
+                         Role knee, Role foot) {
+    if (roles_.joint(elbow) >= 0) {
+      add_limb(side + "_upper_arm", arm, place(elbow), kUpperArm * stature_);
+      add_limb(side + "_lower_arm", elbow, place(hand), kLowerArm * stature_);
+    } else {
+      add_limb(side + "_arm", arm, place(hand), kUpperArm * stature_);
+    }
+    add_hand(side + "_hand", hand, elbow);
+    add_limb(side + "_thigh", leg, place(knee), kThigh * stature_);
+    add_limb(side + "_shank", knee, place(foot), kShank * stature_);
+    add_foot(side + "_foot", foot);
+  };
+  limbs("left", Role::left_upper_arm, Role::left_lower_arm, Role::left_hand, Role::left_upper_leg,
+        Role::left_lower_leg, Role::left_foot);
+  limbs("right", Role::right_upper_arm, Role::right_lower_arm, Role::right_hand,
+        Role::right_upper_leg, Role::right_lower_leg, Role::right_foot);
+}
+
+// Shares of the joints that a body carries.
+void share_mass(const Skeleton& skeleton, const RoleMap& roles, double mass,
+                std::vector<Body>& bodies) {
+  const ik::BodyMasses shares = ik::body_masses(skeleton, roles);
+  const std::vector<int> carrier = body_of_joint(skeleton, bodies);
+  std::vector<double> sums(bodies.size(), 0.0);
+  double whole = 0;
+  for (std::size_t j = 0; j < carrier.size(); ++j) {
+    sums[at(std::max(carrier[j], 0))] += shares.masses[j];
+    whole += shares.masses[j];
+  }
+  // A part that the shares know nothing of (a skeleton without elbows) is not left without mass.
+  double total = 0;
+  for (double& sum : sums) {
+    sum = std::max(sum, 0.003 * whole);
+    total += sum;
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].mass = mass * sums[b] / total;
+}
+
+}  // namespace
+
+double volume(const Shape& shape) {
+  const double r = shape.radius;
+  switch (shape.kind) {
+    case Shape::Kind::box:
+      return 8 * shape.half.prod();
+    case Shape::Kind::capsule:
+      return kPi * r * r * (2 * shape.half_length + 4.0 / 3 * r);
+    case Shape::Kind::sphere:
+      return 4.0 / 3 * kPi * r * r * r;
+  }
+  return 0;
+}
+
+std::vector<int> body_of_joint(const Skeleton& skeleton, const std::vector<Body>& bodies) {
+  std::vector<int> carrier(skeleton.names.size(), -1);
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    carrier[at(bodies[b].joint)] = static_cast<int>(b);
+  for (int j = 1; j < skeleton.joint_count(); ++j) {
+    if (carrier[at(j)] < 0) carrier[at(j)] = carrier[at(skeleton.parents[at(j)])];
+  }
+  return carrier;
+}
+
+Result<std::vector<Body>> make_bodies(const Skeleton& skeleton, const RoleMap& roles,
+                                      const BodyOptions& options) {
+  if (!roles.humanoid) {
+    return Error("ragdoll-roles", "bodies need a humanoid; the joints are not one's",
+                 "krok-info -v lists the joints and their roles; --map assigns roles");
+  }
+  if (!(options.mass > 0) || !std::isfinite(options.mass)) {
+    return Error("ragdoll-size", "the mass is not above 0");
+  }
+  Maker maker(skeleton, roles);
+  if (!maker.frame_found()) {
+    return Error("ragdoll-size", "the reference pose has no extent: hips, knees and neck coincide");
+  }
+  maker.make();
+  std::vector<Body> bodies = maker.take();
+  if (options.model != nullptr) {
+    if (Status status = fit_shapes(*options.model, skeleton, bodies); !status) {
+      return status.error();
+    }
+  }
+  share_mass(skeleton, roles, options.mass, bodies);
+  for (const Body& body : bodies) {
+    if (!(volume(body.shape) > 0) || !body.to_joint.position.allFinite()) {
+      Error error("ragdoll-size", "the part '" + body.name + "' has no extent");
+      error.joint = skeleton.names[at(body.joint)];
+      return error;
+    }
+  }
+  return bodies;
+}
+
+}  // namespace krok::ragdoll
