@@ -16,9 +16,9 @@ namespace {
 constexpr double kUpperArm = 0.027, kLowerArm = 0.021, kThigh = 0.042, kShank = 0.029;
 constexpr double kHead = 0.052, kDepth = 0.058;
 
-class Maker {
+class BodyMaker {
  public:
-  Maker(const Skeleton& skeleton, const RoleMap& roles) : skeleton_(skeleton), roles_(roles) {}
+  BodyMaker(const Skeleton& skeleton, const RoleMap& roles) : skeleton_(skeleton), roles_(roles) {}
 
   bool frame_found();
   void make();
@@ -46,7 +46,7 @@ class Maker {
   double stature_ = 0;
 };
 
-int Maker::body_above(int joint) const {
+int BodyMaker::body_above(int joint) const {
   for (int j = skeleton_.parents[at(joint)]; j >= 0; j = skeleton_.parents[at(j)]) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       if (bodies_[b].joint == j) return static_cast<int>(b);
@@ -56,7 +56,7 @@ int Maker::body_above(int joint) const {
 }
 
 // The joint below that is farthest away; the joint itself if there is none.
-Vec3 Maker::farthest_below(int joint) const {
+Vec3 BodyMaker::farthest_below(int joint) const {
   std::vector<bool> below(skeleton_.names.size(), false);
   below[at(joint)] = true;
   Vec3 best = place(joint);
@@ -69,7 +69,7 @@ Vec3 Maker::farthest_below(int joint) const {
   return best;
 }
 
-bool Maker::frame_found() {
+bool BodyMaker::frame_found() {
   hips_ = 0.5 * (place(Role::left_upper_leg) + place(Role::right_upper_leg));
   const int top =
       roles_.joint(Role::neck) >= 0 ? roles_.joint(Role::neck) : roles_.joint(Role::head);
@@ -85,7 +85,7 @@ bool Maker::frame_found() {
   return trunk_.coeffs().allFinite() && leg > 0 && std::isfinite(stature_);
 }
 
-void Maker::add(std::string name, int joint, const Shape& shape, const Transform& to_world) {
+void BodyMaker::add(std::string name, int joint, const Shape& shape, const Transform& to_world) {
   Body body;
   body.name = std::move(name);
   body.joint = joint;
@@ -97,15 +97,15 @@ void Maker::add(std::string name, int joint, const Shape& shape, const Transform
 }
 
 // A box of the trunk between two points of its middle.
-void Maker::add_box(std::string name, int joint, const Vec3& low, const Vec3& high,
-                    double half_width, double half_depth) {
+void BodyMaker::add_box(std::string name, int joint, const Vec3& low, const Vec3& high,
+                        double half_width, double half_depth) {
   Shape shape;
   shape.half = Vec3(half_width, std::max(0.5 * (high - low).norm(), 0.02 * stature_), half_depth);
   const Quat turn = shortest_arc(trunk_ * Vec3(Vec3::UnitY()), high - low);
   add(std::move(name), joint, shape, {0.5 * (low + high), turn * trunk_});
 }
 
-void Maker::add_limb(std::string name, Role from, const Vec3& end, double radius) {
+void BodyMaker::add_limb(std::string name, Role from, const Vec3& end, double radius) {
   const int joint = roles_.joint(from);
   if (joint < 0) return;
   const Vec3 bone = end - place(joint);
@@ -117,7 +117,7 @@ void Maker::add_limb(std::string name, Role from, const Vec3& end, double radius
   add(std::move(name), joint, shape, {place(joint) + 0.5 * bone, turn * trunk_});
 }
 
-void Maker::add_trunk() {
+void BodyMaker::add_trunk() {
   const Vec3 up = trunk_ * Vec3(Vec3::UnitY());
   const double wide = 0.5 * (place(Role::left_upper_leg) - place(Role::right_upper_leg)).norm();
   const int top =
@@ -149,7 +149,7 @@ void Maker::add_trunk() {
 }
 
 // With the neck, which follows or leads it.
-void Maker::add_head() {
+void BodyMaker::add_head() {
   const Vec3 up = trunk_ * Vec3(Vec3::UnitY());
   int joint = roles_.joint(Role::neck);
   const int head = roles_.joint(Role::head);
@@ -163,7 +163,7 @@ void Maker::add_head() {
   add("head", joint, shape, {base + 0.065 * stature_ * up, trunk_});
 }
 
-void Maker::add_hand(std::string name, Role role, Role above) {
+void BodyMaker::add_hand(std::string name, Role role, Role above) {
   const int joint = roles_.joint(role);
   if (joint < 0) return;
   Vec3 bone = farthest_below(joint) - place(joint);
@@ -180,7 +180,7 @@ void Maker::add_hand(std::string name, Role role, Role above) {
 }
 
 // From heel to toes, upright in the reference pose.
-void Maker::add_foot(std::string name, Role role) {
+void BodyMaker::add_foot(std::string name, Role role) {
   const int joint = roles_.joint(role);
   if (joint < 0) return;
   const Vec3 up = trunk_ * Vec3(Vec3::UnitY());
@@ -200,7 +200,7 @@ void Maker::add_foot(std::string name, Role role) {
   add(std::move(name), joint, shape, {centre, Quat(axes).normalized()});
 }
 
-void Maker::make() {
+void BodyMaker::make() {
   add_trunk();
   add_head();
   const auto limbs = [&](const std::string& side, Role arm, Role elbow, Role hand, Role leg,
@@ -276,7 +276,7 @@ Result<std::vector<Body>> make_bodies(const Skeleton& skeleton, const RoleMap& r
   if (!(options.mass > 0) || !std::isfinite(options.mass)) {
     return Error("ragdoll-size", "the mass is not above 0");
   }
-  Maker maker(skeleton, roles);
+  BodyMaker maker(skeleton, roles);
   if (!maker.frame_found()) {
     return Error("ragdoll-size", "the reference pose has no extent: hips, knees and neck coincide");
   }

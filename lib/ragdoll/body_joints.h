@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ik/limits.h"
+#include "ragdoll/bodies.h"
+#include "ragdoll/joint.h"
+#include "roles/roles.h"
+
+namespace krok::ragdoll {
+
+struct BodyJointOptions {
+  // Soft limits push back with these, for a joint that carries one kilogram; heavier ones have more
+  // in proportion.
+  bool soft = false;
+  double stiffness = 10;  // N m/rad
+  double damping = 0.5;   // N m s/rad
+  // Resistance of muscles and tissue at rest, N m s/rad for each kilogram that the joint carries.
+  double friction = 0.05;
+};
+
+// The joints between bodies, one for each body with a parent, at the joint of the skeleton that the
+// body moves with. Knees and elbows are hinges, spine and neck six_dof without sliding, all others
+// spherical. Ranges are those of `limits` (shape [joints], as for ik; empty: none); where joints
+// between have no body, theirs are added to the next one's. `pose` (joint_to_world, shape [joints])
+// is where the simulation starts: what has no body keeps its place there, and ranges that it leaves
+// are widened to include it.
+std::vector<Joint> make_joints(const Skeleton& skeleton, const RoleMap& roles,
+                               const std::vector<Body>& bodies, const ik::Limits& limits,
+                               std::span<const Transform> pose, const BodyJointOptions& options);
+
+}  // namespace krok::ragdoll

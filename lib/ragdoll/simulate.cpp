@@ -1,0 +1,246 @@
+#include "ragdoll/simulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/index.h"
+#include "math/quaternion.h"
+#include "motion/sample.h"
+
+namespace krok::ragdoll {
+
+namespace {
+
+constexpr double kLongest = 600;              // seconds
+constexpr double kStill = 0.05, kTurn = 0.3;  // m/s, rad/s
+constexpr double kRest = 0.5;                 // seconds
+
+using Pose = std::vector<Transform>;
+
+Pose pose_at(const Clip& clip, double time) {
+  Pose pose(clip.skeleton.names.size()), scratch(3 * pose.size());
+  sample(clip, time, pose, scratch);
+  return pose;
+}
+
+class FallMaker {
+ public:
+  FallMaker(const Clip& motion, const RoleMap& roles, const std::vector<Body>& bodies,
+            const FallOptions& options)
+      : motion_(motion), roles_(roles), bodies_(bodies), options_(options) {}
+
+  Status begin(const ik::Limits& limits);
+  Status run();
+  Fall take() { return std::move(fall_); }
+
+ private:
+  std::vector<BodyState> start_states() const;
+  Surroundings moved_ground() const;
+  void apply_pushes(int step);
+  bool step(int number);
+  Pose pose() const;
+  void add_frames(double from, double to, const Pose& before, const Pose& after);
+
+  const Clip& motion_;
+  const RoleMap& roles_;
+  const std::vector<Body>& bodies_;
+  const FallOptions& options_;
+  Pose start_, locals_;
+  // The world's origin is below the figure, as Bullet computes in single precision.
+  Vec3 origin_ = Vec3::Zero();
+  World world_{WorldOptions(), Surroundings()};
+  Fall fall_;
+  int frames_ = 0, next_frame_ = 0;
+  double still_since_ = -1;
+};
+
+std::vector<BodyState> FallMaker::start_states() const {
+  const double frame = 1 / motion_.rate;
+  const double before = std::max(0.0, options_.at - frame);
+  const double after = std::min(motion_.duration(), options_.at + frame);
+  const Pose first = pose_at(motion_, before), last = pose_at(motion_, after);
+  const double span = after - before;
+  std::vector<BodyState> states;
+  for (const Body& body : bodies_) {
+    BodyState state;
+    state.to_world = start_[at(body.joint)] * body.to_joint;
+    state.to_world.position -= origin_;
+    if (span > 0) {
+      const Transform a = first[at(body.joint)] * body.to_joint;
+      const Transform b = last[at(body.joint)] * body.to_joint;
+      state.velocity = (b.position - a.position) / span;
+      state.spin = rotation_vector(b.orientation * a.orientation.conjugate()) / span;
+    }
+    states.push_back(state);
+  }
+  return states;
+}
+
+Surroundings FallMaker::moved_ground() const {
+  Surroundings ground = options_.surroundings;
+  ground.height -= origin_.y();
+  for (auto& triangle : ground.triangles) {
+    for (Vec3& corner : triangle) corner -= origin_;
+  }
+  return ground;
+}
+
+Status FallMaker::begin(const ik::Limits& limits) {
+  start_ = pose_at(motion_, options_.at);
+  locals_.resize(start_.size());
+  world_to_local(motion_.skeleton.parents, start_, locals_);
+  origin_ = start_[at(bodies_.front().joint)].position;
+  origin_.y() = 0;
+  world_ = World(options_.world, moved_ground());
+  const std::vector<Joint> joints =
+      make_joints(motion_.skeleton, roles_, bodies_, limits, start_, options_.joints);
+  if (Status status = world_.add(bodies_, start_states(), joints); !status) return status;
+  fall_.penetration_start = world_.measures().penetration;
+  fall_.least_height = std::numeric_limits<double>::infinity();
+
+  Clip& clip = fall_.clip;
+  clip.skeleton = motion_.skeleton;
+  clip.rate = motion_.rate;
+  clip.provenance = motion_.provenance;
+  // The frame at `at`, or the next one, is the first of the fall.
+  fall_.first_frame = static_cast<int>(std::ceil(options_.at * motion_.rate - 1e-6));
+  const double end = (options_.at + options_.duration) * motion_.rate;
+  frames_ = std::max(fall_.first_frame + 1, static_cast<int>(std::floor(end + 1e-6)) + 1);
+  clip.resize(frames_);
+  for (int f = 0; f < fall_.first_frame; ++f) {
+    std::ranges::copy(motion_.frame_positions(f), clip.frame_positions(f).begin());
+    std::ranges::copy(motion_.frame_orientations(f), clip.frame_orientations(f).begin());
+  }
+  next_frame_ = fall_.first_frame;
+  return {};
+}
+
+void FallMaker::apply_pushes(int step) {
+  for (const Push& push : options_.pushes) {
+    const double late = std::max(0.0, push.time - options_.at);
+    if (static_cast<int>(std::lround(late / World::kStep)) == step) {
+      world_.push(push.body, push.impulse);
+    }
+  }
+}
+
+Pose FallMaker::pose() const {
+  Pose pose(start_.size());
+  std::vector<int> own(start_.size(), -1);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) own[at(bodies_[b].joint)] = static_cast<int>(b);
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    const int parent = motion_.skeleton.parents[j];
+    pose[j] = parent < 0 ? start_[j] : pose[at(parent)] * locals_[j];
+    if (own[j] < 0) continue;
+    const Transform to_world =
+        world_.state(own[j]).to_world * bodies_[at(own[j])].to_joint.inverse();
+    pose[j].orientation = to_world.orientation.normalized();
+    if (own[j] == 0) pose[j].position = to_world.position + origin_;
+  }
+  return pose;
+}
+
+// The frames in [from, to), seconds of the motion.
+void FallMaker::add_frames(double from, double to, const Pose& before, const Pose& after) {
+  Pose local_a(before.size()), local_b(before.size()), between(before.size());
+  for (; next_frame_ < frames_; ++next_frame_) {
+    const double time = std::max(options_.at, next_frame_ / motion_.rate);
+    if (time >= to - 1e-9) return;
+    const double share = std::clamp((time - from) / (to - from), 0.0, 1.0);
+    world_to_local(motion_.skeleton.parents, before, local_a);
+    world_to_local(motion_.skeleton.parents, after, local_b);
+    for (std::size_t j = 0; j < between.size(); ++j) {
+      between[j].position =
+          local_a[j].position + share * (local_b[j].position - local_a[j].position);
+      between[j].orientation = slerp(local_a[j].orientation, local_b[j].orientation, share);
+    }
+    local_to_world(motion_.skeleton.parents, between, between);
+    fall_.clip.set_pose(next_frame_, between);
+  }
+}
+
+// False once the figure rests.
+bool FallMaker::step(int number) {
+  world_.step();
+  const WorldMeasures now = world_.measures();
+  fall_.largest.joint_gap = std::max(fall_.largest.joint_gap, now.joint_gap);
+  fall_.largest.limit_excess = std::max(fall_.largest.limit_excess, now.limit_excess);
+  fall_.largest.penetration = std::max(fall_.largest.penetration, now.penetration);
+  fall_.largest.contacts = std::max(fall_.largest.contacts, now.contacts);
+  bool still = now.contacts > 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const BodyState state = world_.state(static_cast<int>(b));
+    still = still && state.velocity.norm() < kStill && state.spin.norm() < kTurn;
+    fall_.least_height = std::min(fall_.least_height, state.to_world.position.y());
+  }
+  const double time = (number + 1) * World::kStep;
+  if (!still) {
+    still_since_ = -1;
+    return true;
+  }
+  if (still_since_ < 0) still_since_ = time;
+  if (time - still_since_ < kRest) return true;
+  for (const Push& push : options_.pushes) {
+    if (push.time - options_.at >= time) return true;
+  }
+  fall_.rest = still_since_;
+  return false;
+}
+
+Status FallMaker::run() {
+  const double end = (frames_ - 1) / motion_.rate;
+  Pose before = pose();
+  double time = options_.at;
+  for (int number = 0; time < end + World::kStep; ++number) {
+    apply_pushes(number);
+    const bool moves = step(number);
+    const Pose after = pose();
+    for (const Transform& joint : after) {
+      if (!joint.position.allFinite() || !joint.orientation.coeffs().allFinite()) {
+        return Error("ragdoll-value", "the simulation left the finite numbers",
+                     "weaker pushes, or shapes that do not overlap");
+      }
+    }
+    const double next = options_.at + (number + 1) * World::kStep;
+    add_frames(time, next, before, after);
+    before = after;
+    time = next;
+    if (!moves) break;
+  }
+  for (; next_frame_ < frames_; ++next_frame_) fall_.clip.set_pose(next_frame_, before);
+  return {};
+}
+
+Status check(const Clip& motion, const std::vector<Body>& bodies, const FallOptions& options) {
+  if (motion.frame_count() == 0 || bodies.empty()) {
+    return Error("ragdoll-time", "there is no pose to fall from: the motion has no frames");
+  }
+  if (!(options.at >= 0) || !(options.at <= motion.duration() + 1e-9)) {
+    return Error("ragdoll-time", "the fall begins outside the motion");
+  }
+  if (!(options.duration >= 0) || !(options.duration <= kLongest)) {
+    return Error("ragdoll-time", "the fall's duration is not from 0 to 600 s");
+  }
+  for (const Push& push : options.pushes) {
+    if (push.body < 0 || at(push.body) >= bodies.size() || !push.impulse.allFinite() ||
+        !std::isfinite(push.time)) {
+      return Error("ragdoll-value", "a push is at no body, or not finite");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Fall> simulate_fall(const Clip& motion, const RoleMap& roles,
+                           const std::vector<Body>& bodies, const ik::Limits& limits,
+                           const FallOptions& options) {
+  if (Status status = check(motion, bodies, options); !status) return status.error();
+  FallMaker maker(motion, roles, bodies, options);
+  if (Status status = maker.begin(limits); !status) return status.error();
+  if (Status status = maker.run(); !status) return status.error();
+  return maker.take();
+}
+
+}  // namespace krok::ragdoll

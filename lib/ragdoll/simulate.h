@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "core/result.h"
+#include "ragdoll/bodies.h"
+#include "ragdoll/body_joints.h"
+#include "ragdoll/world.h"
+#include "scene/clip.h"
+
+namespace krok::ragdoll {
+
+struct Push {
+  int body = 0;
+  Vec3 impulse = Vec3::Zero();  // N s, world
+  double time = 0;              // seconds of the motion; before the fall's begin: at it
+};
+
+struct FallOptions {
+  double at = 0;        // seconds of the motion, 0 to its end: the fall begins
+  double duration = 3;  // seconds of the fall, 0 to 600
+  std::vector<Push> pushes;
+  BodyJointOptions joints;
+  WorldOptions world;
+  Surroundings surroundings;
+};
+
+struct Fall {
+  Clip clip;            // at the motion's rate: its own frames before the fall, then the simulated
+  int first_frame = 0;  // simulated
+  // Seconds after the fall's begin from which all bodies rest on the ground; -1 if never. Rest is
+  // half a second below 5 cm/s and 0.3 rad/s; what then follows is still.
+  double rest = -1;
+  WorldMeasures largest;         // of all steps
+  double penetration_start = 0;  // metres, in the pose in which the fall begins
+  double least_height = 0;       // metres: lowest centre of a body
+};
+
+// Lets a motion's figure fall. The bodies start from its pose at `at` and from its speeds, which
+// are differences over one frame to either side. The frames after `at` come from the bodies: the
+// root body gives the position and orientation of its joint, each simulated joint has its body's
+// orientation, all others keep their turn relative to their parent, and positions follow down the
+// tree from the offsets that the pose has. Joints above the root body stand still. Between steps
+// poses are interpolated. The same input gives the same bytes.
+//
+// `bodies` are make_bodies()', `limits` as for make_joints(). Codes: ragdoll-time for times outside
+// the motion or the ranges, ragdoll-value for pushes at bodies that are not there or not finite,
+// and for a simulation that leaves the finite numbers.
+Result<Fall> simulate_fall(const Clip& motion, const RoleMap& roles,
+                           const std::vector<Body>& bodies, const ik::Limits& limits,
+                           const FallOptions& options);
+
+}  // namespace krok::ragdoll

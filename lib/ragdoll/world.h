@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/result.h"
+#include "ragdoll/bodies.h"
+#include "ragdoll/joint.h"
+
+// Rigid bodies that move by Newton's laws, with joints and static surroundings (Bullet).
+
+namespace krok::ragdoll {
+
+// Pose and speed of a body's centre of mass; metres, seconds, world.
+struct BodyState {
+  Transform to_world;
+  Vec3 velocity = Vec3::Zero();
+  Vec3 spin = Vec3::Zero();  // radians/s
+};
+
+struct WorldOptions {
+  Vec3 gravity = Vec3(0, -9.81, 0);  // m/s^2
+  double friction = 0.7;             // Coulomb's, between bodies and surroundings, >= 0
+  double restitution = 0;            // 0 to 1
+  int substeps = 4;                  // of a step, >= 1
+  int iterations = 60;               // of the solver in each of them, >= 1
+};
+
+// A static surface.
+struct Surroundings {
+  bool level = false;                          // an endless plane, solid below
+  double height = 0;                           // of the plane, metres
+  std::vector<std::array<Vec3, 3>> triangles;  // of either side
+};
+
+// The state of the contacts and joints after a step.
+struct WorldMeasures {
+  double joint_gap = 0;     // metres: the largest distance between anchors that should coincide
+  double limit_excess = 0;  // radians: the largest angle beyond a hard limit
+  double penetration = 0;   // metres: how deep a body is in the surroundings
+  int contacts = 0;         // points at which bodies touch the surroundings
+};
+
+class World {
+ public:
+  static constexpr double kStep = 1.0 / 240;  // seconds
+
+  World(const WorldOptions& options, const Surroundings& surroundings);
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  // `joints` refer to the bodies. Bodies that a joint ties do not collide, nor do those that
+  // overlap at the start. Called once. Codes ragdoll-value for values out of the ranges above.
+  Status add(std::span<const Body> bodies, std::span<const BodyState> states,
+             std::span<const Joint> joints);
+
+  // Moves on by kStep, in `substeps` equal parts.
+  void step();
+
+  // An impulse (N s, world) at a body's centre of mass.
+  void push(int body, const Vec3& impulse);
+
+  // Changes a joint's motor.
+  void set_motor(int joint, double torque, const Quat& target, const Vec3& target_speed);
+
+  BodyState state(int body) const;
+  WorldMeasures measures() const;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+}  // namespace krok::ragdoll
