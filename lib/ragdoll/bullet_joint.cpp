@@ -208,8 +208,8 @@ void BulletJoint::apply(const Row& row, double impulse) {
   m_rbB.applyTorqueImpulse(to_bullet(impulse * row.angular_child));
 }
 
-// The spring is symplectic (the new speed moves the body), its damping implicit, so that neither
-// adds nor eats energy by itself; springs too stiff for the step are as stiff as it allows.
+// The spring is symplectic: the new speed moves the body, so that it neither adds nor eats energy.
+// Springs and dampers too strong for the step are as strong as it allows.
 void BulletJoint::spring_turn(const Vec3& axis, double beyond) {
   if (beyond <= 0) return;
   Row row;
@@ -220,8 +220,8 @@ void BulletJoint::spring_turn(const Vec3& axis, double beyond) {
   const double speed =
       axis.dot(from_bullet(m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity()));
   const double stiffness = std::min(joint.stiffness, 0.5 / (step_ * step_ * softness));
-  const double impulse = -step_ * (stiffness * beyond + joint.damping * speed) /
-                         (1 + step_ * joint.damping * softness);
+  const double damping = std::min(joint.damping, 0.5 / (step_ * softness));
+  const double impulse = -step_ * (stiffness * beyond + damping * speed);
   apply(row, std::min(impulse, 0.0));
 }
 
@@ -275,7 +275,7 @@ void BulletJoint::push_back() {
     row.angular_child = Vec3::Unit(i);
     const double speed =
         row.angular_child.dot(from_bullet(m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity()));
-    apply(row, -step_ * joint.friction * speed / (1 + step_ * joint.friction * give(row)));
+    apply(row, -step_ * std::min(joint.friction, 0.5 / (step_ * give(row))) * speed);
   }
 }
 

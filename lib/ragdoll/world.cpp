@@ -1,10 +1,13 @@
 #include "ragdoll/world.h"
 
+#include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/index.h"
 #include "ragdoll/bullet_joint_internal.h"
+#include "ragdoll/bullet_solver_internal.h"
 
 namespace krok::ragdoll {
 
@@ -33,6 +36,17 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
   return box;
 }
 
+// The edges between a mesh's triangles stop nothing.
+bool smooth_edges(btManifoldPoint& point, const btCollisionObjectWrapper* a, int part_a,
+                  int index_a, const btCollisionObjectWrapper* b, int part_b, int index_b) {
+  if (a->getCollisionShape()->getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
+    btAdjustInternalEdgeContacts(point, a, b, part_a, index_a);
+  } else if (b->getCollisionShape()->getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
+    btAdjustInternalEdgeContacts(point, b, a, part_b, index_b);
+  }
+  return false;
+}
+
 }  // namespace
 
 // In the order in which they are made; destroyed in the reverse one.
@@ -41,9 +55,10 @@ struct World::Inside {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
-  btSequentialImpulseConstraintSolver solver;
+  Solver solver;
   btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
   btTriangleMesh mesh;
+  btTriangleInfoMap edges;
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   std::vector<std::unique_ptr<btRigidBody>> bodies;
   std::vector<std::unique_ptr<btRigidBody>> grounds;
@@ -111,6 +126,9 @@ void World::Inside::part_overlapping() {
 
 World::World(const WorldOptions& options, const Surroundings& surroundings)
     : inside_(std::make_unique<Inside>()) {
+  // Bullet has one callback for all worlds; this is the same for all.
+  static const bool set = (gContactAddedCallback = smooth_edges, true);
+  (void)set;
   Inside& in = *inside_;
   in.options = options;
   in.world.setGravity(to_bullet(options.gravity));
@@ -129,7 +147,11 @@ World::World(const WorldOptions& options, const Surroundings& surroundings)
     for (const auto& t : surroundings.triangles) {
       in.mesh.addTriangle(to_bullet(t[0]), to_bullet(t[1]), to_bullet(t[2]));
     }
-    in.add_ground(std::make_unique<btBvhTriangleMeshShape>(&in.mesh, true));
+    auto shape = std::make_unique<btBvhTriangleMeshShape>(&in.mesh, true);
+    btGenerateInternalEdgeInfo(shape.get(), &in.edges);
+    in.add_ground(std::move(shape));
+    in.grounds.back()->setCollisionFlags(in.grounds.back()->getCollisionFlags() |
+                                         btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
   }
 }
 

@@ -1,0 +1,177 @@
+#include "tools/krok-ragdoll/options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "core/numbers.h"
+#include "core/text.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/krok-ragdoll/run.h"
+#include "tools/shared/orientation_option.h"
+#include "tools/shared/role_input.h"
+
+namespace krok::cli::ragdoll {
+
+namespace {
+
+constexpr double kStrongest = 1e4;  // N s
+
+Error usage(std::string message, std::string hint = {}) {
+  return {"usage", std::move(message), std::move(hint)};
+}
+
+void declare_fall(CommandOptions& command, Arguments& a) {
+  const char* group = "Fall";
+  command.add_option("--at", a.at, "Time at which the body takes over from the motion")
+      .type_name("TIME")
+      .required()
+      .group(group);
+  command
+      .add_option("--push", a.pushes,
+                  "Push at a joint, given by name or role: Chest=120Ns,0,40Ns at --at, or later: "
+                  "head=0,0,-30Ns@2s; repeatable")
+      .type_name("JOINT=X,Y,Z")
+      .one_each_time()
+      .group(group);
+  command.add_option("--duration", a.duration, "Length of the fall")
+      .type_name("TIME")
+      .default_str("3s")
+      .group(group);
+}
+
+void declare_body(CommandOptions& command, Arguments& a) {
+  const char* group = "Body";
+  command.add_option("--model", a.model, "Fit the bodies to this model's vertices by their weights")
+      .type_name("IN.model")
+      .group(group);
+  command.add_option("--mass", a.mass, "Mass of the body")
+      .type_name("MASS")
+      .default_str("75kg")
+      .group(group);
+  command
+      .add_option("--limits", a.limits,
+                  "Ranges of motion: a file (formats/limits/SPEC.md), auto for published ranges of "
+                  "adults, or none")
+      .type_name("IN.json|auto|none")
+      .default_str("auto")
+      .group(group);
+  command.add_flag("--soft", a.soft, "Limits push back as springs instead of stopping")
+      .group(group);
+  add_map_option(command, a.map).group(group);
+}
+
+void declare_surroundings(CommandOptions& command, Arguments& a) {
+  const char* group = "Surroundings";
+  command
+      .add_option(
+          "--ground", a.ground,
+          "Ground: level[:height=H], stairs, slope:ANGLE, rough, or a file (glTF, GLB, OBJ, "
+          "EXR, PNG)")
+      .type_name("IN|KIND")
+      .default_str("level")
+      .group(group);
+  add_number(command, "--friction", a.friction, "Coefficient of friction, 0 to 10")
+      .default_str("0.7")
+      .group(group);
+  add_number(command, "--restitution", a.restitution, "Share of speed kept in a bounce, 0 to 1")
+      .default_str("0")
+      .group(group);
+}
+
+// A number with an optional unit.
+std::optional<double> number_of(std::string_view text, std::string_view unit) {
+  if (text.ends_with(unit)) text.remove_suffix(unit.size());
+  return parse_finite(text);
+}
+
+Result<PushAt> parse_push(const std::string& text) {
+  const auto wrong = [&](const std::string& why) {
+    return usage(fmt::format("--push {}: {}", shown(text), why),
+                 "write Chest=120Ns,0,40Ns or Chest=120Ns,0,40Ns@2s");
+  };
+  PushAt push;
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0) return wrong("no joint is named");
+  push.joint = text.substr(0, equals);
+  std::string_view impulse = std::string_view(text).substr(equals + 1);
+  if (const std::size_t mark = impulse.find('@'); mark != std::string_view::npos) {
+    const auto time = parse_clip_time(impulse.substr(mark + 1));
+    if (!time || !(time->value >= 0)) return wrong("its time is not one of 0 or more");
+    push.timed = true;
+    push.time = *time;
+    impulse = impulse.substr(0, mark);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t comma = impulse.find(',');
+    if ((comma == std::string_view::npos) != (i == 2)) return wrong("an impulse has three parts");
+    const auto value = number_of(impulse.substr(0, comma), "Ns");
+    if (!value || !(std::abs(*value) <= kStrongest)) {
+      return wrong("an impulse is a number of Ns, up to 10000");
+    }
+    push.impulse[i] = *value;
+    if (i < 2) impulse.remove_prefix(comma + 1);
+  }
+  return push;
+}
+
+}  // namespace
+
+void declare(CommandOptions& command, Arguments& arguments) {
+  command
+      .add_option("input", arguments.input,
+                  "Motion, or a capture read as by krok-import (- is standard input)")
+      .type_name("IN.anim")
+      .required();
+  declare_fall(command, arguments);
+  declare_body(command, arguments);
+  declare_surroundings(command, arguments);
+  add_orientation_option(command, arguments.orientation);
+}
+
+Result<Options> understand(const Arguments& a) {
+  Options options;
+  options.given = a;
+  for (const std::string& text : a.pushes) {
+    auto push = parse_push(text);
+    if (!push) return push.error();
+    options.pushes.push_back(*push);
+  }
+  if (!(a.friction >= 0 && a.friction <= 10) || !(a.restitution >= 0 && a.restitution <= 1)) {
+    return usage("--friction must be from 0 to 10, --restitution from 0 to 1");
+  }
+  const auto begin = parse_clip_time(a.at);
+  if (!begin || !(begin->value >= 0)) {
+    return usage(fmt::format("--at {} is not a time of 0 or more", shown(a.at)));
+  }
+  options.at = *begin;
+  const auto duration = parse_clip_time(a.duration);
+  if (!duration || duration->in_frames || !(duration->value > 0 && duration->value <= 600)) {
+    return usage(fmt::format("--duration {} is not a time of up to 600 s", shown(a.duration)));
+  }
+  options.duration = duration->value;
+  const auto mass = number_of(a.mass, "kg");
+  if (!mass || !(*mass >= 1 && *mass <= 1000)) {
+    return usage(fmt::format("--mass {} is not a mass from 1 to 1000 kg", shown(a.mass)));
+  }
+  options.mass = *mass;
+  return options;
+}
+
+ToolSpec make_spec() {
+  const auto arguments = std::make_shared<Arguments>();
+  ToolSpec spec = spec_of("krok-ragdoll", arguments, declare, understand, run);
+  spec.summary = "Lets a motion's figure fall: rigid bodies with joints take over from the motion";
+  spec.inputs = "IN.anim";
+  spec.examples = {
+      {"krok-ragdoll walk.anim --at 1.2s --push Chest=120Ns,0,40Ns -o fall.anim",
+       "a walker is shoved from the side and falls"},
+      {"krok-ragdoll walk.anim --model walker.model --at 2s --ground stairs.glb --duration 5s -o "
+       "fall.anim --json",
+       "bodies in the sizes of a character, on a mesh; the report has the measures"}};
+  spec.batch = {{".anim", ".bvh", ".amc"}, always(".anim")};
+  return spec;
+}
+
+}  // namespace krok::cli::ragdoll

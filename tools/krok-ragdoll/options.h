@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/quantity.h"
+#include "core/result.h"
+#include "formats/container/packed_orientation.h"
+#include "math/types.h"
+#include "tools/cli/tool.h"
+
+namespace krok::cli::ragdoll {
+
+// The options as given on the command line.
+struct Arguments {
+  std::string input, map, model;
+  std::string at, duration = "3s", mass = "75kg";
+  std::vector<std::string> pushes;  // JOINT=X,Y,ZNs[@TIME]
+  std::string ground = "level";
+  std::string limits = "auto";
+  double friction = 0.7, restitution = 0;
+  bool soft = false;
+  OrientationEncoding orientation = OrientationEncoding::xyz;
+};
+
+struct PushAt {
+  std::string joint;
+  Vec3 impulse = Vec3::Zero();  // N s
+  bool timed = false;
+  ClipTime time;
+};
+
+// The parsed options.
+struct Options {
+  Arguments given;
+  std::vector<PushAt> pushes;
+  ClipTime at;
+  double duration = 3, mass = 75;
+};
+
+void declare(CommandOptions& command, Arguments& arguments);
+
+// Code usage; messages name the option.
+Result<Options> understand(const Arguments& arguments);
+
+// The tool. Each call has options of its own.
+ToolSpec make_spec();
+
+}  // namespace krok::cli::ragdoll
