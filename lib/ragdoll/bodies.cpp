@@ -33,6 +33,7 @@ class BodyMaker {
   void add_box(std::string name, int joint, const Vec3& low, const Vec3& high, double half_width,
                double half_depth);
   void add_limb(std::string name, Role from, const Vec3& end, double radius);
+  double ball_of(int ankle, const Vec3& forward) const;
   void add_trunk();
   void add_head();
   void add_hand(std::string name, Role role, Role above);
@@ -148,6 +149,17 @@ void BodyMaker::add_trunk() {
   add_box("chest", chest, place(chest), place(top), chest_width, depth);
 }
 
+// How far ahead of the ankle the toes begin; where nothing tells, 0.
+double BodyMaker::ball_of(int ankle, const Vec3& forward) const {
+  for (int j = ankle + 1; j < skeleton_.joint_count(); ++j) {
+    if (skeleton_.parents[at(j)] == ankle && skeleton_.end_sites[at(j)] == 0) {
+      const double ahead = (place(j) - place(ankle)).dot(forward);
+      if (ahead > 0) return ahead;
+    }
+  }
+  return 0;
+}
+
 // With the neck, which follows or leads it.
 void BodyMaker::add_head() {
   const Vec3 up = trunk_ * Vec3(Vec3::UnitY());
@@ -179,7 +191,8 @@ void BodyMaker::add_hand(std::string name, Role role, Role above) {
   add(std::move(name), joint, shape, {place(joint) + 0.5 * bone, turn * trunk_});
 }
 
-// From heel to toes, upright in the reference pose.
+// From the heel to just beyond the ball, upright in the reference pose: toes are bent where the
+// heel is up, and would be in the ground.
 void BodyMaker::add_foot(std::string name, Role role) {
   const int joint = roles_.joint(role);
   if (joint < 0) return;
@@ -190,7 +203,8 @@ void BodyMaker::add_foot(std::string name, Role role) {
   const double ahead = toes.norm();
   if (ahead < 0.02 * stature_) toes = trunk_ * Vec3(Vec3::UnitZ());
   const Vec3 forward = toes.normalized();
-  const double length = std::max(ahead, 0.1 * stature_), heel = 0.036 * stature_;
+  const double length = std::max(ball_of(joint, forward), 0.07 * stature_) + 0.01 * stature_;
+  const double heel = 0.036 * stature_;
   Shape shape;
   shape.half = Vec3(0.026 * stature_, 0.45 * height, 0.5 * (length + heel));
   Mat3 axes;

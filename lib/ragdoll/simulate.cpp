@@ -16,6 +16,8 @@ constexpr double kLongest = 600;              // seconds
 constexpr double kStill = 0.05, kTurn = 0.3;  // m/s, rad/s
 constexpr double kRest = 0.5;                 // seconds
 
+constexpr double kSettling = 0.2;  // seconds
+
 using Pose = std::vector<Transform>;
 
 Pose pose_at(const Clip& clip, double time) {
@@ -96,7 +98,7 @@ Status FallMaker::begin(const ik::Limits& limits) {
   const std::vector<Joint> joints =
       make_joints(motion_.skeleton, roles_, bodies_, limits, start_, options_.joints);
   if (Status status = world_.add(bodies_, start_states(), joints); !status) return status;
-  fall_.penetration_start = world_.measures().penetration;
+  fall_.settling.penetration = world_.measures().penetration;
   fall_.least_height = std::numeric_limits<double>::infinity();
 
   Clip& clip = fall_.clip;
@@ -164,10 +166,11 @@ void FallMaker::add_frames(double from, double to, const Pose& before, const Pos
 bool FallMaker::step(int number) {
   world_.step();
   const WorldMeasures now = world_.measures();
-  fall_.largest.joint_gap = std::max(fall_.largest.joint_gap, now.joint_gap);
-  fall_.largest.limit_excess = std::max(fall_.largest.limit_excess, now.limit_excess);
-  fall_.largest.penetration = std::max(fall_.largest.penetration, now.penetration);
-  fall_.largest.contacts = std::max(fall_.largest.contacts, now.contacts);
+  WorldMeasures& largest = number * World::kStep < kSettling ? fall_.settling : fall_.largest;
+  largest.joint_gap = std::max(largest.joint_gap, now.joint_gap);
+  largest.limit_excess = std::max(largest.limit_excess, now.limit_excess);
+  largest.penetration = std::max(largest.penetration, now.penetration);
+  largest.contacts = std::max(largest.contacts, now.contacts);
   bool still = now.contacts > 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const BodyState state = world_.state(static_cast<int>(b));

@@ -31,9 +31,10 @@ struct Fall {
   // Seconds after the fall's begin from which all bodies rest on the ground; -1 if never. Rest is
   // half a second below 5 cm/s and 0.3 rad/s; what then follows is still.
   double rest = -1;
-  WorldMeasures largest;         // of all steps
-  double penetration_start = 0;  // metres, in the pose in which the fall begins
-  double least_height = 0;       // metres: lowest centre of a body
+  // Of all steps: the first 0.2 s, in which what the pose has in the ground comes out of it, and
+  // the rest.
+  WorldMeasures settling, largest;
+  double least_height = 0;  // metres: lowest centre of a body
 };
 
 // Lets a motion's figure fall. The bodies start from its pose at `at` and from its speeds, which

@@ -138,6 +138,8 @@ World::World(const WorldOptions& options, const Surroundings& surroundings)
   solving.m_splitImpulse = 1;
   // Penetration of any depth is taken back apart from the speeds, so that it adds no energy.
   solving.m_splitImpulsePenetrationThreshold = 0;
+  // Bodies that start in the ground come out within some hundredths of a second, not with a jerk.
+  solving.m_erp2 = 0.05F;
   solving.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   if (surroundings.level) {
     in.add_ground(std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0),

@@ -146,10 +146,13 @@ Json Run::report(const krok::ragdoll::Fall& fall) const {
   json["bodies"] = bodies_.size();
   json["hash"] = hex(hash.digest());
   json["rest"] = fall.rest < 0 ? Json() : Json(fall.rest);
-  json["largest_joint_gap"] = fall.largest.joint_gap;
-  json["largest_limit_excess"] = fall.largest.limit_excess;
-  json["deepest_penetration"] = fall.largest.penetration;
-  json["penetration_at_start"] = fall.penetration_start;
+  const auto measures = [](const krok::ragdoll::WorldMeasures& of) {
+    return Json{{"joint_gap", of.joint_gap},
+                {"limit_excess", of.limit_excess},
+                {"penetration", of.penetration}};
+  };
+  json["largest"] = measures(fall.largest);
+  json["settling"] = measures(fall.settling);
   return json;
 }
 
