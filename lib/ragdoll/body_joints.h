@@ -17,7 +17,7 @@ struct BodyJointOptions {
   double stiffness = 10;  // N m/rad
   double damping = 0.5;   // N m s/rad
   // Resistance of muscles and tissue at rest, N m s/rad for each kilogram that the joint carries.
-  double friction = 0.05;
+  double friction = 0.2;
 };
 
 // The joints between bodies, one for each body with a parent, at the joint of the skeleton that the

@@ -37,13 +37,9 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
 }
 
 // The edges between a mesh's triangles stop nothing.
-bool smooth_edges(btManifoldPoint& point, const btCollisionObjectWrapper* a, int part_a,
-                  int index_a, const btCollisionObjectWrapper* b, int part_b, int index_b) {
-  if (a->getCollisionShape()->getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
-    btAdjustInternalEdgeContacts(point, a, b, part_a, index_a);
-  } else if (b->getCollisionShape()->getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
-    btAdjustInternalEdgeContacts(point, b, a, part_b, index_b);
-  }
+bool smooth_edges(btManifoldPoint& point, const btCollisionObjectWrapper* body, int, int,
+                  const btCollisionObjectWrapper* mesh, int part, int index) {
+  btAdjustInternalEdgeContacts(point, mesh, body, part, index);
   return false;
 }
 
@@ -85,7 +81,6 @@ void World::Inside::add_ground(std::unique_ptr<btCollisionShape> shape) {
   info.m_restitution = 1;
   grounds.push_back(std::make_unique<btRigidBody>(info));
   shapes.push_back(std::move(shape));
-  world.addRigidBody(grounds.back().get());
 }
 
 void World::Inside::add_body(const Body& body, const BodyState& state) {
@@ -183,6 +178,8 @@ Status World::add(std::span<const Body> bodies, std::span<const BodyState> state
     }
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) in.add_body(bodies[b], states[b]);
+  // After the bodies: that puts the ground last in each pair, as smooth_edges() needs it.
+  for (const auto& ground : in.grounds) in.world.addRigidBody(ground.get());
   for (const Joint& joint : joints) {
     btRigidBody& parent = joint.parent < 0 ? in.fixed : *in.bodies[at(joint.parent)];
     in.joints.push_back(

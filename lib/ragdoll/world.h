@@ -24,8 +24,10 @@ struct WorldOptions {
   Vec3 gravity = Vec3(0, -9.81, 0);  // m/s^2
   double friction = 0.7;             // Coulomb's, between bodies and surroundings, >= 0
   double restitution = 0;            // 0 to 1
-  int substeps = 4;                  // of a step, >= 1
-  int iterations = 60;               // of the solver in each of them, >= 1
+  // Of a step, >= 1, and passes of the solver in each, >= 1. Many short parts hold joints and
+  // limits better than many passes (Macklin et al., "Small steps in physics simulation", 2019).
+  int substeps = 16;
+  int iterations = 16;
 };
 
 // A static surface.

@@ -73,7 +73,7 @@ TEST(RagdollFalls, RandomPushesEndInRest) {
     const Fall fall = fall_of(walker, options);
     ASSERT_TRUE(check(fall.clip).ok()) << i;
     at_rest += fall.rest >= 0 ? 1 : 0;
-    joined += fall.largest.joint_gap < 1e-3 ? 1 : 0;
+    joined += fall.largest.joint_gap < 1.5e-3 ? 1 : 0;
     above += fall.largest.penetration < 0.005 ? 1 : 0;
     within += fall.largest.limit_excess < kRadiansPerDegree ? 1 : 0;
     gap = std::max(gap, fall.largest.joint_gap);
@@ -86,12 +86,122 @@ TEST(RagdollFalls, RandomPushesEndInRest) {
     }
     EXPECT_LT(top, 1.0) << i;
   }
-  RecordProperty("figures", std::to_string(gap) + " " + std::to_string(depth));
   EXPECT_GE(at_rest, 59) << at_rest;
   EXPECT_EQ(joined, kFalls) << gap;
   EXPECT_EQ(above, kFalls) << depth;
   EXPECT_EQ(within, kFalls) << excess / kRadiansPerDegree;
-  printf("rest %d gap %g depth %g excess %g\n", at_rest, gap, depth, excess / kRadiansPerDegree);
+}
+
+// Two worlds at once would differ if one saw the other, or anything depended on addresses.
+TEST(RagdollFalls, TheSameFallHasTheSameBytes) {
+  const Walker walker = make_walker();
+  FallOptions options = on_the_ground(1.2, 1.5);
+  options.pushes = {{2, Vec3(80, 0, 30), 1.2}, {0, Vec3(0, 0, -40), 1.6}};
+  const Fall first = fall_of(walker, options);
+  for (int i = 0; i < 3; ++i) {
+    const Fall again = fall_of(walker, options);
+    ASSERT_EQ(again.clip.positions, first.clip.positions);
+    for (std::size_t k = 0; k < first.clip.orientations.size(); ++k) {
+      ASSERT_EQ(again.clip.orientations[k].coeffs(), first.clip.orientations[k].coeffs());
+    }
+  }
+}
+
+// The fall begins in the motion's pose with its speeds; what lies before it is untouched, and the
+// bones keep their lengths.
+TEST(RagdollFalls, MotionAndFallMeetWithoutAJump) {
+  const Walker walker = make_walker();
+  const double begin = 1.2;
+  const FallOptions options = on_the_ground(begin, 2);
+  const Fall fall = fall_of(walker, options);
+  const int first = fall.first_frame;
+  ASSERT_EQ(first, 72);
+  EXPECT_EQ(fall.clip.frame_count(), 72 + 120 + 1);
+  const int hips = walker.bodies.front().joint;
+  for (int frame = 0; frame < first; ++frame) {
+    for (int j = 0; j < walker.clip.joint_count(); ++j) {
+      ASSERT_EQ(fall.clip.frame_positions(frame)[at(j)], walker.clip.frame_positions(frame)[at(j)]);
+    }
+  }
+  for (int j = 0; j < walker.clip.joint_count(); ++j) {
+    EXPECT_LT((fall.clip.frame_positions(first)[at(j)] - walker.clip.frame_positions(first)[at(j)])
+                  .norm(),
+              1e-4f);
+  }
+  const auto speed = [&](const Clip& clip, int frame) {
+    return Vec3f(
+        (clip.frame_positions(frame + 1)[at(hips)] - clip.frame_positions(frame)[at(hips)]) *
+        static_cast<float>(clip.rate));
+  };
+  const Vec3f jump = speed(fall.clip, first) - speed(walker.clip, first - 1);
+  EXPECT_LT(std::hypot(jump.x(), jump.z()), 0.15f);
+  for (int j = 1; j < walker.clip.joint_count(); ++j) {
+    const auto length = [&](int frame) {
+      const auto places = fall.clip.frame_positions(frame);
+      return (places[at(j)] - places[at(walker.clip.skeleton.parents[at(j)])]).norm();
+    };
+    EXPECT_NEAR(length(fall.clip.frame_count() - 1), length(first), 1e-5f);
+  }
+}
+
+// Masses that are lost, or shapes on the wrong side, would make figures that fall like no body.
+TEST(RagdollBodies, AHumanHasSixteenBodiesOfItsMassSymmetrically) {
+  const Skeleton skeleton = test::human_skeleton();
+  const auto bodies = make_bodies(skeleton, find_roles(skeleton), {.mass = 80});
+  ASSERT_TRUE(bodies.ok());
+  ASSERT_EQ(bodies->size(), 16u);
+  double mass = 0;
+  const auto named = [&](const std::string& name) {
+    for (const Body& body : *bodies) {
+      if (body.name == name) return body;
+    }
+    ADD_FAILURE() << name;
+    return Body();
+  };
+  for (const Body& body : *bodies) mass += body.mass;
+  EXPECT_NEAR(mass, 80, 1e-9);
+  EXPECT_NEAR(named("left_thigh").mass, 80 * 0.1416, 0.1);
+  for (const char* part : {"_upper_arm", "_lower_arm", "_hand", "_thigh", "_shank", "_foot"}) {
+    const Body left = named(std::string("left") + part), right = named(std::string("right") + part);
+    EXPECT_NEAR(left.mass, right.mass, 1e-9) << part;
+    const Vec3 a = skeleton.reference[at(left.joint)] * left.to_joint.position;
+    const Vec3 b = skeleton.reference[at(right.joint)] * right.to_joint.position;
+    EXPECT_LT((a - Vec3(-b.x(), b.y(), b.z())).norm(), 1e-6) << part;
+  }
+}
+
+// A file exporter's choice of axes must not change the body.
+TEST(RagdollBodies, AreTheSameForALyingReferencePose) {
+  Skeleton skeleton = test::human_skeleton();
+  const auto upright = make_bodies(skeleton, find_roles(skeleton));
+  const Transform turn{Vec3(3, 1, -2), from_rotation_vector(Vec3(-kPi / 2, 0.4, 0))};
+  for (Transform& joint : skeleton.reference) joint = turn * joint;
+  const auto lying = make_bodies(skeleton, find_roles(skeleton));
+  ASSERT_TRUE(upright.ok() && lying.ok());
+  ASSERT_EQ(upright->size(), lying->size());
+  for (std::size_t b = 0; b < upright->size(); ++b) {
+    const Body &a = (*upright)[b], &c = (*lying)[b];
+    EXPECT_LT((a.to_joint.position - c.to_joint.position).norm(), 1e-9) << a.name;
+    EXPECT_LT(angle_between(a.to_joint.orientation, c.to_joint.orientation), 1e-9) << a.name;
+    EXPECT_NEAR(volume(a.shape), volume(c.shape), 1e-12) << a.name;
+  }
+}
+
+TEST(RagdollBodies, RefuseWhatIsNoHumanoidAndTimesOutsideTheMotion) {
+  Skeleton two;
+  two.add("a", -1, {});
+  two.add("b", 0, {Vec3(0, 1, 0), Quat::Identity()});
+  EXPECT_EQ(make_bodies(two, find_roles(two)).error().code, "ragdoll-roles");
+  const Walker walker = make_walker();
+  EXPECT_EQ(make_bodies(walker.clip.skeleton, walker.roles, {.mass = 0}).error().code,
+            "ragdoll-size");
+  const auto late =
+      simulate_fall(walker.clip, walker.roles, walker.bodies, walker.limits, on_the_ground(99, 1));
+  EXPECT_EQ(late.error().code, "ragdoll-time");
+  FallOptions pushed = on_the_ground(1, 1);
+  pushed.pushes = {{99, Vec3::Zero(), 1}};
+  const auto none = simulate_fall(walker.clip, walker.roles, walker.bodies, walker.limits, pushed);
+  EXPECT_EQ(none.error().code, "ragdoll-value");
 }
 
 }  // namespace

@@ -1,0 +1,120 @@
+// If these fail, krok-ragdoll writes another fall than it was asked for, hides that the figure
+// still moves, or ends wrongly on wrong input.
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fixture.h"
+#include "core/file.h"
+#include "core/index.h"
+#include "formats/anim/anim.h"
+#include "samples/generator/walk.h"
+
+namespace krok::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class KrokRagdoll : public test::CliTest {
+ protected:
+  void SetUp() override {
+    samples::WalkOptions options;
+    options.steps = 4;
+    options.rate = 60;
+    walk_ = samples::make_walk(options)->clip;
+    auto file = OutputFile::create(path("walk.anim"));
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE(anim::write(walk_, {}, *file).ok());
+    ASSERT_TRUE(file->commit().ok());
+  }
+
+  Clip read(const std::string& name) const {
+    const auto file = InputFile::open(path(name));
+    EXPECT_TRUE(file.ok()) << name;
+    auto clip = anim::read(file->bytes());
+    EXPECT_TRUE(clip.ok()) << name;
+    return std::move(*clip);
+  }
+
+  test::ToolRun fall(std::vector<std::string> arguments) const {
+    test::ToolOptions options;
+    options.folder = folder_.string();
+    return test::run_tool("krok-ragdoll", std::move(arguments), options);
+  }
+
+  json report(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--json", "-o", "out.anim"});
+    const auto run = fall(std::move(arguments));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return json::parse(run.out);
+  }
+
+  float hips_height(const Clip& clip, int frame) const {
+    return clip.frame_positions(frame)[at(clip.skeleton.find("Hips"))].y();
+  }
+
+  Clip walk_;
+};
+
+TEST_F(KrokRagdoll, AShovedWalkerFallsToTheGround) {
+  const json first =
+      report({"walk.anim", "--at", "1s", "--push", "Spine2=90Ns,0,20Ns", "--duration", "4s"});
+  const json& result = first["result"];
+  EXPECT_EQ(result["first_simulated_frame"], 60);
+  EXPECT_EQ(result["frames"], 301);
+  EXPECT_EQ(result["bodies"], 16);
+  EXPECT_LT(result["largest"]["penetration"].get<double>(), 0.005);
+  EXPECT_LT(result["largest"]["limit_excess"].get<double>(), 0.0175);
+  const Clip out = read("out.anim");
+  EXPECT_LT(hips_height(out, 300), 0.35f);
+  EXPECT_GT(hips_height(out, 300), 0.05f);
+  EXPECT_NEAR(hips_height(out, 59), hips_height(walk_, 59), 1e-6f);
+  EXPECT_EQ(out.provenance.tool, "krok-ragdoll");
+  // The push is to the left, +X.
+  const int hips = out.skeleton.find("Hips");
+  EXPECT_GT(out.frame_positions(300)[at(hips)].x(), out.frame_positions(60)[at(hips)].x() + 0.2f);
+  const json again = report(
+      {"walk.anim", "--at", "1s", "--push", "Spine2=90Ns,0,20Ns", "--duration", "4s", "-j", "2"});
+  EXPECT_EQ(again["result"]["hash"], result["hash"]);
+  const json other =
+      report({"walk.anim", "--at", "1s", "--push", "Spine2=-90Ns,0,20Ns", "--duration", "4s"});
+  EXPECT_NE(other["result"]["hash"], result["hash"]);
+}
+
+TEST_F(KrokRagdoll, WhatStillMovesAtTheEndIsTold) {
+  const json early = report({"walk.anim", "--at", "1s", "--duration", "300ms"});
+  EXPECT_TRUE(early["result"]["rest"].is_null());
+  EXPECT_EQ(early["issues"][0]["code"], "ragdoll-moving");
+}
+
+// Stairs that lead down take the walker further down than level ground does.
+TEST_F(KrokRagdoll, TheGroundMayBeAnything) {
+  report({"walk.anim", "--at", "1s", "--duration", "2s", "--push", "Spine2=0,0,60"});
+  const float level = hips_height(read("out.anim"), 180);
+  report({"walk.anim", "--at", "1s", "--duration", "2s", "--push", "Spine2=0,0,60", "--ground",
+          "slope:angle=-25deg,begin=0m"});
+  EXPECT_LT(hips_height(read("out.anim"), 180), level - 0.2f);
+}
+
+TEST_F(KrokRagdoll, WrongInputIsToldAndNothingIsWritten) {
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& code,
+                           const std::string& text) {
+    arguments.insert(arguments.end(), {"-o", "no.anim"});
+    const auto run = fall(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, HasSubstr("[" + code + "]"));
+    EXPECT_THAT(run.err, HasSubstr(text));
+    EXPECT_FALSE(std::filesystem::exists(path("no.anim")));
+  };
+  refused({"walk.anim", "--at", "99s"}, "ragdoll-time", "99s");
+  refused({"walk.anim", "--at", "1s", "--push", "Wing=1,2,3"}, "ragdoll-joint", "Wing");
+  refused({"walk.anim", "--at", "1s", "--push", "Hips=1,2"}, "usage", "three parts");
+  refused({"walk.anim", "--at", "1s", "--push", "Hips=1,2,3@90s"}, "ragdoll-time", "Hips");
+  refused({"walk.anim", "--at", "1s", "--ground", "swamp"}, "ground-kind", "swamp");
+  refused({"walk.anim", "--at", "1s", "--friction", "-1"}, "usage", "--friction");
+}
+
+}  // namespace
+}  // namespace krok::test
