@@ -168,7 +168,7 @@ TEST(RagdollLaws, ASoftLimitDampsAsItSays) {
 // Two triangles that rise along +x by `angle`.
 Surroundings slope(double angle) {
   Surroundings ground;
-  const double far = 20, up = far * std::tan(angle);
+  const double far = 2, up = far * std::tan(angle);
   const Vec3 a(-far, -up, -far), b(-far, -up, far), c(far, up, far), d(far, up, -far);
   ground.triangles = {{a, b, c}, {a, c, d}};
   return ground;
