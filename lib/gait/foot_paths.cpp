@@ -13,7 +13,12 @@ namespace {
 
 constexpr double kTipUp = 0.25;  // of the swing, after which the tip of the toes is off the ground
 constexpr double kMatching = 0.16;  // seconds
-constexpr double kRamp = 0.35;      // of the time from strike to flat, and from flat to off
+constexpr double kAway = 0.09;  // metres from where the foot was or will be, to be cleared in full
+constexpr double kRamp = 0.35;  // of the time from strike to flat, and from flat to off
+
+double level_distance(const Vec3& a, const Vec3& b) {
+  return std::hypot(a.x() - b.x(), a.z() - b.z());
+}
 
 // The bump u^a (1 - u)^b, scaled to a peak of 1.
 double bump(double u, int a, int b) {
@@ -100,7 +105,9 @@ void Swing::set_ends(const Ends& off, const Ends& strike) {
     to[1] = inwards * (3 * values[0] - 4 * values[1] + values[2]) / (2 * h);
     to[2] = (values[0] - 2 * values[1] + values[2]) / (h * h);
   };
-  way_ = strike.wanted[0].foot.position - off.wanted[0].foot.position;
+  from_ = off.wanted[0].foot.position;
+  to_ = strike.wanted[0].foot.position;
+  way_ = to_ - from_;
   way_.y() = 0;
   way_ /= std::max(way_.norm(), 1e-9);
   derive(off, 1, start_);
@@ -145,9 +152,12 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double u = (times[i] - off_) / (strike_ - off_);
     if (!(u > 0 && u < 1)) continue;
-    const double wanted = clearance * smooth(u / 0.25) * smooth((1 - u) / 0.25);
+    const FootPose foot = at(times[i], blend[i]);
+    const double away = std::min(level_distance(foot.foot.position, from_),
+                                 level_distance(foot.foot.position, to_));
+    const double wanted = clearance * smooth(away / kAway);
     // The tip of the toes rolls over the ground as the foot leaves.
-    const auto points = sole_points(*leg_, at(times[i], blend[i]));
+    const auto points = sole_points(*leg_, foot);
     const std::size_t count = u < kTipUp ? 2 : 3;
     for (const Vec3& point : std::span(points).first(count)) {
       const auto found = ground_near(ground, point.x(), point.z(), from, leg_->length);

@@ -86,8 +86,9 @@ class Swing {
 
   const Leg* leg_;
   double off_, strike_;
-  std::array<Offset, 3> start_ = {}, end_ = {};  // value and two derivatives by time
-  Vec3 way_ = Vec3::Zero();                      // level, from print to print, unit vector
+  std::array<Offset, 3> start_ = {}, end_ = {};   // value and two derivatives by time
+  Vec3 from_ = Vec3::Zero(), to_ = Vec3::Zero();  // the ankle at both ends
+  Vec3 way_ = Vec3::Zero();                       // level, from print to print, unit vector
   Detour detour_;
 };
 
