@@ -26,7 +26,7 @@ void declare_fall(CommandOptions& command, Arguments& a) {
   const char* group = "Fall";
   command.add_option("--at", a.at, "Time at which the body takes over from the motion")
       .type_name("TIME")
-      .required()
+      .default_str("0s")
       .group(group);
   command
       .add_option("--push", a.pushes,
