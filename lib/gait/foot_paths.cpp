@@ -145,6 +145,15 @@ FootPose Swing::at(double time, const FootPose& blend) const {
   return foot;
 }
 
+double Swing::away(const FootPose& foot) const {
+  return std::min(level_distance(foot.foot.position, from_),
+                  level_distance(foot.foot.position, to_));
+}
+
+bool Swing::is_away(const FootPose& foot) const {
+  return away(foot) > kAway;
+}
+
 std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const double> times,
                                       std::span<const FootPose> blend, double clearance,
                                       double from) const {
@@ -153,9 +162,7 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
     const double u = (times[i] - off_) / (strike_ - off_);
     if (!(u > 0 && u < 1)) continue;
     const FootPose foot = at(times[i], blend[i]);
-    const double away = std::min(level_distance(foot.foot.position, from_),
-                                 level_distance(foot.foot.position, to_));
-    const double wanted = clearance * smooth(away / kAway);
+    const double wanted = clearance * smooth(away(foot) / kAway);
     // The tip of the toes rolls over the ground as the foot leaves.
     const auto points = sole_points(*leg_, foot);
     const std::size_t count = u < kTipUp ? 2 : 3;
@@ -191,7 +198,9 @@ void Swing::clear(const Terrain& ground, std::span<const double> times,
           left = std::max(left, lack.height);
         }
       }
-      const double cost = height + kHoldCost * std::abs(hold) + kLeftCost * left;
+      // Sharper bumps shake the knee.
+      const double cost =
+          height * (rise + fall) / 6 + kHoldCost * std::abs(hold) + kLeftCost * left;
       if (cost >= least) continue;
       least = cost;
       best = {std::min(height, 0.6 * leg_->length), hold, rise, fall};

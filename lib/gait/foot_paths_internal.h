@@ -69,6 +69,9 @@ class Swing {
 
   FootPose at(double time, const FootPose& blend) const;
 
+  // Whether a foot is so far from both prints that it is to be clear of the ground.
+  bool is_away(const FootPose& foot) const;
+
  private:
   using Offset = Eigen::Matrix<double, 11, 1>;  // position, rotation, toes' rotation in the foot
   static Offset offset_of(const FootPose& blend, const FootPose& wanted);
@@ -80,6 +83,7 @@ class Swing {
   struct Lack {
     double part, height;
   };
+  double away(const FootPose& foot) const;  // metres from the nearer print, level
   Vec3 detour_at(double part, const Detour& detour) const;
   std::vector<Lack> lacks(const Terrain& ground, std::span<const double> times,
                           std::span<const FootPose> blend, double clearance, double from) const;

@@ -218,9 +218,10 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
       foot = stance(step + 2).at(time, blend);
     } else {
       foot = swing.at(time, blend);
-      const double part = (time - now.off) / (now.strike - now.off);
-      for (const Vec3& point : sole_points(parts_.leg_of(step), foot)) {
-        if (part < 0.25 || part > 0.75) break;
+      const auto points = sole_points(parts_.leg_of(step), foot);
+      // Heel and ball: the tip of the toes rolls over the ground as the foot leaves.
+      for (const Vec3& point : std::span(points).first(2)) {
+        if (!swing.is_away(foot)) break;
         const auto found = ground_near(parts_.ground, point.x(), point.z(), point.y(), 0.3);
         if (found) clearance = std::min(clearance, point.y() - found->height);
       }
