@@ -184,7 +184,7 @@ double slid(double angle, double friction, bool level_and_tilted_gravity) {
   state.to_world = {tilt * Vec3(0, 0.1, 0), tilt};
   if (level_and_tilted_gravity) {
     options.gravity = tilt.conjugate() * options.gravity;
-    ground = {.level = true};
+    ground = {.level = true, .triangles = {}};
     state.to_world = {Vec3(0, 0.1, 0), Quat::Identity()};
   }
   World world(options, ground);
