@@ -13,7 +13,7 @@ constexpr double kFarFromPlace = 0.2;  // of the leg
 constexpr double kBesideEnds = 0.15;   // seconds
 constexpr double kOffGround = 0.012;   // of the leg
 constexpr double kJitter = 0.002;      // metres, less does not matter to a place
-constexpr double kUneven = 1.5;          // deviations
+constexpr double kUneven = 1.5;        // deviations
 constexpr int kDistanceRounds = 200;
 constexpr double kExact = 1e-8;  // metres
 
