@@ -30,6 +30,12 @@ void declare_goals(CommandOptions& command, Arguments& a) {
       .type_name("IN.json")
       .group(group);
   command
+      .add_option("--ground", a.ground,
+                  "Heights of goals in the world are over this ground, as for krok-walk: a mesh, a "
+                  "height field, stairs:rise=17cm,run=29cm, slope:12deg, ...")
+      .type_name("IN")
+      .group(group);
+  command
       .add_option("--reach", a.reaches,
                   "Bring a joint, given by name or role, to a point at a time: "
                   "RightHand=0.4m,1.2m,0.3m@2s, or for a while: @2s..3.5s; repeatable")

@@ -17,6 +17,7 @@ struct Arguments {
   std::string goals;                        // a goal file, or empty
   std::vector<std::string> reaches, looks;  // JOINT=X,Y,Z@TIME
   std::string fade = "0.5s";
+  std::string ground;                 // what heights of goals are over; empty: the origin
   std::string limits;                 // a file, auto, or empty
   std::vector<std::string> captures;  // to learn limits from
   std::string margin = "0deg";

@@ -9,6 +9,7 @@
 #include "formats/anim/anim.h"
 #include "formats/goals/goals.h"
 #include "formats/io/open_motion.h"
+#include "formats/io/open_terrain.h"
 #include "formats/limits/limits_format.h"
 #include "ik/anatomical_limits.h"
 #include "ik/learn_limits.h"
@@ -39,6 +40,7 @@ class Run {
   Status learn();
   Status read_goals();
   Status add_points();
+  Status raise_goals();
   Status set_stiffness();
   Status plant_first();
   Result<int> finish_without_goals();
@@ -128,6 +130,27 @@ Status Run::read_goals() {
   goals_ = opened_.goals;
   solver_.stiffness = opened_.stiffness;
   solver_.root_moves = solver_.root_moves || opened_.root_moves;
+  return {};
+}
+
+// With --ground heights of goals in the world are over the ground.
+Status Run::raise_goals() {
+  if (given().ground.empty()) return {};
+  const auto ground = io::open_terrain(given().ground, {}, context_);
+  if (!ground) return ground.error();
+  for (krok::ik::KeyedGoal& goal : goals_) {
+    if (goal.relative_to >= 0) continue;
+    for (krok::ik::GoalKey& key : goal.keys) {
+      const auto point = (*ground)->at(key.target.x(), key.target.z());
+      if (!point) {
+        return Error("ik-ground",
+                     fmt::format("goal {}: there is no ground at x {} m, z {} m", shown(goal.name),
+                                 readable(key.target.x(), 4), readable(key.target.z(), 4)),
+                     "move the goal, or give a larger ground");
+      }
+      key.target.y() += point->height;
+    }
+  }
   return {};
 }
 
@@ -272,7 +295,7 @@ Result<int> Run::run() {
   if (Status status = check_outputs(); !status) return status.error();
   solver_ = options_.solver;
   for (const auto step : {&Run::read_motion, &Run::read_limits, &Run::read_goals, &Run::add_points,
-                          &Run::set_stiffness, &Run::plant_first}) {
+                          &Run::raise_goals, &Run::set_stiffness, &Run::plant_first}) {
     if (Status status = (this->*step)(); !status) return status.error();
   }
   if (!options_.has_goals()) return finish_without_goals();

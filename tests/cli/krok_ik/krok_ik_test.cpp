@@ -87,6 +87,19 @@ TEST_F(KrokIk, AHandReachesAPlaceAtItsTimeAndTheRestStays) {
   EXPECT_THAT(out.provenance.conversions.back(), HasSubstr("inverse kinematics: 1 goal"));
 }
 
+// If this fails, what is put on a table or a rail that follows the ground ends beside it.
+TEST_F(KrokIk, HeightsOfGoalsAreOverTheGround) {
+  const auto run = ik({"walk.anim", "--reach", reach(Vec3(0, 0.1 - 0.2, 0.05)), "--fade", "200ms",
+                       "--ground", "level:height=20cm", "-o", "out.anim", "--orientation", "xyzw"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Vec3 wanted = place(walk_, 30, "RightHand") + Vec3(0, 0.1, 0.05);
+  EXPECT_LT((place(read("out.anim"), 30, "RightHand") - wanted).norm(), 1e-4);
+  const auto wrong =
+      ik({"walk.anim", "--reach", reach(Vec3::Zero()), "--ground", "levle", "-o", "wrong.anim"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("level"));
+}
+
 TEST_F(KrokIk, WhatIsMissedIsToldWithTheJointThatHoldsBack) {
   // As far as the arm and the trunk can never reach, then with an arm that may not bend.
   const auto far = ik({"walk.anim", "--reach", reach(Vec3(5, 0, 0)), "-o", "far.anim", "--json"});
