@@ -30,7 +30,7 @@ void declare_fall(CommandOptions& command, Arguments& a) {
       .group(group);
   command
       .add_option("--push", a.pushes,
-                  "Push at a joint, given by name or role: Chest=120Ns,0,40Ns at --at, or later: "
+                  "Push at a joint, given by name or role: Spine2=120Ns,0,40Ns at --at, or later: "
                   "head=0,0,-30Ns@2s; repeatable")
       .type_name("JOINT=X,Y,Z")
       .one_each_time()
@@ -89,7 +89,7 @@ std::optional<double> number_of(std::string_view text, std::string_view unit) {
 Result<PushAt> parse_push(const std::string& text) {
   const auto wrong = [&](const std::string& why) {
     return usage(fmt::format("--push {}: {}", shown(text), why),
-                 "write Chest=120Ns,0,40Ns or Chest=120Ns,0,40Ns@2s");
+                 "write Spine2=120Ns,0,40Ns or Spine2=120Ns,0,40Ns@2s");
   };
   PushAt push;
   const std::size_t equals = text.rfind('=');
@@ -165,7 +165,7 @@ ToolSpec make_spec() {
   spec.summary = "Lets a motion's figure fall: rigid bodies with joints take over from the motion";
   spec.inputs = "IN.anim";
   spec.examples = {
-      {"krok-ragdoll walk.anim --at 1.2s --push Chest=120Ns,0,40Ns -o fall.anim",
+      {"krok-ragdoll walk.anim --at 1.2s --push Spine2=120Ns,0,40Ns -o fall.anim",
        "a walker is shoved from the side and falls"},
       {"krok-ragdoll walk.anim --model walker.model --at 2s --ground stairs.glb --duration 5s -o "
        "fall.anim --json",
