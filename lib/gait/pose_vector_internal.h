@@ -13,7 +13,7 @@
 namespace krok::gait {
 
 using PoseVector = Eigen::VectorXd;
-inline constexpr int kPoseValues = 7;  // a joint
+inline constexpr Eigen::Index kPoseValues = 7;  // a joint
 
 inline auto position_of(const PoseVector& pose, int joint) {
   return pose.segment<3>(kPoseValues * joint);
