@@ -57,10 +57,10 @@ Result<HeightImage> read_checked_exr(std::span<const std::byte> file,
 }
 
 Status check_count(std::uint64_t columns, std::uint64_t rows) {
-  if (columns * rows <= static_cast<std::uint64_t>(terrain::kMostHeights)) return {};
+  if (columns * rows <= static_cast<std::uint64_t>(terrain::kMaxHeights)) return {};
   return Error("height-size",
                fmt::format("the image has {} x {} samples, the limit is {} in total", columns, rows,
-                           terrain::kMostHeights),
+                           terrain::kMaxHeights),
                "reduce its size");
 }
 
@@ -79,7 +79,7 @@ Result<HeightImage> read_exr(std::span<const std::byte> file) {
 }
 
 Result<HeightImage> read_png(std::span<const std::byte> file) {
-  const auto pixels = image::decode_grey(file, static_cast<std::size_t>(terrain::kMostHeights));
+  const auto pixels = image::decode_grey(file, static_cast<std::size_t>(terrain::kMaxHeights));
   if (!pixels) return pixels.error();
   HeightImage image{pixels->width, pixels->height, {}, true};
   image.values.resize(pixels->values.size());

@@ -26,8 +26,8 @@ struct HeightImage {
 // Reads an image by its content. EXR: the channel "height", Y, Z or R, the first of these that
 // there is, otherwise the first of all; half, float or 32-bit integer, not tiled, lossless. NaN is
 // a hole. PNG: grey of any depth; holes where an alpha channel is below a half. For untrusted
-// input: memory is proportional to the file's size and to terrain::kMostHeights. Codes: height-kind
-// for other files; height-size for more samples than kMostHeights; exr-header, exr-data; those of
+// input: memory is proportional to the file's size and to terrain::kMaxHeights. Codes: height-kind
+// for other files; height-size for more samples than kMaxHeights; exr-header, exr-data; those of
 // image::decode_grey().
 Result<HeightImage> read(std::span<const std::byte> file);
 

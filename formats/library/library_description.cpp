@@ -33,7 +33,8 @@ json::Members::Parser parser_of(std::string_view measures) {
       return time->value;
     };
   }
-  return measures.starts_with("step.turn") ? parse_angle : parse_length;
+  const bool is_angle = measures.starts_with("step.turn") || measures.starts_with("step.path_turn");
+  return is_angle ? parse_angle : parse_length;
 }
 
 class Reader {

@@ -13,7 +13,7 @@ namespace krok::path_file {
 namespace {
 
 constexpr double kPieceLength = 0.02;  // metres
-constexpr double kMostPieces = 20000;  // of a curve
+constexpr double kMaxPieces = 20000;   // of a curve
 
 class DataReader {
  public:
@@ -57,8 +57,8 @@ class DataReader {
       if (!first && !starts_number(in_.peek())) return {};
       if (auto fault = segment()) return fault;
       if (in_.offset() == at) return DataFault{at, "a number is missing"};
-      if (points_.size() > kMostPoints) {
-        return DataFault{at, fmt::format("the way has more than {} points", kMostPoints),
+      if (points_.size() > kMaxPoints) {
+        return DataFault{at, fmt::format("the way has more than {} points", kMaxPoints),
                          "path-limit"};
       }
       // Further pairs of a move are lines.
@@ -165,7 +165,7 @@ class DataReader {
     for (const Vec2* p = polyline.begin(); p + 1 < polyline.end(); ++p) {
       length += (to_metres_.linear() * (p[1] - p[0])).norm();
     }
-    return static_cast<int>(std::clamp(std::ceil(length / kPieceLength), 1.0, kMostPieces));
+    return static_cast<int>(std::clamp(std::ceil(length / kPieceLength), 1.0, kMaxPieces));
   }
 
   void cubic_to(const Vec2& a, const Vec2& b, const Vec2& end) {

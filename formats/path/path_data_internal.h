@@ -11,7 +11,7 @@
 
 namespace krok::path_file {
 
-inline constexpr std::size_t kMostPoints = 4'000'000;
+inline constexpr std::size_t kMaxPoints = 4'000'000;
 
 using Affine2 = Eigen::Transform<double, 2, Eigen::Affine>;
 

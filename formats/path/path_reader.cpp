@@ -35,8 +35,8 @@ std::vector<PathPoint> without_times(const std::vector<Vec2>& points) {
 Points read_csv_path(std::string_view text, const std::string& path) {
   const auto table = csv::Table::read(text, path);
   if (!table) return table.error();
-  if (table->row_count() > kMostPoints) {
-    return Error("path-limit", fmt::format("the way has more than {} points", kMostPoints))
+  if (table->row_count() > kMaxPoints) {
+    return Error("path-limit", fmt::format("the way has more than {} points", kMaxPoints))
         .in_file(path);
   }
   const std::vector<std::string> names = {"x", "z", "time"};

@@ -21,7 +21,7 @@ using gait::Print;
 
 constexpr double kFarthest = 1e6;  // metres
 constexpr double kLatest = 1e6;    // seconds
-constexpr double kMostTurn = 1e4;  // radians: many times round
+constexpr double kMaxTurn = 1e4;   // radians: many times round
 
 // A value of a print by its name in files.
 struct Field {
@@ -45,7 +45,7 @@ const std::array<Field, 5>& fields() {
   static const std::array<Field, 5> kFields = {{
       {"x", "m", true, kFarthest, parse_length, [](Print& p, double v) { p.x = v; }},
       {"z", "m", true, kFarthest, parse_length, [](Print& p, double v) { p.z = v; }},
-      {"heading", "deg", true, kMostTurn, parse_angle, [](Print& p, double v) { p.heading = v; }},
+      {"heading", "deg", true, kMaxTurn, parse_angle, [](Print& p, double v) { p.heading = v; }},
       {"height", "m", false, kFarthest, parse_length, [](Print& p, double v) { p.height = v; }},
       {"time", "s", false, kLatest, parse_seconds, [](Print& p, double v) { p.time = v; }},
   }};

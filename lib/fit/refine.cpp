@@ -34,7 +34,7 @@ constexpr int kRefusedRounds = 2;  // rounds before a refused point may be tried
 // Distance of new points to refused ones, in usual distances; grows with each round in vain after
 // the first ones.
 constexpr int kPatience = 2;
-constexpr double kAvoid = detail::kNear, kMostAvoid = 4 * detail::kNear;
+constexpr double kAvoid = detail::kNear, kMaxAvoid = 4 * detail::kNear;
 
 using detail::Found;
 
@@ -199,8 +199,7 @@ std::vector<Found> Refiner::seek(double usual, double& worst) const {
   // Where points are refused round after round, the search goes on elsewhere.
   const int in_vain = rounds_in_vain();
   const int kept = std::max(kRefusedRounds, in_vain);
-  const double avoid =
-      std::min(kAvoid * (1 + std::max(0, in_vain - kPatience)), kMostAvoid) * usual;
+  const double avoid = std::min(kAvoid * (1 + std::max(0, in_vain - kPatience)), kMaxAvoid) * usual;
   std::vector<detail::ErrorPoint> avoided;
   for (const RefusedPoint& refused : state_.refused) {
     if (refused.round + kept < static_cast<int>(state_.rounds.size())) continue;

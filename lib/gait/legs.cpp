@@ -13,7 +13,7 @@ namespace {
 constexpr double kNearlyStraight = 0.985;  // of the leg: beyond this a knee turns far for little
 // The most that a leg is stretched where the blend's is: nearer to straight, a footprint that is
 // off by two millimetres is a knee that turns by six degrees in a frame.
-constexpr double kMostStraight = 0.994;
+constexpr double kMaxStraight = 0.994;
 constexpr double kStraight = 0.9995;
 
 }  // namespace
@@ -26,7 +26,7 @@ double lowering_for(const Walker& walker, std::span<const Transform> joint_to_wo
     const Vec3& hip = joint_to_world[at(leg.upper)].position;
     const double blend = (hip - joint_to_world[at(leg.foot)].position).norm();
     const double longest =
-        std::max(kNearlyStraight * leg.length, std::min(blend, kMostStraight * leg.length));
+        std::max(kNearlyStraight * leg.length, std::min(blend, kMaxStraight * leg.length));
     const Vec3 way = hip - target[side].foot.position;
     const double level = std::hypot(way.x(), way.z());
     if (way.norm() <= longest) continue;

@@ -15,7 +15,7 @@ constexpr double kShortestPath = 0.05, kLongestPath = 1e6, kFarthestPoint = 1e6;
 constexpr double kSamePoint = 1e-6;
 constexpr double kPathSpacing = 0.02;
 constexpr double kWayStep = 0.1;  // metres between points of a motion's way
-constexpr double kMostPathSamples = 4e6;
+constexpr double kMaxPathSamples = 4e6;
 
 double heading_of(const Vec2& way) {
   return std::atan2(way.x(), way.y());
@@ -84,7 +84,7 @@ Vec2 Path::point_at(double length, std::size_t& segment) const {
 }
 
 void Path::sample_headings(double window) {
-  spacing_ = std::max(kPathSpacing, length_ / kMostPathSamples);
+  spacing_ = std::max(kPathSpacing, length_ / kMaxPathSamples);
   const auto count = static_cast<std::size_t>(std::ceil(length_ / spacing_)) + 1;
   headings_.resize(count);
   std::size_t behind = 0, ahead = 0;

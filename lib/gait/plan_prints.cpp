@@ -13,12 +13,12 @@ namespace krok::gait {
 
 namespace {
 
-constexpr double kPlanGrid = 0.005;      // metres, of places for feet on uneven ground
-constexpr double kMostPlanPlaces = 5e6;  // of them
-constexpr double kStorey = 0.6;          // metres: what is higher than this is overhead
-constexpr double kEndRange = 0.4;        // metres by which the last prints may be short of the end
-constexpr double kToesOutCost = 0.3;     // of a step's length squared
-constexpr double kShortOfEndCost = 4;    // per metre
+constexpr double kPlanGrid = 0.005;     // metres, of places for feet on uneven ground
+constexpr double kMaxPlanPlaces = 5e6;  // of them
+constexpr double kStorey = 0.6;         // metres: what is higher than this is overhead
+constexpr double kEndRange = 0.4;       // metres by which the last prints may be short of the end
+constexpr double kToesOutCost = 0.3;    // of a step's length squared
+constexpr double kShortOfEndCost = 4;   // per metre
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 FootSide other_foot(FootSide side) {
@@ -29,14 +29,14 @@ Status check_plan_options(const PlanOptions& options) {
   const auto wrong = [](const char* what) {
     return Error("plan-options", what, "check step length, width and turn");
   };
-  if (!(options.least_step > 0.01 && options.least_step <= options.step_length &&
-        options.step_length <= options.most_step && options.most_step < 10)) {
+  if (!(options.min_step > 0.01 && options.min_step <= options.step_length &&
+        options.step_length <= options.max_step && options.max_step < 10)) {
     return wrong(
         "steps must be above 1 cm, the least at most as long as asked, and the most at least");
   }
   if (!(options.step_width >= 0 && options.step_width < 2))
     return wrong("the step width is not 0 to 2 m");
-  if (!(options.most_turn > 0.01 && options.most_rise > 0))
+  if (!(options.max_turn > 0.01 && options.max_rise > 0))
     return wrong("turn and rise must be above 0");
   if (!(options.heel_to_ball >= 0 && options.heel_to_toes >= options.heel_to_ball &&
         options.sole_width >= 0 && options.heel_to_toes < 1)) {
@@ -117,14 +117,14 @@ class PrintPlanner {
 };
 
 void PrintPlanner::count_steps() {
-  spacing_ = std::max(kPlanGrid, path_.length() / kMostPlanPlaces);
+  spacing_ = std::max(kPlanGrid, path_.length() / kMaxPlanPlaces);
   const auto count = static_cast<std::size_t>(std::ceil(path_.length() / spacing_)) + 1;
   steps_.assign(count, 0);
   for (std::size_t i = 1; i < count; ++i) {
     const double width = std::min(spacing_, path_.length() - static_cast<double>(i - 1) * spacing_);
     const double turn = std::abs(path_.at(static_cast<double>(i) * spacing_).heading -
                                  path_.at(static_cast<double>(i - 1) * spacing_).heading);
-    steps_[i] = steps_[i - 1] + std::max(width / options_.step_length, turn / options_.most_turn);
+    steps_[i] = steps_[i - 1] + std::max(width / options_.step_length, turn / options_.max_turn);
   }
 }
 
@@ -162,7 +162,7 @@ std::vector<double> PrintPlanner::even_places() const {
   double count = std::max(1.0, std::round(all));
   // Fewer steps than counted are longer ones, and turn more where that is what limits them.
   const bool turns = all > path_.length() / options_.step_length + 0.01;
-  if (turns || all / count * options_.step_length > options_.most_step) {
+  if (turns || all / count * options_.step_length > options_.max_step) {
     count = std::ceil(all - 1e-9);
   }
   std::vector<double> places;
@@ -202,7 +202,7 @@ bool PrintPlanner::all_fit(const std::vector<double>& places) const {
     side = other_foot(side);
     const SoleGround next = under(place, side);
     if (next.place != SolePlace::whole) return false;
-    if (std::abs(next.height - last.height) > options_.most_rise) return false;
+    if (std::abs(next.height - last.height) > options_.max_rise) return false;
     last = next;
   }
   return under(places.back(), other_foot(side)).place == SolePlace::whole;
@@ -223,7 +223,7 @@ PlaceStates PrintPlanner::possible_places() const {
 }
 
 std::size_t PrintPlanner::find_ways(PlaceStates& states) const {
-  const auto reach = static_cast<std::size_t>(std::ceil(options_.most_step / spacing_));
+  const auto reach = static_cast<std::size_t>(std::ceil(options_.max_step / spacing_));
   std::size_t farthest = 0;
   for (std::size_t i = 1; i < steps_.size(); ++i) {
     for (std::size_t side = 0; side < 2; ++side) {
@@ -233,8 +233,8 @@ std::size_t PrintPlanner::find_ways(PlaceStates& states) const {
       for (std::size_t j = i > reach ? i - reach : 0; j < i; ++j) {
         const PlaceState& before = states[1 - side][j];
         const double step = length_of(i) - length_of(j);
-        if (before.cost == kNever || step < options_.least_step || step > options_.most_step ||
-            std::abs(state.sole.height - before.sole.height) > options_.most_rise) {
+        if (before.cost == kNever || step < options_.min_step || step > options_.max_step ||
+            std::abs(state.sole.height - before.sole.height) > options_.max_rise) {
           continue;
         }
         const double off = steps_[i] - steps_[j] - 1;
@@ -258,8 +258,7 @@ PrintPlanner::End PrintPlanner::best_end(const PlaceStates& states) const {
       const PlaceState& beside = states[1 - side][i];
       const double cost = states[side][i].cost + kShortOfEndCost * missing;
       const double rise = std::abs(beside.sole.height - states[side][i].sole.height);
-      if (!(cost < best.cost) || beside.sole.place == SolePlace::none ||
-          rise > options_.most_rise) {
+      if (!(cost < best.cost) || beside.sole.place == SolePlace::none || rise > options_.max_rise) {
         continue;
       }
       best = {cost, i, side};
@@ -293,8 +292,7 @@ Result<std::vector<double>> PrintPlanner::fitted_places() const {
             "{} m a sole would lie across an edge or over a hole, or the step be higher than "
             "{} m",
             readable(place.x, 4), readable(place.z, 4), readable(length_of(farthest), 4),
-            readable(options_.least_step), readable(options_.most_step),
-            readable(options_.most_rise)),
+            readable(options_.min_step), readable(options_.max_step), readable(options_.max_rise)),
         "lead the path elsewhere, or give footprints");
   }
   std::vector<double> places;

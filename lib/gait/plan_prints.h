@@ -14,11 +14,11 @@ namespace krok::gait {
 
 struct PlanOptions {
   double step_length = 0.65;        // metres along the path, where it is straight; > 0
-  double least_step = 0.15;         // metres; > 0
-  double most_step = 0.8;           // metres, at least step_length
+  double min_step = 0.15;           // metres; > 0
+  double max_step = 0.8;            // metres, at least step_length
   double step_width = 0.2;          // metres from heel to heel across the path
-  double most_turn = 0.45;          // radians a step, > 0: in curves steps are shorter
-  double most_rise = 0.25;          // metres a step up or down
+  double max_turn = 0.45;           // radians a step, > 0: in curves steps are shorter
+  double max_rise = 0.25;           // metres a step up or down
   FootSide first = FootSide::left;  // the foot that steps first
   std::array<double, 2> toe_out{};  // [FootSide], radians added to the heading, positive to +X
   // The sole from heel to toes; edges of the ground are kept from under it.

@@ -10,7 +10,7 @@ namespace krok::gait {
 namespace {
 
 constexpr double kLevelStep = 0.05;    // metres: what rises less is a step on level ground
-constexpr double kMostToeOut = 0.35;   // radians: more is a turn
+constexpr double kMaxToeOut = 0.35;    // radians: more is a turn
 constexpr double kToesPerBall = 1.45;  // from heel to toes, of heel to ball
 constexpr double kUnknownSole = 0.16;  // metres from heel to ball, where the ball is not known
 constexpr double kMoreLength = 0.03;   // metres beyond the longest example
@@ -37,7 +37,7 @@ FoundStep step_of(const parametric::Library& library, const parametric::Example&
 
 Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
   PlanOptions options;
-  double longest = 0, most_turn = 0;
+  double longest = 0, max_turn = 0;
   for (const StepLibrary& one : libraries) {
     const parametric::Library& library = one.library();
     for (std::size_t d = 0; d < library.parameters.size(); ++d) {
@@ -45,7 +45,7 @@ Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
       for (const parametric::Example& example : library.examples) {
         const double value = example.parameters[d];
         if (quantity == parametric::Quantity::step_length) longest = std::max(longest, value);
-        if (quantity == parametric::Quantity::step_turn) most_turn = std::max(most_turn, value);
+        if (quantity == parametric::Quantity::step_turn) max_turn = std::max(max_turn, value);
       }
     }
   }
@@ -64,13 +64,13 @@ Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
   const double count = level_count > 0 ? level_count : static_cast<double>(library.examples.size());
   const FoundStep& sum = level_count > 0 ? level : other;
   // Prints are planned along the way, which lies between the directions of the toes.
-  const double out = std::clamp(0.5 * sum.turn / count, -kMostToeOut, kMostToeOut);
+  const double out = std::clamp(0.5 * sum.turn / count, -kMaxToeOut, kMaxToeOut);
   const double along = sum.along / count, across = sum.across / count;
   options.step_length = along * std::cos(out) + across * std::sin(out);
   options.step_width = std::max(0.0, across * std::cos(out) - along * std::sin(out));
   options.toe_out = {out, -out};
-  options.most_step = std::max(longest, options.step_length) + kMoreLength;
-  if (most_turn > 0.1) options.most_turn = most_turn;
+  options.max_step = std::max(longest, options.step_length) + kMoreLength;
+  if (max_turn > 0.1) options.max_turn = max_turn;
   const auto walker = make_walker(libraries.front());
   if (!walker) return walker.error();
   const FootGeometry& sole = walker->leg(FootSide::left).sole;
@@ -78,7 +78,7 @@ Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
   options.heel_to_toes =
       sole.tip > 0 ? options.heel_to_ball + sole.tip : kToesPerBall * options.heel_to_ball;
   options.sole_width = walker->sole_width;
-  options.least_step = std::min(options.least_step, options.step_length);
+  options.min_step = std::min(options.min_step, options.step_length);
   return options;
 }
 

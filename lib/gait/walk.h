@@ -21,8 +21,8 @@ struct WalkOptions {
   double rate = 0;   // frames per second of the result; 0: the libraries'
   double speed = 1;  // of the steps, relative to the library's durations; prints with times win
   bool extrapolate = false;  // steps outside the range of the library's examples
-  // Instead of refusing a print that cannot be reached, moves it (and all after it by as much) to
-  // the nearest that can.
+  // Instead of refusing a print that cannot be reached, moves it to the nearest that can. The
+  // prints after it stay where they are, and are moved in turn if they need to be.
   bool adapt = false;
   double stretch = 0;        // metres by which a leg may be lengthened in place of a knee pop
   double clearance = 0.015;  // metres of the swing foot over the ground
@@ -63,7 +63,7 @@ class Walk {
   static Result<Walk> plan(std::span<const StepLibrary> libraries, std::span<const Print> prints,
                            const Terrain& ground, const WalkOptions& options);
 
-  // Frames are made in blocks of some minutes at most, which are kept until they are released; the
+  // Frames are made in blocks of 64 steps, which are kept until they are released; the
   // same however they are divided and on however many threads. Valid as long as the walk.
   const FrameSource& frames() const;
 

@@ -34,14 +34,13 @@ std::string in_words(const Library& library, std::span<const double> parameters)
 
 // How far a weight is from the middle of its range.
 double from_middle(double weight) {
-  return std::abs(weight - 0.5 * (kLeastWeight + kMostWeight));
+  return std::abs(weight - 0.5 * (kMinWeight + kMaxWeight));
 }
 
 bool is_blend(std::span<const double> weights) {
   constexpr double kRoundingOfWeights = 1e-9;
   return std::ranges::all_of(weights, [](double weight) {
-    return weight >= kLeastWeight - kRoundingOfWeights &&
-           weight <= kMostWeight + kRoundingOfWeights;
+    return weight >= kMinWeight - kRoundingOfWeights && weight <= kMaxWeight + kRoundingOfWeights;
   });
 }
 
@@ -114,7 +113,7 @@ Result<Synthesis> Synthesiser::weights(std::span<const double> parameters,
   return Error("parametric-extrapolation",
                fmt::format("{} needs a weight of {} for {}; {} to {} are safe",
                            in_words(*library_, parameters), readable(*worst, 3), shown(name),
-                           kLeastWeight, kMostWeight),
+                           kMinWeight, kMaxWeight),
                "add examples near these parameters, or smooth the weights with krok-fit --smooth");
 }
 

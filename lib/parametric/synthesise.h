@@ -11,7 +11,7 @@
 namespace krok::parametric {
 
 struct SynthesisOptions {
-  // Allow parameters outside the bounds, and weights outside [kLeastWeight, kMostWeight].
+  // Allow parameters outside the bounds, and weights outside [kMinWeight, kMaxWeight].
   bool extrapolate = false;
   // Max run-time correction steps: Gauss-Newton on the weights, starting from those of the weight
   // function.
@@ -20,7 +20,7 @@ struct SynthesisOptions {
 
 // Beyond these a motion is no blend of the examples any more: rotations and timing are carried on
 // to where no example is.
-constexpr double kLeastWeight = -0.25, kMostWeight = 1.25;
+constexpr double kMinWeight = -0.25, kMaxWeight = 1.25;
 
 struct Synthesis {
   std::vector<double> weights;     // [examples], summing to 1

@@ -14,8 +14,8 @@ namespace krok::parametric {
 
 namespace {
 
-constexpr int kMostParts = 10;            // of the captures
-constexpr std::size_t kMostLeftOut = 20;  // of each part
+constexpr int kMaxParts = 10;            // of the captures
+constexpr std::size_t kMaxLeftOut = 20;  // of each part
 
 // Examples to make motions of.
 struct Material {
@@ -50,7 +50,7 @@ class Part {
     for (std::size_t i = 0; i < library.examples.size(); ++i) {
       if (groups[i] % parts == part) left_out_.push_back(i);
     }
-    const std::size_t stride = (left_out_.size() + kMostLeftOut - 1) / kMostLeftOut;
+    const std::size_t stride = (left_out_.size() + kMaxLeftOut - 1) / kMaxLeftOut;
     for (std::size_t i = 0; i < left_out_.size(); i += std::max<std::size_t>(stride, 1)) {
       asked_.push_back(left_out_[i]);
     }
@@ -166,7 +166,7 @@ Result<WeightTrials> try_weights(const Library& library, std::span<const int> gr
     return Error("parametric-groups", "each example needs a capture, counted from 0");
   }
   const int last = groups.empty() ? -1 : std::ranges::max(groups);
-  const int parts = std::min(kMostParts, last + 1);
+  const int parts = std::min(kMaxParts, last + 1);
   std::vector<std::vector<Prediction>> predictions(static_cast<std::size_t>(parts));
   parallel_for(predictions.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -16,14 +16,14 @@ constexpr double kJitterSpeed = 0.03;  // metres a second, for a leg of 0.86 m
 constexpr double kUsualLeg = 0.86;     // metres
 constexpr double kFootLength = 0.22;   // of the leg, heel to ball
 
-constexpr double kMostLift = 15 * kRadiansPerDegree;
-constexpr double kLeastLever = 0.2;  // of the way from ball to ankle
-constexpr double kLiftCutoff = 6;    // Hz
+constexpr double kMaxLift = 15 * kRadiansPerDegree;
+constexpr double kMinLever = 0.2;  // of the way from ball to ankle
+constexpr double kLiftCutoff = 6;  // Hz
 
 constexpr double kCalmCutoff = 6;      // Hz
 constexpr double kCalmJitter = 0.001;  // metres
 constexpr double kCalmJoin = 0.05;     // seconds
-constexpr double kMostCalm = 4 * kRadiansPerDegree;
+constexpr double kMaxCalm = 4 * kRadiansPerDegree;
 
 class FootSolver {
  public:
@@ -109,7 +109,7 @@ class FootSolver {
       const Vec3 wanted = (heel ? heel : ball)->place - ankle - calm[f];
       const Vec3 turn = rotation_vector(shortest_arc(arm, wanted));
       more.set(f,
-               turn * (share * parts[f] * std::min(1.0, kMostCalm / std::max(turn.norm(), 1e-12))));
+               turn * (share * parts[f] * std::min(1.0, kMaxCalm / std::max(turn.norm(), 1e-12))));
     }
     const std::vector<Vec3> turns = curve_through(more, {.rate = clip_.rate});
     for (std::size_t f = 0; f < frames_; ++f) {
@@ -169,8 +169,8 @@ class FootSolver {
       const Vec3 arm = from_rotation_vector(angle * axis) * Vec3(ankle - ball);
       const Vec3 line = ball + arm - hip;
       const double nearer = -axis.cross(arm).dot(line.stableNormalized());
-      if (nearer < kLeastLever * arm.norm()) break;
-      angle = std::clamp(angle + (line.norm() - longest) / nearer, 0.0, kMostLift);
+      if (nearer < kMinLever * arm.norm()) break;
+      angle = std::clamp(angle + (line.norm() - longest) / nearer, 0.0, kMaxLift);
     }
     return angle;
   }

@@ -49,7 +49,7 @@ class FallMaker {
   const std::vector<Body>& bodies_;
   const FallOptions& options_;
   Pose start_, locals_;
-  // The world's origin is below the figure, as Bullet computes in single precision.
+  // The world's origin is below the character, as Bullet computes in single precision.
   Vec3 origin_ = Vec3::Zero();
   World world_{WorldOptions(), Surroundings()};
   Fall fall_;
@@ -162,7 +162,7 @@ void FallMaker::add_frames(double from, double to, const Pose& before, const Pos
   }
 }
 
-// False once the figure rests.
+// False once the character rests.
 bool FallMaker::step(int number) {
   world_.step();
   const WorldMeasures now = world_.measures();

@@ -37,7 +37,7 @@ struct Fall {
   double least_height = 0;  // metres: lowest centre of a body
 };
 
-// Lets a motion's figure fall. The bodies start from its pose at `at` and from its speeds, which
+// Lets a motion's character fall. The bodies start from its pose at `at` and from its speeds, which
 // are differences over one frame to either side. The frames after `at` come from the bodies: the
 // root body gives the position and orientation of its joint, each simulated joint has its body's
 // orientation, all others keep their turn relative to their parent, and positions follow down the

@@ -95,7 +95,7 @@ void World::Inside::add_body(const Body& body, const BodyState& state) {
   auto made = std::make_unique<btRigidBody>(info);
   made->setLinearVelocity(to_bullet(state.velocity));
   made->setAngularVelocity(to_bullet(state.spin));
-  // Rest is judged by the caller, by the whole figure.
+  // Rest is judged by the caller, by the whole character.
   made->setActivationState(DISABLE_DEACTIVATION);
   shapes.push_back(std::move(shape));
   bodies.push_back(std::move(made));

@@ -57,10 +57,10 @@ Result<std::unique_ptr<Terrain>> height_field(HeightField field) {
         "use at least 2 x 2");
   }
   const std::int64_t samples = std::int64_t{field.columns} * field.rows;
-  if (samples > kMostHeights) {
+  if (samples > kMaxHeights) {
     return Error(
         "ground-size",
-        fmt::format("{} x {} samples are more than {}", field.columns, field.rows, kMostHeights),
+        fmt::format("{} x {} samples are more than {}", field.columns, field.rows, kMaxHeights),
         "scale the image down");
   }
   if (static_cast<std::int64_t>(field.heights.size()) != samples) {

@@ -19,7 +19,7 @@ struct HeightField {
 };
 
 // The most samples that a height field may have: 256 MiB of them.
-inline constexpr std::int64_t kMostHeights = std::int64_t{1} << 26;
+inline constexpr std::int64_t kMaxHeights = std::int64_t{1} << 26;
 
 // Ground that is bilinear between the samples, so it is never above or below those around. There is
 // none outside the field, nor in a square of four samples of which one is a hole.

@@ -190,10 +190,10 @@ void MeshGround::look_at(unsigned index, RTCRay& ray, Found& found) const {
 
 Result<std::unique_ptr<Terrain>> mesh_ground(std::vector<GroundTriangle> triangles,
                                              bool* reversed) {
-  if (triangles.size() > kMostGroundTriangles) {
+  if (triangles.size() > kMaxGroundTriangles) {
     return Error(
         "ground-size",
-        fmt::format("{} triangles are more than {}", triangles.size(), kMostGroundTriangles),
+        fmt::format("{} triangles are more than {}", triangles.size(), kMaxGroundTriangles),
         "simplify the mesh");
   }
   double up = 0, down = 0;

@@ -12,7 +12,7 @@ namespace krok::terrain {
 // Counter-clockwise seen from the side that can be stood on; metres, world.
 using GroundTriangle = std::array<Vec3, 3>;
 
-inline constexpr std::size_t kMostGroundTriangles = 50'000'000;
+inline constexpr std::size_t kMaxGroundTriangles = 50'000'000;
 
 // The triangles that face up as ground: others, the undersides of bridges and walls, do not carry.
 // If triangles that face down cover more than twice as much, the winding is taken to be reversed

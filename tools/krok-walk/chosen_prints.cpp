@@ -57,8 +57,8 @@ Result<std::vector<gait::Print>> choose_prints(const Options& options,
   if (options.step_width) plan.step_width = *options.step_width;
   if (options.step_length) {
     plan.step_length = *options.step_length;
-    plan.most_step = std::max(plan.most_step, plan.step_length);
-    plan.least_step = std::min(plan.least_step, plan.step_length);
+    plan.max_step = std::max(plan.max_step, plan.step_length);
+    plan.min_step = std::min(plan.min_step, plan.step_length);
   }
   const auto planned = gait::plan_prints(*path, ground, plan);
   if (!planned) return Error(planned.error()).in_file(options.path);

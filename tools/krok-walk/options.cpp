@@ -107,9 +107,10 @@ void declare_steps(CommandOptions& command, Arguments& a) {
       .capture_default_str()
       .group(group);
   command
-      .add_flag("--adapt", a.adapt,
-                "Take the nearest footprint that can be reached where one cannot, and move those "
-                "after it as much; reported")
+      .add_flag(
+          "--adapt", a.adapt,
+          "Take the nearest footprint that can be reached where one cannot, leaving the others "
+          "where they are; reported")
       .group(group);
   command
       .add_flag("--extrapolate", a.extrapolate,

@@ -103,7 +103,7 @@ void report_steps(std::span<const gait::StepLibrary> libraries, const gait::Walk
   }
   Json& result = context.report.result;
   result["largest_miss"] = missed;
-  result["least_clearance"] = clearance;
+  result["min_clearance"] = clearance;
   result["largest_leg_extension"] = extension;
   result["largest_pelvis_lowering"] = lowered;
   result["moved_prints"] = moved;
@@ -172,7 +172,7 @@ void report_walk(const FrameSource& frames, const std::vector<gait::Print>& prin
       "the ground or more",
       context.output, counted(static_cast<long long>(prints.size()) - 2, "step"),
       readable(frames.duration(), 4), missed < 0.001 ? "less than 0.001" : readable(missed, 2),
-      readable(100 * result["least_clearance"].get<double>(), 3)));
+      readable(100 * result["min_clearance"].get<double>(), 3)));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ constexpr std::array kVerbs = {
     Verb{"morph", "pack, unpack and animate morph targets; key-frame meshes"},
     Verb{"retarget", "retarget a motion to another skeleton"},
     Verb{"ik", "bring joints of a motion to goals by inverse kinematics"},
-    Verb{"ragdoll", "let a motion's figure fall by physics"},
+    Verb{"ragdoll", "let a motion's character fall by physics"},
     Verb{"edit", "cut, clean, mirror, loop, join, scale and place motions"},
     Verb{"keys", "detect, print and edit foot contacts and gait keytimes"},
     Verb{"blend", "blend motions by weights and keytimes"},

@@ -73,7 +73,7 @@ TEST(PlanPrints, StepsAreShorterInCurves) {
     const Print& to = plan->prints[i];
     const double toes = to.side == FootSide::left ? 0.2 : -0.2;
     const double turn = to.heading - from.heading - toes;
-    EXPECT_LT(std::abs(turn), options.most_turn + 1e-6);
+    EXPECT_LT(std::abs(turn), options.max_turn + 1e-6);
     total += turn;
     shortest = std::min(shortest, std::hypot(to.x - from.x, to.z - from.z));
   }
@@ -101,8 +101,8 @@ TEST(PlanPrints, StairsHaveAFootOnEachTread) {
       EXPECT_LE(std::abs(heel - before), 0.2001);
       if (i + 1 == plan->prints.size()) continue;
       const double step = step_between(plan->prints[i - 1], print).x();
-      EXPECT_GE(step, options.least_step - 1e-6);
-      EXPECT_LE(step, options.most_step + 1e-6);
+      EXPECT_GE(step, options.min_step - 1e-6);
+      EXPECT_LE(step, options.max_step + 1e-6);
     }
   }
 }
@@ -170,7 +170,7 @@ TEST(PlanPrints, RefusesWhatMakesNoSense) {
   options.step_length = 1;
   EXPECT_EQ(plan_prints(straight(5), *level, options).error().code, "plan-options");
   options = {};
-  options.most_turn = 0;
+  options.max_turn = 0;
   EXPECT_EQ(plan_prints(straight(5), *level, options).error().code, "plan-options");
   EXPECT_EQ(plan_prints(straight(5), *stones(1, 1), {}).error().code, "plan-ground");
   EXPECT_EQ(

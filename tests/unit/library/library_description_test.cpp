@@ -3,6 +3,7 @@
 
 #include "formats/library/library_description.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -79,6 +80,20 @@ TEST(LibraryDescription, ReadsWhatTheSpecSays) {
   EXPECT_EQ(one.keytimes[0].name, "begin");
   EXPECT_EQ(one.keytimes[1].time.seconds(60), 0.25);
   EXPECT_EQ(one.keytimes[2].time.seconds(20), 2.0);
+}
+
+// Would fail if a turn of the path were read as a length, so that its tolerance refused degrees.
+TEST(LibraryDescription, TurnsAreAngles) {
+  for (const char* turn : {"step.turn", "step.path_turn", "step.path_turn@end"}) {
+    const std::string text = fmt::format(
+        R"({{"schema": "krok.library/1", "examples": [{{"clip": "a.anim"}}],
+            "parameters": [{{"measures": "{}", "tolerance": "0.1deg", "from": "-20deg"}}]}})",
+        turn);
+    const auto read = library::read(text, "walk.json");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_NEAR(*read->parameters[0].tolerance, 0.1 * std::numbers::pi / 180, 1e-15) << turn;
+    EXPECT_NEAR(*read->parameters[0].least, -20 * std::numbers::pi / 180, 1e-15) << turn;
+  }
 }
 
 TEST(LibraryDescription, WhatIsLeftOutHasItsDefault) {

@@ -133,7 +133,7 @@ TEST(Synthesise, WeightsThatAreNoBlendAreRefused) {
     const auto beyond = made->weights(point, {.extrapolate = true});
     ASSERT_TRUE(beyond.ok());
     const auto [least, most] = std::ranges::minmax(beyond->weights);
-    const bool is_blend = least >= kLeastWeight && most <= kMostWeight;
+    const bool is_blend = least >= kMinWeight && most <= kMaxWeight;
     EXPECT_EQ(plain.ok(), is_blend) << least << " " << most;
     if (plain) continue;
     ++refused;
