@@ -47,6 +47,7 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
       takes_many_(spec.batch.has_value()) {
   app_.set_help_flag();
   declare_(options_);
+  options_.group("Options");
   if (form == Form::many) take_many_inputs();
   for (CLI::Option* option : app_.get_options()) {
     if (!option->get_positional()) own_options_.push_back(option);

@@ -12,6 +12,15 @@ CLI::Validator validator(CheckValue check) {
   return CLI::Validator(std::move(check), "");
 }
 
+// Splits "--from TIME" into the option's name and that of its value.
+template <typename Add>
+CommandOption add_named(const std::string& name, Add add) {
+  const std::size_t space = name.find(' ');
+  CLI::Option* option = add(name.substr(0, space));
+  if (space != std::string::npos) option->type_name(name.substr(space + 1));
+  return CommandOption(option);
+}
+
 }  // namespace
 
 CommandOption CommandOption::type_name(const std::string& name) const {
@@ -66,7 +75,8 @@ CommandOption CommandOption::allow_extra_args(bool allowed) const {
 template <typename Value>
 CommandOption CommandOptions::add_value(const std::string& name, Value& value,
                                         const std::string& help) {
-  return CommandOption(app_.add_option(name, value, help));
+  return add_named(name,
+                   [&](const std::string& bare) { return app_.add_option(bare, value, help); });
 }
 template CommandOption CommandOptions::add_value(const std::string&, std::string&,
                                                  const std::string&);
@@ -88,8 +98,10 @@ template CommandOption CommandOptions::add_value(const std::string&, std::option
 CommandOption CommandOptions::add_number_function(const std::string& name,
                                                   std::function<void(std::int64_t)> take,
                                                   const std::string& help) {
-  return CommandOption(app_.add_option_function<std::int64_t>(
-      name, [take = std::move(take)](const std::int64_t& number) { take(number); }, help));
+  return add_named(name, [&](const std::string& bare) {
+    return app_.add_option_function<std::int64_t>(
+        bare, [take = std::move(take)](const std::int64_t& number) { take(number); }, help);
+  });
 }
 
 CommandOption CommandOptions::add_flag(const std::string& name, bool& value,
@@ -100,7 +112,9 @@ CommandOption CommandOptions::add_flag(const std::string& name, bool& value,
 CommandOption CommandOptions::add_option_function(const std::string& name,
                                                   std::function<void(const std::string&)> take,
                                                   const std::string& help) {
-  return CommandOption(app_.add_option_function<std::string>(name, std::move(take), help));
+  return add_named(name, [&](const std::string& bare) {
+    return app_.add_option_function<std::string>(bare, std::move(take), help);
+  });
 }
 CommandOption CommandOptions::add_flag_callback(const std::string& name, std::function<void()> take,
                                                 const std::string& help) {
@@ -110,6 +124,10 @@ CommandOption CommandOptions::add_flag_function(const std::string& name,
                                                 std::function<void(std::int64_t)> take,
                                                 const std::string& help) {
   return CommandOption(app_.add_flag_function(name, std::move(take), help));
+}
+
+void CommandOptions::group(const std::string& name) {
+  app_.option_defaults()->group(name);
 }
 
 CommandOption CommandOptions::get_option(const std::string& name) {

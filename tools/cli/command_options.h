@@ -28,7 +28,7 @@ class CommandOption {
   CommandOption type_name(const std::string& name) const;    // value name in the help
   CommandOption default_str(const std::string& text) const;  // default shown in the help
   CommandOption capture_default_str() const;                 // uses the variable's value
-  CommandOption group(const std::string& name) const;        // heading in the help
+  CommandOption group(const std::string& name) const;        // heading in the help, for this alone
   CommandOption required() const;
   CommandOption needs(const std::string& other) const;  // an error without it
   CommandOption excludes(CommandOption other) const;
@@ -49,9 +49,13 @@ class CommandOptions {
   CommandOptions(const CommandOptions&) = delete;
   CommandOptions& operator=(const CommandOptions&) = delete;
 
-  // Adds an option ("-o,--output") or, without dashes, a positional. `value` is unchanged if the
-  // option is not given, and must outlive this. Value is a std::string, a number, a std::optional
-  // of one, a std::vector of strings, or an enum with transform(one_of(...)).
+  // Heading in the help of all options declared after this.
+  void group(const std::string& name);
+
+  // Adds an option ("-o,--output OUT", where OUT names its value in the help) or, without dashes, a
+  // positional. `value` is unchanged if the option is not given, and must outlive this. Value is a
+  // std::string, a number, a std::optional of one, a std::vector of strings, or an enum with
+  // transform(one_of(...)).
   template <typename Value>
   CommandOption add_option(const std::string& name, Value& value, const std::string& help) {
     if constexpr (std::is_enum_v<Value>) {

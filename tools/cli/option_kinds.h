@@ -12,6 +12,11 @@
 
 namespace krok::cli {
 
+// `name` with a name for its value, unless it has one: "--rate N".
+inline std::string with_value_name(const std::string& name, const char* value) {
+  return name.find(' ') == std::string::npos ? name + " " + value : name;
+}
+
 // An option with a fixed list of values.
 template <typename T>
 CommandOption add_choice(CommandOptions& command, const std::string& name, T& value,
@@ -28,8 +33,7 @@ CommandOption add_choice(CommandOptions& command, const std::string& name, T& va
 template <typename T>
 CommandOption add_whole(CommandOptions& command, const std::string& name, T& value,
                         const std::string& description, long long low, long long high) {
-  return command.add_option(name, value, description)
-      .type_name("N")
+  return command.add_option(with_value_name(name, "N"), value, description)
       .transform([low, high](std::string& text) {
         const auto number = parse_integer(text);
         if (!number || *number < low || *number > high) {
@@ -45,21 +49,23 @@ CommandOption add_whole(CommandOptions& command, const std::string& name, T& val
 template <typename T>
 CommandOption add_number(CommandOptions& command, const std::string& name, T& value,
                          const std::string& description) {
-  return command.add_option(name, value, description).type_name("N").check([](std::string& text) {
-    return parse_finite(text) ? std::string() : "'" + text + "' is not a number";
-  });
+  return command.add_option(with_value_name(name, "N"), value, description)
+      .check([](std::string& text) {
+        return parse_finite(text) ? std::string() : "'" + text + "' is not a number";
+      });
 }
 
 // A frame rate in frames per second, from 0.001 to 1000000. CLI11 itself accepts "1e999" and "nan".
 template <typename T>
 CommandOption add_rate(CommandOptions& command, const std::string& name, T& value,
                        const std::string& description) {
-  return command.add_option(name, value, description).type_name("N").check([](std::string& text) {
-    const auto rate = parse_finite(text);
-    return rate && *rate >= 1e-3 && *rate <= 1e6
-               ? std::string()
-               : "'" + text + "' is not a frame rate from 0.001 to 1000000";
-  });
+  return command.add_option(with_value_name(name, "N"), value, description)
+      .check([](std::string& text) {
+        const auto rate = parse_finite(text);
+        return rate && *rate >= 1e-3 && *rate <= 1e6
+                   ? std::string()
+                   : "'" + text + "' is not a frame rate from 0.001 to 1000000";
+      });
 }
 
 }  // namespace krok::cli

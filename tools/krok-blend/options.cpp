@@ -16,44 +16,37 @@ namespace {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option(
-          "inputs", options.inputs,
-          "Motions on the same skeleton (.anim, or captures such as BVH), each with a weight: "
-          "a number, or @FILE.csv with columns generic and weight")
-      .type_name("IN:WEIGHT")
+      .add_option("inputs IN:WEIGHT", options.inputs,
+                  "Motions on the same skeleton (.anim, or captures such as BVH), each with a "
+                  "weight: a number, or @FILE.csv with columns generic and weight")
       .required();
-  add_keys_option(command, options.keys).group("Time");
+  command.group("Time");
+  add_keys_option(command, options.keys);
   add_choice<WarpChoice>(
       command, "--warp", options.warp,
       {{"pchip", WarpChoice::pchip}, {"linear", WarpChoice::linear}, {"dtw", WarpChoice::dtw}},
       "Time warp: pchip (between keytimes, continuous speed), linear (between keytimes), or dtw "
       "(aligns similar poses, without keytimes)",
-      "HOW", "pchip")
-      .group("Time");
-  add_rate(command, "--rate", options.rate, "Frames per second (default: the first motion's)")
-      .group("Time");
+      "HOW", "pchip");
+  add_rate(command, "--rate", options.rate, "Frames per second (default: the first motion's)");
+  command.group("Space");
   add_choice<AlignChoice>(
       command, "--align", options.align,
       {{"auto", AlignChoice::automatic},
        {"root", AlignChoice::root},
        {"stance", AlignChoice::stance},
        {"none", AlignChoice::none}},
-      "Root motion: root (blended relative to the heading, so that turns blend), "
-      "stance (the same, and planted feet are locked), auto (stance if all motions have "
-      "contacts, otherwise root), none (root transforms are blended in world space)",
-      "HOW", "auto")
-      .group("Space");
-  command.add_flag("--plant", options.plant, kPlantHelp).group("Space");
-  command
-      .add_flag("--modifier", options.modifier,
-                "Allow weights that do not sum to 1, for additive motions")
-      .group("Space");
-  add_map_option(command, options.map).group("Space");
-  command
-      .add_option("--save-warp", options.save_warp,
-                  "Write the time warp: the source time in each motion for every frame")
-      .type_name("OUT.csv")
-      .group("Output");
+      "Root motion: root (blended relative to the heading, so that turns blend), stance (the same, "
+      "and planted feet are locked), auto (stance if all motions have contacts, otherwise root), "
+      "none (root transforms are blended in world space)",
+      "HOW", "auto");
+  command.add_flag("--plant", options.plant, kPlantHelp);
+  command.add_flag("--modifier", options.modifier,
+                   "Allow weights that do not sum to 1, for additive motions");
+  add_map_option(command, options.map);
+  command.group("Output");
+  command.add_option("--save-warp OUT.csv", options.save_warp,
+                     "Write the time warp: the source time in each motion for every frame");
   add_orientation_option(command, options.orientation);
 }
 

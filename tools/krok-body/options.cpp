@@ -34,21 +34,19 @@ namespace {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("input", options.input, "Motion or model with the skeleton (- is standard input)")
-      .type_name("IN")
+      .add_option("input IN", options.input,
+                  "Motion or model with the skeleton (- is standard input)")
       .required();
+  command.group("Body");
   add_choice<BodyDetail>(
       command, "--detail", options.detail,
       {{"low", BodyDetail::low}, {"medium", BodyDetail::medium}, {"high", BodyDetail::high}},
-      "Number of vertices: low (about 2,500), medium (10,000) or high (40,000)", "LEVEL", "medium")
-      .group("Body");
+      "Number of vertices: low (about 2,500), medium (10,000) or high (40,000)", "LEVEL", "medium");
   command
-      .add_option("--pose", options.pose,
+      .add_option("--pose POSE", options.pose,
                   "Bind pose of the body: reference (the skeleton's), a frame number, or auto (the "
                   "reference pose, with overlapping limbs turned aside)")
-      .type_name("POSE")
-      .default_str("auto")
-      .group("Body");
+      .default_str("auto");
   add_orientation_option(command, options.orientation);
 }
 

@@ -12,25 +12,18 @@ namespace krok::cli::cam {
 namespace {
 
 void declare_subject(CommandOptions& command, Arguments& a) {
-  const char* group = "Filming a motion";
-  command
-      .add_option("--follow", a.follow,
-                  "Follow a joint, given by name or role: hips, chest, head, "
-                  "left_hand")
-      .type_name("JOINT")
-      .group(group);
-  command
-      .add_option("--orbit", a.orbit,
-                  "Orbit the character: 20s is the time of one turn, 1.5turns is the "
-                  "number of turns over the whole motion")
-      .type_name("TIME")
-      .group(group);
-  command.add_flag("--still", a.still, "Static camera that shows the whole motion").group(group);
-  add_map_option(command, a.map).group(group);
+  command.group("Filming a motion");
+  command.add_option("--follow JOINT", a.follow,
+                     "Follow a joint, given by name or role: hips, chest, head, left_hand");
+  command.add_option("--orbit TIME", a.orbit,
+                     "Orbit the character: 20s is the time of one turn, 1.5turns is the number of "
+                     "turns over the whole motion");
+  command.add_flag("--still", a.still, "Static camera that shows the whole motion");
+  add_map_option(command, a.map);
 }
 
 void declare_place(CommandOptions& command, Arguments& a) {
-  const char* group = "View direction";
+  command.group("View direction");
   add_choice<View>(command, "--view", a.view,
                    {{"front", View::front},
                     {"three-quarter", View::three_quarter},
@@ -38,128 +31,86 @@ void declare_place(CommandOptions& command, Arguments& a) {
                     {"right", View::right},
                     {"back", View::back},
                     {"top", View::top}},
-                   "front, three-quarter (between the character's front and left), "
-                   "left, right, back or top; an orbit starts there",
-                   "VIEW", "three-quarter")
-      .group(group);
-  command
-      .add_option("--azimuth", a.azimuth,
-                  "The same as an angle: 0 sees the character's front, 90deg its left "
-                  "side")
-      .type_name("ANGLE")
-      .group(group);
-  command
-      .add_option("--elevation", a.elevation, "Camera elevation; 90deg looks straight down [10deg]")
-      .type_name("ANGLE")
-      .group(group);
+                   "front, three-quarter (between the character's front and left), left, right, "
+                   "back or top; an orbit starts there",
+                   "VIEW", "three-quarter");
+  command.add_option("--azimuth ANGLE", a.azimuth,
+                     "The same as an angle: 0 sees the character's front, 90deg its left side");
+  command.add_option("--elevation ANGLE", a.elevation,
+                     "Camera elevation; 90deg looks straight down [10deg]");
   add_choice<AzimuthFrom>(command, "--facing", a.facing,
                           {{"start", AzimuthFrom::start},
                            {"figure", AzimuthFrom::actor},
                            {"world", AzimuthFrom::world}},
-                          "What counts as the front: the facing at the start, the "
-                          "facing in each frame (figure), or +Z (world)",
-                          "WHAT", "start")
-      .group(group);
-  command.add_flag("--clockwise", a.clockwise, "Orbit clockwise, seen from above").group(group);
-  command
-      .add_flag("--fixed-centre", a.fixed_centre,
-                "Orbit around the middle of the whole motion; by default, the centre "
-                "moves with the character")
-      .group(group);
+                          "What counts as the front: the facing at the start, the facing in each "
+                          "frame (figure), or +Z (world)",
+                          "WHAT", "start");
+  command.add_flag("--clockwise", a.clockwise, "Orbit clockwise, seen from above");
+  command.add_flag("--fixed-centre", a.fixed_centre,
+                   "Orbit around the middle of the whole motion; by default, the centre moves with "
+                   "the character");
 }
 
 void declare_image(CommandOptions& command, Arguments& a) {
-  const char* group = "Framing";
+  command.group("Framing");
   add_choice<Framing>(command, "--frame", a.frame,
                       {{"full", Framing::full}, {"upper", Framing::upper}, {"head", Framing::head}},
                       "What to keep in the image in all frames: the full character, the upper body "
                       "with the arms, or the head",
-                      "PART", "full")
-      .group(group);
-  add_number(command, "--margin", a.margin,
+                      "PART", "full");
+  add_number(command, "--margin PART", a.margin,
              "Fraction of height and width kept free at each edge, up to 0.45")
-      .type_name("PART")
-      .default_str("0.08")
-      .group(group);
+      .default_str("0.08");
+  command.add_option(
+      "--distance LENGTH", a.distance,
+      "Distance from the point it looks at; default: the shortest that frames the character");
+  command.add_option("--fov ANGLE", a.fov, "Vertical field of view").default_str(a.fov);
+  add_number(command, "--lens MM", a.lens,
+             "The same as a focal length in millimetres, for an image 24 mm high");
   command
-      .add_option("--distance", a.distance,
-                  "Distance from the point it looks at; default: the shortest that "
-                  "frames the character")
-      .type_name("LENGTH")
-      .group(group);
-  command.add_option("--fov", a.fov, "Vertical field of view")
-      .type_name("ANGLE")
-      .default_str(a.fov)
-      .group(group);
-  add_number(command, "--lens", a.lens,
-             "The same as a focal length in millimetres, for an image 24 mm high")
-      .type_name("MM")
-      .group(group);
-  command
-      .add_option("--aspect", a.aspect,
-                  "Aspect ratio, width by height, used for framing; written to glTF when "
-                  "filming a motion or if given")
-      .type_name("W:H")
-      .default_str(a.aspect)
-      .group(group);
+      .add_option("--aspect W:H", a.aspect,
+                  "Aspect ratio, width by height, used for framing; written to glTF when filming a "
+                  "motion or if given")
+      .default_str(a.aspect);
 }
 
 void declare_movement(CommandOptions& command, Arguments& a) {
-  const char* group = "Movement";
-  command
-      .add_option("--smooth", a.smooth,
-                  "Smoothing time of the path and the facing; 0: no smoothing [0.5s, "
-                  "an orbit 1s]")
-      .type_name("TIME")
-      .group(group);
-  command
-      .add_option("--dead-zone", a.dead_zone,
-                  "Distance the followed joint may move before the camera follows [0]")
-      .type_name("LENGTH")
-      .group(group);
-  const char* read = "Keys and scenes";
+  command.group("Movement");
+  command.add_option(
+      "--smooth TIME", a.smooth,
+      "Smoothing time of the path and the facing; 0: no smoothing [0.5s, an orbit 1s]");
+  command.add_option("--dead-zone LENGTH", a.dead_zone,
+                     "Distance the followed joint may move before the camera follows [0]");
+  command.group("Keys and scenes");
   add_rate(command, "--rate", a.rate,
-           "Frame rate of the result; default: that of the keys' file or of the scene's "
-           "keys")
-      .group(read);
-  command.add_option("--camera", a.camera, "Camera of a scene, by name or index")
-      .type_name("NAME")
-      .group(read);
+           "Frame rate of the result; default: that of the keys' file or of the scene's keys");
+  command.add_option("--camera NAME", a.camera, "Camera of a scene, by name or index");
 }
 
 void declare_output(CommandOptions& command, Arguments& a) {
-  const char* group = "Output";
+  command.group("Output");
   add_choice<Format>(command, "--format", a.format, {{"cam", Format::cam}, {"glb", Format::glb}},
                      "cam or glb; default: from the output's extension", "FORMAT", "")
-      .default_str("")
-      .group(group);
-  add_orientation_option(command, a.orientation).group(group);
-  command
-      .add_option("--into", a.into,
-                  "Write this glTF file as GLB, with the camera added to its scene "
-                  "and animation")
-      .type_name("IN.glb")
-      .group(group);
-  command.add_option("--name", a.name, "glTF: name of the camera")
-      .type_name("NAME")
-      .default_str(a.name)
-      .group(group);
+      .default_str("");
+  add_orientation_option(command, a.orientation);
+  command.add_option(
+      "--into IN.glb", a.into,
+      "Write this glTF file as GLB, with the camera added to its scene and animation");
+  command.add_option("--name NAME", a.name, "glTF: name of the camera").default_str(a.name);
   add_whole(command, "--clip", a.clip,
-            "--into a file with several animations: index of the one to add the "
-            "camera to; default: the first",
-            0, 1000000)
-      .group(group);
+            "--into a file with several animations: index of the one to add the camera to; "
+            "default: the first",
+            0, 1000000);
 }
 
 }  // namespace
 
 void declare(CommandOptions& command, Arguments& arguments) {
   command
-      .add_option("input", arguments.input,
-                  "Camera keys (.json, formats/camera_keys/SPEC.md), a .cam file, a glTF file "
-                  "with a camera, or a motion: a .anim file or a capture, read as by "
-                  "krok-import with default options")
-      .type_name("IN")
+      .add_option("input IN", arguments.input,
+                  "Camera keys (.json, formats/camera_keys/SPEC.md), a .cam file, a glTF file with "
+                  "a camera, or a motion: a .anim file or a capture, read as by krok-import with "
+                  "default options")
       .required();
   declare_subject(command, arguments);
   declare_place(command, arguments);

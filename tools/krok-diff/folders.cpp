@@ -301,32 +301,24 @@ std::size_t FolderOutcome::count(FileStatus status) const {
 }
 
 void declare_folder_options(CommandOptions& command, FolderOptions& options) {
-  constexpr const char* kGroup = "Folders";
+  command.group("Folders");
   const auto patterns = [&](const char* name, std::vector<std::string>& list, const char* help) {
-    command.add_option(name, list, help).type_name("PATTERN").one_each_time().group(kGroup);
+    command.add_option(name, list, help).one_each_time();
   };
-  patterns("--include", options.filter.include,
+  patterns("--include PATTERN", options.filter.include,
            "Compare only files that match, '*.glb' or 'walks/**/*.glb'; repeatable");
-  patterns("--exclude", options.filter.exclude, "Skip files that match; repeatable");
-  command
-      .add_flag("--keep-going", options.keep_going,
-                "Continue after a file that cannot be read, and exit with code 3; by "
-                "default, the first one ends the run")
-      .group(kGroup);
-  command
-      .add_option("--summary", options.summary,
-                  "A page with a row for each file that is not the same, as HTML, or as "
-                  "Markdown if called .md")
-      .type_name("OUT.html")
-      .group(kGroup);
-  command
-      .add_flag("--update", options.update,
-                "Copy changed and new files from B to A; no file is copied if any cannot be "
-                "read. A need not exist")
-      .group(kGroup);
+  patterns("--exclude PATTERN", options.filter.exclude, "Skip files that match; repeatable");
+  command.add_flag("--keep-going", options.keep_going,
+                   "Continue after a file that cannot be read, and exit with code 3; by default, "
+                   "the first one ends the run");
+  command.add_option("--summary OUT.html", options.summary,
+                     "A page with a row for each file that is not the same, as HTML, or as "
+                     "Markdown if called .md");
+  command.add_flag("--update", options.update,
+                   "Copy changed and new files from B to A; no file is copied if any cannot be "
+                   "read. A need not exist");
   command.add_flag("--prune", options.prune, "With --update: remove files that only A has")
-      .needs("--update")
-      .group(kGroup);
+      .needs("--update");
 }
 
 Result<bool> are_folders(const Options& options) {

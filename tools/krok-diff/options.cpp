@@ -51,30 +51,23 @@ void declare(CommandOptions& command, Arguments& arguments) {
       .required();
   command
       .add_option("B", arguments.second,
-                  "A file of the same type (glTF can be compared with motions, models and "
-                  "point caches too), or a folder")
+                  "A file of the same type (glTF can be compared with motions, models and point "
+                  "caches too), or a folder")
       .type_name("")
       .required();
   declare_tolerances(command, arguments.tolerance);
-  command
-      .add_option("--sheet", arguments.sheet.path,
-                  "PNG image of both characters and of their difference; for motions, "
-                  "models and glTF")
-      .type_name("OUT.png");
+  command.add_option(
+      "--sheet OUT.png", arguments.sheet.path,
+      "PNG image of both characters and of their difference; for motions, models and glTF");
   declare_image_options(command, arguments.sheet.image, kDifferenceMoments);
   for (const char* name : {"--moments", "--sides", "--elevation", "--size"}) {
     command.get_option(name).needs("--sheet");
   }
-  command
-      .add_option("--plot", arguments.plot,
-                  "Charts of the distances and angles over time, as SVG; for motions "
-                  "and glTF")
-      .type_name("OUT.svg");
-  command
-      .add_option("--heatmap", arguments.heatmap,
-                  "A's mesh in the pose of the max difference, with each vertex "
-                  "coloured by its max distance over all times; for glTF and models")
-      .type_name("OUT.glb");
+  command.add_option("--plot OUT.svg", arguments.plot,
+                     "Charts of the distances and angles over time, as SVG; for motions and glTF");
+  command.add_option("--heatmap OUT.glb", arguments.heatmap,
+                     "A's mesh in the pose of the max difference, with each vertex coloured by its "
+                     "max distance over all times; for glTF and models");
   declare_folder_options(command, arguments.folders);
 }
 

@@ -76,47 +76,36 @@ void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments) 
     words.emplace_back(word_of(matching), matching);
   }
   add_choice(command, "--match", arguments.matching, std::move(words),
-             "How to match meshes and joints: order, by their index in the file; "
-             "name, by name, reporting those that only one has; auto, by name if all "
-             "names are unique and the same, else by index; nearest, each vertex with "
-             "the nearest point of the other surface, for meshes with different "
-             "vertices, triangles or parts",
+             "How to match meshes and joints: order, by their index in the file; name, by name, "
+             "reporting those that only one has; auto, by name if all names are unique and the "
+             "same, else by index; nearest, each vertex with the nearest point of the other "
+             "surface, for meshes with different vertices, triangles or parts",
              "HOW", "auto");
   command
-      .add_option("--tolerance", arguments.length,
-                  "Max distance that counts as the same: 0.1mm, 0.2cm; a bare number "
-                  "is metres")
-      .type_name("LENGTH")
+      .add_option("--tolerance LENGTH", arguments.length,
+                  "Max distance that counts as the same: 0.1mm, 0.2cm; a bare number is metres")
       .default_str(arguments.length);
   command
-      .add_option("--angle", arguments.angle,
-                  "Max angle that counts as the same: 0.1deg, 0.002rad; a bare number "
-                  "is degrees")
-      .type_name("ANGLE")
+      .add_option("--angle ANGLE", arguments.angle,
+                  "Max angle that counts as the same: 0.1deg, 0.002rad; a bare number is degrees")
       .default_str(arguments.angle);
   command
-      .add_option("--ratio", arguments.ratio,
-                  "Max difference of unitless values that counts as the same: "
-                  "weights, texture coordinates")
-      .type_name("NUMBER")
+      .add_option(
+          "--ratio NUMBER", arguments.ratio,
+          "Max difference of unitless values that counts as the same: weights, texture coordinates")
       .default_str(arguments.ratio);
+  command.add_option(
+      "--normals ANGLE", arguments.normals,
+      "The same for normals and tangents only (default: that of --angle). A flipped tangent "
+      "handedness is always a difference. Tangents that only one of two glTF files has are a "
+      "difference if both have a normal texture, else they are only reported");
+  command.add_option(
+      "--joints LENGTH[,ANGLE]", arguments.joints,
+      "The same for joints only, 1mm or 1mm,0.5deg (default: those of --tolerance and --angle)");
   command
-      .add_option("--normals", arguments.normals,
-                  "The same for normals and tangents only (default: that of --angle). "
-                  "A flipped tangent handedness is always a difference. Tangents that "
-                  "only one of two glTF files has are a difference if both have a "
-                  "normal texture, else they are only reported")
-      .type_name("ANGLE");
-  command
-      .add_option("--joints", arguments.joints,
-                  "The same for joints only, 1mm or 1mm,0.5deg (default: those of "
-                  "--tolerance and --angle)")
-      .type_name("LENGTH[,ANGLE]");
-  command
-      .add_option("--times", arguments.times,
-                  "Max difference of times that count as equal: key times of glTF, "
-                  "and frames of motions with different rates: 1ms, 0.02s")
-      .type_name("TIME")
+      .add_option("--times TIME", arguments.times,
+                  "Max difference of times that count as equal: key times of glTF, and frames of "
+                  "motions with different rates: 1ms, 0.02s")
       .default_str(arguments.times);
   command.add_flag("--materials", arguments.materials,
                    "Count different materials, colours or textures as a difference; by default "

@@ -13,201 +13,141 @@ namespace krok::cli::edit {
 namespace {
 
 void declare_cleaning(CommandOptions& command, Arguments& a) {
-  const char* group = "1. Clean the whole input";
-  command
-      .add_flag("--spikes", a.spikes,
-                "Replace frames in which a joint jumps away and back (spikes); each is reported")
-      .group(group);
-  add_number(command, "--spike-threshold", a.spike_threshold,
+  command.group("1. Clean the whole input");
+  command.add_flag(
+      "--spikes", a.spikes,
+      "Replace frames in which a joint jumps away and back (spikes); each is reported");
+  add_number(command, "--spike-threshold TIMES", a.spike_threshold,
              "Spike threshold, as a multiple of the usual deviation from neighbouring frames")
-      .type_name("TIMES")
-      .default_str("6")
-      .group(group);
+      .default_str("6");
   command
-      .add_option("--filter", a.filter,
+      .add_option("--filter KIND", a.filter,
                   "Remove jitter without time shift: butterworth (zero-phase low-pass) or savgol "
                   "(Savitzky-Golay, preserves peaks better)")
-      .type_name("KIND")
-      .transform(one_of<Arguments::Filter>(
-          {{"butterworth", Arguments::Filter::butterworth}, {"savgol", Arguments::Filter::savgol}}))
-      .group(group);
-  command.add_option("--cutoff", a.cutoff, "butterworth: cutoff frequency (half power)")
-      .type_name("FREQUENCY")
-      .default_str(a.cutoff)
-      .group(group);
-  add_whole(command, "--window", a.window, "savgol: window size in frames, odd", 1, 1000000)
-      .type_name("FRAMES")
-      .default_str("9")
-      .group(group);
+      .transform(one_of<Arguments::Filter>({{"butterworth", Arguments::Filter::butterworth},
+                                            {"savgol", Arguments::Filter::savgol}}));
+  command.add_option("--cutoff FREQUENCY", a.cutoff, "butterworth: cutoff frequency (half power)")
+      .default_str(a.cutoff);
+  add_whole(command, "--window FRAMES", a.window, "savgol: window size in frames, odd", 1, 1000000)
+      .default_str("9");
   add_whole(
-      command, "--order", a.order,
+      command, "--order N", a.order,
       "butterworth: order of both passes together, 2, 4, 6 or 8 [4]; savgol: polynomial degree [3]",
-      0, 1000000)
-      .type_name("N")
-      .group(group);
+      0, 1000000);
   command
-      .add_option("--joints", a.joints,
+      .add_option("--joints PATTERN", a.joints,
                   "Clean only joints with this name; * matches any characters; may be repeated")
-      .type_name("PATTERN")
-      .one_each_time()
-      .group(group);
+      .one_each_time();
   command
-      .add_option("--below", a.below, "Clean only this joint and its descendants; may be repeated")
-      .type_name("NAME")
-      .one_each_time()
-      .group(group);
-  command
-      .add_flag("--plant", a.plant,
-                "Remove foot skate: heel and ball stay where they stand, the pelvis is lowered "
-                "where a leg would be stretched")
-      .group(group);
-  add_contacts_option(command, a.contacts).group(group);
+      .add_option("--below NAME", a.below,
+                  "Clean only this joint and its descendants; may be repeated")
+      .one_each_time();
+  command.add_flag("--plant", a.plant,
+                   "Remove foot skate: heel and ball stay where they stand, the pelvis is lowered "
+                   "where a leg would be stretched");
+  add_contacts_option(command, a.contacts);
 }
 
 void declare_cut(CommandOptions& command, Arguments& a) {
-  const char* group = "2. Cut";
-  command
-      .add_option("--from", a.from,
-                  "Start of the range to keep: 1.5s, 250ms, or 120f for a frame; a bare number is "
-                  "seconds")
-      .type_name("TIME")
-      .group(group);
-  command.add_option("--to", a.to, "End of the range to keep, inclusive")
-      .type_name("TIME")
-      .group(group);
-  command
-      .add_option(
-          "--sequences", a.sequences,
-          "File that lists sequences of the input (formats/sequences/SPEC.md). Without --sequence "
-          "each is written to a file; its name replaces {sequence} in the output's name")
-      .type_name("IN.json")
-      .group(group);
-  command
-      .add_option("--sequence", a.sequence,
-                  "Cut out this sequence, at its speed, and loop it if the file says so")
-      .type_name("NAME")
-      .group(group);
-  command
-      .add_flag("--list-sequences", a.list_sequences,
-                "Print the sequences in the file; nothing is written")
-      .group(group);
+  command.group("2. Cut");
+  command.add_option(
+      "--from TIME", a.from,
+      "Start of the range to keep: 1.5s, 250ms, or 120f for a frame; a bare number is seconds");
+  command.add_option("--to TIME", a.to, "End of the range to keep, inclusive");
+  command.add_option(
+      "--sequences IN.json", a.sequences,
+      "File that lists sequences of the input (formats/sequences/SPEC.md). Without --sequence each "
+      "is written to a file; its name replaces {sequence} in the output's name");
+  command.add_option("--sequence NAME", a.sequence,
+                     "Cut out this sequence, at its speed, and loop it if the file says so");
+  command.add_flag("--list-sequences", a.list_sequences,
+                   "Print the sequences in the file; nothing is written");
 }
 
 void declare_timing(CommandOptions& command, Arguments& a) {
-  command.add_flag("--mirror", a.mirror, "Mirror left and right at the plane x = 0")
-      .group("3. Mirror");
-  const char* group = "4. Timing";
-  add_number(command, "--speed", a.speed,
+  command.group("3. Mirror");
+  command.add_flag("--mirror", a.mirror, "Mirror left and right at the plane x = 0");
+  command.group("4. Timing");
+  add_number(command, "--speed TIMES", a.speed,
              "Playback speed factor; multiplied by the speed of a sequence")
-      .type_name("TIMES")
-      .default_str("1")
-      .group(group);
-  add_rate(command, "--resample", a.resample, "Frame rate of the result").group(group);
+      .default_str("1");
+  add_rate(command, "--resample", a.resample, "Frame rate of the result");
 }
 
 void declare_joining(CommandOptions& command, Arguments& a) {
-  const char* group = "5. Append";
+  command.group("5. Append");
   command
-      .add_option("--append", a.append,
+      .add_option("--append IN", a.append,
                   "Append this motion of the same skeleton, moved to the current position and "
                   "heading; may be repeated")
-      .type_name("IN")
-      .one_each_time()
-      .group(group);
+      .one_each_time();
   command
-      .add_option("--blend", a.blend,
+      .add_option("--blend TIME", a.blend,
                   "Duration of the cross-fade between two motions; 0 is a hard cut")
-      .type_name("TIME")
-      .default_str(a.blend)
-      .group(group);
-  command.add_flag("--match-height", a.match_height, "Append at the current height, as on stairs")
-      .group(group);
+      .default_str(a.blend);
+  command.add_flag("--match-height", a.match_height, "Append at the current height, as on stairs");
 }
 
 void declare_loop(CommandOptions& command, Arguments& a) {
-  const char* group = "6. Loop";
+  command.group("6. Loop");
+  command.add_flag("--loop", a.loop,
+                   "Make a seamless loop. The last frame becomes the first, moved by the root "
+                   "motion of one cycle, so n frames repeat every n - 1");
   command
-      .add_flag("--loop", a.loop,
-                "Make a seamless loop. The last frame becomes the first, moved by the root motion "
-                "of one cycle, so n frames repeat every n - 1")
-      .group(group);
-  command.add_option("--loop-blend", a.loop_blend, "Time before and after the seam that may change")
-      .type_name("TIME")
-      .default_str(a.loop_blend)
-      .group(group);
+      .add_option("--loop-blend TIME", a.loop_blend,
+                  "Time before and after the seam that may change")
+      .default_str(a.loop_blend);
   add_choice<LoopEnd>(
       command, "--loop-end", a.loop_end,
       {{"auto", LoopEnd::automatic}, {"closed", LoopEnd::closed}, {"open", LoopEnd::open}},
       "Whether the last frame repeats the first (closed) or precedes it (open: a frame is added); "
       "auto compares them",
-      "END", "auto")
-      .group(group);
+      "END", "auto");
   add_choice<LoopTurn>(
       command, "--loop-turn", a.loop_turn,
       {{"auto", LoopTurn::automatic},
        {"keep", LoopTurn::keep},
        {"straighten", LoopTurn::straighten}},
       "Turning per cycle: keep, straighten, or auto, which straightens up to 10 degrees", "TURN",
-      "auto")
-      .group(group);
+      "auto");
   add_choice<LoopClimb>(
       command, "--loop-climb", a.loop_climb,
       {{"auto", LoopClimb::automatic}, {"keep", LoopClimb::keep}, {"level", LoopClimb::level}},
-      "Height gain per cycle: keep, level, or auto, which levels up to 5 % of the character's "
-      "size",
-      "CLIMB", "auto")
-      .group(group);
-  add_whole(command, "--rounds", a.rounds, "Number of cycles of the loop to write", 1, 1000000)
-      .type_name("N")
-      .group(group);
+      "Height gain per cycle: keep, level, or auto, which levels up to 5 % of the character's size",
+      "CLIMB", "auto");
+  add_whole(command, "--rounds N", a.rounds, "Number of cycles of the loop to write", 1, 1000000);
 }
 
 void declare_place(CommandOptions& command, Arguments& a) {
-  const char* travel = "7. Root motion";
-  command.add_flag("--in-place", a.in_place, "Remove all horizontal motion of the hips")
-      .group(travel);
-  command
-      .add_flag("--treadmill", a.treadmill,
-                "Remove only the constant-velocity part from the first to the last frame; keeps "
-                "sway and loops")
-      .group(travel);
-  const char* size = "8. Size";
-  add_number(command, "--scale", a.scale, "Scale factor for the skeleton and its motion")
-      .type_name("TIMES")
-      .group(size);
-  command
-      .add_option("--height", a.height,
-                  "Scale to this height of the reference pose, lowest to highest joint: 1.8m")
-      .type_name("LENGTH")
-      .group(size);
-  const char* place = "9. Position";
-  command.add_flag("--at-origin", a.at_origin, "Start above the origin").group(place);
-  command.add_flag("--re-orient", a.re_orient, "Start facing +Z, the same as --heading 0")
-      .group(place);
-  command
-      .add_option("--heading", a.heading,
-                  "Initial heading: 0 is +Z, 90deg is +X, the character's left")
-      .type_name("ANGLE")
-      .group(place);
-  command
-      .add_option("--turn", a.turn, "Turn left about the vertical axis through the start position")
-      .type_name("ANGLE")
-      .group(place);
-  command.add_option("--move", a.move, "Translate along X, Y and Z: 1m,0,-20cm")
-      .type_name("X,Y,Z")
-      .group(place);
-  command.add_flag("--ground", a.ground, "Move the lowest foot position to y = 0").group(place);
+  command.group("7. Root motion");
+  command.add_flag("--in-place", a.in_place, "Remove all horizontal motion of the hips");
+  command.add_flag("--treadmill", a.treadmill,
+                   "Remove only the constant-velocity part from the first to the last frame; keeps "
+                   "sway and loops");
+  command.group("8. Size");
+  add_number(command, "--scale TIMES", a.scale, "Scale factor for the skeleton and its motion");
+  command.add_option("--height LENGTH", a.height,
+                     "Scale to this height of the reference pose, lowest to highest joint: 1.8m");
+  command.group("9. Position");
+  command.add_flag("--at-origin", a.at_origin, "Start above the origin");
+  command.add_flag("--re-orient", a.re_orient, "Start facing +Z, the same as --heading 0");
+  command.add_option("--heading ANGLE", a.heading,
+                     "Initial heading: 0 is +Z, 90deg is +X, the character's left");
+  command.add_option("--turn ANGLE", a.turn,
+                     "Turn left about the vertical axis through the start position");
+  command.add_option("--move X,Y,Z", a.move, "Translate along X, Y and Z: 1m,0,-20cm");
+  command.add_flag("--ground", a.ground, "Move the lowest foot position to y = 0");
 }
 
 }  // namespace
 
 void declare(CommandOptions& command, Arguments& arguments) {
   command
-      .add_option("input", arguments.input,
+      .add_option("input IN", arguments.input,
                   "Motion: a .anim file, or a capture read as by krok-import without options")
-      .type_name("IN")
       .required();
-  add_map_option(command, arguments.map).group("Character");
+  command.group("Character");
+  add_map_option(command, arguments.map);
   declare_cleaning(command, arguments);
   declare_cut(command, arguments);
   declare_timing(command, arguments);

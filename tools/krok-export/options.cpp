@@ -80,40 +80,32 @@ namespace {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("input", options.input,
+      .add_option("input IN", options.input,
                   "Motion: a .anim file, or a capture (BVH; AMC with its ASF beside it), read as "
                   "by krok-import without options")
-      .type_name("IN")
       .required();
   command
-      .add_option("--format", options.format,
+      .add_option("--format FORMAT", options.format,
                   "bvh, glb, gltf (text, embedded data) or csv; default: the output's extension")
-      .type_name("FORMAT")
       .transform(one_of<ExportFormat>({{"bvh", ExportFormat::bvh},
                                        {"glb", ExportFormat::glb},
                                        {"gltf", ExportFormat::gltf},
                                        {"csv", ExportFormat::csv}}));
-  command.add_option("--unit", options.unit, "BVH: length unit: m, cm, mm, in, ft")
-      .type_name("UNIT")
+  command.add_option("--unit UNIT", options.unit, "BVH: length unit: m, cm, mm, in, ft")
       .default_str("cm");
-  add_whole(
-      command, "--digits", options.digits,
-      "BVH: decimal places of angles in degrees and lengths in centimetres; adjusted to the same "
-      "precision for other units. 6 preserve the motion to 1e-6 metres and radians",
-      1, 15)
-      .type_name("1..15")
+  add_whole(command, "--digits 1..15", options.digits,
+            "BVH: decimal places of angles in degrees and lengths in centimetres; adjusted to the "
+            "same precision for other units. 6 preserve the motion to 1e-6 metres and radians",
+            1, 15)
       .default_str("6");
   command
-      .add_option("--order", options.order,
+      .add_option("--order ORDER", options.order,
                   "BVH: order of the rotation channels: XYZ, XZY, YXZ, YZX, ZXY or ZYX")
-      .type_name("ORDER")
       .transform(one_of_words({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}))
       .default_str("ZXY");
-  command
-      .add_option("--reduce", options.reduce,
-                  "glTF: reduce keys for a smaller file; joints, and points 3 cm around them, "
-                  "move by at most this distance, such as 1mm. By default each frame is a key")
-      .type_name("LENGTH");
+  command.add_option("--reduce LENGTH", options.reduce,
+                     "glTF: reduce keys for a smaller file; joints, and points 3 cm around them, "
+                     "move by at most this distance, such as 1mm. By default each frame is a key");
   command.add_flag_function(
       "--bones,!--no-bones", [&options](std::int64_t sign) { options.bones = sign > 0; },
       "glTF: add a thin mesh for each bone, so that viewers display the skeleton (default; "

@@ -25,114 +25,80 @@ Error usage(std::string message, std::string hint = {}) {
 }
 
 void declare_goals(CommandOptions& command, Arguments& a) {
-  const char* group = "Goals";
-  command.add_option("--goals", a.goals, "Goals (.json, formats/goals/SPEC.md)")
-      .type_name("IN.json")
-      .group(group);
+  command.group("Goals");
+  command.add_option("--goals IN.json", a.goals, "Goals (.json, formats/goals/SPEC.md)");
+  command.add_option("--ground IN", a.ground,
+                     "Heights of goals in the world are over this ground, as for krok-walk: a "
+                     "mesh, a height field, stairs:rise=17cm,run=29cm, slope:12deg, ...");
   command
-      .add_option("--ground", a.ground,
-                  "Heights of goals in the world are over this ground, as for krok-walk: a mesh, a "
-                  "height field, stairs:rise=17cm,run=29cm, slope:12deg, ...")
-      .type_name("IN")
-      .group(group);
-  command
-      .add_option("--reach", a.reaches,
+      .add_option("--reach JOINT=X,Y,Z@TIME", a.reaches,
                   "Bring a joint, given by name or role, to a point at a time: "
                   "RightHand=0.4m,1.2m,0.3m@2s, or for a while: @2s..3.5s; repeatable")
-      .type_name("JOINT=X,Y,Z@TIME")
-      .one_each_time()
-      .group(group);
+      .one_each_time();
   command
-      .add_option("--look-at", a.looks,
+      .add_option("--look-at JOINT=X,Y,Z@TIME", a.looks,
                   "The same for what faces forwards in the reference pose, which then points to "
                   "the place: head=0m,1.5m,4m@1s..3s")
-      .type_name("JOINT=X,Y,Z@TIME")
-      .one_each_time()
-      .group(group);
+      .one_each_time();
   command
-      .add_option("--fade", a.fade,
+      .add_option("--fade TIME", a.fade,
                   "Time in which --reach and --look-at take hold before, and let go after")
-      .type_name("TIME")
-      .default_str("0.5s")
-      .group(group);
-  add_map_option(command, a.map).group(group);
+      .default_str("0.5s");
+  add_map_option(command, a.map);
 }
 
 void declare_planting(CommandOptions& command, Arguments& a) {
-  const char* group = "Feet";
-  command
-      .add_flag("--plant", a.plant,
-                "Remove foot skate before the goals are brought about: heel and ball stay where "
-                "they stand, the pelvis is lowered where a leg would be stretched")
-      .group(group);
-  add_contacts_option(command, a.contacts).needs("--plant").group(group);
+  command.group("Feet");
+  command.add_flag("--plant", a.plant,
+                   "Remove foot skate before the goals are brought about: heel and ball stay where "
+                   "they stand, the pelvis is lowered where a leg would be stretched");
+  add_contacts_option(command, a.contacts).needs("--plant");
 }
 
 void declare_limits(CommandOptions& command, Arguments& a) {
-  const char* group = "Limits";
+  command.group("Limits");
+  command.add_option("--limits IN.json|auto", a.limits,
+                     "Ranges of motion: a file (formats/limits/SPEC.md), or auto for published "
+                     "ranges of adults by the joints' roles");
   command
-      .add_option("--limits", a.limits,
-                  "Ranges of motion: a file (formats/limits/SPEC.md), or auto for published "
-                  "ranges of adults by the joints' roles")
-      .type_name("IN.json|auto")
-      .group(group);
-  command
-      .add_option("--learn-limits", a.captures,
+      .add_option("--learn-limits IN.anim", a.captures,
                   "Use the ranges that a motion of the same skeleton uses; repeatable")
-      .type_name("IN.anim")
-      .one_each_time()
-      .group(group);
-  command.add_option("--margin", a.margin, "Margin added to learnt ranges")
-      .type_name("ANGLE")
-      .default_str("0deg")
-      .group(group);
-  command
-      .add_option("--write-limits", a.write_limits,
-                  "Write the limits to a file; then neither goals nor -o are needed")
-      .type_name("OUT.limits.json")
-      .group(group);
+      .one_each_time();
+  command.add_option("--margin ANGLE", a.margin, "Margin added to learnt ranges")
+      .default_str("0deg");
+  command.add_option("--write-limits OUT.limits.json", a.write_limits,
+                     "Write the limits to a file; then neither goals nor -o are needed");
 }
 
 void declare_solver(CommandOptions& command, Arguments& a) {
-  const char* group = "Solver";
-  add_choice<krok::ik::Method>(
-      command, "--method", a.method,
-      {{"least-squares", krok::ik::Method::least_squares},
-       {"ccd", krok::ik::Method::ccd},
-       {"two-bone", krok::ik::Method::two_bone}},
-      "least-squares: all goals at once; ccd: joint by joint; two-bone: the "
-      "joint's parent and grandparent in closed form",
-      "METHOD", "least-squares")
-      .group(group);
+  command.group("Solver");
+  add_choice<krok::ik::Method>(command, "--method", a.method,
+                               {{"least-squares", krok::ik::Method::least_squares},
+                                {"ccd", krok::ik::Method::ccd},
+                                {"two-bone", krok::ik::Method::two_bone}},
+                               "least-squares: all goals at once; ccd: joint by joint; two-bone: "
+                               "the joint's parent and grandparent in closed form",
+                               "METHOD", "least-squares");
   command
-      .add_option("--stiffness", a.stiffness,
+      .add_option("--stiffness JOINT=NUMBER", a.stiffness,
                   "How much a joint resists, 0 to 1 (does not turn): spine=0.7; repeatable")
-      .type_name("JOINT=NUMBER")
-      .one_each_time()
-      .group(group);
+      .one_each_time();
   add_whole(command, "--depth", a.depth,
             "How many joints take part for each goal, from the joint's own upwards; 0: all; "
             "default: all below the hips",
-            0, 10000)
-      .group(group);
-  command.add_flag("--root-moves", a.root_moves, "The root may be shifted to reach the goals")
-      .group(group);
+            0, 10000);
+  command.add_flag("--root-moves", a.root_moves, "The root may be shifted to reach the goals");
   add_whole(command, "--iterations", a.iterations, "Max iterations in a frame", 0, 100'000)
-      .default_str("60")
-      .group(group);
+      .default_str("60");
   add_whole(command, "--restarts", a.restarts,
             "Further starts in frames whose goals are not reached; may make a motion jump", 0, 1000)
-      .default_str("0")
-      .group(group);
-  command.add_option("--tolerance", a.tolerance, "A goal's position is reached within this")
-      .type_name("LENGTH")
-      .default_str("0.01mm")
-      .group(group);
+      .default_str("0");
+  command.add_option("--tolerance LENGTH", a.tolerance, "A goal's position is reached within this")
+      .default_str("0.01mm");
   command
-      .add_option("--angle-tolerance", a.angle_tolerance, "A goal's angle is reached within this")
-      .type_name("ANGLE")
-      .default_str("0.01deg")
-      .group(group);
+      .add_option("--angle-tolerance ANGLE", a.angle_tolerance,
+                  "A goal's angle is reached within this")
+      .default_str("0.01deg");
 }
 
 // The text before and after the first `mark`.
@@ -206,20 +172,18 @@ Result<Stiffness> parse_stiffness(const std::string& text) {
 
 void declare(CommandOptions& command, Arguments& arguments) {
   command
-      .add_option("input", arguments.input,
+      .add_option("input IN.anim", arguments.input,
                   "Motion, or a capture read as by krok-import (- is standard input)")
-      .type_name("IN.anim")
       .required();
   declare_goals(command, arguments);
   declare_planting(command, arguments);
   declare_limits(command, arguments);
   declare_solver(command, arguments);
+  command.group("Output");
   add_orientation_option(command, arguments.orientation);
-  command
-      .add_option("--plot", arguments.plot,
-                  "Write a chart: by how much each goal is missed over time, which joints' limits "
-                  "hold it back, rotations beyond limits before and after")
-      .type_name("OUT.svg");
+  command.add_option("--plot OUT.svg", arguments.plot,
+                     "Write a chart: by how much each goal is missed over time, which joints' "
+                     "limits hold it back, rotations beyond limits before and after");
 }
 
 Result<Options> understand(const Arguments& a) {

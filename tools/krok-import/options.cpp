@@ -26,126 +26,87 @@ Result<std::optional<Direction>> direction_option(const std::string& text, const
 
 void declare_inputs(CommandOptions& command, Options& options) {
   command
-      .add_option("input", options.input,
+      .add_option("input IN", options.input,
                   "Motion capture (BVH; Acclaim motion, AMC; Acclaim skeleton, ASF) or character "
                   "(GLB, glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5); - is standard input")
-      .type_name("IN")
       .required();
-  command
-      .add_option("--skeleton", options.skeleton,
-                  "Skeleton of an Acclaim motion; default: the .asf file beside it whose name "
-                  "starts the motion's name, or the only one")
-      .type_name("IN.asf");
+  command.add_option("--skeleton IN.asf", options.skeleton,
+                     "Skeleton of an Acclaim motion; default: the .asf file beside it whose name "
+                     "starts the motion's name, or the only one");
   add_map_option(command, options.map);
-  command
-      .add_option("--model", options.model,
-                  "Write the model: skeleton with reference pose, mesh and skin; for a capture the "
-                  "skeleton without vertices")
-      .type_name("OUT.model");
+  command.add_option("--model OUT.model", options.model,
+                     "Write the model: skeleton with reference pose, mesh and skin; for a capture "
+                     "the skeleton without vertices");
 }
 
 void declare_characters(CommandOptions& command, Options& options) {
-  const std::string group = "Characters";
-  command
-      .add_option("--character", options.character,
-                  "Write the whole character: OUT.character and beside it OUT.model, OUT.material, "
-                  "textures in OUT_textures/, morph targets in OUT_morphs.exr; replaces --model "
-                  "and --morphs")
-      .type_name("OUT.character")
-      .group(group);
-  command
-      .add_option("--clip", options.clip,
-                  "Animation to import: name, number from 0, or all; for all, {clip} in the "
-                  "output's name is the animation's name [the first]")
-      .type_name("NAME")
-      .group(group);
-  command
-      .add_option("--skin", options.skin,
-                  "Use the skeleton of this skin (name or number) if the file has several [the one "
-                  "with the most joints]")
-      .type_name("NAME")
-      .group(group);
-  command.add_option("--cam", options.cam, "Write a camera of the file")
-      .type_name("OUT.cam")
-      .group(group);
-  command
-      .add_option("--camera", options.camera, "Camera to write: name or number from 0 [the first]")
-      .type_name("NAME")
-      .group(group);
-  command
-      .add_option("--morphs", options.morphs,
-                  "Write the morph targets as a float texture (OpenEXR), for the vertices that "
-                  "--model writes")
-      .type_name("OUT.exr")
-      .group(group);
-  command
-      .add_option("--morph-weights", options.weights,
-                  "Write the morph target weights over time as a table")
-      .type_name("OUT.csv")
-      .group(group);
+  command.group("Characters");
+  command.add_option(
+      "--character OUT.character", options.character,
+      "Write the whole character: OUT.character and beside it OUT.model, OUT.material, textures in "
+      "OUT_textures/, morph targets in OUT_morphs.exr; replaces --model and --morphs");
+  command.add_option("--clip NAME", options.clip,
+                     "Animation to import: name, number from 0, or all; for all, {clip} in the "
+                     "output's name is the animation's name [the first]");
+  command.add_option("--skin NAME", options.skin,
+                     "Use the skeleton of this skin (name or number) if the file has several [the "
+                     "one with the most joints]");
+  command.add_option("--cam OUT.cam", options.cam, "Write a camera of the file");
+  command.add_option("--camera NAME", options.camera,
+                     "Camera to write: name or number from 0 [the first]");
+  command.add_option(
+      "--morphs OUT.exr", options.morphs,
+      "Write the morph targets as a float texture (OpenEXR), for the vertices that --model writes");
+  command.add_option("--morph-weights OUT.csv", options.weights,
+                     "Write the morph target weights over time as a table");
 }
 
 void declare_conventions(CommandOptions& command, Options& options) {
-  const std::string group = "Conventions of the file";
+  command.group("Conventions of the file");
   command
-      .add_option("--unit", options.unit,
+      .add_option("--unit UNIT", options.unit,
                   "Unit of length: auto, m, dm, cm, mm, in, ft, cmu (of the CMU database) or a "
                   "length such as 5.64cm")
-      .type_name("UNIT")
-      .default_str("auto")
-      .group(group);
-  command.add_option("--up", options.up, "Up axis: auto, x, y, z, -x, -y, -z")
-      .type_name("AXIS")
-      .default_str("auto")
-      .group(group);
+      .default_str("auto");
+  command.add_option("--up AXIS", options.up, "Up axis: auto, x, y, z, -x, -y, -z")
+      .default_str("auto");
   command
-      .add_option("--forward", options.forward,
+      .add_option("--forward AXIS", options.forward,
                   "Axis that the character faces in the reference pose: as --up")
-      .type_name("AXIS")
-      .default_str("auto")
-      .group(group);
+      .default_str("auto");
   add_choice<bvh::Positions>(
       command, "--positions", options.positions,
       {{"auto", bvh::Positions::automatic},
        {"absolute", bvh::Positions::absolute},
        {"additive", bvh::Positions::additive}},
       "BVH: whether position channels replace OFFSETs (absolute) or are added to them (additive)",
-      "HOW", "auto")
-      .group(group);
+      "HOW", "auto");
   add_choice<bvh::Angles>(command, "--angles", options.angles,
                           {{"degrees", bvh::Angles::degrees}, {"radians", bvh::Angles::radians}},
                           "BVH: unit of rotations: degrees, the format's unit, or radians", "UNIT",
-                          "degrees")
-      .group(group);
+                          "degrees");
 }
 
 void declare_timing(CommandOptions& command, Options& options) {
-  const std::string group = "Time";
-  add_rate(command, "--fps", options.fps, "Frame rate of the file, overrides the file's value")
-      .group(group);
-  add_rate(command, "--resample", options.resample, "Resample the motion to N frames per second")
-      .group(group);
+  command.group("Time");
+  add_rate(command, "--fps", options.fps, "Frame rate of the file, overrides the file's value");
+  add_rate(command, "--resample", options.resample, "Resample the motion to N frames per second");
   add_choice<RestFrame>(
       command, "--skip-rest-frame", options.rest_frame,
       {{"no", RestFrame::keep}, {"auto", RestFrame::automatic}, {"yes", RestFrame::drop}},
       "Drop the first frame of a capture: auto (if it is a rest pose, not part of the motion), yes "
       "or no",
-      "WHEN", "no")
-      .group(group);
+      "WHEN", "no");
 }
 
 void declare_faults(CommandOptions& command, Options& options) {
-  const std::string group = "Errors in the file";
-  const CommandOption strict = command
-                                   .add_flag("--strict", options.strict,
-                                             "Fail on any error in the file; by default incomplete "
-                                             "rows are dropped with a warning")
-                                   .group(group);
+  command.group("Errors in the file");
+  const CommandOption strict = command.add_flag("--strict", options.strict,
+                     "Fail on any error in the file; by default incomplete rows are dropped with a warning");
   command
       .add_flag("--repair", options.repair,
                 "Fill damaged frames from their neighbours; each repair is listed")
-      .excludes(strict)
-      .group(group);
+      .excludes(strict);
 }
 
 }  // namespace

@@ -68,51 +68,37 @@ Result<ContactChange> parse_contact(const std::string& text) {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("input", options.input,
+      .add_option("input IN", options.input,
                   "Motion: a .anim file, or a capture, read with the defaults of krok-import")
-      .type_name("IN")
       .required();
   add_map_option(command, options.map);
   command
-      .add_option("--find", options.find,
-                  "steps (detect contacts and keytimes, keep manual edits), none (use the "
-                  "existing file), or auto: none if the file was edited by hand, otherwise steps")
-      .type_name("WHAT")
+      .add_option("--find WHAT", options.find,
+                  "steps (detect contacts and keytimes, keep manual edits), none (use the existing "
+                  "file), or auto: none if the file was edited by hand, otherwise steps")
       .transform(
           one_of<Find>({{"auto", Find::automatic}, {"steps", Find::steps}, {"none", Find::none}}))
       .default_str("auto");
-  command
-      .add_option("--keys", options.keys,
-                  "Initial keytime file (default: the one given by -o, or else the one beside "
-                  "the motion)")
-      .type_name("IN.json");
+  command.add_option(
+      "--keys IN.json", options.keys,
+      "Initial keytime file (default: the one given by -o, or else the one beside the motion)");
   command.add_flag("--discard-edits", options.discard_edits,
                    "Detect everything again and discard manual edits");
-  command
-      .add_option(
-          "--plot", options.plot,
-          "Plot (SVG) of heights and speeds of the feet over time, with contacts and keytimes")
-      .type_name("OUT.svg");
-  const char* group = "Manual edits";
-  const auto list = [&](const char* name, std::vector<std::string>& values, const char* help,
-                        const char* type) {
-    command.add_option(name, values, help)
-        .type_name(type)
-        .delimiter(',')
-        .one_each_time()
-        .group(group);
+  command.add_option(
+      "--plot OUT.svg", options.plot,
+      "Plot (SVG) of heights and speeds of the feet over time, with contacts and keytimes");
+  command.group("Manual edits");
+  const auto list = [&](const char* name, std::vector<std::string>& values, const char* help) {
+    command.add_option(name, values, help).delimiter(',').one_each_time();
   };
-  list("--set", options.set,
+  list("--set NAME=TIME", options.set,
        "Move the keytime of that name within 0.15 s to this time, or add one; several separated by "
-       "commas, or repeat the option. Times: 1.25s, 250ms, or 120f (frame)",
-       "NAME=TIME");
-  list("--remove", options.remove, "Remove a keytime, or all with that name", "NAME[@TIME]");
-  list("--add-contact", options.add_contact,
+       "commas, or repeat the option. Times: 1.25s, 250ms, or 120f (frame)");
+  list("--remove NAME[@TIME]", options.remove, "Remove a keytime, or all with that name");
+  list("--add-contact JOINT=TIME..TIME", options.add_contact,
        "Add a contact of a joint, replacing those it overlaps; its position is that of the joint "
-       "during that time",
-       "JOINT=TIME..TIME");
-  list("--remove-contact", options.remove_contact, "Remove a joint's contact at that time",
-       "JOINT@TIME");
+       "during that time");
+  list("--remove-contact JOINT@TIME", options.remove_contact, "Remove a joint's contact at that time");
 }
 
 Result<Changes> changes_of(const Options& options) {

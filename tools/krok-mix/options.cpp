@@ -13,14 +13,15 @@ namespace {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("input", options.input,
-                  "Timeline (JSON): a sequence of motions, transitions, layers; "
-                  "see formats/timeline/SPEC.md")
-      .type_name("IN.json")
+      .add_option("input IN.json", options.input,
+                  "Timeline (JSON): a sequence of motions, transitions, layers; see "
+                  "formats/timeline/SPEC.md")
       .required();
-  add_keys_option(command, options.keys).group("Time");
-  add_map_option(command, options.map).group("Space");
-  command.add_flag("--plant", options.plant, kPlantHelp).group("Space");
+  command.group("Time");
+  add_keys_option(command, options.keys);
+  command.group("Space");
+  add_map_option(command, options.map);
+  command.add_flag("--plant", options.plant, kPlantHelp);
   add_orientation_option(command, options.orientation);
 }
 

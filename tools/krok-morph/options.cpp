@@ -79,96 +79,76 @@ std::string words_for(unsigned actions) {
 }
 
 void declare_shapes(CommandOptions& command, Options& options) {
+  command.group("Shapes");
   command
       .add_option_function(
-          "--unit",
+          "--unit UNIT",
           [&options](const std::string& text) {
             const auto unit = parse_unit(text);
             if (unit) options.metres_per_unit = unit->metres;
           },
           "Length unit of OBJ files: m, cm, mm, in, ft or a length such as 5.64cm")
-      .type_name("UNIT")
       .default_str("m")
       .check([](std::string& text) {
         const auto unit = parse_unit(text);
         return unit ? std::string() : unit.error().message;
-      })
-      .group("Shapes");
+      });
   add_choice<Up>(command, "--up", options.up, {{"y", Up::y}, {"z", Up::z}},
                  "Up axis of OBJ files: y (character faces +Z) or z (character faces -Y)", "AXIS",
-                 "y")
-      .group("Shapes");
+                 "y");
+  command.add_flag(
+      "--by-order", options.by_order,
+      "Match vertices by order only; by default shapes must also have the triangles of the first");
   command
-      .add_flag("--by-order", options.by_order,
-                "Match vertices by order only; by default shapes must also have the triangles of "
-                "the first")
-      .group("Shapes");
-  command
-      .add_option("--name", options.names,
+      .add_option("--name NAME", options.names,
                   "pack: name of a target, once per TARGET in order; default: its file name "
                   "without extension")
-      .type_name("NAME")
-      .allow_extra_args(false)
-      .group("Shapes");
+      .allow_extra_args(false);
 }
 
 void declare_unpack(CommandOptions& command, Options& options) {
-  command.add_option("--out-dir", options.out_dir, "unpack: folder for the shapes, one file each")
-      .type_name("DIR")
-      .group("Unpack");
+  command.group("Unpack");
+  command.add_option("--out-dir DIR", options.out_dir,
+                     "unpack: folder for the shapes, one file each");
   add_choice<ShapeFormat>(command, "--format", options.format,
                           {{"base", ShapeFormat::as_base},
                            {"obj", ShapeFormat::obj},
                            {"glb", ShapeFormat::glb},
                            {"model", ShapeFormat::model}},
                           "unpack: file format: obj, glb, model, or base: as BASE", "FORMAT",
-                          "base")
-      .group("Unpack");
+                          "base");
   command
-      .add_option("--target", options.targets,
+      .add_option("--target NAME", options.targets,
                   "unpack: only the target with this name; may be repeated")
-      .type_name("NAME")
-      .allow_extra_args(false)
-      .group("Unpack");
+      .allow_extra_args(false);
 }
 
 void declare_motion(CommandOptions& command, Options& options) {
-  command
-      .add_option("--weights", options.weights,
-                  "bake: target weights over time: a table as written by krok-import "
-                  "--morph-weights, or keys (formats/weights/SPEC.md)")
-      .type_name("IN.csv|IN.json")
-      .group("Motion");
+  command.group("Motion");
+  command.add_option("--weights IN.csv|IN.json", options.weights,
+                     "bake: target weights over time: a table as written by krok-import "
+                     "--morph-weights, or keys (formats/weights/SPEC.md)");
   add_choice<As>(
       command, "--as", options.as, {{"clip", As::clip}, {"targets", As::targets}},
       "For glTF. clip: baked, one shape per frame. targets: the shapes and keys for their weights",
-      "WHAT", "clip")
-      .group("Motion");
+      "WHAT", "clip");
   add_rate(command, "--rate", options.rate,
-           "Frames per second; default: from the weights or keys, or else 30")
-      .group("Motion");
+           "Frames per second; default: from the weights or keys, or else 30");
   add_choice<Between>(
       command, "--between", options.between,
       {{"linear", Between::linear}, {"hermite", Between::hermite}},
       "frames: interpolation: linear or hermite (cubic); default: from the keys, or else linear",
-      "HOW", "")
-      .group("Motion");
+      "HOW", "");
   add_number(command, "--tension", options.tension,
              "frames, hermite: 0 passes smoothly through the keys, 1 stops at each; default: from "
-             "the keys, or else 0")
-      .group("Motion");
+             "the keys, or else 0");
   command
-      .add_option("--spacing", options.spacing,
+      .add_option("--spacing T", options.spacing,
                   "frames of a folder: time between shapes, such as 0.5s, 250ms or 1f")
-      .type_name("T")
-      .default_str("1f")
-      .group("Motion");
-  command
-      .add_option("--save-weights", options.save_weights,
-                  "frames: weight of each key's shape in each frame, as a table for bake and "
-                  "krok-skin with an .exr of the keys")
-      .type_name("OUT.csv")
-      .group("Motion");
+      .default_str("1f");
+  command.add_option("--save-weights OUT.csv", options.save_weights,
+                     "frames: weight of each key's shape in each frame, as a table for bake and "
+                     "krok-skin with an .exr of the keys");
 }
 
 Status check_uses(const Options& options) {
@@ -231,10 +211,9 @@ void declare(CommandOptions& command, Options& options) {
       "ACTION", "")
       .required();
   command
-      .add_option("files", options.files,
+      .add_option("files IN", options.files,
                   "Files of the action. BASE and TARGETs: .obj, .glb, .gltf or .model, with the "
                   "same vertices; pack also takes the targets in a glTF BASE")
-      .type_name("IN")
       .required();
   declare_shapes(command, options);
   declare_unpack(command, options);

@@ -50,15 +50,12 @@ bool is_character(const std::string& path) {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("subject", options.subject,
+      .add_option("subject IN.model", options.subject,
                   "Skinned mesh: a .model, or a .character with its materials and expressions")
-      .type_name("IN.model")
       .required();
-  command
-      .add_option("motion", options.motion,
-                  "Motion: .anim, or a capture read as by krok-import; without it, the mesh is in "
-                  "its reference pose")
-      .type_name("IN.anim");
+  command.add_option("motion IN.anim", options.motion,
+                     "Motion: .anim, or a capture read as by krok-import; without it, the mesh is "
+                     "in its reference pose");
   add_choice(command, "--as", options.as,
              {{"clip", As::clip}, {"pose", As::pose}, {"rig", As::rig}, {"frames", As::frames}},
              "What to write. clip: the baked motion, as glTF with one morph target per frame or as "
@@ -66,30 +63,24 @@ void declare(CommandOptions& command, Options& options) {
              "skinning in the viewer. frames: one file per frame, OUT_0000.glb, OUT_0001.glb, ... "
              "for -o OUT.glb. Meshes can be .glb, .gltf or .obj",
              "WHAT", "clip");
-  command.add_option("--time", options.time, "For --as pose: the time, such as 1.5s, 250ms or 120f")
-      .type_name("T")
-      .default_str("0");
   command
-      .add_option("--from", options.from,
-                  "Start of the range to write, as for --time; not for pose")
-      .type_name("T");
-  command.add_option("--to", options.to, "End of the range, inclusive").type_name("T");
+      .add_option("--time T", options.time, "For --as pose: the time, such as 1.5s, 250ms or 120f")
+      .default_str("0");
+  command.add_option("--from T", options.from,
+                     "Start of the range to write, as for --time; not for pose");
+  command.add_option("--to T", options.to, "End of the range, inclusive");
   add_whole(command, "--every", options.every, "Use only every Nth frame", 1, 1000000)
       .default_str("1");
   add_skin_method(command, options.method,
                   "Skinning method. linear: linear blend skinning, as in viewers; loses volume at "
                   "twisted joints. dual-quaternion: preserves volume. rigid: each vertex follows "
                   "only its strongest joint");
-  command
-      .add_option("--morph", options.morphs,
-                  "Morph targets (OpenEXR, from krok-morph or krok-import), applied before "
-                  "skinning; a character has its own")
-      .type_name("IN.exr");
-  command
-      .add_option("--weights", options.weights,
-                  "Morph target weights over time: a table (CSV) or keys (JSON); from the start of "
-                  "the motion")
-      .type_name("IN");
+  command.add_option("--morph IN.exr", options.morphs,
+                     "Morph targets (OpenEXR, from krok-morph or krok-import), applied before "
+                     "skinning; a character has its own");
+  command.add_option(
+      "--weights IN", options.weights,
+      "Morph target weights over time: a table (CSV) or keys (JSON); from the start of the motion");
   add_choice(command, "--up", options.up, {{"y", pc2::Up::y}, {"z", pc2::Up::z}},
              "Up axis of a point cache: y as in the written OBJ and glTF files, or z as in Blender "
              "and 3ds Max",

@@ -13,45 +13,30 @@ namespace krok::cli::synth {
 namespace {
 
 void declare(CommandOptions& command, Options& options) {
-  command.add_option("library", options.library, "Step library made by krok-fit")
-      .type_name("IN.steps")
+  command.add_option("library IN.steps", options.library, "Step library made by krok-fit")
       .required();
-  command
-      .add_option("--set", options.set,
-                  "Value of a parameter: length=70cm, turn=15deg, duration=0.6s")
-      .type_name("NAME=VALUE")
-      .group("Parameters");
-  command
-      .add_option("--table", options.table,
-                  "Table (CSV) with a column per parameter; makes one motion per row, named as "
-                  "-o plus the row number")
-      .type_name("IN.csv")
-      .group("Parameters");
-  command
-      .add_flag("--extrapolate", options.extrapolate,
-                "Allow parameters outside the range of the examples, and weights outside -0.25 to "
-                "1.25, where the error is unknown")
-      .group("Parameters");
-  command
-      .add_flag("--strict", options.strict,
-                "Exit with 1 if a motion differs from what was asked by more than the library's "
-                "tolerance (otherwise a warning)")
-      .group("Parameters");
+  command.group("Parameters");
+  command.add_option("--set NAME=VALUE", options.set,
+                     "Value of a parameter: length=70cm, turn=15deg, duration=0.6s");
+  command.add_option("--table IN.csv", options.table,
+                     "Table (CSV) with a column per parameter; makes one motion per row, named as "
+                     "-o plus the row number");
+  command.add_flag("--extrapolate", options.extrapolate,
+                   "Allow parameters outside the range of the examples, and weights outside -0.25 "
+                   "to 1.25, where the error is unknown");
+  command.add_flag("--strict", options.strict,
+                   "Exit with 1 if a motion differs from what was asked by more than the library's "
+                   "tolerance (otherwise a warning)");
+  command.group("Motion");
   add_choice<SideChoice>(
       command, "--side", options.side,
       {{"library", SideChoice::library}, {"left", SideChoice::left}, {"right", SideChoice::right}},
-      "Swing foot: library (as in the library), left or "
-      "right",
-      "SIDE", "library")
-      .group("Motion");
-  command
-      .add_flag("--correct", options.correct,
-                "Correct the weights until the measured parameters match")
-      .group("Motion");
-  command.add_flag("--plant", options.plant, kPlantHelp).group("Motion");
+      "Swing foot: library (as in the library), left or right", "SIDE", "library");
+  command.add_flag("--correct", options.correct,
+                   "Correct the weights until the measured parameters match");
+  command.add_flag("--plant", options.plant, kPlantHelp);
   add_rate(command, "--rate", options.rate,
-           "Frames per second (default: the library's, adjusted so that the duration is exact)")
-      .group("Motion");
+           "Frames per second (default: the library's, adjusted so that the duration is exact)");
   add_orientation_option(command, options.orientation);
 }
 
