@@ -43,10 +43,8 @@ Status SourceText::fault(const TextLocation& place, std::string code, std::strin
 
 void SourceText::finish() {
   if (warnings_ <= kMaxWarnings) return;
-  Diagnostic more;
-  more.severity = Severity::warning;
-  more.code = "acclaim-more";
-  more.message = fmt::format("{} more warnings are not shown", warnings_ - kMaxWarnings);
+  Diagnostic more = make_warning(
+      "acclaim-more", fmt::format("{} more warnings are not shown", warnings_ - kMaxWarnings));
   more.where.file = file_name_;
   diagnostics_.push_back(std::move(more));
 }

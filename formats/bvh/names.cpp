@@ -24,10 +24,7 @@ void make_names_unique(std::vector<JointName>& places, std::string_view text,
   int cleaned = 0;
   int nameless = 0;
   const auto warn = [&](const JointName& place, const char* code, std::string message) {
-    Diagnostic warning;
-    warning.severity = Severity::warning;
-    warning.code = code;
-    warning.message = std::move(message);
+    Diagnostic warning = make_warning(code, std::move(message));
     warning.where = locate(place.offset);
     warning.joint = *place.name;
     diagnostics.push_back(std::move(warning));
@@ -69,11 +66,10 @@ void make_names_unique(std::vector<JointName>& places, std::string_view text,
     }
   }
   if (duplicates > kMaxWarnings) {
-    Diagnostic more;
-    more.severity = Severity::warning;
-    more.code = "bvh-name-duplicate";
-    more.message = fmt::format("{} with a duplicate name",
-                               counted(duplicates - kMaxWarnings, "more joint", "more joints"));
+    Diagnostic more =
+        make_warning("bvh-name-duplicate",
+                     fmt::format("{} with a duplicate name",
+                                 counted(duplicates - kMaxWarnings, "more joint", "more joints")));
     more.where.file = file_name;
     diagnostics.push_back(std::move(more));
   }

@@ -96,19 +96,8 @@ class Reader {
     return {};
   }
 
-  // `count` finite numbers.
-  Result<std::vector<double>> numbers(const Value& list, std::string_view what,
-                                      std::string_view key, std::size_t count) const {
-    std::vector<double> found;
-    for (const Value& item : list.items) {
-      if (item.kind == Kind::number && std::isfinite(item.number)) found.push_back(item.number);
-    }
-    if (found.size() == count && list.items.size() == count) return found;
-    return in_.wrong(list, fmt::format("\"{}\" of {} must be {} numbers", key, what, count));
-  }
-
   Result<Vec3> place(const Value& list, std::string_view what, std::string_view key) const {
-    const auto values = numbers(list, what, key, 3);
+    const auto values = in_.numbers(list, what, key, 3);
     if (!values) return values.error();
     const Vec3 place = metres_ * Vec3((*values)[0], (*values)[1], (*values)[2]);
     if (place.cwiseAbs().maxCoeff() <= kFurthest) return place;
@@ -135,7 +124,7 @@ class Reader {
       key.target = *at;
       return {};
     }
-    const auto values = numbers(**orientation, what, "orientation", 4);
+    const auto values = in_.numbers(**orientation, what, "orientation", 4);
     if (!values) return values.error();
     const Quat turn((*values)[3], (*values)[0], (*values)[1], (*values)[2]);
     // Hand-written quaternions have few digits.

@@ -50,15 +50,6 @@ OrderedJson numbers(const Vector& vector) {
   return list;
 }
 
-Diagnostic warning(std::string code, std::string message, std::string hint) {
-  Diagnostic diagnostic;
-  diagnostic.severity = Severity::warning;
-  diagnostic.code = std::move(code);
-  diagnostic.message = std::move(message);
-  diagnostic.hint = std::move(hint);
-  return diagnostic;
-}
-
 OrderedJson provenance_json(const Provenance& provenance) {
   OrderedJson json = {{"tool", provenance.tool}, {"version", provenance.version}};
   for (const auto& source : provenance.sources) {
@@ -113,7 +104,7 @@ class CameraPutter {
     if (least != most) {
       camera["extras"]["fieldsOfView"] = {{"rate", track_.rate},
                                           {"values", numbers(track_.fields_of_view)}};
-      diagnostics.push_back(warning(
+      diagnostics.push_back(make_warning(
           "gltf-lens",
           fmt::format("the field of view varies from {} to {} degrees, which glTF cannot animate; "
                       "viewers use the first frame's",
@@ -185,11 +176,11 @@ class CameraPutter {
                                                  chosen, animations.size()));
     }
     if (!options_.animation && animations.size() > 1) {
-      diagnostics.push_back(
-          warning("gltf-animations",
-                  fmt::format("the file has {} animations; the camera is added to the first, {}",
-                              animations.size(), shown(text_in(animations[0], "name"))),
-                  "choose another by number with --clip"));
+      diagnostics.push_back(make_warning(
+          "gltf-animations",
+          fmt::format("the file has {} animations; the camera is added to the first, {}",
+                      animations.size(), shown(text_in(animations[0], "name"))),
+          "choose another by number with --clip"));
     }
     // Successive rotations in one hemisphere, so that viewers interpolate along the shorter arc.
     std::vector<Quatf> rotations = track_.orientations;

@@ -10,12 +10,7 @@ std::string label(const char* kind, std::size_t index, const std::string& name) 
 }
 
 void warn(Diagnostics& diagnostics, std::string code, std::string message, std::string hint) {
-  Diagnostic diagnostic;
-  diagnostic.severity = Severity::warning;
-  diagnostic.code = std::move(code);
-  diagnostic.message = std::move(message);
-  diagnostic.hint = std::move(hint);
-  diagnostics.push_back(std::move(diagnostic));
+  diagnostics.push_back(make_warning(std::move(code), std::move(message), std::move(hint)));
 }
 
 }  // namespace krok::gltf

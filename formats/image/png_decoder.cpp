@@ -53,17 +53,7 @@ class PngDecoder {
     png_set_scale_16(png_);
     png_set_gray_to_rgb(png_);
     png_set_add_alpha(png_, 0xFF, PNG_FILLER_AFTER);
-    const int passes = png_set_interlace_handling(png_);
-    png_read_update_info(png_, info_);
-    const std::size_t row = std::size_t{width} * 4;
-    if (png_get_image_width(png_, info_) != width || png_get_image_height(png_, info_) != height ||
-        png_get_rowbytes(png_, info_) != row) {
-      png_error(png_, "the header changed");
-    }
-    for (int pass = 0; pass < passes; ++pass) {
-      for (png_uint_32 y = 0; y < height; ++y) png_read_row(png_, first + y * row, nullptr);
-    }
-    png_read_end(png_, nullptr);
+    read_rows(first, width, height);
     return true;
   }
 
@@ -80,6 +70,12 @@ class PngDecoder {
     png_set_expand_16(png_);
     png_set_add_alpha(png_, 0xFFFF, PNG_FILLER_AFTER);
     png_set_swap(png_);
+    read_rows(first, width, height);
+    return true;
+  }
+
+  // Four bytes a pixel, by the transformations set. Errors leave by png_error().
+  void read_rows(std::uint8_t* first, png_uint_32 width, png_uint_32 height) {
     const int passes = png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
     const std::size_t row = std::size_t{width} * 4;
@@ -91,7 +87,6 @@ class PngDecoder {
       for (png_uint_32 y = 0; y < height; ++y) png_read_row(png_, first + y * row, nullptr);
     }
     png_read_end(png_, nullptr);
-    return true;
   }
 
   static void read(png_structp png, png_bytep to, std::size_t size) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/nearest_name.h"
@@ -141,6 +142,17 @@ Result<double> Members::moment(const Value& object, std::string_view what, std::
   const Value* const value = object.find(key);
   if (value == nullptr) return structure(object, fmt::format("{} is missing \"{}\"", what, key));
   return moment(*value, fmt::format("\"{}\" of {}", key, what), rate, latest);
+}
+
+Result<std::vector<double>> Members::numbers(const Value& list, std::string_view what,
+                                             std::string_view key, std::size_t count) const {
+  std::vector<double> found;
+  for (const Value& item : list.items) {
+    if (item.kind == Value::Kind::number && std::isfinite(item.number))
+      found.push_back(item.number);
+  }
+  if (found.size() == count && list.items.size() == count) return found;
+  return wrong(list, fmt::format("\"{}\" of {} must be {} numbers", key, what, count));
 }
 
 Status Members::has_schema(const Value& object, std::string_view what,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/result.h"
 #include "formats/json/located_json.h"
@@ -58,6 +59,10 @@ class Members {
 
   // The same for a value; `name` is for messages.
   Result<double> within(const Value& value, std::string_view name, double least, double most) const;
+
+  // A list of `count` finite numbers, the value of `key` of the object `what`.
+  Result<std::vector<double>> numbers(const Value& list, std::string_view what,
+                                      std::string_view key, std::size_t count) const;
 
   // A time in seconds from 0 to `latest`: a number, or a string such as "250ms", or "120f" if there
   // is a frame rate.

@@ -51,24 +51,13 @@ class Reader {
   }
 
  private:
-  // `count` finite numbers of an optional member; nullptr if it is missing.
-  Result<std::vector<double>> numbers(const Value& list, std::string_view what,
-                                      std::string_view key, std::size_t count) const {
-    std::vector<double> found;
-    for (const Value& item : list.items) {
-      if (item.kind == Kind::number && std::isfinite(item.number)) found.push_back(item.number);
-    }
-    if (found.size() == count && list.items.size() == count) return found;
-    return in_.wrong(list, fmt::format("\"{}\" of {} must be {} numbers", key, what, count));
-  }
-
   Status read_direction(const Value& item, const std::string& what, std::string_view key,
                         bool needed, Vec3& direction) const {
     const auto list =
         needed ? in_.get(item, what, key, Kind::array) : in_.find(item, what, key, Kind::array);
     if (!list) return list.error();
     if (*list == nullptr) return {};
-    const auto values = numbers(**list, what, key, 3);
+    const auto values = in_.numbers(**list, what, key, 3);
     if (!values) return values.error();
     const Vec3 given((*values)[0], (*values)[1], (*values)[2]);
     const double length = given.norm();
@@ -86,7 +75,7 @@ class Reader {
     const auto list = in_.find(item, what, "zero", Kind::array);
     if (!list) return list.error();
     if (*list == nullptr) return {};
-    const auto values = numbers(**list, what, "zero", 4);
+    const auto values = in_.numbers(**list, what, "zero", 4);
     if (!values) return values.error();
     const Quat given((*values)[3], (*values)[0], (*values)[1], (*values)[2]);
     if (!(std::abs(given.norm() - 1) < kHandWritten)) {
@@ -102,7 +91,7 @@ class Reader {
   // [min, max] in the file's unit, both within [lowest, highest] radians.
   Status read_range(const Value& list, const std::string& what, std::string_view key, double lowest,
                     double highest, double& least, double& most) const {
-    const auto values = numbers(list, what, key, 2);
+    const auto values = in_.numbers(list, what, key, 2);
     if (!values) return values.error();
     least = (*values)[0] * radians_;
     most = (*values)[1] * radians_;

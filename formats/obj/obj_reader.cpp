@@ -285,10 +285,7 @@ class Reader {
   }
 
   void warn(const char* code, std::string message) {
-    Diagnostic diagnostic;
-    diagnostic.severity = Severity::warning;
-    diagnostic.code = code;
-    diagnostic.message = std::move(message);
+    Diagnostic diagnostic = make_warning(code, std::move(message));
     diagnostic.where.file = path_;
     shape_.diagnostics.push_back(std::move(diagnostic));
   }

@@ -348,15 +348,6 @@ void take_contacts(const Clip& clip, FoundContacts& found) {
                     [](const Contact& c) { return std::tuple(c.start, c.joint); });
 }
 
-Diagnostic warning(std::string code, std::string message, std::string hint) {
-  Diagnostic diagnostic;
-  diagnostic.severity = Severity::warning;
-  diagnostic.code = std::move(code);
-  diagnostic.message = std::move(message);
-  diagnostic.hint = std::move(hint);
-  return diagnostic;
-}
-
 }  // namespace
 
 Result<FoundContacts> find_contacts(const Clip& clip, const RoleMap& roles,
@@ -372,17 +363,17 @@ Result<FoundContacts> find_contacts(const Clip& clip, const RoleMap& roles,
                  "assign the joints of legs and feet with a role map");
   }
   if (clip.frame_count() < 3) {
-    found.warnings.push_back(
-        warning("contacts-short",
-                fmt::format("{} frames are too few to detect contacts", clip.frame_count()), ""));
+    found.warnings.push_back(make_warning(
+        "contacts-short",
+        fmt::format("{} frames are too few to detect contacts", clip.frame_count()), ""));
     return found;
   }
   ContactFinder(clip, options, found).find();
   take_contacts(clip, found);
   if (found.contacts.empty()) {
     found.warnings.push_back(
-        warning("contacts-none", "no foot contact was found",
-                "the character may walk in place, as on a treadmill, or float"));
+        make_warning("contacts-none", "no foot contact was found",
+                     "the character may walk in place, as on a treadmill, or float"));
   }
   return found;
 }

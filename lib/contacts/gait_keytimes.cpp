@@ -278,12 +278,7 @@ Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& foun
                : KeytimeFinder(clip, roles, found, options).find();
   }
   const auto warn = [&](std::string code, std::string message, std::string hint) {
-    Diagnostic diagnostic;
-    diagnostic.severity = Severity::warning;
-    diagnostic.code = std::move(code);
-    diagnostic.message = std::move(message);
-    diagnostic.hint = std::move(hint);
-    gait.warnings.push_back(std::move(diagnostic));
+    gait.warnings.push_back(make_warning(std::move(code), std::move(message), std::move(hint)));
   };
   if (gait.keytimes.empty()) {
     warn("gait-none", "no step was found", "");

@@ -44,12 +44,9 @@ Diagnostics check_gait(const GaitMetrics& metrics, double speed, double leg_leng
   if (metrics.cycles < 2 || !(leg_length > 0)) return warnings;
   const std::string text = fault(metrics, speed, leg_length);
   if (text.empty()) return warnings;
-  Diagnostic diagnostic;
-  diagnostic.severity = Severity::warning;
-  diagnostic.code = "gait-implausible";
-  diagnostic.message = "the keytimes are not those of people: " + text;
-  diagnostic.hint = "an event is missing or misplaced; check them with krok-keys --plot";
-  warnings.push_back(std::move(diagnostic));
+  warnings.push_back(
+      make_warning("gait-implausible", "the keytimes are not those of people: " + text,
+                   "an event is missing or misplaced; check them with krok-keys --plot"));
   return warnings;
 }
 

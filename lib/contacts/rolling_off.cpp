@@ -78,13 +78,7 @@ bool WalkingFeet::runs(double time) const {
 
 void WalkingFeet::to_landings(Foot& foot) const {
   const int frames = clip_.frame_count();
-  const auto slowest = [&](int f) {
-    double least = 1e9;
-    for (const std::size_t t : foot.tracks) {
-      least = std::min(least, found_.tracks[t].speed[static_cast<std::size_t>(f)]);
-    }
-    return least;
-  };
+  const auto slowest = [&](int frame) { return slowest_of(foot, frame); };
   const int reach = static_cast<int>(kLandingWithin * clip_.rate) + 1;
   for (std::size_t i = 0; i < foot.stances.size(); ++i) {
     Stance& stance = foot.stances[i];

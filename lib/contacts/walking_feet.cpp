@@ -225,15 +225,17 @@ void WalkingFeet::open_ends(Foot& foot) const {
   }
 }
 
+double WalkingFeet::slowest_of(const Foot& foot, int frame) const {
+  double least = 1e9;
+  for (const std::size_t t : foot.tracks) {
+    least = std::min(least, found_.tracks[t].speed[static_cast<std::size_t>(frame)]);
+  }
+  return least;
+}
+
 std::optional<Stance> WalkingFeet::sliding(const Foot& foot, double front, double back) const {
   const int frames = clip_.frame_count();
-  const auto slowest = [&](int f) {
-    double least = 1e9;
-    for (const std::size_t t : foot.tracks) {
-      least = std::min(least, found_.tracks[t].speed[static_cast<std::size_t>(f)]);
-    }
-    return least;
-  };
+  const auto slowest = [&](int frame) { return slowest_of(foot, frame); };
   double fastest = 0;
   const int reach = static_cast<int>(foot.cycle * clip_.rate);
   const int from = static_cast<int>(front * clip_.rate), to = static_cast<int>(back * clip_.rate);

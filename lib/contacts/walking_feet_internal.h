@@ -53,6 +53,7 @@ class WalkingFeet {
   // slower than in swing.
   void add_sliding(Foot& foot) const;
   double lowest_of(const Foot& foot, std::size_t f) const;
+  double slowest_of(const Foot& foot, int frame) const;  // speed of its slowest point
   double toes_reach(const Foot& foot, int frame) const;
   // Height of the pelvis half-way between the last front seed and this back seed, above its mean
   // height at both; 0 without a front seed.

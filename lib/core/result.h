@@ -38,6 +38,15 @@ struct Diagnostic {
 
 using Diagnostics = std::vector<Diagnostic>;
 
+inline Diagnostic make_warning(std::string code, std::string message, std::string hint = {}) {
+  Diagnostic warning;
+  warning.severity = Severity::warning;
+  warning.code = std::move(code);
+  warning.message = std::move(message);
+  warning.hint = std::move(hint);
+  return warning;
+}
+
 // A Diagnostic that made an operation fail.
 struct Error : Diagnostic {
   Error() = default;

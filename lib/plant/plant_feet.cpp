@@ -49,15 +49,13 @@ void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing
 }
 
 Diagnostic reach_warning(int frames, const Clip& clip) {
-  Diagnostic warning;
-  warning.severity = Severity::warning;
-  warning.code = "plant-reach";
-  warning.message = fmt::format(
-      "in {} of {} frames a leg is too short to reach where its foot stands, so that the foot "
-      "slides",
-      frames, clip.frame_count());
-  warning.hint = "are contacts marked where the foot does not stand?";
-  return warning;
+  return make_warning(
+      "plant-reach",
+      fmt::format(
+          "in {} of {} frames a leg is too short to reach where its foot stands, so that the foot "
+          "slides",
+          frames, clip.frame_count()),
+      "are contacts marked where the foot does not stand?");
 }
 
 // Everything but the search for contacts, given once.

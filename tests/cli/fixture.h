@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "support/folder_test.h"
 #include "support/run_tool.h"
@@ -26,6 +28,13 @@ using testing::UnorderedElementsAre;
 // A new folder for each test, and captures to put there.
 class CliTest : public FolderTest {
  protected:
+  // Runs a tool in the folder.
+  ToolRun run_here(const std::string& tool, std::vector<std::string> arguments) const {
+    ToolOptions options;
+    options.folder = folder_.string();
+    return run_tool(tool, std::move(arguments), options);
+  }
+
   // A chain of three joints that swings, metres, y-up. `third_value` replaces the third number of
   // the second row.
   static std::string capture(int frames, const std::string& third_value = "0") {

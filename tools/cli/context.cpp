@@ -30,12 +30,7 @@ void ToolContext::diagnose(Diagnostic diagnostic) {
 }
 
 void ToolContext::warn(std::string code, std::string message, std::string hint) {
-  Diagnostic diagnostic;
-  diagnostic.severity = Severity::warning;
-  diagnostic.code = std::move(code);
-  diagnostic.message = std::move(message);
-  diagnostic.hint = std::move(hint);
-  diagnose(std::move(diagnostic));
+  diagnose(make_warning(std::move(code), std::move(message), std::move(hint)));
 }
 
 void ToolContext::log(const std::string& line) {

@@ -101,11 +101,7 @@ Result<int> find_joint(const std::string& name, const Skeleton& skeleton, const 
 
 void warn(ToolContext& context, const std::string& path, const char* code, std::string message,
           std::string hint, int frame) {
-  Diagnostic diagnostic;
-  diagnostic.severity = Severity::warning;
-  diagnostic.code = code;
-  diagnostic.message = std::move(message);
-  diagnostic.hint = std::move(hint);
+  Diagnostic diagnostic = make_warning(code, std::move(message), std::move(hint));
   diagnostic.where.file = path;
   diagnostic.frame = frame;
   context.diagnose(std::move(diagnostic));

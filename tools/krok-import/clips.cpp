@@ -64,12 +64,11 @@ Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const st
         .in_file(file);
   }
   if (clips.size() > 1) {
-    Diagnostic diagnostic;
-    diagnostic.severity = Severity::warning;
-    diagnostic.code = "import-clips";
-    diagnostic.message = fmt::format("using the first of {} animations, {}; available: {}",
-                                     clips.size(), shown(clips[0].name), list_of(clips));
-    diagnostic.hint = "select another with --clip NAME or NUMBER, or all with --clip all";
+    Diagnostic diagnostic =
+        make_warning("import-clips",
+                     fmt::format("using the first of {} animations, {}; available: {}",
+                                 clips.size(), shown(clips[0].name), list_of(clips)),
+                     "select another with --clip NAME or NUMBER, or all with --clip all");
     diagnostic.where.file = file;
     context.diagnose(std::move(diagnostic));
   }

@@ -175,10 +175,7 @@ class Loader {
   }
 
   Diagnostic warning(std::string code, std::string message) const {
-    Diagnostic diagnostic;
-    diagnostic.severity = Severity::warning;
-    diagnostic.code = std::move(code);
-    diagnostic.message = std::move(message);
+    Diagnostic diagnostic = make_warning(std::move(code), std::move(message));
     diagnostic.where.file = options_.weights;
     return diagnostic;
   }

@@ -23,12 +23,11 @@ Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& 
   // Half a frame: more than rounding errors, less than any cut.
   if (sidecar && sidecar->duration > 0 &&
       std::abs(sidecar->duration - clip.duration()) > 0.5 / clip.rate) {
-    Diagnostic stale;
-    stale.severity = Severity::warning;
-    stale.code = "keys-stale";
-    stale.message = fmt::format("made for a motion of {} s, but this one has {} s",
-                                readable(sidecar->duration), readable(clip.duration()));
-    stale.hint = "if the motion was cut or retimed, run krok-keys again";
+    Diagnostic stale =
+        make_warning("keys-stale",
+                     fmt::format("made for a motion of {} s, but this one has {} s",
+                                 readable(sidecar->duration), readable(clip.duration())),
+                     "if the motion was cut or retimed, run krok-keys again");
     stale.where.file = path;
     context.diagnose(std::move(stale));
   }

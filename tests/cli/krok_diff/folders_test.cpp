@@ -47,9 +47,7 @@ class KrokDiffFolders : public CliTest {
               std::string(reinterpret_cast<const char*>(square.bin.data()), square.bin.size()));
   }
   ToolRun diff(std::vector<std::string> arguments) const {
-    ToolOptions options;
-    options.folder = folder_.string();
-    return run_tool("krok-diff", std::move(arguments), options);
+    return run_here("krok-diff", std::move(arguments));
   }
   std::vector<std::string> files_below(const std::string& folder) const {
     std::vector<std::string> names;

@@ -5,9 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
-#include "core/file.h"
-#include "formats/anim/anim.h"
+#include "cli/motion_fixture.h"
 #include "math/quaternion.h"
 #include "motion/cut.h"
 #include "motion/ground_frame.h"
@@ -18,27 +16,10 @@
 namespace krok::test {
 namespace {
 
-class KrokEdit : public test::CliTest {
+class KrokEdit : public test::MotionTest {
  protected:
-  void write(const std::string& name, const Clip& clip) {
-    auto file = OutputFile::create(path(name));
-    ASSERT_TRUE(file.ok());
-    ASSERT_TRUE(anim::write(clip, {}, *file).ok());
-    ASSERT_TRUE(file->commit().ok());
-  }
-
-  Clip read(const std::string& name) {
-    const auto file = InputFile::open(path(name));
-    EXPECT_TRUE(file.ok()) << name;
-    auto clip = anim::read(file->bytes());
-    EXPECT_TRUE(clip.ok()) << name;
-    return std::move(*clip);
-  }
-
   test::ToolRun edit(std::vector<std::string> arguments) {
-    test::ToolOptions options;
-    options.folder = folder_.string();
-    return test::run_tool("krok-edit", std::move(arguments), options);
+    return run_here("krok-edit", std::move(arguments));
   }
 
   // Edits walk.anim to out.anim, which must work.

@@ -5,9 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
-#include "core/file.h"
-#include "formats/anim/anim.h"
+#include "cli/motion_fixture.h"
 #include "support/planted_measures.h"
 
 namespace krok::test {
@@ -15,44 +13,27 @@ namespace {
 
 using testing::HasSubstr;
 
-class KrokEditPlant : public test::CliTest {
+class KrokEditPlant : public test::MotionTest {
  protected:
   KrokEditPlant() {
     samples::WalkOptions options;
     options.steps = 6;
     walk_ = samples::make_walk(options).value();
-    put_clip("walk.anim", test::with_skate(walk_, {.body_jitter = 0.001}));
-  }
-
-  void put_clip(const std::string& name, const Clip& clip) {
-    auto file = OutputFile::create(path(name));
-    ASSERT_TRUE(file.ok());
-    ASSERT_TRUE(anim::write(clip, {}, *file).ok());
-    ASSERT_TRUE(file->commit().ok());
-  }
-  Clip clip_of(const std::string& name) {
-    const auto file = InputFile::open(path(name));
-    EXPECT_TRUE(file.ok()) << name;
-    return anim::read(file->bytes()).value();
-  }
-  test::ToolRun run(const std::string& tool, std::vector<std::string> arguments) {
-    test::ToolOptions options;
-    options.folder = folder_.string();
-    return test::run_tool(tool, std::move(arguments), options);
+    write("walk.anim", test::with_skate(walk_, {.body_jitter = 0.001}));
   }
 
   samples::Walk walk_;
 };
 
 TEST_F(KrokEditPlant, FeetStandAndTheReportSaysWhere) {
-  const auto done = run("krok-edit", {"walk.anim", "--plant", "-o", "planted.anim", "--json"});
+  const auto done = run_here("krok-edit", {"walk.anim", "--plant", "-o", "planted.anim", "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const auto step = nlohmann::json::parse(done.out)["result"]["steps"][0];
   EXPECT_EQ(step["step"], "plant");
   EXPECT_EQ(step["contacts"], "found");
   EXPECT_GT(step["drift_before"], 0.02);
   EXPECT_LT(step["drift"], 0.0005);
-  const Clip planted = clip_of("planted.anim");
+  const Clip planted = read("planted.anim");
   int stays = 0;
   for (const auto& stay : step["stays"]) {
     if (stay["part"] != "ball") continue;
@@ -71,7 +52,7 @@ TEST_F(KrokEditPlant, FeetStandAndTheReportSaysWhere) {
 TEST_F(KrokEditPlant, ContactsOfTheSidecarAreTaken) {
   put("walk.keys.json", R"({"schema": "krok.keys/1", "contacts": [
     {"joint": "LeftToeBase", "start": 1.0, "end": 1.2, "place": [0, 0, 0]}]})");
-  const auto with = run("krok-edit", {"walk.anim", "--plant", "-o", "a.anim", "--json"});
+  const auto with = run_here("krok-edit", {"walk.anim", "--plant", "-o", "a.anim", "--json"});
   ASSERT_EQ(with.exit_code, 0) << with.err;
   auto step = nlohmann::json::parse(with.out)["result"]["steps"][0];
   EXPECT_EQ(step["contacts"], "file");
@@ -84,22 +65,22 @@ TEST_F(KrokEditPlant, ContactsOfTheSidecarAreTaken) {
   }
   EXPECT_EQ(balls, 1);
   const auto found =
-      run("krok-edit", {"walk.anim", "--plant", "--contacts", "find", "-o", "b.anim", "--json"});
+      run_here("krok-edit", {"walk.anim", "--plant", "--contacts", "find", "-o", "b.anim", "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
   EXPECT_EQ(nlohmann::json::parse(found.out)["result"]["steps"][0]["contacts"], "found");
   put("mine.json", get(path("walk.keys.json")));
   const auto mine =
-      run("krok-edit", {"walk.anim", "--plant", "--contacts", "mine.json", "-o", "c.anim"});
+      run_here("krok-edit", {"walk.anim", "--plant", "--contacts", "mine.json", "-o", "c.anim"});
   ASSERT_EQ(mine.exit_code, 0) << mine.err;
-  EXPECT_EQ(clip_of("c.anim").positions, clip_of("a.anim").positions);
+  EXPECT_EQ(read("c.anim").positions, read("a.anim").positions);
 }
 
 // A later cut must not move contacts, which are at times of the input.
 TEST_F(KrokEditPlant, IsDoneBeforeTheCut) {
-  ASSERT_EQ(run("krok-edit", {"walk.anim", "--plant", "-o", "whole.anim"}).exit_code, 0);
+  ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--plant", "-o", "whole.anim"}).exit_code, 0);
   ASSERT_EQ(
-      run("krok-edit", {"walk.anim", "--from", "60f", "--plant", "-o", "part.anim"}).exit_code, 0);
-  const Clip whole = clip_of("whole.anim"), part = clip_of("part.anim");
+      run_here("krok-edit", {"walk.anim", "--from", "60f", "--plant", "-o", "part.anim"}).exit_code, 0);
+  const Clip whole = read("whole.anim"), part = read("part.anim");
   ASSERT_EQ(part.frame_count(), whole.frame_count() - 60);
   for (std::size_t j = 0; j < whole.skeleton.names.size(); ++j) {
     EXPECT_EQ(part.frame_positions(0)[j], whole.frame_positions(60)[j]);
@@ -107,15 +88,15 @@ TEST_F(KrokEditPlant, IsDoneBeforeTheCut) {
 }
 
 TEST_F(KrokEditPlant, TheSameBytesForAnyNumberOfThreads) {
-  ASSERT_EQ(run("krok-edit", {"walk.anim", "--plant", "-j1", "-o", "a.anim"}).exit_code, 0);
+  ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--plant", "-j1", "-o", "a.anim"}).exit_code, 0);
   const std::string one = get(path("a.anim"));
-  ASSERT_EQ(run("krok-edit", {"walk.anim", "--plant", "-j4", "-o", "a.anim"}).exit_code, 0);
+  ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--plant", "-j4", "-o", "a.anim"}).exit_code, 0);
   EXPECT_EQ(get(path("a.anim")), one);
 }
 
 TEST_F(KrokEditPlant, WhatCannotBePlantedIsAnError) {
   const auto refused = [&](std::vector<std::string> arguments, const char* code) {
-    const auto done = run("krok-edit", std::move(arguments));
+    const auto done = run_here("krok-edit", std::move(arguments));
     EXPECT_EQ(done.exit_code, 2) << done.err;
     EXPECT_TRUE(test::has_code(done.err, code)) << done.err;
     EXPECT_FALSE(std::filesystem::exists(path("out.anim")));

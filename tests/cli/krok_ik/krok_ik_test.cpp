@@ -5,10 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
-#include "core/file.h"
+#include "cli/motion_fixture.h"
 #include "core/index.h"
-#include "formats/anim/anim.h"
 #include "samples/generator/walk.h"
 
 namespace krok::test {
@@ -17,44 +15,20 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-class KrokIk : public test::CliTest {
+class KrokIk : public test::MotionTest {
  protected:
   void SetUp() override {
     samples::WalkOptions options;
     options.steps = 3;
     options.rate = 30;
     walk_ = samples::make_walk(options)->clip;
-    write("walk.anim", walk_);
-  }
-
-  void write(const std::string& name, const Clip& clip) const {
-    auto file = OutputFile::create(path(name));
-    ASSERT_TRUE(file.ok());
     anim::WriteOptions exact;
     exact.orientation = OrientationEncoding::xyzw;
-    ASSERT_TRUE(anim::write(clip, exact, *file).ok());
-    ASSERT_TRUE(file->commit().ok());
-  }
-
-  void write_text(const std::string& name, const std::string& text) const {
-    auto file = OutputFile::create(path(name));
-    ASSERT_TRUE(file.ok());
-    ASSERT_TRUE(file->write(std::as_bytes(std::span(text))).ok());
-    ASSERT_TRUE(file->commit().ok());
-  }
-
-  Clip read(const std::string& name) const {
-    const auto file = InputFile::open(path(name));
-    EXPECT_TRUE(file.ok()) << name;
-    auto clip = anim::read(file->bytes());
-    EXPECT_TRUE(clip.ok()) << name;
-    return std::move(*clip);
+    write("walk.anim", walk_, exact);
   }
 
   test::ToolRun ik(std::vector<std::string> arguments) const {
-    test::ToolOptions options;
-    options.folder = folder_.string();
-    return test::run_tool("krok-ik", std::move(arguments), options);
+    return run_here("krok-ik", std::move(arguments));
   }
 
   Vec3 place(const Clip& clip, int frame, const char* joint) const {
@@ -114,8 +88,8 @@ TEST_F(KrokIk, WhatIsMissedIsToldWithTheJointThatHoldsBack) {
   EXPECT_EQ(issue["code"], "ik-missed");
   EXPECT_EQ(issue["frame"], 30);
 
-  write_text("stiff.limits.json",
-             R"({"schema": "krok.limits/1", "joints": {
+  put("stiff.limits.json",
+      R"({"schema": "krok.limits/1", "joints": {
   "RightForeArm": {"kind": "hinge", "axis": [0, 1, 0], "range": [-1, 1]},
   "RightShoulder": {"kind": "locked"}, "Spine": {"kind": "locked"},
   "Spine1": {"kind": "locked"}, "Spine2": {"kind": "locked"}}})");
@@ -135,7 +109,7 @@ TEST_F(KrokIk, GoalsComeFromAFileAndFromAnotherMotion) {
   Clip other = walk_;
   for (Vec3f& position : other.positions) position += Vec3f(0, 0.05f, 0.03f);
   write("other.anim", other);
-  write_text("goals.json", R"({"schema": "krok.goals/1", "rate": 30, "goals": [
+  put("goals.json", R"({"schema": "krok.goals/1", "rate": 30, "goals": [
   {"name": "follow", "joint": "left_hand", "motion": "other.anim", "relative_to": "LeftHand",
    "keys": [{"time": "20f", "target": [0, 0, 0]}], "to": "40f", "fade_in": 0.2}]})");
   const auto run = ik({"walk.anim", "--goals", "goals.json", "-o", "out.anim"});
@@ -202,9 +176,9 @@ TEST_F(KrokIk, StiffnessAndDepthReachTheSolver) {
 }
 
 TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {
-  write_text("bad.json", R"({"schema": "krok.goals/1", "goals": [
+  put("bad.json", R"({"schema": "krok.goals/1", "goals": [
   {"joint": "RightHnd", "keys": [{"time": 0, "target": [0, 0, 0]}]}]})");
-  write_text("bad.limits.json", R"({"schema": "krok.limits/1", "joints": {
+  put("bad.limits.json", R"({"schema": "krok.limits/1", "joints": {
   "Head": {"kind": "cone"}}})");
   const std::string good = reach(Vec3(0, 0.1, 0));
   struct Case {

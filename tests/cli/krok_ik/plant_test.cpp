@@ -5,16 +5,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
-#include "core/file.h"
+#include "cli/motion_fixture.h"
 #include "core/index.h"
-#include "formats/anim/anim.h"
 #include "support/planted_measures.h"
 
 namespace krok::test {
 namespace {
 
-class KrokIkPlant : public test::CliTest {
+class KrokIkPlant : public test::MotionTest {
  protected:
   KrokIkPlant() {
     samples::WalkOptions options;
@@ -23,21 +21,8 @@ class KrokIkPlant : public test::CliTest {
     write("walk.anim", with_skate(samples::make_walk(options).value(), {.body_jitter = 0.001}));
   }
 
-  void write(const std::string& name, const Clip& clip) const {
-    auto file = OutputFile::create(path(name));
-    ASSERT_TRUE(file.ok());
-    ASSERT_TRUE(anim::write(clip, {}, *file).ok());
-    ASSERT_TRUE(file->commit().ok());
-  }
-  Clip read(const std::string& name) const {
-    const auto file = InputFile::open(path(name));
-    EXPECT_TRUE(file.ok()) << name;
-    return anim::read(file->bytes()).value();
-  }
   test::ToolRun run(const std::string& tool, std::vector<std::string> arguments) const {
-    test::ToolOptions options;
-    options.folder = folder_.string();
-    return test::run_tool(tool, std::move(arguments), options);
+    return run_here(tool, std::move(arguments));
   }
   // Refused, with nothing written.
   void refused(std::vector<std::string> arguments, const char* says) const {
