@@ -36,6 +36,10 @@ void smooth(Mesh& mesh, int jobs);
 // closed 2-manifold of the same topology, with more vertices if that allows no more collapses.
 // `detail` is updated to the new vertices. A vertex may have at most 16 triangles; those of
 // polygonise have at most 12.
+//
+// Not meshoptimizer: it follows the error of the surface, not `detail`, and version 0.18 left edges
+// with more than two triangles where 2,500 vertices remain of a body's 40,000; the median quality
+// of its triangles (4 sqrt(3) area over the sum of squared edges) was 0.62, here it is 0.97.
 Mesh simplify(const Mesh& mesh, std::vector<double>& detail, std::size_t target);
 
 // Tangential relaxation: flips edges towards valence six, moves vertices within the surface towards

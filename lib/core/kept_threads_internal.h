@@ -5,6 +5,10 @@
 
 // The thread pool of the loops in parallel.h. Threads are created on first use and sleep in
 // between, since creating one takes as long as skinning a mesh. They are joined at program exit.
+//
+// Not oneTBB: with an arena for each call, a loop of 4,096 short items took 110 us instead of 1.4
+// us on two cores, calls that wait for each other did not end, and its threads do not survive
+// fork().
 
 namespace krok {
 
