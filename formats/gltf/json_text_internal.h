@@ -11,6 +11,12 @@
 #include "formats/gltf/glb_container.h"
 
 // Private to this folder: parses the JSON of a glTF file into tinygltf's structures.
+//
+// tinygltf has the data model, reads it from JSON (here) and writes it as JSON (document.cpp). Its
+// handling of files is not used: it holds all buffers and images in memory, follows paths out of
+// the file's folder, trusts accessors and offsets, and writes a file in one piece. Containers,
+// buffers, accessors and images are therefore read in this folder, with limits, and written as a
+// stream.
 
 namespace krok::gltf {
 
