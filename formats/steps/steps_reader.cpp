@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text.h"
 #include "formats/container/sections.h"
 #include "formats/steps/records_internal.h"
 #include "formats/steps/steps.h"
@@ -42,6 +43,22 @@ Result<Info> read_info(const ContainerReader& container) {
                   info.joints, info.keytimes, info.parameters, info.examples, info.swing));
 }
 
+// The roles given to joints, if there are any: [joints] texts, empty for the others.
+Status read_roles(const ContainerReader& container, Library& library) {
+  if (!container.find("ROLES")) return {};
+  const auto labels = read_texts(container, "ROLES", library.skeleton.names.size());
+  if (!labels) return labels.error();
+  for (std::size_t j = 0; j < labels->size(); ++j) {
+    const std::string& label = (*labels)[j];
+    if (label.empty()) continue;
+    auto given = parse_role_label(label);
+    if (!given) return invalid(container, "ROLES", fmt::format("has no role {}", shown(label)));
+    given->joint = static_cast<int>(j);
+    library.given_roles.push_back(*given);
+  }
+  return {};
+}
+
 Status read_frame(const ContainerReader& container, const Info& info, Library& library) {
   auto skeleton = read_skeleton(container, info.joints);
   if (!skeleton) return skeleton.error();
@@ -49,6 +66,7 @@ Status read_frame(const ContainerReader& container, const Info& info, Library& l
   library.rate = info.rate;
   library.ground = static_cast<double>(info.ground);
   library.swing = info.swing == 0 ? FootSide::left : FootSide::right;
+  if (Status status = read_roles(container, library); !status) return status;
   std::vector<Foot> feet;
   if (Status status = read_array(container, "FEET", 2, feet); !status) return status;
   for (std::size_t f = 0; f < 2; ++f) {
@@ -185,6 +203,7 @@ Result<rbf::WeightFunction> read_weights(const ContainerReader& container, const
 std::string_view section_of(const std::string& code) {
   if (code.starts_with("clip")) return "FRAMES";
   if (code == "parametric-feet") return "FEET";
+  if (code.starts_with("role") || code == "parametric-roles") return "ROLES";
   if (code == "parametric-parameter") return "PARAMS";
   if (code == "parametric-keytimes") return "KEYTIMES";
   if (code.starts_with("keys")) return "CONTACTS";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "core/json_internal.h"
 #include "formats/container/sections.h"
 #include "formats/steps/records_internal.h"
@@ -26,6 +27,17 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
 
 std::array<double, 3> numbers(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
+}
+
+// [joints] the roles that were given, empty texts for the others; nothing if none was.
+std::vector<std::string> roles_in(const Library& library) {
+  if (library.given_roles.empty()) return {};
+  const RoleMap roles = parametric::roles_of(library);
+  std::vector<std::string> labels(library.skeleton.names.size());
+  for (const GivenRole& given : library.given_roles) {
+    labels[at(given.joint)] = role_label(roles, given.joint);
+  }
+  return labels;
 }
 
 std::vector<Foot> feet_of(const Library& library) {
@@ -164,10 +176,13 @@ Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& fi
                      static_cast<std::uint32_t>(library.swing),
                      static_cast<float>(library.ground)};
   std::size_t sections = 12 + kSkeletonSections;
+  const std::vector<std::string> roles = roles_in(library);
+  if (!roles.empty()) ++sections;
   if (steps.weights) sections += weight_sections(*steps.weights);
   ContainerWriter container(file, kStepsFormat, orientation_flags(options.orientation), sections);
   Status status = container.section("INFO", std::as_bytes(std::span(&info, 1)));
   if (status) status = write_skeleton(library.skeleton, options.orientation, container);
+  if (status && !roles.empty()) status = write_texts("ROLES", roles, container);
   if (status) status = container.section("FEET", bytes_of(feet_of(library)));
   if (status) status = write_texts("KEYNAMES", library.keytimes, container);
   if (status) status = container.section("PARAMS", bytes_of(parameters_of(library)));

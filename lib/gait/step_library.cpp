@@ -47,7 +47,7 @@ Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library li
   StepLibrary result;
   result.name_ = std::move(name);
   result.roles_ = roles;
-  auto mirrored = parametric::mirrored(library, roles);
+  auto mirrored = parametric::mirrored(library);
   if (!mirrored) return std::move(mirrored).error();
   const auto own = static_cast<std::size_t>(library.swing);
   result.own_ = library.swing;

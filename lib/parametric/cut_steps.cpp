@@ -159,6 +159,7 @@ class Cutter {
     auto feet = find_foot_shapes(clips, roles_);
     if (!feet) return feet.error();
     library.feet = *feet;
+    library.given_roles = given_roles(roles_);
     find_toe_out(walks, library.feet);
     for (const std::string& name : parameters) {
       auto parameter = parse_parameter(name, library.skeleton, library.keytimes);

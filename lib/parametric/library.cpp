@@ -93,6 +93,20 @@ Status check_example(const Library& library, std::size_t index) {
   return check_keytimes(library, example.name, example.motion, example.keytimes);
 }
 
+Status check_roles(const Library& library) {
+  int last = -1;
+  for (const GivenRole& given : library.given_roles) {
+    if (given.joint <= last || given.joint >= library.skeleton.joint_count()) {
+      return Error("parametric-roles",
+                   "roles are given to joints twice, out of order or that do "
+                   "not exist");
+    }
+    last = given.joint;
+  }
+  const auto roles = find_roles(library.skeleton, library.given_roles);
+  return roles ? Status() : roles.error();
+}
+
 Vec3 image(const Vec3& v) {
   return {-v.x(), v.y(), v.z()};
 }
@@ -108,7 +122,20 @@ FootShape mirrored_foot(const FootShape& foot, const std::vector<Quat>& axes, in
 }  // namespace
 
 int carrying_joint(const Library& library) {
-  return krok::carrying_joint(find_roles(library.skeleton));
+  return krok::carrying_joint(roles_of(library));
+}
+
+RoleMap roles_of(const Library& library) {
+  auto roles = find_roles(library.skeleton, library.given_roles);
+  return roles ? *std::move(roles) : find_roles(library.skeleton);
+}
+
+std::vector<GivenRole> given_roles(const RoleMap& map) {
+  std::vector<GivenRole> result;
+  for (std::size_t j = 0; j < map.given.size(); ++j) {
+    if (map.given[j] != 0) result.push_back({static_cast<int>(j), map.roles[j], map.fingers[j]});
+  }
+  return result;
 }
 
 double shortest_interval(const Library& library) {
@@ -190,6 +217,7 @@ Footprint print_at(const FootShape& foot, const Clip& motion, double time) {
 
 Status check(const Library& library) {
   if (Status status = check(library.skeleton); !status) return status;
+  if (Status status = check_roles(library); !status) return status;
   for (const FootShape& foot : library.feet) {
     if (foot.joint >= 0 && foot.joint < library.skeleton.joint_count() && foot.heel.allFinite() &&
         foot.length >= 0 && std::isfinite(foot.length) && std::isfinite(foot.toe_out) &&
@@ -217,8 +245,8 @@ Status check(const Library& library) {
   return {};
 }
 
-Result<Library> mirrored(const Library& library, const RoleMap& roles) {
-  const MirrorPairs pairs = find_mirror_pairs(library.skeleton, roles);
+Result<Library> mirrored(const Library& library) {
+  const MirrorPairs pairs = find_mirror_pairs(library.skeleton, roles_of(library));
   const auto partner = [&](int joint) { return pairs.partners[static_cast<std::size_t>(joint)]; };
   const std::vector<Quat> axes = axes_to_images(library.skeleton, pairs);
   Library result = library;

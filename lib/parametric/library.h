@@ -29,11 +29,12 @@ struct Example {
 
 struct Library {
   Skeleton skeleton;
-  FootSide swing = FootSide::left;    // the stepping foot; the other is the stance foot
-  std::array<FootShape, 2> feet;      // [FootSide]
-  std::vector<std::string> keytimes;  // names, at least two: "stance_strike", ...
-  std::vector<Parameter> parameters;  // what is measured
-  double rate = 30;                   // frames per second of synthesised motions
+  std::vector<GivenRole> given_roles;  // those that a role map gave; the others are detected
+  FootSide swing = FootSide::left;     // the stepping foot; the other is the stance foot
+  std::array<FootShape, 2> feet;       // [FootSide]
+  std::vector<std::string> keytimes;   // names, at least two: "stance_strike", ...
+  std::vector<Parameter> parameters;   // what is measured
+  double rate = 30;                    // frames per second of synthesised motions
   std::vector<Example> examples;
   // Height of footprints in the captures, metres: of soles, which are estimated, above the origin.
   // Motions are relative to the footprint, and lie where the captures do if moved up by this.
@@ -49,7 +50,12 @@ struct Library {
 // captures.)
 double shortest_interval(const Library& library);
 
-// The joint that carries the motions: the hips by find_roles(), or the root.
+// The roles of the library's joints: those given, and the others by find_roles().
+RoleMap roles_of(const Library& library);
+// The roles in `map` that were given, for Library::given_roles.
+std::vector<GivenRole> given_roles(const RoleMap& map);
+
+// The joint that carries the motions: the hips, or the root.
 int carrying_joint(const Library& library);
 
 // Whether two skeletons can share a library: same names, order and parents; offsets of joints below
@@ -77,7 +83,7 @@ double ground_of(const Library& library);
 Status check(const Library& library);
 
 // Swaps left and right and keeps the parameters, so that a library of left steps makes right steps.
-// `roles` are those of the library's skeleton. Code: parametric-feet if a foot has no mirror joint.
-Result<Library> mirrored(const Library& library, const RoleMap& roles);
+// Code: parametric-feet if a foot has no mirror joint.
+Result<Library> mirrored(const Library& library);
 
 }  // namespace krok::parametric

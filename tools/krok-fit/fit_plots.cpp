@@ -1,5 +1,7 @@
 #include "tools/krok-fit/fit_plots.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,8 +24,9 @@ using draw::Scale;
 using draw::Series;
 using draw::SeriesStyle;
 
-constexpr int kCells = 72;    // of the weight maps, in each direction
-constexpr int kSurfaces = 9;  // examples with a weight map
+constexpr int kMaxCells = 72;      // of a weight map, in each direction
+constexpr int kAllCells = 47'000;  // of all weight maps together
+constexpr int kMaxSurfaces = 64;   // examples with a weight map
 constexpr int kMeasuredPoints = 400;
 
 Series series_of(std::string name, SeriesStyle style, int colour = -1, bool faint = false) {
@@ -97,17 +100,19 @@ class Charts {
   Result<Chart> weights() const {
     const auto evaluator = rbf::WeightEvaluator::create(fitted_.refined.function);
     if (!evaluator) return evaluator.error();
+    const auto count = static_cast<int>(input_.library.examples.size());
+    const int shown = std::min(count, kMaxSurfaces);
     Chart chart;
-    chart.title = "Weights of examples";
-    chart.columns = 3;
+    chart.title = shown == count ? "Weights of examples"
+                                 : fmt::format("Weights of {} of {} examples", shown, count);
+    chart.columns = std::clamp(static_cast<int>(std::ceil(std::sqrt(shown))), 3, 5);
     chart.panel_width = 300;
     chart.panel_height = dimensions_ > 1 ? 260 : 180;
-    const auto count = static_cast<int>(input_.library.examples.size());
-    const int shown = std::min(count, kSurfaces);
+    const int cells = std::min(kMaxCells, static_cast<int>(std::sqrt(kAllCells / shown)));
     for (int k = 0; k < shown; ++k) {
       // Evenly spaced in the list.
       const int example = shown < 2 ? 0 : k * (count - 1) / (shown - 1);
-      chart.panels.push_back(dimensions_ > 1 ? surface(*evaluator, example)
+      chart.panels.push_back(dimensions_ > 1 ? surface(*evaluator, example, cells)
                                              : curve(*evaluator, example));
     }
     return chart;
@@ -184,7 +189,7 @@ class Charts {
     return point;
   }
 
-  Panel surface(const rbf::WeightEvaluator& evaluator, int example) const {
+  Panel surface(const rbf::WeightEvaluator& evaluator, int example, int cells) const {
     const auto index = static_cast<std::size_t>(example);
     Panel panel;
     panel.title = input_.library.examples[index].name;
@@ -192,17 +197,17 @@ class Charts {
     panel.x = axis(0);
     panel.y = axis(1);
     draw::Field field;
-    field.columns = field.rows = kCells;
+    field.columns = field.rows = cells;
     field.x_low = shown(0, input_.lower[0]);
     field.x_high = shown(0, input_.upper[0]);
     field.y_low = shown(1, input_.lower[1]);
     field.y_high = shown(1, input_.upper[1]);
     std::vector<double> point = middle(), weights(input_.library.examples.size());
     const rbf::Inside is_inside = inside();
-    for (int row = 0; row < kCells; ++row) {
-      for (int column = 0; column < kCells; ++column) {
-        point[0] = between(0, (column + 0.5) / kCells);
-        point[1] = between(1, (row + 0.5) / kCells);
+    for (int row = 0; row < cells; ++row) {
+      for (int column = 0; column < cells; ++column) {
+        point[0] = between(0, (column + 0.5) / cells);
+        point[1] = between(1, (row + 0.5) / cells);
         evaluator.weights(point, weights);
         field.values.push_back(is_inside(point) ? weights[index]
                                                 : std::numeric_limits<double>::quiet_NaN());
@@ -225,8 +230,8 @@ class Charts {
     panel.y = axis_of("weight");
     Series line;
     std::vector<double> weights(input_.library.examples.size());
-    for (int k = 0; k <= 4 * kCells; ++k) {
-      const double value = between(0, k / (4.0 * kCells));
+    for (int k = 0; k <= 4 * kMaxCells; ++k) {
+      const double value = between(0, k / (4.0 * kMaxCells));
       evaluator.weights({&value, 1}, weights);
       line.x.push_back(shown(0, value));
       line.y.push_back(weights[index]);

@@ -170,6 +170,7 @@ class Reader {
     auto feet = parametric::find_foot_shapes(clips, input_.roles);
     if (!feet) return std::move(feet).error().in_file(path_);
     library.feet = *feet;
+    library.given_roles = parametric::given_roles(input_.roles);
     return {};
   }
 

@@ -53,7 +53,7 @@ Result<steps::StepsFile> read_steps(const Options& options, ToolContext& context
   const bool other = (options.side == SideChoice::left && !is_left) ||
                      (options.side == SideChoice::right && is_left);
   if (!other) return steps;
-  auto mirrored = parametric::mirrored(steps->library, find_roles(steps->library.skeleton));
+  auto mirrored = parametric::mirrored(steps->library);
   if (!mirrored) return std::move(mirrored).error().in_file(options.library);
   steps->library = *std::move(mirrored);
   return steps;
@@ -100,7 +100,7 @@ Status measure(const parametric::Synthesiser& synthesiser, Motion& motion) {
 
 Status plant_and_measure(const parametric::Synthesiser& synthesiser, Motion& motion,
                          ToolContext& context) {
-  const RoleMap roles = find_roles(synthesiser.library().skeleton);
+  const RoleMap roles = parametric::roles_of(synthesiser.library());
   const auto drift = plant_result(motion.made.clip, motion.made.keys, roles, context);
   if (!drift) return drift.error();
   motion.drift = *drift;

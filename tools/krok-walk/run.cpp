@@ -37,10 +37,14 @@ Result<std::vector<gait::StepLibrary>> open_libraries(const Options& options,
     if (!steps->weights) {
       return Error("walk-library", "the library was not fitted", "krok-fit fits it").in_file(path);
     }
-    const auto roles = (*find_roles)(steps->library.skeleton);
-    if (!roles) return roles.error();
+    if (!options.map.empty()) {
+      const auto roles = (*find_roles)(steps->library.skeleton);
+      if (!roles) return roles.error();
+      steps->library.given_roles = parametric::given_roles(*roles);
+    }
+    const RoleMap roles = parametric::roles_of(steps->library);
     auto library = gait::StepLibrary::create(name_of_input(path), std::move(steps->library),
-                                             *steps->weights, *roles);
+                                             *steps->weights, roles);
     if (!library) return std::move(library).error().in_file(path);
     libraries.push_back(*std::move(library));
   }

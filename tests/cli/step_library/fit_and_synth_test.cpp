@@ -302,5 +302,24 @@ TEST_F(StepLibrary, ChartsAreWritten) {
   }
 }
 
+// Would fail if weights were shown of the first nine examples only.
+TEST_F(StepLibrary, WeightsOfAllExamplesAreShown) {
+  for (const char* length : {"50", "57", "64", "70"}) {
+    for (const char* rise : {"0", "4", "8"}) make_walk(length, rise);
+  }
+  describe();
+  const ToolRun run = fit({"--plots", path("charts"), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto count = json::parse(run.out)["result"]["examples"].size();
+  ASSERT_GT(count, 9u);
+  const std::string chart = get(path("charts/weights.svg"));
+  std::size_t panels = 0;
+  for (auto at = chart.find(">length (m)<"); at != std::string::npos;
+       at = chart.find(">length (m)<", at + 1)) {
+    ++panels;
+  }
+  EXPECT_EQ(panels, count);
+}
+
 }  // namespace
 }  // namespace krok::test

@@ -18,14 +18,14 @@ class StepLibrary : public CliTest {
   void SetUp() override {
     CliTest::SetUp();
     for (const char* length : {"50", "70"}) {
-      for (const char* rise : {"0", "8"}) {
-        const ToolRun made =
-            run({KROK_MAKE_WALK, "--steps", "4", "--step-length", std::string(length) + "cm",
-                 "--rise", std::string(rise) + "cm", "--ground", "slope", "-q", "-o",
-                 path(std::string("walk_") + length + "_" + rise + ".bvh")});
-        ASSERT_EQ(made.exit_code, 0) << made.err;
-      }
+      for (const char* rise : {"0", "8"}) make_walk(length, rise);
     }
+  }
+  void make_walk(const std::string& length, const std::string& rise) const {
+    const ToolRun made =
+        run({KROK_MAKE_WALK, "--steps", "4", "--step-length", length + "cm", "--rise", rise + "cm",
+             "--ground", "slope", "-q", "-o", path("walk_" + length + "_" + rise + ".bvh")});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   void describe(const std::string& more = R"("examples": [{"clip": "walk_*.bvh"}])") const {
     write("library.json",

@@ -309,7 +309,7 @@ TEST(Rigs, AMirroredLibraryMeasuresTheSame) {
         });
       }
       const parametric::Library library = library_of(rigged, names);
-      const auto mirrored = parametric::mirrored(library, find_roles(library.skeleton));
+      const auto mirrored = parametric::mirrored(library);
       ASSERT_TRUE(mirrored.ok());
       ASSERT_NE(mirrored->swing, library.swing);
       const parametric::Measure measure(*mirrored, parametric::pack_examples(*mirrored));

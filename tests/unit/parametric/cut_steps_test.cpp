@@ -41,7 +41,7 @@ TEST(CutSteps, ThePathTurnsWithoutTheToes) {
         EXPECT_NEAR(example.parameters[0] - example.parameters[1], side * toes, 1e-9);
       }
       // The mirrored library measures the same.
-      const auto other = mirrored(library, find_roles(library.skeleton));
+      const auto other = mirrored(library);
       ASSERT_TRUE(other.ok());
       const auto again =
           make_example(*other, "again", other->examples[0].motion, other->examples[0].keytimes);

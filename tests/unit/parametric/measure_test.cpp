@@ -173,7 +173,7 @@ TEST(Measure, SeveralThreadsGetTheSame) {
 // Mirrored, everything is on the other side, and measures the same.
 TEST(Measure, MirroredLibraryMeasuresTheSame) {
   const Library& library = grid_library(true);
-  const auto image = mirrored(library, find_roles(library.skeleton));
+  const auto image = mirrored(library);
   ASSERT_TRUE(image.ok()) << image.error().message;
   EXPECT_EQ(image->swing, FootSide::right);
   EXPECT_TRUE(check(*image));

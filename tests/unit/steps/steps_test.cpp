@@ -85,6 +85,21 @@ TEST(Steps, TheGroundOfTheCapturesIsKept) {
   EXPECT_NEAR(back->library.feet[0].toe_out, 0.1, 1e-7);
 }
 
+// Without them a library of a skeleton with meaningless names is carried by another joint.
+TEST(Steps, GivenRolesAreKept) {
+  StepsFile file = walk_library(rbf::Kernel::cubic);
+  const int spine = file.library.skeleton.find("Spine");
+  ASSERT_GT(spine, 0);
+  file.library.given_roles = {{spine, Role::helper, {}}};
+  const auto bytes = samples::bytes_of(file);
+  const auto back = read(bytes);
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  ASSERT_EQ(back->library.given_roles.size(), 1u);
+  EXPECT_EQ(back->library.given_roles[0].joint, spine);
+  EXPECT_EQ(back->library.given_roles[0].role, Role::helper);
+  EXPECT_EQ(samples::bytes_of(*back), bytes);
+}
+
 TEST(Steps, ReadAndWrittenAgainItIsTheSameFile) {
   const auto bytes = samples::bytes_of(walk_library(rbf::Kernel::cubic));
   EXPECT_EQ(samples::bytes_of(*read(bytes)), bytes);
