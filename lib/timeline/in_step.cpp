@@ -77,20 +77,10 @@ InStep integrate(const Pairs& pairs, double previous_play, double duration, cons
   return result;
 }
 
-}  // namespace
-
-std::optional<InStep> play_in_step(const StepSide& previous, const StepSide& next,
-                                   double previous_play, double duration, const Easing& easing) {
-  if (previous.keys == nullptr || next.keys == nullptr) return std::nullopt;
-  const auto before = played_keys(previous.range, *previous.keys, previous_play - kLongestStep,
-                                  previous_play + 4 * duration + kLongestStep, kMaxKeys);
-  const double most = std::min(next.range.duration(), 60.0);
-  const auto after =
-      played_keys(next.range, *next.keys, -kLongestStep, most + 4 * duration, kMaxKeys);
-  if (before.size() < 2 || after.size() < 2 || before.size() > kMaxKeys ||
-      after.size() > kMaxKeys) {
-    return std::nullopt;
-  }
+std::optional<InStep> align(const std::vector<PlayedKey>& before,
+                            const std::vector<PlayedKey>& after, double previous_play,
+                            double duration, const Easing& easing) {
+  if (before.size() < 2 || after.size() < 2) return std::nullopt;
   // The last keytime with another after it: a motion that ends with a step is still within it.
   std::size_t p = 0;
   while (p + 2 < before.size() && before[p + 1].play_time <= previous_play) ++p;
@@ -104,10 +94,34 @@ std::optional<InStep> play_in_step(const StepSide& previous, const StepSide& nex
     }
     const InStep found =
         integrate(pairs_around(before, p, after, n), previous_play, duration, easing);
-    if (found.skipped < -1e-9) continue;
-    return found;
+    if (found.skipped >= -1e-9) return found;
   }
   return std::nullopt;
+}
+
+std::vector<PlayedKey> strikes_of(std::vector<PlayedKey> keys) {
+  std::erase_if(keys, [](const PlayedKey& key) { return !key.key->name.ends_with("_strike"); });
+  return keys;
+}
+
+}  // namespace
+
+std::optional<InStep> play_in_step(const StepSide& previous, const StepSide& next,
+                                   double previous_play, double duration, const Easing& easing) {
+  if (previous.keys == nullptr || next.keys == nullptr) return std::nullopt;
+  const auto before = played_keys(previous.range, *previous.keys, previous_play - kLongestStep,
+                                  previous_play + 4 * duration + kLongestStep, kMaxKeys);
+  const double most = std::min(next.range.duration(), 60.0);
+  const auto after =
+      played_keys(next.range, *next.keys, -kLongestStep, most + 4 * duration, kMaxKeys);
+  if (before.size() > kMaxKeys || after.size() > kMaxKeys) return std::nullopt;
+  auto found = align(before, after, previous_play, duration, easing);
+  // In a run the foot leaves before the other one strikes, in a walk after it: only the strikes
+  // come in the same order.
+  if (!found) {
+    found = align(strikes_of(before), strikes_of(after), previous_play, duration, easing);
+  }
+  return found;
 }
 
 }  // namespace krok::timeline

@@ -67,6 +67,7 @@ class ChangeFinder {
     std::vector<ChangeFacts> changes;
     for (std::size_t i = 0; i < parts_.base.items().size(); ++i) {
       check_seams(i);
+      check_steps(i);
       if (i > 0) changes.push_back(change(i));
     }
     return changes;
@@ -168,6 +169,19 @@ class ChangeFinder {
       pose = std::move(next);
     }
     return facts;
+  }
+
+  // Warns if a change cuts across steps.
+  void check_steps(std::size_t i) {
+    if (!parts_.base.items()[i].has_other_keys) return;
+    Diagnostic warning =
+        make_warning("timeline-clock",
+                     fmt::format("{}: the change into it is not in step: its keytimes have other "
+                                 "names or another order than those before it",
+                                 shown(parts_.timeline.base[i].name)),
+                     "set keytimes with krok-keys, or \"sync\": \"clock\" if it is wanted");
+    warning.where = parts_.timeline.base[i].where;
+    warnings_.push_back(std::move(warning));
   }
 
   // Warns if a loop jumps from its end to its start.

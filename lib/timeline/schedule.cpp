@@ -159,7 +159,14 @@ class Scheduler {
     auto both = play_in_step({before.range, keys(before)}, {item.range, keys(item)}, begins_at,
                              change.duration, change.easing);
     if (!both || !(both->next.back() < item.range.duration())) {
-      if (change.sync == Sync::automatic) return {};
+      if (change.sync == Sync::automatic) {
+        const auto has_keys = [&](const ScheduledItem& of) {
+          const MotionKeys* found = keys(of);
+          return found != nullptr && found->keytimes.size() > 1;
+        };
+        item.has_other_keys = has_keys(before) && has_keys(item);
+        return {};
+      }
       return Error("timeline-sync",
                    both ? "with time alignment it would end before the change into it"
                         : "has no keytimes with the same names and order as those of the previous "

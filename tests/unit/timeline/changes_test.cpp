@@ -270,6 +270,44 @@ TEST(Crossfade, InStepFeetAgree) {
   }
 }
 
+// The keytimes of a run: each foot leaves before the other one strikes.
+KeyedWalk with_keys_of_a_run(KeyedWalk walk) {
+  for (Keytime& key : walk.keys.keytimes) {
+    if (key.name.ends_with("_off")) key.time -= 0.25;
+  }
+  std::erase_if(walk.keys.keytimes, [](const Keytime& key) { return key.time < 0; });
+  std::ranges::sort(walk.keys.keytimes, {}, &Keytime::time);
+  return walk;
+}
+
+// Would fail if a walk changed into a run by the clock, since their offs come in another order, or
+// if a change by the clock were not told.
+TEST(Crossfade, AWalkAndARunAreAlignedByTheirStrikes) {
+  const KeyedWalk slow = keyed_walk(slow_walk()),
+                  run = with_keys_of_a_run(keyed_walk(quick_walk()));
+  const std::vector<Source> sources = {source_of(slow, "slow"), source_of(run, "run")};
+  Timeline timeline{0, {played(0), changed(1, ChangeKind::crossfade, 0.9)}, {}};
+  timeline.base[0].play.to = seconds(2.6);
+  timeline.base[1].play.from = seconds(0.5);  // the other leg
+  const auto slides = [&](Sync sync) {
+    timeline.base[1].change.sync = sync;
+    const Mixed result = mixed(timeline, sources);
+    EXPECT_EQ(result.changes[0].in_step, sync != Sync::clock);
+    EXPECT_TRUE(result.warnings.empty());
+    return blend::slide(result.clip, frame_at(result, result.changes[0].begin),
+                        frame_at(result, result.changes[0].end));
+  };
+  EXPECT_LT(2 * slides(Sync::automatic), slides(Sync::clock));
+
+  KeyedWalk other = run;
+  for (Keytime& key : other.keys.keytimes) key.name = "beat";
+  timeline.base[1].change.sync = Sync::automatic;
+  const Mixed result = mixed(timeline, {sources[0], source_of(other, "run")});
+  EXPECT_FALSE(result.changes[0].in_step);
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_EQ(result.warnings[0].code, "timeline-clock");
+}
+
 TEST(Crossfade, BothGoAtTheirOwnSpeedAtItsEnds) {
   const KeyedWalk slow = keyed_walk(slow_walk()), quick = keyed_walk(quick_walk());
   const std::vector<Source> sources = {source_of(slow, "slow"), source_of(quick, "quick")};
