@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "core/index.h"
@@ -39,9 +40,11 @@ Quat fitted_turn(const Mat3& correlation, double size, const Quat& usual) {
 // How joints' own axes stand to those of their partners, see axes_to_images().
 class AxesFinder {
  public:
-  AxesFinder(const Skeleton& skeleton, const MirrorPairs& pairs)
+  // `pose`: joint_to_world of a posture, or empty.
+  AxesFinder(const Skeleton& skeleton, const MirrorPairs& pairs, std::span<const Transform> pose)
       : skeleton_(skeleton),
         pairs_(pairs),
+        pose_(pose),
         children_(skeleton.children()),
         least_(0.01 * reference_extent(skeleton)),
         found_(skeleton.names.size(), Quat::Identity()) {}
@@ -97,20 +100,77 @@ class AxesFinder {
     // In most captures joints have their parents' axes at rest, and need no reference pose.
     const bool by_parent = has_parents && misfit(all, by_reference) >= kFits * size &&
                            misfit(all, found_[at(parent)]) < kFits * size;
-    const Quat usual = by_parent ? found_[at(parent)] : by_reference;
+    Quat usual = by_parent ? found_[at(parent)] : by_reference;
+    if (joint == other && has_parents && !pose_.empty() && leaves_twist(all, size)) {
+      usual = by_posture(joint, all, size, usual);
+    }
     // The usual case to the bit, whatever the rounding of the offsets was.
     if (misfit(all, usual) < kSameOffset) return usual;
-    Mat3 correlation = Mat3::Zero();
-    for (std::size_t k = 0; k < all.own.size(); ++k) {
-      correlation += all.images[k] * all.own[k].transpose();
+    return fitted_turn(correlation_of(all), size * size, usual);
+  }
+
+  // Whether all bones lie in one line, about which the joint may be turned.
+  static bool leaves_twist(const Bones& bones, double size) {
+    Vec3 line = Vec3::Zero();
+    for (const Vec3& bone : bones.own) {
+      if (bone.norm() > line.norm()) line = bone;
     }
-    return fitted_turn(correlation, size * size, usual);
+    line.normalize();
+    return std::ranges::all_of(bones.own, [&](const Vec3& bone) {
+      return (bone - bone.dot(line) * line).norm() < kFits * size;
+    });
+  }
+
+  // The axes that the nearest joint of the middle below, whose bones leave nothing open, has.
+  std::optional<Quat> below(int joint) const {
+    for (const int child : children_[at(joint)]) {
+      if (pairs_.partners[at(child)] != child) continue;
+      const Bones all = bones(child, child);
+      double size = 0;
+      for (const Vec3& bone : all.own) size = std::max(size, bone.norm());
+      if (size < least_) continue;
+      if (leaves_twist(all, size)) return below(child);
+      return fitted_turn(correlation_of(all), size * size, Quat::Identity());
+    }
+    return {};
+  }
+
+  // For a joint of the middle with a single bone: some reference poses are twisted between hips and
+  // chest, and say nothing. Mirrored, people stand about as before: of `usual` and the axes of the
+  // joints above and below, those which turn the joint least in its parent.
+  Quat by_posture(int joint, const Bones& all, double size, const Quat& usual) const {
+    const int parent = skeleton_.parents[at(joint)];
+    const Quat above = found_[at(parent)];
+    const auto change = [&](const Quat& turn) {
+      const Quat before = pose_[at(parent)].orientation.conjugate() * pose_[at(joint)].orientation;
+      const Quat after = above.conjugate() * image(before) * turn;
+      return angle_between(before, after);
+    };
+    Quat best = usual;
+    const auto consider = [&](const Quat& turn) {
+      if (misfit(all, turn) >= kBent * size) return;
+      if (change(turn) < change(best) - kClearlyLess) best = turn;
+    };
+    consider(above);
+    if (const auto found = below(joint)) consider(*found);
+    return best;
+  }
+
+  static Mat3 correlation_of(const Bones& bones) {
+    Mat3 correlation = Mat3::Zero();
+    for (std::size_t k = 0; k < bones.own.size(); ++k) {
+      correlation += bones.images[k] * bones.own[k].transpose();
+    }
+    return correlation;
   }
 
   static constexpr double kFits = 0.01;  // of a bone
+  static constexpr double kBent = 0.3;   // of a bone, between joints of a spine
+  static constexpr double kClearlyLess = 60 * kRadiansPerDegree;
 
   const Skeleton& skeleton_;
   const MirrorPairs& pairs_;
+  std::span<const Transform> pose_;
   std::vector<std::vector<int>> children_;
   double least_;
   std::vector<Quat> found_;
@@ -143,8 +203,13 @@ std::vector<std::uint8_t> still_joints(const Clip& clip, const MirrorPairs& pair
 // Mirrors poses of one skeleton.
 class PoseMirror {
  public:
-  PoseMirror(const Clip& clip, const MirrorPairs& pairs)
-      : skeleton_(clip.skeleton), pairs_(pairs), axes_(axes_to_images(clip.skeleton, pairs)) {
+  PoseMirror(const Clip& clip, const MirrorPairs& pairs) : skeleton_(clip.skeleton), pairs_(pairs) {
+    std::vector<Transform> pose;
+    if (clip.frame_count() > 0) {
+      pose.resize(clip.skeleton.names.size());
+      clip.get_pose(clip.frame_count() / 2, pose);
+    }
+    axes_ = axes_to_images(clip.skeleton, pairs, pose);
     if (clip.frame_count() > 0) find_axes_above(clip);
   }
 
@@ -229,8 +294,9 @@ class PoseMirror {
 
 }  // namespace
 
-std::vector<Quat> axes_to_images(const Skeleton& skeleton, const MirrorPairs& pairs) {
-  return AxesFinder(skeleton, pairs).find();
+std::vector<Quat> axes_to_images(const Skeleton& skeleton, const MirrorPairs& pairs,
+                                 std::span<const Transform> posture) {
+  return AxesFinder(skeleton, pairs, posture).find();
 }
 
 Clip mirror(const Clip& clip, const MirrorPairs& pairs) {

@@ -174,6 +174,47 @@ TEST(Mirror, ALopsidedReferencePoseDoesNotMatter) {
   expect_twice_is_nothing(clip, pairs);
 }
 
+// The reference pose's trunk is turned a quarter round above the hips, or above the chest, as in
+// some exporters' zero poses; no frame is. If this fails, mirrored spines are twisted half round
+// and back again, and blends with them wring the trunk.
+TEST(Mirror, ATrunkTwistedInTheReferencePoseIsNotTwistedByMirroring) {
+  for (const char* twisted : {"Spine", "Neck"}) {
+    Skeleton skeleton = test::human_skeleton();
+    const int first = skeleton.find(twisted);
+    ASSERT_GE(first, 0);
+    Clip clip = test::swinging_clip(skeleton, 12, 30);
+    const Transform at_joint{skeleton.reference[static_cast<std::size_t>(first)].position,
+                             Quat::Identity()};
+    const Transform twist = at_joint *
+                            Transform{Vec3::Zero(), from_rotation_vector(Vec3(0, kPi / 2, 0))} *
+                            at_joint.inverse();
+    for (int j = first; j < skeleton.joint_count(); ++j) {
+      int above = j;
+      while (above > first) above = skeleton.parents[static_cast<std::size_t>(above)];
+      Transform& joint = clip.skeleton.reference[static_cast<std::size_t>(j)];
+      if (above == first) joint = twist * joint;
+    }
+    const MirrorPairs pairs = pairs_of(skeleton);
+    const Clip mirrored = mirror(clip, pairs);
+    expect_mirrored(clip, mirrored, pairs, 2e-6);
+    expect_twice_is_nothing(clip, pairs);
+    for (int j = 1; j < clip.joint_count(); ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      const int parent = clip.skeleton.parents[at];
+      if (pairs.partners[at] != j || pairs.partners[static_cast<std::size_t>(parent)] != parent) {
+        continue;
+      }
+      const auto in_parent = [&](const Clip& one) {
+        const auto pose = one.frame_orientations(5);
+        return Quat(pose[static_cast<std::size_t>(parent)].cast<double>().conjugate() *
+                    pose[at].cast<double>());
+      };
+      EXPECT_LT(angle_between(in_parent(clip), in_parent(mirrored)), 75 * kRadiansPerDegree)
+          << clip.skeleton.names[at] << ", twisted above " << twisted;
+    }
+  }
+}
+
 TEST(Mirror, AActorThatStandsBesideTheOriginInItsReferencePose) {
   Skeleton skeleton = test::human_skeleton();
   const Clip centred = test::swinging_clip(skeleton, 6, 30);
