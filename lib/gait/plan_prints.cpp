@@ -13,12 +13,13 @@ namespace krok::gait {
 
 namespace {
 
-constexpr double kPlanGrid = 0.005;     // metres, of places for feet on uneven ground
-constexpr double kMaxPlanPlaces = 5e6;  // of them
-constexpr double kStorey = 0.6;         // metres: what is higher than this is overhead
-constexpr double kEndRange = 0.4;       // metres by which the last prints may be short of the end
-constexpr double kToesOutCost = 0.3;    // of a step's length squared
-constexpr double kShortOfEndCost = 4;   // per metre
+constexpr double kPlanGrid = 0.005;      // metres, of places for feet on uneven ground
+constexpr double kMaxPlanPlaces = 5e6;   // of them
+constexpr double kStorey = 0.6;          // metres: what is higher than this is overhead
+constexpr double kEndRange = 0.4;        // metres by which the last prints may be short of the end
+constexpr double kToesOutCost = 0.3;     // of a step's length squared
+constexpr double kShortOfEndCost = 4;    // per metre
+constexpr double kStandingWidth = 1.25;  // of the sole's, from heel to heel
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 FootSide other_foot(FootSide side) {
@@ -179,7 +180,11 @@ std::vector<double> PrintPlanner::even_places() const {
 
 Print PrintPlanner::print_at(double length, FootSide side) const {
   const PathPlace place = path_.at(length);
-  const double out = (side == FootSide::left ? 0.5 : -0.5) * options_.step_width;
+  // Feet of people who walk on a line stand beside each other all the same.
+  const bool stands = length <= 0 || length >= path_.length();
+  const double width = stands ? std::max(options_.step_width, kStandingWidth * options_.sole_width)
+                              : options_.step_width;
+  const double out = (side == FootSide::left ? 0.5 : -0.5) * width;
   Print print;
   print.side = side;
   print.x = place.x + out * std::cos(place.heading);

@@ -1,29 +1,37 @@
 #include "gait/step_library.h"
 
 #include <algorithm>
-#include <cmath>
+#include <vector>
 
-#include "gait/mean_step_internal.h"
 #include "motion/ground_frame.h"
 
 namespace krok::gait {
 
 namespace {
 
-constexpr double kShortWay = 0.1;  // metres: of steps on the spot
+constexpr double kMaxToeOut = kPi / 3;  // more is a step to the side
 
-// The angle between the stance foot, when flat, and the hips' way over the mean step.
-double mean_toe_out(const parametric::Synthesiser& steps) {
-  const parametric::PackedExamples& packed = steps.packed();
-  const parametric::Library& library = steps.library();
-  const Vec3 way = position_of(mean_pose(packed, packed.generic.back()), 0) -
-                   position_of(mean_pose(packed, 0), 0);
-  const PoseVector flat = mean_pose(packed, middle_of_swing(packed, library));
-  const parametric::FootShape& foot = library.foot(library.stance());
-  const Vec3 toes = joint_to_world(packed.skeleton, flat, foot.joint).orientation * foot.forward;
-  if (std::hypot(way.x(), way.z()) < kShortWay) return 0;
-  const double angle = std::atan2(toes.x(), toes.z()) - std::atan2(way.x(), way.z());
-  return (library.stance() == FootSide::left ? 1 : -1) * wrapped(angle);
+double heading_at(const parametric::Example& example, const parametric::FootShape& foot,
+                  double time) {
+  return parametric::print_at(foot, example.motion, time).heading;
+}
+
+// Where the walks that steps were cut from tell it, theirs; else half of what the feet of the
+// median step turn against each other.
+double usual_toe_out(const parametric::Library& library) {
+  const double left = library.foot(FootSide::left).toe_out;
+  const double right = library.foot(FootSide::right).toe_out;
+  if (left != 0 || right != 0) return 0.5 * (left - right);
+  std::vector<double> turns;
+  for (const parametric::Example& example : library.examples) {
+    const double stance =
+        heading_at(example, library.foot(library.stance()), example.keytimes.front());
+    const double swing = heading_at(example, library.foot(library.swing), example.keytimes.back());
+    turns.push_back((library.swing == FootSide::left ? 1 : -1) * wrapped(swing - stance));
+  }
+  const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
+  std::ranges::nth_element(turns, middle);
+  return std::clamp(0.5 * *middle, -kMaxToeOut, kMaxToeOut);
 }
 
 }  // namespace
@@ -59,7 +67,7 @@ Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library li
     result.synthesisers_[side] =
         std::make_unique<const parametric::Synthesiser>(*std::move(synthesiser));
   }
-  result.toe_out_ = mean_toe_out(result.steps(result.own_));
+  result.toe_out_ = usual_toe_out(result.library());
   return result;
 }
 

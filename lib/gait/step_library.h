@@ -25,7 +25,7 @@ class StepLibrary {
   const RoleMap& roles() const { return roles_; }
   // As fitted, with the swing foot of its examples.
   const parametric::Library& library() const { return *libraries_[static_cast<std::size_t>(own_)]; }
-  // Radians by which the feet of the mean step point outwards from the way it goes.
+  // Radians by which feet usually point outwards from the way they go.
   double toe_out() const { return toe_out_; }
 
   // Steps whose swing foot is `swing`.

@@ -1,6 +1,7 @@
 #include "gait/usual_step.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "gait/walker_internal.h"
@@ -10,7 +11,7 @@ namespace krok::gait {
 namespace {
 
 constexpr double kLevelStep = 0.05;    // metres: what rises less is a step on level ground
-constexpr double kMaxToeOut = 0.35;    // radians: more is a turn
+constexpr double kStraightStep = 0.2;  // radians: what turns less goes straight on
 constexpr double kToesPerBall = 1.45;  // from heel to toes, of heel to ball
 constexpr double kUnknownSole = 0.16;  // metres from heel to ball, where the ball is not known
 constexpr double kMoreLength = 0.03;   // metres beyond the longest example
@@ -33,6 +34,31 @@ FoundStep step_of(const parametric::Library& library, const parametric::Example&
   return {print.place.z(), side * print.place.x(), print.place.y(), side * print.heading};
 }
 
+// The mean of the steps on level ground that go straight on, as far as there are any: of steps that
+// all turn to one side, toes would seem to point there.
+FoundStep mean_of_steps(const StepLibrary& steps) {
+  const parametric::Library& library = steps.library();
+  std::array<FoundStep, 3> sums;  // level and straight, level, all
+  std::array<int, 3> counts{};
+  for (const parametric::Example& example : library.examples) {
+    const FoundStep step = step_of(library, example);
+    const bool is_level = std::abs(step.up) < kLevelStep;
+    const bool is_straight = std::abs(step.turn - 2 * steps.toe_out()) < kStraightStep;
+    for (std::size_t i = is_level ? (is_straight ? 0 : 1) : 2; i < sums.size(); ++i) {
+      sums[i].along += step.along;
+      sums[i].across += step.across;
+      sums[i].turn += step.turn;
+      ++counts[i];
+    }
+  }
+  std::size_t i = 0;
+  while (i < 2 && counts[i] == 0) ++i;
+  const double count = counts[i];
+  // Where all turn, what their toes tell is the turn.
+  const double turn = i == 0 ? sums[i].turn / count : 2 * steps.toe_out();
+  return {sums[i].along / count, sums[i].across / count, 0, turn};
+}
+
 }  // namespace
 
 Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
@@ -49,26 +75,13 @@ Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
       }
     }
   }
-  const parametric::Library& library = libraries.front().library();
-  FoundStep level, other;
-  int level_count = 0;
-  for (const parametric::Example& example : library.examples) {
-    const FoundStep step = step_of(library, example);
-    const bool is_level = std::abs(step.up) < kLevelStep;
-    FoundStep& sum = is_level ? level : other;
-    sum.along += step.along;
-    sum.across += step.across;
-    sum.turn += step.turn;
-    level_count += is_level ? 1 : 0;
-  }
-  const double count = level_count > 0 ? level_count : static_cast<double>(library.examples.size());
-  const FoundStep& sum = level_count > 0 ? level : other;
+  const FoundStep usual = mean_of_steps(libraries.front());
   // Prints are planned along the way, which lies between the directions of the toes.
-  const double out = std::clamp(0.5 * sum.turn / count, -kMaxToeOut, kMaxToeOut);
-  const double along = sum.along / count, across = sum.across / count;
-  options.step_length = along * std::cos(out) + across * std::sin(out);
-  options.step_width = std::max(0.0, across * std::cos(out) - along * std::sin(out));
-  options.toe_out = {out, -out};
+  const double out = 0.5 * usual.turn;
+  options.step_length = usual.along * std::cos(out) + usual.across * std::sin(out);
+  options.step_width = std::max(0.0, usual.across * std::cos(out) - usual.along * std::sin(out));
+  const double toe_out = libraries.front().toe_out();
+  options.toe_out = {toe_out, -toe_out};
   options.max_step = std::max(longest, options.step_length) + kMoreLength;
   if (max_turn > 0.1) options.max_turn = max_turn;
   const auto walker = make_walker(libraries.front());
