@@ -134,8 +134,9 @@ class Reader {
     if (status) status = take_flag(root, "the file", "mirror", library_.mirror);
     if (status) status = take_positive(root, "the file", "rate", library_.rate);
     if (status) status = read_swing(root);
-    if (status) status = read_runs(root);
-    if (status && !library_.runs) status = read_steps(root, "the file", all_automatic_);
+    if (status) status = read_kind(root);
+    if (status && library_.kind == StepKind::walks)
+      status = read_steps(root, "the file", all_automatic_);
     if (status) status = read_keytimes(root);
     if (status) {
       status = take_positive(root, "the file", "outlier_deviations", library_.outlier_deviations);
@@ -166,12 +167,19 @@ class Reader {
     return {};
   }
 
-  // "steps": "runs", for the whole file alone: walks and runs have different keytimes.
-  Status read_runs(const Value& root) {
+  // "steps": "runs" and the like, for the whole file alone: keytimes differ.
+  Status read_kind(const Value& root) {
     const auto found = members_.find(root, "the file", "steps", Kind::string);
     if (!found) return found.error();
-    library_.runs = *found != nullptr && (*found)->text == "runs";
-    all_automatic_ = library_.runs;
+    if (*found == nullptr) return {};
+    constexpr std::pair<std::string_view, StepKind> kKinds[] = {{"runs", StepKind::runs},
+                                                                {"starts", StepKind::starts},
+                                                                {"stops", StepKind::stops},
+                                                                {"stands", StepKind::stands}};
+    for (const auto& [name, kind] : kKinds) {
+      if ((*found)->text == name) library_.kind = kind;
+    }
+    all_automatic_ = library_.kind != StepKind::walks;
     return {};
   }
 
@@ -184,7 +192,8 @@ class Reader {
     if (automatic || (*found)->text == "one") return {};
     return members_.wrong(
         **found, fmt::format("\"steps\" of {} is '{}', expected {}", what, shown((*found)->text),
-                             what == "the file" ? "auto, runs or one" : "auto or one"));
+                             what == "the file" ? "auto, runs, starts, stops, stands or one"
+                                                : "auto or one"));
   }
 
   Status read_keytimes(const Value& root) {

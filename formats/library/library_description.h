@@ -15,6 +15,10 @@ namespace krok::library {
 
 enum class Side : unsigned char { left, right };
 
+// What is detected in the examples: steps of walks or runs, first steps out of standing, last steps
+// into it, or standing.
+enum class StepKind : unsigned char { walks, runs, starts, stops, stands };
+
 struct ParameterEntry {
   std::string name;                   // for users: "length"
   std::string measures;               // "step.length", "LeftHand.up@touch"
@@ -44,7 +48,7 @@ struct LibraryDescription {
   std::string skeleton;               // path of a motion or model; empty: the first example's
   std::string map;                    // path of a role map; may be empty
   Side swing = Side::left;            // the swing foot
-  bool runs = false;                  // detected steps are those of runs
+  StepKind kind = StepKind::walks;    // of detected steps
   bool mirror = false;                // use steps of the other side too, mirrored
   std::vector<std::string> keytimes;  // names, at least two; empty: those of a step
   std::optional<double> rate;         // frames per second of generated motions, > 0

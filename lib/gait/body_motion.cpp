@@ -50,8 +50,8 @@ EndState end_state(const BodyStep& step, double time, double inwards, double spa
   return end;
 }
 
-std::size_t off_of(const parametric::Library& library) {
-  return static_cast<std::size_t>(std::ranges::find(library.keytimes, "swing_off") -
+std::size_t index_of_time(const parametric::Library& library, const char* name) {
+  return static_cast<std::size_t>(std::ranges::find(library.keytimes, name) -
                                   library.keytimes.begin());
 }
 
@@ -63,20 +63,21 @@ void match_signs(PoseVector& pose, const PoseVector& to) {
 
 // Where the blend is set so that its stance foot, when flat, is on the print. (Captures tell a
 // strike while the foot still moves, and the footprint of that moment lies behind.)
-Transform stance_frame(const Walker& walker, const GroundedPrint& print, double toe_out,
+Transform stance_frame(const Walker& walker, const GroundedPrint& print, const StepLibrary& library,
                        const BodyStep& step) {
   const BodyStep plain(step.motion, step.joints);
   auto scratch = step.motion.make_scratch();
   PoseVector pose;
   const std::vector<double>& times = step.motion.keytimes();
-  const double off = times[times.size() - 2];
-  plain.pose(off + kFlatPart * (times.back() - off), pose, scratch);
+  const double off = times[index_of_time(library.library(), "swing_off")];
+  const double strike = times[index_of_time(library.library(), "swing_strike")];
+  plain.pose(off + kFlatPart * (strike - off), pose, scratch);
   const Leg& leg = walker.leg(print.side);
   const Transform foot = joint_to_world(*walker.skeleton, pose, leg.foot);
   const Vec3 forward = foot.orientation * (leg.sole.sole * Vec3::UnitZ());
   const Transform flat{foot * leg.sole.heel,
                        axis_rotation(Axis::y, std::atan2(forward.x(), forward.z()))};
-  const double toes = print.facing + (print.side == FootSide::left ? 1 : -1) * toe_out;
+  const double toes = print.facing + (print.side == FootSide::left ? 1 : -1) * library.toe_out();
   return Transform{print.heel, axis_rotation(Axis::y, toes)} * flat.inverse();
 }
 
@@ -221,6 +222,10 @@ Status BodyMotion::set_times(const PlannedWalk& plan, double off, double speed,
   step.start = steps_.empty() ? 0 : steps_.back().strike;
   const double length = step.motion.duration();
   double moving = length, lead = 0, tail = 0;  // seconds at the blend's pace
+  if (step.kind == captured_stop) {
+    moving = step.blend_strike;
+    tail = length - moving;
+  }
   if (step.kind == first) moving = 2 * (length - step.rest);
   if (step.kind == last) moving = 2 * step.rest;
   if (step.kind == first || step.kind == only) lead = kLead;
@@ -267,10 +272,18 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   if (!motion) return motion.error();
   BodyStep step(*std::move(motion), walker.skeleton->joint_count());
   step.start = steps_.empty() ? 0 : steps_.back().strike;
-  const double off = walker.ball_off * step.motion.keytimes()[off_of(maker.library())];
-  step.rest = off + kBeside * (step.motion.duration() - off);
+  const std::vector<double>& times = step.motion.keytimes();
+  const double toes_off = times[index_of_time(maker.library(), "swing_off")];
+  // Out of standing the ball leaves as long before the toes as in a walk.
+  const double off =
+      libraries[at(planned.library)].kind() == StepKind::start
+          ? toes_off - std::min((1 - walker.ball_off) * walker.usual_off, toes_off / 2)
+          : walker.ball_off * toes_off;
+  step.blend_strike = times[index_of_time(maker.library(), "swing_strike")];
+  step.rest = off + kBeside * (step.blend_strike - off);
   step.stance = planned.stance;
   const bool is_first = index == 0, is_last = index + 1 == plan.steps.size();
+  const StepKind made_of = libraries[at(planned.library)].kind();
   if (!is_first && !is_last) {
     step.standing = smooth((planned.far - kNear) / (kFar - kNear));
     if (step.standing > 0) {
@@ -281,13 +294,14 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   if (is_first) step.stand = standing_on(walker, plan.grounded[stance - 1], print);
   if (is_last && !is_first) step.stand = standing_on(walker, print, plan.grounded[stance + 1]);
   if (is_last && is_first) step.stand_after = standing_on(walker, print, plan.grounded[stance + 1]);
-  step.kind = is_first && is_last ? BodyStep::Kind::only
-              : is_first          ? BodyStep::Kind::first
-              : is_last           ? BodyStep::Kind::last
-                                  : BodyStep::Kind::middle;
+  using enum BodyStep::Kind;
+  step.kind = is_first && is_last ? only
+              : is_first          ? made_of == StepKind::start ? captured_start : first
+              : is_last           ? made_of == StepKind::stop ? captured_stop : last
+                                  : middle;
+  if (step.kind == captured_start || step.kind == captured_stop) step.stand.resize(0);
   if (Status status = set_times(plan, off, options.speed, step); !status) return status;
-  step.stance_to_world =
-      stance_frame(walker, print, libraries[at(planned.library)].toe_out(), step);
+  step.stance_to_world = stance_frame(walker, print, libraries[at(planned.library)], step);
   if (step.stand.size() > 0) {
     PoseVector sample;
     auto scratch = step.motion.make_scratch();
@@ -304,7 +318,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
 Result<BodyMotion> BodyMotion::create(std::span<const StepLibrary> libraries, const Walker& walker,
                                       const PlannedWalk& plan, const WalkOptions& options) {
   BodyMotion body;
-  body.rate_ = libraries[0].library().rate;
+  body.rate_ = main_library(libraries).library().rate;
   body.steps_.reserve(plan.steps.size());
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     if (Status status = body.add_step(libraries, walker, plan, i, options); !status) {

@@ -9,11 +9,12 @@
 
 namespace krok::gait {
 
-// A step's blend in the world and in the walk's time. The first step begins standing: it starts
-// with the swing foot beside the stance foot, slowly, out of the standing pose; the last ends so. A
-// walk of one step goes from standing to standing.
+// A step's blend in the world and in the walk's time. The first step begins standing: a captured
+// start is one from its begin; of any other step it starts with the swing foot beside the stance
+// foot, slowly, out of the standing pose. The last ends so. A walk of one step goes from standing
+// to standing.
 struct BodyStep {
-  enum class Kind : unsigned char { middle, first, last, only };
+  enum class Kind : unsigned char { middle, captured_start, captured_stop, first, last, only };
 
   BodyStep(parametric::BlendedMotion blend, int joint_count)
       : motion(std::move(blend)), joints(joint_count) {}
@@ -26,11 +27,12 @@ struct BodyStep {
   double start = 0, off = 0, strike = 0;  // seconds: of the step, the swing foot's off and strike
   double finish = 0;                      // seconds, strike but for the last step
   double scale = 1;                       // seconds of the walk for a second of the blend
-  double rest = 0;         // seconds of the blend where it rests beside the stance foot
-  double lead = 0;         // seconds from the start to where the blend begins to move
-  PoseVector stand;        // in the world, before the first step or after the last
-  double standing = 0;     // share of standing in a step that no example is near
-  PoseVector stand_after;  // after an only step, and where standing > 0
+  double rest = 0;          // seconds of the blend where it rests beside the stance foot
+  double blend_strike = 0;  // seconds of the blend
+  double lead = 0;          // seconds from the start to where the blend begins to move
+  PoseVector stand;         // in the world, before the first step or after the last
+  double standing = 0;      // share of standing in a step that no example is near
+  PoseVector stand_after;   // after an only step, and where standing > 0
 
   // Before joining, clamped to the step.
   void pose(double time, PoseVector& pose, parametric::BlendedMotion::Scratch& scratch) const;

@@ -19,6 +19,8 @@ using parametric::Quantity;
 constexpr int kCorrections = 3;
 constexpr double kFarOutside = 0.62;  // of the leg: how far a step may be from the nearest example
 constexpr double kFarTurn = 60 * kRadiansPerDegree;
+constexpr double kUsualRange = 0.4;  // metres, of a parameter of a library
+constexpr double kTurnCost = 0.5;    // metres a radian
 constexpr int kBisections = 20;
 constexpr int kBlendTries = 6;
 
@@ -41,11 +43,13 @@ double usual_value(const parametric::Library& library, std::span<const double> a
 }
 
 std::vector<double> parameters_for(const parametric::Library& library,
-                                   const parametric::Bounds& bounds, const StepShape& shape,
-                                   double duration) {
+                                   const parametric::Bounds& bounds, const StepShape& to,
+                                   const StepShape& from, double duration) {
   std::vector<double> asked(library.parameters.size(), 0);
   std::vector<std::uint8_t> is_asked(asked.size(), 1);
   for (std::size_t d = 0; d < asked.size(); ++d) {
+    // At the first keytime the swing foot is on the print it comes from.
+    const StepShape& shape = library.parameters[d].keytime == 0 ? from : to;
     switch (library.parameters[d].quantity) {
       case Quantity::step_length:
         asked[d] = shape.along;
@@ -102,6 +106,30 @@ Apart apart(const parametric::Library& library, std::span<const double> a,
   return result;
 }
 
+// What a step asks of a library beyond all of its examples, in what is no parameter of it.
+Apart beyond(const StepLibrary& steps, const StepShape& shape) {
+  const auto measures = [&](Quantity one, Quantity other) {
+    return std::ranges::any_of(steps.library().parameters, [&](const parametric::Parameter& given) {
+      return given.quantity == one || given.quantity == other;
+    });
+  };
+  const auto excess = [](double value, double least, double most) {
+    return std::max({0.0, least - value, value - most});
+  };
+  Apart result;
+  if (!measures(Quantity::step_length, Quantity::step_length)) {
+    result.place = excess(shape.along, steps.least().along, steps.most().along);
+  }
+  if (!measures(Quantity::step_width, Quantity::step_width)) {
+    result.place =
+        std::hypot(result.place, excess(shape.across, steps.least().across, steps.most().across));
+  }
+  if (!measures(Quantity::step_turn, Quantity::path_turn)) {
+    result.turn = excess(shape.turn, steps.least().turn, steps.most().turn);
+  }
+  return result;
+}
+
 // Where the body faces above each print: the mean of the feet's headings, so that it does not
 // matter by how much they turn out.
 std::vector<double> facing_of(std::span<const Print> prints) {
@@ -131,6 +159,15 @@ class Planner {
                    PlannedStep& step) const;
   Status choose(const GroundedPrint& to, double duration, int number, PlannedStep& step) const;
   Status adapt(std::size_t number, const Print& wanted, const Error& why);
+  // First and last steps are those of starts and stops where there are any.
+  StepKind kind_of_step(int number) const {
+    const bool is_first = number == 2, is_last = number + 1 == count_;
+    const StepKind kind = is_first == is_last ? StepKind::walk
+                          : is_first          ? StepKind::start
+                                              : StepKind::stop;
+    const auto found = std::ranges::find(libraries_, kind, &StepLibrary::kind);
+    return found == libraries_.end() ? StepKind::walk : kind;
+  }
   Status make_weights(PlannedStep& step) const;
 
   std::span<const StepLibrary> libraries_;
@@ -171,22 +208,29 @@ Status Planner::check_prints(std::span<const Print> prints) const {
 Status Planner::choose(const GroundedPrint& to, double duration, int number,
                        PlannedStep& step) const {
   const GroundedPrint& stance = walk_.grounded[static_cast<std::size_t>(number - 1)];
+  const GroundedPrint& from = walk_.grounded[static_cast<std::size_t>(number - 2)];
   const FootSide swing = to.side;
+  const StepKind kind = kind_of_step(number);
   double least = std::numeric_limits<double>::infinity();
-  Apart far;
+  Apart far, more;
   for (std::size_t i = 0; i < libraries_.size(); ++i) {
+    if (libraries_[i].kind() != kind) continue;
     const parametric::Synthesiser& steps = libraries_[i].steps(swing);
     const StepShape shape = shape_of(stance, to, libraries_[i].toe_out());
-    auto asked = parameters_for(steps.library(), steps.bounds(), shape, duration);
+    const StepShape begin = shape_of(stance, from, libraries_[i].toe_out());
+    auto asked = parameters_for(steps.library(), steps.bounds(), shape, begin, duration);
     auto off = parametric::outside(steps.bounds(), asked);
-    if (off.distance >= least) continue;
-    least = off.distance;
+    const Apart here = beyond(libraries_[i], shape);
+    const double cost = off.distance + (here.place + kTurnCost * here.turn) / kUsualRange;
+    if (cost >= least) continue;
+    least = cost;
+    more = here;
     far = apart(steps.library(), asked, off.nearest);
     step.library = static_cast<int>(i);
     step.asked = std::move(asked);
     step.nearest = options_.extrapolate ? step.asked : std::move(off.nearest);
   }
-  step.far = options_.extrapolate ? 0 : far.place;
+  step.far = options_.extrapolate ? 0 : std::hypot(far.place, more.place);
   // The first and the last step are blended with standing: what they ask is not made by examples.
   if (options_.extrapolate || number == 2 || number + 1 == count_) return {};
   if (far.place <= kFarOutside * walker_.leg(swing).length && far.turn <= kFarTurn) return {};

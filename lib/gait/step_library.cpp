@@ -1,6 +1,8 @@
 #include "gait/step_library.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <vector>
 
 #include "motion/ground_frame.h"
@@ -34,7 +36,37 @@ double usual_toe_out(const parametric::Library& library) {
   return std::clamp(0.5 * *middle, -kMaxToeOut, kMaxToeOut);
 }
 
+std::optional<StepKind> kind_of(const std::vector<std::string>& times) {
+  const auto named = [&](const char* name) {
+    return std::ranges::find(times, name) != times.end();
+  };
+  if (times.front() == "stand" && times.back() == "stand_end") return StepKind::stand;
+  if (!named("swing_off") || !named("swing_strike")) return {};
+  if (times.front() == "stand" && times.back() == "swing_strike") return StepKind::start;
+  if (times.front() != "stance_strike") return {};
+  if (times.back() == "stand") return StepKind::stop;
+  if (times.back() == "swing_strike") return StepKind::walk;
+  return {};
+}
+
 }  // namespace
+
+FoundStep step_of(const parametric::Library& library, const parametric::Example& example) {
+  const Clip& clip = example.motion;
+  const int frame = std::clamp(static_cast<int>(std::lround(example.keytimes.back() * clip.rate)),
+                               0, clip.frame_count() - 1);
+  std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
+  clip.get_pose(frame, pose);
+  const parametric::FootShape& foot = library.foot(library.swing);
+  const auto print = parametric::footprint(foot, pose[static_cast<std::size_t>(foot.joint)]);
+  const double side = library.swing == FootSide::left ? 1 : -1;
+  return {print.place.z(), side * print.place.x(), print.place.y(), side * print.heading};
+}
+
+const StepLibrary& main_library(std::span<const StepLibrary> libraries) {
+  const auto walks = std::ranges::find(libraries, StepKind::walk, &StepLibrary::kind);
+  return walks == libraries.end() ? libraries.front() : *walks;
+}
 
 Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library library,
                                         const rbf::WeightFunction& weights, const RoleMap& roles) {
@@ -44,15 +76,15 @@ Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library li
       return parameter.quantity == quantity;
     });
   };
-  const std::vector<std::string>& times = library.keytimes;
-  if (!measures(Quantity::step_length) || times.front() != "stance_strike" ||
-      times.back() != "swing_strike" || std::ranges::find(times, "swing_off") == times.end()) {
+  const auto kind = kind_of(library.keytimes);
+  if (!kind || (*kind == StepKind::walk && !measures(Quantity::step_length))) {
     return Error("walk-library",
                  "this is no library of steps: walking needs the parameter step.length and the "
                  "keytimes stance_strike, swing_off and swing_strike",
-                 "krok-fit makes one with \"steps\": \"auto\"");
+                 "krok-fit makes one with \"steps\": \"auto\", and starts, stops and stands");
   }
   StepLibrary result;
+  result.kind_ = *kind;
   result.name_ = std::move(name);
   result.roles_ = roles;
   auto mirrored = parametric::mirrored(library);
@@ -66,6 +98,16 @@ Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library li
     if (!synthesiser) return std::move(synthesiser).error();
     result.synthesisers_[side] =
         std::make_unique<const parametric::Synthesiser>(*std::move(synthesiser));
+  }
+  const parametric::Library& fitted = result.library();
+  result.least_ = result.most_ = step_of(fitted, fitted.examples.front());
+  for (const parametric::Example& example : fitted.examples) {
+    const FoundStep step = step_of(fitted, example);
+    for (const auto part :
+         {&FoundStep::along, &FoundStep::across, &FoundStep::up, &FoundStep::turn}) {
+      result.least_.*part = std::min(result.least_.*part, step.*part);
+      result.most_.*part = std::max(result.most_.*part, step.*part);
+    }
   }
   result.toe_out_ = usual_toe_out(result.library());
   return result;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "core/result.h"
@@ -13,20 +14,36 @@
 
 namespace krok::gait {
 
+// What a library has steps for, told by its keytimes: the middle of a walk, the first step out of
+// standing, the last one into it, or standing itself.
+enum class StepKind : unsigned char { walk, start, stop, stand };
+
+// The swing foot's print at the end of a step in the frame of the stance foot's: metres along the
+// stance foot's toes, to the swing side, up; radians to that side.
+struct FoundStep {
+  double along = 0, across = 0, up = 0, turn = 0;
+};
+
 class StepLibrary {
  public:
-  // `library` has step.length among its parameters; steps of the other foot are its mirror image.
+  // A library of walks has step.length among its parameters; steps of the other foot are the mirror
+  // image of those given.
   // `name` is for reports. Codes: those of Synthesiser::create() and mirrored(); walk-library if
   // the library has no step.length, or keytimes that are not those of steps.
   static Result<StepLibrary> create(std::string name, parametric::Library library,
                                     const rbf::WeightFunction& weights, const RoleMap& roles);
 
   const std::string& name() const { return name_; }
+  StepKind kind() const { return kind_; }
   const RoleMap& roles() const { return roles_; }
   // As fitted, with the swing foot of its examples.
   const parametric::Library& library() const { return *libraries_[static_cast<std::size_t>(own_)]; }
   // Radians by which feet usually point outwards from the way they go.
   double toe_out() const { return toe_out_; }
+
+  // The least and the most of the examples, whether or not they are parameters.
+  const FoundStep& least() const { return least_; }
+  const FoundStep& most() const { return most_; }
 
   // Steps whose swing foot is `swing`.
   const parametric::Synthesiser& steps(FootSide swing) const {
@@ -37,11 +54,19 @@ class StepLibrary {
   StepLibrary() = default;
 
   std::string name_;
+  StepKind kind_ = StepKind::walk;
+  FoundStep least_, most_;
   RoleMap roles_;
   FootSide own_ = FootSide::left;
   double toe_out_ = 0;
   std::array<std::unique_ptr<const parametric::Library>, 2> libraries_;  // [swing side]
   std::array<std::unique_ptr<const parametric::Synthesiser>, 2> synthesisers_;
 };
+
+FoundStep step_of(const parametric::Library& library, const parametric::Example& example);
+
+// The first library of walks, which has the skeleton, the rate and the feet; the first if there is
+// none.
+const StepLibrary& main_library(std::span<const StepLibrary> libraries);
 
 }  // namespace krok::gait

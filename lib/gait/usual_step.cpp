@@ -16,24 +16,6 @@ constexpr double kToesPerBall = 1.45;  // from heel to toes, of heel to ball
 constexpr double kUnknownSole = 0.16;  // metres from heel to ball, where the ball is not known
 constexpr double kMoreLength = 0.03;   // metres beyond the longest example
 
-// The swing footprint at the last keytime, in the frame of the stance footprint: metres along its
-// toes, to the swing side, up; radians to that side.
-struct FoundStep {
-  double along = 0, across = 0, up = 0, turn = 0;
-};
-
-FoundStep step_of(const parametric::Library& library, const parametric::Example& example) {
-  const Clip& clip = example.motion;
-  const int frame = std::clamp(static_cast<int>(std::lround(example.keytimes.back() * clip.rate)),
-                               0, clip.frame_count() - 1);
-  std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
-  clip.get_pose(frame, pose);
-  const parametric::FootShape& foot = library.foot(library.swing);
-  const auto print = parametric::footprint(foot, pose[static_cast<std::size_t>(foot.joint)]);
-  const double side = library.swing == FootSide::left ? 1 : -1;
-  return {print.place.z(), side * print.place.x(), print.place.y(), side * print.heading};
-}
-
 // The mean of the steps on level ground that go straight on, as far as there are any: of steps that
 // all turn to one side, toes would seem to point there.
 FoundStep mean_of_steps(const StepLibrary& steps) {
@@ -62,9 +44,11 @@ FoundStep mean_of_steps(const StepLibrary& steps) {
 }  // namespace
 
 Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
+  const StepLibrary& main = main_library(libraries);
   PlanOptions options;
   double longest = 0, max_turn = 0;
   for (const StepLibrary& one : libraries) {
+    if (one.kind() != StepKind::walk) continue;
     const parametric::Library& library = one.library();
     for (std::size_t d = 0; d < library.parameters.size(); ++d) {
       const auto quantity = library.parameters[d].quantity;
@@ -75,16 +59,16 @@ Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
       }
     }
   }
-  const FoundStep usual = mean_of_steps(libraries.front());
+  const FoundStep usual = mean_of_steps(main);
   // Prints are planned along the way, which lies between the directions of the toes.
   const double out = 0.5 * usual.turn;
   options.step_length = usual.along * std::cos(out) + usual.across * std::sin(out);
   options.step_width = std::max(0.0, usual.across * std::cos(out) - usual.along * std::sin(out));
-  const double toe_out = libraries.front().toe_out();
+  const double toe_out = main.toe_out();
   options.toe_out = {toe_out, -toe_out};
   options.max_step = std::max(longest, options.step_length) + kMoreLength;
   if (max_turn > 0.1) options.max_turn = max_turn;
-  const auto walker = make_walker(libraries.front());
+  const auto walker = make_walker(libraries);
   if (!walker) return walker.error();
   const FootGeometry& sole = walker->leg(FootSide::left).sole;
   options.heel_to_ball = sole.length > 0 ? sole.length : kUnknownSole;

@@ -22,7 +22,10 @@ constexpr double kMissed = 1e-4;  // metres that count as a footprint missed
 constexpr std::size_t kStepsAtOnce = 64;
 
 Status check_options(std::span<const StepLibrary> libraries, const WalkOptions& options) {
-  if (libraries.empty()) return Error("walk-library", "walking needs a step library");
+  if (libraries.empty() || main_library(libraries).kind() != StepKind::walk) {
+    return Error("walk-library", "walking needs a library of the steps between start and stop",
+                 "krok-fit makes one with \"steps\": \"auto\"");
+  }
   for (const StepLibrary& library : libraries.subspan(1)) {
     if (Status status =
             parametric::same_skeleton(libraries[0].library().skeleton, library.library().skeleton);
@@ -145,7 +148,8 @@ Result<Walk> Walk::plan(std::span<const StepLibrary> libraries, std::span<const 
   if (Status status = check_options(libraries, options); !status) return status.error();
   const auto state = std::make_shared<State>();
   state->options = options;
-  auto walker = make_walker(libraries[0]);
+  const StepLibrary& main = main_library(libraries);
+  auto walker = make_walker(libraries);
   if (!walker) return walker.error();
   state->walker = *std::move(walker);
   auto plan = plan_steps(libraries, state->walker, prints, ground, options);
@@ -154,7 +158,7 @@ Result<Walk> Walk::plan(std::span<const StepLibrary> libraries, std::span<const 
   auto body = BodyMotion::create(libraries, state->walker, state->plan, options);
   if (!body) return body.error();
   state->body = *std::move(body);
-  const double rate = options.rate > 0 ? options.rate : libraries[0].library().rate;
+  const double rate = options.rate > 0 ? options.rate : main.library().rate;
   const double duration = state->body->steps().back().finish;
   if (!(duration * rate <= kMaxFrames)) {
     return Error("clip-too-long", fmt::format("{} s at {} frames per second are too many frames",
@@ -166,8 +170,8 @@ Result<Walk> Walk::plan(std::span<const StepLibrary> libraries, std::span<const 
   for (const PlannedStep& step : state->plan.steps) {
     state->libraries.push_back(libraries[at(step.library)].name());
   }
-  state->packed = &libraries[0].steps(FootSide::left).packed();
-  state->skeleton = &libraries[0].library().skeleton;
+  state->packed = &main.steps(FootSide::left).packed();
+  state->skeleton = &main.library().skeleton;
   state->made.resize(state->plan.steps.size());
   state->stances.resize(state->plan.grounded.size());
   state->frames.skeleton = *state->skeleton;

@@ -7,6 +7,7 @@
 
 #include "core/index.h"
 #include "gait/mean_step_internal.h"
+#include "math/euler.h"
 #include "math/quaternion.h"
 
 namespace krok::gait {
@@ -84,23 +85,73 @@ void learn_knee(const StepLibrary& steps, FootSide side, Walker& walker) {
   if (sum.norm() > 1e-9) leg.knee_axis = sum.normalized();
 }
 
+// Generic time of the swing foot's off, seconds.
+double off_of_swing(const parametric::Synthesiser& step) {
+  const auto off =
+      std::ranges::find(step.library().keytimes, "swing_off") - step.library().keytimes.begin();
+  return step.packed().generic[static_cast<std::size_t>(off)];
+}
+
 // The ball is off the ground when it has come up by kRaised in the mean step.
 double find_ball_off(const StepLibrary& steps, const Walker& walker) {
   const parametric::Synthesiser& step = steps.steps(steps.library().swing);
   const parametric::PackedExamples& packed = step.packed();
-  const auto off =
-      std::ranges::find(step.library().keytimes, "swing_off") - step.library().keytimes.begin();
   const Leg& leg = walker.leg(steps.library().swing);
   std::vector<Transform> world(walker.skeleton->names.size());
   double first = 0;
   for (int i = 0; i <= kMeanSamples; ++i) {
     const double part = static_cast<double>(i) / kMeanSamples;
-    walker.to_world(mean_pose(packed, packed.generic[static_cast<std::size_t>(off)] * part), world);
+    walker.to_world(mean_pose(packed, off_of_swing(step) * part), world);
     const double height = (world[at(leg.foot)] * leg.sole.pivot).y();
     if (i == 0) first = height;
     if (height - first > kRaised) return std::max(part, kEarliestOff);
   }
   return 1;
+}
+
+// Adds a pose to a sum, quaternions in one hemisphere.
+void add_pose(const PoseVector& pose, PoseVector& sum) {
+  if (sum.size() == 0) {
+    sum = pose;
+    return;
+  }
+  for (int j = 0; j < pose.size() / kPoseValues; ++j) {
+    position_of(sum, j) += position_of(pose, j);
+    const double sign = rotation_of(sum, j).dot(rotation_of(pose, j)) < 0 ? -1 : 1;
+    rotation_of(sum, j) += sign * rotation_of(pose, j);
+  }
+}
+
+void divide_poses(double count, PoseVector& sum) {
+  for (int j = 0; j < sum.size() / kPoseValues; ++j) {
+    position_of(sum, j) /= count;
+    rotation_of(sum, j).normalize();
+  }
+}
+
+// The mean standing pose of captures and of its mirror image, above the middle of the ankles.
+PoseVector captured_stand(const StepLibrary& stands, const Walker& walker) {
+  PoseVector sum;
+  std::vector<Transform> world(walker.skeleton->names.size());
+  for (const FootSide swing : {FootSide::left, FootSide::right}) {
+    const parametric::PackedExamples& packed = stands.steps(swing).packed();
+    const double when = stands.kind() == StepKind::stop    ? packed.generic.back()
+                        : stands.kind() == StepKind::stand ? 0.5 * packed.generic.back()
+                                                           : 0;
+    PoseVector pose = mean_pose(packed, when);
+    walker.to_world(pose, world);
+    Vec3 middle = Vec3::Zero();
+    for (const Leg& leg : walker.legs) middle += 0.5 * world[at(leg.foot)].position;
+    position_of(pose, 0) -= Vec3(middle.x(), 0, middle.z());
+    // The pose is in the frame of the stance foot's toes.
+    const double out = stands.toe_out() * (swing == FootSide::left ? -1 : 1);
+    const Quat turn = axis_rotation(Axis::y, out);
+    position_of(pose, 0) = turn * Vec3(position_of(pose, 0));
+    rotation_of(pose, 0) = (turn * joint_of(pose, 0).orientation).coeffs();
+    add_pose(pose, sum);
+  }
+  divide_poses(2, sum);
+  return sum;
 }
 
 // The mean pose over a step of each foot: upright, the arms down. Its root is above the middle of
@@ -113,21 +164,10 @@ PoseVector standing_pose(const StepLibrary& steps, const Walker& walker) {
     const parametric::PackedExamples& packed = step.packed();
     for (int i = 0; i < kMeanSamples; ++i) {
       const PoseVector pose = mean_pose(packed, packed.generic.back() * i / kMeanSamples);
-      if (sum.size() == 0) {
-        sum = pose;
-        continue;
-      }
-      for (int j = 0; j < walker.skeleton->joint_count(); ++j) {
-        position_of(sum, j) += position_of(pose, j);
-        const double sign = rotation_of(sum, j).dot(rotation_of(pose, j)) < 0 ? -1 : 1;
-        rotation_of(sum, j) += sign * rotation_of(pose, j);
-      }
+      add_pose(pose, sum);
     }
   }
-  for (int j = 0; j < walker.skeleton->joint_count(); ++j) {
-    position_of(sum, j) /= 2 * kMeanSamples;
-    rotation_of(sum, j).normalize();
-  }
+  divide_poses(2 * kMeanSamples, sum);
   // The hips as high as legs that are nearly straight carry them.
   position_of(sum, 0) = Vec3::Zero();
   walker.to_world(sum, world);
@@ -150,8 +190,9 @@ void Walker::to_world(const PoseVector& pose, std::span<Transform> joint_to_worl
   }
 }
 
-Result<Walker> make_walker(const StepLibrary& steps) {
+Result<Walker> make_walker(std::span<const StepLibrary> libraries) {
   using enum Role;
+  const StepLibrary& steps = main_library(libraries);
   Walker walker;
   walker.skeleton = &steps.steps(FootSide::left).packed().skeleton;
   constexpr Role kLegs[2][4] = {{left_upper_leg, left_lower_leg, left_foot, left_toes},
@@ -177,7 +218,14 @@ Result<Walker> make_walker(const StepLibrary& steps) {
   }
   for (const FootSide side : {FootSide::left, FootSide::right}) learn_knee(steps, side, walker);
   walker.ball_off = find_ball_off(steps, walker);
+  walker.usual_off = off_of_swing(steps.steps(FootSide::left));
   walker.stand = standing_pose(steps, walker);
+  for (const StepKind kind : {StepKind::stand, StepKind::start, StepKind::stop}) {
+    const auto found = std::ranges::find(libraries, kind, &StepLibrary::kind);
+    if (found == libraries.end()) continue;
+    walker.stand = captured_stand(*found, walker);
+    break;
+  }
   return walker;
 }
 

@@ -47,6 +47,7 @@ struct Walker {
   // Where in the time from the other foot's strike to this one's off, as captures tell it, its ball
   // leaves the ground: the toes go on for a while.
   double ball_off = 1;
+  double usual_off = 0.1;  // seconds from the one to the other, in the mean step
 
   const Leg& leg(FootSide side) const { return legs[index_of(side)]; }
   // joint_to_world of all joints.
@@ -54,6 +55,7 @@ struct Walker {
 };
 
 // Code walk-legs if the skeleton has no legs of thigh, shank and foot.
-Result<Walker> make_walker(const StepLibrary& library);
+// The standing pose is that of a library of stands, starts or stops, as far as there is one.
+Result<Walker> make_walker(std::span<const StepLibrary> libraries);
 
 }  // namespace krok::gait

@@ -13,6 +13,7 @@
 #include "motion/ground_frame.h"
 #include "motion/hips_root.h"
 #include "motion/mirror.h"
+#include "parametric/find_steps_internal.h"
 
 namespace krok::parametric {
 
@@ -25,59 +26,6 @@ constexpr double kTouch = 0.05;   // seconds; shorter overlaps of a contact with
 constexpr double kFarLength = 0.1, kFarAngle = 15 * kRadiansPerDegree, kFarTime = 0.3;
 constexpr std::ptrdiff_t kMaxOutliers = 10;  // at most one in this many
 constexpr double kNormal = 1.4826;  // standard deviation of a normal distribution over its MAD
-
-// From a strike of the stance foot to the next of the swing foot.
-struct Found {
-  FootSide swing = FootSide::left;
-  double start = 0, off = 0, end = 0;  // seconds
-  std::string fault;                   // why it is not a valid step; empty if it is
-};
-
-struct Strike {
-  FootSide side;
-  double time;
-};
-
-std::vector<Strike> strikes_of(const MotionKeys& keys) {
-  std::vector<Strike> strikes;
-  for (const Keytime& key : keys.keytimes) {
-    if (key.name == "left_strike") strikes.push_back({FootSide::left, key.time});
-    if (key.name == "right_strike") strikes.push_back({FootSide::right, key.time});
-  }
-  return strikes;
-}
-
-std::vector<Found> find_steps(const MotionKeys& keys, const CutOptions& options) {
-  std::vector<Found> steps;
-  const auto strikes = strikes_of(keys);
-  for (std::size_t i = 0; i + 1 < strikes.size(); ++i) {
-    Found step;
-    step.swing = strikes[i + 1].side;
-    if (step.swing != options.swing && !options.mirror) continue;
-    step.start = strikes[i].time;
-    step.end = strikes[i + 1].time;
-    const bool runs = options.gait == StepGait::run;
-    const std::string off = fmt::format("{}_off", name_of(runs ? strikes[i].side : step.swing));
-    int offs = 0;
-    for (const Keytime& key : keys.keytimes) {
-      if (key.name != off || key.time <= step.start || key.time >= step.end) continue;
-      ++offs;
-      step.off = key.time;
-    }
-    const double lasts = step.end - step.start;
-    if (strikes[i].side == step.swing) {
-      step.fault = fmt::format("the {} foot strikes twice in a row", name_of(step.swing));
-    } else if (offs != 1) {
-      step.fault =
-          fmt::format("{} {} between the strikes", offs == 0 ? "no" : "more than one", off);
-    } else if (lasts < options.shortest || lasts > options.longest) {
-      step.fault = fmt::format("{} s is too {}", readable(lasts, 3),
-                               lasts < options.shortest ? "short" : "long");
-    }
-    steps.push_back(std::move(step));
-  }
-  return steps;
-}
 
 // Description of a jump of the pose between frames; empty if there is none.
 std::string jump_in(const Clip& motion, int carrier) {
@@ -146,9 +94,8 @@ class Cutter {
     library.skeleton = walks.front().clip->skeleton;
     library.rate = walks.front().clip->rate;
     library.swing = options_.swing;
-    const bool runs = options_.gait == StepGait::run;
-    library.keytimes = {"stance_strike", runs ? "stance_off" : "swing_off", "swing_strike"};
-    if (options_.pass) library.keytimes.insert(library.keytimes.end() - 1, "swing_pass");
+    library.keytimes = keytimes_of(options_.gait);
+    if (options_.pass) library.keytimes.insert(library.keytimes.begin() + 2, "swing_pass");
     std::vector<ClipContacts> clips;
     for (const Walk& walk : walks) {
       if (Status status = same_skeleton(library.skeleton, walk.clip->skeleton); !status) {
@@ -172,10 +119,11 @@ class Cutter {
 
   void add(const Walk& walk) {
     int count = 0;
-    for (const Found& step : find_steps(*walk.keys, options_)) {
+    for (const FoundStep& step :
+         find_steps(*walk.clip, carrying_joint(roles_), *walk.keys, options_)) {
       ++count;
       std::string fault = step.fault.empty() ? add_step(walk, step, count) : step.fault;
-      if (!fault.empty()) drop(walk.name, step.start, step.end, std::move(fault));
+      if (!fault.empty()) drop(walk.name, step.times.front(), step.times.back(), std::move(fault));
     }
   }
 
@@ -220,12 +168,13 @@ class Cutter {
   }
 
   // Why the step cannot be used; empty if it was added.
-  std::string add_step(const Walk& walk, const Found& step, int number) {
+  std::string add_step(const Walk& walk, const FoundStep& step, int number) {
     Library& library = result_.library;
     const Clip& clip = *walk.clip;
-    const int first = std::max(0, static_cast<int>(std::floor(step.start * clip.rate + 1e-6)));
+    const double start = step.times.front(), end = step.times.back();
+    const int first = std::max(0, static_cast<int>(std::floor(start * clip.rate + 1e-6)));
     const int last =
-        std::min(clip.frame_count() - 1, static_cast<int>(std::ceil(step.end * clip.rate - 1e-6)));
+        std::min(clip.frame_count() - 1, static_cast<int>(std::ceil(end * clip.rate - 1e-6)));
     if (last <= first) return "it is outside the walk";
     Clip piece = cut(clip, first, last);
     if (std::string jump = jump_in(piece, carrying_joint(roles_)); !jump.empty()) return jump;
@@ -236,11 +185,12 @@ class Cutter {
     std::vector<Contact> contacts = contacts_in(*walk.keys, step, shift, piece.duration());
     const bool flipped = step.swing != library.swing;
     if (flipped) flip(piece, contacts);
-    std::vector<double> times = {within(step.start), within(step.off), within(step.end)};
+    std::vector<double> times;
+    for (const double time : step.times) times.push_back(within(time));
     if (options_.pass) {
       const auto pass = pass_of(piece, library, times[1], times[2]);
       if (!pass) return "the swing foot does not pass the stance foot exactly once";
-      times.insert(times.end() - 1, *pass);
+      times.insert(times.begin() + 2, *pass);
     }
     auto example =
         make_example(library, fmt::format("{} {} {}", walk.name, number, name_of(step.swing)),
@@ -248,15 +198,17 @@ class Cutter {
     if (!example) return example.error().message;
     example->mirrored = flipped;
     library.examples.push_back(*std::move(example));
-    origins_.push_back({walk.name, step.start, step.end});
+    origins_.push_back({walk.name, step.times.front(), step.times.back()});
     return {};
   }
 
-  static std::vector<Contact> contacts_in(const MotionKeys& keys, const Found& step, double shift,
-                                          double duration) {
+  static std::vector<Contact> contacts_in(const MotionKeys& keys, const FoundStep& step,
+                                          double shift, double duration) {
     std::vector<Contact> contacts;
     for (Contact contact : keys.contacts) {
-      if (std::min(contact.end, step.end) - std::max(contact.start, step.start) < kTouch) continue;
+      if (std::min(contact.end, step.times.back()) - std::max(contact.start, step.times.front()) <
+          kTouch)
+        continue;
       contact.start = std::clamp(contact.start - shift, 0.0, duration);
       contact.end = std::clamp(contact.end - shift, 0.0, duration);
       contacts.push_back(contact);

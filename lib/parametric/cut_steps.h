@@ -9,7 +9,8 @@
 #include "roles/roles.h"
 #include "scene/motion_keys.h"
 
-// Cuts walks into steps, each from the heel strike of one foot to the next strike of the other.
+// Cuts walks into steps, each from the heel strike of one foot to the next strike of the other, and
+// into what is at their ends: first steps out of standing, last steps into it, and standing.
 
 namespace krok::parametric {
 
@@ -23,17 +24,24 @@ struct Walk {
 
 // What is cut: steps of walks have the keytimes stance_strike, swing_off, swing_strike. In a run
 // the stance foot leaves the ground before the swing foot strikes: stance_strike, stance_off,
-// swing_strike.
-enum class StepGait : unsigned char { walk, run };
+// swing_strike. A first step begins where the actor begins to move: stand, swing_off, swing_strike;
+// a last one ends where he has come to rest: stance_strike, swing_off, swing_strike, stand. An
+// actor stands while his hips go over the ground at less than 6 cm/s and no foot is lifted:
+// stand, stand_end.
+enum class StepGait : unsigned char { walk, run, start, stop, stand };
+
+// The names of a step's keytimes, without swing_pass.
+std::vector<std::string> keytimes_of(StepGait gait);
 
 struct CutOptions {
   StepGait gait = StepGait::walk;
   FootSide swing = FootSide::left;  // the stepping foot
   // Whether steps of the other foot are mirrored and used too.
   bool mirror = true;
-  // Adds the keytime swing_pass, when the swing foot passes the stance foot.
+  // Adds the keytime swing_pass, when the swing foot passes the stance foot. Not when standing.
   bool pass = false;
-  double shortest = 0.2, longest = 2.0;  // seconds from strike to strike
+  double shortest = 0.2,
+         longest = 2.0;  // seconds from strike to strike
   // A step is an outlier if one of its measures differs from the median by more than this many
   // median absolute deviations (scaled to the standard deviation of a normal distribution) and by
   // more than 0.1 m, 15 degrees or 0.3 s, provided that at most a tenth of all steps do. 0 keeps

@@ -61,6 +61,22 @@ std::string name_in_walk(const std::string& keytime, FootSide swing) {
   return (left ? "left_" : "right_") + keytime.substr(keytime.find('_') + 1);
 }
 
+parametric::StepGait gait_of(library::StepKind kind) {
+  switch (kind) {
+    case library::StepKind::runs:
+      return parametric::StepGait::run;
+    case library::StepKind::starts:
+      return parametric::StepGait::start;
+    case library::StepKind::stops:
+      return parametric::StepGait::stop;
+    case library::StepKind::stands:
+      return parametric::StepGait::stand;
+    case library::StepKind::walks:
+      break;
+  }
+  return parametric::StepGait::walk;
+}
+
 class Reader {
  public:
   Reader(std::string path, bool keep_going, ToolContext& context)
@@ -144,7 +160,7 @@ class Reader {
     }
     parametric::CutOptions options;
     options.swing = swing();
-    if (description().runs) options.gait = parametric::StepGait::run;
+    options.gait = gait_of(description().kind);
     options.mirror = description().mirror;
     if (description().outlier_deviations) options.outlier = *description().outlier_deviations;
     auto cut = parametric::cut_steps(walks, input_.roles, measures(), options);

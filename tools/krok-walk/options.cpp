@@ -133,7 +133,8 @@ void declare(CommandOptions& command, Arguments& a) {
   command
       .add_option("libraries", a.libraries,
                   "Step libraries made by krok-fit, on one skeleton; each step is taken from the "
-                  "one whose examples are nearest")
+                  "one whose examples are nearest, the first and the last from libraries of starts "
+                  "and stops where there are any")
       .type_name("IN.steps")
       .required();
   declare_way(command, a);

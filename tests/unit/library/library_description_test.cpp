@@ -134,11 +134,11 @@ TEST(LibraryDescription, RunsAreForTheWholeFile) {
     "steps": )";
   const auto runs = library::read(head + R"("runs", "examples": [{"clip": "a.bvh"}]})", "l.json");
   ASSERT_TRUE(runs.ok()) << runs.error().message;
-  EXPECT_TRUE(runs->runs);
+  EXPECT_EQ(runs->kind, library::StepKind::runs);
   EXPECT_TRUE(runs->examples[0].automatic);
   const auto walks = library::read(head + R"("auto", "examples": [{"clip": "a.bvh"}]})", "l.json");
   ASSERT_TRUE(walks.ok());
-  EXPECT_FALSE(walks->runs);
+  EXPECT_EQ(walks->kind, library::StepKind::walks);
   const auto one = library::read(
       head + R"("auto", "examples": [{"clip": "a.bvh", "steps": "runs"}]})", "l.json");
   EXPECT_FALSE(one.ok());
@@ -164,7 +164,7 @@ TEST(LibraryDescription, EveryMistakeIsToldWithItsPlace) {
       {"\"stride\"", "\"turn\"", "library-value 8:5", "duplicate parameter"},
       {"\"measures\": \"step.turn\", ", "", "library-structure 8:5", "measures"},
       {"\"5ms\"", "\"5f\"", "library-value 9:43", "frames"},
-      {"\"auto\"", "\"all\"", "library-value 11:12", "auto, runs or one"},
+      {"\"auto\"", "\"all\"", "library-value 11:12", "auto, runs, starts, stops, stands or one"},
       {"\"clip\": \"walks/*.bvh\", ", "", "library-structure 13:5", "clip"},
       {"\"1.5s\"", "\"1.5m\"", "library-value 13:37", "'m'"},
       {"\"1.5s\"", "-1", "library-value 13:37", "before 0"},
