@@ -106,28 +106,28 @@ Apart apart(const parametric::Library& library, std::span<const double> a,
   return result;
 }
 
-// What a step asks of a library beyond all of its examples, in what is no parameter of it.
+// How far a step is from the examples in what is no parameter of their library: from the nearest.
 Apart beyond(const StepLibrary& steps, const StepShape& shape) {
   const auto measures = [&](Quantity one, Quantity other) {
     return std::ranges::any_of(steps.library().parameters, [&](const parametric::Parameter& given) {
       return given.quantity == one || given.quantity == other;
     });
   };
-  const auto excess = [](double value, double least, double most) {
-    return std::max({0.0, least - value, value - most});
-  };
-  Apart result;
-  if (!measures(Quantity::step_length, Quantity::step_length)) {
-    result.place = excess(shape.along, steps.least().along, steps.most().along);
+  const double along = measures(Quantity::step_length, Quantity::step_length) ? 0 : 1;
+  const double across = measures(Quantity::step_width, Quantity::step_width) ? 0 : 1;
+  const double turn = measures(Quantity::step_turn, Quantity::path_turn) ? 0 : 1;
+  Apart nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const FoundStep& step : steps.found_steps()) {
+    const Apart here = {
+        std::hypot(along * (shape.along - step.along), across * (shape.across - step.across)),
+        turn * std::abs(shape.turn - step.turn)};
+    const double far = here.place + kTurnCost * here.turn;
+    if (far >= least) continue;
+    least = far;
+    nearest = here;
   }
-  if (!measures(Quantity::step_width, Quantity::step_width)) {
-    result.place =
-        std::hypot(result.place, excess(shape.across, steps.least().across, steps.most().across));
-  }
-  if (!measures(Quantity::step_turn, Quantity::path_turn)) {
-    result.turn = excess(shape.turn, steps.least().turn, steps.most().turn);
-  }
-  return result;
+  return nearest;
 }
 
 // Where the body faces above each print: the mean of the feet's headings, so that it does not

@@ -36,6 +36,18 @@ double usual_toe_out(const parametric::Library& library) {
   return std::clamp(0.5 * *middle, -kMaxToeOut, kMaxToeOut);
 }
 
+FoundStep step_of(const parametric::Library& library, const parametric::Example& example) {
+  const Clip& clip = example.motion;
+  const int frame = std::clamp(static_cast<int>(std::lround(example.keytimes.back() * clip.rate)),
+                               0, clip.frame_count() - 1);
+  std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
+  clip.get_pose(frame, pose);
+  const parametric::FootShape& foot = library.foot(library.swing);
+  const auto print = parametric::footprint(foot, pose[static_cast<std::size_t>(foot.joint)]);
+  const double side = library.swing == FootSide::left ? 1 : -1;
+  return {print.place.z(), side * print.place.x(), print.place.y(), side * print.heading};
+}
+
 std::optional<StepKind> kind_of(const std::vector<std::string>& times) {
   const auto named = [&](const char* name) {
     return std::ranges::find(times, name) != times.end();
@@ -50,18 +62,6 @@ std::optional<StepKind> kind_of(const std::vector<std::string>& times) {
 }
 
 }  // namespace
-
-FoundStep step_of(const parametric::Library& library, const parametric::Example& example) {
-  const Clip& clip = example.motion;
-  const int frame = std::clamp(static_cast<int>(std::lround(example.keytimes.back() * clip.rate)),
-                               0, clip.frame_count() - 1);
-  std::vector<Transform> pose(static_cast<std::size_t>(clip.joint_count()));
-  clip.get_pose(frame, pose);
-  const parametric::FootShape& foot = library.foot(library.swing);
-  const auto print = parametric::footprint(foot, pose[static_cast<std::size_t>(foot.joint)]);
-  const double side = library.swing == FootSide::left ? 1 : -1;
-  return {print.place.z(), side * print.place.x(), print.place.y(), side * print.heading};
-}
 
 const StepLibrary& main_library(std::span<const StepLibrary> libraries) {
   const auto walks = std::ranges::find(libraries, StepKind::walk, &StepLibrary::kind);
@@ -99,15 +99,8 @@ Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library li
     result.synthesisers_[side] =
         std::make_unique<const parametric::Synthesiser>(*std::move(synthesiser));
   }
-  const parametric::Library& fitted = result.library();
-  result.least_ = result.most_ = step_of(fitted, fitted.examples.front());
-  for (const parametric::Example& example : fitted.examples) {
-    const FoundStep step = step_of(fitted, example);
-    for (const auto part :
-         {&FoundStep::along, &FoundStep::across, &FoundStep::up, &FoundStep::turn}) {
-      result.least_.*part = std::min(result.least_.*part, step.*part);
-      result.most_.*part = std::max(result.most_.*part, step.*part);
-    }
+  for (const parametric::Example& example : result.library().examples) {
+    result.found_steps_.push_back(step_of(result.library(), example));
   }
   result.toe_out_ = usual_toe_out(result.library());
   return result;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "parametric/synthesise.h"
@@ -41,9 +42,8 @@ class StepLibrary {
   // Radians by which feet usually point outwards from the way they go.
   double toe_out() const { return toe_out_; }
 
-  // The least and the most of the examples, whether or not they are parameters.
-  const FoundStep& least() const { return least_; }
-  const FoundStep& most() const { return most_; }
+  // The examples' steps, whether or not all of it is a parameter. [examples]
+  const std::vector<FoundStep>& found_steps() const { return found_steps_; }
 
   // Steps whose swing foot is `swing`.
   const parametric::Synthesiser& steps(FootSide swing) const {
@@ -55,15 +55,13 @@ class StepLibrary {
 
   std::string name_;
   StepKind kind_ = StepKind::walk;
-  FoundStep least_, most_;
+  std::vector<FoundStep> found_steps_;
   RoleMap roles_;
   FootSide own_ = FootSide::left;
   double toe_out_ = 0;
   std::array<std::unique_ptr<const parametric::Library>, 2> libraries_;  // [swing side]
   std::array<std::unique_ptr<const parametric::Synthesiser>, 2> synthesisers_;
 };
-
-FoundStep step_of(const parametric::Library& library, const parametric::Example& example);
 
 // The first library of walks, which has the skeleton, the rate and the feet; the first if there is
 // none.

@@ -19,11 +19,9 @@ constexpr double kMoreLength = 0.03;   // metres beyond the longest example
 // The mean of the steps on level ground that go straight on, as far as there are any: of steps that
 // all turn to one side, toes would seem to point there.
 FoundStep mean_of_steps(const StepLibrary& steps) {
-  const parametric::Library& library = steps.library();
   std::array<FoundStep, 3> sums;  // level and straight, level, all
   std::array<int, 3> counts{};
-  for (const parametric::Example& example : library.examples) {
-    const FoundStep step = step_of(library, example);
+  for (const FoundStep& step : steps.found_steps()) {
     const bool is_level = std::abs(step.up) < kLevelStep;
     const bool is_straight = std::abs(step.turn - 2 * steps.toe_out()) < kStraightStep;
     for (std::size_t i = is_level ? (is_straight ? 0 : 1) : 2; i < sums.size(); ++i) {
