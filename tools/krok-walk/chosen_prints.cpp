@@ -1,8 +1,12 @@
 #include "tools/krok-walk/chosen_prints.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "core/text.h"
 #include "formats/io/open_motion.h"
+#include "formats/io/open_scene.h"
 #include "formats/path/path_format.h"
 #include "formats/prints/prints.h"
 #include "formats/registry/registry.h"
@@ -10,6 +14,7 @@
 #include "gait/usual_step.h"
 #include "motion/ground_frame.h"
 #include "roles/roles.h"
+#include "tools/krok-walk/node_way.h"
 
 namespace krok::cli::walk {
 
@@ -18,12 +23,23 @@ namespace {
 Result<std::vector<gait::PathPoint>> read_way(const Options& options, ToolContext& context) {
   const auto file = context.open_input(options.path);
   if (!file) return file.error();
-  if (registry::kind_of_content(file->bytes()) == registry::Kind::unknown) {
+  const registry::Kind kind = registry::kind_of_content(file->bytes());
+  if (kind == registry::Kind::unknown) {
     return path_file::read(file->text(), options.path, {options.path_scale, options.path_id});
   }
+  if (io::is_scene(kind)) return way_of_node(*file, options.path_id, context);
   const auto clip = io::open_motion(*file, context);
   if (!clip) return clip.error();
-  return gait::way_of(*clip, carrying_joint(find_roles(clip->skeleton)));
+  if (options.path_id.empty()) {
+    return gait::way_of(*clip, carrying_joint(find_roles(clip->skeleton)));
+  }
+  const int joint = clip->skeleton.find(options.path_id);
+  if (joint < 0) {
+    return Error("path-node", fmt::format("no joint is called '{}'", shown(options.path_id)),
+                 "krok-info lists the joints")
+        .in_file(options.path);
+  }
+  return gait::way_of(*clip, joint);
 }
 
 Result<gait::Path> make_path(const Options& options, ToolContext& context) {

@@ -24,12 +24,16 @@ Error usage(std::string message, std::string hint = {}) {
 void declare_way(CommandOptions& command, Arguments& a) {
   const char* group = "Where to";
   command
-      .add_option("--path", a.path,
-                  "Way to follow: an SVG, a table (.csv) or .json (formats/path/SPEC.md), or "
-                  "another motion, whose way is taken")
+      .add_option(
+          "--path", a.path,
+          "Way to follow: an SVG, a table (.csv) or .json (formats/path/SPEC.md), another "
+          "motion, whose hips' way is taken, or a scene (.gltf, .glb) with a node that goes")
       .type_name("IN")
       .group(group);
-  command.add_option("--path-id", a.path_id, "Element of the SVG (default: the first path)")
+  command
+      .add_option("--path-id", a.path_id,
+                  "Element of the SVG (default: the first path), joint of the motion (the hips) or "
+                  "node of the scene (the first that goes anywhere)")
       .type_name("ID")
       .group(group);
   command.add_option("--path-scale", a.path_scale, "Length of a unit of the SVG")

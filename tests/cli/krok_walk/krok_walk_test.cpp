@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "cli/step_library/library_fixture.h"
 #include "formats/anim/anim.h"
 #include "formats/prints/prints.h"
+#include "support/glb_builder.h"
 #include "support/height_images.h"
 
 namespace krok::test {
@@ -95,6 +97,43 @@ TEST_F(KrokWalk, FollowsADrawing) {
   // The way of a motion is another walk's.
   walked({"--path", path("walk.anim"), "-o", path("copy.anim"), "--save-prints", path("r.csv")});
   EXPECT_NEAR(prints("r.csv").back().z, prints("q.csv").back().z, 0.3);
+}
+
+// Would fail if the way of another joint or node were taken than named, its parents left out, or a
+// node that stands still walked along.
+TEST_F(KrokWalk, FollowsAJointAndANode) {
+  GlbBuilder scene;
+  scene.json["scenes"] = {{{"nodes", {0}}}};
+  scene.json["nodes"] = {{{"name", "yard"}, {"translation", {5, 0, 1}}, {"children", {1, 2}}},
+                         {{"name", "lamp"}},
+                         {{"name", "cart"}}};
+  const int times = scene.add(std::vector<float>{0, 4, 8}, "SCALAR");
+  scene.json["accessors"][static_cast<std::size_t>(times)]["min"] = {0};
+  scene.json["accessors"][static_cast<std::size_t>(times)]["max"] = {8};
+  const int places = scene.add(std::vector<float>{0, 1, 0, 0, 1, 3, 2, 1, 5}, "VEC3");
+  scene.json["animations"] = {
+      {{"samplers", {{{"input", times}, {"output", places}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "translation"}}}}}}}};
+  const auto bytes = scene.glb();
+  put("way.glb", std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  for (const bool named : {false, true}) {
+    std::vector<std::string> arguments = {"--path", path("way.glb"), "--save-prints",
+                                          path("p.csv")};
+    if (named) arguments.insert(arguments.end(), {"--path-id", "cart"});
+    walked(arguments);
+    const auto set = prints("p.csv");
+    EXPECT_NEAR(0.5 * (set[0].x + set[1].x), 5, 0.02);
+    EXPECT_NEAR(0.5 * (set[0].z + set[1].z), 1, 0.02);
+    EXPECT_NEAR(0.5 * (set.back().x + set[set.size() - 2].x), 7, 0.05);
+    EXPECT_NEAR(0.5 * (set.back().z + set[set.size() - 2].z), 6, 0.05);
+  }
+  walked({"--path", path("walk.anim"), "--path-id", "Head", "-o", path("copy.anim"),
+          "--save-prints", path("q.csv")});
+  EXPECT_NEAR(prints("q.csv").back().z, 6, 0.3);
+  std::filesystem::remove(path("walk.anim"));
+  refused({"--path", path("way.glb"), "--path-id", "lamp"}, "path-node", "'lamp' stays");
+  refused({"--path", path("way.glb"), "--path-id", "tree"}, "path-node", "'tree'");
+  refused({"--path", path("copy.anim"), "--path-id", "tree"}, "path-node", "'tree'");
 }
 
 // Would fail if a ground were not the one that was named: each raises the end of the walk by a
