@@ -64,6 +64,21 @@ class MeshGround final : public Terrain {
 
   bool build();
 
+  // From Embree's own copy.
+  std::vector<GroundTriangle> all_triangles() const {
+    const RTCGeometry geometry = rtcGetGeometry(solid_scene_, 0);
+    const auto* corners = static_cast<const float*>(
+        rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    std::vector<GroundTriangle> all(solid_count_);
+    for (GroundTriangle& triangle : all) {
+      for (Vec3& corner : triangle) {
+        corner = centre_ + Vec3f(corners[0], corners[1], corners[2]).cast<double>();
+        corners += 3;
+      }
+    }
+    return all;
+  }
+
   bool is_blocked(const Vec3& from, const Vec3& to) const override {
     if (!from.allFinite() || !to.allFinite()) return false;
     RTCRay ray{};
@@ -103,6 +118,7 @@ class MeshGround final : public Terrain {
 
   std::vector<GroundTriangle> triangles_;
   std::vector<GroundTriangle> solid_;  // only while building
+  std::size_t solid_count_ = 0;
   Vec3 centre_;
   double top_ = 0, bottom_ = 0;
   double touching_ = 0;
@@ -128,6 +144,7 @@ bool MeshGround::build_solid() {
       *indices++ = next++;
     }
   }
+  solid_count_ = solid_.size();
   solid_ = {};
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(solid_scene_, geometry);
@@ -222,6 +239,12 @@ Result<std::unique_ptr<Terrain>> mesh_ground(std::vector<GroundTriangle> triangl
   auto ground = std::make_unique<MeshGround>(std::move(triangles), std::move(all));
   if (!ground->build()) return Error("ground-memory", "Embree could not build the mesh's tree");
   return std::unique_ptr<Terrain>(std::move(ground));
+}
+
+std::optional<std::vector<GroundTriangle>> triangles_of(const Terrain& ground) {
+  const auto* mesh = dynamic_cast<const MeshGround*>(&ground);
+  if (mesh == nullptr) return {};
+  return mesh->all_triangles();
 }
 
 }  // namespace krok::terrain

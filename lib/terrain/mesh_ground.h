@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/result.h"
@@ -22,5 +23,9 @@ inline constexpr std::size_t kMaxGroundTriangles = 50'000'000;
 // than 1e6 m from the origin; ground-size for too many triangles.
 Result<std::unique_ptr<Terrain>> mesh_ground(std::vector<GroundTriangle> triangles,
                                              bool* reversed = nullptr);
+
+// All triangles of a ground made by mesh_ground(), those that do not carry too, to the accuracy of
+// floats; empty for other kinds.
+std::optional<std::vector<GroundTriangle>> triangles_of(const Terrain& ground);
 
 }  // namespace krok::terrain
