@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base64.h"
 #include "draw/pack_motion_internal.h"
 #include "draw/page_text_internal.h"
+#include "draw/sole_outline.h"
 
 namespace krok::draw {
 
@@ -29,6 +31,10 @@ struct Parts {
     const std::string id = fmt::format("krok-blob-{}", items.size());
     item["blob"] = id;
     items.push_back(std::move(item));
+    add_blob(id, base64);
+  }
+
+  void add_blob(const std::string& id, const std::string& base64) {
     scripts += fmt::format("<script type=\"application/octet-stream\" id=\"{}\">", id);
     scripts += base64;
     scripts += "</script>\n";
@@ -64,7 +70,70 @@ Status add_goals(const ViewedMotion& viewed, Json& item, Blob& blob) {
   return {};
 }
 
-Status add_motion(const ViewedMotion& viewed, Parts& parts) {
+Error not_there(const char* what) {
+  return {"viewer-ground", fmt::format("{} that is not there", what)};
+}
+
+Status add_print_contacts(const ViewedMotion& viewed, std::size_t prints, Json& item) {
+  Json contacts = Json::array();
+  for (const ViewedPrintContact& contact : viewed.print_contacts) {
+    if (contact.print < 0 || static_cast<std::size_t>(contact.print) >= prints) {
+      return not_there("a motion stands on a footprint");
+    }
+    contacts.push_back({contact.print, contact.start, contact.end});
+  }
+  if (!contacts.empty()) item["printContacts"] = std::move(contacts);
+  return {};
+}
+
+std::span<const float> numbers_of(const std::vector<Vec3f>& vectors) {
+  return {vectors.empty() ? nullptr : vectors.front().data(), 3 * vectors.size()};
+}
+
+Status add_ground(const ViewedGround& ground, Parts& parts, Json& data) {
+  if (ground.triangles.empty()) return {};
+  for (const auto& corners : ground.triangles) {
+    if (std::ranges::max(corners) >= ground.positions.size() ||
+        ground.normals.size() != ground.positions.size()) {
+      return not_there("a triangle of the ground has a corner");
+    }
+  }
+  Blob blob;
+  Json item;
+  item["blob"] = "krok-ground";
+  item["positions"] = blob.add(numbers_of(ground.positions));
+  item["normals"] = blob.add(numbers_of(ground.normals));
+  item["triangles"] = blob.add(
+      std::span<const std::uint32_t>(ground.triangles.front().data(), 3 * ground.triangles.size()));
+  parts.add_blob("krok-ground", blob.base64());
+  data["ground"] = std::move(item);
+  return {};
+}
+
+// To a hundredth of a millimetre.
+Json rounded(const Vec3& vector) {
+  Json numbers = Json::array();
+  for (const double x : vector) numbers.push_back(std::round(x * 1e5) / 1e5);
+  return numbers;
+}
+
+void add_prints(const std::vector<ViewedPrint>& prints, Json& data) {
+  if (prints.empty()) return;
+  Json outline = Json::array();
+  for (const Vec2& point : sole_outline()) outline.push_back({point.x(), point.y()});
+  Json list = Json::array();
+  for (const ViewedPrint& print : prints) {
+    list.push_back({{"side", print.left ? "left" : "right"},
+                    {"number", print.number},
+                    {"heel", rounded(print.heel)},
+                    {"forward", rounded(print.forward)},
+                    {"up", rounded(print.up)},
+                    {"length", print.length}});
+  }
+  data["prints"] = {{"outline", std::move(outline)}, {"list", std::move(list)}};
+}
+
+Status add_motion(const ViewedMotion& viewed, std::size_t prints, Parts& parts) {
   const Clip& clip = *viewed.clip;
   if (Status status = check(clip); !status) return status;
   Json item = parts.start("motion", viewed.name, viewed.facts);
@@ -100,6 +169,7 @@ Status add_motion(const ViewedMotion& viewed, Parts& parts) {
   }
   if (!keytimes.empty()) item["keytimes"] = std::move(keytimes);
   if (Status status = add_goals(viewed, item, blob); !status) return status;
+  if (Status status = add_print_contacts(viewed, prints, item); !status) return status;
   parts.finish(std::move(item), blob.base64());
   return {};
 }
@@ -123,7 +193,9 @@ std::string script_safe(std::string text) {
 Result<std::string> write_viewer_page(const ViewerPage& page) {
   Parts parts;
   for (const ViewedMotion& motion : page.motions) {
-    if (Status status = add_motion(motion, parts); !status) return status.error();
+    if (Status status = add_motion(motion, page.prints.size(), parts); !status) {
+      return status.error();
+    }
   }
   for (const ViewedGlb& file : page.files) {
     Json item = parts.start("gltf", file.name, file.facts);
@@ -144,6 +216,8 @@ Result<std::string> write_viewer_page(const ViewerPage& page) {
   data["title"] = page.title;
   data["apart"] = page.apart;
   data["difference"] = page.difference;
+  if (Status status = add_ground(page.ground, parts, data); !status) return status.error();
+  add_prints(page.prints, data);
   data["items"] = std::move(parts.items);
 
   constexpr std::string_view kPlace = "<!--krok-data-->";

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +35,29 @@ struct ViewedGoal {
   std::vector<Frame> frames;  // [frames]
 };
 
+// A footprint that the page shows on the ground, in the colour of its side, with its number.
+struct ViewedPrint {
+  bool left = true;
+  int number = 1;                // as in messages and files, from 1
+  Vec3 heel = Vec3::Zero();      // metres, world
+  Vec3 forward = Vec3::UnitZ();  // from heel to toes, unit vector
+  Vec3 up = Vec3::UnitY();       // normal of the sole, unit vector
+  double length = 0.26;          // metres, heel to tip
+};
+
+// A time in which a motion's foot stands on a footprint, which is marked then.
+struct ViewedPrintContact {
+  int print = 0;              // index into ViewerPage::prints
+  double start = 0, end = 0;  // seconds
+};
+
+// A ground that the page shows in place of its level grid, with a grid of metres on it.
+struct ViewedGround {
+  std::vector<Vec3f> positions;  // metres, world
+  std::vector<Vec3f> normals;    // unit vectors, [positions]
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
 // A motion shown as a skeleton, and as a skinned character if a body is given.
 struct ViewedMotion {
   std::string name;   // display name, such as the file name
@@ -45,6 +70,7 @@ struct ViewedMotion {
   std::span<const Material> materials;
   MotionKeys keys;  // coloured and marked on the timeline
   std::vector<ViewedGoal> goals;
+  std::vector<ViewedPrintContact> print_contacts;
 };
 
 struct ViewedCamera {
@@ -70,13 +96,16 @@ struct ViewerPage {
   std::vector<ViewedMotion> motions;
   std::vector<ViewedGlb> files;
   std::vector<ViewedCamera> cameras;
+  ViewedGround ground;  // without triangles: a level grid at height 0
+  std::vector<ViewedPrint> prints;
 };
 
 // The page as HTML, in UTF-8. Rotations are stored to 1.5e-4 radians relative to the parent,
 // positions as floats; one minute of 60 joints at 60 fps takes less than 3 MB. Output is
 // deterministic. Codes: those of check() for clips, models, materials, cameras and keys, and of
 // picture_facts(); viewer-body if the joints of a body are not those of the clip; viewer-goal if a
-// goal has another number of frames than its clip, or joints that the clip has not.
+// goal has another number of frames than its clip, or joints that the clip has not; viewer-ground
+// if triangles or contacts with prints name what is not there.
 Result<std::string> write_viewer_page(const ViewerPage& page);
 
 }  // namespace krok::draw

@@ -2,8 +2,10 @@
 
 #include <memory>
 
+#include "terrain/spec.h"
 #include "tools/cli/one_of.h"
 #include "tools/krok-view/run.h"
+#include "tools/shared/shown_ground.h"
 
 namespace krok::cli::view {
 
@@ -50,6 +52,15 @@ void declare(CommandOptions& command, Options& options) {
           "Show the goals of a krok-ik file (formats/goals/SPEC.md) on all motions: places, "
           "chains of joints, and by how much each is missed")
       .type_name("IN.json");
+  command
+      .add_option("--ground", options.ground,
+                  "Show this ground, as for krok-walk: a height field (.exr, 16-bit .png), a mesh "
+                  "(.gltf, .glb, .obj), or " +
+                      std::string(terrain::kSpecForms))
+      .type_name("IN");
+  add_prints_option(command, options.prints,
+                    "Show footprints (formats/prints/SPEC.md) on the ground, as krok-walk "
+                    "--save-prints writes them; those that a foot stands on are marked");
   command.add_option("--title", options.title, "The page's title; default: the first file's name")
       .type_name("WORDS");
 }
@@ -69,6 +80,9 @@ ToolSpec make_spec() {
                     "an animated model, viewed through a recorded camera"},
                    {"krok-view walk.anim reach.anim --goals goals.json -o goals.html",
                     "a motion before and after krok-ik, with its goals"},
+                   {"krok-view walk.anim --ground stairs:rise=17cm,run=29cm --prints prints.csv "
+                    "-o stairs.html",
+                    "a walk of krok-walk on its ground, with its footprints"},
                    {"krok-view hero.character walk.anim -o hero.html",
                     "an animated character with its materials; without a motion, in "
                     "its reference pose"}};

@@ -19,6 +19,8 @@ struct Options {
   KeysChoice keys = KeysChoice::automatic;
   bool difference = false;
   std::string goals;  // a goal file, or empty
+  std::string ground;  // what io::open_terrain() takes; empty: none
+  std::string prints;  // a file of footprints, or empty
   std::string title;
 };
 

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "core/numbers.h"
 #include "draw/viewer_page.h"
+#include "formats/io/open_terrain.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-view/files.h"
+#include "tools/shared/shown_ground.h"
 
 namespace krok::cli::view {
 
@@ -61,6 +64,36 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
   return page;
 }
 
+Status check_layout(const Options& options, const Files& files) {
+  if (options.ground.empty() && options.prints.empty()) return {};
+  if (options.layout == Layout::apart) {
+    return Error("usage", "--ground and --prints are for motions at their own positions",
+                 "leave out --layout apart");
+  }
+  if (!files.motions.empty() || options.prints.empty()) return {};
+  return Error("usage", "--prints needs a motion", "give the .anim that krok-walk wrote");
+}
+
+Status add_walk(const Options& options, ToolContext& context, draw::ViewerPage& page) {
+  std::unique_ptr<Terrain> ground;
+  if (!options.ground.empty()) {
+    auto opened = io::open_terrain(options.ground, {}, context);
+    if (!opened) return opened.error();
+    ground = *std::move(opened);
+  }
+  std::vector<gait::Print> prints;
+  if (!options.prints.empty()) {
+    auto opened = open_prints(options.prints, context);
+    if (!opened) return opened.error();
+    prints = *std::move(opened);
+  }
+  Status status = add_ground(ground.get(), prints, page, context);
+  if (!status && status.error().code.starts_with("walk-")) {
+    return std::move(status).error().in_file(options.prints);
+  }
+  return status;
+}
+
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
@@ -70,12 +103,16 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (options.difference && files->motions.size() < 2) {
     return Error("usage", "--difference needs two motions");
   }
+  if (Status status = check_layout(options, *files); !status) return status.error();
   Layout layout = options.layout;
-  if (options.difference && layout == Layout::automatic) layout = Layout::together;
+  const bool on_ground = !options.ground.empty() || !options.prints.empty();
+  if ((options.difference || on_ground) && layout == Layout::automatic) layout = Layout::together;
   if (layout == Layout::automatic) layout = actors > 4 ? Layout::list : Layout::apart;
   if (actors < 2) layout = Layout::together;
 
-  auto html = draw::write_viewer_page(page_of(*files, options, layout));
+  draw::ViewerPage page = page_of(*files, options, layout);
+  if (Status status = add_walk(options, context, page); !status) return status.error();
+  auto html = draw::write_viewer_page(page);
   if (!html) return html.error();
   const Status status =
       write_output(context, context.output, [&](OutputFile& file) { return file.write(*html); });
@@ -96,6 +133,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   context.report.result["motions"] = std::move(shown);
   context.report.result["files"] = files->glbs.size();
   context.report.result["cameras"] = files->cameras.size();
+  context.report.result["ground_triangles"] = page.ground.triangles.size();
+  context.report.result["prints"] = page.prints.size();
   context.report.result["bytes"] = html->size();
   context.log(fmt::format("{}: {}, {:.1f} MB; open it in a browser", context.output,
                           actors == 1 ? "1 character" : fmt::format("{} characters", actors),

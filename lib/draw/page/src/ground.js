@@ -11,7 +11,7 @@ const SHARPEST = 1 / 128; // metres; min width of a blurred edge
 // Analytic anti-aliasing: the fraction of a pixel's footprint that the lines cover. A texture would
 // need many samples to stay sharp at a distance. Filtered per axis, so that a footprint stretched
 // in one direction does not blur the other. A footprint is treated as a box.
-const COVERAGE = `
+export const GRID = `
 uniform vec3 ink;
 varying vec2 vGround;
 
@@ -58,7 +58,7 @@ export class Ground extends Mesh {
       shader.uniforms.ink = { value: ink };
       shader.vertexShader = `varying vec2 vGround;\n${shader.vertexShader}`.replace(
         '#include <begin_vertex>', '#include <begin_vertex>\nvGround = position.xz;');
-      shader.fragmentShader = COVERAGE + shader.fragmentShader
+      shader.fragmentShader = GRID + shader.fragmentShader
         .replace(/gl_FragColor = .*;/, COMPOSE)
         .replace('#include <colorspace_fragment>', '');
     };

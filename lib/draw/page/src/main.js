@@ -1,12 +1,13 @@
 // Entry point: reads the data, creates characters and cameras, runs the clock, handles the
 // controls.
 
-import { Box3, CameraHelper, PerspectiveCamera, Vector3 } from 'three';
+import { Box3, CameraHelper, PerspectiveCamera, Raycaster, Vector3 } from 'three';
 import { COLOURS, CONTACT_COLOUR, Figure } from './figure.js';
 import { missText } from './goals.js';
 import { GltfFigure } from './gltf_figure.js';
 import { Lanes } from './lanes.js';
 import { CameraTrack, Motion, blobBytes } from './motion.js';
+import { Prints } from './prints.js';
 import { Stage } from './stage.js';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 1.5, 2, 4];
@@ -16,14 +17,15 @@ const find = (id) => document.getElementById(id);
 
 // The contents of the scene: characters with one interface for all file formats.
 class Player {
-  constructor(stage, items) {
+  constructor(stage, items, prints) {
     this.stage = stage;
     this.items = items;
+    this.prints = prints;
     this.time = 0;
     this.speed = 1;
     this.playing = false;
     this.loop = true;
-    this.shown = { skeleton: true, body: true, apart: false, difference: false, follow: false, goals: true };
+    this.shown = { skeleton: true, body: true, apart: false, difference: false, follow: false, goals: true, prints: true };
     this.lastRoot = null;
   }
 
@@ -92,6 +94,7 @@ class Player {
         helper.update();
       }
     }
+    this.prints?.update(this.time, this.figures().map(({ item }) => item.printContacts ?? []));
     this.difference = this.shown.difference ? this.colourDifference() : null;
     this.followRoot();
     this.stage.redraw();
@@ -297,7 +300,7 @@ class Interface {
   }
 
   makeSwitches() {
-    const { player } = this;
+    const { player, stage } = this;
     const figures = player.items.filter(({ figure }) => figure);
     const hasBody = figures.some(({ figure }) => figure.body || !figure.motion);
     player.shown.skeleton = !hasBody;
@@ -306,9 +309,11 @@ class Interface {
     const switches = [
       ['skeleton', 'Skeleton (s)', true],
       ['body', 'Body (b)', hasBody],
-      ['apart', 'Side by side (a)', figures.length > 1],
+      // Not beside a ground, on which they would stand elsewhere than they do.
+      ['apart', 'Side by side (a)', figures.length > 1 && !stage.terrain && !player.prints],
       ['difference', 'Colour the difference (d)', figures.length > 1],
       ['goals', 'Goals (o)', figures.some(({ figure }) => figure.goals)],
+      ['prints', 'Footprints (p)', Boolean(player.prints)],
       ['follow', 'Follow (f)', figures.length > 0],
       ['grid', 'Ground (g)', true],
     ];
@@ -334,6 +339,7 @@ class Interface {
     player.shown[key] = value;
     this.switches.get(key).checked = value;
     if (key === 'grid') stage.ground.visible = value;
+    if (key === 'prints') player.prints.group.visible = value;
     if (key === 'difference' && !value) {
       for (const { figure } of player.items) figure?.motion && figure.plainColours();
     }
@@ -463,11 +469,30 @@ class Interface {
     const all = whole.getSize(new Vector3());
     const here = now.getSize(new Vector3());
     if (Math.max(all.x, all.z) > 2.5 * Math.max(here.x, here.y, here.z) && reach(all) > 2) {
-      this.stage.frame(now);
+      this.stage.frame(now, this.viewFrom());
       if (!this.player.shown.follow) this.flip('follow', true);
       return;
     }
-    this.stage.frame(whole);
+    this.stage.frame(whole, this.viewFrom());
+  }
+
+  // On a ground: from above, from the side of the way, and from its lower end, where steps are seen.
+  viewFrom() {
+    const [first] = this.player.figures();
+    if (!this.stage.terrain || !first) return undefined;
+    const { figure } = first;
+    const rootAt = (time) => {
+      figure.update(time);
+      return figure.root().clone();
+    };
+    const way = rootAt(figure.duration).sub(rootAt(0));
+    figure.update(this.player.time);
+    const climbs = way.y;
+    way.setY(0);
+    if (way.length() < 0.5) return undefined;
+    way.normalize();
+    const from = new Vector3(way.z, 0.75, -way.x);
+    return from.addScaledVector(way, climbs > 0.1 ? -0.6 : 0.6);
   }
 
   setLanes() {
@@ -499,11 +524,12 @@ class Interface {
       ['+', null, null, () => this.changeSpeed(1)],
       ['=', null, null, () => this.changeSpeed(1)],
       ['h', 'h', 'frame all', () => this.frame()],
-      ['s', 's b a d o f g', 'toggle the options above', () => this.flip('skeleton')],
+      ['s', 's b a d o p f g', 'toggle the options above', () => this.flip('skeleton')],
       ['b', null, null, () => this.flip('body')],
       ['a', null, null, () => this.flip('apart')],
       ['d', null, null, () => this.flip('difference')],
       ['o', null, null, () => this.flip('goals')],
+      ['p', null, null, () => this.flip('prints')],
       ['f', null, null, () => this.flip('follow')],
       ['g', null, null, () => this.flip('grid')],
       ['c', 'c', 'view through the recorded camera', () => this.tracks[0] && this.fly(this.tracks[0])],
@@ -603,7 +629,10 @@ async function main() {
   const stage = new Stage(find('view'));
   const items = [];
   for (const [index, item] of data.items.entries()) items.push(await makeItem(item, index, stage));
-  const player = new Player(stage, items);
+  if (data.ground) stage.setTerrain(data.ground, blobBytes(data.ground.blob));
+  const prints = data.prints ? new Prints(data.prints) : null;
+  if (prints) stage.scene.add(prints.group);
+  const player = new Player(stage, items, prints);
   const controls = new Interface(player, stage, data);
   controls.rearrange();
   controls.frame();
@@ -633,6 +662,13 @@ async function main() {
     goals: (item = 0) => (items[item].figure.goals?.goals ?? []).map(
       ({ name, kind, chain, from, to, strength, distance, angle }) =>
         ({ name, kind, chain, from: from.toArray(), to: to.toArray(), strength, distance, angle }),
+    ),
+    // Heights of the ground's surfaces at (x, z), the highest first.
+    groundAt: (x, z) => (stage.terrain
+      ? new Raycaster(new Vector3(x, 1e4, z), new Vector3(0, -1, 0)).intersectObject(stage.terrain).map(({ point }) => point.y)
+      : [0]),
+    prints: () => (prints?.list ?? []).map(
+      ({ number, side, heel, forward, length, planted }) => ({ number, side, heel, forward, length, planted }),
     ),
     // World positions of a file's joints, without the side-by-side offset.
     joints: (item = 0) => {

@@ -14,6 +14,7 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Ground } from './ground.js';
+import { Terrain } from './terrain.js';
 
 export class Stage {
   constructor(canvas) {
@@ -53,7 +54,18 @@ export class Stage {
     this.scene.background = air;
     this.scene.fog = new Fog(air, 20, 90);
     this.ground.ink.setRGB(...(dark ? [190, 205, 220] : [60, 72, 86]).map((part) => part / 255));
+    this.terrain?.material.color.set(dark ? '#4a5158' : '#cfd2c8');
     this.redraw();
+  }
+
+  // Shows a ground in place of the level grid.
+  setTerrain(item, bytes) {
+    const { ink } = this.ground;
+    this.scene.remove(this.ground);
+    this.ground = this.terrain = new Terrain(item, bytes, ink);
+    this.ground.ink = ink;
+    this.scene.add(this.ground);
+    this.applyColours();
   }
 
   resize() {
@@ -69,17 +81,17 @@ export class Stage {
     this.stale = true;
   }
 
-  // Frames `box` from the front, slightly from the character's left and from above.
-  frame(box) {
+  // Frames `box` from the direction `from`: by default from the front, slightly from the character's
+  // left and from above.
+  frame(box, from = new Vector3(0.55, 0.28, 1)) {
     const centre = box.getCenter(new Vector3());
     const size = box.getSize(new Vector3());
     const high = Math.max(size.y, 0.05);
     const wide = Math.max(Math.hypot(size.x, size.z), 0.05);
     const half = Math.tan((this.camera.fov * Math.PI) / 360);
     const distance = 1.25 * Math.max(high / (2 * half), wide / (2 * half * this.camera.aspect));
-    const from = new Vector3(0.55, 0.28, 1).normalize();
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(from, distance + wide / 4);
+    this.camera.position.copy(centre).addScaledVector(from.clone().normalize(), distance + wide / 4);
     this.camera.near = distance / 200;
     this.camera.far = Math.max(distance * 60, 200);
     this.scene.fog.near = Math.max(20, distance * 3);

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "draw/viewer_page.h"
+#include "gait/shown_prints.h"
+#include "terrain/terrain.h"
+#include "tools/cli/tool.h"
+
+// --ground and --prints, for tools that show a walk.
+
+namespace krok::cli {
+
+CommandOption add_prints_option(CommandOptions& command, std::string& path,
+                                const std::string& description);
+
+// The footprints of a file. Codes: those of prints::read(); prints-empty for a file without one.
+Result<std::vector<gait::Print>> open_prints(const std::string& path, ToolContext& context);
+
+// The footprints of a motion, or as many as are near it.
+struct ShownPrints {
+  std::vector<gait::GroundedPrint> prints;
+  std::vector<int> numbers;  // from 1, [prints]
+  gait::FootSize size;
+};
+
+// Sets footprints on the ground. Those farther than a few metres from all motions are left out, and
+// of more than can be drawn those beyond that number, with a warning (code prints-many). Codes:
+// those of gait::set_on_ground().
+Result<ShownPrints> show_prints(std::span<const gait::Print> prints, const Terrain& ground,
+                                std::span<const Clip* const> clips, ToolContext& context);
+
+// Puts a ground, if there is one, and footprints, which lie on it or otherwise level at height 0,
+// on a page of motions. Codes: those of show_prints() and terrain::surface_of().
+Status add_ground(const Terrain* ground, std::span<const gait::Print> prints,
+                  draw::ViewerPage& page, ToolContext& context);
+
+}  // namespace krok::cli
