@@ -11,16 +11,11 @@
 #include "tools/cli/output_set.h"
 #include "tools/krok-view/files.h"
 #include "tools/shared/shown_ground.h"
+#include "tools/shared/walk_page.h"
 
 namespace krok::cli::view {
 
 namespace {
-
-std::string facts_of(const Clip& clip) {
-  if (clip.frame_count() == 0) return fmt::format("{} joints, no motion", clip.joint_count());
-  return fmt::format("{} joints, {} frames, {} fps, {} s", clip.joint_count(), clip.frame_count(),
-                     readable(clip.rate), fmt::format("{:.2f}", clip.duration()));
-}
 
 draw::ViewerPage page_of(const Files& files, const Options& options, Layout layout) {
   draw::ViewerPage page;

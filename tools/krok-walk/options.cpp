@@ -146,6 +146,13 @@ void declare(CommandOptions& command, Arguments& a) {
   declare_steps(command, a);
   add_rate(command, "--rate", a.rate, "Frames per second (default: the library's)").group("Output");
   add_orientation_option(command, a.orientation);
+  command
+      .add_option(
+          "--view", a.view,
+          "Write a web page, too, that plays the walk on its ground with its footprints, as "
+          "krok-view does")
+      .type_name("OUT.html")
+      .group("Output");
 }
 
 // Numbers of a text "a,b" or "AxB".
@@ -233,6 +240,7 @@ Status take_way(const Arguments& a, Options& options) {
     return usage(fmt::format("--save-prints: '{}' is neither .csv nor .json", a.save_prints));
   }
   options.save_prints = a.save_prints;
+  options.view = a.view;
   return take_length("--path-scale", a.path_scale, 1e-6, 1e4, options.path_scale);
 }
 
@@ -285,6 +293,8 @@ ToolSpec make_spec() {
       {"krok-walk walking.steps --path way.svg --ground hills.exr --save-prints prints.csv "
        "-o walk.anim",
        "along a way that is drawn, over a height field; keeps the footprints"},
+      {"krok-walk walking.steps --to 0m,5m --ground stairs:count=8 -o walk.anim --view walk.html",
+       "up stairs, with a page to watch it"},
       {"krok-walk level.steps stairs.steps --prints prints.csv --ground "
        "stairs:rise=17cm,run=29cm -o walk.anim",
        "on given footprints up stairs, with steps from two libraries"}};

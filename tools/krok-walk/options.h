@@ -23,7 +23,7 @@ struct Arguments {
   std::vector<std::string> to;
   std::string from;
   std::string ground = "level", ground_size, ground_range;
-  std::string save_prints;
+  std::string save_prints, view;
   std::string step_length, step_width;
   FootSide first = FootSide::left;
   double speed = 1, rate = 0;
@@ -45,6 +45,7 @@ struct Options {
   std::string ground;
   height_field::Placement placement;
   std::string save_prints;
+  std::string view;  // a page to write, or empty
   std::optional<double> step_length, step_width;  // metres
   FootSide first = FootSide::left;
   double speed = 1, rate = 0;

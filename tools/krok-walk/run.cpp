@@ -19,6 +19,7 @@
 #include "tools/cli/output_set.h"
 #include "tools/krok-walk/chosen_prints.h"
 #include "tools/shared/keys_choice.h"
+#include "tools/shared/walk_page.h"
 
 namespace krok::cli::walk {
 
@@ -129,7 +130,7 @@ std::vector<gait::Print> walked_prints(std::vector<gait::Print> prints,
 }
 
 Status write_all(const Options& options, const gait::Walk& walk,
-                 const std::vector<gait::Print>& prints,
+                 const std::vector<gait::Print>& prints, const Terrain& ground,
                  std::span<const gait::StepLibrary> libraries, ToolContext& context) {
   OutputSet outputs(context);
   const FrameSource& frames = walk.frames();
@@ -159,6 +160,14 @@ Status write_all(const Options& options, const gait::Walk& walk,
       extension(options.save_prints) == ".json" ? prints::write_json : prints::write_csv;
   status = outputs.add(options.save_prints, [&](OutputFile& file) {
     return write(walked_prints(prints, details), file);
+  });
+  if (!status) return status;
+  status = outputs.add(options.view, [&](OutputFile& file) -> Status {
+    const auto clip = load(frames, thread_count(context.jobs));
+    if (!clip) return clip.error();
+    const auto page = walk_page(name_of_input(context.output), *clip, details.keys, ground,
+                                walked_prints(prints, details), context);
+    return page ? file.write(*page) : Status(page.error());
   });
   if (!status) return status;
   return outputs.finish();
@@ -200,7 +209,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   how.clearance = options.clearance;
   const auto walk = gait::Walk::plan(*libraries, *prints, **ground, how);
   if (!walk) return with_hint(walk.error(), options);
-  if (Status status = write_all(options, *walk, *prints, *libraries, context); !status) {
+  if (Status status = write_all(options, *walk, *prints, **ground, *libraries, context); !status) {
     return status.error();
   }
   report_walk(walk->frames(), *prints, context);

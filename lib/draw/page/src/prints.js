@@ -23,7 +23,7 @@ const LIFT = 0.004; // metres over the ground
 const PULL = 0.02; // metres
 const BORDER = 1.22; // size of a border, of the sole
 const DIGIT = 64; // pixels
-const DIGIT_SIZE = [0.085, 0.15]; // width and height of a digit, of the sole's length
+const DIGIT_SIZE = [0.13, 0.26]; // width and height of a digit, of the sole's length
 
 // A material without light, drawn `pull` metres nearer to the camera than it is, so that ground that
 // is curved below a sole does not show through.
@@ -106,7 +106,7 @@ export class Prints {
     const corner = new Vector3();
     for (const { number, matrix, side } of this.list) {
       const digits = String(number);
-      const scale = Math.min(1, 3 / digits.length);
+      const scale = Math.min(1, 2.2 / digits.length);
       const [wide, high] = DIGIT_SIZE.map((size) => size * scale);
       const middle = side === 'left' ? 0.01 : -0.01;
       [...digits].forEach((digit, i) => {
