@@ -2,27 +2,11 @@
 // Usage: node viewer_test.mjs BIN_FOLDER SOURCE_FOLDER. Exit code 1 and a line for each fault.
 // With KROK_PAGE_SHOTS=FOLDER the screenshots are kept there.
 
-import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { chromium } from 'playwright-core';
+import { check, drawn, expect, made, open, run, until } from './checks.mjs';
 
-const [, , bin, source] = process.argv;
-const folder = mkdtempSync(join(tmpdir(), 'krok-page-'));
-const faults = [];
-let checks = 0;
-
-function expect(condition, text) {
-  ++checks;
-  if (!condition) {
-    faults.push(text);
-    console.log(`FAULT: ${text}`);
-  }
-}
-
-const run = (tool, ...words) => execFileSync(join(bin, tool), words, { stdio: ['ignore', 'pipe', 'pipe'] });
-const made = (name) => join(folder, name);
+const source = process.argv[3];
 
 // World positions that krok-export gives: frame -> joint -> [x, y, z].
 function positionsOf(motion) {
@@ -35,57 +19,6 @@ function positionsOf(motion) {
     (frames[match[1]] ??= {})[match[3]] = match.slice(4).map(Number);
   }
   return frames;
-}
-
-const browser = await chromium.launch({
-  executablePath: process.env.KROK_CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-    '--disable-background-networking', '--disable-component-update', '--no-first-run'],
-});
-
-// The page's own security policy forbids playwright's waitForFunction to evaluate text there.
-async function until(page, condition) {
-  for (const end = Date.now() + 60000; Date.now() < end;) {
-    if (await page.evaluate(condition)) return;
-    await new Promise((wake) => { setTimeout(wake, 20); });
-  }
-  throw new Error(`waited in vain for ${condition}`);
-}
-
-async function open(name, options = {}) {
-  // A page moves at once, which most checks have no use for.
-  const context = await browser.newContext({ viewport: { width: 900, height: 600 }, reducedMotion: 'reduce', ...options });
-  const page = await context.newPage();
-  page.on('console', (line) => {
-    if (line.type() === 'error' || line.type() === 'warning') {
-      // Chromium's own remark on drawing without a graphics card.
-      if (!/GPU stall|software WebGL|swiftshader/i.test(line.text())) {
-        expect(false, `${name}: console ${line.type()}: ${line.text()}`);
-      }
-    }
-  });
-  page.on('pageerror', (error) => expect(false, `${name}: ${error.message}`));
-  page.on('request', (request) => {
-    const url = request.url();
-    if (!/^(data|blob):/.test(url) && url !== `file://${made(name)}`) {
-      expect(false, `${name}: asks for ${url.slice(0, 100)}`);
-    }
-  });
-  await page.goto(`file://${made(name)}`);
-  await until(page, () => globalThis.krokView?.ready);
-  return page;
-}
-
-// Does something that changes the picture, and waits until it is drawn: a loaded machine takes its
-// time.
-async function drawn(page, act) {
-  const before = await page.evaluate(() => krokView.drawn);
-  await act();
-  for (const end = Date.now() + 20000; Date.now() < end;) {
-    if (await page.evaluate((count) => krokView.drawn > count, before)) return;
-    await new Promise((wake) => { setTimeout(wake, 20); });
-  }
-  expect(false, `nothing is drawn after ${act}`);
 }
 
 // Of a picture of the canvas: how many different colours it has, a blank one a few, and how many
@@ -308,7 +241,7 @@ async function goalsAgree(page, motion, report, rate) {
   expect(/fades, \d+ %/.test((await page.locator('#goals li').allTextContents())[0]), 'a goal that fades is not said to');
 }
 
-try {
+await check(80, async () => {
   const samples = join(source, 'samples/captures');
   for (const name of ['walk', 'turn']) run('krok-import', join(samples, `${name}.bvh`), '-o', made(`${name}.anim`));
   run('krok-body', made('walk.anim'), '--detail', 'low', '-o', made('walk.model'));
@@ -415,11 +348,4 @@ try {
   expect((await look(phone, 'phone')).colours > 500, 'the page on a phone is blank');
   const wide = await phone.evaluate(() => document.documentElement.scrollWidth);
   expect(wide <= 390, `on a phone the page is ${wide} pixels wide`);
-} catch (error) {
-  expect(false, error.stack ?? String(error));
-} finally {
-  await browser.close();
-  rmSync(folder, { recursive: true, force: true });
-}
-console.log(`${checks} checks, ${faults.length} faults`);
-process.exitCode = faults.length > 0 || checks < 80 ? 1 : 0;
+});

@@ -667,6 +667,8 @@ async function main() {
     groundAt: (x, z) => (stage.terrain
       ? new Raycaster(new Vector3(x, 1e4, z), new Vector3(0, -1, 0)).intersectObject(stage.terrain).map(({ point }) => point.y)
       : [0]),
+    // Where a point is seen, in pixels of the canvas.
+    project: (x, y, z) => stage.project(new Vector3(x, y, z)),
     prints: () => (prints?.list ?? []).map(
       ({ number, side, heel, forward, length, planted }) => ({ number, side, heel, forward, length, planted }),
     ),

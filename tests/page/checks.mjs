@@ -1,0 +1,90 @@
+// What the tests of pages share: headless Chromium, a folder, checks that are counted.
+// Arguments of a test: BIN_FOLDER SOURCE_FOLDER. With KROK_PAGE_SHOTS=FOLDER the screenshots are kept
+// there.
+
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { chromium } from 'playwright-core';
+
+const bin = process.argv[2];
+const folder = mkdtempSync(join(tmpdir(), 'krok-page-'));
+const faults = [];
+let checks = 0;
+
+export function expect(condition, text) {
+  ++checks;
+  if (!condition) {
+    faults.push(text);
+    console.log(`FAULT: ${text}`);
+  }
+}
+
+export const run = (tool, ...words) => execFileSync(join(bin, tool), words, { stdio: ['ignore', 'pipe', 'pipe'] });
+export const made = (name) => join(folder, name);
+
+export const browser = await chromium.launch({
+  executablePath: process.env.KROK_CHROMIUM ?? '/usr/bin/chromium',
+  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+    '--disable-background-networking', '--disable-component-update', '--no-first-run'],
+});
+
+// The page's own security policy forbids playwright's waitForFunction to evaluate text there.
+export async function until(page, condition) {
+  for (const end = Date.now() + 60000; Date.now() < end;) {
+    if (await page.evaluate(condition)) return;
+    await new Promise((wake) => { setTimeout(wake, 20); });
+  }
+  throw new Error(`waited in vain for ${condition}`);
+}
+
+export async function open(name, options = {}) {
+  // A page moves at once, which most checks have no use for.
+  const context = await browser.newContext({ viewport: { width: 900, height: 600 }, reducedMotion: 'reduce', ...options });
+  const page = await context.newPage();
+  page.on('console', (line) => {
+    if (line.type() === 'error' || line.type() === 'warning') {
+      // Chromium's own remark on drawing without a graphics card.
+      if (!/GPU stall|software WebGL|swiftshader/i.test(line.text())) {
+        expect(false, `${name}: console ${line.type()}: ${line.text()}`);
+      }
+    }
+  });
+  page.on('pageerror', (error) => expect(false, `${name}: ${error.message}`));
+  page.on('request', (request) => {
+    const url = request.url();
+    if (!/^(data|blob):/.test(url) && url !== `file://${made(name)}`) {
+      expect(false, `${name}: asks for ${url.slice(0, 100)}`);
+    }
+  });
+  await page.goto(`file://${made(name)}`);
+  await until(page, () => globalThis.krokView?.ready);
+  return page;
+}
+
+// Does something that changes the picture, and waits until it is drawn: a loaded machine takes its
+// time.
+export async function drawn(page, act) {
+  const before = await page.evaluate(() => krokView.drawn);
+  await act();
+  for (const end = Date.now() + 20000; Date.now() < end;) {
+    if (await page.evaluate((count) => krokView.drawn > count, before)) return;
+    await new Promise((wake) => { setTimeout(wake, 20); });
+  }
+  expect(false, `nothing is drawn after ${act}`);
+}
+
+// Does the checks of a test; exit code 1 if one fails, or fewer than `least` were done.
+export async function check(least, test) {
+  try {
+    await test();
+  } catch (error) {
+    expect(false, error.stack ?? String(error));
+  } finally {
+    await browser.close();
+    rmSync(folder, { recursive: true, force: true });
+  }
+  console.log(`${checks} checks, ${faults.length} faults`);
+  process.exitCode = faults.length > 0 || checks < least ? 1 : 0;
+}
