@@ -135,13 +135,14 @@ std::vector<int> flat_frames(const Clip& clip, const Leg& leg, double leg_length
 }
 
 // The up direction in a joint's frame while the foot is flat, the median over these frames.
-Vec3 up_in(const Clip& clip, int joint, const std::vector<int>& flat) {
+Vec3 up_in(const Clip& clip, int joint, const std::vector<int>& flat, const UpOfGround& ground) {
   const Quat& reference = clip.skeleton.reference[static_cast<std::size_t>(joint)].orientation;
   const Vec3 at_reference = reference.conjugate() * Vec3::UnitY();
   if (flat.empty()) return at_reference;
   std::array<std::vector<double>, 3> values;
   for (const int frame : flat) {
-    const Vec3 up = orientation(clip, frame, joint).conjugate() * Vec3::UnitY();
+    const Vec3 there = ground ? ground(position(clip, frame, joint)) : Vec3(Vec3::UnitY());
+    const Vec3 up = orientation(clip, frame, joint).conjugate() * there;
     for (int i = 0; i < 3; ++i) values[static_cast<std::size_t>(i)].push_back(up[i]);
   }
   const Vec3 up(contacts::middle(values[0]), contacts::middle(values[1]),
@@ -181,7 +182,8 @@ Vec3 forward_in(const Clip& clip, const Leg& leg, const Vec3& up, const std::vec
   return forward.norm() < 1e-4 ? Vec3(up.unitOrthogonal()) : Vec3(forward.normalized());
 }
 
-std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side, double length) {
+std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side, double length,
+                                 const UpOfGround& ground) {
   std::vector<SolePoint> points;
   if (leg.foot < 0 || !(length > 0)) return points;
   if (clip.skeleton.end_sites[static_cast<std::size_t>(leg.foot)]) {
@@ -189,7 +191,7 @@ std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side
     return points;
   }
   const std::vector<int> flat = flat_frames(clip, leg, length);
-  const Vec3 up = up_in(clip, leg.foot, flat);
+  const Vec3 up = up_in(clip, leg.foot, flat, ground);
   const Vec3 forward = forward_in(clip, leg, up, flat);
   double ankle = kAnkleHeight * length;
   if (leg.toes >= 0 || leg.tip >= 0) {
@@ -202,7 +204,7 @@ std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side
   if (leg.toes >= 0) {
     points.push_back({side, FootPart::ball, leg.toes, Vec3::Zero(), false});
     // Toes bend, so the direction to their tip is taken from the foot.
-    const Vec3 toes_up = up_in(clip, leg.toes, flat);
+    const Vec3 toes_up = up_in(clip, leg.toes, flat, ground);
     if (leg.tip >= 0) {
       points.push_back({side, FootPart::tip, leg.tip, Vec3::Zero(), false});
     } else {
@@ -252,6 +254,10 @@ const char* name_of(FootPart part) {
 }
 
 Feet find_feet(const Clip& clip, const RoleMap& roles) {
+  return find_feet(clip, roles, {});
+}
+
+Feet find_feet(const Clip& clip, const RoleMap& roles, const UpOfGround& up) {
   Feet feet;
   std::array<Leg, 2> legs;
   int with_length = 0;
@@ -265,7 +271,7 @@ Feet find_feet(const Clip& clip, const RoleMap& roles) {
   if (with_length > 0) feet.leg_length /= with_length;
   for (const FootSide side : {FootSide::left, FootSide::right}) {
     const auto s = static_cast<std::size_t>(side);
-    feet.points[s] = points_of(clip, legs[s], side, feet.leg_length);
+    feet.points[s] = points_of(clip, legs[s], side, feet.leg_length, up);
   }
   return feet;
 }

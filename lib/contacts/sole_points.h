@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "roles/roles.h"
@@ -40,6 +41,13 @@ struct Feet {
 // there are none, from the frames in which it is lowest, and for clips of fewer than five frames
 // from the reference pose. A foot that is only an end site has one point, at the ankle.
 Feet find_feet(const Clip& clip, const RoleMap& roles);
+
+// Which way the ground below a point faces: a unit vector, world. Without a function: upwards.
+using UpOfGround = std::function<Vec3(const Vec3& point)>;
+
+// The same for a motion on a ground that is not level, on which the soles of feet that stand face
+// as it does.
+Feet find_feet(const Clip& clip, const RoleMap& roles, const UpOfGround& up);
 
 // Position of a point in each frame, shape [frames]. A first frame from which the point jumps (a
 // rest pose before the capture: by over three times the larger of the next two steps plus a tenth

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contacts/sole_points.h"
 #include "draw/chart_style_internal.h"
 #include "motion/ground_frame.h"
 
@@ -34,6 +35,30 @@ std::vector<double> lowest_heights(const ChartedMotion& motion, const std::vecto
   return heights;
 }
 
+// Over the ground, of the lowest of the sole points or, without any, of the joints; NaN where there
+// is no ground.
+std::vector<double> heights_over(const ChartedGround& ground, const ChartedMotion& motion,
+                                 Side side, const std::vector<int>& joints) {
+  const Feet feet = find_feet(*motion.clip, *motion.roles, ground.up);
+  std::vector<SolePoint> points = feet.points[side == Side::left ? 0 : 1];
+  for (const int joint : joints) {
+    if (feet.points[side == Side::left ? 0 : 1].empty()) points.emplace_back().joint = joint;
+  }
+  std::vector<double> heights;
+  for (int f = motion.frames.first; f <= motion.frames.last; ++f) {
+    double lowest = std::numeric_limits<double>::quiet_NaN();
+    for (const SolePoint& point : points) {
+      const auto j = static_cast<std::size_t>(point.joint);
+      const Vec3 at = motion.clip->frame_positions(f)[j].cast<double>() +
+                      motion.clip->frame_orientations(f)[j].cast<double>() * point.offset;
+      const auto below = ground.height(at);
+      if (below) lowest = std::fmin(lowest, at.y() - *below);
+    }
+    heights.push_back(lowest);
+  }
+  return heights;
+}
+
 std::vector<double> slowest_speeds(const ChartedMotion& motion, const std::vector<int>& joints) {
   std::vector<double> speeds;
   const Clip& clip = *motion.clip;
@@ -52,15 +77,22 @@ std::vector<double> slowest_speeds(const ChartedMotion& motion, const std::vecto
 
 }  // namespace
 
-std::vector<Panel> foot_panels(std::span<const ChartedMotion> motions, Scale speed_scale) {
-  Panel heights = time_panel(motions, "Height of the feet (lowest joint)", "height", "m");
+std::vector<Panel> foot_panels(std::span<const ChartedMotion> motions, Scale speed_scale,
+                               const ChartedGround& ground) {
+  Panel heights = time_panel(
+      motions,
+      ground.height ? "Height of the soles over the ground" : "Height of the feet (lowest joint)",
+      "height", "m");
   Panel speeds = time_panel(motions, "Speed of the feet (slowest joint)", "speed", "m/s");
   speeds.y.scale = speed_scale;
   for (std::size_t m = 0; m < motions.size(); ++m) {
     for (const Side side : {Side::left, Side::right}) {
       const std::vector<int> joints = joints_of_foot(motions[m], side);
       if (joints.empty()) continue;
-      heights.series.push_back(side_line(motions[m], m, side, lowest_heights(motions[m], joints)));
+      heights.series.push_back(side_line(motions[m], m, side,
+                                         ground.height
+                                             ? heights_over(ground, motions[m], side, joints)
+                                             : lowest_heights(motions[m], joints)));
       if (motions[m].clip->frame_count() < 2) continue;
       speeds.series.push_back(side_line(motions[m], m, side, slowest_speeds(motions[m], joints)));
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 #include "core/result.h"
 #include "draw/joint_angles.h"
 #include "draw/plot.h"
+#include "draw/viewer_page.h"
 #include "math/euler.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
@@ -29,6 +31,15 @@ struct ChartedMotion {
   MotionKeys keys;
 };
 
+// The ground that the motions are on, and the footprints on it.
+struct ChartedGround {
+  // The height of the ground below a point, or just above it (a foot that sinks in), in metres;
+  // empty where there is none. Without a function: a level ground at 0.
+  std::function<std::optional<double>(const Vec3&)> height;
+  std::function<Vec3(const Vec3&)> up;  // which way it faces there, a unit vector
+  std::vector<ViewedPrint> prints;
+};
+
 // An entry for each kind of line in the panels that have no legend of their own, with the line's
 // own colour and dash pattern: left and right of each motion, and the motions themselves where
 // lines are neither. For one motion, whose name the chart gives, left and right alone.
@@ -38,14 +49,18 @@ std::vector<LegendEntry> motion_legend(std::span<const ChartedMotion> motions,
 // Top view of the path of the hips (of the root if no joint has the hips role), with +Z to the
 // right and +X, the left of a character that faces +Z, upwards. The path ends in an arrow; dots
 // mark equal time steps, given in the title. Foot contact positions are points in the colour of
-// their side.
-std::vector<Panel> path_panels(std::span<const ChartedMotion> motions);
+// their side. With a ground: its height as colours and contour lines where it is not level, the
+// footprints as numbered soles, and the ways of the feet.
+std::vector<Panel> path_panels(std::span<const ChartedMotion> motions,
+                               const ChartedGround& ground = {});
 
 // Heights (metres above y = 0) of the lowest joint of each foot and speeds (metres per second) of
 // its slowest joint, so that a planted or rolling foot has a speed near zero. Speeds are central
 // differences, one-sided at the ends of a clip. No panels if no motion has feet; no speeds for
-// clips of one frame.
-std::vector<Panel> foot_panels(std::span<const ChartedMotion> motions, Scale speed_scale);
+// clips of one frame. With a ground, heights are over it, of the lowest sole point (heel, ball,
+// tip) where the foot has some.
+std::vector<Panel> foot_panels(std::span<const ChartedMotion> motions, Scale speed_scale,
+                               const ChartedGround& ground = {});
 
 // Hips, knees, ankles, shoulders, elbows: see body_angle. One panel for each that any motion has.
 std::vector<Panel> body_angle_panels(std::span<const ChartedMotion> motions);

@@ -5,6 +5,7 @@
 
 #include "core/numbers.h"
 #include "draw/chart_style_internal.h"
+#include "draw/ground_chart_internal.h"
 #include "motion/ground_frame.h"
 
 namespace krok::draw {
@@ -85,6 +86,23 @@ void add_places(const ChartedMotion& motion, Panel& panel) {
   }
 }
 
+void add_ways_of_feet(const ChartedMotion& motion, Panel& panel) {
+  for (const Side side : {Side::left, Side::right}) {
+    const int foot = motion.roles->joint(side == Side::left ? Role::left_foot : Role::right_foot);
+    if (foot < 0) continue;
+    Series way;
+    way.colour = side_colour(side);
+    way.dash = 0;
+    way.faint = true;
+    for (int f = motion.frames.first; f <= motion.frames.last; ++f) {
+      const Vec3f& at = motion.clip->frame_positions(f)[static_cast<std::size_t>(foot)];
+      way.x.push_back(at.z());
+      way.y.push_back(at.x());
+    }
+    panel.series.push_back(std::move(way));
+  }
+}
+
 // Limits with a margin, at least kMinExtent wide.
 void set_limits(Panel& panel) {
   const auto limit = [](Axis& axis, const auto& values_of, const std::vector<Series>& all) {
@@ -106,10 +124,23 @@ void set_limits(Panel& panel) {
       panel.y, [](const Series& s) -> const auto& { return s.y; }, panel.series);
 }
 
+// Widens the shorter axis so that the ground fills a panel of the usual shape.
+void fill_panel(Panel& panel) {
+  constexpr double kShape = 2;  // width by height
+  if (!panel.x.low || !panel.y.low) return;
+  const double wide = *panel.x.high - *panel.x.low, high = *panel.y.high - *panel.y.low;
+  Axis& axis = wide < kShape * high ? panel.x : panel.y;
+  const double more = wide < kShape * high ? kShape * high - wide : wide / kShape - high;
+  *axis.low -= more / 2;
+  *axis.high += more / 2;
+}
+
 }  // namespace
 
-std::vector<Panel> path_panels(std::span<const ChartedMotion> motions) {
+std::vector<Panel> path_panels(std::span<const ChartedMotion> motions,
+                               const ChartedGround& ground) {
   Panel panel;
+  const bool on_ground = ground.height || !ground.prints.empty();
   const double step = dot_step(motions);
   panel.title = fmt::format("Path from above, a dot every {} s", readable(step));
   panel.x = {"z", "m"};
@@ -119,9 +150,16 @@ std::vector<Panel> path_panels(std::span<const ChartedMotion> motions) {
   for (std::size_t m = 0; m < motions.size(); ++m) {
     panel.series.push_back(path_of(motions[m], m));
     panel.series.push_back(dots_of(motions[m], m, step));
-    add_places(motions[m], panel);
+    if (on_ground) {
+      add_ways_of_feet(motions[m], panel);
+    } else {
+      add_places(motions[m], panel);
+    }
   }
+  add_prints(ground, panel);
   set_limits(panel);
+  if (ground.height) fill_panel(panel);
+  if (ground.height) add_heights(motions, ground, panel);
   return {std::move(panel)};
 }
 

@@ -35,6 +35,7 @@ struct Series {
   int dash = -1;       // dash pattern, 0 is solid; -1: that of the colour
   bool arrow = false;  // an arrowhead at the end of the line
   bool faint = false;
+  bool filled = false;  // the area that the line goes round is tinted
 };
 
 // An interval of the x axis, such as a foot contact, drawn as a bar in a lane. Lanes are stacked
@@ -51,12 +52,19 @@ struct Moment {
   std::string name;
 };
 
+// A text in the plot area, centred at (x, y).
+struct Note {
+  double x = 0, y = 0;
+  std::string text;
+};
+
 // A heatmap on a regular grid, drawn below the series: white at zero, towards brown above and
 // towards violet below, with a colour bar.
 struct Field {
   double x_low = 0, x_high = 1, y_low = 0, y_high = 1;  // outer edges of the grid; low < high
   int columns = 0, rows = 0;                            // at most 1,000 each
   std::vector<double> values;  // [rows x columns], the row at y_low first; NaN is left blank
+  bool faint = false;          // paler, below lines that are to be seen
 };
 
 struct Panel {
@@ -65,10 +73,12 @@ struct Panel {
   bool same_scale = false;  // equal scale on both axes, for maps and paths
   bool legend = true;       // panel legend below the panel; false if the chart's legend covers it
   std::optional<Field> field = {};
+  std::vector<Series> contours;  // thin grey lines below the series, of equal heights
   std::vector<Series> series;
   std::vector<Span> spans;
   std::vector<std::string> lanes;  // labels beside the lanes, a letter or two, bottom to top
   std::vector<Moment> moments;
+  std::vector<Note> notes;
 };
 
 // A legend sample: a name with its colour and dash pattern.

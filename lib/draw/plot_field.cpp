@@ -92,7 +92,8 @@ void write_field(const Field& field, const PlotArea& area, std::string& out) {
   const double width = (field.x_high - field.x_low) / field.columns;
   const double height = (field.y_high - field.y_low) / field.rows;
   // Crisp edges avoid thin seams between rectangles.
-  out += "<g shape-rendering=\"crispEdges\">\n";
+  out += field.faint ? "<g shape-rendering=\"crispEdges\" opacity=\"0.5\">\n"
+                     : "<g shape-rendering=\"crispEdges\">\n";
   for (int row = 0; row < field.rows; ++row) {
     const double* values = field.values.data() +
                            static_cast<std::size_t>(row) * static_cast<std::size_t>(field.columns);
@@ -128,7 +129,8 @@ double write_field_bar(const Field& field, double right, double bottom, std::str
   const std::string high = tick_text(scale.high - step / 2, step, Scale::linear);
   const double end = right - text_width(high) - kTick;
   const double begin = end - scale.steps * kBarStep;
-  out += "<g shape-rendering=\"crispEdges\">";
+  out += field.faint ? "<g shape-rendering=\"crispEdges\" opacity=\"0.5\">"
+                     : "<g shape-rendering=\"crispEdges\">";
   for (int k = 0; k < scale.steps; ++k) {
     out += fmt::format("<rect fill=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
                        colour_of_step(k, scale), number(begin + k * kBarStep),

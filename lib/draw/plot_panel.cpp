@@ -67,7 +67,9 @@ void PanelWriter::write() {
   if (panel_.field) write_field(*panel_.field, area_, out_);
   for (const Span& span : panel_.spans) bar(span);
   for (const Moment& moment : panel_.moments) line_across(moment);
+  for (const Series& line : panel_.contours) contour(line);
   for (std::size_t i = 0; i < panel_.series.size(); ++i) series(i);
+  for (const Note& text : panel_.notes) note(text);
   out_ += "</g>\n";
   moment_names();
 }
@@ -202,12 +204,27 @@ void PanelWriter::moment_names() {
   }
 }
 
+void PanelWriter::contour(const Series& line) {
+  put("<path class=\"line\" stroke=\"#777\" style=\"stroke-width:0.6\" d=\"{}\"/>\n",
+      path_of(runs_of(line, area_)));
+}
+
+void PanelWriter::note(const Note& note) {
+  if (!area_.x.shows(note.x) || !area_.y.shows(note.y)) return;
+  put("<text class=\"small name\" text-anchor=\"middle\" x=\"{}\" y=\"{}\">{}</text>\n",
+      number(area_.at_x(note.x)), number(area_.at_y(note.y) + 0.3 * kTextSize),
+      to_markup(note.text));
+}
+
 void PanelWriter::series(std::size_t index) {
   const Series& series = panel_.series[index];
   const auto place =
       static_cast<std::size_t>(series.colour >= 0 ? series.colour : static_cast<int>(index));
   const std::string& colour = palette_colour(place);
   const auto runs = runs_of(series, area_);
+  if (series.filled) {
+    put("<path fill=\"{}\" fill-opacity=\"0.45\" d=\"{}Z\"/>\n", colour, path_of(runs));
+  }
   if (series.style != SeriesStyle::points) {
     const std::string dash = dash_pattern(series.dash, place);
     put("<path class=\"line\" stroke=\"{}\"{}{} d=\"{}\"/>\n", colour,

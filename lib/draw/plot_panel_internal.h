@@ -38,6 +38,8 @@ class PanelWriter {
   void line_across(const Moment& moment);
   void moment_names();
   void series(std::size_t index);
+  void contour(const Series& line);
+  void note(const Note& note);
 
   double bottom() const { return top_ + height_; }
   double lane_top(int lane) const;

@@ -13,7 +13,8 @@ namespace krok::gait {
 
 namespace {
 
-constexpr double kTopStorey = 1e6;    // metres: the first print is on the highest storey
+constexpr double kTopStorey = 1e6;  // metres: the first print is on the highest storey
+constexpr double kSunkFoot = 0.3;   // metres: ground so high above a joint may be what it stands on
 constexpr double kTableCell = 0.25;   // metres, of the table that finds prints by place
 constexpr double kShortestGap = 2.5;  // a gap of fewer does not end a contact
 
@@ -86,6 +87,13 @@ class PrintTable {
 
 }  // namespace
 
+UpOfGround up_of(const Terrain& ground) {
+  return [&ground](const Vec3& point) -> Vec3 {
+    const auto below = ground.at(point.x(), point.z(), point.y() + kSunkFoot);
+    return below ? below->normal : Vec3(Vec3::UnitY());
+  };
+}
+
 FootSize foot_size(const Clip& clip, const RoleMap& roles) {
   const Feet feet = find_feet(clip, roles);
   FootSize size;
@@ -136,10 +144,11 @@ Result<std::vector<GroundedPrint>> set_on_ground(std::span<const Print> prints,
 
 std::vector<PrintContact> contacts_with_prints(const Clip& clip, const RoleMap& roles,
                                                std::span<const GroundedPrint> prints,
-                                               const FootSize& size, double near) {
+                                               const FootSize& size, const Terrain& ground,
+                                               double near) {
   std::vector<PrintContact> contacts;
   if (prints.empty() || clip.frame_count() == 0) return contacts;
-  const Feet feet = find_feet(clip, roles);
+  const Feet feet = find_feet(clip, roles, up_of(ground));
   const PrintTable table(prints, size);
   for (const FootSide side : {FootSide::left, FootSide::right}) {
     int current = -1;  // index into `contacts`

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "contacts/sole_points.h"
 #include "core/result.h"
 #include "gait/print.h"
 #include "roles/roles.h"
@@ -18,6 +19,10 @@ struct FootSize {
   double ball = 0.19;    // metres, from heel to ball
   double length = 0.26;  // metres, from heel to the tip of the toes
 };
+
+// Which way a ground faces below a point, or just above it, for find_feet(); upwards where there is
+// none. The ground must outlive it.
+UpOfGround up_of(const Terrain& ground);
 
 // Of a skeleton's feet, the mean of both; that of a man of 1.73 m where it has none.
 FootSize foot_size(const Clip& clip, const RoleMap& roles);
@@ -39,6 +44,7 @@ struct PrintContact {
 // without feet.
 std::vector<PrintContact> contacts_with_prints(const Clip& clip, const RoleMap& roles,
                                                std::span<const GroundedPrint> prints,
-                                               const FootSize& size, double near = 0.025);
+                                               const FootSize& size, const Terrain& ground,
+                                               double near = 0.025);
 
 }  // namespace krok::gait

@@ -40,7 +40,7 @@ ALLOWED = {
     "lib/skin": BASE,
     "lib/body": BASE | {"lib/roles"},
     "lib/compare": BASE,
-    "lib/draw": BASE | {"lib/roles", "lib/motion", "lib/compare", "lib/retarget"},
+    "lib/draw": BASE | {"lib/roles", "lib/contacts", "lib/motion", "lib/compare", "lib/retarget"},
     "lib/render": BASE,
     "formats/registry": {"lib/core"},
     "formats/io": BASE | {"lib/capture", "lib/roles", "lib/nodes", "lib/skin", "formats/acclaim", "formats/anim",

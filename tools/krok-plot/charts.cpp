@@ -85,10 +85,11 @@ class MotionChart {
     const auto& motions = motions_.charted;
     switch (chart) {
       case ChartKind::path:
-        append(chart_.panels, draw::path_panels(motions));
+        append(chart_.panels, draw::path_panels(motions, motions_.ground));
         return {};
       case ChartKind::feet:
-        add_sided(draw::foot_panels(motions, options_.magnitude_scale), chart, "feet");
+        add_sided(draw::foot_panels(motions, options_.magnitude_scale, motions_.ground), chart,
+                  "feet");
         return {};
       case ChartKind::angles:
         add_angles();

@@ -4,18 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/numbers.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
+#include "formats/io/open_terrain.h"
+#include "terrain/level.h"
 #include "tools/cli/file_name.h"
 #include "tools/shared/keys_sidecar.h"
+#include "tools/shared/shown_ground.h"
 
 namespace krok::cli::plot {
 
 namespace {
 
 constexpr double kSameFrame = 1e-3;  // of a frame
+constexpr double kSunk = 0.3;        // metres: ground so high above a foot is what it stands on
 
 Result<draw::FrameRange> frames_of(const Clip& clip, const MotionOptions& options) {
   if (clip.frame_count() == 0) {
@@ -55,6 +60,33 @@ Result<MotionKeys> read_keys(const std::string& option, const std::string& motio
   return *beside ? std::move((*beside)->keys) : MotionKeys();
 }
 
+// The ground and the footprints of --ground and --prints.
+Result<draw::ChartedGround> read_ground(const MotionOptions& options, const Motions& motions,
+                                        ToolContext& context) {
+  draw::ChartedGround charted;
+  auto opened =
+      options.ground.empty() ? terrain::level() : io::open_terrain(options.ground, {}, context);
+  if (!opened) return opened.error();
+  const std::shared_ptr<const Terrain> ground = *std::move(opened);
+  if (!options.ground.empty()) {
+    charted.height = [ground](const Vec3& point) -> std::optional<double> {
+      const auto found = ground->at(point.x(), point.z(), point.y() + kSunk);
+      if (!found) return {};
+      return found->height;
+    };
+    charted.up = [ground](const Vec3& point) { return gait::up_of(*ground)(point); };
+  }
+  if (options.prints.empty()) return charted;
+  const auto prints = open_prints(options.prints, context);
+  if (!prints) return prints.error();
+  std::vector<const Clip*> clips;
+  for (const Motions::Motion& file : motions.files) clips.push_back(&file.clip);
+  const auto shown = show_prints(*prints, *ground, clips, context);
+  if (!shown) return Error(shown.error()).in_file(options.prints);
+  charted.prints = viewed_prints(*shown);
+  return charted;
+}
+
 }  // namespace
 
 Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
@@ -86,6 +118,9 @@ Result<Motions> read_motions(const std::vector<std::string>& inputs, const Motio
     charted.keys = std::move(*keys);
     motions.charted.push_back(std::move(charted));
   }
+  auto ground = read_ground(options, motions, context);
+  if (!ground) return ground.error();
+  motions.ground = *std::move(ground);
   return motions;
 }
 

@@ -22,6 +22,7 @@ struct Motions {
   };
   std::deque<Motion> files;
   std::vector<draw::ChartedMotion> charted;  // one per entry of `files`, in the same order
+  draw::ChartedGround ground;
 };
 
 // Reads the motions with their sidecars and determines which frames to show.

@@ -14,6 +14,7 @@
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-plot/run.h"
 #include "tools/shared/role_input.h"
+#include "tools/shared/shown_ground.h"
 
 namespace krok::cli::plot {
 
@@ -78,6 +79,10 @@ void declare_motions(CommandOptions& command, Arguments& a) {
       .default_str(a.keys)
       .group(group);
   add_map_option(command, a.map).group(group);
+  add_prints_option(command, a.prints,
+                    "Footprints (formats/prints/SPEC.md) to draw in the path from above, on the "
+                    "ground of --ground")
+      .group(group);
 }
 
 void declare_tables(CommandOptions& command, Arguments& a) {
@@ -189,6 +194,8 @@ Result<MotionOptions> understand_motions(const Arguments& a) {
   options.to = *to;
   options.keys = a.keys;
   options.map = a.map;
+  options.ground = a.sheet.ground;
+  options.prints = a.prints;
   return options;
 }
 
@@ -245,15 +252,17 @@ Result<bool> are_tables(const Arguments& a) {
 Status check_fit(const Arguments& a, bool table) {
   const char* wrong = nullptr;
   if (table) {
-    wrong = !a.show.empty()     ? "--show"
-            : !a.joints.empty() ? "--joint"
-            : !a.euler.empty()  ? "--euler"
-            : !a.from.empty()   ? "--from"
-            : !a.to.empty()     ? "--to"
-            : a.difference      ? "--difference"
-            : a.keys != "auto"  ? "--keys"
-            : !a.map.empty()    ? "--map"
-                                : nullptr;
+    wrong = !a.show.empty()           ? "--show"
+            : !a.joints.empty()       ? "--joint"
+            : !a.euler.empty()        ? "--euler"
+            : !a.from.empty()         ? "--from"
+            : !a.to.empty()           ? "--to"
+            : a.difference            ? "--difference"
+            : a.keys != "auto"        ? "--keys"
+            : !a.map.empty()          ? "--map"
+            : !a.prints.empty()       ? "--prints"
+            : !a.sheet.ground.empty() ? "--ground"
+                                      : nullptr;
   } else {
     wrong = !a.x.empty()                         ? "--x"
             : !a.y.empty()                       ? "--y"
@@ -377,6 +386,8 @@ ToolSpec make_spec() {
        "one column of a table, with a line for each of two joints"},
       {"krok-plot fit.csv --x examples --y error_mm --log-y --style both -o fit.svg",
        "any table of numbers; the unit is read from the column's name"},
+      {"krok-plot walk.anim --show path,feet --ground hills.exr --prints prints.csv -o ways.svg",
+       "a walk on its ground from above, with its footprints, and how high the soles are over it"},
       {"krok-plot walk.bvh --sheet walk.png", "images of the character at eight times"},
       {"krok-plot hero.character walk.anim --strip hero.png",
        "an animated character with the colours and textures of its materials; without "

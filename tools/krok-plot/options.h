@@ -28,6 +28,7 @@ struct Arguments {
   bool difference = false;
   std::string keys = "auto";
   std::string map;
+  std::string prints;
   // tables
   bool table = false;
   std::string x;
@@ -53,6 +54,8 @@ struct MotionOptions {
   std::optional<ClipTime> from, to;
   std::string keys;  // "auto", "none" or a file
   std::string map;
+  std::string ground;  // what io::open_terrain() takes; empty: level at 0
+  std::string prints;  // a file of footprints, or empty
 };
 
 // Options for tables.

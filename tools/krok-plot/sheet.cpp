@@ -312,8 +312,9 @@ void declare_sheet(CommandOptions& command, SheetOptions& options) {
       .type_name("OUT.png");
   command
       .add_option("--ground", options.ground,
-                  "Ground to show below each actor, as for krok-walk: a mesh, a height field, or "
-                  "stairs:rise=17cm,run=29cm, slope:12deg, rough:seed=1,height=8cm")
+                  "Ground to show below each actor and in the charts path and feet, as for "
+                  "krok-walk: a mesh, a height field, or stairs:rise=17cm,run=29cm, slope:12deg, "
+                  "rough:seed=1,height=8cm")
       .type_name("IN");
   declare_image_options(command, options.image, kSheetMoments);
   command

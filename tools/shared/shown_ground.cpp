@@ -32,16 +32,6 @@ Box box_of(std::span<const Clip* const> clips) {
   return box;
 }
 
-std::vector<draw::ViewedPrint> viewed(const ShownPrints& shown) {
-  std::vector<draw::ViewedPrint> prints;
-  for (std::size_t i = 0; i < shown.prints.size(); ++i) {
-    const gait::GroundedPrint& print = shown.prints[i];
-    prints.push_back({print.side == FootSide::left, shown.numbers[i], print.heel, print.forward,
-                      print.up, shown.size.length});
-  }
-  return prints;
-}
-
 }  // namespace
 
 CommandOption add_prints_option(CommandOptions& command, std::string& path,
@@ -93,6 +83,16 @@ Result<ShownPrints> show_prints(std::span<const gait::Print> prints, const Terra
   return shown;
 }
 
+std::vector<draw::ViewedPrint> viewed_prints(const ShownPrints& shown) {
+  std::vector<draw::ViewedPrint> prints;
+  for (std::size_t i = 0; i < shown.prints.size(); ++i) {
+    const gait::GroundedPrint& print = shown.prints[i];
+    prints.push_back({print.side == FootSide::left, shown.numbers[i], print.heel, print.forward,
+                      print.up, shown.size.length});
+  }
+  return prints;
+}
+
 Status add_ground(const Terrain* ground, std::span<const gait::Print> prints,
                   draw::ViewerPage& page, ToolContext& context) {
   std::vector<const Clip*> clips;
@@ -100,12 +100,14 @@ Status add_ground(const Terrain* ground, std::span<const gait::Print> prints,
   Box box = box_of(clips);
   if (!prints.empty()) {
     const auto level = terrain::level();
-    const auto shown = show_prints(prints, ground != nullptr ? *ground : **level, clips, context);
+    const Terrain& below = ground != nullptr ? *ground : **level;
+    const auto shown = show_prints(prints, below, clips, context);
     if (!shown) return shown.error();
-    page.prints = viewed(*shown);
+    page.prints = viewed_prints(*shown);
     for (draw::ViewedMotion& motion : page.motions) {
-      for (const gait::PrintContact& contact : gait::contacts_with_prints(
-               *motion.clip, find_roles(motion.clip->skeleton), shown->prints, shown->size)) {
+      for (const gait::PrintContact& contact :
+           gait::contacts_with_prints(*motion.clip, find_roles(motion.clip->skeleton),
+                                      shown->prints, shown->size, below)) {
         motion.print_contacts.push_back({contact.print, contact.start, contact.end});
       }
     }

@@ -34,6 +34,9 @@ struct ShownPrints {
 Result<ShownPrints> show_prints(std::span<const gait::Print> prints, const Terrain& ground,
                                 std::span<const Clip* const> clips, ToolContext& context);
 
+// As pages and charts take them.
+std::vector<draw::ViewedPrint> viewed_prints(const ShownPrints& shown);
+
 // Puts a ground, if there is one, and footprints, which lie on it or otherwise level at height 0,
 // on a page of motions. Codes: those of show_prints() and terrain::surface_of().
 Status add_ground(const Terrain* ground, std::span<const gait::Print> prints,
