@@ -87,6 +87,14 @@ class PrintTable {
 
 }  // namespace
 
+std::function<std::optional<double>(const Vec3&)> height_of(const Terrain& ground) {
+  return [&ground](const Vec3& point) -> std::optional<double> {
+    const auto below = ground.at(point.x(), point.z(), point.y() + kSunkFoot);
+    if (!below) return {};
+    return below->height;
+  };
+}
+
 UpOfGround up_of(const Terrain& ground) {
   return [&ground](const Vec3& point) -> Vec3 {
     const auto below = ground.at(point.x(), point.z(), point.y() + kSunkFoot);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +21,10 @@ struct FootSize {
   double ball = 0.19;    // metres, from heel to ball
   double length = 0.26;  // metres, from heel to the tip of the toes
 };
+
+// The height of a ground below a point, or just above it, in metres; empty where there is none. The
+// ground must outlive it.
+std::function<std::optional<double>(const Vec3&)> height_of(const Terrain& ground);
 
 // Which way a ground faces below a point, or just above it, for find_feet(); upwards where there is
 // none. The ground must outlive it.

@@ -20,7 +20,6 @@ namespace krok::cli::plot {
 namespace {
 
 constexpr double kSameFrame = 1e-3;  // of a frame
-constexpr double kSunk = 0.3;        // metres: ground so high above a foot is what it stands on
 
 Result<draw::FrameRange> frames_of(const Clip& clip, const MotionOptions& options) {
   if (clip.frame_count() == 0) {
@@ -69,11 +68,7 @@ Result<draw::ChartedGround> read_ground(const MotionOptions& options, const Moti
   if (!opened) return opened.error();
   const std::shared_ptr<const Terrain> ground = *std::move(opened);
   if (!options.ground.empty()) {
-    charted.height = [ground](const Vec3& point) -> std::optional<double> {
-      const auto found = ground->at(point.x(), point.z(), point.y() + kSunk);
-      if (!found) return {};
-      return found->height;
-    };
+    charted.height = [ground](const Vec3& point) { return gait::height_of(*ground)(point); };
     charted.up = [ground](const Vec3& point) { return gait::up_of(*ground)(point); };
   }
   if (options.prints.empty()) return charted;

@@ -5,9 +5,11 @@
 #include <memory>
 
 #include "core/numbers.h"
+#include "terrain/spec.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-retarget/run.h"
 #include "tools/shared/orientation_option.h"
+#include "tools/shared/planting.h"
 #include "tools/shared/role_input.h"
 
 namespace krok::cli::retarget {
@@ -91,10 +93,26 @@ void declare(CommandOptions& command, Options& options) {
                   "Scale of the root motion; default: ratio of leg lengths")
       .type_name("NUMBER")
       .group("Motion");
+  command
+      .add_option(
+          "--ground", options.ground,
+          "Ground that the motion was made for, as for krok-walk: the target walks on it, too, "
+          "with its feet where the input's stand. A height field (.exr, 16-bit .png), a mesh "
+          "(.gltf, .glb, .obj), or " +
+              std::string(terrain::kSpecForms))
+      .type_name("IN")
+      .group("Ground");
+  add_contacts_option(command, options.contacts).group("Ground");
   add_orientation_option(command, options.orientation);
 }
 
 Status check(const Options& options) {
+  if (options.ground.empty() && options.contacts != "auto") {
+    return Error("usage", "--contacts is for --ground");
+  }
+  if (!options.ground.empty() && options.feet == krok::retarget::Feet::free) {
+    return Error("usage", "--ground keeps the feet, --feet free does not");
+  }
   const auto how = parse(options);
   return how ? Status() : how.error();
 }
@@ -111,6 +129,9 @@ ToolSpec make_spec() {
                    {"krok-retarget --map rig.json --onto hero.model take.anim -o hero_take.anim",
                     "rig.json gives the roles of unusual joint names: {\"joints\": {\"Bone_012\": "
                     "\"left_hand\"}}"},
+                   {"krok-retarget --onto child.model walk.anim --ground stairs:rise=17cm,run=29cm "
+                    "-o child_walk.anim",
+                    "a walk of krok-walk on another skeleton, on the same stairs"},
                    {"krok-retarget --onto hero.model motions --out-dir hero_motions",
                     "all motions in a folder"}};
   spec.batch = {{".anim", ".bvh", ".amc"}, always(".anim")};

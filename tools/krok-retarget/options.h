@@ -18,6 +18,8 @@ struct Options {
   std::string scale;                    // empty: ratio of leg lengths
   std::string reference_pose = "auto";  // auto, or a frame
   std::string onto_reference_pose = "auto";
+  std::string ground;             // what io::open_terrain() takes; empty: none
+  std::string contacts = "auto";  // of the input's feet, for `ground`
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 

@@ -4,14 +4,21 @@
 
 #include <algorithm>
 
+#include "core/numbers.h"
 #include "formats/anim/anim.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
+#include "formats/io/open_terrain.h"
+#include "formats/keys/keys.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
+#include "gait/shown_prints.h"
+#include "plant/follow_feet.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-retarget/outcome.h"
+#include "tools/shared/keys_choice.h"
+#include "tools/shared/planting.h"
 
 namespace krok::cli::retarget {
 
@@ -91,6 +98,59 @@ void report_choices(const Outcome& outcome, ToolContext& context) {
   }
 }
 
+Result<FollowedFeet> stand_on_ground(const Options& options, const Clip& source,
+                                     const RoleMap& source_roles, const RoleMap& target_roles,
+                                     const krok::retarget::Retargeted& retargeted,
+                                     ToolContext& context) {
+  const auto ground = io::open_terrain(options.ground, {}, context);
+  if (!ground) return ground.error();
+  const auto contacts = read_planting_contacts(options.contacts, options.input, source, context);
+  if (!contacts) return contacts.error();
+  std::optional<std::span<const Contact>> given;
+  if (*contacts) given = **contacts;
+  const GroundBelow below = {gait::height_of(**ground), gait::up_of(**ground)};
+  auto followed = follow_feet(source, source_roles, retargeted.clip, target_roles,
+                              retargeted.report.scale, below, given);
+  if (followed && followed->out_of_reach > 0) {
+    context.warn("plant-reach", fmt::format("in {} of {} frames a leg is too short for its place",
+                                            followed->out_of_reach, source.frame_count()));
+  }
+  return followed;
+}
+
+Json ground_json(const FollowedFeet& feet) {
+  return {{"drift", feet.drift},
+          {"off_ground", feet.off_ground},
+          {"sunk", feet.sunk},
+          {"pelvis_lowered", feet.pelvis_lowered},
+          {"frames_out_of_reach", feet.out_of_reach}};
+}
+
+std::string ground_line(const FollowedFeet& feet) {
+  return fmt::format("feet on the ground within {} mm, drift {} mm, pelvis lowered by up to {} mm",
+                     readable(1e3 * feet.off_ground, 2), readable(1e3 * feet.drift, 2),
+                     readable(1e3 * feet.pelvis_lowered, 2));
+}
+
+// The motion and, on a ground, the contacts of its feet beside it.
+Status write_all(const Clip& clip, const FollowedFeet* followed, const anim::WriteOptions& writing,
+                 ToolContext& context) {
+  OutputSet outputs(context);
+  Status status = outputs.add(context.output,
+                              [&](OutputFile& file) { return anim::write(clip, writing, file); });
+  if (status && followed != nullptr) {
+    MotionKeys keys;
+    keys.contacts = followed->contacts;
+    const auto path = place_for_keys(keys, clip.skeleton, context.output);
+    if (!path) return path.error();
+    status = outputs.add(*path, [&](OutputFile& file) {
+      return file.write(keys::write(keys, clip.skeleton, clip.duration()));
+    });
+  }
+  if (!status) return status;
+  return outputs.finish();
+}
+
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
@@ -109,10 +169,19 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!source_roles) return source_roles.error();
   const auto target_roles = roles_of(target->clip.skeleton, options.onto_map, context);
   if (!target_roles) return target_roles.error();
+  if (!options.ground.empty()) how->feet = krok::retarget::Feet::free;
   how->target_floor = believable_floor(*target, *target_roles);
 
   auto result = krok::retarget::transfer(*source, *source_roles, target->clip, *target_roles, *how);
   if (!result) return std::move(result).error().in_file(options.input);
+  std::optional<FollowedFeet> followed;
+  if (!options.ground.empty()) {
+    auto standing =
+        stand_on_ground(options, *source, *source_roles, *target_roles, *result, context);
+    if (!standing) return std::move(standing).error().in_file(options.input);
+    followed = *std::move(standing);
+    result->clip = std::move(followed->clip);
+  }
   const Outcome outcome{source->skeleton, *source_roles, target->clip.skeleton, *target_roles,
                         result->report};
   report_choices(outcome, context);
@@ -124,12 +193,13 @@ Result<int> run(const Options& options, ToolContext& context) {
   anim::WriteOptions writing;
   writing.orientation = options.orientation;
   writing.jobs = context.jobs;
-  const Status status = write_output(
-      context, context.output, [&](OutputFile& file) { return anim::write(clip, writing, file); });
-  if (!status) return status.error();
+  const FollowedFeet* feet = followed ? &*followed : nullptr;
+  if (Status status = write_all(clip, feet, writing, context); !status) return status.error();
 
   context.report.result = to_json(outcome);
+  if (followed) context.report.result["ground"] = ground_json(*followed);
   context.log(fmt::format("{}: {}", context.output, summary(outcome)));
+  if (followed) context.log("  " + ground_line(*followed));
   if (context.verbose) context.log(table(outcome));
   return kExitDone;
 }

@@ -1,0 +1,114 @@
+#include "plant/follow_feet.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "contacts/contacts.h"
+#include "math/quaternion.h"
+#include "motion/ground_frame.h"
+#include "plant/leg_pose_internal.h"
+#include "plant/sole_follower_internal.h"
+
+namespace krok {
+
+namespace {
+
+using plant::FootPath;
+using plant::SoleFollower;
+
+constexpr double kGroundSmoothing = 0.25;  // seconds, of the height between the feet
+
+// Where the hips are led: over the source's, at `scale` of their height.
+void move_body(const Clip& source, int carrier, double scale, const std::vector<double>& between,
+               Clip& clip) {
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const Vec3 hips = source.frame_positions(f)[static_cast<std::size_t>(carrier)].cast<double>();
+    const Vec3 shift = (1 - scale) * Vec3(hips.x(), between[static_cast<std::size_t>(f)], hips.z());
+    for (Vec3f& at : clip.frame_positions(f)) at = (at.cast<double>() + shift).cast<float>();
+  }
+}
+
+// Averaged over a time on either side, three times: nearly a bell curve.
+std::vector<double> smoothed(std::vector<double> values, int reach) {
+  const int count = static_cast<int>(values.size());
+  for (int round = 0; round < 3; ++round) {
+    std::vector<double> next(values.size());
+    for (int i = 0; i < count; ++i) {
+      double sum = 0;
+      for (int k = -reach; k <= reach; ++k) {
+        sum += values[static_cast<std::size_t>(std::clamp(i + k, 0, count - 1))];
+      }
+      next[static_cast<std::size_t>(i)] = sum / (2 * reach + 1);
+    }
+    values = std::move(next);
+  }
+  return values;
+}
+
+// The height of the ground between the feet: the mean of where they stand and, in between, of where
+// they are on their way to.
+std::vector<double> ground_between(const std::vector<SoleFollower>& feet, const Clip& source) {
+  std::vector<double> heights(static_cast<std::size_t>(source.frame_count()), 0);
+  for (const SoleFollower& foot : feet) {
+    for (int f = 0; f < source.frame_count(); ++f) {
+      heights[static_cast<std::size_t>(f)] +=
+          foot.standing_height(f) / static_cast<double>(feet.size());
+    }
+  }
+  return smoothed(std::move(heights),
+                  static_cast<int>(std::lround(kGroundSmoothing * source.rate)));
+}
+
+}  // namespace
+
+Result<FollowedFeet> follow_feet(const Clip& source, const RoleMap& source_roles, const Clip& clip,
+                                 const RoleMap& roles, double scale, const GroundBelow& ground,
+                                 std::optional<std::span<const Contact>> contacts) {
+  if (source.frame_count() != clip.frame_count() || source.rate != clip.rate) {
+    return Error("follow-frames", "a motion and its retargeted copy differ in frames");
+  }
+  FoundContacts found;
+  if (!contacts) {
+    auto detected = find_contacts(source, source_roles);
+    if (!detected) return detected.error();
+    found = *std::move(detected);
+    contacts = found.contacts;
+  }
+  std::vector<SoleFollower> feet;
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    auto foot = SoleFollower::create(source, source_roles, side, ground, *contacts);
+    if (!foot) return foot.error();
+    feet.push_back(*std::move(foot));
+  }
+  FollowedFeet followed;
+  followed.clip = clip;
+  move_body(source, carrying_joint(source_roles), scale, ground_between(feet, source),
+            followed.clip);
+  auto body = plant::find_body(followed.clip, roles);
+  if (!body) return body.error();
+  if (body->legs.size() != feet.size()) {
+    return Error("contacts-feet", "a leg of the target is not known from the hip to the foot",
+                 "a role map tells which joints are legs and feet");
+  }
+  // Soles that face as the ground does, which need not be level.
+  const Feet soles = find_feet(followed.clip, roles, ground.up);
+  std::vector<FootPath> paths;
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    body->legs[i].points = soles.points[i];
+    Status status = feet[i].lead_foot(followed.clip, body->legs[i], ground);
+    if (!status) return status.error();
+    paths.push_back(feet[i].path(followed.clip));
+  }
+  const std::vector<double> lowered = lowering(followed.clip, *body, paths);
+  if (!lowered.empty()) followed.pelvis_lowered = std::ranges::max(lowered);
+  followed.out_of_reach = apply(*body, paths, lowered, followed.clip);
+  for (const SoleFollower& foot : feet) foot.add_contacts(followed.clip, followed.contacts);
+  std::ranges::sort(followed.contacts, [](const Contact& a, const Contact& b) {
+    return std::pair(a.start, a.joint) < std::pair(b.start, b.joint);
+  });
+  for (const SoleFollower& foot : feet) foot.measure(followed.clip, ground, followed);
+  return followed;
+}
+
+}  // namespace krok

@@ -1,0 +1,333 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/quaternion.h"
+#include "plant/sole_follower_internal.h"
+
+namespace krok::plant {
+
+namespace {
+
+constexpr double kSoon = 0.05;  // seconds: stands apart by less are one
+constexpr double kMaxSettled =
+    0.05;                          // metres by which a sole is set higher or lower on uneven ground
+constexpr double kUsualTip = 1.4;  // of the sole from heel to ball: where its tip is
+constexpr double kInTheWay = 0.02;   // metres: what is so much higher than a sole is in its way
+constexpr double kOverEdge = 0.03;   // metres: what is so much lower does not carry it
+constexpr int kTries = 10;           // places before and behind the middle
+constexpr double kShortSole = 0.02;  // metres: shorter soles have no direction
+
+Vec3 point_at(const Clip& clip, int frame, int foot, const Vec3& point) {
+  return joint_at(clip, frame, foot) * point;
+}
+
+const SolePoint* part_of(const std::vector<SolePoint>& points, FootPart part) {
+  const auto found = std::ranges::find(points, part, &SolePoint::part);
+  return found == points.end() ? nullptr : &*found;
+}
+
+// The mean over `frames` of a point of the sole in the frame of the foot.
+Vec3 in_foot(const Clip& clip, const std::vector<int>& frames, int foot, const SolePoint& point) {
+  if (point.joint == foot) return point.offset;
+  Vec3 sum = Vec3::Zero();
+  for (const int f : frames) {
+    sum += joint_at(clip, f, foot).inverse() * (joint_at(clip, f, point.joint) * point.offset);
+  }
+  return sum / static_cast<double>(frames.size());
+}
+
+bool holds(const std::array<int, 2>& time, int frame) {
+  return frame >= time[0] && frame <= time[1];
+}
+
+// Smooth from 0 to 1.
+double eased(double share) {
+  const double s = std::clamp(share, 0.0, 1.0);
+  return s * s * s * (10 + s * (6 * s - 15));
+}
+
+}  // namespace
+
+Quat SoleShape::axes() const {
+  Mat3 columns;
+  columns << up.cross(forward), up, forward;
+  return Quat(columns).normalized();
+}
+
+void SoleFollower::find_standings(std::span<const Contact> contacts, const SolePoint& heel,
+                                  const SolePoint* ball) {
+  const double rate = source_->rate;
+  const int end = source_->frame_count() - 1;
+  for (const Contact& contact : contacts) {
+    const bool of_heel = contact.joint == heel.joint;
+    const bool of_ball = ball != nullptr && contact.joint == ball->joint;
+    if (!of_heel && !of_ball) continue;
+    const int first = std::max(0, static_cast<int>(std::ceil(contact.start * rate - 1e-3)));
+    const int last = std::min(end, static_cast<int>(std::floor(contact.end * rate + 1e-3)));
+    if (last < first) continue;
+    Standing standing;
+    standing.first = first;
+    standing.last = last;
+    // A foot without a joint at the ball stands on both as long as it does.
+    if (of_heel) standing.heel = {first, last};
+    if (of_ball) standing.ball = {first, last};
+    standings_.push_back(standing);
+  }
+  std::ranges::stable_sort(standings_, {}, &Standing::first);
+  std::vector<Standing> joined;
+  const auto unite = [](std::array<int, 2>& into, const std::array<int, 2>& more) {
+    if (more[1] < more[0]) return;
+    into = into[1] < into[0] ? more
+                             : std::array{std::min(into[0], more[0]), std::max(into[1], more[1])};
+  };
+  for (const Standing& standing : standings_) {
+    if (!joined.empty() && standing.first <= joined.back().last + kSoon * rate) {
+      joined.back().last = std::max(joined.back().last, standing.last);
+      unite(joined.back().heel, standing.heel);
+      unite(joined.back().ball, standing.ball);
+      continue;
+    }
+    joined.push_back(standing);
+  }
+  standings_ = std::move(joined);
+}
+
+namespace {
+
+// The frames in which a foot is flat: heel and ball both stand.
+std::vector<int> flat_frames(const std::vector<Standing>& standings) {
+  std::vector<int> flat;
+  for (const Standing& standing : standings) {
+    const int first = std::max(standing.heel[0], standing.ball[0]);
+    const int last = std::min(standing.heel[1], standing.ball[1]);
+    for (int f = first; f <= last; ++f) flat.push_back(f);
+  }
+  if (!flat.empty()) return flat;
+  for (const Standing& standing : standings) flat.push_back((standing.first + standing.last) / 2);
+  return flat;
+}
+
+SoleShape shape_of(const Clip& clip, const std::vector<SolePoint>& points, const Clip& source,
+                   int source_foot, const std::vector<int>& flat, const GroundBelow& ground) {
+  const SolePoint& heel = *part_of(points, FootPart::heel);
+  const SolePoint& ball = *part_of(points, FootPart::ball);
+  SoleShape shape;
+  const int foot = shape.foot = heel.joint;
+  shape.heel = heel.offset;
+  shape.ball = in_foot(clip, flat, foot, ball);
+  Vec3 up = Vec3::Zero();
+  for (const int f : flat) {
+    const Vec3 there = ground.up(joint_at(source, f, source_foot).position);
+    up += joint_at(clip, f, foot).orientation.conjugate() * there;
+  }
+  shape.up = up.normalized();
+  const Vec3 ahead = shape.ball - shape.heel;
+  shape.forward = (ahead - shape.up * shape.up.dot(ahead)).normalized();
+  const SolePoint* tip = part_of(points, FootPart::tip);
+  shape.tip = tip == nullptr ? kUsualTip * shape.length()
+                             : (in_foot(clip, flat, foot, *tip) - shape.heel).dot(shape.forward);
+  return shape;
+}
+
+Error no_sole(const char* whose, FootSide side) {
+  return {"contacts-feet",
+          fmt::format("the sole of {}'s {} foot is not known", whose, name_of(side)),
+          "a role map tells which joints are feet and toes"};
+}
+
+// A frame in which the foot is flat, if there is one.
+int middle_of(const Standing& standing) {
+  const int first = std::max(standing.heel[0], standing.ball[0]);
+  const int last = std::min(standing.heel[1], standing.ball[1]);
+  return first <= last ? (first + last) / 2 : (standing.first + standing.last) / 2;
+}
+
+}  // namespace
+
+Result<SoleFollower> SoleFollower::create(const Clip& source, const RoleMap& source_roles,
+                                          FootSide side, const GroundBelow& ground,
+                                          std::span<const Contact> contacts) {
+  SoleFollower follower;
+  follower.source_ = &source;
+  const Feet feet = find_feet(source, source_roles, ground.up);
+  const auto& points = feet.points[static_cast<std::size_t>(side)];
+  const SolePoint* heel = part_of(points, FootPart::heel);
+  const SolePoint* ball = part_of(points, FootPart::ball);
+  if (heel == nullptr || ball == nullptr) return no_sole("the motion", side);
+  follower.find_standings(contacts, *heel, ball);
+  if (follower.standings_.empty()) {
+    return Error("plant-contacts", std::string("the ") + name_of(side) + " foot never stands",
+                 "krok-keys finds and edits contacts");
+  }
+  follower.flat_ = flat_frames(follower.standings_);
+  follower.theirs_ = shape_of(source, points, source, heel->joint, follower.flat_, ground);
+  if (follower.theirs_.length() < kShortSole) return no_sole("the motion", side);
+  for (Standing& standing : follower.standings_) {
+    const Transform foot = joint_at(source, middle_of(standing), follower.theirs_.foot);
+    standing.height = 0.5 * ((foot * follower.theirs_.heel).y() +
+                             (foot * follower.theirs_.ball).y() - follower.theirs_.ball_height());
+  }
+  return follower;
+}
+
+Status SoleFollower::lead_foot(const Clip& clip, const Leg& leg, const GroundBelow& ground) {
+  leg_ = leg;
+  const SolePoint* heel = leg.point(FootPart::heel);
+  const SolePoint* ball = leg.point(FootPart::ball);
+  if (heel == nullptr || ball == nullptr) return no_sole("the target", leg.side);
+  own_ = shape_of(clip, leg.points, *source_, theirs_.foot, flat_, ground);
+  if (own_.length() < kShortSole) return no_sole("the target", leg.side);
+  for (Standing& standing : standings_) place(standing, ground);
+  return {};
+}
+
+// How the own sole lies in a place of the source's: the middles together, heel and ball on the
+// ground.
+void SoleFollower::place(Standing& standing, const GroundBelow& ground) const {
+  const Transform foot = joint_at(*source_, middle_of(standing), theirs_.foot);
+  const Vec3 forward = foot.orientation * theirs_.forward;
+  const Vec3 heel = foot * theirs_.heel, ball = foot * theirs_.ball;
+  standing.up = foot.orientation * theirs_.up;
+  const double longer = own_.length() - theirs_.length();
+  const Vec3 sole_at_ball = ball - theirs_.ball_height() * standing.up;
+  // Back or ahead, where the longer foot would stand against a step or over an edge.
+  double best = 0, least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k <= 2 * kTries; ++k) {
+    const double ahead = std::abs(longer) * (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) / kTries;
+    const Vec3 own_heel = heel + (ahead - 0.5 * longer) * forward;
+    const double trouble = trouble_at(own_heel, forward, ground) + 0.01 * std::abs(ahead);
+    if (trouble >= least) continue;
+    least = trouble;
+    best = ahead;
+  }
+  standing.of_heel = (best - 0.5 * longer) * forward;
+  standing.of_ball =
+      (best + 0.5 * longer) * forward + (own_.ball_height() - theirs_.ball_height()) * standing.up;
+  // On ground that is not even: as high as the higher end asks for.
+  double settle = -kMaxSettled;
+  for (const Vec3& point :
+       {Vec3(heel + standing.of_heel), Vec3(sole_at_ball + (best + 0.5 * longer) * forward)}) {
+    const auto height = ground.height(point);
+    if (height) settle = std::max(settle, *height - point.y());
+  }
+  if (settle > -kMaxSettled && settle < kMaxSettled) {
+    standing.of_heel.y() += settle;
+    standing.of_ball.y() += settle;
+  }
+}
+
+double SoleFollower::trouble_at(const Vec3& heel, const Vec3& forward,
+                                const GroundBelow& ground) const {
+  double trouble = 0;
+  for (const double along : {0.0, own_.length(), own_.tip}) {
+    const Vec3 point = heel + along * forward;
+    const auto height = ground.height(point);
+    if (height && *height > point.y() + kInTheWay) trouble += 4;
+    if (along < own_.tip && (!height || *height < point.y() - kOverEdge)) trouble += 1;
+  }
+  return trouble;
+}
+
+SoleFollower::Lead SoleFollower::lead_at(const Standing& standing, double along) {
+  return {along, (1 - along) * standing.of_heel + along * standing.of_ball};
+}
+
+SoleFollower::Lead SoleFollower::lead_in(const Standing& standing, int frame) {
+  const bool heel = holds(standing.heel, frame), ball = holds(standing.ball, frame);
+  return lead_at(standing, heel == ball ? 0.5 : heel ? 0 : 1);
+}
+
+// A foot comes down with its heel and leaves with its ball, unless it does not stand on them then.
+SoleFollower::Lead SoleFollower::lead(int frame) const {
+  const auto after = std::ranges::find_if(
+      standings_, [&](const Standing& standing) { return standing.last >= frame; });
+  if (after == standings_.end()) return lead_in(standings_.back(), standings_.back().last);
+  if (frame >= after->first) return lead_in(*after, frame);
+  const Lead to = lead_at(*after, holds(after->heel, after->first) ? 0 : 1);
+  if (after == standings_.begin()) return to;
+  const Standing& before = *std::prev(after);
+  const Lead from = lead_at(before, holds(before.ball, before.last) ? 1 : 0);
+  const double share =
+      eased(static_cast<double>(frame - before.last) / (after->first - before.last));
+  return {from.along + share * (to.along - from.along), from.off + share * (to.off - from.off)};
+}
+
+double SoleFollower::standing_height(int frame) const {
+  const auto after = std::ranges::find_if(
+      standings_, [&](const Standing& standing) { return standing.last >= frame; });
+  if (after == standings_.end()) return standings_.back().height;
+  if (frame >= after->first || after == standings_.begin()) return after->height;
+  const Standing& before = *std::prev(after);
+  const double share =
+      eased(static_cast<double>(frame - before.last) / (after->first - before.last));
+  return before.height + share * (after->height - before.height);
+}
+
+FootPath SoleFollower::path(const Clip& clip) const {
+  FootPath path;
+  const Quat theirs = theirs_.axes(), own = own_.axes().conjugate();
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const Transform source = joint_at(*source_, f, theirs_.foot);
+    const Transform foot = joint_at(clip, f, own_.foot);
+    const Quat turned = (source.orientation * theirs * own).normalized();
+    const Lead now = lead(f);
+    const Vec3 led = source * Vec3(theirs_.heel + now.along * (theirs_.ball - theirs_.heel));
+    const Vec3 ankle =
+        led + now.off - turned * Vec3(own_.heel + now.along * (own_.ball - own_.heel));
+    path.turn.push_back(rotation_vector(turned * foot.orientation.conjugate()));
+    path.shift.push_back(ankle - foot.position);
+  }
+  return path;
+}
+
+void SoleFollower::add_contacts(const Clip& clip, std::vector<Contact>& contacts) const {
+  const auto add = [&](int joint, const std::array<int, 2>& time) {
+    if (time[1] < time[0]) return;
+    Contact contact;
+    contact.joint = joint;
+    contact.start = time[0] / clip.rate;
+    contact.end = time[1] / clip.rate;
+    contact.place = joint_at(clip, (time[0] + time[1]) / 2, joint).position;
+    contacts.push_back(contact);
+  };
+  for (const Standing& standing : standings_) {
+    add(own_.foot, standing.heel);
+    if (leg_.toes >= 0) add(leg_.toes, standing.ball);
+  }
+}
+
+void SoleFollower::measure(const Clip& clip, const GroundBelow& ground, FollowedFeet& into) const {
+  const Vec3 sole_at_ball = own_.ball - own_.ball_height() * own_.up;
+  const auto check = [&](const std::array<int, 2>& time, const Vec3& moves, const Vec3& lies) {
+    Eigen::AlignedBox3d box;
+    for (int f = time[0]; f <= time[1]; ++f) {
+      box.extend(point_at(clip, f, own_.foot, moves));
+      const bool flat = std::ranges::any_of(standings_, [&](const Standing& standing) {
+        return holds(standing.heel, f) && holds(standing.ball, f);
+      });
+      const Vec3 sole = point_at(clip, f, own_.foot, lies);
+      const auto height = ground.height(sole);
+      // An end over an edge or a hole is carried by the other.
+      if (flat && height && *height > sole.y() - kOverEdge) {
+        into.off_ground = std::max(into.off_ground, std::abs(sole.y() - *height));
+      }
+    }
+    if (!box.isEmpty()) into.drift = std::max(into.drift, box.diagonal().norm());
+  };
+  for (const Standing& standing : standings_) {
+    check(standing.heel, own_.heel, own_.heel);
+    check(standing.ball, own_.ball, sole_at_ball);
+  }
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    for (const Vec3& point : {own_.heel, own_.ball}) {
+      const Vec3 at = point_at(clip, f, own_.foot, point);
+      const auto height = ground.height(at);
+      if (height) into.sunk = std::max(into.sunk, *height - at.y());
+    }
+  }
+}
+
+}  // namespace krok::plant
