@@ -212,7 +212,7 @@ class ContactFinder {
     return false;
   }
 
-  // Whether the other foot stands lower all the while: this one then never bears the figure.
+  // Whether the other foot stands lower all the while: this one then never bears the character.
   // Runs are by track, then in the order of time.
   bool other_foot_bears(const Run& run) const {
     std::vector<const Run*> lower;

@@ -21,7 +21,8 @@ namespace {
 
 constexpr const char* kRetarget = "retarget it to the same skeleton with krok-retarget";
 
-// The joints above the hips only place the figure, so their offsets and the hips' are not compared.
+// The joints above the hips only place the character, so their offsets and the hips' are not
+// compared.
 Status same_skeleton(const Skeleton& first, const Skeleton& second, int carrier) {
   const std::string difference = difference_in_structure(first, second);
   if (!difference.empty()) {

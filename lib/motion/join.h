@@ -25,16 +25,17 @@ struct Joined {
   int largest_joint = 0;
 };
 
-// The first motion and then the second, which is moved and turned on the ground so that the figure
-// stands and faces as the first does in the middle of what they share. The second is resampled to
-// the first's rate. Without the shared time the durations add up: n and m frames give n + m - 1,
-// less the shared steps. `carrier` is what carrying_joint() gives. Skeleton and provenance are the
-// first's. A motion without frames adds nothing. A root above the hips does what it does in the
-// motions, relative to the hips, or goes on standing where it stands in the first (HipsRoot).
+// The first motion and then the second, which is moved and turned on the ground so that the
+// character stands and faces as the first does in the middle of what they share. The second is
+// resampled to the first's rate. Without the shared time the durations add up: n and m frames give
+// n + m - 1, less the shared steps. `carrier` is what carrying_joint() gives. Skeleton and
+// provenance are the first's. A motion without frames adds nothing. A root above the hips does what
+// it does in the motions, relative to the hips, or goes on standing where it stands in the first
+// (HipsRoot).
 //
 // Codes: motion-skeleton where names, order or parents differ, or the reference poses' offsets of
-// joints below the hips by more than a hundredth of the figure's extent; motion-blend for a shared
-// time that is negative or longer than one of the two; those of resample().
+// joints below the hips by more than a hundredth of the character's extent; motion-blend for a
+// shared time that is negative or longer than one of the two; those of resample().
 Result<Joined> join(const Clip& first, const Clip& second, int carrier, const JoinOptions& options);
 
 }  // namespace krok

@@ -17,7 +17,7 @@ namespace krok {
 namespace {
 
 constexpr double kDrift = 10 * kRadiansPerDegree;
-constexpr double kLevel = 0.05;     // of the figure's extent
+constexpr double kLevel = 0.05;     // of the character's extent
 constexpr double kNoTravel = 1e-3;  // metres
 
 Quat turn_about_vertical(double angle) {
@@ -289,7 +289,7 @@ Result<Looped> loop(const Clip& clip, int carrier, const LoopOptions& options) {
   const Transform& displacement = looped.displacement;
   const Vec3 hips = clip.frame_positions(0)[at(carrier)].cast<double>();
   const Vec3 way = displacement * hips - hips;
-  // A figure is moved on by moving all of it, so a root that stands must go along.
+  // A character is moved on by moving all of it, so a root that stands must go along.
   looped.carried = hips_root.stands() && Vec2(way.x(), way.z()).norm() > kNoTravel;
   HipsRoot::Carried carried;
   if (looped.carried) {

@@ -63,7 +63,8 @@ struct Looped {
   double straightened = 0;  // radians of turn removed
   double levelled = 0;      // metres of height blended away
   int blended_frames = 0;   // before the seam, and as many after it
-  // A root that stood still now travels along, evenly: the figure is moved on by moving all of it.
+  // A root that stood still now travels along, evenly: the character is moved on by moving all of
+  // it.
   bool carried = false;
 };
 

@@ -18,7 +18,7 @@ struct MirrorPairs {
   std::vector<int> partners;
   // [joints], 1 for joints that are a known part of the body; empty: all are. See mirror().
   std::vector<std::uint8_t> in_body;
-  double plane = 0;  // the figure's plane of symmetry in the reference pose is x = `plane`
+  double plane = 0;  // the character's plane of symmetry in the reference pose is x = `plane`
   int carrier = 0;   // what carrying_joint() gives
 
   std::vector<int> unpaired() const;
@@ -33,7 +33,7 @@ MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles);
 // to the left goes to the right. Mirroring twice restores the motion up to float rounding.
 //
 // Every joint comes exactly where its partner's image is, whatever the reference pose and the
-// joints' own axes are. The figure is mirrored with the motion: where bones differ between the
+// joints' own axes are. The character is mirrored with the motion: where bones differ between the
 // sides, each takes the length of its partner's, in the skeleton of the result too. Joints without
 // a partner go along with their parents, their transforms relative to them unchanged.
 //

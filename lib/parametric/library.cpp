@@ -153,7 +153,7 @@ Status same_skeleton(const Skeleton& library, const Skeleton& other) {
     const Vec3 ours = library.reference_local(j).position;
     const Vec3 theirs = other.reference_local(j).position;
     if ((ours - theirs).norm() <= allowed) continue;
-    // The joints above the hips only place the figure.
+    // The joints above the hips only place the character.
     if (subtree(library, j)[at(krok::carrying_joint(find_roles(library)))] != 0) continue;
     const std::string& name = library.names[static_cast<std::size_t>(j)];
     Error error("parametric-skeleton",

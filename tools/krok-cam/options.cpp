@@ -40,10 +40,10 @@ void declare_place(CommandOptions& command, Arguments& a) {
                      "Camera elevation; 90deg looks straight down [10deg]");
   add_choice<AzimuthFrom>(command, "--facing", a.facing,
                           {{"start", AzimuthFrom::start},
-                           {"figure", AzimuthFrom::actor},
+                           {"actor", AzimuthFrom::actor},
                            {"world", AzimuthFrom::world}},
                           "What counts as the front: the facing at the start, the facing in each "
-                          "frame (figure), or +Z (world)",
+                          "frame (actor), or +Z (world)",
                           "WHAT", "start");
   command.add_flag("--clockwise", a.clockwise, "Orbit clockwise, seen from above");
   command.add_flag("--fixed-centre", a.fixed_centre,

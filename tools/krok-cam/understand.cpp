@@ -183,7 +183,7 @@ Status check_needs(const Arguments& a, bool films) {
     }
   }
   if (a.still && a.facing == AzimuthFrom::actor) {
-    return usage("--facing figure is for a moving camera");
+    return usage("--facing actor is for a moving camera");
   }
   if (a.into.empty() && a.given("--clip")) return usage("--clip is for --into");
   if (!a.into.empty() && a.format == Format::cam) {

@@ -30,27 +30,27 @@ std::string_view kind_name(krok::ik::Goal::Kind kind) {
   return "balance";
 }
 
-struct Figures {
+struct Summary {
   int reached = 0;
   const krok::ik::GoalFrame* worst = nullptr;  // missed by the most; nullptr if all are reached
   double distance = 0, angle = 0;              // largest
 };
 
-Figures figures_of(const std::vector<krok::ik::GoalFrame>& frames) {
-  Figures figures;
+Summary summary_of(const std::vector<krok::ik::GoalFrame>& frames) {
+  Summary summary;
   const auto miss = [](const krok::ik::GoalFrame& f) {
     return f.residual.distance + f.residual.angle;
   };
   for (const krok::ik::GoalFrame& frame : frames) {
-    figures.distance = std::max(figures.distance, frame.residual.distance);
-    figures.angle = std::max(figures.angle, frame.residual.angle);
+    summary.distance = std::max(summary.distance, frame.residual.distance);
+    summary.angle = std::max(summary.angle, frame.residual.angle);
     if (frame.residual.reached) {
-      ++figures.reached;
-    } else if (figures.worst == nullptr || miss(frame) > miss(*figures.worst)) {
-      figures.worst = &frame;
+      ++summary.reached;
+    } else if (summary.worst == nullptr || miss(frame) > miss(*summary.worst)) {
+      summary.worst = &frame;
     }
   }
-  return figures;
+  return summary;
 }
 
 std::string miss_text(double distance, double angle) {
@@ -85,7 +85,7 @@ std::string summary(const Outcome& outcome) {
   std::size_t reached = 0, total = 0;
   for (const auto& frames : outcome.motion.goals) {
     total += frames.size();
-    reached += at(figures_of(frames).reached);
+    reached += at(summary_of(frames).reached);
   }
   return fmt::format("{} in {} of {}, reached in {} of {}",
                      counted(static_cast<long long>(outcome.goals.size()), "goal"),
@@ -97,11 +97,11 @@ std::string table(const Outcome& outcome) {
   std::string text;
   for (std::size_t g = 0; g < outcome.goals.size(); ++g) {
     const auto& frames = outcome.motion.goals[g];
-    const Figures figures = figures_of(frames);
+    const Summary summary = summary_of(frames);
     text += fmt::format("  {} ({}): reached in {} of {}, off by {} at most\n",
                         shown(outcome.goals[g].name), kind_name(outcome.goals[g].goal.kind),
-                        figures.reached, counted(static_cast<long long>(frames.size()), "frame"),
-                        miss_text(figures.distance, figures.angle));
+                        summary.reached, counted(static_cast<long long>(frames.size()), "frame"),
+                        miss_text(summary.distance, summary.angle));
   }
   return text;
 }
@@ -110,7 +110,7 @@ Diagnostics missed_goals(const Outcome& outcome) {
   Diagnostics list;
   for (std::size_t g = 0; g < outcome.goals.size(); ++g) {
     const auto& frames = outcome.motion.goals[g];
-    const Figures figures = figures_of(frames);
+    const Summary summary = summary_of(frames);
     Diagnostic warning;
     warning.severity = Severity::warning;
     if (frames.empty()) {
@@ -121,11 +121,11 @@ Diagnostics missed_goals(const Outcome& outcome) {
       list.push_back(std::move(warning));
       continue;
     }
-    if (figures.worst == nullptr) continue;
-    const krok::ik::GoalFrame& worst = *figures.worst;
+    if (summary.worst == nullptr) continue;
+    const krok::ik::GoalFrame& worst = *summary.worst;
     warning.code = "ik-missed";
     warning.message = fmt::format("goal '{}' is missed in {} of {}, by up to {} in frame {}: {}",
-                                  shown(outcome.goals[g].name), frames.size() - at(figures.reached),
+                                  shown(outcome.goals[g].name), frames.size() - at(summary.reached),
                                   counted(static_cast<long long>(frames.size()), "frame"),
                                   miss_text(worst.residual.distance, worst.residual.angle),
                                   worst.frame, holder_text(outcome, worst));
@@ -146,19 +146,19 @@ Json to_json(const Outcome& outcome) {
   for (std::size_t g = 0; g < outcome.goals.size(); ++g) {
     const krok::ik::KeyedGoal& goal = outcome.goals[g];
     const auto& frames = outcome.motion.goals[g];
-    const Figures figures = figures_of(frames);
+    const Summary summary = summary_of(frames);
     Json entry;
     entry["name"] = goal.name;
     entry["kind"] = kind_name(goal.goal.kind);
     const bool balance = goal.goal.kind == krok::ik::Goal::Kind::balance;
     entry["joint"] = joint_name(outcome, balance ? -1 : goal.goal.joint);
     entry["active_frames"] = frames.size();
-    entry["reached_frames"] = figures.reached;
-    entry["largest_distance"] = figures.distance;
-    entry["largest_angle"] = figures.angle;
-    entry["worst_frame"] = figures.worst != nullptr ? Json(figures.worst->frame) : Json();
+    entry["reached_frames"] = summary.reached;
+    entry["largest_distance"] = summary.distance;
+    entry["largest_angle"] = summary.angle;
+    entry["worst_frame"] = summary.worst != nullptr ? Json(summary.worst->frame) : Json();
     entry["held_by"] =
-        figures.worst != nullptr ? joint_name(outcome, figures.worst->residual.held_by) : Json();
+        summary.worst != nullptr ? joint_name(outcome, summary.worst->residual.held_by) : Json();
     entry["frames"] = Json::array();
     for (const krok::ik::GoalFrame& frame : frames) {
       entry["frames"].push_back({{"frame", frame.frame},

@@ -319,11 +319,11 @@ void declare_sheet(CommandOptions& command, SheetOptions& options) {
   declare_image_options(command, options.image, kSheetMoments);
   command
       .add_option("--front", options.front,
-                  "What counts as the front: the facing at the first time (figure), "
+                  "What counts as the front: the facing at the first time (actor), "
                   "or +Z, the facing in the reference pose (world)")
       .type_name("WHAT")
-      .transform(one_of<Front>({{"figure", Front::actor}, {"world", Front::world}}))
-      .default_str("figure");
+      .transform(one_of<Front>({{"actor", Front::actor}, {"world", Front::world}}))
+      .default_str("actor");
   add_body_option(command, options.body,
                   "Body for motions without a model: low (2,500 vertices), medium "
                   "(10,000), high (40,000), auto: low for more than two files, else "

@@ -214,7 +214,7 @@ TEST_F(KrokCam, MistakesAreTold) {
       {{keys_, "--clockwise", "-o", out}, "usage"},
       {{walk_, "--still", "--clockwise", "-o", out}, "usage"},
       {{walk_, "--still", "--smooth", "1s", "-o", out}, "usage"},
-      {{walk_, "--still", "--facing", "figure", "-o", out}, "usage"},
+      {{walk_, "--still", "--facing", "actor", "-o", out}, "usage"},
       {{walk_, "--still", "--rate", "30", "-o", out}, "usage"},
       {{walk_, "--still", "--fov", "180", "-o", out}, "usage"},
       {{walk_, "--still", "--fov", "40deg", "--lens", "50", "-o", out}, "usage"},

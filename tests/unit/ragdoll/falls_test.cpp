@@ -1,4 +1,4 @@
-// If these fail, figures explode, come apart, sink into the ground or never lie still; or the same
+// If these fail, characters explode, come apart, sink into the ground or never lie still; or the same
 // fall is another one the next time.
 
 #include <gtest/gtest.h>
@@ -144,7 +144,7 @@ TEST(RagdollFalls, MotionAndFallMeetWithoutAJump) {
   }
 }
 
-// Masses that are lost, or shapes on the wrong side, would make figures that fall like no body.
+// Masses that are lost, or shapes on the wrong side, would make characters that fall like no body.
 TEST(RagdollBodies, AHumanHasSixteenBodiesOfItsMassSymmetrically) {
   const Skeleton skeleton = test::human_skeleton();
   const auto bodies = make_bodies(skeleton, find_roles(skeleton), {.mass = 80});
