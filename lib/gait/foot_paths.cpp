@@ -14,7 +14,12 @@ namespace {
 constexpr double kTipUp = 0.25;  // of the swing, after which the tip of the toes is off the ground
 constexpr double kMatching = 0.16;  // seconds
 constexpr double kAway = 0.09;  // metres from where the foot was or will be, to be cleared in full
-constexpr double kRamp = 0.35;  // of the time from strike to flat, and from flat to off
+constexpr double kShortestRamp = 0.06;  // seconds
+constexpr double kRamp = 0.35;          // of the time from strike to flat, and from flat to off
+
+double ramp_of(double lasts) {
+  return std::min(lasts, std::max(kRamp * lasts, kShortestRamp));
+}
 
 double level_distance(const Vec3& a, const Vec3& b) {
   return std::hypot(a.x() - b.x(), a.z() - b.z());
@@ -65,9 +70,9 @@ Vec3 Stance::deviation(const FootPose& blend) const {
 FootPose Stance::at(double time, const FootPose& blend) const {
   double part = 0;
   if (time < flat_from) {
-    part = smooth((flat_from - time) / (kRamp * (flat_from - strike)));
+    part = smooth((flat_from - time) / ramp_of(flat_from - strike));
   } else if (time > flat_to && off > flat_to) {
-    part = smooth((time - flat_to) / (kRamp * (off - flat_to)));
+    part = smooth((time - flat_to) / ramp_of(off - flat_to));
   }
   FootPose foot{flat_, axes_ * leg_->flat_toes.conjugate()};
   if (part == 0) return foot;

@@ -15,7 +15,8 @@ constexpr double kSpacing = 0.01;       // seconds, of derivatives at the ends o
 constexpr double kLoweringReach = 0.2;  // seconds over which the pelvis is lowered
 // Steps on either side of a block: what is lowered depends on 0.4 s of them, and they on others.
 constexpr std::size_t kLookedAt = 3, kAround = kLookedAt + 2;
-constexpr double kMiddle = 0.4;  // of the single support: the foot is flat
+constexpr double kStaysFlat = 3;  // of the pitch at which a foot is flat
+constexpr double kMiddle = 0.4;   // of the single support: the foot is flat
 
 struct PitchAt {
   double time = 0, pitch = 0;
@@ -35,6 +36,12 @@ double time_of_flat(std::span<const PitchAt> series) {
     for (std::size_t i = 0; i < series.size(); ++i) {
       if (std::abs(series[i].pitch) >= flat) continue;
       if (std::abs(series[i].time - from) > limit.part * std::abs(to - from)) break;
+      // A foot that passes through flat on its way is not flat.
+      if (std::ranges::any_of(series.subspan(i), [&](const PitchAt& later) {
+            return std::abs(later.pitch) > kStaysFlat * flat;
+          })) {
+        continue;
+      }
       if (i == 0) return from;
       const double a = std::abs(series[i - 1].pitch), b = std::abs(series[i].pitch);
       return std::lerp(series[i - 1].time, series[i].time, (a - flat) / (a - b));
