@@ -35,18 +35,21 @@ double speed_up(double s) {
 }
 
 struct EndState {
-  PoseVector value, velocity;
+  PoseVector value, velocity, acceleration;
 };
-// `inwards`: +1 at the start of the step, -1 at its end. The parabola through three poses: longer
-// fits would count what a strike shakes as a velocity.
+// `inwards`: +1 at the start of the step, -1 at its end. Velocities are of the parabola through
+// three poses, accelerations of the cubic through four: longer fits would count what a strike
+// shakes.
 EndState end_state(const BodyStep& step, double time, double inwards, double spacing) {
   auto scratch = step.motion.make_scratch();
   EndState end;
-  PoseVector next, far;
+  PoseVector next, far, farthest;
   step.pose(time, end.value, scratch);
   step.pose(time + inwards * spacing, next, scratch);
   step.pose(time + inwards * 2 * spacing, far, scratch);
+  step.pose(time + inwards * 3 * spacing, farthest, scratch);
   end.velocity = inwards / (2 * spacing) * (4 * next - far - 3 * end.value);
+  end.acceleration = (2 * end.value - 5 * next + 4 * far - farthest) / (spacing * spacing);
   return end;
 }
 
@@ -65,7 +68,7 @@ void match_signs(PoseVector& pose, const PoseVector& to) {
 // strike while the foot still moves, and the footprint of that moment lies behind.)
 Transform stance_frame(const Walker& walker, const GroundedPrint& print, const StepLibrary& library,
                        const BodyStep& step) {
-  const BodyStep plain(step.motion, step.joints);
+  const BodyStep plain(step.motion, walker);
   auto scratch = step.motion.make_scratch();
   PoseVector pose;
   const std::vector<double>& times = step.motion.keytimes();
@@ -137,6 +140,7 @@ void BodyStep::pose(double time, PoseVector& pose,
     for (int c = 0; c < 3; ++c) values[c] = block.position[c][lane];
     for (int c = 0; c < 4; ++c) values[3 + c] = block.rotation[c][lane];
   }
+  for (const FixedJoint& bone : *bones) position_of(pose, bone.joint) = bone.place;
   position_of(pose, 0) = stance_to_world * Vec3(position_of(pose, 0));
   Quat turn;
   turn.coeffs() = rotation_of(pose, 0);
@@ -170,6 +174,8 @@ Gap BodyMotion::gap_after(std::size_t step) const {
   }
   gap.value = gap.sign.cwiseProduct(b.value) - a.value;
   gap.velocity = gap.sign.cwiseProduct(b.velocity) - a.velocity;
+  gap.acceleration =
+      is_accelerated_.cwiseProduct(gap.sign.cwiseProduct(b.acceleration) - a.acceleration);
   gap.before = 0.5 * (before.strike - before.start);
   gap.after = 0.5 * (after.strike - after.start);
   // The first step and the last, which are no blends alone, take all: they may be short.
@@ -198,6 +204,7 @@ void add_correction(const Gap& gap, double since, double width, double inwards, 
       part * (wide.value * gap.value.head<kPoseValues>() +
               inwards * width * wide.slope * gap.velocity.head<kPoseValues>());
   pose.tail(rest) += part * (wide.value * gap.value.tail(rest) + slope * gap.velocity.tail(rest));
+  pose += part * narrow * narrow * fading(since / narrow).acceleration * gap.acceleration;
 }
 
 }  // namespace
@@ -270,7 +277,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   const parametric::Synthesiser& maker = libraries[at(planned.library)].steps(other(print.side));
   auto motion = maker.motion(planned.weights);
   if (!motion) return motion.error();
-  BodyStep step(*std::move(motion), walker.skeleton->joint_count());
+  BodyStep step(*std::move(motion), walker);
   step.start = steps_.empty() ? 0 : steps_.back().strike;
   const std::vector<double>& times = step.motion.keytimes();
   const double toes_off = times[index_of_time(maker.library(), "swing_off")];
@@ -305,7 +312,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   if (step.stand.size() > 0) {
     PoseVector sample;
     auto scratch = step.motion.make_scratch();
-    BodyStep plain(step.motion, step.joints);
+    BodyStep plain(step.motion, walker);
     plain.stance_to_world = step.stance_to_world;
     plain.pose(step.rest, sample, scratch);
     match_signs(step.stand, sample);
@@ -319,6 +326,13 @@ Result<BodyMotion> BodyMotion::create(std::span<const StepLibrary> libraries, co
                                       const PlannedWalk& plan, const WalkOptions& options) {
   BodyMotion body;
   body.rate_ = main_library(libraries).library().rate;
+  body.is_accelerated_ = PoseVector::Ones(kPoseValues * walker.skeleton->joint_count());
+  for (int j = 1; j < walker.skeleton->joint_count(); ++j) {
+    position_of(body.is_accelerated_, j).setZero();
+  }
+  for (const Leg& leg : walker.legs) {
+    for (const int j : leg.path) rotation_of(body.is_accelerated_, j).setZero();
+  }
   body.steps_.reserve(plan.steps.size());
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     if (Status status = body.add_step(libraries, walker, plan, i, options); !status) {

@@ -16,10 +16,11 @@ namespace krok::gait {
 struct BodyStep {
   enum class Kind : unsigned char { middle, captured_start, captured_stop, first, last, only };
 
-  BodyStep(parametric::BlendedMotion blend, int joint_count)
-      : motion(std::move(blend)), joints(joint_count) {}
+  BodyStep(parametric::BlendedMotion blend, const Walker& walker)
+      : motion(std::move(blend)), bones(&walker.bones), joints(walker.skeleton->joint_count()) {}
 
   parametric::BlendedMotion motion;
+  const std::vector<FixedJoint>* bones;
   int joints = 0;
   Kind kind = Kind::middle;
   int stance = 0;  // print
@@ -38,10 +39,10 @@ struct BodyStep {
   void pose(double time, PoseVector& pose, parametric::BlendedMotion::Scratch& scratch) const;
 };
 
-// The gap between two steps and its derivative, after less before, in the signs that the
+// The gap between two steps and its derivatives by time, after less before, in the signs that the
 // quaternions have before.
 struct Gap {
-  PoseVector value, velocity;
+  PoseVector value, velocity, acceleration;
   PoseVector sign;               // of quaternions after, by value
   double before = 0, after = 0;  // seconds that the correction takes on either side
   double share = 0.5;            // of the correction that the step before takes
@@ -64,6 +65,9 @@ class BodyMotion {
 
   std::vector<BodyStep> steps_;
   double rate_ = 30;  // of the examples
+  // 1 for values whose accelerations are joined: not those of legs, which strikes shake and feet
+  // lead anew, and not the lengths of bones.
+  PoseVector is_accelerated_;
 };
 
 // The pose of a step joined to those beside it; gaps are null at the ends of the walk.

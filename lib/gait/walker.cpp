@@ -9,6 +9,7 @@
 #include "gait/mean_step_internal.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
+#include "pose/sample_pose.h"
 
 namespace krok::gait {
 
@@ -90,6 +91,33 @@ double off_of_swing(const parametric::Synthesiser& step) {
   const auto off =
       std::ranges::find(step.library().keytimes, "swing_off") - step.library().keytimes.begin();
   return step.packed().generic[static_cast<std::size_t>(off)];
+}
+
+// Joints that are within a centimetre of their place in the reference pose in all examples. There
+// they are put: captures' floats, and mirror images of unequal sides, change bones' lengths.
+std::vector<FixedJoint> fixed_joints(const StepLibrary& steps) {
+  constexpr double kMoves = 0.01;  // metres
+  const parametric::PackedExamples& packed = steps.steps(FootSide::left).packed();
+  const auto count = static_cast<std::size_t>(packed.skeleton.joint_count());
+  std::vector<double> farthest(count, 0);
+  std::vector<PoseBlock> blocks(at(packed.reference.blocks_per_pose()));
+  std::vector<Transform> local(count);
+  for (const PackedClip& clip : packed.clips) {
+    for (int f = 0; f < clip.frames; ++f) {
+      sample_pose(clip, f / clip.rate, blocks);
+      unpack_pose(blocks, local);
+      for (std::size_t j = 1; j < count; ++j) {
+        const Vec3 place = packed.skeleton.reference_local(static_cast<int>(j)).position;
+        farthest[j] = std::max(farthest[j], (local[j].position - place).norm());
+      }
+    }
+  }
+  std::vector<FixedJoint> fixed;
+  for (int j = 1; j < packed.skeleton.joint_count(); ++j) {
+    if (farthest[at(j)] >= kMoves) continue;
+    fixed.push_back({j, packed.skeleton.reference_local(j).position});
+  }
+  return fixed;
 }
 
 // The ball is off the ground when it has come up by kRaised in the mean step.
@@ -217,6 +245,7 @@ Result<Walker> make_walker(std::span<const StepLibrary> libraries) {
     learn_flat_foot(steps, side, walker);
   }
   for (const FootSide side : {FootSide::left, FootSide::right}) learn_knee(steps, side, walker);
+  walker.bones = fixed_joints(steps);
   walker.ball_off = find_ball_off(steps, walker);
   walker.usual_off = off_of_swing(steps.steps(FootSide::left));
   walker.stand = standing_pose(steps, walker);
@@ -225,6 +254,9 @@ Result<Walker> make_walker(std::span<const StepLibrary> libraries) {
     if (found == libraries.end()) continue;
     walker.stand = captured_stand(*found, walker);
     break;
+  }
+  for (const FixedJoint& bone : walker.bones) {
+    position_of(walker.stand, bone.joint) = bone.place;
   }
   return walker;
 }

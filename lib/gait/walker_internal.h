@@ -39,10 +39,17 @@ struct Leg {
   Quat flat_toes = Quat::Identity();  // sole_to_toes: of the toes while the foot is flat
 };
 
+// A joint that stays where it is in its parent.
+struct FixedJoint {
+  int joint = -1;
+  Vec3 place = Vec3::Zero();  // in its parent
+};
+
 struct Walker {
   const Skeleton* skeleton = nullptr;  // of the poses
   std::array<Leg, 2> legs;             // [FootSide]
   PoseVector stand;                    // the root relative to the point below the ankles, facing +Z
+  std::vector<FixedJoint> bones;       // all but the root and what moves in captures
   double sole_width = 0.08;            // metres
   // Where in the time from the other foot's strike to this one's off, as captures tell it, its ball
   // leaves the ground: the toes go on for a while.

@@ -219,21 +219,32 @@ def over_ground(points, ground):
     return points[:, 1] - ground.height(points[:, 0], points[:, 2])
 
 
+def half_steps(values):
+    """Half the distance to the next float: the most by which a coordinate is rounded."""
+    return 0.5 * np.spacing(np.abs(values).astype(np.float32)).astype(float)
+
+
 def bone_error(motion):
-    """Largest change of a bone's length, as a share of it; floats of the file allow 1e-7 of the
-    distance from the origin."""
-    worst = 0.0
+    """Largest change of a bone's length, as a share of it, beyond what the file's floats allow: each
+    coordinate of both its ends is rounded to the nearest, and so is the reference pose. And the
+    change with that rounding."""
+    worst = rounded = 0.0
     for i, joint in enumerate(motion.skeleton):
         if joint["parent"] < 0:
             continue
-        bone = motion.positions[:, i] - motion.positions[:, joint["parent"]]
-        lengths = np.linalg.norm(bone, axis=1)
-        own = np.linalg.norm(np.array(joint["reference"]["position"]) -
-                             np.array(motion.skeleton[joint["parent"]]["reference"]["position"]))
-        if own > 1e-3:
-            floats = 4e-7 * np.abs(motion.positions[:, i]).max(axis=1)
-            worst = max(worst, (np.maximum(0, np.abs(lengths - own) - floats) / own).max())
-    return worst
+        ends = motion.positions[:, i], motion.positions[:, joint["parent"]]
+        lengths = np.linalg.norm(ends[0] - ends[1], axis=1)
+        reference = (np.array(joint["reference"]["position"]),
+                     np.array(motion.skeleton[joint["parent"]]["reference"]["position"]))
+        own = np.linalg.norm(reference[0] - reference[1])
+        if own <= 1e-3:
+            continue
+        floats = np.linalg.norm(half_steps(ends[0]) + half_steps(ends[1]), axis=1)
+        floats += np.linalg.norm(half_steps(reference[0]) + half_steps(reference[1]))
+        off = np.abs(lengths - own)
+        worst = max(worst, (np.maximum(0, off - floats) / own).max())
+        rounded = max(rounded, (off / own).max())
+    return worst, rounded
 
 
 def measure(motion, keys, prints, ground, library):
@@ -251,7 +262,7 @@ def measure(motion, keys, prints, ground, library):
             measure_stance(m, times, foot, heel_on, ball_on, asked, ground)
             if k + 1 < len(pairs):
                 measure_swing(m, times, foot, ball_on[1], pairs[k + 1][0][0], ground)
-    m["bones"] = bone_error(motion)
+    m["bones"], m["bones_rounded"] = bone_error(motion)
     base = library.baseline
     bends = [np.abs(second_difference(knee_angles(motion, side), motion.rate)).max()
              for side in SIDES]

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Fits a step library to generated walks and measures random walks made with it.
+# Fits step libraries to generated walks and measures random walks made with them, and how their steps are
+# joined.
 #
 #   run.sh BIN_FOLDER MAKE_WALK SOURCE_FOLDER [COUNT]
 #
@@ -21,4 +22,18 @@ for length in 50 65 80; do
 done
 cp -- "$source/samples/step_library/library_turns.json" .
 "$bin/krok-fit" -q library_turns.json -o turning.steps
+# Joins can be told only from examples at many frames a second.
+mkdir fine && cd fine
+for length in 50 65 80; do
+  for turn in -20 0 20; do
+    "$make_walk" -q --steps 4 --rate 480 --step-length ${length}cm --turn ${turn}deg -o turn_${length}_${turn}.bvh
+  done
+done
+cat > fine.json <<'END'
+{"schema": "krok.library/1", "steps": "auto", "examples": [{"clip": "turn_*.bvh"}],
+ "parameters": [{"measures": "step.length"}, {"measures": "step.turn"}]}
+END
+"$bin/krok-fit" -q fine.json -o fine.steps
+"$python" "$source/tests/walk/measure_joins.py" "$bin" fine.steps --check
+cd ..
 "$python" "$source/tests/walk/run_scripts.py" "$bin" turning.steps --count "$count" --check
