@@ -14,6 +14,7 @@ namespace {
 constexpr double kStep = 0.6;  // of the leg: what is higher is overhead, or a wall
 constexpr double kSteepest = 42 * kRadiansPerDegree;
 constexpr double kMaxRoll = 32 * kRadiansPerDegree;
+constexpr double kUneven = 0.02;    // metres: what is higher under a sole is an edge
 constexpr double kShortSole = 0.1;  // metres, where the ball is not known
 constexpr int kRounds = 8;          // of the search for the ball
 
@@ -35,6 +36,32 @@ Error no_ground(const Terrain& ground, int number, double x, double z, double fr
           fmt::format("print {}: there is no ground at x {} m, z {} m", number + 1, readable(x, 4),
                       readable(z, 4)),
           "move the print, or give a larger ground"};
+}
+
+// Where the ground is no plane, the sole lies in the plane that is nearest to it under the four
+// corners (least squares), as a shoe does, rather than on the line from heel to ball. Not over
+// edges.
+template <typename HeightAt>
+void lie_on_corners(double length, double width, const HeightAt& height_at, GroundedPrint& print) {
+  const Vec3 way = ahead(print.heading);
+  for (int round = 0; round < kRounds; ++round) {
+    const double level = length * std::hypot(print.forward.x(), print.forward.z());
+    // The corners of the sole as it lies: rolled, they are nearer to each other.
+    const Vec3 across = 0.5 * width * print.up.cross(print.forward);
+    double heel = 0, ball = 0, roll = 0;
+    for (const double side : {1.0, -1.0}) {
+      const auto at_heel = height_at(print.heel + side * across);
+      const auto at_ball = height_at(print.heel + level * way + side * across);
+      if (!at_heel || !at_ball) return;
+      heel += 0.5 * *at_heel;
+      ball += 0.5 * *at_ball;
+      roll += side * 0.5 * (*at_heel + *at_ball);
+    }
+    if (std::abs(heel - print.heel.y()) > kUneven) return;
+    print.heel.y() = heel;
+    print.forward = (level * way + Vec3(0, ball - heel, 0)).normalized();
+    print.up = print.forward.cross(Vec3(2 * across.x(), roll, 2 * across.z())).normalized();
+  }
 }
 
 }  // namespace
@@ -107,6 +134,7 @@ Result<GroundedPrint> set_on_ground(const Print& print, int number, const Walker
   }
   const double lateral = pairs > 0 ? rise / (pairs * walker.sole_width) : 0;
   result.up = result.forward.cross(left + Vec3(0, lateral, 0)).normalized();
+  if (pairs == 2 && at_heel) lie_on_corners(length, walker.sole_width, height_at, result);
   return result;
 }
 

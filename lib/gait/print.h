@@ -20,7 +20,7 @@ struct Print {
 };
 
 // A footprint on the ground: the line from heel to ball of a flat foot, and which way its sole
-// faces.
+// faces: in the plane nearest to the ground under its corners.
 struct GroundedPrint {
   FootSide side = FootSide::left;
   Vec3 heel = Vec3::Zero();      // metres, world; on the ground

@@ -251,7 +251,7 @@ def measure(motion, keys, prints, ground, library):
     times = motion.times()
     feet = [Foot(motion, sole, ground) for sole in library.feet]
     m = {"print_mm": 0.0, "print_deg": 0.0, "heel_drift_mm": 0.0, "ball_drift_mm": 0.0,
-         "corner_mm": 0.0, "sink_mm": 0.0, "clearance_mm": np.inf,
+         "corner_mm": 0.0, "warp_mm": 0.0, "sink_mm": 0.0, "clearance_mm": np.inf,
          "never_flat": 0, "stances_missing": 0}
     all_stances = stances(keys, motion, library.feet)
     for side, foot, pairs in zip(SIDES, feet, all_stances):
@@ -287,10 +287,13 @@ def measure_stance(m, times, foot, heel_on, ball_on, asked, ground):
         heading = np.degrees(np.arctan2(way[:, 0], way[:, 2])) - float(asked["heading"])
         wrapped = (heading + 180) % 360 - 180
         m["print_deg"] = max(m["print_deg"], np.abs(wrapped).max())
-        heights = [over_ground(corner[flat], ground) for corner in foot.corners()]
-        heights = np.abs(np.concatenate(heights))
-        if np.isfinite(heights).any():
-            m["corner_mm"] = max(m["corner_mm"], 1000 * np.nanmax(heights))
+        heights = np.array([over_ground(corner[flat], ground) for corner in foot.corners()])
+        heights = heights[:, np.isfinite(heights).all(axis=0)]
+        if heights.size:
+            # No plane is nearer to four corners than a quarter of their warp.
+            warp = np.abs(heights[0] - heights[1] - heights[2] + heights[3]) / 4
+            m["warp_mm"] = max(m["warp_mm"], 1000 * warp.max())
+            m["corner_mm"] = max(m["corner_mm"], 1000 * (np.abs(heights) - warp).max())
     for name, points, on in (("heel", foot.heel, heel_on), ("ball", foot.rest, ball_on)):
         rests = points[between(times, *on)]
         if len(rests):
