@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "math/quaternion.h"
 #include "plant/sole_follower_internal.h"
@@ -203,20 +204,22 @@ void SoleFollower::place(Standing& standing, const GroundBelow& ground) const {
     least = trouble;
     best = ahead;
   }
-  standing.of_heel = (best - 0.5 * longer) * forward;
-  standing.of_ball =
-      (best + 0.5 * longer) * forward + (own_.ball_height() - theirs_.ball_height()) * standing.up;
-  // On ground that is not even: as high as the higher end asks for.
-  double settle = -kMaxSettled;
-  for (const Vec3& point :
-       {Vec3(heel + standing.of_heel), Vec3(sole_at_ball + (best + 0.5 * longer) * forward)}) {
+  Vec3 own_heel = heel + (best - 0.5 * longer) * forward;
+  Vec3 own_tread = sole_at_ball + (best + 0.5 * longer) * forward;  // below the ball
+  // Both ends come down to the ground, which need not be even; what is over an edge stays.
+  const auto settled = [&](const Vec3& point) -> std::optional<double> {
     const auto height = ground.height(point);
-    if (height) settle = std::max(settle, *height - point.y());
-  }
-  if (settle > -kMaxSettled && settle < kMaxSettled) {
-    standing.of_heel.y() += settle;
-    standing.of_ball.y() += settle;
-  }
+    if (!height || std::abs(*height - point.y()) > kMaxSettled) return {};
+    return *height - point.y();
+  };
+  const auto at_heel = settled(own_heel), at_ball = settled(own_tread);
+  const Vec3 flat = own_tread - own_heel;
+  own_heel.y() += at_heel.value_or(at_ball.value_or(0));
+  own_tread.y() += at_ball.value_or(at_heel.value_or(0));
+  standing.tilt = rotation_vector(shortest_arc(flat, own_tread - own_heel));
+  const Quat turn = from_rotation_vector(standing.tilt);
+  standing.of_heel = own_heel - heel;
+  standing.of_ball = own_heel + turn * Vec3(flat + own_.ball_height() * standing.up) - ball;
 }
 
 double SoleFollower::trouble_at(const Vec3& heel, const Vec3& forward,
@@ -232,7 +235,7 @@ double SoleFollower::trouble_at(const Vec3& heel, const Vec3& forward,
 }
 
 SoleFollower::Lead SoleFollower::lead_at(const Standing& standing, double along) {
-  return {along, (1 - along) * standing.of_heel + along * standing.of_ball};
+  return {along, (1 - along) * standing.of_heel + along * standing.of_ball, standing.tilt};
 }
 
 SoleFollower::Lead SoleFollower::lead_in(const Standing& standing, int frame) {
@@ -252,7 +255,8 @@ SoleFollower::Lead SoleFollower::lead(int frame) const {
   const Lead from = lead_at(before, holds(before.ball, before.last) ? 1 : 0);
   const double share =
       eased(static_cast<double>(frame - before.last) / (after->first - before.last));
-  return {from.along + share * (to.along - from.along), from.off + share * (to.off - from.off)};
+  return {from.along + share * (to.along - from.along), from.off + share * (to.off - from.off),
+          from.tilt + share * (to.tilt - from.tilt)};
 }
 
 double SoleFollower::standing_height(int frame) const {
@@ -272,8 +276,9 @@ FootPath SoleFollower::path(const Clip& clip) const {
   for (int f = 0; f < clip.frame_count(); ++f) {
     const Transform source = joint_at(*source_, f, theirs_.foot);
     const Transform foot = joint_at(clip, f, own_.foot);
-    const Quat turned = (source.orientation * theirs * own).normalized();
     const Lead now = lead(f);
+    const Quat turned =
+        (from_rotation_vector(now.tilt) * source.orientation * theirs * own).normalized();
     const Vec3 led = source * Vec3(theirs_.heel + now.along * (theirs_.ball - theirs_.heel));
     const Vec3 ankle =
         led + now.off - turned * Vec3(own_.heel + now.along * (own_.ball - own_.heel));

@@ -32,7 +32,9 @@ struct Standing {
   Vec3 up = Vec3::UnitY();                            // of the ground, world, unit vector
   Vec3 of_heel = Vec3::Zero(),
        of_ball = Vec3::Zero();  // from the source's point to its own, metres
-  double height = 0;            // metres, of the source's heel and ball
+  Vec3 tilt = Vec3::Zero();  // rotation vector from the source's sole to its own, where the ground
+                             // is not even
+  double height = 0;         // metres, of the source's heel and ball
 };
 
 class SoleFollower {
@@ -60,6 +62,7 @@ class SoleFollower {
   struct Lead {
     double along = 0;
     Vec3 off = Vec3::Zero();
+    Vec3 tilt = Vec3::Zero();
   };
   Lead lead(int frame) const;
   static Lead lead_at(const Standing& standing, double along);
