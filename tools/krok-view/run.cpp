@@ -65,8 +65,9 @@ Status check_layout(const Options& options, const Files& files) {
     return Error("usage", "--ground and --prints are for motions at their own positions",
                  "leave out --layout apart");
   }
-  if (!files.motions.empty() || options.prints.empty()) return {};
-  return Error("usage", "--prints needs a motion", "give the .anim that krok-walk wrote");
+  if (!files.motions.empty()) return {};
+  return Error("usage", "--ground and --prints need a motion",
+               "give the .anim that krok-walk wrote");
 }
 
 Status add_walk(const Options& options, ToolContext& context, draw::ViewerPage& page) {
