@@ -81,6 +81,8 @@ demo: CMAKE_FLAGS += -DKROK_BUILD_TESTS=OFF
 demo: all
 	@echo "== from a capture to a character: samples/walk_to_gltf"
 	@KROK_BIN=$(BUILD)/bin samples/walk_to_gltf/run.sh $(if $(CAPTURE),"$(CAPTURE)")
+	@echo "== a walk on a hill, stairs and stones: samples/walk_on_terrain"
+	@KROK_BIN=$(abspath $(BUILD))/bin SAMPLES_BIN=$(abspath $(BUILD))/samples samples/walk_on_terrain/run.sh out/demo/walk
 
 quick: CMAKE_FLAGS += -DKROK_BUILD_TESTS=OFF
 quick: TARGETS = krok-import krok-body krok-skin krok-view

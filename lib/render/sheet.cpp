@@ -42,7 +42,7 @@ class SheetPainter {
     }
     for (const CellLayout& cell : layout_.cells) {
       const SheetRow& row = sheet_.rows[static_cast<std::size_t>(cell.row)];
-      if (row.elevation > kRaised) paint_grid(cell);
+      if (row.elevation > kRaised && !row.own_ground) paint_grid(cell);
       paint_path(content(cell).path, cell);
     }
   }
@@ -243,7 +243,7 @@ Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
     const SheetRow& row = sheet.rows[static_cast<std::size_t>(place.row)];
     const SheetCell& cell = row.cells[static_cast<std::size_t>(place.column)];
     View view{place.camera, place.left, place.top, place.right, place.bottom, {}, false};
-    view.shadows = row.elevation > kRaised;
+    view.shadows = row.elevation > kRaised && !row.own_ground;
     for (const SheetCell::Layer& layer : cell.layers) {
       view.layers.push_back(
           {&traced[places.at(layer.actor)], static_cast<float>(layer.opacity), layer.behind});

@@ -48,6 +48,7 @@ struct SheetRow {
   std::string title, note;        // a line above; may be empty
   double yaw = 0, elevation = 0;  // direction to the camera, see Camera
   std::vector<SheetCell> cells;
+  bool own_ground = false;  // the characters bring a ground: a raised camera shows no grid
 };
 
 struct Sheet {

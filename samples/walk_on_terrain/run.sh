@@ -8,7 +8,7 @@
 . "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
 
 check_arguments 1 "$@"
-need_tools fit walk body skin plot view
+need_tools fit walk body skin plot view retarget
 need_generators make-walk
 enter_folder "${1:-out/walk_on_terrain}"
 
@@ -39,11 +39,12 @@ awk 'BEGIN {
   }
 }' > hill.obj
 "$bin/krok-walk" walking.steps --path way.svg --ground hill.obj --save-prints prints.csv \
-  -o hill.anim --json=hill.json
+  -o hill.anim --json=hill.json --view hill.html
 
 say "3. Up stairs"
 stairs=stairs:rise=17cm,run=29cm,count=8
-"$bin/krok-walk" walking.steps --to 0m,5m --ground $stairs -o stairs.anim --json=stairs.json
+"$bin/krok-walk" walking.steps --to 0m,5m --ground $stairs -o stairs.anim --json=stairs.json \
+  --save-prints stairs_prints.csv --view stairs.html
 
 say "4. Across stepping stones, on footprints made by hand"
 cp -- "$story/stones.csv" .
@@ -61,14 +62,22 @@ awk -F, 'NR > 1 {
     printf "f %d %d %d %d\n", n + m, n + k, n + k + 4, n + m + 4
   }
 }' stones.csv > stones.obj
-"$bin/krok-walk" walking.steps --prints stones.csv --ground stones.obj -o stones.anim --json=stones.json
+"$bin/krok-walk" walking.steps --prints stones.csv --ground stones.obj -o stones.anim --json=stones.json \
+  --view stones.html
 
-say "5. A skinned walker, images and a page"
+say "5. A skinned walker, and another actor on the same stairs"
 "$bin/krok-body" -q hill.anim -o walker.model
 "$bin/krok-skin" -q walker.model hill.anim -o hill.glb --as rig
-"$bin/krok-plot" -q hill.anim --ground hill.obj --strip hill.png --moments 18 --sides right --size 200
-"$bin/krok-plot" -q stairs.anim --ground $stairs --strip stairs.png --moments 18 --sides right --size 200
-"$bin/krok-plot" -q stones.anim --ground stones.obj --sheet stones.png --moments 8 \
-  --sides front-left --elevation 20deg --size 200
-"$bin/krok-view" -q hill.anim -o hill.html
-echo "  hill.glb, hill.html, hill.png, stairs.png, stones.png"
+"$generators/make-walk" -q --stature 1.35m --step-length 50cm --steps 2 -o child.bvh
+"$bin/krok-retarget" stairs.anim --onto child.bvh --ground $stairs -o child.anim --json=child.json
+"$bin/krok-view" -q stairs.anim child.anim --ground $stairs --prints stairs_prints.csv -o child.html
+
+say "6. Images and charts"
+"$bin/krok-plot" -q hill.anim --ground hill.obj --prints prints.csv --strip hill.png --moments 18 \
+  --sides right --size 200 --show path,feet -o hill.svg
+"$bin/krok-plot" -q child.anim --ground $stairs --prints stairs_prints.csv --sheet stairs.png \
+  --whole-ground --moments 3 --sides back-left --elevation 20deg --size 200
+"$bin/krok-plot" -q stones.anim --ground stones.obj --prints stones.csv --sheet stones.png \
+  --whole-ground --moments 3 --sides front-left --elevation 20deg --size 200
+echo "  hill.glb, hill.png, stairs.png, stones.png, hill.svg"
+say "Done. Open hill.html, stairs.html, stones.html and child.html in a browser."

@@ -2,7 +2,8 @@
 """Makes an animated PNG of the cells of a contact sheet, for pages that show images alone.
 
 Usage: animate_sheet.py SHEET.png CELLS FPS OUT.png
-The sheet is one row of krok-plot --sheet with that many --moments.
+The sheet is one row of krok-plot --sheet with that many --moments. Each image stores the rectangle in
+which it differs from the one before.
 """
 import pathlib
 import struct
@@ -51,6 +52,15 @@ def rows_of(png):
     return width, rows
 
 
+def changed(before, image):
+    """(left, top, right, bottom) of what differs, in pixels; one pixel if nothing does."""
+    at = [y for y, (a, b) in enumerate(zip(before, image)) if a != b]
+    if not at:
+        return 0, 0, 1, 1
+    columns = [i // 3 for y in at for i, (a, b) in enumerate(zip(before[y], image[y])) if a != b]
+    return min(columns), at[0], max(columns) + 1, at[-1] + 1
+
+
 def main():
     sheet, cells, fps, out = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
     width, rows = rows_of(pathlib.Path(sheet).read_bytes())
@@ -58,17 +68,20 @@ def main():
     cell = (width - LEFT - RIGHT) // cells
     png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", cell, len(rows), 8, 2, 0, 0, 0))
     png += chunk(b"acTL", struct.pack(">II", cells, 0))  # plays for ever
-    sequence = 0
+    sequence, before = 0, None
     for i in range(cells):
         x = 3 * (LEFT + i * cell)
+        image = [row[x:x + 3 * cell] for row in rows]
+        left, top, right, bottom = changed(before, image) if before else (0, 0, cell, len(rows))
+        before = image
         # Filter 2 stores the difference to the row above.
-        data, above = b"", bytes(3 * cell)
-        for row in rows:
-            part = row[x:x + 3 * cell]
+        data, above = b"", bytes(3 * (right - left))
+        for row in image[top:bottom]:
+            part = row[3 * left:3 * right]
             data += b"\x02" + bytes(p - q & 255 for p, q in zip(part, above))
             above = part
         data = zlib.compress(data, 9)
-        png += chunk(b"fcTL", struct.pack(">IIIIIHHBB", sequence, cell, len(rows), 0, 0, 1, fps, 0, 0))
+        png += chunk(b"fcTL", struct.pack(">IIIIIHHBB", sequence, right - left, bottom - top, left, top, 1, fps, 0, 0))
         sequence += 1
         if i == 0:
             png += chunk(b"IDAT", data)

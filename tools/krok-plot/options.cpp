@@ -13,6 +13,7 @@
 #include "tools/cli/one_of.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-plot/run.h"
+#include "tools/shared/ground_option.h"
 #include "tools/shared/role_input.h"
 #include "tools/shared/shown_ground.h"
 
@@ -79,9 +80,10 @@ void declare_motions(CommandOptions& command, Arguments& a) {
       .default_str(a.keys)
       .group(group);
   add_map_option(command, a.map).group(group);
-  add_prints_option(command, a.prints,
-                    "Footprints (formats/prints/SPEC.md) to draw in the path from above, on the "
-                    "ground of --ground")
+  add_prints_option(
+      command, a.prints,
+      "Footprints (formats/prints/SPEC.md) to draw in the path from above and, on the "
+      "ground of --ground, in images")
       .group(group);
 }
 
@@ -289,7 +291,8 @@ bool has_image_options(const SheetOptions& options) {
   return options.image.moments != usual.image.moments || options.image.sides != usual.image.sides ||
          options.image.elevation != usual.image.elevation ||
          options.image.size != usual.image.size || options.front != usual.front ||
-         options.body != usual.body || options.method != usual.method;
+         options.whole_ground != usual.whole_ground || options.body != usual.body ||
+         options.method != usual.method;
 }
 
 }  // namespace
@@ -330,6 +333,7 @@ void declare(CommandOptions& command, Arguments& arguments) {
 Status check(const Arguments& arguments) {
   if (const auto motion = understand_motions(arguments); !motion) return motion.error();
   if (const auto columns = understand_tables(arguments); !columns) return columns.error();
+  if (Status status = check_ground_text(arguments.sheet.ground); !status) return status;
   if (arguments.panel.empty()) return {};
   const auto panel = parse_panel(arguments.panel);
   return panel ? Status() : panel.error();
@@ -359,10 +363,15 @@ Result<Options> understand(const Arguments& arguments) {
   options.sheet = arguments.sheet;
   options.sheet.from = arguments.from;
   options.sheet.to = arguments.to;
+  options.sheet.prints = arguments.prints;
   if (!options.sheet.wanted() && has_image_options(options.sheet)) {
     return usage(
-        "--moments, --sides, --elevation, --size, --front, --body and --method are for --sheet and "
+        "--moments, --sides, --elevation, --size, --whole-ground, --front, --body and --method are "
+        "for --sheet and "
         "--strip");
+  }
+  if (options.sheet.whole_ground && options.sheet.ground.empty()) {
+    return usage("--whole-ground is for --ground");
   }
   if (options.table && options.sheet.wanted()) {
     return usage("--sheet and --strip show characters, but the input is a table");

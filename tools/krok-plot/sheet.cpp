@@ -14,6 +14,8 @@
 #include "formats/io/open_terrain.h"
 #include "render/strip.h"
 #include "tools/cli/one_of.h"
+#include "tools/krok-plot/sheet_ground.h"
+#include "tools/shared/shown_ground.h"
 #include "tools/shared/skin_method_option.h"
 
 namespace krok::cli::plot {
@@ -24,10 +26,9 @@ constexpr int kSheetMoments = 8;
 constexpr int kStripMoments = 10;
 constexpr int kStripWidth = 2400;
 constexpr int kPathPoints = 400;
-constexpr int kNetSquares = 14;        // from the actor to the edge of the ground that is shown
-constexpr double kNetSpacing = 0.025;  // metres
-constexpr float kBorder = 0.06F;       // metres
-constexpr render::Colour kGroundColour = render::colour(0x8fa39a);
+constexpr double kAroundActor = 0.35;  // metres of ground on each side of an actor
+constexpr double kAroundWay = 0.6;     // metres on each side of a way
+constexpr double kDeepest = 2;         // metres below the hips: deeper ground is not shown
 
 // A character at the times shown.
 struct Shown {
@@ -72,58 +73,33 @@ Result<ImageSpan> span_of(const MovingActor& actor, const SheetOptions& options)
   return span;
 }
 
-// The ground around an actor, as a net of squares; nothing that is higher than `top` metres.
-render::Surface ground_around(const Terrain& ground, const Vec3& centre, double top) {
-  render::Surface surface;
-  surface.colours = {kGroundColour};
-  auto triangles = std::make_shared<render::Triangles>();
-  std::vector<std::int64_t> numbers;  // of the vertices; -1 where there is no ground
-  for (int row = 0; row <= 2 * kNetSquares; ++row) {
-    for (int column = 0; column <= 2 * kNetSquares; ++column) {
-      const double x = centre.x() + kNetSpacing * (column - kNetSquares);
-      const double z = centre.z() + kNetSpacing * (row - kNetSquares);
-      const auto point = ground.at(x, z, top);
-      numbers.push_back(point ? static_cast<std::int64_t>(surface.positions.size()) : -1);
-      if (!point) continue;
-      surface.positions.push_back(Vec3(x, point->height, z).cast<float>());
-    }
+// What lies below the actors.
+struct SheetGround {
+  std::unique_ptr<const Terrain> terrain;  // null for none
+  std::vector<draw::ViewedPrint> prints;
+};
+
+// Below an actor, or below its whole way.
+GroundPart part_below(const MovingActor& source, const ImageSpan& span, double time, bool whole) {
+  GroundPart part;
+  const Vec3 here = source.carrier(time);
+  Eigen::AlignedBox2d box(Vec2(here.x(), here.z()));
+  part.bottom = part.top = here.y();
+  for (int i = 0; whole && i <= kPathPoints; ++i) {
+    const Vec3 at = source.carrier(span.start + (span.end - span.start) * i / kPathPoints);
+    box.extend(Vec2(at.x(), at.z()));
+    part.bottom = std::min(part.bottom, at.y());
+    part.top = std::max(part.top, at.y());
   }
-  constexpr int kColumns = 2 * kNetSquares + 1;
-  for (int i = 0; i + kColumns + 1 < static_cast<int>(numbers.size()); ++i) {
-    if (i % kColumns == kColumns - 1) continue;
-    const auto corner = [&](int to) { return numbers[static_cast<std::size_t>(i + to)]; };
-    const std::array corners = {corner(0), corner(1), corner(kColumns), corner(kColumns + 1)};
-    if (std::ranges::min(corners) < 0) continue;
-    const auto a = [&](std::size_t k) { return static_cast<std::uint32_t>(corners[k]); };
-    triangles->push_back({a(0), a(2), a(1)});
-    triangles->push_back({a(1), a(2), a(3)});
-  }
-  // A border that goes down, so that the ground is seen from the side.
-  const auto border = [&](int from, int to) {
-    const std::int64_t one = numbers[static_cast<std::size_t>(from)];
-    const std::int64_t two = numbers[static_cast<std::size_t>(to)];
-    if (one < 0 || two < 0) return;
-    const auto low = static_cast<std::uint32_t>(surface.positions.size());
-    for (const std::int64_t corner : {one, two}) {
-      const Vec3f above = surface.positions[static_cast<std::size_t>(corner)];
-      surface.positions.emplace_back(above - Vec3f(0, kBorder, 0));
-    }
-    const auto a = static_cast<std::uint32_t>(one), b = static_cast<std::uint32_t>(two);
-    triangles->push_back({a, b, low});
-    triangles->push_back({b, low + 1, low});
-  };
-  for (int i = 0; i + 1 < kColumns; ++i) {
-    border(i, i + 1);
-    border(kColumns * (kColumns - 1) + i, kColumns * (kColumns - 1) + i + 1);
-    border(i * kColumns, (i + 1) * kColumns);
-    border(i * kColumns + kColumns - 1, (i + 1) * kColumns + kColumns - 1);
-  }
-  surface.triangles = std::move(triangles);
-  return surface;
+  const Vec2 around = Vec2::Constant(whole ? kAroundWay : kAroundActor);
+  part.low = box.min() - around;
+  part.high = box.max() + around;
+  part.bottom -= kDeepest;
+  return part;
 }
 
-Result<Shown> show(const MovingActor& source, const SheetOptions& options, const Terrain* ground,
-                   int moments, int jobs) {
+Result<Shown> show(const MovingActor& source, const SheetOptions& options,
+                   const SheetGround& ground, int moments, int jobs) {
   Shown shown;
   shown.source = &source;
   const auto span = span_of(source, options);
@@ -137,10 +113,15 @@ Result<Shown> show(const MovingActor& source, const SheetOptions& options, const
     for (std::size_t i = begin; i < end; ++i) {
       const double time = shown.moments[i].time;
       shown.actors[i] = shown.source->at(time);
-      if (ground == nullptr) continue;
-      render::Surface around =
-          ground_around(*ground, shown.actors[i].centre, shown.source->carrier(time).y());
-      if (!around.positions.empty()) shown.actors[i].surfaces.push_back(std::move(around));
+      if (ground.terrain == nullptr) continue;
+      const GroundPart part = part_below(source, shown.span, time, options.whole_ground);
+      for (render::Surface& surface : ground_surfaces(*ground.terrain, ground.prints, part)) {
+        shown.actors[i].surfaces.push_back(std::move(surface));
+      }
+      if (options.whole_ground) {
+        const Vec2 middle = (part.low + part.high) / 2;
+        shown.actors[i].centre = {middle.x(), 0, middle.y()};
+      }
     }
   });
   return shown;
@@ -149,7 +130,7 @@ Result<Shown> show(const MovingActor& source, const SheetOptions& options, const
 using ShownActors = std::vector<Shown>;
 
 Result<ShownActors> show_all(const std::vector<MovingActor>& actors, const SheetOptions& options,
-                             const Terrain* ground, int moments, int jobs) {
+                             const SheetGround& ground, int moments, int jobs) {
   ShownActors all;
   for (const MovingActor& actor : actors) {
     auto shown = show(actor, options, ground, moments, jobs);
@@ -173,6 +154,7 @@ render::Sheet contact_sheet(const ShownActors& all, const std::vector<ImageSide>
       row.note = fmt::format("{}   {}", side.name, shown.source->facts);
       row.yaw = front_of(shown, options) + side.yaw;
       row.elevation = side.elevation;
+      row.own_ground = !options.ground.empty();
       for (std::size_t i = 0; i < shown.moments.size(); ++i) {
         render::SheetCell cell;
         cell.layers = {{&shown.actors[i]}};
@@ -257,7 +239,7 @@ Status write(const render::Sheet& sheet, const render::SheetOptions& options,
 }
 
 Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
-                  const SheetOptions& options, const Terrain* ground, ToolContext& context) {
+                  const SheetOptions& options, const SheetGround& ground, ToolContext& context) {
   const auto all = show_all(actors, options, ground, kSheetMoments, context.jobs);
   if (!all) return all.error();
   render::SheetOptions how;
@@ -268,7 +250,7 @@ Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<Imag
 }
 
 Status make_strip(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
-                  const SheetOptions& options, const Terrain* ground, ToolContext& context) {
+                  const SheetOptions& options, const SheetGround& ground, ToolContext& context) {
   const auto all = show_all(actors, options, ground, kStripMoments, context.jobs);
   if (!all) return all.error();
   std::deque<render::StripCells> cells;
@@ -316,6 +298,8 @@ void declare_sheet(CommandOptions& command, SheetOptions& options) {
                   "krok-walk: a mesh, a height field, or stairs:rise=17cm,run=29cm, slope:12deg, "
                   "rough:seed=1,height=8cm")
       .type_name("IN");
+  command.add_flag("--whole-ground", options.whole_ground,
+                   "Show the ground of the whole way in each image, seen from one place");
   declare_image_options(command, options.image, kSheetMoments);
   command
       .add_option("--front", options.front,
@@ -343,17 +327,25 @@ Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& o
   }
   const auto actors = read_actors(inputs, options.body, options.method, context);
   if (!actors) return actors.error();
-  std::unique_ptr<Terrain> ground;
+  SheetGround ground;
   if (!options.ground.empty()) {
     auto opened = io::open_terrain(options.ground, {}, context);
     if (!opened) return opened.error();
-    ground = *std::move(opened);
+    ground.terrain = *std::move(opened);
+    if (!options.prints.empty()) {
+      const auto prints = open_prints(options.prints, context);
+      if (!prints) return prints.error();
+      const auto shown = show_prints(*prints, *ground.terrain, {}, context);
+      if (!shown) return Error(shown.error()).in_file(options.prints);
+      ground.prints = viewed_prints(*shown);
+    }
   }
   if (!options.sheet.empty()) {
-    if (Status status = make_sheet(*actors, *sides, options, ground.get(), context); !status)
+    if (Status status = make_sheet(*actors, *sides, options, ground, context); !status) {
       return status;
+    }
   }
-  if (!options.strip.empty()) return make_strip(*actors, *sides, options, ground.get(), context);
+  if (!options.strip.empty()) return make_strip(*actors, *sides, options, ground, context);
   return {};
 }
 

@@ -23,6 +23,8 @@ struct SheetOptions {
   ImageOptions image;
   std::string from, to;
   std::string ground;  // what io::open_terrain() takes; empty: level at 0
+  std::string prints;  // a file of footprints on it, or empty
+  bool whole_ground = false;
   Front front = Front::actor;
   BodyChoice body = BodyChoice::automatic;
   SkinMethod method = SkinMethod::linear;

@@ -8,6 +8,7 @@
 #include "terrain/spec.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-retarget/run.h"
+#include "tools/shared/ground_option.h"
 #include "tools/shared/orientation_option.h"
 #include "tools/shared/planting.h"
 #include "tools/shared/role_input.h"
@@ -113,6 +114,7 @@ Status check(const Options& options) {
   if (!options.ground.empty() && options.feet == krok::retarget::Feet::free) {
     return Error("usage", "--ground keeps the feet, --feet free does not");
   }
+  if (Status status = check_ground_text(options.ground); !status) return status;
   const auto how = parse(options);
   return how ? Status() : how.error();
 }

@@ -22,8 +22,10 @@ TEST_F(WalkOnTerrain, HoldsWhatItsReadmeTells) {
   const ToolRun made = story("'a folder'");
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const fs::path out = folder_ / "a folder";
-  for (const char* name : {"hill.anim", "hill.keys.json", "prints.csv", "hill.glb", "hill.html",
-                           "hill.png", "stairs.anim", "stairs.png", "stones.anim", "stones.png"}) {
+  for (const char* name :
+       {"hill.anim", "hill.keys.json", "prints.csv", "hill.glb", "hill.html", "hill.png",
+        "hill.svg", "stairs.anim", "stairs.html", "stairs.png", "stones.anim", "stones.html",
+        "stones.png", "child.anim", "child.keys.json", "child.html"}) {
     EXPECT_TRUE(fs::exists(out / name)) << name;
   }
   for (const char* walk : {"hill", "stairs", "stones"}) {
@@ -33,6 +35,11 @@ TEST_F(WalkOnTerrain, HoldsWhatItsReadmeTells) {
     EXPECT_TRUE(report["issues"].empty()) << walk << report["issues"].dump();
     for (const json& step : steps) EXPECT_LT(step["missed"].get<double>(), 1e-4) << walk;
   }
+  // The child stands on the same stairs.
+  const json child = json::parse(get(out / "child.json"))["result"]["ground"];
+  EXPECT_LT(child["drift"], 1e-3);
+  EXPECT_LT(child["off_ground"], 1e-3);
+  EXPECT_EQ(child["frames_out_of_reach"], 0);
   const std::string readme = told("README.md");
   const auto at = made.err.find("hill.anim: ");
   ASSERT_NE(at, std::string::npos);
