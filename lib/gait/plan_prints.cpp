@@ -17,6 +17,8 @@ constexpr double kPlanGrid = 0.005;      // metres, of places for feet on uneven
 constexpr double kMaxPlanPlaces = 5e6;   // of them
 constexpr double kStorey = 0.6;          // metres: what is higher than this is overhead
 constexpr double kEndRange = 0.4;        // metres by which the last prints may be short of the end
+constexpr double kBesideRange = 0.3;     // metres by which one may be before the other
+constexpr double kBesideCost = 2;        // per metre of that, and of the rise from one to the other
 constexpr double kToesOutCost = 0.3;     // of a step's length squared
 constexpr double kShortOfEndCost = 4;    // per metre
 constexpr double kStandingWidth = 1.25;  // of the sole's, from heel to heel
@@ -88,6 +90,9 @@ class PrintPlanner {
   }
 
  private:
+  // The places of prints below are along the path, without the first two; the last print is set
+  // beside the one before it.
+
   // Steps from the begin to places every spacing_: where the way is straight, one in step_length.
   void count_steps();
   Status follow_ground();
@@ -104,6 +109,7 @@ class PrintPlanner {
   struct End {
     double cost = kNever;
     std::size_t place = 0, side = 0;
+    std::size_t beside = 0;  // place of the other foot
   };
   End best_end(const PlaceStates& states) const;
   Result<std::vector<double>> fitted_places() const;
@@ -174,7 +180,7 @@ std::vector<double> PrintPlanner::even_places() const {
     const double part = (wanted - steps_[i]) / std::max(steps_[i + 1] - steps_[i], 1e-12);
     places.push_back((static_cast<double>(i) + std::clamp(part, 0.0, 1.0)) * spacing_);
   }
-  places.push_back(path_.length());
+  places.insert(places.end(), 2, path_.length());
   return places;
 }
 
@@ -210,7 +216,7 @@ bool PrintPlanner::all_fit(const std::vector<double>& places) const {
     if (std::abs(next.height - last.height) > options_.max_rise) return false;
     last = next;
   }
-  return under(places.back(), other_foot(side)).place == SolePlace::whole;
+  return true;
 }
 
 PlaceStates PrintPlanner::possible_places() const {
@@ -256,17 +262,23 @@ std::size_t PrintPlanner::find_ways(PlaceStates& states) const {
 
 PrintPlanner::End PrintPlanner::best_end(const PlaceStates& states) const {
   End best;
+  const auto range = static_cast<std::size_t>(kBesideRange / spacing_);
   for (std::size_t i = steps_.size(); i-- > 1;) {
     const double missing = path_.length() - length_of(i);
     if (missing > kEndRange) break;
     for (std::size_t side = 0; side < 2; ++side) {
-      const PlaceState& beside = states[1 - side][i];
-      const double cost = states[side][i].cost + kShortOfEndCost * missing;
-      const double rise = std::abs(beside.sole.height - states[side][i].sole.height);
-      if (!(cost < best.cost) || beside.sole.place == SolePlace::none || rise > options_.max_rise) {
-        continue;
+      const PlaceState& last = states[side][i];
+      const double cost = last.cost + kShortOfEndCost * missing;
+      if (!(cost < best.cost)) continue;
+      // Where stairs are crossed at an angle, both feet may not find room side by side.
+      for (std::size_t k = i > range ? i - range : 1; k < std::min(i + range, steps_.size()); ++k) {
+        const SoleGround& beside = states[1 - side][k].sole;
+        const double rise = std::abs(beside.height - last.sole.height);
+        if (beside.place == SolePlace::none || rise > options_.max_rise) continue;
+        const double apart = std::abs(length_of(k) - length_of(i));
+        const double both = cost + kBesideCost * (apart + rise);
+        if (both < best.cost) best = {both, i, side, k};
       }
-      best = {cost, i, side};
     }
   }
   return best;
@@ -307,6 +319,7 @@ Result<std::vector<double>> PrintPlanner::fitted_places() const {
     i = static_cast<std::size_t>(states[side][i].from);
   }
   std::reverse(places.begin(), places.end());
+  places.push_back(length_of(end.beside));
   return places;
 }
 
@@ -318,12 +331,11 @@ std::vector<Print> PrintPlanner::prints_at(const std::vector<double>& places) co
     prints.push_back(print_at(place, side));
     side = other_foot(side);
   }
-  prints.push_back(print_at(places.back(), side));
   // The last foot is set beside the other one: later, but the path does not say when.
   prints.back().time.reset();
   std::size_t index = 0;
   for (Print& print : prints) {
-    const double length = index < 2 ? 0 : places[std::min(index - 2, places.size() - 1)];
+    const double length = index < 2 ? 0 : places[index - 2];
     const double near = ground_near(length);
     print = rounded(print);
     // Where something is overhead, the print says on which storey it is.

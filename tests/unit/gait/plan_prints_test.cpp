@@ -107,6 +107,27 @@ TEST(PlanPrints, StairsHaveAFootOnEachTread) {
   }
 }
 
+// Would fail if a walk could not end on stairs that it crosses at an angle, where treads have no
+// room for two feet side by side: one is then a little ahead, on the same tread if possible.
+TEST(PlanPrints, EndsOnStairsCrossedAtAnAngle) {
+  const auto stairs = ground_of("stairs:rise=17cm,run=29cm");
+  const PlanOptions options;
+  for (const double x : {0.0, 0.5, 1.0, 1.5, 2.5}) {
+    for (const double z : {3.6, 3.8, 4.0, 4.2}) {
+      const auto path = *Path::create(std::vector<PathPoint>{{0, 0, {}}, {x, z, {}}});
+      const auto plan = plan_prints(path, *stairs, options);
+      ASSERT_TRUE(plan) << x << " " << z << ": " << plan.error().message;
+      const Print &last = plan->prints.back(), &before = plan->prints[plan->prints.size() - 2];
+      EXPECT_NE(last.side, before.side);
+      EXPECT_LT(std::abs(step_between(before, last).x()), 0.3 + 1e-6) << x << " " << z;
+      EXPECT_LE(
+          std::abs(stairs->at(last.x, last.z)->height - stairs->at(before.x, before.z)->height),
+          0.1701);
+      EXPECT_LT(std::hypot(last.x - x, last.z - z), 0.75) << x << " " << z;
+    }
+  }
+}
+
 // Stones of 34 cm every 60 cm, nothing between them.
 std::unique_ptr<Terrain> stones(int count, double apart) {
   std::vector<terrain::GroundTriangle> mesh;
