@@ -136,10 +136,4 @@ CommandOption CommandOptions::get_option(const std::string& name) {
 std::size_t CommandOptions::count(const std::string& name) const {
   return app_.count(name);
 }
-void CommandOptions::group_remaining(const std::string& name) {
-  for (CLI::Option* option : app_.get_options()) {
-    if (option->get_group() == "Options" && !option->get_positional()) option->group(name);
-  }
-}
-
 }  // namespace krok::cli

@@ -82,8 +82,6 @@ class CommandOptions {
   CommandOption get_option(const std::string& name);
   // Number of times an option was given.
   std::size_t count(const std::string& name) const;
-  // Puts all options without a group into this one; positionals are left alone.
-  void group_remaining(const std::string& name);
 
  private:
   template <typename Value>

@@ -40,90 +40,54 @@ CommandOption add_list(CommandOptions& command, const std::string& name,
 }
 
 void declare_motions(CommandOptions& command, Arguments& a) {
-  const char* group = "Motions";
-  add_list(command, "--show", a.show,
-           "Charts to draw, in order: path (from above), feet (height, speed), angles "
-           "(of hips, knees, ankles, shoulders, elbows), positions, difference; "
-           "comma-separated. Default: path, feet and angles, as far as the skeleton "
-           "has them")
-      .type_name("CHARTS")
-      .group(group);
-  add_list(command, "--joint", a.joints,
-           "Show this joint: its position, and its rotation from the reference pose "
-           "relative to its parent; with --show positions or angles, one of the two. "
-           "* matches any characters; repeatable")
-      .type_name("NAME")
-      .group(group);
+  command.group("Motions");
+  add_list(command, "--show CHARTS", a.show,
+           "Charts to draw, in order: path (from above), feet (height, speed), angles (of hips, "
+           "knees, ankles, shoulders, elbows), positions, difference; comma-separated. Default: "
+           "path, feet and angles, as far as the skeleton has them");
+  add_list(command, "--joint NAME", a.joints,
+           "Show this joint: its position, and its rotation from the reference pose relative to "
+           "its parent; with --show positions or angles, one of the two. * matches any characters; "
+           "repeatable");
+  command.add_option("--euler ORDER", a.euler,
+                     "Show joint rotations as Euler angles in this order: ZXY is R = Rz Rx Ry");
+  command.add_option("--from TIME", a.from,
+                     "Start time: 1.5s, 250ms, or 120f for a frame; a bare number is seconds");
+  command.add_option("--to TIME", a.to, "End time");
+  command.add_flag("--difference", a.difference,
+                   "Distances between the joints of two motions: the same as --show difference");
   command
-      .add_option("--euler", a.euler,
-                  "Show joint rotations as Euler angles in this order: ZXY is R = Rz "
-                  "Rx Ry")
-      .type_name("ORDER")
-      .group(group);
-  command
-      .add_option("--from", a.from,
-                  "Start time: 1.5s, 250ms, or 120f for a frame; a bare number is "
-                  "seconds")
-      .type_name("TIME")
-      .group(group);
-  command.add_option("--to", a.to, "End time").type_name("TIME").group(group);
-  command
-      .add_flag("--difference", a.difference,
-                "Distances between the joints of two motions: the same as --show "
-                "difference")
-      .group(group);
-  command
-      .add_option("--keys", a.keys,
-                  "Contacts and keytimes to draw: a file, none, or auto, which uses "
-                  "NAME.keys.json next to the motion if it exists")
-      .type_name("IN.json|auto|none")
-      .default_str(a.keys)
-      .group(group);
-  add_map_option(command, a.map).group(group);
-  add_prints_option(
-      command, a.prints,
-      "Footprints (formats/prints/SPEC.md) to draw in the path from above and, on the "
-      "ground of --ground, in images")
-      .group(group);
+      .add_option("--keys IN.json|auto|none", a.keys,
+                  "Contacts and keytimes to draw: a file, none, or auto, which uses NAME.keys.json "
+                  "next to the motion if it exists")
+      .default_str(a.keys);
+  add_map_option(command, a.map);
+  add_prints_option(command, a.prints,
+                    "Footprints (formats/prints/SPEC.md) to draw in the path from above and, on "
+                    "the ground of --ground, in images");
 }
 
 void declare_tables(CommandOptions& command, Arguments& a) {
-  const char* group = "Tables";
-  command
-      .add_flag("--table", a.table,
-                "The inputs are tables (CSV); implied for .csv and .tsv files. Units are "
-                "read from column names: time [s], time (s), time_s")
-      .group(group);
-  command
-      .add_option("--x", a.x,
-                  "The x column; default: the time column, or the "
-                  "first")
-      .type_name("COLUMN")
-      .group(group);
-  add_list(command, "--y", a.y,
-           "Columns to draw: one, or several for one panel, comma-separated; repeat "
-           "for more panels. Default: all numeric columns, a panel per unit")
-      .type_name("COLUMNS")
-      .group(group);
-  command
-      .add_option("--by", a.by,
-                  "Draw a line per value of this column; default: the only text "
-                  "column, if there is one")
-      .type_name("COLUMN")
-      .group(group);
-  add_list(command, "--where", a.where,
-           "Use only rows with this value in the column; repeat for another column, "
-           "or for alternative values of the same column")
-      .type_name("COLUMN=VALUE")
-      .group(group);
-  command.add_option("--style", a.style, "line, points or both")
-      .type_name("STYLE")
+  command.group("Tables");
+  command.add_flag("--table", a.table,
+                   "The inputs are tables (CSV); implied for .csv and .tsv files. Units are read "
+                   "from column names: time [s], time (s), time_s");
+  command.add_option("--x COLUMN", a.x, "The x column; default: the time column, or the first");
+  add_list(command, "--y COLUMNS", a.y,
+           "Columns to draw: one, or several for one panel, comma-separated; repeat for more "
+           "panels. Default: all numeric columns, a panel per unit");
+  command.add_option(
+      "--by COLUMN", a.by,
+      "Draw a line per value of this column; default: the only text column, if there is one");
+  add_list(command, "--where COLUMN=VALUE", a.where,
+           "Use only rows with this value in the column; repeat for another column, or for "
+           "alternative values of the same column");
+  command.add_option("--style STYLE", a.style, "line, points or both")
       .transform(one_of<draw::SeriesStyle>({{"line", draw::SeriesStyle::line},
                                             {"points", draw::SeriesStyle::points},
                                             {"both", draw::SeriesStyle::line_and_points}}))
-      .default_str("line")
-      .group(group);
-  command.add_flag("--log-x", a.log_x, "Logarithmic x axis").group(group);
+      .default_str("line");
+  command.add_flag("--log-x", a.log_x, "Logarithmic x axis");
 }
 
 Result<std::vector<ChartKind>> parse_charts(const std::vector<std::string>& lists) {
@@ -281,8 +245,8 @@ Status check_fit(const Arguments& a, bool table) {
 }
 
 void declare_images(CommandOptions& command, Arguments& a) {
+  command.group("Images");
   declare_sheet(command, a.sheet);
-  command.group_remaining("Images");
 }
 
 // Whether an option that only applies to images was given.
@@ -299,34 +263,20 @@ bool has_image_options(const SheetOptions& options) {
 
 void declare(CommandOptions& command, Arguments& arguments) {
   command
-      .add_option("inputs", arguments.inputs,
-                  "Motions (.anim, or a capture such as BVH) or tables (.csv); "
-                  "several share the same panels. For images also models and "
-                  "characters (.model, .character, animated by the motions of their "
-                  "skeleton) and glTF")
-      .type_name("IN")
+      .add_option("inputs IN", arguments.inputs,
+                  "Motions (.anim, or a capture such as BVH) or tables (.csv); several share the "
+                  "same panels. For images also models and characters (.model, .character, "
+                  "animated by the motions of their skeleton) and glTF")
       .required();
   declare_motions(command, arguments);
   declare_tables(command, arguments);
-  const char* group = "Chart";
-  command
-      .add_flag("--log-y", arguments.log_y,
-                "Logarithmic y axis; for motions, of speeds and differences")
-      .group(group);
-  command
-      .add_option("--title", arguments.title,
-                  "Title; default: the name of the "
-                  "input")
-      .type_name("WORDS")
-      .group(group);
-  add_whole(command, "--columns", arguments.columns, "Number of panels per row; default: 2", 1, 20)
-      .group(group);
-  command
-      .add_option("--panel", arguments.panel,
-                  "Size of each panel in pixels, at 96 dpi [340x170, a single one "
-                  "640x260]")
-      .type_name("WIDTHxHEIGHT")
-      .group(group);
+  command.group("Chart");
+  command.add_flag("--log-y", arguments.log_y,
+                   "Logarithmic y axis; for motions, of speeds and differences");
+  command.add_option("--title WORDS", arguments.title, "Title; default: the name of the input");
+  add_whole(command, "--columns", arguments.columns, "Number of panels per row; default: 2", 1, 20);
+  command.add_option("--panel WIDTHxHEIGHT", arguments.panel,
+                     "Size of each panel in pixels, at 96 dpi [340x170, a single one 640x260]");
   declare_images(command, arguments);
 }
 

@@ -281,40 +281,32 @@ Status make_strip(const std::vector<MovingActor>& actors, const std::vector<Imag
 }  // namespace
 
 void declare_sheet(CommandOptions& command, SheetOptions& options) {
-  command
-      .add_option("--sheet", options.sheet,
-                  "Contact sheet as PNG: characters at several times, in rows by file and "
-                  "side; materials with base colours and textures (PNG, JPEG), cut out where "
-                  "alpha is below their cutoff, or below one half for blended ones")
-      .type_name("OUT.png");
-  command
-      .add_option("--strip", options.strip,
-                  "Motion strip as PNG: a character at several times in one image, earlier "
-                  "ones fainter")
-      .type_name("OUT.png");
-  command
-      .add_option("--ground", options.ground,
-                  "Ground to show below each actor and in the charts path and feet, as for "
-                  "krok-walk: a mesh, a height field, or stairs:rise=17cm,run=29cm, slope:12deg, "
-                  "rough:seed=1,height=8cm")
-      .type_name("IN");
+  command.add_option("--sheet OUT.png", options.sheet,
+                     "Contact sheet as PNG: characters at several times, in rows by file and side; "
+                     "materials with base colours and textures (PNG, JPEG), cut out where alpha is "
+                     "below their cutoff, or below one half for blended ones");
+  command.add_option(
+      "--strip OUT.png", options.strip,
+      "Motion strip as PNG: a character at several times in one image, earlier ones fainter");
+  command.add_option(
+      "--ground IN", options.ground,
+      "Ground to show below each actor and in the charts path and feet, as for krok-walk: a mesh, "
+      "a height field, or stairs:rise=17cm,run=29cm, slope:12deg, rough:seed=1,height=8cm");
   command.add_flag("--whole-ground", options.whole_ground,
                    "Show the ground of the whole way in each image, seen from one place");
   declare_image_options(command, options.image, kSheetMoments);
   command
-      .add_option("--front", options.front,
-                  "What counts as the front: the facing at the first time (actor), "
-                  "or +Z, the facing in the reference pose (world)")
-      .type_name("WHAT")
+      .add_option("--front WHAT", options.front,
+                  "What counts as the front: the facing at the first time (actor), or +Z, the "
+                  "facing in the reference pose (world)")
       .transform(one_of<Front>({{"actor", Front::actor}, {"world", Front::world}}))
       .default_str("actor");
   add_body_option(command, options.body,
-                  "Body for motions without a model: low (2,500 vertices), medium "
-                  "(10,000), high (40,000), auto: low for more than two files, else "
-                  "medium; none: bones only");
+                  "Body for motions without a model: low (2,500 vertices), medium (10,000), high "
+                  "(40,000), auto: low for more than two files, else medium; none: bones only");
   add_skin_method(command, options.method,
-                  "Skinning method: linear, as viewers use it, dual-quaternion, which "
-                  "keeps the volume of twisted joints, or rigid; not for glTF files");
+                  "Skinning method: linear, as viewers use it, dual-quaternion, which keeps the "
+                  "volume of twisted joints, or rigid; not for glTF files");
 }
 
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,

@@ -53,57 +53,43 @@ namespace {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("input", options.input,
+      .add_option("input IN.anim", options.input,
                   "Motion, or a capture read as by krok-import (- is standard input)")
-      .type_name("IN.anim")
       .required();
   command
-      .add_option("--onto", options.onto,
+      .add_option("--onto IN.model|IN.anim", options.onto,
                   "Target skeleton: a model, or any motion or capture of it")
-      .type_name("IN.model|IN.anim")
       .required();
+  command.group("Joints");
   add_map_option(command, options.map, "--map",
-                 "Role map (JSON) for input joints whose names do not identify them")
-      .group("Joints");
-  add_map_option(command, options.onto_map, "--onto-map", "The same for the target's joints")
-      .group("Joints");
+                 "Role map (JSON) for input joints whose names do not identify them");
+  add_map_option(command, options.onto_map, "--onto-map", "The same for the target's joints");
   command
-      .add_option(
-          "--reference-pose", options.reference_pose,
-          "Pose of the input that matches the target's reference pose: a frame number, or auto: "
-          "its own reference pose or, if that is not a standing pose, the frame nearest to a "
-          "T-pose")
-      .type_name("POSE")
-      .default_str("auto")
-      .group("Joints");
+      .add_option("--reference-pose POSE", options.reference_pose,
+                  "Pose of the input that matches the target's reference pose: a frame number, or "
+                  "auto: its own reference pose or, if that is not a standing pose, the frame "
+                  "nearest to a T-pose")
+      .default_str("auto");
   command
-      .add_option("--onto-reference-pose", options.onto_reference_pose,
+      .add_option("--onto-reference-pose POSE", options.onto_reference_pose,
                   "The same for a target that is a motion")
-      .type_name("POSE")
-      .default_str("auto")
-      .group("Joints");
+      .default_str("auto");
+  command.group("Motion");
   add_choice<krok::retarget::Feet>(
       command, "--feet", options.feet,
       {{"keep", krok::retarget::Feet::keep}, {"free", krok::retarget::Feet::free}},
-      "keep: foot positions follow the input's, scaled, and stay above the "
-      "floor; free: from the leg rotations only",
-      "HOW", "keep")
-      .group("Motion");
-  command
-      .add_option("--scale", options.scale,
-                  "Scale of the root motion; default: ratio of leg lengths")
-      .type_name("NUMBER")
-      .group("Motion");
-  command
-      .add_option(
-          "--ground", options.ground,
-          "Ground that the motion was made for, as for krok-walk: the target walks on it, too, "
-          "with its feet where the input's stand. A height field (.exr, 16-bit .png), a mesh "
-          "(.gltf, .glb, .obj), or " +
-              std::string(terrain::kSpecForms))
-      .type_name("IN")
-      .group("Ground");
-  add_contacts_option(command, options.contacts).group("Ground");
+      "keep: foot positions follow the input's, scaled, and stay above the floor; free: from the "
+      "leg rotations only",
+      "HOW", "keep");
+  command.add_option("--scale NUMBER", options.scale,
+                     "Scale of the root motion; default: ratio of leg lengths");
+  command.group("Ground");
+  command.add_option("--ground IN", options.ground,
+                     "Ground that the motion was made for, as for krok-walk: the target walks on "
+                     "it, too, with its feet where the input's stand. A height field (.exr, 16-bit "
+                     ".png), a mesh (.gltf, .glb, .obj), or " +
+                         std::string(terrain::kSpecForms));
+  add_contacts_option(command, options.contacts);
   add_orientation_option(command, options.orientation);
 }
 

@@ -13,19 +13,15 @@ namespace {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("inputs", options.inputs,
-                  "Motions (.anim, or a capture such as BVH), models and characters "
-                  "(.model, .character, animated by the motions of their skeleton), "
-                  "cameras (.cam), glTF; for a folder, all motions, characters and "
-                  "glTF in it")
-      .type_name("IN")
+      .add_option("inputs IN", options.inputs,
+                  "Motions (.anim, or a capture such as BVH), models and characters (.model, "
+                  ".character, animated by the motions of their skeleton), cameras (.cam), glTF; "
+                  "for a folder, all motions, characters and glTF in it")
       .required();
   command
-      .add_option("--layout", options.layout,
-                  "Layout of several characters: apart (side by side), together (at "
-                  "their own positions), list (one at a time), or auto: apart for up "
-                  "to four, otherwise list")
-      .type_name("HOW")
+      .add_option("--layout HOW", options.layout,
+                  "Layout of several characters: apart (side by side), together (at their own "
+                  "positions), list (one at a time), or auto: apart for up to four, otherwise list")
       .transform(one_of<Layout>({{"auto", Layout::automatic},
                                  {"apart", Layout::apart},
                                  {"together", Layout::together},
@@ -38,31 +34,25 @@ void declare(CommandOptions& command, Options& options) {
                   "Body for motions without a model: none, low (2,500 vertices), medium (10,000), "
                   "high (40,000), or auto: lower detail for more files, none for more than four");
   command
-      .add_option("--keys", options.keys,
+      .add_option("--keys WHICH", options.keys,
                   "Contacts and keytimes to mark on the timeline: auto (from the sidecar "
                   "NAME.keys.json), find (detected as in krok-keys), none")
-      .type_name("WHICH")
       .transform(one_of<KeysChoice>({{"auto", KeysChoice::automatic},
                                      {"find", KeysChoice::find},
                                      {"none", KeysChoice::none}}))
       .default_str("auto");
-  command
-      .add_option(
-          "--goals", options.goals,
-          "Show the goals of a krok-ik file (formats/goals/SPEC.md) on all motions: places, "
-          "chains of joints, and by how much each is missed")
-      .type_name("IN.json");
-  command
-      .add_option("--ground", options.ground,
-                  "Show this ground, as for krok-walk: a height field (.exr, 16-bit .png), a mesh "
-                  "(.gltf, .glb, .obj), or " +
-                      std::string(terrain::kSpecForms))
-      .type_name("IN");
+  command.add_option("--goals IN.json", options.goals,
+                     "Show the goals of a krok-ik file (formats/goals/SPEC.md) on all motions: "
+                     "places, chains of joints, and by how much each is missed");
+  command.add_option("--ground IN", options.ground,
+                     "Show this ground, as for krok-walk: a height field (.exr, 16-bit .png), a "
+                     "mesh (.gltf, .glb, .obj), or " +
+                         std::string(terrain::kSpecForms));
   add_prints_option(command, options.prints,
                     "Show footprints (formats/prints/SPEC.md) on the ground, as krok-walk "
                     "--save-prints writes them; those that a foot stands on are marked");
-  command.add_option("--title", options.title, "The page's title; default: the first file's name")
-      .type_name("WORDS");
+  command.add_option("--title WORDS", options.title,
+                     "The page's title; default: the first file's name");
 }
 
 }  // namespace

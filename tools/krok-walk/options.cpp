@@ -22,137 +22,92 @@ Error usage(std::string message, std::string hint = {}) {
 }
 
 void declare_way(CommandOptions& command, Arguments& a) {
-  const char* group = "Where to";
+  command.group("Where to");
+  command.add_option(
+      "--path IN", a.path,
+      "Path to follow: an SVG, a table (.csv) or .json (formats/path/SPEC.md), another motion, "
+      "whose hips' path is taken, or a scene (.gltf, .glb) with an animated node");
+  command.add_option("--path-id ID", a.path_id,
+                     "Element of the SVG (default: the first path), joint of the motion (the hips) "
+                     "or node of the scene (the first that travels)");
+  command.add_option("--path-scale LENGTH", a.path_scale, "Length of a unit of the SVG")
+      .capture_default_str();
+  command.add_option(
+      "--prints IN", a.prints,
+      "Footprints, .csv or .json (formats/prints/SPEC.md); the walker stands on the first two");
   command
-      .add_option(
-          "--path", a.path,
-          "Way to follow: an SVG, a table (.csv) or .json (formats/path/SPEC.md), another "
-          "motion, whose hips' way is taken, or a scene (.gltf, .glb) with a node that goes")
-      .type_name("IN")
-      .group(group);
-  command
-      .add_option("--path-id", a.path_id,
-                  "Element of the SVG (default: the first path), joint of the motion (the hips) or "
-                  "node of the scene (the first that goes anywhere)")
-      .type_name("ID")
-      .group(group);
-  command.add_option("--path-scale", a.path_scale, "Length of a unit of the SVG")
-      .type_name("LENGTH")
-      .capture_default_str()
-      .group(group);
-  command
-      .add_option("--prints", a.prints,
-                  "Footprints, .csv or .json (formats/prints/SPEC.md); the walker stands on the "
-                  "first two")
-      .type_name("IN")
-      .group(group);
-  command
-      .add_option("--to", a.to,
+      .add_option("--to X,Z", a.to,
                   "Goal on the ground, as x (to the left of a walker who faces +Z) and z: 2m,6m; "
                   "repeat the option for several in a row")
-      .type_name("X,Z")
-      .one_each_time()
-      .group(group);
+      .one_each_time();
   command
-      .add_option("--from", a.from,
+      .add_option("--from X,Z[,ANGLE]", a.from,
                   "Where --to begins, and which way the walker faces there, from +Z towards +X")
-      .type_name("X,Z[,ANGLE]")
-      .default_str("0,0,0deg")
-      .group(group);
-  command
-      .add_option("--save-prints", a.save_prints,
-                  "Write the footprints that are walked, .csv or .json, to be edited and handed "
-                  "back with --prints")
-      .type_name("OUT")
-      .group(group);
+      .default_str("0,0,0deg");
+  command.add_option("--save-prints OUT", a.save_prints,
+                     "Write the footprints that are walked, .csv or .json, to be edited and handed "
+                     "back with --prints");
 }
 
 void declare_ground(CommandOptions& command, Arguments& a) {
-  const char* group = "Ground";
+  command.group("Ground");
   command
-      .add_option("--ground", a.ground,
+      .add_option("--ground IN", a.ground,
                   "A height field (.exr, 16-bit .png), a mesh (.gltf, .glb, .obj), or one of " +
                       std::string(terrain::kSpecForms) +
                       "; stairs and slopes begin 1 m ahead along +Z")
-      .type_name("IN")
-      .capture_default_str()
-      .group(group);
-  command
-      .add_option("--ground-size", a.ground_size,
-                  "Size of a height field along X and Z; otherwise from its sidecar "
-                  "NAME.ground.json (formats/height_field/SPEC.md)")
-      .type_name("WIDTHxDEPTH")
-      .group(group);
-  command
-      .add_option("--ground-range", a.ground_range,
-                  "Heights of black and white of a height field, or of 0 and 1: 0,1.5m")
-      .type_name("LOW,HIGH")
-      .group(group);
+      .capture_default_str();
+  command.add_option("--ground-size WIDTHxDEPTH", a.ground_size,
+                     "Size of a height field along X and Z; otherwise from its sidecar "
+                     "NAME.ground.json (formats/height_field/SPEC.md)");
+  command.add_option("--ground-range LOW,HIGH", a.ground_range,
+                     "Heights of black and white of a height field, or of 0 and 1: 0,1.5m");
 }
 
 void declare_steps(CommandOptions& command, Arguments& a) {
-  const char* group = "Steps";
-  command
-      .add_option("--step-length", a.step_length,
-                  "Length of steps planned on straight ways (default: as in the library)")
-      .type_name("LENGTH")
-      .group(group);
-  command
-      .add_option("--step-width", a.step_width,
-                  "Distance of planned footprints across the way (default: as in the library)")
-      .type_name("LENGTH")
-      .group(group);
+  command.group("Steps");
+  command.add_option("--step-length LENGTH", a.step_length,
+                     "Length of steps planned on straight paths (default: as in the library)");
+  command.add_option("--step-width LENGTH", a.step_width,
+                     "Distance of planned footprints across the path (default: as in the library)");
   add_choice<FootSide>(command, "--first", a.first,
                        {{"left", FootSide::left}, {"right", FootSide::right}},
-                       "Foot that steps first where footprints are planned", "SIDE", "left")
-      .group(group);
+                       "Foot that steps first where footprints are planned", "SIDE", "left");
   add_number(command, "--speed", a.speed,
              "Speed of the steps relative to the library's; footprints with times have theirs")
-      .capture_default_str()
-      .group(group);
+      .capture_default_str();
+  command.add_flag("--adapt", a.adapt,
+                   "Take the nearest footprint that can be reached where one cannot, leaving the "
+                   "others where they are; reported");
+  command.add_flag("--extrapolate", a.extrapolate,
+                   "Allow steps outside the range of the examples, where they are unproven");
   command
-      .add_flag(
-          "--adapt", a.adapt,
-          "Take the nearest footprint that can be reached where one cannot, leaving the others "
-          "where they are; reported")
-      .group(group);
+      .add_option("--clearance LENGTH", a.clearance,
+                  "Least height of the swing foot over the ground")
+      .capture_default_str();
   command
-      .add_flag("--extrapolate", a.extrapolate,
-                "Allow steps outside the range of the examples, where they are unproven")
-      .group(group);
-  command.add_option("--clearance", a.clearance, "Least height of the swing foot over the ground")
-      .type_name("LENGTH")
-      .capture_default_str()
-      .group(group);
-  command
-      .add_option("--stretch", a.stretch,
+      .add_option("--stretch LENGTH", a.stretch,
                   "Length by which a leg may grow rather than its knee snap straight")
-      .type_name("LENGTH")
-      .capture_default_str()
-      .group(group);
-  add_map_option(command, a.map).group(group);
+      .capture_default_str();
+  add_map_option(command, a.map);
 }
 
 void declare(CommandOptions& command, Arguments& a) {
   command
-      .add_option("libraries", a.libraries,
+      .add_option("libraries IN.steps", a.libraries,
                   "Step libraries made by krok-fit, on one skeleton; each step is taken from the "
                   "one whose examples are nearest, the first and the last from libraries of starts "
                   "and stops where there are any")
-      .type_name("IN.steps")
       .required();
   declare_way(command, a);
   declare_ground(command, a);
   declare_steps(command, a);
-  add_rate(command, "--rate", a.rate, "Frames per second (default: the library's)").group("Output");
+  command.group("Output");
+  add_rate(command, "--rate", a.rate, "Frames per second (default: the library's)");
   add_orientation_option(command, a.orientation);
-  command
-      .add_option(
-          "--view", a.view,
-          "Write a web page, too, that plays the walk on its ground with its footprints, as "
-          "krok-view does")
-      .type_name("OUT.html")
-      .group("Output");
+  command.add_option("--view OUT.html", a.view,
+                     "Write a web page, too, that plays the walk on its ground with its "
+                     "footprints, as krok-view does");
 }
 
 // Numbers of a text "a,b" or "AxB".
@@ -212,8 +167,8 @@ Status take_ground(const Arguments& a, Options& options) {
 Status take_way(const Arguments& a, Options& options) {
   const int ways = (a.path.empty() ? 0 : 1) + (a.prints.empty() ? 0 : 1) + (a.to.empty() ? 0 : 1);
   if (ways != 1) {
-    return usage(ways == 0 ? "no way is given" : "--path, --prints and --to exclude each other",
-                 "give a way with --path, footprints with --prints, or goals with --to X,Z");
+    return usage(ways == 0 ? "no path is given" : "--path, --prints and --to exclude each other",
+                 "give a path with --path, footprints with --prints, or goals with --to X,Z");
   }
   options.path = a.path;
   options.path_id = a.path_id;
@@ -286,13 +241,13 @@ Result<Options> understand(const Arguments& a) {
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-walk", arguments, declare, understand, run);
-  spec.summary = "Walks a character along footprints, a way or to goals, on any ground";
+  spec.summary = "Walks a character along footprints, along a path or to goals, on any ground";
   spec.inputs = "IN.steps...";
   spec.examples = {
       {"krok-walk walking.steps --to 2m,6m -o walk.anim", "to a place on level ground"},
       {"krok-walk walking.steps --path way.svg --ground hills.exr --save-prints prints.csv "
        "-o walk.anim",
-       "along a way that is drawn, over a height field; keeps the footprints"},
+       "along a path drawn in an SVG, over a height field; keeps the footprints"},
       {"krok-walk walking.steps --to 0m,5m --ground stairs:count=8 -o walk.anim --view walk.html",
        "up stairs, with a page to watch it"},
       {"krok-walk level.steps stairs.steps --prints prints.csv --ground "

@@ -171,7 +171,7 @@ TEST_F(KrokWalk, RefusesOrAdaptsWhatIsTooFar) {
 }
 
 TEST_F(KrokWalk, RefusesWrongInput) {
-  refused({}, "usage", "no way is given");
+  refused({}, "usage", "no path is given");
   refused({"--to", "1,2", "--path", "x.svg"}, "usage", "exclude each other");
   refused({"--to", "1"}, "usage", "too few");
   refused({"--to", "1,2,3"}, "usage", "too many");
