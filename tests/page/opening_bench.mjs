@@ -1,4 +1,4 @@
-// How soon krok-view's page shows its figure and how smoothly it plays, beside three.js's own
+// How soon krok-view's page shows its actor and how smoothly it plays, beside three.js's own
 // example of skinning (skinning_peer.html) with the same body and motion, 10,000 vertices and 5,000
 // frames, in a picture as large. Headless Chromium draws both without a graphics card; a new browser
 // for each opening, the two in turn; medians over the rounds. The ratios compare across machines,
@@ -60,7 +60,7 @@ function repeatWalk(name, { frames = Infinity, bytes = Infinity }) {
   writeFileSync(made(name), `${head}Frames: ${kept.length}\n${time}${kept.join('')}`);
 }
 
-// Runs in the page before its own scripts. Notes when the figure has been drawn first and how far
+// Runs in the page before its own scripts. Notes when the actor has been drawn first and how far
 // apart the page's animation frames are.
 function watch() {
   const seen = { shown: null, frames: [], work: [] };
@@ -93,7 +93,7 @@ async function until(page, condition) {
   throw new Error(`waited in vain for ${condition}`);
 }
 
-// Milliseconds from navigation to the drawn figure; those from frame to frame while playing, the
+// Milliseconds from navigation to the drawn actor; those from frame to frame while playing, the
 // mean, for a browser draws at whole parts of the display's rate only; of them the script's; the
 // picture's size.
 async function measure(address, viewport, play) {
@@ -125,7 +125,7 @@ async function measure(address, viewport, play) {
   }
 }
 
-// The peer's page asks for its modules and its figure, as it would of three.js's own server.
+// The peer's page asks for its modules and its actor, as it would of three.js's own server.
 async function servePeer() {
   const three = join(here, '../node_modules/three');
   const types = { js: 'text/javascript', html: 'text/html', glb: 'model/gltf-binary' };
@@ -160,7 +160,7 @@ function report(samples) {
     console.log(`${text.padEnd(34)}${numbers}${(page / peer).toFixed(2).padStart(8)}`);
   };
   console.log(`${''.padEnd(34)}${'krok-view'.padStart(11)}${'three.js'.padStart(11)}${'ratio'.padStart(8)}`);
-  row('opening until the figure is drawn', 'shown', 0);
+  row('opening until the actor is drawn', 'shown', 0);
   row('from frame to frame, playing', 'apart', 1);
   row('  of it the script', 'script', 2);
   console.log(`frames a second: ${(1000 / middle('page', 'apart')).toFixed(0)}, `

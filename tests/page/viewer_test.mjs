@@ -22,7 +22,7 @@ function positionsOf(motion) {
 }
 
 // Of a picture of the canvas: how many different colours it has, a blank one a few, and how many
-// pixels are as blue as the first figure's bones; its body is paler.
+// pixels are as blue as the first actor's bones; its body is paler.
 async function look(page, name) {
   const picture = await page.locator('#view').screenshot();
   if (process.env.KROK_PAGE_SHOTS) {

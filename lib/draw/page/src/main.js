@@ -2,9 +2,9 @@
 // controls.
 
 import { Box3, CameraHelper, PerspectiveCamera, Raycaster, Vector3 } from 'three';
-import { COLOURS, CONTACT_COLOUR, Figure } from './figure.js';
+import { COLOURS, CONTACT_COLOUR, Actor } from './actor.js';
 import { missText } from './goals.js';
-import { GltfFigure } from './gltf_figure.js';
+import { GltfActor } from './gltf_actor.js';
 import { Lanes } from './lanes.js';
 import { CameraTrack, Motion, blobBytes } from './motion.js';
 import { Prints } from './prints.js';
@@ -29,8 +29,8 @@ class Player {
     this.lastRoot = null;
   }
 
-  figures() {
-    return this.items.filter(({ figure, visible }) => figure && visible);
+  actors() {
+    return this.items.filter(({ actor, visible }) => actor && visible);
   }
 
   get duration() {
@@ -66,16 +66,16 @@ class Player {
 
   // Places characters side by side along X, by their start positions, or at their own positions.
   arrange() {
-    const figures = this.figures();
-    const slot = Math.max(0.8, ...figures.map(({ spread }) => spread)) * 1.25;
-    figures.forEach(({ figure, start }, i) => {
-      const shift = figure.group.position.set(0, 0, 0);
-      if (this.shown.apart) shift.set((i - (figures.length - 1) / 2) * slot - start.x, 0, -start.z);
+    const actors = this.actors();
+    const slot = Math.max(0.8, ...actors.map(({ spread }) => spread)) * 1.25;
+    actors.forEach(({ actor, start }, i) => {
+      const shift = actor.group.position.set(0, 0, 0);
+      if (this.shown.apart) shift.set((i - (actors.length - 1) / 2) * slot - start.x, 0, -start.z);
     });
-    for (const { figure, visible } of this.items) {
-      if (figure) {
-        figure.group.visible = visible;
-        figure.show(this.shown);
+    for (const { actor, visible } of this.items) {
+      if (actor) {
+        actor.group.visible = visible;
+        actor.show(this.shown);
       }
     }
     this.lastRoot = null;
@@ -83,7 +83,7 @@ class Player {
   }
 
   update() {
-    for (const { figure } of this.figures()) figure.update(this.time);
+    for (const { actor } of this.actors()) actor.update(this.time);
     for (const { camera, helper } of this.items) {
       if (!camera) continue;
       camera.pose(this.time);
@@ -94,7 +94,7 @@ class Player {
         helper.update();
       }
     }
-    this.prints?.update(this.time, this.figures().map(({ item }) => item.printContacts ?? []));
+    this.prints?.update(this.time, this.actors().map(({ item }) => item.printContacts ?? []));
     this.difference = this.shown.difference ? this.colourDifference() : null;
     this.followRoot();
     this.stage.redraw();
@@ -104,13 +104,13 @@ class Player {
   // The mean ground position of the visible characters.
   root() {
     const middle = new Vector3();
-    const figures = this.figures();
-    for (const { figure } of figures) middle.add(figure.root()).add(figure.group.position);
-    return middle.divideScalar(Math.max(figures.length, 1)).setY(0);
+    const actors = this.actors();
+    for (const { actor } of actors) middle.add(actor.root()).add(actor.group.position);
+    return middle.divideScalar(Math.max(actors.length, 1)).setY(0);
   }
 
   followRoot() {
-    if (this.figures().length === 0) return;
+    if (this.actors().length === 0) return;
     const root = this.root();
     if (this.shown.follow && this.lastRoot && !this.stage.flown) {
       this.stage.follow(root.clone().sub(this.lastRoot));
@@ -120,7 +120,7 @@ class Player {
 
   // Colours joints of the same name in the first two characters by their distance.
   colourDifference() {
-    const [a, b] = this.figures().map(({ figure }) => figure).filter(({ motion }) => motion);
+    const [a, b] = this.actors().map(({ actor }) => actor).filter(({ motion }) => motion);
     if (!a || !b) return null;
     const place = new Map(b.motion.names.map((name, joint) => [name, joint]));
     let largest = { distance: 0, name: '' };
@@ -153,20 +153,20 @@ async function makeItem(item, index, stage) {
   const bytes = item.blob ? blobBytes(item.blob) : null;
   const made = { name: item.name, visible: item.visible ?? true, item, duration: 0, rate: item.rate ?? 1 };
   if (item.kind === 'motion') {
-    made.figure = new Figure(item, new Motion(item, bytes), bytes, index);
-    await made.figure.dress(bytes);
+    made.actor = new Actor(item, new Motion(item, bytes), bytes, index);
+    await made.actor.dress(bytes);
   }
-  if (item.kind === 'gltf') made.figure = await GltfFigure.load(item, bytes);
-  if (made.figure) {
-    const { figure } = made;
-    made.duration = figure.duration;
-    made.rate = figure.rate;
-    made.box = boxOverTime(figure);
-    figure.update(0);
-    made.spread = figure.boxNow().getSize(new Vector3()).x;
-    made.start = figure.root().clone();
+  if (item.kind === 'gltf') made.actor = await GltfActor.load(item, bytes);
+  if (made.actor) {
+    const { actor } = made;
+    made.duration = actor.duration;
+    made.rate = actor.rate;
+    made.box = boxOverTime(actor);
+    actor.update(0);
+    made.spread = actor.boxNow().getSize(new Vector3()).x;
+    made.start = actor.root().clone();
     made.colour = COLOURS[index % COLOURS.length];
-    stage.scene.add(figure.group);
+    stage.scene.add(actor.group);
   } else if (item.kind === 'camera') {
     made.camera = new CameraTrack(item, bytes);
     made.duration = made.camera.duration;
@@ -179,12 +179,12 @@ async function makeItem(item, index, stage) {
 }
 
 // Bounds of a character over at most sixty frames, in its group's space.
-function boxOverTime(figure) {
+function boxOverTime(actor) {
   const box = new Box3();
-  const count = figure.duration > 0 ? 60 : 1;
+  const count = actor.duration > 0 ? 60 : 1;
   for (let i = 0; i < count; ++i) {
-    figure.update(count > 1 ? (i / (count - 1)) * figure.duration : 0);
-    box.union(figure.boxNow());
+    actor.update(count > 1 ? (i / (count - 1)) * actor.duration : 0);
+    box.union(actor.boxNow());
   }
   return box;
 }
@@ -301,8 +301,8 @@ class Interface {
 
   makeSwitches() {
     const { player, stage } = this;
-    const figures = player.items.filter(({ figure }) => figure);
-    const hasBody = figures.some(({ figure }) => figure.body || !figure.motion);
+    const actors = player.items.filter(({ actor }) => actor);
+    const hasBody = actors.some(({ actor }) => actor.body || !actor.motion);
     player.shown.skeleton = !hasBody;
     player.shown.apart = Boolean(this.data.apart);
     player.shown.difference = Boolean(this.data.difference);
@@ -310,11 +310,11 @@ class Interface {
       ['skeleton', 'Skeleton (s)', true],
       ['body', 'Body (b)', hasBody],
       // Not beside a ground, on which they would stand elsewhere than they do.
-      ['apart', 'Side by side (a)', figures.length > 1 && !stage.terrain && !player.prints],
-      ['difference', 'Colour the difference (d)', figures.length > 1],
-      ['goals', 'Goals (o)', figures.some(({ figure }) => figure.goals)],
+      ['apart', 'Side by side (a)', actors.length > 1 && !stage.terrain && !player.prints],
+      ['difference', 'Colour the difference (d)', actors.length > 1],
+      ['goals', 'Goals (o)', actors.some(({ actor }) => actor.goals)],
       ['prints', 'Footprints (p)', Boolean(player.prints)],
-      ['follow', 'Follow (f)', figures.length > 0],
+      ['follow', 'Follow (f)', actors.length > 0],
       ['grid', 'Ground (g)', true],
     ];
     player.shown.grid = true;
@@ -341,7 +341,7 @@ class Interface {
     if (key === 'grid') stage.ground.visible = value;
     if (key === 'prints') player.prints.group.visible = value;
     if (key === 'difference' && !value) {
-      for (const { figure } of player.items) figure?.motion && figure.plainColours();
+      for (const { actor } of player.items) actor?.motion && actor.plainColours();
     }
     this.rearrange();
     if (key === 'apart') this.frame();
@@ -351,7 +351,7 @@ class Interface {
     find('trail-joint').addEventListener('change', (event) => {
       if (event.target.value === '') return;
       const [item, joint] = event.target.value.split(':').map(Number);
-      this.player.items[item].figure.toggleTrail(joint);
+      this.player.items[item].actor.toggleTrail(joint);
       event.target.value = '';
       this.listTrails();
       this.stage.redraw();
@@ -362,12 +362,12 @@ class Interface {
     const select = find('trail-joint');
     select.replaceChildren(new Option('Select a joint', ''));
     let any = false;
-    this.player.items.forEach(({ figure, name, visible }, item) => {
-      if (!figure?.motion || !visible) return;
+    this.player.items.forEach(({ actor, name, visible }, item) => {
+      if (!actor?.motion || !visible) return;
       any = true;
       const group = document.createElement('optgroup');
       group.label = name;
-      figure.motion.names.forEach((joint, place) => group.append(new Option(joint, `${item}:${place}`)));
+      actor.motion.names.forEach((joint, place) => group.append(new Option(joint, `${item}:${place}`)));
       select.append(group);
     });
     find('trail-section').hidden = !any;
@@ -376,16 +376,16 @@ class Interface {
 
   listTrails() {
     const rows = [];
-    this.player.items.forEach(({ figure, colour }) => {
-      figure?.trails.forEach((_, joint) => {
+    this.player.items.forEach(({ actor, colour }) => {
+      actor?.trails.forEach((_, joint) => {
         const row = document.createElement('li');
         const remove = document.createElement('button');
         remove.type = 'button';
         remove.textContent = '×';
-        const name = figure.motion.names[joint];
+        const name = actor.motion.names[joint];
         remove.setAttribute('aria-label', `Remove the trail of ${name}`);
         remove.addEventListener('click', () => {
-          figure.toggleTrail(joint);
+          actor.toggleTrail(joint);
           this.listTrails();
           this.stage.redraw();
         });
@@ -402,11 +402,11 @@ class Interface {
   // Each visible motion's goals, with its colour and by how much it is missed now.
   listGoals() {
     const { player } = this;
-    const figures = player.figures().filter(({ figure }) => figure.goals);
-    find('goals-section').hidden = !player.shown.goals || figures.length === 0;
+    const actors = player.actors().filter(({ actor }) => actor.goals);
+    find('goals-section').hidden = !player.shown.goals || actors.length === 0;
     this.goalRows = [];
-    for (const { name, figure } of figures) {
-      for (const goal of figure.goals.goals) {
+    for (const { name, actor } of actors) {
+      for (const goal of actor.goals.goals) {
         const row = document.createElement('li');
         const swatch = document.createElement('span');
         swatch.className = 'swatch';
@@ -417,7 +417,7 @@ class Interface {
         facts.className = 'facts';
         label.append(facts);
         row.append(swatch, label);
-        this.goalRows.push({ row, facts, goal, of: figures.length > 1 ? `${name}: ` : '' });
+        this.goalRows.push({ row, facts, goal, of: actors.length > 1 ? `${name}: ` : '' });
       }
     }
     find('goals').replaceChildren(...this.goalRows.map(({ row }) => row));
@@ -456,13 +456,13 @@ class Interface {
   }
 
   frame() {
-    const figures = this.player.figures();
-    if (figures.length === 0) return;
+    const actors = this.player.actors();
+    if (actors.length === 0) return;
     const whole = new Box3();
     const now = new Box3();
-    for (const { box, figure } of figures) {
-      whole.union(box.clone().translate(figure.group.position));
-      now.union(figure.boxNow().translate(figure.group.position));
+    for (const { box, actor } of actors) {
+      whole.union(box.clone().translate(actor.group.position));
+      now.union(actor.boxNow().translate(actor.group.position));
     }
     // For a long path, follow the character: framing the whole path would make it tiny.
     const reach = ({ x, y, z }) => Math.max(x, z) / Math.max(y, 1e-3);
@@ -478,15 +478,15 @@ class Interface {
 
   // On a ground: from above, from the side of the way, and from its lower end, where steps are seen.
   viewFrom() {
-    const [first] = this.player.figures();
+    const [first] = this.player.actors();
     if (!this.stage.terrain || !first) return undefined;
-    const { figure } = first;
+    const { actor } = first;
     const rootAt = (time) => {
-      figure.update(time);
-      return figure.root().clone();
+      actor.update(time);
+      return actor.root().clone();
     };
-    const way = rootAt(figure.duration).sub(rootAt(0));
-    figure.update(this.player.time);
+    const way = rootAt(actor.duration).sub(rootAt(0));
+    actor.update(this.player.time);
     const climbs = way.y;
     way.setY(0);
     if (way.length() < 0.5) return undefined;
@@ -498,13 +498,13 @@ class Interface {
   setLanes() {
     const lanes = [];
     const marks = [];
-    for (const { figure, item } of this.player.figures()) {
-      const joints = [...new Set(figure.contacts.map(({ joint }) => joint))];
+    for (const { actor, item } of this.player.actors()) {
+      const joints = [...new Set(actor.contacts.map(({ joint }) => joint))];
       for (const joint of joints) {
         lanes.push({
-          name: figure.motion.names[joint],
+          name: actor.motion.names[joint],
           colour: CONTACT_COLOUR,
-          bars: figure.contacts.filter((c) => c.joint === joint).map(({ start, end }) => [start, end]),
+          bars: actor.contacts.filter((c) => c.joint === joint).map(({ start, end }) => [start, end]),
         });
       }
       marks.push(...(item.keytimes ?? []));
@@ -583,10 +583,10 @@ class Interface {
     let best = null;
     let nearest = 14; // pixels
     const place = new Vector3();
-    for (const { figure } of this.player.figures()) {
-      const names = figure.motion?.names ?? figure.names;
+    for (const { actor } of this.player.actors()) {
+      const names = actor.motion?.names ?? actor.names;
       names.forEach((name, joint) => {
-        place.copy(figure.jointPosition(joint)).add(figure.group.position);
+        place.copy(actor.jointPosition(joint)).add(actor.group.position);
         const seen = this.stage.project(place);
         if (!seen) return;
         const distance = Math.hypot(seen.x - x, seen.y - y);
@@ -659,7 +659,7 @@ async function main() {
     get drawn() { return drawn; },
     setTime: (time) => player.setTime(time),
     // A file's goals at this time.
-    goals: (item = 0) => (items[item].figure.goals?.goals ?? []).map(
+    goals: (item = 0) => (items[item].actor.goals?.goals ?? []).map(
       ({ name, kind, chain, from, to, strength, distance, angle }) =>
         ({ name, kind, chain, from: from.toArray(), to: to.toArray(), strength, distance, angle }),
     ),
@@ -674,9 +674,9 @@ async function main() {
     ),
     // World positions of a file's joints, without the side-by-side offset.
     joints: (item = 0) => {
-      const { figure } = items[item];
-      const names = figure.motion?.names ?? figure.names;
-      return names.map((name, joint) => ({ name, position: figure.jointPosition(joint).toArray() }));
+      const { actor } = items[item];
+      const names = actor.motion?.names ?? actor.names;
+      return names.map((name, joint) => ({ name, position: actor.jointPosition(joint).toArray() }));
     },
   };
 }

@@ -62,7 +62,7 @@ function boneGeometry() {
   return geometry;
 }
 
-export class Figure {
+export class Actor {
   constructor(item, motion, bytes, index) {
     this.item = item;
     this.motion = motion;

@@ -4,11 +4,11 @@ import { AnimationMixer, Box3, Group, SkeletonHelper, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { reachBeyond, widen } from './reach.js';
 
-export class GltfFigure {
+export class GltfActor {
   static async load(item, bytes) {
     const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
     const file = await new GLTFLoader().parseAsync(buffer, '');
-    return new GltfFigure(item, file);
+    return new GltfActor(item, file);
   }
 
   constructor(item, file) {
