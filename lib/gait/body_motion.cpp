@@ -26,6 +26,7 @@ constexpr double kShortestStep = 0.2, kLongestStep = 10;  // seconds
 // is nothing else: steps on the spot, to the side.
 constexpr double kNear = 0.12, kFar = 0.55;
 constexpr double kShortest = 1.0 / 120;  // seconds between poses that a velocity is taken from
+constexpr double kUsualGap = 0.06;       // metres between the hips of steps that are alike
 constexpr double kVelocityWidth = 0.12;  // seconds in which a difference in velocity fades
 
 // From rest at 0 to slope 2 at 1, no acceleration at both ends.
@@ -186,25 +187,33 @@ Gap BodyMotion::gap_after(std::size_t step) const {
     gap.share = 0;
     gap.after = after.strike - after.start;
   }
+  const double apart = position_of(gap.value, 0).norm();
+  const double strange = smooth((apart - kUsualGap) / kUsualGap);
+  gap.root_share = (1 - strange) * gap.share;
+  gap.after += strange * (after.strike - after.start - gap.after);
   return gap;
 }
 
 namespace {
 
 // What closes a gap `since` seconds from it on one side.
-void add_correction(const Gap& gap, double since, double width, double inwards, double part,
-                    PoseVector& pose) {
+void add_correction(const Gap& gap, double since, double width, double inwards, double root_part,
+                    double part, PoseVector& pose) {
   const Fading wide = fading(since / width);
   if (wide.value == 0) return;
   const double narrow = std::min(width, kVelocityWidth);
-  const double slope = inwards * narrow * fading(since / narrow).slope;
+  const Fading close = fading(since / narrow);
   const auto rest = pose.size() - kPoseValues;
   // The body takes its time, the limbs, which swing, do not.
   pose.head<kPoseValues>() +=
-      part * (wide.value * gap.value.head<kPoseValues>() +
-              inwards * width * wide.slope * gap.velocity.head<kPoseValues>());
-  pose.tail(rest) += part * (wide.value * gap.value.tail(rest) + slope * gap.velocity.tail(rest));
-  pose += part * narrow * narrow * fading(since / narrow).acceleration * gap.acceleration;
+      root_part * (wide.value * gap.value.head<kPoseValues>() +
+                   inwards * width * wide.slope * gap.velocity.head<kPoseValues>());
+  pose.tail(rest) += part * wide.value * gap.value.tail(rest);
+  if (since >= narrow) return;
+  pose.tail(rest) += part * inwards * narrow * close.slope * gap.velocity.tail(rest);
+  pose.tail(rest) += part * narrow * narrow * close.acceleration * gap.acceleration.tail(rest);
+  pose.head<kPoseValues>() +=
+      root_part * narrow * narrow * close.acceleration * gap.acceleration.head<kPoseValues>();
 }
 
 }  // namespace
@@ -215,11 +224,13 @@ void joined_pose(const BodyStep& step, double time, const Gap* before, const Gap
   if (before != nullptr) {
     // In the signs of the step before.
     pose = before->sign.cwiseProduct(pose);
-    add_correction(*before, time - step.start, before->after, 1, before->share - 1, pose);
+    add_correction(*before, time - step.start, before->after, 1, before->root_share - 1,
+                   before->share - 1, pose);
     pose = before->sign.cwiseProduct(pose);
   }
   if (after != nullptr) {
-    add_correction(*after, step.strike - time, after->before, -1, after->share, pose);
+    add_correction(*after, step.strike - time, after->before, -1, after->root_share, after->share,
+                   pose);
   }
 }
 

@@ -46,6 +46,9 @@ struct Gap {
   PoseVector sign;               // of quaternions after, by value
   double before = 0, after = 0;  // seconds that the correction takes on either side
   double share = 0.5;            // of the correction that the step before takes
+  // The same for the root. Where the hips are far apart, steps of very different length meet: the
+  // step before ends with both feet on their prints, the one after begins with its own stride.
+  double root_share = 0.5;
 };
 
 class BodyMotion {

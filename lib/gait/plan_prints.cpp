@@ -22,6 +22,9 @@ constexpr double kBesideCost = 2;        // per metre of that, and of the rise f
 constexpr double kToesOutCost = 0.3;     // of a step's length squared
 constexpr double kShortOfEndCost = 4;    // per metre
 constexpr double kStandingWidth = 1.25;  // of the sole's, from heel to heel
+// People shorten steps that go up or down, and the first one out of standing.
+constexpr double kTooHighToStride = 0.3;  // metres
+constexpr double kLeastOfUsual = 0.4, kFirstOfUsual = 0.8;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 FootSide other_foot(FootSide side) {
@@ -248,7 +251,10 @@ std::size_t PrintPlanner::find_ways(PlaceStates& states) const {
             std::abs(state.sole.height - before.sole.height) > options_.max_rise) {
           continue;
         }
-        const double off = steps_[i] - steps_[j] - 1;
+        const double rise = std::abs(state.sole.height - before.sole.height);
+        const double usual =
+            std::max(kLeastOfUsual, 1 - rise / kTooHighToStride) * (j == 0 ? kFirstOfUsual : 1);
+        const double off = steps_[i] - steps_[j] - usual;
         const double cost = before.cost + off * off + toes;
         if (cost >= state.cost) continue;
         state.cost = cost;
