@@ -25,6 +25,7 @@ constexpr double kStandingWidth = 1.25;  // of the sole's, from heel to heel
 // People shorten steps that go up or down, and the first one out of standing.
 constexpr double kTooHighToStride = 0.3;  // metres
 constexpr double kLeastOfUsual = 0.4, kFirstOfUsual = 0.8;
+constexpr double kGentleTurn = 0.15;  // radians a step
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 FootSide other_foot(FootSide side) {
@@ -191,8 +192,12 @@ Print PrintPlanner::print_at(double length, FootSide side) const {
   const PathPlace place = path_.at(length);
   // Feet of people who walk on a line stand beside each other all the same.
   const bool stands = length <= 0 || length >= path_.length();
-  const double width = stands ? std::max(options_.step_width, kStandingWidth * options_.sole_width)
-                              : options_.step_width;
+  double width = stands ? std::max(options_.step_width, kStandingWidth * options_.sole_width)
+                        : options_.step_width;
+  // In sharp bends feet would step on each other's toes.
+  const double bend = std::abs(place.curvature);
+  const double turn = std::min(bend * options_.step_length, options_.max_turn);
+  width += options_.heel_to_toes * std::max(0.0, std::sin(turn) - std::sin(kGentleTurn));
   const double out = (side == FootSide::left ? 0.5 : -0.5) * width;
   Print print;
   print.side = side;

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/numbers.h"
 #include "motion/ground_frame.h"
@@ -53,9 +56,35 @@ Status check_way(const GroundedPrint& from, const GroundedPrint& stance, const G
   return {};
 }
 
-bool overlap(const StepShape& shape, const Walker& walker, double length) {
-  const double sole = length > 0 ? 1.3 * length : 0.2;
-  return std::abs(shape.along) < sole && shape.across < 0.5 * walker.sole_width;
+// Whether the soles of both feet, half as wide as they are, lie on each other: rectangles that no
+// line along a side of one of them parts.
+bool overlap(const GroundedPrint& one, const GroundedPrint& other, const Walker& walker) {
+  const auto sole = [&](const GroundedPrint& print) {
+    const double length = walker.leg(print.side).sole.length;
+    const Vec2 along(std::sin(print.heading), std::cos(print.heading));
+    const Vec2 across = 0.25 * walker.sole_width * Vec2(along.y(), -along.x());
+    const Vec2 heel(print.heel.x(), print.heel.z());
+    const Vec2 toes = heel + (length > 0 ? 1.3 * length : 0.2) * along;
+    return std::array<Vec2, 4>{heel - across, heel + across, toes + across, toes - across};
+  };
+  const std::array<Vec2, 4> a = sole(one), b = sole(other);
+  for (const auto& rectangle : {a, b}) {
+    for (const Vec2& side :
+         {Vec2(rectangle[1] - rectangle[0]), Vec2(rectangle[2] - rectangle[1])}) {
+      const auto extent = [&](const std::array<Vec2, 4>& corners) {
+        double least = side.dot(corners[0]), most = least;
+        for (const Vec2& corner : corners) {
+          least = std::min(least, side.dot(corner));
+          most = std::max(most, side.dot(corner));
+        }
+        return std::pair(least, most);
+      };
+      const auto [low, high] = extent(a);
+      const auto [from, to] = extent(b);
+      if (high <= from || to <= low) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -97,7 +126,7 @@ Status check_reach(const GroundedPrint& from, const GroundedPrint& stance, const
                               readable(std::abs(turn) / kRadiansPerDegree, 3)),
                   "turn in several steps, or use --adapt");
   }
-  if (overlap(shape, walker, walker.leg(to.side).sole.length) || shape.across < -kCrossing * leg) {
+  if (overlap(stance, to, walker) || shape.across < -kCrossing * leg) {
     return refuse("walk-crossing",
                   shape.across < -kCrossing * leg
                       ? fmt::format("the legs would cross by {}", metres(-shape.across))

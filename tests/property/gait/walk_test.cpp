@@ -6,6 +6,8 @@
 
 #include <random>
 
+#include "gait/plan_prints.h"
+#include "gait/usual_step.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
@@ -262,6 +264,29 @@ TEST(Walk, IsTheSameWhateverStandsAboveTheHips) {
             << role_name(role) << " frame " << f;
       }
     }
+  }
+}
+
+// Ways to random goals, near and behind too. If this fails, footprints that krok-walk planned
+// itself are refused: in sharp bends feet stood on each other.
+TEST(Walk, PlannedWaysCanBeWalked) {
+  std::mt19937_64 random(5);
+  const Ground level([](double, double) { return 0.0; });
+  const auto options = usual_steps(walking());
+  ASSERT_TRUE(options.ok());
+  for (int i = 0; i < 40; ++i) {
+    std::vector<Vec2> goals;
+    Vec2 at = Vec2::Zero();
+    for (int k = 0; k < 1 + i % 4; ++k) {
+      at += Vec2(between(random, -3, 3), between(random, -3, 3));
+      goals.push_back(at);
+    }
+    const auto path = Path::create(way_to_goals(0, 0, 0, goals));
+    ASSERT_TRUE(path.ok());
+    const auto prints = plan_prints(*path, level, *options);
+    ASSERT_TRUE(prints.ok()) << prints.error().message;
+    const auto made = Walk::plan(walking(), prints->prints, level, {});
+    EXPECT_TRUE(made.ok()) << "way " << i << ": " << made.error().message;
   }
 }
 
