@@ -50,10 +50,10 @@ struct Joint {
 
   double friction = 0;  // N m s/rad, >= 0: slows all turning within the joint
 
-  // A motor turns the child towards `target` (in the parent's frame), and as fast as `target_speed`
-  // (radians/s, in the parent's frame), with at most this torque about each axis (N m); 0: none.
-  // Spherical, revolute and six_dof.
-  double motor = 0;
+  // A motor turns the child towards `target` (in the parent's frame) and its speed to `target_speed`
+  // (radians/s, in the parent's frame), as a spring (N m/rad) and a damper (N m s/rad) would, with
+  // about this torque at most (N m); 0: none. Spherical, revolute and six_dof.
+  double motor = 0, motor_stiffness = 0, motor_damping = 0;  // >= 0
   Quat target = Quat::Identity();
   Vec3 target_speed = Vec3::Zero();
 };

@@ -178,6 +178,7 @@ bool FallMaker::step(int number) {
     fall_.least_height = std::min(fall_.least_height, state.to_world.position.y());
   }
   const double time = (number + 1) * World::kStep;
+  fall_.simulated = time;
   if (!still) {
     still_since_ = -1;
     return true;

@@ -34,6 +34,7 @@ struct Fall {
   // Of all steps: the first 0.2 s, in which what the pose has in the ground comes out of it, and
   // the rest.
   WorldMeasures settling, largest;
+  double simulated = 0;     // seconds until it lies still, or the end
   double least_height = 0;  // metres: lowest centre of a body
 };
 

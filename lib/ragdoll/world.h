@@ -9,7 +9,7 @@
 #include "ragdoll/bodies.h"
 #include "ragdoll/joint.h"
 
-// Rigid bodies that move by Newton's laws, with joints and static surroundings (Bullet).
+// Rigid bodies that move by Newton's laws, with joints and static surroundings.
 
 namespace krok::ragdoll {
 
@@ -24,10 +24,8 @@ struct WorldOptions {
   Vec3 gravity = Vec3(0, -9.81, 0);  // m/s^2
   double friction = 0.7;             // Coulomb's, between bodies and surroundings, >= 0
   double restitution = 0;            // 0 to 1
-  // Of a step, >= 1, and passes of the solver in each, >= 1. Many short parts hold joints and
-  // limits better than many passes (Macklin et al., "Small steps in physics simulation", 2019).
-  int substeps = 16;
-  int iterations = 16;
+  int substeps = 1;    // parts of a step, >= 1; contacts are looked for once in each step
+  int iterations = 16;  // most sweeps over contacts and limits in each part, >= 1
 };
 
 // A static surface.
@@ -65,8 +63,8 @@ class World {
   // An impulse (N s, world) at a body's centre of mass.
   void push(int body, const Vec3& impulse);
 
-  // Changes a joint's motor.
-  void set_motor(int joint, double torque, const Quat& target, const Vec3& target_speed);
+  // Changes where a joint's motor turns to.
+  void set_motor(int joint, const Quat& target, const Vec3& target_speed);
 
   BodyState state(int body) const;
   WorldMeasures measures() const;

@@ -1,0 +1,333 @@
+#include <algorithm>
+#include <cmath>
+
+#include "math/quaternion.h"
+#include "ragdoll/articulation_internal.h"
+
+namespace krok::ragdoll {
+
+namespace {
+
+Mat3 cross_matrix(const Vec3& v) {
+  Mat3 m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+// Of a body with its centre at `centre`, about the origin.
+Mat6 spatial_inertia(double mass, const Mat3& inertia, const Vec3& centre) {
+  Mat6 whole;
+  const Mat3 arm = mass * cross_matrix(centre);
+  whole.topLeftCorner<3, 3>() =
+      inertia + mass * (centre.squaredNorm() * Mat3::Identity() - centre * centre.transpose());
+  whole.topRightCorner<3, 3>() = arm;
+  whole.bottomLeftCorner<3, 3>() = -arm;
+  whole.bottomRightCorner<3, 3>() = mass * Mat3::Identity();
+  return whole;
+}
+
+bool slides(const Joint& joint) {
+  return joint.kind == JointKind::six_dof &&
+         std::ranges::any_of(joint.slide, [](const Range& r) { return r.min < r.max; });
+}
+
+}  // namespace
+
+Vec3 moments_of_inertia(const Body& body) {
+  const Shape& shape = body.shape;
+  const double m = body.mass, r = shape.radius, square = r * r;
+  if (shape.kind == Shape::Kind::box) {
+    const Vec3 s = shape.half.cwiseProduct(shape.half);
+    return m / 3 * Vec3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
+  }
+  if (shape.kind == Shape::Kind::sphere) return Vec3::Constant(0.4 * m * square);
+  // A cylinder and two half spheres, whose centres of mass are 3/8 of the radius beyond its ends.
+  const double h = shape.half_length, whole = volume(shape);
+  const double tube = m * kPi * square * 2 * h / whole, caps = m - tube;
+  const double along = 0.5 * tube * square + 0.4 * caps * square;
+  const double across = tube * (square / 4 + h * h / 3) +
+                        caps * (0.4 * square + h * h + 0.75 * h * r);
+  return {across, along, across};
+}
+
+Status Articulation::build(std::span<const Body> bodies, std::span<const BodyState> states,
+                           std::span<const Joint> joints) {
+  states_.assign(states.begin(), states.end());
+  joints_.assign(joints.begin(), joints.end());
+  ties_.resize(joints_.size());
+  twists_.resize(bodies.size(), Vec6::Zero());
+  link_of_.assign(bodies.size(), -1);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    masses_.push_back(bodies[b].mass);
+    moments_.push_back(moments_of_inertia(bodies[b]));
+    states_[b].to_world.orientation.normalize();
+  }
+  std::vector<int> joint_of(bodies.size(), -1);
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (joints[j].kind == JointKind::distance) continue;
+    int& own = joint_of[at(joints[j].child)];
+    if (own >= 0) return Error("ragdoll-value", "a body is the child of two joints");
+    own = static_cast<int>(j);
+  }
+  std::vector<bool> added(bodies.size(), false);
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    int steps = 0;
+    for (int up = b; joint_of[at(up)] >= 0 && joints[at(joint_of[at(up)])].parent >= 0;) {
+      up = joints[at(joint_of[at(up)])].parent;
+      if (++steps > body_count()) return Error("ragdoll-value", "the joints form a ring");
+    }
+    add_links(b, joint_of, added);
+  }
+  for (const Link& link : links_) {
+    if (link.joint >= 0 && link.body >= 0) take_up(link.joint);
+  }
+  inertias_.resize(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Mat3 axes = states_[b].to_world.orientation.toRotationMatrix();
+    inertias_[b] = axes * moments_[b].asDiagonal() * axes.transpose();
+  }
+  responses_.assign(links_.size() * links_.size(), Mat6::Zero());
+  return {};
+}
+
+// The body's link after those above it.
+void Articulation::add_links(int body, std::span<const int> joint_of, std::vector<bool>& added) {
+  if (added[at(body)]) return;
+  added[at(body)] = true;
+  const int joint = joint_of[at(body)];
+  if (joint >= 0 && joints_[at(joint)].parent >= 0) {
+    add_links(joints_[at(joint)].parent, joint_of, added);
+  }
+  add_joint_links(body, joint);
+}
+
+void Articulation::add_joint_links(int body, int joint) {
+  Link link;
+  link.body = body;
+  link.joint = joint;
+  const auto add = [&](const Link& made) {
+    links_.push_back(made);
+    const int number = static_cast<int>(links_.size()) - 1;
+    links_.back().root = made.parent < 0 ? number : links_[at(made.parent)].root;
+    return number;
+  };
+  if (joint < 0) {
+    link_of_[at(body)] = add(link);
+    return;
+  }
+  const Joint& its = joints_[at(joint)];
+  link.parent = its.parent < 0 ? -1 : link_of_[at(its.parent)];
+  if (slides(its)) {
+    Link between = link;
+    between.body = -1;
+    between.freedom = Freedom::slide;
+    ties_[at(joint)].slide = link.parent = add(between);
+  }
+  const bool locked = its.turn.kind == ik::JointLimit::Kind::locked;
+  link.freedom = its.kind == JointKind::revolute    ? Freedom::hinge
+                 : its.kind == JointKind::prismatic ? Freedom::slide
+                 : its.kind == JointKind::fixed || locked ? Freedom::none
+                                                          : Freedom::turn;
+  link_of_[at(body)] = add(link);
+  (link.freedom == Freedom::slide ? ties_[at(joint)].slide : ties_[at(joint)].turn) =
+      link_of_[at(body)];
+}
+
+Transform Articulation::parent_frame(const Joint& joint) const {
+  return joint.parent < 0 ? joint.in_parent
+                          : states_[at(joint.parent)].to_world * joint.in_parent;
+}
+
+// Where the child is in its joint, and its place from that.
+void Articulation::take_up(int joint) {
+  const Joint& its = joints_[at(joint)];
+  Ties& ties = ties_[at(joint)];
+  const Transform parent = parent_frame(its);
+  BodyState& child = states_[at(its.child)];
+  const Transform relative = parent.inverse() * (child.to_world * its.in_child);
+  ties.turned = relative.orientation.normalized();
+  if (its.kind == JointKind::revolute) {
+    ties.turned = Quat(ties.turned.w(), ties.turned.x(), 0, 0).normalized();
+  }
+  if (its.kind == JointKind::prismatic) ties.slid.x() = relative.position.x();
+  if (its.kind == JointKind::six_dof) {
+    for (int i = 0; i < 3; ++i) {
+      const Range& range = its.slide[at(i)];
+      ties.slid[i] = range.min < range.max ? relative.position[i] : range.min;
+    }
+  }
+  child.to_world = parent * Transform{ties.slid, ties.turned} * its.in_child.inverse();
+  child.to_world.orientation.normalize();
+}
+
+void Articulation::set_kinematic(int body, bool kinematic) {
+  links_[at(link_of_[at(body)])].kinematic = kinematic;
+}
+
+Articulation::Frames Articulation::frames(int joint) const {
+  const Joint& its = joints_[at(joint)];
+  return {parent_frame(its), states_[at(its.child)].to_world * its.in_child};
+}
+
+double Articulation::hinge_angle(int joint) const {
+  const Quat& turned = ties_[at(joint)].turned;
+  const Range& range = joints_[at(joint)].range;
+  const double angle = 2 * std::atan2(turned.x(), turned.w());
+  const double middle = std::isfinite(range.min + range.max) ? 0.5 * (range.min + range.max) : 0.0;
+  return angle - 2 * kPi * std::round((angle - middle) / (2 * kPi));
+}
+
+double Articulation::slide(int joint, int axis) const {
+  return ties_[at(joint)].slid[axis];
+}
+
+void Articulation::push(int body, const Vec3& impulse) {
+  states_[at(body)].velocity += impulse / masses_[at(body)];
+}
+
+Vec6 Articulation::body_twist(int body) const {
+  const BodyState& state = states_[at(body)];
+  return spatial(state.spin, state.velocity - state.spin.cross(state.to_world.position));
+}
+
+void Articulation::set_axes(Link& link) const {
+  if (link.joint < 0 || link.freedom == Freedom::none) return;
+  const Joint& joint = joints_[at(link.joint)];
+  const Transform parent = parent_frame(joint);
+  if (link.freedom == Freedom::slide) {
+    for (int i = 0; i < 3; ++i) {
+      const bool free = joint.kind == JointKind::prismatic
+                            ? i == 0
+                            : joint.slide[at(i)].min < joint.slide[at(i)].max;
+      if (free) link.axes.col(i) = spatial(Vec3::Zero(), parent.orientation * Vec3(Vec3::Unit(i)));
+    }
+    return;
+  }
+  const Vec3 anchor = parent * ties_[at(link.joint)].slid;
+  if (link.freedom == Freedom::hinge) {
+    const Vec3 axis = parent.orientation * Vec3(Vec3::UnitX());
+    link.axes.col(0) = spatial(axis, anchor.cross(axis));
+    return;
+  }
+  link.axes.topRows<3>().setIdentity();
+  link.axes.bottomRows<3>() = cross_matrix(anchor);
+}
+
+void Articulation::gather(double step, const Vec3& gravity) {
+  for (Link& link : links_) {
+    set_axes(link);
+    link.inertia.setZero();
+    link.momentum.setZero();
+    if (link.body < 0) continue;
+    const std::size_t b = at(link.body);
+    const BodyState& state = states_[b];
+    if (link.kinematic) {
+      link.twist = body_twist(link.body);
+      continue;
+    }
+    const Vec3& centre = state.to_world.position;
+    const Vec3 impulse = masses_[b] * (state.velocity + step * gravity);
+    link.inertia = spatial_inertia(masses_[b], inertias_[b], centre);
+    link.momentum = spatial(inertias_[b] * state.spin + centre.cross(impulse), impulse);
+  }
+}
+
+// Leaves to roots: what a link and those below it weigh against a movement of the link above.
+void Articulation::eliminate(double step) {
+  for (std::size_t i = links_.size(); i-- > 0;) {
+    Link& link = links_[i];
+    if (link.kinematic || link.freedom == Freedom::all) continue;
+    Link* above = link.parent < 0 ? nullptr : &links_[at(link.parent)];
+    if (link.freedom == Freedom::none) {
+      if (above != nullptr) {
+        above->inertia += link.inertia;
+        above->momentum += link.momentum;
+      }
+      continue;
+    }
+    link.coupling.noalias() = link.inertia * link.axes;
+    Mat3 joint = link.axes.transpose() * link.coupling;
+    for (int k = 0; k < 3; ++k) {
+      if (link.axes.col(k).isZero()) joint(k, k) = 1;
+    }
+    Mat3 damping = Mat3::Zero();
+    link.inverse = joint;  // drive() sees how heavy the joint is
+    drive(link, step, damping);
+    link.inverse = (joint + damping).inverse();
+    link.gain.noalias() = link.inverse * link.coupling.transpose();
+    if (above == nullptr) continue;
+    const Vec3 given = link.axes.transpose() * link.momentum + link.impulse;
+    above->inertia += link.inertia;
+    above->inertia.noalias() -= link.coupling * link.gain;
+    above->momentum += link.momentum;
+    above->momentum.noalias() -= link.gain.transpose() * given;
+  }
+}
+
+void Articulation::distribute() {
+  for (Link& link : links_) {
+    if (link.freedom == Freedom::all && !link.kinematic) {
+      link.twist = link.inertia.llt().solve(link.momentum);
+    } else if (!link.kinematic) {
+      link.twist = link.parent < 0 ? Vec6(Vec6::Zero()) : links_[at(link.parent)].twist;
+      if (link.freedom != Freedom::none) {
+        const Vec3 given = link.axes.transpose() * link.momentum + link.impulse;
+        const Vec3 rate = link.inverse * given - link.gain * link.twist;
+        link.twist += link.axes * rate;
+      }
+    }
+    if (link.body >= 0) twists_[at(link.body)] = link.twist;
+  }
+}
+
+void Articulation::accelerate(double step, const Vec3& gravity) {
+  fallen_ = step * gravity;
+  hold_distances(step);
+  gather(step, gravity);
+  eliminate(step);
+  distribute();
+}
+
+// The inverse of the inertia that joins all links (Featherstone's operational-space inertia), in
+// blocks: a link answers to an impulse elsewhere as the link above does, but for its joint.
+void Articulation::find_responses() {
+  const std::size_t count = links_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Link& link = links_[i];
+    Mat6* row = &responses_[i * count];
+    for (std::size_t c = 0; c < i; ++c) {
+      if (links_[c].root != link.root || link.kinematic || link.parent < 0) {
+        row[c].setZero();
+      } else {
+        row[c] = responses_[at(link.parent) * count + c];
+        if (link.freedom != Freedom::none) {
+          const Mat36 held = link.gain * row[c];
+          row[c].noalias() -= link.axes * held;
+        }
+      }
+      responses_[c * count + i] = row[c].transpose();
+    }
+    Mat6& own = row[i];
+    if (link.kinematic) {
+      own.setZero();
+    } else if (link.freedom == Freedom::all) {
+      own = link.inertia.llt().solve(Mat6::Identity());
+    } else {
+      own.setZero();
+      if (link.parent >= 0) {
+        // The answer of the link above to an impulse on this one is the transpose of the reverse.
+        own = responses_[at(link.parent) * count + i];
+        if (link.freedom != Freedom::none) {
+          const Mat36 held = link.gain * own;
+          own.noalias() -= link.axes * held;
+        }
+      }
+      if (link.freedom != Freedom::none) {
+        // Columns without an axis have the inverse 1, but no movement.
+        own.noalias() += link.axes * (link.inverse * link.axes.transpose());
+      }
+    }
+  }
+}
+
+}  // namespace krok::ragdoll

@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <cmath>
+
+#include "math/quaternion.h"
+#include "ragdoll/articulation_internal.h"
+#include "ragdoll/cone_internal.h"
+
+namespace krok::ragdoll {
+
+// The joint's speeds as the bodies have them.
+Vec3 Articulation::last_rate(const Link& link) const {
+  const Joint& joint = joints_[at(link.joint)];
+  Vec6 relative = body_twist(joint.child);
+  if (joint.parent >= 0) relative -= body_twist(joint.parent);
+  const Vec3 spin = relative.head<3>();
+  if (link.freedom == Freedom::turn) return spin;
+  if (link.freedom == Freedom::hinge) return {spin.dot(link.axes.col(0).head<3>()), 0, 0};
+  const Vec3 anchor = parent_frame(joint) * ties_[at(link.joint)].slid;
+  const Vec3 velocity = relative.tail<3>() + spin.cross(anchor);
+  return link.axes.bottomRows<3>().transpose() * velocity;
+}
+
+// What acts within a joint: impulses over the step, and dampers as a part of its inertia.
+void Articulation::drive(Link& link, double step, Mat3& damping) const {
+  const Joint& joint = joints_[at(link.joint)];
+  link.impulse.setZero();
+  if (link.freedom == Freedom::slide) {
+    if (joint.soft) soft_slide(link, step, damping);
+    return;
+  }
+  damping.diagonal().array() += step * joint.friction;
+  if (joint.soft) soft_turn(link, step, damping);
+  if (joint.motor > 0) run_motor(link, step, damping);
+}
+
+// A spring and a damper, both as they will be at the end of the step (Tan et al., "Stable
+// proportional-derivative controllers", 2011), which holds for any gain.
+void Articulation::run_motor(Link& link, double step, Mat3& damping) const {
+  const Joint& joint = joints_[at(link.joint)];
+  const Transform parent = parent_frame(joint);
+  const Quat child = parent.orientation * ties_[at(link.joint)].turned;
+  Vec3 off = rotation_vector(parent.orientation * joint.target * child.conjugate());
+  Vec3 speed = parent.orientation * joint.target_speed;
+  if (link.freedom == Freedom::hinge) {
+    const Vec3 axis = link.axes.col(0).head<3>();
+    off = Vec3(axis.dot(off), 0, 0);
+    speed = Vec3(axis.dot(speed), 0, 0);
+  }
+  const double stiffness = joint.motor_stiffness, damper = joint.motor_damping;
+  // More than the motor can give is asked for: it gives that, without a spring's stability.
+  const Vec3 torque = stiffness * off + damper * (speed - last_rate(link));
+  if (torque.norm() > joint.motor) {
+    const double share = joint.motor / torque.norm();
+    link.impulse += step * share * (stiffness * off + damper * speed);
+    damping.diagonal().array() += step * share * damper + step * step * share * stiffness;
+    return;
+  }
+  link.impulse += step * (stiffness * off + damper * speed);
+  damping.diagonal().array() += step * damper + step * step * stiffness;
+}
+
+// `axis` is in the joint's coordinates, the way out of the range. The spring's impulse is that over
+// the step about this moment, in a part of which it may be within the range.
+void Articulation::spring(Link& link, const Vec3& axis, double beyond, double step,
+                          Mat3& damping) const {
+  const Joint& joint = joints_[at(link.joint)];
+  const double speed = axis.dot(last_rate(link));
+  const double far = beyond + 0.5 * step * std::abs(speed);
+  if (far <= 0) return;
+  const double heavy = axis.dot(link.inverse * axis);
+  if (step * step * joint.stiffness > 0.5 * heavy) {
+    // Stiffer than the step can follow: as it will be at its end.
+    if (beyond <= 0) return;
+    const double damper = joint.damping + step * joint.stiffness;
+    link.impulse -= step * joint.stiffness * beyond * axis;
+    damping += step * damper * axis * axis.transpose();
+    return;
+  }
+  const double near = beyond - 0.5 * step * std::abs(speed);
+  const double time = near >= 0 ? step : far / std::abs(speed);
+  const double push = joint.stiffness * (near >= 0 ? step * beyond : 0.5 * far * time);
+  double damper = joint.damping * time;
+  // It pushes, but does not pull.
+  if (speed < 0) damper = std::min(damper, push / -speed);
+  link.impulse -= (push + 0.5 * damper * speed) * axis;
+  damping += 0.5 * damper * axis * axis.transpose();
+}
+
+void Articulation::soft_turn(Link& link, double step, Mat3& damping) const {
+  const Joint& joint = joints_[at(link.joint)];
+  if (link.freedom == Freedom::hinge) {
+    const double angle = hinge_angle(link.joint);
+    spring(link, Vec3::UnitX(), angle - joint.range.max, step, damping);
+    spring(link, -Vec3::UnitX(), joint.range.min - angle, step, damping);
+    return;
+  }
+  if (joint.turn.kind != ik::JointLimit::Kind::cone) return;
+  const Quat child = parent_frame(joint).orientation * ties_[at(link.joint)].turned;
+  each_cone_side(joint.turn, ties_[at(link.joint)].turned, [&](int, const Vec3& axis, double beyond) {
+    spring(link, child * axis, beyond, step, damping);
+  });
+}
+
+void Articulation::soft_slide(Link& link, double step, Mat3& damping) const {
+  const Joint& joint = joints_[at(link.joint)];
+  for (int i = 0; i < 3; ++i) {
+    if (link.axes.col(i).isZero()) continue;
+    const Range& range = joint.kind == JointKind::prismatic ? joint.range : joint.slide[at(i)];
+    const double slid = slide(link.joint, i);
+    spring(link, Vec3::Unit(i), slid - range.max, step, damping);
+    spring(link, -Vec3::Unit(i), range.min - slid, step, damping);
+  }
+}
+
+// Soft distances, which are no part of the tree.
+void Articulation::hold_distances(double step) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const Joint& joint = joints_[j];
+    if (joint.kind != JointKind::distance || !joint.soft) continue;
+    const Frames its = frames(static_cast<int>(j));
+    const Vec3 apart = its.child.position - its.parent.position;
+    const double length = apart.norm();
+    if (length < 1e-9) continue;
+    const double beyond = length > joint.range.max   ? length - joint.range.max
+                          : length < joint.range.min ? length - joint.range.min
+                                                     : 0.0;
+    if (beyond == 0) continue;
+    const auto velocity = [](const BodyState& state, const Vec3& point) {
+      return Vec3(state.velocity + state.spin.cross(point - state.to_world.position));
+    };
+    const Vec3 axis = apart / length;
+    BodyState& child = states_[at(joint.child)];
+    const Vec3 arm = its.child.position - child.to_world.position;
+    double speed = axis.dot(velocity(child, its.child.position));
+    double give = 1 / masses_[at(joint.child)] +
+                  arm.cross(axis).dot(inertias_[at(joint.child)].inverse() * arm.cross(axis));
+    BodyState* parent = joint.parent < 0 ? nullptr : &states_[at(joint.parent)];
+    Vec3 parent_arm = Vec3::Zero();
+    if (parent != nullptr) {
+      parent_arm = its.parent.position - parent->to_world.position;
+      speed -= axis.dot(velocity(*parent, its.parent.position));
+      give += 1 / masses_[at(joint.parent)] +
+              parent_arm.cross(axis).dot(inertias_[at(joint.parent)].inverse() *
+                                         parent_arm.cross(axis));
+    }
+    const double stiffness = std::min(joint.stiffness, 0.5 / (step * step * give));
+    const double impulse = -step * (stiffness * beyond + joint.damping * speed) /
+                           (1 + step * joint.damping * give);
+    if (impulse * beyond > 0) continue;
+    child.velocity += impulse / masses_[at(joint.child)] * axis;
+    child.spin += inertias_[at(joint.child)].inverse() * (impulse * arm.cross(axis));
+    if (parent == nullptr) continue;
+    parent->velocity -= impulse / masses_[at(joint.parent)] * axis;
+    parent->spin -=
+        inertias_[at(joint.parent)].inverse() * (impulse * parent_arm.cross(axis));
+  }
+}
+
+}  // namespace krok::ragdoll

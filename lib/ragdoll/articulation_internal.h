@@ -1,0 +1,143 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/index.h"
+#include "core/result.h"
+#include "ragdoll/joint.h"
+#include "ragdoll/world.h"
+
+namespace krok::ragdoll {
+
+// Spatial vectors (Featherstone, "Rigid Body Dynamics Algorithms", 2008) about the world's origin:
+// twists are (spin, velocity of the point at the origin), wrenches (torque about it, force). In one
+// common frame inertias and wrenches of neighbours add up as they are.
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+using Mat63 = Eigen::Matrix<double, 6, 3>;
+using Mat36 = Eigen::Matrix<double, 3, 6>;
+
+inline Vec6 spatial(const Vec3& upper, const Vec3& lower) {
+  Vec6 v;
+  v << upper, lower;
+  return v;
+}
+
+// Bodies that joints tie to trees, in reduced coordinates: a joint has only the movements that it
+// allows, so that it can not come apart. A step finds the new speeds by Gauss's principle of least
+// constraint: of all that the joints allow, those nearest to what the bodies would do free, by
+// their inertias. The recursion is that of the articulated-body algorithm, with momenta in place of
+// forces; it needs no terms of Coriolis, as bodies carry their momenta from pose to pose, and takes
+// dampers and motors into the joints' inertias, which makes them stable for any gain.
+class Articulation {
+ public:
+  // `joints` without rings, each body a child of at most one that is no distance.
+  Status build(std::span<const Body> bodies, std::span<const BodyState> states,
+               std::span<const Joint> joints);
+
+  int body_count() const { return static_cast<int>(masses_.size()); }
+  int joint_count() const { return static_cast<int>(joints_.size()); }
+  const BodyState& state(int body) const { return states_[at(body)]; }
+  BodyState& state(int body) { return states_[at(body)]; }
+  Joint& joint(int joint) { return joints_[at(joint)]; }
+  const Joint& joint(int joint) const { return joints_[at(joint)]; }
+  double mass(int body) const { return masses_[at(body)]; }
+
+  // Moves by others' command; its speeds are what state() has.
+  void set_kinematic(int body, bool kinematic);
+  bool is_kinematic(int body) const { return links_[at(link_of_[at(body)])].kinematic; }
+
+  // The joint's frames in the world, and how far the child's has slid.
+  struct Frames {
+    Transform parent, child;
+  };
+  Frames frames(int joint) const;
+  double hinge_angle(int joint) const;  // of a revolute joint, nearest to the middle of its range
+  double slide(int joint, int axis) const;
+
+  // Of the bodies' poses: metres between anchors that should coincide, radians beyond hard limits.
+  double gap(int joint) const;
+  double excess(int joint) const;
+
+  // Finds the twists after `step` seconds without contacts and hard limits.
+  void accelerate(double step, const Vec3& gravity);
+  const std::vector<Vec6>& twists() const { return twists_; }  // of bodies
+
+  // After accelerate(): what twists the impulse 1 (each of 6) on one body gives another.
+  void find_responses();
+  const Mat6& response(int of, int to) const {
+    return responses_[at(link_of_[at(of)]) * links_.size() + at(link_of_[at(to)])];
+  }
+
+  // Moves the bodies on with the twists `moving`; their speeds are then those of `left`.
+  void move(double step, std::span<const Vec6> moving, std::span<const Vec6> left);
+
+  void move_back();  // undoes the last move()
+
+  // Impulses about the world's origin at a body, before accelerate().
+  void push(int body, const Vec3& impulse);
+
+ private:
+  enum class Freedom : unsigned char { all, none, turn, hinge, slide };
+  struct Link {
+    int parent = -1;  // link
+    int body = -1;    // none: without mass, between a slide and a turn of the same joint
+    int joint = -1;   // none: a free body
+    int root = 0;     // link
+    Freedom freedom = Freedom::all;
+    bool kinematic = false;
+    Mat63 axes = Mat63::Zero();       // S; unused columns are 0
+    Mat6 inertia = Mat6::Zero();      // articulated
+    Vec6 momentum = Vec6::Zero();     // articulated
+    Mat63 coupling = Mat63::Zero();   // U = I S
+    Mat3 inverse = Mat3::Zero();      // (S^T U + dampers)^-1
+    Mat36 gain = Mat36::Zero();       // inverse U^T
+    Vec3 impulse = Vec3::Zero();      // on the joint's coordinates, of springs and motors
+    Vec6 twist = Vec6::Zero();
+  };
+  struct Ties {  // of a joint
+    int turn = -1, slide = -1;           // links
+    Quat turned = Quat::Identity();      // the child's frame in the parent's
+    Vec3 slid = Vec3::Zero();            // in the parent's frame
+  };
+
+  void add_links(int body, std::span<const int> joint_of, std::vector<bool>& added);
+  void add_joint_links(int body, int joint);
+  void take_up(int joint);
+  Transform parent_frame(const Joint& joint) const;
+  Vec6 body_twist(int body) const;
+  void set_axes(Link& link) const;
+  void gather(double step, const Vec3& gravity);
+  void eliminate(double step);
+  void distribute();
+  Vec3 last_rate(const Link& link) const;
+  void drive(Link& link, double step, Mat3& damping) const;
+  void run_motor(Link& link, double step, Mat3& damping) const;
+  void soft_turn(Link& link, double step, Mat3& damping) const;
+  void soft_slide(Link& link, double step, Mat3& damping) const;
+  void spring(Link& link, const Vec3& axis, double beyond, double step, Mat3& damping) const;
+  void hold_distances(double step);
+  void place(double step, std::span<const Vec6> moving);
+  void keep_momenta(double step, std::span<const Vec6> moving, std::span<const BodyState> before);
+
+  std::vector<double> masses_;
+  std::vector<Vec3> moments_;
+  std::vector<Mat3> inertias_;  // world
+  std::vector<BodyState> states_;
+  std::vector<Joint> joints_;
+  std::vector<Ties> ties_;     // shape [joints]
+  std::vector<Link> links_;    // parents first
+  std::vector<int> link_of_;   // shape [bodies]
+  std::vector<Vec6> twists_;   // shape [bodies]
+  std::vector<Mat6> responses_;  // shape [links, links]
+  std::vector<BodyState> before_;  // the last move()
+  std::vector<Mat3> inertias_before_;
+  std::vector<Ties> ties_before_;
+  Vec3 fallen_ = Vec3::Zero();  // by gravity in the step, m/s
+};
+
+// Principal moments of inertia of a body.
+Vec3 moments_of_inertia(const Body& body);
+
+}  // namespace krok::ragdoll

@@ -1,0 +1,246 @@
+#include "ragdoll/collision_internal.h"
+
+#include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
+#include <btBulletCollisionCommon.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+
+namespace krok::ragdoll {
+
+namespace {
+
+// Bullet keeps contacts up to this distance, metres: what falls 10 m/s comes that far in a step.
+constexpr float kReach = 0.04F;
+
+btVector3 to_bullet(const Vec3& v) {
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
+Vec3 from_bullet(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+btTransform placed(const Transform& t) {
+  const Quat& q = t.orientation;
+  return btTransform(btQuaternion(static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()),
+                                  static_cast<btScalar>(q.z()), static_cast<btScalar>(q.w())),
+                     to_bullet(t.position));
+}
+
+std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
+  const auto number = [](double value) { return static_cast<btScalar>(value); };
+  switch (shape.kind) {
+    case Shape::Kind::capsule:
+      return std::make_unique<btCapsuleShape>(number(shape.radius), number(2 * shape.half_length));
+    case Shape::Kind::sphere:
+      return std::make_unique<btSphereShape>(number(shape.radius));
+    case Shape::Kind::box:
+      break;
+  }
+  auto box = std::make_unique<btBoxShape>(to_bullet(shape.half));
+  // Bullet rounds boxes off by a margin of 4 cm, more than half of a hand.
+  box->setMargin(number(0.1 * shape.half.minCoeff()));
+  return box;
+}
+
+// The edges between a mesh's triangles stop nothing.
+bool smooth_edges(btManifoldPoint& point, const btCollisionObjectWrapper* body, int, int,
+                  const btCollisionObjectWrapper* mesh, int part, int index) {
+  btAdjustInternalEdgeContacts(point, mesh, body, part, index);
+  return false;
+}
+
+}  // namespace
+
+// In the order in which they are made; destroyed in the reverse one.
+struct Collision::Inside {
+  // Points of a shape that touch a plane first, in its own frame, and how thick it is about them.
+  struct Feelers {
+    std::vector<Vec3> points;
+    double radius = 0;
+  };
+  static Feelers feelers_of(const Shape& shape);
+
+  bool level = false;
+  double height = 0;
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  btCollisionWorld world{&dispatcher, &broadphase, &configuration};
+  btTriangleMesh mesh;
+  btTriangleInfoMap edges;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes;
+  std::vector<std::unique_ptr<btCollisionObject>> bodies;
+  std::vector<std::unique_ptr<btCollisionObject>> grounds;
+  std::vector<Feelers> feelers;                        // shape [bodies]
+  std::vector<std::vector<std::array<float, 3>>> memory;  // shape [bodies, feelers]
+  std::vector<Contact> contacts;
+
+  ~Inside();
+  void add_mesh(const Surroundings& surroundings);
+  void part_overlapping();
+  void touch_plane(std::span<const BodyState> states, double step);
+  void take_manifolds(std::span<const BodyState> states);
+};
+
+Collision::Inside::Feelers Collision::Inside::feelers_of(const Shape& shape) {
+  Feelers feelers;
+  if (shape.kind == Shape::Kind::box) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                      (corner & 4) != 0 ? 1 : -1);
+      feelers.points.emplace_back(sign.cwiseProduct(shape.half));
+    }
+    return feelers;
+  }
+  feelers.radius = shape.radius;
+  feelers.points.emplace_back(0, shape.half_length, 0);
+  if (shape.half_length > 0) feelers.points.emplace_back(0, -shape.half_length, 0);
+  return feelers;
+}
+
+Collision::Inside::~Inside() {
+  for (const auto& body : bodies) world.removeCollisionObject(body.get());
+  for (const auto& ground : grounds) world.removeCollisionObject(ground.get());
+}
+
+void Collision::Inside::add_mesh(const Surroundings& surroundings) {
+  for (const auto& t : surroundings.triangles) {
+    mesh.addTriangle(to_bullet(t[0]), to_bullet(t[1]), to_bullet(t[2]));
+  }
+  auto shape = std::make_unique<btBvhTriangleMeshShape>(&mesh, true);
+  btGenerateInternalEdgeInfo(shape.get(), &edges);
+  shape->setMargin(0);
+  auto ground = std::make_unique<btCollisionObject>();
+  ground->setCollisionShape(shape.get());
+  ground->setUserIndex(-1);
+  ground->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT |
+                            btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
+  shapes.push_back(std::move(shape));
+  grounds.push_back(std::move(ground));
+}
+
+// A forearm that starts in the belly's box would be shot out of it.
+void Collision::Inside::part_overlapping() {
+  world.performDiscreteCollisionDetection();
+  for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+    auto* a = const_cast<btCollisionObject*>(manifold.getBody0());
+    auto* b = const_cast<btCollisionObject*>(manifold.getBody1());
+    if (a->isStaticObject() || b->isStaticObject()) continue;
+    for (int p = 0; p < manifold.getNumContacts(); ++p) {
+      if (manifold.getContactPoint(p).getDistance() > 0) continue;
+      a->setIgnoreCollisionCheck(b, true);
+      b->setIgnoreCollisionCheck(a, true);
+      break;
+    }
+  }
+}
+
+void Collision::Inside::touch_plane(std::span<const BodyState> states, double step) {
+  for (std::size_t b = 0; b < feelers.size(); ++b) {
+    const Transform& pose = states[b].to_world;
+    const double fall = step * (std::abs(states[b].velocity.y()) + states[b].spin.norm());
+    for (std::size_t k = 0; k < feelers[b].points.size(); ++k) {
+      const Vec3 point = pose * feelers[b].points[k];
+      const double gap = point.y() - feelers[b].radius - height;
+      std::array<float, 3>& impulses = memory[b][k];
+      if (gap > 0.01 + 2 * fall) {
+        impulses.fill(0);
+        continue;
+      }
+      Contact contact;
+      contact.a = static_cast<int>(b);
+      const Vec3 lowest = point - feelers[b].radius * Vec3::UnitY();
+      contact.on_a = pose.inverse() * lowest;
+      contact.on_b = Vec3(lowest.x(), height, lowest.z());
+      contact.impulses = {&impulses[0], &impulses[1], &impulses[2]};
+      contacts.push_back(contact);
+    }
+  }
+}
+
+void Collision::Inside::take_manifolds(std::span<const BodyState> states) {
+  for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+    btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+    const int a = manifold.getBody0()->getUserIndex(), b = manifold.getBody1()->getUserIndex();
+    const double sign = a >= 0 ? 1 : -1;
+    for (int p = 0; p < manifold.getNumContacts(); ++p) {
+      btManifoldPoint& point = manifold.getContactPoint(p);
+      Contact contact;
+      contact.a = a >= 0 ? a : b;
+      contact.b = a >= 0 ? b : a;
+      contact.normal = sign * from_bullet(point.m_normalWorldOnB).normalized();
+      const Vec3 on_a = from_bullet(a >= 0 ? point.m_positionWorldOnA : point.m_positionWorldOnB);
+      // The other's point from the distance, which is exact where the points are rounded.
+      const Vec3 on_b = on_a - static_cast<double>(point.getDistance()) * contact.normal;
+      contact.on_a = states[at(contact.a)].to_world.inverse() * on_a;
+      contact.on_b = contact.b < 0 ? on_b : states[at(contact.b)].to_world.inverse() * on_b;
+      contact.impulses = {&point.m_appliedImpulse, &point.m_appliedImpulseLateral1,
+                          &point.m_appliedImpulseLateral2};
+      contacts.push_back(contact);
+    }
+  }
+}
+
+Collision::Collision(const Surroundings& surroundings) : inside_(std::make_unique<Inside>()) {
+  // Bullet has one callback and one reach for all worlds; these are the same for all.
+  static const bool set = (gContactAddedCallback = smooth_edges,
+                           gContactBreakingThreshold = kReach, true);
+  (void)set;
+  Inside& in = *inside_;
+  in.dispatcher.setDispatcherFlags(in.dispatcher.getDispatcherFlags() &
+                                   ~btCollisionDispatcher::CD_USE_RELATIVE_CONTACT_BREAKING_THRESHOLD);
+  in.world.setForceUpdateAllAabbs(false);
+  in.world.getDispatchInfo().m_deterministicOverlappingPairs = true;
+  in.level = surroundings.level;
+  in.height = surroundings.height;
+  if (!surroundings.triangles.empty()) in.add_mesh(surroundings);
+}
+
+Collision::~Collision() = default;
+
+void Collision::add(std::span<const Body> bodies, std::span<const BodyState> states,
+                    std::span<const Joint> joints) {
+  Inside& in = *inside_;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    in.shapes.push_back(make_shape(bodies[b].shape));
+    auto object = std::make_unique<btCollisionObject>();
+    object->setCollisionShape(in.shapes.back().get());
+    object->setCollisionFlags(0);
+    object->setWorldTransform(placed(states[b].to_world));
+    object->setUserIndex(static_cast<int>(b));
+    object->setActivationState(DISABLE_DEACTIVATION);
+    in.world.addCollisionObject(object.get());
+    in.bodies.push_back(std::move(object));
+    in.feelers.push_back(Inside::feelers_of(bodies[b].shape));
+    in.memory.emplace_back(in.feelers.back().points.size());
+  }
+  // After the bodies: that puts the ground last in each pair, as smooth_edges() needs it.
+  for (const auto& ground : in.grounds) in.world.addCollisionObject(ground.get());
+  for (const Joint& joint : joints) {
+    if (joint.parent < 0) continue;
+    btCollisionObject *a = in.bodies[at(joint.parent)].get(), *b = in.bodies[at(joint.child)].get();
+    a->setIgnoreCollisionCheck(b, true);
+    b->setIgnoreCollisionCheck(a, true);
+  }
+  in.part_overlapping();
+}
+
+std::span<const Contact> Collision::find(std::span<const BodyState> states, double step) {
+  Inside& in = *inside_;
+  in.contacts.clear();
+  if (in.level) in.touch_plane(states, step);
+  if (in.bodies.size() > 1 || !in.grounds.empty()) {
+    for (std::size_t b = 0; b < states.size(); ++b) {
+      in.bodies[b]->setWorldTransform(placed(states[b].to_world));
+    }
+    in.world.performDiscreteCollisionDetection();
+    in.take_manifolds(states);
+  }
+  return in.contacts;
+}
+
+}  // namespace krok::ragdoll

@@ -1,0 +1,458 @@
+#include "ragdoll/impulse_solver_internal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ragdoll/cone_internal.h"
+
+namespace krok::ragdoll {
+
+namespace {
+
+// The share of a penetration that is taken back in a step, and the fastest, m/s or rad/s.
+constexpr double kTakeBack = 0.2, kFastestBack = 0.5, kFastestTurnBack = 12;
+// Normals with a larger cosine count as one plane.
+constexpr double kSamePlane = 0.95;
+// What rows may miss by turning within a step, radians and metres.
+constexpr double kMissedAngle = 0.002, kMissedGap = 0.0005;
+// Slower than this nothing bounces, m/s.
+constexpr double kBounces = 0.2;
+// Sweeps end where no row's speed changes by more, m/s or rad/s.
+constexpr double kEnough = 2e-5;
+
+// Two directions across a unit vector, always the same for the same one.
+std::array<Vec3, 2> across(const Vec3& normal) {
+  const Vec3 side = std::abs(normal.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitZ();
+  const Vec3 first = (side - side.dot(normal) * normal).normalized();
+  return {first, normal.cross(first)};
+}
+
+Vec6 wrench_at(const Vec3& point, const Vec3& force) {
+  return spatial(point.cross(force), force);
+}
+
+}  // namespace
+
+void ImpulseSolver::begin(const Articulation& bodies, double step) {
+  bodies_ = &bodies;
+  step_ = step;
+  rows_.clear();
+  groups_.clear();
+  patches_.clear();
+  moving_ = left_ = bodies.twists();
+}
+
+void ImpulseSolver::open_group(int a, int b) {
+  const bool open = !groups_.empty() && groups_.back().a == a && groups_.back().b == b &&
+                    groups_.back().patch < 0;
+  if (!open) groups_.push_back({a, b, rows_.size(), rows_.size(), -1});
+}
+
+ImpulseSolver::Row& ImpulseSolver::add_row(const Vec6& wrench) {
+  rows_.emplace_back().wrench = wrench;
+  groups_.back().end = rows_.size();
+  return rows_.back();
+}
+
+double ImpulseSolver::speed_along(const Group& group, const Vec6& wrench) const {
+  const std::vector<Vec6>& twists = bodies_->twists();
+  const double speed = wrench.dot(twists[at(group.a)]);
+  return group.b < 0 ? speed : speed - wrench.dot(twists[at(group.b)]);
+}
+
+// The last row's gap may close within the step; below 0 it opens.
+void ImpulseSolver::add_gap(double gap, double fastest) {
+  Row& row = rows_.back();
+  row.gap = gap;
+  row.target = gap > 0 ? -gap / step_ : std::min(-gap * kTakeBack / step_, fastest);
+  row.kept = gap > 0 ? row.target : 0;
+}
+
+void ImpulseSolver::add_contacts(std::span<const Contact> contacts, double friction,
+                                 double restitution) {
+  contacts_ = contacts;
+  for (std::size_t first = 0; first < contacts.size();) {
+    const Contact& leader = contacts[first];
+    std::size_t end = first + 1;
+    while (end < contacts.size() && contacts[end].a == leader.a && contacts[end].b == leader.b &&
+           contacts[end].normal.dot(leader.normal) > kSamePlane) {
+      ++end;
+    }
+    add_patch(contacts.subspan(first, end - first), friction, restitution);
+    first = end;
+  }
+}
+
+void ImpulseSolver::add_patch(std::span<const Contact> contacts, double friction,
+                              double restitution) {
+  const Contact& leader = contacts.front();
+  groups_.push_back({leader.a, leader.b, rows_.size(), rows_.size(), -1});
+  Patch patch;
+  patch.first = rows_.size();
+  patch.friction = friction;
+  std::vector<Vec3> points;
+  Vec3 pressed = Vec3::Zero(), middle = Vec3::Zero();
+  double pressure = 0;
+  for (const Contact& contact : contacts) {
+    const Vec3 a = bodies_->state(contact.a).to_world * contact.on_a;
+    const Vec3 b =
+        contact.b < 0 ? contact.on_b : bodies_->state(contact.b).to_world * contact.on_b;
+    const double gap = contact.normal.dot(a - b);
+    const Vec3 point = 0.5 * (a + b);
+    const Vec6 wrench = wrench_at(point, contact.normal);
+    const double speed = speed_along(groups_.back(), wrench);
+    // Farther than it could come, however it turns.
+    if (gap + step_ * speed > 0.02) continue;
+    Row& row = add_row(wrench);
+    row.cache = contact.impulses[0];
+    row.contact = static_cast<int>(&contact - contacts_.data());
+    add_gap(gap, kFastestBack);
+    if (restitution > 0 && speed < -kBounces && gap + step_ * speed < 0) {
+      row.target = row.kept = std::max(row.target, -restitution * speed);
+    }
+    points.push_back(point);
+    middle += point;
+    pressed += static_cast<double>(*row.cache) * point;
+    pressure += static_cast<double>(*row.cache);
+  }
+  if (points.empty()) {
+    groups_.pop_back();
+    return;
+  }
+  patch.end = rows_.size();
+  const Vec3 centre =
+      pressure > 0 ? Vec3(pressed / pressure) : Vec3(middle / static_cast<double>(points.size()));
+  for (const Vec3& point : points) patch.arms.push_back((point - centre).norm());
+  const auto sides = across(leader.normal);
+  for (std::size_t k = 0; k < 2; ++k) {
+    add_row(wrench_at(centre, sides[k])).cache = leader.impulses[k + 1];
+  }
+  add_row(spatial(leader.normal, Vec3::Zero()));
+  groups_.back().patch = static_cast<int>(patches_.size());
+  patches_.push_back(std::move(patch));
+}
+
+// A limit about `axis` (world, the way out of the range), exceeded by `beyond` radians, or not yet.
+void ImpulseSolver::add_limit(int joint, int side, const Vec3& axis, double beyond) {
+  const Joint& its = bodies_->joint(joint);
+  const Group group{its.child, its.parent, 0, 0, -1};
+  const Vec6 wrench = spatial(-axis, Vec3::Zero());
+  if (step_ * speed_along(group, wrench) - beyond > 0.1) return;
+  open_group(its.child, its.parent);
+  Row& row = add_row(wrench);
+  row.joint = joint;
+  row.side = side;
+  add_gap(-beyond, kFastestTurnBack);
+}
+
+// Calls side(number, axis, beyond) for the sides of a joint that limit its turning.
+template <typename Side>
+void ImpulseSolver::each_limit(int joint, const Side& side) const {
+  const Joint& its = bodies_->joint(joint);
+  const auto frames = bodies_->frames(joint);
+  if (its.kind == JointKind::revolute) {
+    const Vec3 axis = frames.child.orientation * Vec3(Vec3::UnitX());
+    const double angle = bodies_->hinge_angle(joint);
+    side(0, axis, angle - its.range.max);
+    side(1, Vec3(-axis), its.range.min - angle);
+    return;
+  }
+  if (its.kind == JointKind::prismatic || its.kind == JointKind::fixed ||
+      its.turn.kind != ik::JointLimit::Kind::cone) {
+    return;
+  }
+  each_cone_side(its.turn, frames.parent.orientation.conjugate() * frames.child.orientation,
+                 [&](int number, const Vec3& axis, double beyond) {
+                   side(number, Vec3(frames.child.orientation * axis), beyond);
+                 });
+}
+
+void ImpulseSolver::add_slide(int joint, const Vec3& axis, double beyond) {
+  const Joint& its = bodies_->joint(joint);
+  open_group(its.child, its.parent);
+  add_row(wrench_at(bodies_->frames(joint).child.position, -axis));
+  add_gap(-beyond, kFastestBack);
+}
+
+void ImpulseSolver::add_slides(int joint) {
+  const Joint& its = bodies_->joint(joint);
+  const bool one = its.kind == JointKind::prismatic;
+  for (int i = 0; i < (one ? 1 : 3); ++i) {
+    const Range& range = one ? its.range : its.slide[at(i)];
+    if (!one && range.min == range.max) continue;
+    const Vec3 axis = bodies_->frames(joint).parent.orientation * Vec3(Vec3::Unit(i));
+    const double slid = bodies_->slide(joint, i);
+    if (std::isfinite(range.max)) add_slide(joint, axis, slid - range.max);
+    if (std::isfinite(range.min)) add_slide(joint, -axis, range.min - slid);
+  }
+}
+
+void ImpulseSolver::add_distance(int joint) {
+  const Joint& its = bodies_->joint(joint);
+  const auto frames = bodies_->frames(joint);
+  const Vec3 apart = frames.child.position - frames.parent.position;
+  const double length = apart.norm();
+  if (length < 1e-9) return;
+  const Vec3 axis = apart / length;
+  if (its.range.min == its.range.max) {
+    open_group(its.child, its.parent);
+    Row& row = add_row(wrench_at(frames.child.position, axis));
+    row.both = true;
+    row.target = (its.range.min - length) * kTakeBack / step_;
+    return;
+  }
+  if (std::isfinite(its.range.max)) add_slide(joint, axis, length - its.range.max);
+  if (its.range.min > 0) add_slide(joint, -axis, its.range.min - length);
+}
+
+void ImpulseSolver::add_limits() {
+  for (int j = 0; j < bodies_->joint_count(); ++j) {
+    const Joint& joint = bodies_->joint(j);
+    if (joint.soft) continue;
+    if (joint.kind == JointKind::distance) {
+      add_distance(j);
+      continue;
+    }
+    if (joint.kind == JointKind::prismatic || joint.kind == JointKind::six_dof) add_slides(j);
+    each_limit(j, [&](int side, const Vec3& axis, double beyond) {
+      add_limit(j, side, axis, beyond);
+    });
+  }
+}
+
+// How all bodies that have rows answer to a wrench at each group.
+void ImpulseSolver::connect() {
+  touched_.clear();
+  std::vector<bool> seen(moving_.size(), false);
+  for (const Group& group : groups_) {
+    for (const int body : {group.a, group.b}) {
+      if (body < 0 || seen[at(body)]) continue;
+      seen[at(body)] = true;
+      touched_.push_back(body);
+    }
+  }
+  answers_.resize(groups_.size() * touched_.size());
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const Group& group = groups_[g];
+    for (std::size_t t = 0; t < touched_.size(); ++t) {
+      Mat6& answer = answers_[g * touched_.size() + t];
+      answer = bodies_->response(touched_[t], group.a);
+      if (group.b >= 0) answer -= bodies_->response(touched_[t], group.b);
+    }
+    Mat6 own = bodies_->response(group.a, group.a);
+    if (group.b >= 0) {
+      own += bodies_->response(group.b, group.b) - bodies_->response(group.a, group.b) -
+             bodies_->response(group.b, group.a);
+    }
+    for (std::size_t r = group.first; r < group.end; ++r) {
+      Row& row = rows_[r];
+      row.answer.noalias() = own * row.wrench;
+      const double give = row.wrench.dot(row.answer);
+      row.inverse = 1 / std::max(give, 1e-12);
+    }
+  }
+}
+
+void ImpulseSolver::spread(std::size_t group, const Vec6& wrench) {
+  const Mat6* answers = &answers_[group * touched_.size()];
+  for (std::size_t t = 0; t < touched_.size(); ++t) {
+    moving_[at(touched_[t])].noalias() += answers[t] * wrench;
+  }
+}
+
+void ImpulseSolver::warm_start(bool from_cache) {
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    Vec6 wrench = Vec6::Zero();
+    for (std::size_t r = groups_[g].first; r < groups_[g].end; ++r) {
+      Row& row = rows_[r];
+      if (from_cache) row.impulse = row.cache == nullptr ? 0 : static_cast<double>(*row.cache);
+      wrench += row.impulse * row.wrench;
+    }
+    if (!wrench.isZero(0)) spread(g, wrench);
+  }
+}
+
+void ImpulseSolver::sweep_row(Row& row, double target, Vec6& difference, Vec6& wrench,
+                              double& largest) {
+  const double missing = target - row.wrench.dot(difference);
+  const double before = row.impulse;
+  row.impulse += missing * row.inverse;
+  if (!row.both) row.impulse = std::max(row.impulse, 0.0);
+  const double change = row.impulse - before;
+  if (change == 0) return;
+  largest = std::max(largest, std::abs(change) / row.inverse);
+  wrench += change * row.wrench;
+  difference += change * row.answer;
+}
+
+// Coulomb's cone: both rows across together, at most the friction times the pressure.
+void ImpulseSolver::sweep_friction(const Patch& patch, Vec6& difference, Vec6& wrench,
+                                   double& largest) {
+  double most = 0, most_spin = 0;
+  for (std::size_t r = patch.first; r < patch.end; ++r) {
+    most += patch.friction * rows_[r].impulse;
+    most_spin += patch.friction * rows_[r].impulse * patch.arms[r - patch.first];
+  }
+  Row &u = rows_[patch.end], &v = rows_[patch.end + 1], &spin = rows_[patch.end + 2];
+  const double old_u = u.impulse, old_v = v.impulse, old_spin = spin.impulse;
+  if (most == 0 && old_u == 0 && old_v == 0 && old_spin == 0) return;
+  u.impulse -= u.wrench.dot(difference) * u.inverse;
+  const double slip = v.wrench.dot(difference) + (u.impulse - old_u) * v.wrench.dot(u.answer);
+  v.impulse -= slip * v.inverse;
+  const double length = std::hypot(u.impulse, v.impulse);
+  if (length > most) {
+    u.impulse *= most / length;
+    v.impulse *= most / length;
+  }
+  const double du = u.impulse - old_u, dv = v.impulse - old_v;
+  wrench += du * u.wrench + dv * v.wrench;
+  difference += du * u.answer + dv * v.answer;
+  spin.impulse = std::clamp(old_spin - spin.wrench.dot(difference) * spin.inverse, -most_spin,
+                            most_spin);
+  const double ds = spin.impulse - old_spin;
+  wrench += ds * spin.wrench;
+  difference += ds * spin.answer;
+  largest = std::max({largest, std::abs(du) / u.inverse, std::abs(dv) / v.inverse});
+}
+
+double ImpulseSolver::sweep(bool relax) {
+  double largest = 0;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const Group& group = groups_[g];
+    Vec6 difference = moving_[at(group.a)], wrench = Vec6::Zero();
+    if (group.b >= 0) difference -= moving_[at(group.b)];
+    const Patch* patch = group.patch < 0 ? nullptr : &patches_[at(group.patch)];
+    const std::size_t end = patch == nullptr ? group.end : patch->end;
+    for (std::size_t r = group.first; r < end; ++r) {
+      Row& row = rows_[r];
+      sweep_row(row, relax ? row.kept : row.target, difference, wrench, largest);
+    }
+    if (patch != nullptr) sweep_friction(*patch, difference, wrench, largest);
+    if (!wrench.isZero(0)) spread(g, wrench);
+  }
+  return largest;
+}
+
+// Sweeps as steps of nonsmooth nonlinear conjugate gradients (Silcowitz, Niebe and Erleben, 2010):
+// what a sweep changes is the gradient, and a part of the last direction goes with it.
+void ImpulseSolver::sweep_until(bool relax, int count) {
+  directions_.assign(rows_.size(), 0.0);
+  turns_.assign(touched_.size(), Vec6::Zero());
+  double slope = 0;
+  for (int i = 0; i < count; ++i) {
+    before_.clear();
+    twists_before_.clear();
+    for (const Row& row : rows_) before_.push_back(row.impulse);
+    for (const int body : touched_) twists_before_.push_back(moving_[at(body)]);
+    if (sweep(relax) < kEnough || i + 1 == count) return;
+    const double last = slope;
+    slope = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const double change = rows_[r].impulse - before_[r];
+      slope += change * change / rows_[r].inverse;
+    }
+    const double share = last > 0 && slope < last ? slope / last : 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const double old = share * directions_[r];
+      directions_[r] = rows_[r].impulse - before_[r] + old;
+      rows_[r].impulse += old;
+    }
+    for (std::size_t t = 0; t < touched_.size(); ++t) {
+      Vec6& twist = moving_[at(touched_[t])];
+      const Vec6 old = share * turns_[t];
+      turns_[t] = twist - twists_before_[t] + old;
+      twist += old;
+    }
+  }
+}
+
+void ImpulseSolver::solve(int iterations) {
+  if (rows_.empty()) return;
+  connect();
+  warm_start(true);
+  sweep_all(iterations);
+}
+
+bool ImpulseSolver::missed() {
+  bool any = false;
+  for (const Group& group : groups_) {
+    for (std::size_t r = group.first; r < group.end; ++r) any |= aim_again(group, rows_[r]);
+  }
+  return any;
+}
+
+bool ImpulseSolver::aim_again(const Group& group, Row& row) {
+  double gap = 0, most = 0;
+  Vec6 wrench = row.wrench;
+  if (row.joint >= 0) {
+    most = kMissedAngle;
+    each_limit(row.joint, [&](int side, const Vec3& axis, double beyond) {
+      if (side != row.side) return;
+      gap = -beyond;
+      wrench = spatial(-axis, Vec3::Zero());
+    });
+  } else if (row.contact >= 0) {
+    most = kMissedGap;
+    const Contact& contact = contacts_[at(row.contact)];
+    const Vec3 a = bodies_->state(contact.a).to_world * contact.on_a;
+    const Vec3 b =
+        contact.b < 0 ? contact.on_b : bodies_->state(contact.b).to_world * contact.on_b;
+    gap = contact.normal.dot(a - b);
+    wrench = wrench_at(0.5 * (a + b), contact.normal);
+  } else {
+    return false;
+  }
+  const double asked = std::min(0.0, row.gap + step_ * row.target);
+  if (gap >= asked - most) return false;
+  double speed = wrench.dot(moving_[at(group.a)]);
+  if (group.b >= 0) speed -= wrench.dot(moving_[at(group.b)]);
+  row.wrench = wrench;
+  row.target = speed + (asked - gap) / step_;
+  if (row.gap > 0) row.kept = row.target;
+  return true;
+}
+
+void ImpulseSolver::solve_again(int iterations) {
+  moving_ = bodies_->twists();
+  connect();
+  warm_start(false);
+  sweep_all(iterations);
+}
+
+void ImpulseSolver::sweep_all(int iterations) {
+  // Only bodies with rows are kept up to date while sweeping; the others get the sum at the end.
+  const auto finished = [&] {
+    std::vector<Vec6> all = moving_;
+    std::vector<bool> done(all.size(), false);
+    for (const int body : touched_) done[at(body)] = true;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      Vec6 wrench = Vec6::Zero();
+      for (std::size_t r = groups_[g].first; r < groups_[g].end; ++r) {
+        wrench += rows_[r].impulse * rows_[r].wrench;
+      }
+      if (wrench.isZero(0)) continue;
+      for (std::size_t b = 0; b < all.size(); ++b) {
+        if (done[b]) continue;
+        const int body = static_cast<int>(b);
+        all[b] += bodies_->response(body, groups_[g].a) * wrench;
+        if (groups_[g].b >= 0) all[b] -= bodies_->response(body, groups_[g].b) * wrench;
+      }
+    }
+    return all;
+  };
+  sweep_until(false, iterations);
+  const std::vector<Vec6> moving = finished();
+  const bool differs = std::ranges::any_of(rows_, [](const Row& r) { return r.target != r.kept; });
+  if (differs) {
+    sweep_until(true, std::max(2, iterations / 2));
+    left_ = finished();
+  } else {
+    left_ = moving;
+  }
+  moving_ = moving;
+  for (const Row& row : rows_) {
+    if (row.cache != nullptr) *row.cache = static_cast<float>(row.impulse);
+  }
+}
+
+}  // namespace krok::ragdoll

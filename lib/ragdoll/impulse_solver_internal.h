@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "ragdoll/articulation_internal.h"
+
+namespace krok::ragdoll {
+
+// A point at which a body touches another, or is about to.
+struct Contact {
+  int a = 0, b = -1;                // bodies; -1: the surroundings
+  Vec3 on_a = Vec3::Zero();         // in a's frame
+  Vec3 on_b = Vec3::Zero();         // in b's frame, or the world
+  Vec3 normal = Vec3::UnitY();      // world, from b to a
+  std::array<float*, 3> impulses{};  // of the last step, along the normal and across it
+};
+
+// Impulses at contacts and hard limits by the projected Gauss-Seidel method: each row asks for a
+// least relative speed. A row knows how the whole trees answer, not only its bodies.
+//
+// Contacts and limits count before they are reached, and let their gap close but not further. What
+// is already beyond comes back apart from the speeds: there are two sets of twists, those that move
+// the bodies on, and those that they keep.
+class ImpulseSolver {
+ public:
+  // Of one step of an articulation, after accelerate().
+  void begin(const Articulation& bodies, double step);
+  void add_contacts(std::span<const Contact> contacts, double friction, double restitution);
+  void add_limits();
+  bool has_rows() const { return !rows_.empty(); }
+  void solve(int iterations);
+
+  // Whether the bodies, moved on by moving(), miss what a row asked for by much, as rows are
+  // straight and turning is not. If so, those rows ask for what is missing where the bodies are
+  // now, to be solved again from where they were.
+  bool missed();
+  void solve_again(int iterations);
+
+  const std::vector<Vec6>& moving() const { return moving_; }
+  const std::vector<Vec6>& left() const { return left_; }
+
+ private:
+  struct Row {
+    Vec6 wrench = Vec6::Zero();  // on the group's first body; the other has the negative
+    Vec6 answer = Vec6::Zero();  // of the relative twist to an impulse of 1
+    double inverse = 0;          // 1 / (wrench . answer)
+    double target = 0, kept = 0;  // least relative speeds: while moving, and afterwards
+    double impulse = 0;
+    bool both = false;           // pulls, too
+    int joint = -1, side = 0;    // of a limit
+    int contact = -1;
+    double gap = 0;              // metres or radians, at the begin
+    float* cache = nullptr;
+  };
+  // Contacts of two bodies in about one plane have one friction: across at the middle of their
+  // pressure, and against spinning on the spot. Friction at each point could strain against itself.
+  struct Patch {
+    std::size_t first = 0, end = 0;  // rows of the contacts; the next three are the friction
+    double friction = 0;
+    std::vector<double> arms;
+  };
+  struct Group {
+    int a = 0, b = -1;
+    std::size_t first = 0, end = 0;  // rows
+    int patch = -1;                  // all rows are of it
+  };
+
+  void open_group(int a, int b);
+  void add_patch(std::span<const Contact> contacts, double friction, double restitution);
+  Row& add_row(const Vec6& wrench);
+  double speed_along(const Group& group, const Vec6& wrench) const;
+  void add_gap(double gap, double fastest);
+  void add_limit(int joint, int side, const Vec3& axis, double beyond);
+  template <typename Side>
+  void each_limit(int joint, const Side& side) const;
+  bool aim_again(const Group& group, Row& row);
+  void add_slides(int joint);
+  void add_distance(int joint);
+  void add_slide(int joint, const Vec3& axis, double beyond);
+  void connect();
+  void warm_start(bool from_cache);
+  void sweep_all(int iterations);
+  double sweep(bool relax);
+  void sweep_until(bool relax, int count);
+  void sweep_row(Row& row, double target, Vec6& difference, Vec6& wrench, double& largest);
+  void sweep_friction(const Patch& patch, Vec6& difference, Vec6& wrench, double& largest);
+  void spread(std::size_t group, const Vec6& wrench);
+
+  const Articulation* bodies_ = nullptr;
+  double step_ = 0;
+  std::span<const Contact> contacts_;
+  std::vector<Row> rows_;
+  std::vector<Group> groups_;
+  std::vector<Patch> patches_;
+  std::vector<int> touched_;   // bodies that have rows
+  std::vector<Mat6> answers_;  // shape [groups, touched]
+  std::vector<Vec6> moving_, left_;
+  std::vector<double> directions_, before_;     // of impulses, shape [rows]
+  std::vector<Vec6> turns_, twists_before_;     // shape [touched]
+};
+
+}  // namespace krok::ragdoll

@@ -1,0 +1,186 @@
+// Falls of a walker who is pushed at random moments, and what they cost. Prints how exact they are,
+// how many times real time they run while the body moves, beside a btMultiBody of the same bodies
+// in Bullet's own world, and a hash of the results.
+//
+//   build/bench/ragdoll [FALLS [BODIES_OF_BULLET_ALONE]]     20 falls without the first number
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <random>
+
+#include "core/hash.h"
+#include "core/index.h"
+#include "ik/anatomical_limits.h"
+#include "math/quaternion.h"
+#include "motion/sample.h"
+#include "ragdoll/multibody.h"
+#include "ragdoll/simulate.h"
+#include "samples/generator/walk.h"
+
+namespace {
+
+using namespace krok;
+using namespace krok::ragdoll;
+
+// Of this process, so that others on the machine do not count.
+double seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+
+struct Walker {
+  Clip clip;
+  RoleMap roles;
+  std::vector<Body> bodies;
+  ik::Limits limits;
+};
+
+// Straight, in curves, upstairs and downhill (without the ground of those: it is level here).
+std::vector<Walker> make_walkers() {
+  std::vector<Walker> walkers;
+  for (int kind = 0; kind < 5; ++kind) {
+    samples::WalkOptions options;
+    options.steps = 6;
+    options.rate = 60;
+    if (kind == 1) options.turn = 20 * kRadiansPerDegree;
+    if (kind == 2) options.step_length = 0.5;
+    if (kind == 3) options.step_length = 0.85;
+    if (kind == 4) options.from_standing = true;
+    Walker walker;
+    walker.clip = samples::make_walk(options)->clip;
+    walker.roles = find_roles(walker.clip.skeleton);
+    walker.bodies = *make_bodies(walker.clip.skeleton, walker.roles);
+    walker.limits = ik::anatomical_limits(walker.clip.skeleton, walker.roles);
+    walkers.push_back(std::move(walker));
+  }
+  return walkers;
+}
+
+double share(std::mt19937& random) {
+  return random() / 4294967296.0;
+}
+
+FallOptions random_fall(const Walker& walker, std::mt19937& random) {
+  FallOptions options;
+  options.at = walker.clip.duration() * share(random);
+  options.duration = 5;
+  options.surroundings.level = true;
+  Push push;
+  push.body = static_cast<int>(share(random) * static_cast<double>(walker.bodies.size()));
+  const double angle = 2 * kPi * share(random);
+  push.impulse = walker.bodies[at(push.body)].mass * (1 + 7 * share(random)) *
+                 Vec3(std::cos(angle), 0.2, std::sin(angle));
+  push.time = options.at;
+  options.pushes = {push};
+  return options;
+}
+
+void run_falls(const std::vector<Walker>& walkers, int count) {
+  std::mt19937 random(7);
+  WorldMeasures worst, settling;
+  int at_rest = 0, bad = 0;
+  double time = 0, moving = 0, whole = 0, latest = 0, highest = 0;
+  Xxh3Stream hash;
+  for (int i = 0; i < count; ++i) {
+    const Walker& walker = walkers[at(i) % walkers.size()];
+    FallOptions options = random_fall(walker, random);
+    if(getenv("SUB")) options.world.substeps=atoi(getenv("SUB")); if(getenv("ITER")) options.world.iterations=atoi(getenv("ITER"));
+    const double begin = seconds();
+    const auto fall = simulate_fall(walker.clip, walker.roles, walker.bodies, walker.limits, options);
+    time += seconds() - begin;
+    if (!fall.ok() || !check(fall->clip).ok()) {
+      ++bad;
+      continue;
+    }
+    at_rest += fall->rest >= 0 ? 1 : 0;
+    latest = std::max(latest, fall->rest);
+    moving += fall->simulated;
+    whole += options.duration;
+    const auto add = [](WorldMeasures& sum, const WorldMeasures& of) {
+      sum.joint_gap = std::max(sum.joint_gap, of.joint_gap);
+      sum.limit_excess = std::max(sum.limit_excess, of.limit_excess);
+      sum.penetration = std::max(sum.penetration, of.penetration);
+    };
+    if (std::getenv("KROK_BENCH_EACH") != nullptr) {
+      std::printf("%d: rest %.2f, gap %.4f mm, limits %.2f deg, penetration %.2f mm\n", i,
+                  fall->rest, fall->largest.joint_gap * 1e3,
+                  fall->largest.limit_excess / kRadiansPerDegree, fall->largest.penetration * 1e3);
+    }
+    add(worst, fall->largest);
+    add(settling, fall->settling);
+    double top = 0;
+    for (const Vec3f& place : fall->clip.frame_positions(fall->clip.frame_count() - 1)) {
+      top = std::max(top, static_cast<double>(place.y()));
+    }
+    highest = std::max(highest, top);
+    hash.update(std::as_bytes(std::span(fall->clip.positions)));
+    hash.update(std::as_bytes(std::span(fall->clip.orientations)));
+  }
+  std::printf("%d falls of 5 s, %zu bodies: %d not finite, %d (%.1f %%) at rest, the latest after %.2f s\n",
+              count, walkers[0].bodies.size(), bad, at_rest, 100.0 * at_rest / count, latest);
+  const auto print = [](const char* what, const WorldMeasures& of) {
+    std::printf("  %s: joints apart by %.2g mm, limits exceeded by %.2f degrees, ground by %.2f mm\n",
+                what, of.joint_gap * 1e3, of.limit_excess / kRadiansPerDegree,
+                of.penetration * 1e3);
+  };
+  print("first 0.2 s", settling);
+  print("after that ", worst);
+  std::printf("  highest joint at the end %.2f m\n", highest);
+  std::printf("  %.1f x real time while moving (%.1f us a step), %.1f x of the falls' length\n",
+              moving / time, time / moving * World::kStep * 1e6, whole / time);
+  std::printf("  hash %s\n", hex(hash.digest()).c_str());
+}
+
+// The same start in Bullet's own world. It does not bring the bodies to rest, so all of it counts.
+void run_bullet(const Walker& walker, int count) {
+  std::mt19937 random(7);
+  double time = 0, deepest = 0;
+  int steps = 0, moving = 0;
+  for (int i = 0; i < count; ++i) {
+    const double margin = 1.5 / walker.clip.rate;
+    const double begin = margin + (walker.clip.duration() - 2 * margin) * share(random);
+    const auto pose_at = [&](double moment) {
+      std::vector<Transform> pose(walker.clip.skeleton.names.size()), scratch(3 * pose.size());
+      sample(walker.clip, moment, pose, scratch);
+      return pose;
+    };
+    const auto pose = pose_at(begin), before = pose_at(begin - 1 / walker.clip.rate),
+               after = pose_at(begin + 1 / walker.clip.rate);
+    const double angle = 2 * kPi * share(random), strength = 1 + 2 * share(random);
+    std::vector<BodyState> states;
+    for (const Body& body : walker.bodies) {
+      const std::size_t j = at(body.joint);
+      const Transform a = before[j] * body.to_joint, b = after[j] * body.to_joint;
+      const double rate = 0.5 * walker.clip.rate;
+      states.push_back({pose[j] * body.to_joint, rate * (b.position - a.position),
+                        rate * rotation_vector(b.orientation * a.orientation.conjugate())});
+    }
+    states[0].velocity += strength * Vec3(std::cos(angle), 0.2, std::sin(angle));
+    const auto joints = make_joints(walker.clip.skeleton, walker.roles, walker.bodies,
+                                    walker.limits, pose, {});
+    Multibody world(walker.bodies, states, joints, 10);
+    const double start = seconds();
+    for (int step = 0; step < 1200; ++step, ++steps) {
+      world.step();
+      if (step > 48) deepest = std::max(deepest, world.penetration());
+    }
+    time += seconds() - start;
+    moving += world.fastest() > 0.3 ? 1 : 0;
+  }
+  std::printf("btMultiBody alone, %d falls: %.1f x real time (%.1f us a step), ground by %.1f mm, "
+              "%d not at rest after 5 s\n",
+              count, steps * World::kStep / time, time / steps * 1e6, deepest * 1e3, moving);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int falls = argc > 1 ? std::max(1, std::atoi(argv[1])) : 20;
+  const std::vector<Walker> walkers = make_walkers();
+  run_falls(walkers, falls);
+  run_bullet(walkers[0], std::min(falls, 10));
+  return 0;
+}
