@@ -281,6 +281,9 @@ void Articulation::distribute() {
 }
 
 void Articulation::accelerate(double step, const Vec3& gravity) {
+  before_ = states_;
+  inertias_before_ = inertias_;
+  ties_before_ = ties_;
   fallen_ = step * gravity;
   hold_distances(step);
   gather(step, gravity);

@@ -73,7 +73,7 @@ class Articulation {
   // Moves the bodies on with the twists `moving`; their speeds are then those of `left`.
   void move(double step, std::span<const Vec6> moving, std::span<const Vec6> left);
 
-  void move_back();  // undoes the last move()
+  void move_back();  // to where accelerate() began
 
   // Impulses about the world's origin at a body, before accelerate().
   void push(int body, const Vec3& impulse);

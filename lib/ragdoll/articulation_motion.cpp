@@ -104,9 +104,6 @@ void Articulation::keep_momenta(double step, std::span<const Vec6> moving,
 }
 
 void Articulation::move(double step, std::span<const Vec6> moving, std::span<const Vec6> left) {
-  before_ = states_;
-  inertias_before_ = inertias_;
-  ties_before_ = ties_;
   place(step, moving);
   for (std::size_t b = 0; b < states_.size(); ++b) {
     BodyState& state = states_[b];

@@ -27,7 +27,8 @@ void each_cone_side(const ik::JointLimit& limit, const Quat& turn, const Side& s
     ratio = std::hypot(ratio, swing / std::max(half, 1e-6));
   }
   const double swing = slopes.swing.norm();
-  if (swing > 1e-6) side(2, Vec3(slopes.swing / swing), (ratio - 1) / swing);
+  // The slopes are those of the square of the ratio.
+  if (swing > 1e-6) side(2, Vec3(slopes.swing / swing), 2 * ratio * (ratio - 1) / swing);
 }
 
 }  // namespace krok::ragdoll

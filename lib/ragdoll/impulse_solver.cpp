@@ -63,9 +63,10 @@ double ImpulseSolver::speed_along(const Group& group, const Vec6& wrench) const 
 // The last row's gap may close within the step; below 0 it opens.
 void ImpulseSolver::add_gap(double gap, double fastest) {
   Row& row = rows_.back();
-  row.gap = gap;
   row.target = gap > 0 ? -gap / step_ : std::min(-gap * kTakeBack / step_, fastest);
   row.kept = gap > 0 ? row.target : 0;
+  row.gap = gap;
+  row.asked = std::min(0.0, gap + step_ * row.target);
 }
 
 void ImpulseSolver::add_contacts(std::span<const Contact> contacts, double friction,
@@ -260,12 +261,12 @@ void ImpulseSolver::spread(std::size_t group, const Vec6& wrench) {
   }
 }
 
-void ImpulseSolver::warm_start(bool from_cache) {
+void ImpulseSolver::warm_start(bool again) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Vec6 wrench = Vec6::Zero();
     for (std::size_t r = groups_[g].first; r < groups_[g].end; ++r) {
       Row& row = rows_[r];
-      if (from_cache) row.impulse = row.cache == nullptr ? 0 : static_cast<double>(*row.cache);
+      row.impulse = again ? row.pushed : row.cache == nullptr ? 0 : static_cast<double>(*row.cache);
       wrench += row.impulse * row.wrench;
     }
     if (!wrench.isZero(0)) spread(g, wrench);
@@ -369,7 +370,7 @@ void ImpulseSolver::sweep_until(bool relax, int count) {
 void ImpulseSolver::solve(int iterations) {
   if (rows_.empty()) return;
   connect();
-  warm_start(true);
+  warm_start(false);
   sweep_all(iterations);
 }
 
@@ -402,12 +403,11 @@ bool ImpulseSolver::aim_again(const Group& group, Row& row) {
   } else {
     return false;
   }
-  const double asked = std::min(0.0, row.gap + step_ * row.target);
-  if (gap >= asked - most) return false;
+  if (gap >= row.asked - most) return false;
   double speed = wrench.dot(moving_[at(group.a)]);
   if (group.b >= 0) speed -= wrench.dot(moving_[at(group.b)]);
   row.wrench = wrench;
-  row.target = speed + (asked - gap) / step_;
+  row.target = speed + (row.asked - gap) / step_;
   if (row.gap > 0) row.kept = row.target;
   return true;
 }
@@ -415,7 +415,7 @@ bool ImpulseSolver::aim_again(const Group& group, Row& row) {
 void ImpulseSolver::solve_again(int iterations) {
   moving_ = bodies_->twists();
   connect();
-  warm_start(false);
+  warm_start(true);
   sweep_all(iterations);
 }
 
@@ -442,6 +442,7 @@ void ImpulseSolver::sweep_all(int iterations) {
   };
   sweep_until(false, iterations);
   const std::vector<Vec6> moving = finished();
+  for (Row& row : rows_) row.pushed = row.impulse;
   const bool differs = std::ranges::any_of(rows_, [](const Row& r) { return r.target != r.kept; });
   if (differs) {
     sweep_until(true, std::max(2, iterations / 2));

@@ -47,11 +47,11 @@ class ImpulseSolver {
     Vec6 answer = Vec6::Zero();  // of the relative twist to an impulse of 1
     double inverse = 0;          // 1 / (wrench . answer)
     double target = 0, kept = 0;  // least relative speeds: while moving, and afterwards
-    double impulse = 0;
+    double impulse = 0, pushed = 0;  // the latter with the target
     bool both = false;           // pulls, too
     int joint = -1, side = 0;    // of a limit
     int contact = -1;
-    double gap = 0;              // metres or radians, at the begin
+    double gap = 0, asked = 0;   // metres or radians, now and where the step may end
     float* cache = nullptr;
   };
   // Contacts of two bodies in about one plane have one friction: across at the middle of their
@@ -80,7 +80,7 @@ class ImpulseSolver {
   void add_distance(int joint);
   void add_slide(int joint, const Vec3& axis, double beyond);
   void connect();
-  void warm_start(bool from_cache);
+  void warm_start(bool again);
   void sweep_all(int iterations);
   double sweep(bool relax);
   void sweep_until(bool relax, int count);

@@ -13,8 +13,8 @@ namespace krok::ragdoll {
 namespace {
 
 constexpr double kLongest = 600;              // seconds
-constexpr double kStill = 0.05, kTurn = 0.3;  // m/s, rad/s
-constexpr double kRest = 0.5;                 // seconds
+constexpr double kStill = 0.025, kTurn = 0.15;  // metres, radians
+constexpr double kRest = 0.5;                  // seconds
 
 constexpr double kSettling = 0.2;  // seconds
 
@@ -54,6 +54,7 @@ class FallMaker {
   World world_{WorldOptions(), Surroundings()};
   Fall fall_;
   int frames_ = 0, next_frame_ = 0;
+  std::vector<Transform> still_;  // bodies where they have been since then
   double still_since_ = -1;
 };
 
@@ -171,19 +172,23 @@ bool FallMaker::step(int number) {
   largest.limit_excess = std::max(largest.limit_excess, now.limit_excess);
   largest.penetration = std::max(largest.penetration, now.penetration);
   largest.contacts = std::max(largest.contacts, now.contacts);
-  bool still = now.contacts > 0;
+  bool still = now.contacts > 0 && !still_.empty();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const BodyState state = world_.state(static_cast<int>(b));
-    still = still && state.velocity.norm() < kStill && state.spin.norm() < kTurn;
+    still = still && (state.to_world.position - still_[b].position).norm() < kStill &&
+            angle_between(state.to_world.orientation, still_[b].orientation) < kTurn;
     fall_.least_height = std::min(fall_.least_height, state.to_world.position.y());
   }
   const double time = (number + 1) * World::kStep;
   fall_.simulated = time;
   if (!still) {
-    still_since_ = -1;
+    still_.clear();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      still_.push_back(world_.state(static_cast<int>(b)).to_world);
+    }
+    still_since_ = time;
     return true;
   }
-  if (still_since_ < 0) still_since_ = time;
   if (time - still_since_ < kRest) return true;
   for (const Push& push : options_.pushes) {
     if (push.time - options_.at >= time) return true;

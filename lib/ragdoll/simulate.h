@@ -29,7 +29,7 @@ struct Fall {
   Clip clip;            // at the motion's rate: its own frames before the fall, then the simulated
   int first_frame = 0;  // simulated
   // Seconds after the fall's begin from which all bodies rest on the ground; -1 if never. Rest is
-  // half a second below 5 cm/s and 0.3 rad/s; what then follows is still.
+  // half a second in which none moves by 2.5 cm or turns by 9 degrees; what then follows is still.
   double rest = -1;
   // Of all steps: the first 0.2 s, in which what the pose has in the ground comes out of it, and
   // the rest.

@@ -11,7 +11,8 @@
 namespace krok::ragdoll {
 
 namespace {
-constexpr int kAgain = 3;
+// How often a step is aimed again, and then divided.
+constexpr int kAgain = 1, kDivided = 4;
 }
 
 struct World::Inside {
@@ -26,7 +27,7 @@ struct World::Inside {
   std::span<const Contact> contacts;
 
   void look();
-  void advance(double step);
+  void advance(double step, int divided);
 };
 
 void World::Inside::look() {
@@ -35,7 +36,8 @@ void World::Inside::look() {
   contacts = collision.find(states, kStep);
 }
 
-void World::Inside::advance(double step) {
+// Steps in which something turns so fast that its limits miss are divided.
+void World::Inside::advance(double step, int divided) {
   bodies.accelerate(step, options.gravity);
   solver.begin(bodies, step);
   solver.add_contacts(contacts, options.friction, options.restitution);
@@ -45,8 +47,15 @@ void World::Inside::advance(double step) {
     solver.solve(options.iterations);
   }
   bodies.move(step, solver.moving(), solver.left());
-  for (int again = 0; again < kAgain && solver.has_rows() && solver.missed(); ++again) {
+  for (int again = 0; solver.has_rows() && solver.missed(); ++again) {
+    const bool divide = again == kAgain && divided < kDivided;
+    if (again == kAgain && !divide) break;
     bodies.move_back();
+    if (divide) {
+      advance(0.5 * step, divided + 1);
+      advance(0.5 * step, divided + 1);
+      return;
+    }
     solver.solve_again(options.iterations);
     bodies.move(step, solver.moving(), solver.left());
   }
@@ -88,7 +97,7 @@ Status World::add(std::span<const Body> bodies, std::span<const BodyState> state
 void World::step() {
   Inside& in = *inside_;
   const double part = kStep / in.options.substeps;
-  for (int i = 0; i < in.options.substeps; ++i) in.advance(part);
+  for (int i = 0; i < in.options.substeps; ++i) in.advance(part, 0);
   // Afterwards, so that measures() sees the poses as they are; the next step begins with these.
   in.look();
 }

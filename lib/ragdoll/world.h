@@ -25,7 +25,7 @@ struct WorldOptions {
   double friction = 0.7;             // Coulomb's, between bodies and surroundings, >= 0
   double restitution = 0;            // 0 to 1
   int substeps = 1;    // parts of a step, >= 1; contacts are looked for once in each step
-  int iterations = 16;  // most sweeps over contacts and limits in each part, >= 1
+  int iterations = 12;  // most sweeps over contacts and limits in each part, >= 1
 };
 
 // A static surface.

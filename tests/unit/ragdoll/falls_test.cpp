@@ -73,7 +73,7 @@ TEST(RagdollFalls, RandomPushesEndInRest) {
     const Fall fall = fall_of(walker, options);
     ASSERT_TRUE(check(fall.clip).ok()) << i;
     at_rest += fall.rest >= 0 ? 1 : 0;
-    joined += fall.largest.joint_gap < 1.5e-3 ? 1 : 0;
+    joined += fall.largest.joint_gap < 1e-6 ? 1 : 0;
     above += fall.largest.penetration < 0.005 ? 1 : 0;
     within += fall.largest.limit_excess < kRadiansPerDegree ? 1 : 0;
     gap = std::max(gap, fall.largest.joint_gap);

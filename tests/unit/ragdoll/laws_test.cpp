@@ -201,8 +201,8 @@ TEST(RagdollLaws, ABoxSlidesAboveTheAngleOfFrictionAlone) {
       EXPECT_LT(slid(critical - 0.01, friction, level), level ? 0.002 : 0.01) << friction << level;
       const double angle = critical + 0.15;
       const double expected = 0.5 * kGravity * (std::sin(angle) - friction * std::cos(angle));
-      // Points of contact with triangles come and go, which costs half a percent more.
-      EXPECT_NEAR(slid(angle, friction, level), expected, (level ? 0.01 : 0.015) * expected)
+      // Points of contact with triangles are in single precision and come and go.
+      EXPECT_NEAR(slid(angle, friction, level), expected, (level ? 0.01 : 0.025) * expected)
           << friction << level;
     }
   }
