@@ -7,6 +7,10 @@
 
 namespace krok::ragdoll {
 
+namespace {
+constexpr double kSlow = 0.02;  // rad/s: below this, dry friction is less
+}
+
 // The joint's speeds as the bodies have them.
 Vec3 Articulation::last_rate(const Link& link) const {
   const Joint& joint = joints_[at(link.joint)];
@@ -28,7 +32,10 @@ void Articulation::drive(Link& link, double step, Mat3& damping) const {
     if (joint.soft) soft_slide(link, step, damping);
     return;
   }
-  damping.diagonal().array() += step * joint.friction;
+  // Dry friction stops within the step; a damper of the speed that there is stands for it.
+  const double dry =
+      joint.dry_friction > 0 ? joint.dry_friction / (last_rate(link).norm() + kSlow) : 0;
+  damping.diagonal().array() += step * (joint.friction + dry);
   if (joint.soft) soft_turn(link, step, damping);
   if (joint.motor > 0) run_motor(link, step, damping);
 }

@@ -179,6 +179,7 @@ std::vector<Joint> make_joints(const Skeleton& skeleton, const RoleMap& roles,
     joint.stiffness = options.stiffness * carried[b];
     joint.damping = options.damping * carried[b];
     joint.friction = options.friction * carried[b];
+    joint.dry_friction = options.dry_friction * carried[b];
     joints.push_back(joint);
   }
   return joints;

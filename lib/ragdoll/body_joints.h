@@ -18,6 +18,7 @@ struct BodyJointOptions {
   double damping = 0.5;   // N m s/rad
   // Resistance of muscles and tissue at rest, N m s/rad for each kilogram that the joint carries.
   double friction = 0.2;
+  double dry_friction = 0.1;  // N m for each kilogram: lying limbs come to rest
 };
 
 // The joints between bodies, one for each body with a parent, at the joint of the skeleton that the

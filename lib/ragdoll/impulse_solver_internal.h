@@ -23,6 +23,11 @@ struct Contact {
 // Contacts and limits count before they are reached, and let their gap close but not further. What
 // is already beyond comes back apart from the speeds: there are two sets of twists, those that move
 // the bodies on, and those that they keep.
+// Sweeps are in single precision, with twists and wrenches of eight numbers (two are 0), which fill
+// whole registers; from their impulses the twists are then found in double.
+using Vec8f = Eigen::Matrix<float, 8, 1>;
+using Mat8f = Eigen::Matrix<float, 8, 8>;
+
 class ImpulseSolver {
  public:
   // Of one step of an articulation, after accelerate().
@@ -44,10 +49,8 @@ class ImpulseSolver {
  private:
   struct Row {
     Vec6 wrench = Vec6::Zero();  // on the group's first body; the other has the negative
-    Vec6 answer = Vec6::Zero();  // of the relative twist to an impulse of 1
-    double inverse = 0;          // 1 / (wrench . answer)
     double target = 0, kept = 0;  // least relative speeds: while moving, and afterwards
-    double impulse = 0, pushed = 0;  // the latter with the target
+    float impulse = 0, pushed = 0;  // the latter with the target
     bool both = false;           // pulls, too
     int joint = -1, side = 0;    // of a limit
     int contact = -1;
@@ -58,13 +61,19 @@ class ImpulseSolver {
   // pressure, and against spinning on the spot. Friction at each point could strain against itself.
   struct Patch {
     std::size_t first = 0, end = 0;  // rows of the contacts; the next three are the friction
-    double friction = 0;
-    std::vector<double> arms;
+    float friction = 0;
+    std::vector<float> arms;
+  };
+  struct Swept {  // of a row
+    Vec8f wrench, answer;  // the relative twist's answer to an impulse of 1
+    float inverse = 0;     // 1 / (wrench . answer)
+    float target = 0;
   };
   struct Group {
     int a = 0, b = -1;
     std::size_t first = 0, end = 0;  // rows
     int patch = -1;                  // all rows are of it
+    int touched_a = 0, touched_b = -1;  // of touched_
   };
 
   void open_group(int a, int b);
@@ -82,11 +91,12 @@ class ImpulseSolver {
   void connect();
   void warm_start(bool again);
   void sweep_all(int iterations);
-  double sweep(bool relax);
+  float sweep();
+  std::vector<Vec6> sum() const;
   void sweep_until(bool relax, int count);
-  void sweep_row(Row& row, double target, Vec6& difference, Vec6& wrench, double& largest);
-  void sweep_friction(const Patch& patch, Vec6& difference, Vec6& wrench, double& largest);
-  void spread(std::size_t group, const Vec6& wrench);
+  void sweep_row(std::size_t r, Vec8f& difference, Vec8f& wrench, float& largest);
+  void sweep_friction(const Patch& patch, Vec8f& difference, Vec8f& wrench, float& largest);
+  void spread(std::size_t group, const Vec8f& wrench);
 
   const Articulation* bodies_ = nullptr;
   double step_ = 0;
@@ -95,10 +105,11 @@ class ImpulseSolver {
   std::vector<Group> groups_;
   std::vector<Patch> patches_;
   std::vector<int> touched_;   // bodies that have rows
-  std::vector<Mat6> answers_;  // shape [groups, touched]
+  std::vector<Mat8f> answers_;  // shape [groups, touched]
   std::vector<Vec6> moving_, left_;
-  std::vector<double> directions_, before_;     // of impulses, shape [rows]
-  std::vector<Vec6> turns_, twists_before_;     // shape [touched]
+  std::vector<Swept> swept_;
+  std::vector<Vec8f> twists_, twists_before_, turns_;  // shape [touched]
+  std::vector<float> directions_, before_;             // of impulses, shape [rows]
 };
 
 }  // namespace krok::ragdoll

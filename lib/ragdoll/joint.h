@@ -49,6 +49,7 @@ struct Joint {
   double stiffness = 100, damping = 0;  // >= 0
 
   double friction = 0;  // N m s/rad, >= 0: slows all turning within the joint
+  double dry_friction = 0;  // N m, >= 0: the same at any speed
 
   // A motor turns the child towards `target` (in the parent's frame) and its speed to `target_speed`
   // (radians/s, in the parent's frame), as a spring (N m/rad) and a damper (N m s/rad) would, with
