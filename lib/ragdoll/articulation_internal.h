@@ -30,6 +30,11 @@ inline Vec6 spatial(const Vec3& upper, const Vec3& lower) {
 // their inertias. The recursion is that of the articulated-body algorithm, with momenta in place of
 // forces; it needs no terms of Coriolis, as bodies carry their momenta from pose to pose, and takes
 // dampers and motors into the joints' inertias, which makes them stable for any gain.
+//
+// Bullet 3.24 has trees in reduced coordinates, too (btMultiBody). On the same falls, beside this in
+// the benchmark, it is slower, sinks centimetres into the ground, since it takes penetrations back
+// through speeds, and trembles at rest; its spherical limits are symmetrical. Its joints between
+// free bodies came apart by a millimetre at 3840 steps a second.
 class Articulation {
  public:
   // `joints` without rings, each body a child of at most one that is no distance.

@@ -58,7 +58,7 @@ double share(std::mt19937& random) {
 TEST(RagdollFalls, RandomPushesEndInRest) {
   const Walker walker = make_walker();
   std::mt19937 random(7);
-  constexpr int kFalls = 60;
+  constexpr int kFalls = 100;
   int at_rest = 0, joined = 0, above = 0, within = 0;
   double gap = 0, depth = 0, excess = 0;
   for (int i = 0; i < kFalls; ++i) {
@@ -86,7 +86,7 @@ TEST(RagdollFalls, RandomPushesEndInRest) {
     }
     EXPECT_LT(top, 1.0) << i;
   }
-  EXPECT_GE(at_rest, 59) << at_rest;
+  EXPECT_GE(at_rest, 99) << at_rest;
   EXPECT_EQ(joined, kFalls) << gap;
   EXPECT_EQ(above, kFalls) << depth;
   EXPECT_EQ(within, kFalls) << excess / kRadiansPerDegree;
