@@ -69,6 +69,7 @@ Kind json_kind(std::string_view text) {
   };
   if (has(head, "\"krok.material/")) return Kind::material;
   if (has(head, "\"krok.character/")) return Kind::character;
+  if (has(head, "\"krok.ragdoll/")) return Kind::ragdoll;
   return has(head, "\"asset\"") || has(tail, "\"asset\"") ? Kind::gltf : Kind::unknown;
 }
 
@@ -168,6 +169,7 @@ constexpr auto kFormats = std::to_array<Format>({
     {Kind::bvh, "bvh", "a BVH text file", is_bvh},
     {Kind::material, "material", "Krok materials (.material)", is_json<Kind::material>},
     {Kind::character, "character", "a Krok character (.character)", is_json<Kind::character>},
+    {Kind::ragdoll, "ragdoll.json", "Krok bodies and joints (.ragdoll.json)", is_json<Kind::ragdoll>},
     {Kind::gltf, "gltf", "a glTF file (.gltf)", is_json<Kind::gltf>},
     {Kind::fbx, "fbx", "an FBX file", is_scene<Kind::fbx>},
     {Kind::collada, "dae", "a COLLADA file (.dae)", is_scene<Kind::collada>},
@@ -240,7 +242,7 @@ std::string advice(Kind found, Kind wanted) {
   const bool capture = found == Kind::bvh || found == Kind::asf || found == Kind::amc;
   if (capture || is_read_through_assimp(found)) return "import it with krok-import";
   if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";
-  const bool own = found >= Kind::anim && found <= Kind::character;
+  const bool own = found >= Kind::anim && found <= Kind::ragdoll;
   if (own) return "perhaps two arguments are in the wrong order";
   return {};
 }

@@ -19,6 +19,7 @@ enum class Kind : unsigned char {
   steps,
   material,
   character,
+  ragdoll,  // .ragdoll.json
   // captures
   bvh,
   asf,

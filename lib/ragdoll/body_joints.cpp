@@ -39,14 +39,6 @@ void widen(ik::JointLimit& limit, double swing, double twist) {
   limit.max_twist = std::min(kPi, limit.max_twist * twist);
 }
 
-void include(ik::JointLimit& limit, const Quat& turn) {
-  const ik::LimitAngles angles = ik::measure(limit, turn);
-  limit.min_twist = std::min(limit.min_twist, angles.twist);
-  limit.max_twist = std::max(limit.max_twist, angles.twist);
-  const double ratio = swing_ratio(limit, angles.swing);
-  if (ratio > 1) widen(limit, ratio, 1);
-}
-
 class JointMaker {
  public:
   JointMaker(const Skeleton& skeleton, const RoleMap& roles, const std::vector<Body>& bodies,
@@ -91,8 +83,8 @@ void JointMaker::spherical(Joint& joint, const Body& body, const Body& above, do
   const Quat kept = pose_[at(above.joint)].orientation.conjugate() * parent;
   joint.turn.zero = (kept * joint.turn.zero).normalized();
   if (share > 1) widen(joint.turn, share, share);
-  include(joint.turn,
-          pose_[at(above.joint)].orientation.conjugate() * pose_[at(body.joint)].orientation);
+  include_turn(joint.turn,
+               pose_[at(above.joint)].orientation.conjugate() * pose_[at(body.joint)].orientation);
 }
 
 // In the joint's frame. Where the limb is bent enough to tell, the axis it is bent about; else the
@@ -161,6 +153,14 @@ Joint JointMaker::make(int child) const {
 }
 
 }  // namespace
+
+void include_turn(ik::JointLimit& limit, const Quat& turn) {
+  const ik::LimitAngles angles = ik::measure(limit, turn);
+  limit.min_twist = std::min(limit.min_twist, angles.twist);
+  limit.max_twist = std::max(limit.max_twist, angles.twist);
+  const double ratio = swing_ratio(limit, angles.swing);
+  if (ratio > 1) widen(limit, ratio, 1);
+}
 
 std::vector<Joint> make_joints(const Skeleton& skeleton, const RoleMap& roles,
                                const std::vector<Body>& bodies, const ik::Limits& limits,

@@ -31,4 +31,7 @@ std::vector<Joint> make_joints(const Skeleton& skeleton, const RoleMap& roles,
                                const std::vector<Body>& bodies, const ik::Limits& limits,
                                std::span<const Transform> pose, const BodyJointOptions& options);
 
+// Widens a cone so that it includes a rotation.
+void include_turn(ik::JointLimit& limit, const Quat& turn);
+
 }  // namespace krok::ragdoll

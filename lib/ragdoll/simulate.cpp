@@ -20,12 +20,6 @@ constexpr double kSettling = 0.2;  // seconds
 
 using Pose = std::vector<Transform>;
 
-Pose pose_at(const Clip& clip, double time) {
-  Pose pose(clip.skeleton.names.size()), scratch(3 * pose.size());
-  sample(clip, time, pose, scratch);
-  return pose;
-}
-
 class FallMaker {
  public:
   FallMaker(const Clip& motion, const RoleMap& roles, const std::vector<Body>& bodies,
@@ -49,6 +43,7 @@ class FallMaker {
   const std::vector<Body>& bodies_;
   const FallOptions& options_;
   Pose start_, locals_;
+  std::vector<bool> slides_;  // bodies whose place the skeleton does not give
   // The world's origin is below the character, as Bullet computes in single precision.
   Vec3 origin_ = Vec3::Zero();
   World world_{WorldOptions(), Surroundings()};
@@ -97,7 +92,17 @@ Status FallMaker::begin(const ik::Limits& limits) {
   origin_.y() = 0;
   world_ = World(options_.world, moved_ground());
   const std::vector<Joint> joints =
-      make_joints(motion_.skeleton, roles_, bodies_, limits, start_, options_.joints);
+      options_.rules.empty()
+          ? make_joints(motion_.skeleton, roles_, bodies_, limits, start_, options_.joints)
+          : joints_of(options_.rules, bodies_, start_);
+  slides_.assign(bodies_.size(), false);
+  for (const Joint& joint : joints) {
+    slides_[at(joint.child)] =
+        joint.kind == JointKind::prismatic || joint.kind == JointKind::distance ||
+        (joint.kind == JointKind::six_dof &&
+         std::ranges::any_of(joint.slide,
+                             [](const Range& range) { return range.min != range.max; }));
+  }
   if (Status status = world_.add(bodies_, start_states(), joints); !status) return status;
   fall_.settling.penetration = world_.measures().penetration;
   fall_.least_height = std::numeric_limits<double>::infinity();
@@ -139,7 +144,7 @@ Pose FallMaker::pose() const {
     const Transform to_world =
         world_.state(own[j]).to_world * bodies_[at(own[j])].to_joint.inverse();
     pose[j].orientation = to_world.orientation.normalized();
-    if (own[j] == 0) pose[j].position = to_world.position + origin_;
+    if (own[j] == 0 || slides_[at(own[j])]) pose[j].position = to_world.position + origin_;
   }
   return pose;
 }
@@ -241,6 +246,12 @@ Status check(const Clip& motion, const std::vector<Body>& bodies, const FallOpti
 }
 
 }  // namespace
+
+std::vector<Transform> pose_at(const Clip& clip, double time) {
+  Pose pose(clip.skeleton.names.size()), scratch(3 * pose.size());
+  sample(clip, time, pose, scratch);
+  return pose;
+}
 
 Result<Fall> simulate_fall(const Clip& motion, const RoleMap& roles,
                            const std::vector<Body>& bodies, const ik::Limits& limits,

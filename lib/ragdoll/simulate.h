@@ -5,6 +5,7 @@
 #include "core/result.h"
 #include "ragdoll/bodies.h"
 #include "ragdoll/body_joints.h"
+#include "ragdoll/joint_rules.h"
 #include "ragdoll/world.h"
 #include "scene/clip.h"
 
@@ -21,6 +22,7 @@ struct FallOptions {
   double duration = 3;  // seconds of the fall, 0 to 600
   std::vector<Push> pushes;
   BodyJointOptions joints;
+  std::vector<JointRule> rules;  // of the joints, in place of those of `limits` and `joints`
   WorldOptions world;
   Surroundings surroundings;
 };
@@ -38,11 +40,14 @@ struct Fall {
   double least_height = 0;  // metres: lowest centre of a body
 };
 
+// The pose at a time, joint_to_world; the time is clamped to the motion.
+std::vector<Transform> pose_at(const Clip& clip, double time);
+
 // Lets a motion's character fall. The bodies start from its pose at `at` and from its speeds, which
 // are differences over one frame to either side. The frames after `at` come from the bodies: the
 // root body gives the position and orientation of its joint, each simulated joint has its body's
 // orientation, all others keep their turn relative to their parent, and positions follow down the
-// tree from the offsets that the pose has. Joints above the root body stand still. Between steps
+// tree from the offsets that the pose has, but for bodies that slide. Joints above the root body stand still. Between steps
 // poses are interpolated. The same input gives the same bytes.
 //
 // `bodies` are make_bodies()', `limits` as for make_joints(). Codes: ragdoll-time for times outside

@@ -56,6 +56,7 @@ ALLOWED = {
     "formats/keys": BASE | {"formats/json"},
     "formats/camera_keys": BASE | {"lib/camera", "formats/json"},
     "formats/limits": BASE | {"lib/ik", "formats/json"},
+    "formats/ragdoll": BASE | {"lib/ik", "lib/ragdoll", "formats/json"},
     "formats/goals": BASE | {"lib/roles", "lib/motion", "lib/timeline", "lib/ik", "formats/json"},
     "formats/container": BASE | {"formats/registry"},
     "formats/bvh": BASE | {"lib/roles", "lib/capture", "formats/registry"},

@@ -27,6 +27,8 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
       return describe_material(file, context);
     case Kind::character:
       return describe_character(file, how, context);
+    case Kind::ragdoll:
+      return describe_ragdoll(file, context);
     case Kind::bvh:
       return describe_bvh(file, how, context);
     case Kind::asf:
@@ -39,8 +41,8 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
       "info-kind",
       "is " + std::string(registry::describe_content(file.bytes())) +
           ", which krok-info cannot read",
-      "supported are .anim, .model, .cam, .steps, .material, .character, .bvh, .asf, .amc, "
-      ".glb and .gltf files, and characters in .fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and "
+      "supported are .anim, .model, .cam, .steps, .material, .character, .ragdoll.json, .bvh, "
+      ".asf, .amc, .glb and .gltf files, and characters in .fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and "
       ".md5anim files");
 }
 

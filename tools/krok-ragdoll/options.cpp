@@ -46,6 +46,17 @@ void declare_body(CommandOptions& command, Arguments& a) {
   command.add_option("--model", a.model, "Fit the bodies to this model's vertices by their weights")
       .type_name("IN.model")
       .group(group);
+  command
+      .add_option("--bodies", a.bodies,
+                  "Bodies and joints from a file (formats/ragdoll/SPEC.md) instead of made ones")
+      .type_name("IN.ragdoll.json")
+      .group(group);
+  command
+      .add_option("--save-bodies", a.save_bodies,
+                  "Also save the bodies and joints: to be edited and given to --bodies, or as "
+                  "meshes (.glb)")
+      .type_name("OUT.ragdoll.json|OUT.glb")
+      .group(group);
   command.add_option("--mass", a.mass, "Mass of the body")
       .type_name("MASS")
       .default_str("75kg")
@@ -140,6 +151,23 @@ Result<Options> understand(const Arguments& a) {
   }
   if (!(a.friction >= 0 && a.friction <= 10) || !(a.restitution >= 0 && a.restitution <= 1)) {
     return usage("--friction must be from 0 to 10, --restitution from 0 to 1");
+  }
+  if (!a.bodies.empty()) {
+    const std::pair<const char*, bool> unused[] = {{"--model", !a.model.empty()},
+                                                   {"--mass", a.mass != Arguments().mass},
+                                                   {"--limits", a.limits != Arguments().limits},
+                                                   {"--soft", a.soft}};
+    for (const auto& [option, given] : unused) {
+      if (given) {
+        return usage(fmt::format("--bodies has what {} would change", option),
+                     "edit the file, or leave one of them out");
+      }
+    }
+  }
+  const std::string ending = extension(a.save_bodies);
+  if (!a.save_bodies.empty() && ending != ".json" && ending != ".glb") {
+    return usage(
+        fmt::format("--save-bodies: '{}' is neither .ragdoll.json nor .glb", shown(a.save_bodies)));
   }
   const auto begin = parse_clip_time(a.at);
   if (!begin || !(begin->value >= 0)) {

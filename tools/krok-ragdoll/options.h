@@ -14,6 +14,7 @@ namespace krok::cli::ragdoll {
 // The options as given on the command line.
 struct Arguments {
   std::string input, map, model;
+  std::string bodies, save_bodies;
   std::string at = "0s", duration = "3s", mass = "75kg";
   std::vector<std::string> pushes;  // JOINT=X,Y,ZNs[@TIME]
   std::string ground = "level";

@@ -13,6 +13,7 @@
 #include "formats/io/open_motion.h"
 #include "formats/limits/limits_format.h"
 #include "formats/model/model_format.h"
+#include "formats/ragdoll/ragdoll_format.h"
 #include "ik/anatomical_limits.h"
 #include "ragdoll/simulate.h"
 #include "tools/cli/output_kind.h"
@@ -35,6 +36,8 @@ class Run {
   Status read_motion();
   Status read_limits();
   Status read_bodies();
+  Status read_given_bodies();
+  Status write(const Clip& fall) const;
   Status add_pushes();
   Status read_ground();
   Json report(const krok::ragdoll::Fall& fall) const;
@@ -81,7 +84,18 @@ Status Run::read_limits() {
   return {};
 }
 
+Status Run::read_given_bodies() {
+  const auto file = context_.open_input(given().bodies);
+  if (!file) return file.error();
+  auto read = ragdoll_file::read(file->text(), &clip_.skeleton);
+  if (!read) return std::move(read).error().in_file(given().bodies);
+  bodies_ = std::move(read->bodies);
+  fall_.rules = std::move(read->joints);
+  return {};
+}
+
 Status Run::read_bodies() {
+  if (!given().bodies.empty()) return read_given_bodies();
   krok::ragdoll::BodyOptions how;
   how.mass = options_.mass;
   std::optional<Model> model;
@@ -99,6 +113,12 @@ Status Run::read_bodies() {
     return std::move(bodies).error().in_file(of_model ? given().model : given().input);
   }
   bodies_ = std::move(*bodies);
+  // Through rules even if no file is written, so that a saved file gives the same fall.
+  fall_.joints.soft = given().soft;
+  const std::vector<Transform> pose = krok::ragdoll::pose_at(clip_, fall_.at);
+  fall_.rules = krok::ragdoll::rules_of(
+      krok::ragdoll::make_joints(clip_.skeleton, roles_, bodies_, limits_, pose, fall_.joints),
+      clip_.skeleton, bodies_, limits_, pose);
   return {};
 }
 
@@ -132,7 +152,6 @@ Status Run::read_ground() {
   fall_.surroundings = std::move(*surroundings);
   fall_.world.friction = given().friction;
   fall_.world.restitution = given().restitution;
-  fall_.joints.soft = given().soft;
   return {};
 }
 
@@ -156,6 +175,21 @@ Json Run::report(const krok::ragdoll::Fall& fall) const {
   return json;
 }
 
+Status Run::write(const Clip& fall) const {
+  OutputSet outputs(context_);
+  anim::WriteOptions writing;
+  writing.orientation = given().orientation;
+  writing.jobs = context_.jobs;
+  Status status = outputs.add(
+      context_.output, [&](OutputFile& file) { return anim::write(fall, writing, file); });
+  if (!status) return status;
+  status = outputs.add(given().save_bodies, [&](OutputFile& file) {
+    return file.write(ragdoll_file::write({bodies_, fall_.rules}, clip_.skeleton));
+  });
+  if (!status) return status;
+  return outputs.finish();
+}
+
 Result<int> Run::run() {
   if (Status status = check_output_kind(context_.output, "-o", registry::Kind::anim); !status) {
     return status.error();
@@ -176,15 +210,7 @@ Result<int> Run::run() {
   fall->clip.provenance = context_.provenance();
   fall->clip.provenance.conversions = clip_.provenance.conversions;
   fall->clip.provenance.conversions.push_back("ragdoll: " + summary);
-  anim::WriteOptions writing;
-  writing.orientation = given().orientation;
-  writing.jobs = context_.jobs;
-  if (Status status =
-          write_output(context_, context_.output,
-                       [&](OutputFile& file) { return anim::write(fall->clip, writing, file); });
-      !status) {
-    return status.error();
-  }
+  if (Status status = write(fall->clip); !status) return status.error();
   context_.report.result = report(*fall);
   context_.log(fmt::format("{}: {}", context_.output, summary));
   return kExitDone;
