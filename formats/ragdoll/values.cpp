@@ -93,9 +93,10 @@ Result<ragdoll::Range> Values::range(const Value& list, const std::string& what,
     return in_.wrong(list, fmt::format("\"{}\" of {} has its min {} above its max {}", key, what,
                                        readable(range.min / unit), readable(range.max / unit)));
   }
-  const bool below = std::isfinite(range.min) && range.min < lowest - 1e-9;
-  const bool above = std::isfinite(range.max) && range.max > highest + 1e-9;
-  if (below || above) {
+  const auto outside = [&](double end) {
+    return std::isfinite(end) && (end < lowest - 1e-9 || end > highest + 1e-9);
+  };
+  if (outside(range.min) || outside(range.max)) {
     return in_.wrong(list, fmt::format("\"{}\" of {} exceeds {} to {}", key, what,
                                        readable(lowest / unit), readable(highest / unit)));
   }

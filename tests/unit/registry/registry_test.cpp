@@ -35,6 +35,7 @@ TEST(Registry, ContentTellsTheKind) {
   EXPECT_EQ(kind_of_content(bytes_of("{\"schema\": \"krok.material/1\", \"asset\": 1}")),
             Kind::material);
   EXPECT_EQ(kind_of_content(bytes_of("\n{ \"schema\":\"krok.character/1\"}")), Kind::character);
+  EXPECT_EQ(kind_of_content(bytes_of("{\"schema\": \"krok.ragdoll/1\"}")), Kind::ragdoll);
   EXPECT_EQ(kind_of_content(bytes_of("{\"schema\": \"krok.timeline/1\"}")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("{\"a\":1}")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("HIER")), Kind::unknown);
@@ -74,7 +75,7 @@ TEST(Registry, ScenesOfOtherProgramsGoThroughAssimp) {
   }
   for (const Kind kind :
        {Kind::unknown, Kind::anim, Kind::model, Kind::cam, Kind::material, Kind::character,
-        Kind::bvh, Kind::asf, Kind::amc, Kind::pc2, Kind::glb, Kind::gltf}) {
+        Kind::ragdoll, Kind::bvh, Kind::asf, Kind::amc, Kind::pc2, Kind::glb, Kind::gltf}) {
     EXPECT_FALSE(is_read_through_assimp(kind)) << kind_name(kind);
   }
 }
