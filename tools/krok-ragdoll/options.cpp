@@ -16,8 +16,6 @@ namespace krok::cli::ragdoll {
 
 namespace {
 
-constexpr double kStrongest = 1e4;  // N s
-
 Error usage(std::string message, std::string hint = {}) {
   return {"usage", std::move(message), std::move(hint)};
 }
@@ -33,6 +31,19 @@ void declare_fall(CommandOptions& command, Arguments& a) {
                   "Push at a joint, given by name or role: Spine2=120Ns,0,40Ns at --at, or later: "
                   "head=0,0,-30Ns@2s; repeatable")
       .type_name("JOINT=X,Y,Z")
+      .one_each_time()
+      .group(group);
+  command
+      .add_option("--pushes", a.push_table,
+                  "A fall for each row of a table with the columns name, at, joint, x, y, z and "
+                  "maybe time; {name} in the output's name is the row's")
+      .type_name("IN.csv")
+      .group(group);
+  command
+      .add_option("--get-up", a.rises,
+                  "Get up once at rest, with the motion whose first pose, or its mirror image, is "
+                  "nearest; repeatable")
+      .type_name("IN.anim")
       .one_each_time()
       .group(group);
   command.add_option("--duration", a.duration, "Length of the fall")
@@ -118,7 +129,7 @@ Result<PushAt> parse_push(const std::string& text) {
     const std::size_t comma = impulse.find(',');
     if ((comma == std::string_view::npos) != (i == 2)) return wrong("an impulse has three parts");
     const auto value = number_of(impulse.substr(0, comma), "Ns");
-    if (!value || !(std::abs(*value) <= kStrongest)) {
+    if (!value || !(std::abs(*value) <= kMaxImpulse)) {
       return wrong("an impulse is a number of Ns, up to 10000");
     }
     push.impulse[i] = *value;
@@ -164,6 +175,14 @@ Result<Options> understand(const Arguments& a) {
       }
     }
   }
+  if (!a.push_table.empty()) {
+    const std::pair<const char*, bool> unused[] = {{"--at", a.at != Arguments().at},
+                                                   {"--push", !a.pushes.empty()},
+                                                   {"--save-bodies", !a.save_bodies.empty()}};
+    for (const auto& [option, given] : unused) {
+      if (given) return usage(fmt::format("--pushes and {} exclude each other", option));
+    }
+  }
   const std::string ending = extension(a.save_bodies);
   if (!a.save_bodies.empty() && ending != ".json" && ending != ".glb") {
     return usage(
@@ -198,8 +217,16 @@ ToolSpec make_spec() {
        "a walker is shoved from the side and falls"},
       {"krok-ragdoll walk.anim --model walker.model --at 2s --ground stairs.glb --duration 5s -o "
        "fall.anim --json",
-       "bodies in the sizes of a character, on a mesh; the report has the measures"}};
-  spec.batch = {{".anim", ".bvh", ".amc"}, always(".anim")};
+       "bodies in the sizes of a character, on a mesh; the report has the measures"},
+      {"krok-ragdoll walk.anim --pushes pushes.csv -o 'falls/{name}.anim' --json",
+       "a fall for each row of a table"},
+      {"krok-ragdoll walk.anim --at 1s --push Spine2=90Ns,0,0 --get-up front.anim --get-up "
+       "back.anim "
+       "-o up.anim",
+       "falls and gets up, over the front or the back as it lies"}};
+  spec.batch = {{".anim", ".bvh", ".amc"}, [arguments]() -> Result<std::string> {
+                  return std::string(arguments->push_table.empty() ? ".anim" : "_{name}.anim");
+                }};
   return spec;
 }
 

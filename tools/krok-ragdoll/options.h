@@ -17,12 +17,16 @@ struct Arguments {
   std::string bodies, save_bodies;
   std::string at = "0s", duration = "3s", mass = "75kg";
   std::vector<std::string> pushes;  // JOINT=X,Y,ZNs[@TIME]
+  std::string push_table;
+  std::vector<std::string> rises;
   std::string ground = "level";
   std::string limits = "auto";
   double friction = 0.7, restitution = 0;
   bool soft = false;
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
+
+inline constexpr double kMaxImpulse = 1e4;  // N s
 
 struct PushAt {
   std::string joint;

@@ -2,28 +2,38 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <optional>
 
-#include "core/hash.h"
 #include "core/index.h"
 #include "core/nearest_name.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/goals/goals.h"
 #include "formats/io/open_motion.h"
+#include "formats/io/open_terrain.h"
 #include "formats/limits/limits_format.h"
 #include "formats/model/model_format.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "ik/anatomical_limits.h"
-#include "ragdoll/simulate.h"
+#include "tools/cli/file_name.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
+#include "tools/krok-ragdoll/fall.h"
 #include "tools/krok-ragdoll/ground.h"
+#include "tools/krok-ragdoll/push_table.h"
 #include "tools/shared/role_input.h"
 
 namespace krok::cli::ragdoll {
 
 namespace {
+
+// A fall that is to be made, and where it is written.
+struct Plan {
+  std::string name, output;
+  krok::ragdoll::FallOptions fall;
+};
 
 class Run {
  public:
@@ -37,60 +47,58 @@ class Run {
   Status read_limits();
   Status read_bodies();
   Status read_given_bodies();
-  Status write(const Clip& fall) const;
-  Status add_pushes();
-  Status read_ground();
-  Json report(const krok::ragdoll::Fall& fall) const;
+  Status read_rises();
+  Status plan_falls();
+  Status plan_table();
+  Result<std::string> output_of(const std::string& file_name) const;
+  Status begin_at(const ClipTime& at, const std::string& shown_time, Plan& plan);
+  Status add_push(const PushAt& push, Plan& plan) const;
+  Status read_ground(Plan& plan);
+  Status write(const Plan& plan, Provenance provenance, int jobs, Fallen& fallen,
+               OutputFile& file) const;
+  Status write_one();
+  Status write_all();
 
   const Options& options_;
   ToolContext& context_;
-  Clip clip_;
-  RoleMap roles_;
-  krok::ik::Limits limits_;
-  std::vector<krok::ragdoll::Body> bodies_;
-  krok::ragdoll::FallOptions fall_;
+  Subject subject_;
+  std::vector<krok::ragdoll::JointRule> given_rules_;
+  std::vector<Plan> plans_;
 };
 
 Status Run::read_motion() {
   auto clip = io::open_motion(given().input, context_);
   if (!clip) return clip.error();
-  clip_ = std::move(*clip);
+  subject_.clip = std::move(*clip);
   const auto find = io::open_role_map(given().map, context_);
   if (!find) return find.error();
-  auto roles = (*find)(clip_.skeleton);
+  auto roles = (*find)(subject_.clip.skeleton);
   if (!roles) return roles.error();
-  roles_ = std::move(*roles);
-  fall_.at = options_.at.seconds(clip_.rate);
-  fall_.duration = options_.duration;
-  if (clip_.frame_count() == 0 || fall_.at > clip_.duration() + 1e-9) {
-    return Error("ragdoll-time", fmt::format("--at {} is after the motion's end, {} s",
-                                             shown(given().at), clip_.duration()))
-        .in_file(given().input);
-  }
+  subject_.roles = std::move(*roles);
   return {};
 }
 
 Status Run::read_limits() {
   if (given().limits == "none") return {};
   if (given().limits == "auto") {
-    limits_ = krok::ik::anatomical_limits(clip_.skeleton, roles_);
+    subject_.limits = krok::ik::anatomical_limits(subject_.clip.skeleton, subject_.roles);
     return {};
   }
   const auto file = context_.open_input(given().limits);
   if (!file) return file.error();
-  auto limits = limits::read(file->text(), clip_.skeleton);
+  auto limits = limits::read(file->text(), subject_.clip.skeleton);
   if (!limits) return std::move(limits).error().in_file(given().limits);
-  limits_ = std::move(*limits);
+  subject_.limits = std::move(*limits);
   return {};
 }
 
 Status Run::read_given_bodies() {
   const auto file = context_.open_input(given().bodies);
   if (!file) return file.error();
-  auto read = ragdoll_file::read(file->text(), &clip_.skeleton);
+  auto read = ragdoll_file::read(file->text(), &subject_.clip.skeleton);
   if (!read) return std::move(read).error().in_file(given().bodies);
-  bodies_ = std::move(read->bodies);
-  fall_.rules = std::move(read->joints);
+  subject_.bodies = std::move(read->bodies);
+  given_rules_ = std::move(read->joints);
   return {};
 }
 
@@ -107,112 +115,231 @@ Status Run::read_bodies() {
     model = std::move(*read);
     how.model = &*model;
   }
-  auto bodies = krok::ragdoll::make_bodies(clip_.skeleton, roles_, how);
+  auto bodies = krok::ragdoll::make_bodies(subject_.clip.skeleton, subject_.roles, how);
   if (!bodies) {
     const bool of_model = bodies.error().code == "ragdoll-model";
     return std::move(bodies).error().in_file(of_model ? given().model : given().input);
   }
-  bodies_ = std::move(*bodies);
-  // Through rules even if no file is written, so that a saved file gives the same fall.
-  fall_.joints.soft = given().soft;
-  const std::vector<Transform> pose = krok::ragdoll::pose_at(clip_, fall_.at);
-  fall_.rules = krok::ragdoll::rules_of(
-      krok::ragdoll::make_joints(clip_.skeleton, roles_, bodies_, limits_, pose, fall_.joints),
-      clip_.skeleton, bodies_, limits_, pose);
+  subject_.bodies = std::move(*bodies);
   return {};
 }
 
-Status Run::add_pushes() {
-  const std::vector<int> carrier = krok::ragdoll::body_of_joint(clip_.skeleton, bodies_);
-  for (const PushAt& push : options_.pushes) {
-    const int joint = goals::find_joint(push.joint, clip_.skeleton, roles_);
-    if (joint < 0) {
-      return Error("ragdoll-joint",
-                   fmt::format("--push {}: the motion has no joint of that name or role",
-                               shown(push.joint)),
-                   nearest_hint(push.joint, clip_.skeleton.names))
-          .in_file(given().input);
-    }
-    const double time = push.timed ? push.time.seconds(clip_.rate) : fall_.at;
-    if (time < fall_.at - 1e-9 || time > fall_.at + fall_.duration) {
-      return Error("ragdoll-time",
-                   fmt::format("--push {}: its time is not within the fall", shown(push.joint)),
-                   "the fall is from --at on, for --duration");
-    }
-    fall_.pushes.push_back({std::max(0, carrier[at(joint)]), push.impulse, time});
+Status Run::read_rises() {
+  for (const std::string& path : given().rises) {
+    auto clip = io::open_motion(path, context_);
+    if (!clip) return clip.error();
+    // Checked here, so that the message has the file's name.
+    const auto fits =
+        krok::ragdoll::choose_rise(subject_.clip, 0, {&*clip, 1}, subject_.roles, false);
+    if (!fits) return Error(fits.error()).in_file(path);
+    subject_.rises.push_back(std::move(*clip));
+    subject_.rise_names.push_back(name_of_input(path));
+  }
+  if (subject_.rises.empty()) return {};
+  auto terrain = io::open_terrain(given().ground, {}, context_);
+  if (!terrain) return terrain.error();
+  subject_.terrain = std::move(*terrain);
+  return {};
+}
+
+Status Run::begin_at(const ClipTime& at, const std::string& shown_time, Plan& plan) {
+  const Clip& clip = subject_.clip;
+  plan.fall.at = at.seconds(clip.rate);
+  plan.fall.duration = options_.duration;
+  if (clip.frame_count() == 0 || plan.fall.at > clip.duration() + 1e-9) {
+    return Error("ragdoll-time",
+                 fmt::format("{} is after the motion's end, {} s", shown_time, clip.duration()))
+        .in_file(given().input);
+  }
+  plan.fall.joints.soft = given().soft;
+  plan.fall.rules = given_rules_;
+  if (given().bodies.empty()) {
+    // Through rules even if no file is written, so that a saved file gives the same fall.
+    const auto pose = krok::ragdoll::pose_at(clip, plan.fall.at);
+    plan.fall.rules = krok::ragdoll::rules_of(
+        krok::ragdoll::make_joints(clip.skeleton, subject_.roles, subject_.bodies, subject_.limits,
+                                   pose, plan.fall.joints),
+        clip.skeleton, subject_.bodies, subject_.limits, pose);
   }
   return {};
 }
 
-Status Run::read_ground() {
-  const int frame = static_cast<int>(std::min(fall_.at * clip_.rate, clip_.frame_count() - 1.0));
-  const Vec3 centre = clip_.frame_positions(frame)[at(bodies_.front().joint)].cast<double>();
-  auto surroundings = open_surroundings(given().ground, centre, context_);
-  if (!surroundings) return surroundings.error();
-  fall_.surroundings = std::move(*surroundings);
-  fall_.world.friction = given().friction;
-  fall_.world.restitution = given().restitution;
+Status Run::add_push(const PushAt& push, Plan& plan) const {
+  const Clip& clip = subject_.clip;
+  const int joint = goals::find_joint(push.joint, clip.skeleton, subject_.roles);
+  if (joint < 0) {
+    return Error("ragdoll-joint",
+                 fmt::format("{}: the motion has no joint of that name or role", shown(push.joint)),
+                 nearest_hint(push.joint, clip.skeleton.names))
+        .in_file(given().input);
+  }
+  const double time = push.timed ? push.time.seconds(clip.rate) : plan.fall.at;
+  if (time < plan.fall.at - 1e-9 || time > plan.fall.at + plan.fall.duration) {
+    return Error("ragdoll-time",
+                 fmt::format("the push at {}: its time is not within the fall", shown(push.joint)),
+                 "the fall is from its begin on, for --duration");
+  }
+  const auto carrier = krok::ragdoll::body_of_joint(clip.skeleton, subject_.bodies);
+  plan.fall.pushes.push_back({std::max(0, carrier[at(joint)]), push.impulse, time});
   return {};
 }
 
-Json Run::report(const krok::ragdoll::Fall& fall) const {
-  Xxh3Stream hash;
-  hash.update(std::as_bytes(std::span(fall.clip.positions)));
-  hash.update(std::as_bytes(std::span(fall.clip.orientations)));
-  Json json;
-  json["frames"] = fall.clip.frame_count();
-  json["first_simulated_frame"] = fall.first_frame;
-  json["bodies"] = bodies_.size();
-  json["hash"] = hex(hash.digest());
-  json["rest"] = fall.rest < 0 ? Json() : Json(fall.rest);
-  const auto measures = [](const krok::ragdoll::WorldMeasures& of) {
-    return Json{{"joint_gap", of.joint_gap},
-                {"limit_excess", of.limit_excess},
-                {"penetration", of.penetration}};
-  };
-  json["largest"] = measures(fall.largest);
-  json["settling"] = measures(fall.settling);
-  return json;
+Status Run::read_ground(Plan& plan) {
+  const Clip& clip = subject_.clip;
+  const int frame = static_cast<int>(std::min(plan.fall.at * clip.rate, clip.frame_count() - 1.0));
+  const int root = subject_.bodies.front().joint;
+  const Vec3 centre = clip.frame_positions(frame)[at(root)].cast<double>();
+  auto surroundings = open_surroundings(given().ground, centre, context_);
+  if (!surroundings) return surroundings.error();
+  plan.fall.surroundings = std::move(*surroundings);
+  plan.fall.world.friction = given().friction;
+  plan.fall.world.restitution = given().restitution;
+  return {};
 }
 
-Status Run::write(const Clip& fall) const {
-  OutputSet outputs(context_);
+Status Run::plan_falls() {
+  if (!given().push_table.empty()) return plan_table();
+  Plan plan;
+  plan.output = context_.output;
+  if (Status status = begin_at(options_.at, "--at " + shown(given().at), plan); !status) {
+    return status;
+  }
+  for (const PushAt& push : options_.pushes) {
+    if (Status status = add_push(push, plan); !status) return status;
+  }
+  if (Status status = read_ground(plan); !status) return status;
+  plans_.push_back(std::move(plan));
+  return {};
+}
+
+// The output of a row.
+Result<std::string> Run::output_of(const std::string& file_name) const {
+  std::string path = context_.output;
+  std::error_code ignored;
+  if (path.ends_with('/') || std::filesystem::is_directory(path, ignored)) {
+    path += std::string(path.ends_with('/') ? "" : "/") + "{name}.anim";
+  }
+  const std::string_view mark = "{name}";
+  const std::size_t found = path.rfind(mark);
+  if (found == std::string::npos || path.find('/', found) != std::string::npos) {
+    return Error("usage", fmt::format("-o {}: the falls of --pushes need distinct names", path),
+                 "use {name} for the row's name: -o 'falls/{name}.anim'");
+  }
+  return path.replace(found, mark.size(), file_name);
+}
+
+Status Run::plan_table() {
+  const auto file = context_.open_input(given().push_table);
+  if (!file) return file.error();
+  const auto falls = read_push_table(file->text(), given().push_table);
+  if (!falls) return falls.error();
+  for (const TableFall& fall : *falls) {
+    const auto at_place = [&](Status status, Location place) {
+      if (status) return status;
+      place.file = given().push_table;
+      status.error().where = std::move(place);
+      return status;
+    };
+    Plan plan;
+    plan.name = fall.name;
+    auto output = output_of(fall.file_name);
+    if (!output) return output.error();
+    plan.output = std::move(*output);
+    Status status = at_place(begin_at(fall.at, "its begin", plan), fall.at_place);
+    if (status) {
+      status = add_push(fall.push, plan);
+      const bool of_joint = !status && status.error().code == "ragdoll-joint";
+      status = at_place(std::move(status), of_joint ? fall.joint_place : fall.time_place);
+    }
+    if (status) status = read_ground(plan);
+    if (!status) return status;
+    plans_.push_back(std::move(plan));
+  }
+  return {};
+}
+
+Status Run::write(const Plan& plan, Provenance provenance, int jobs, Fallen& fallen,
+                  OutputFile& file) const {
+  fallen.clip.provenance = std::move(provenance);
+  auto& conversions = fallen.clip.provenance.conversions;
+  conversions = subject_.clip.provenance.conversions;
+  conversions.push_back("ragdoll: " + (plan.name.empty() ? "" : plan.name + ": ") +
+                        summary_of(subject_, plan.fall, fallen));
   anim::WriteOptions writing;
   writing.orientation = given().orientation;
-  writing.jobs = context_.jobs;
-  Status status = outputs.add(
-      context_.output, [&](OutputFile& file) { return anim::write(fall, writing, file); });
-  if (!status) return status;
-  status = outputs.add(given().save_bodies, [&](OutputFile& file) {
-    return file.write(ragdoll_file::write({bodies_, fall_.rules}, clip_.skeleton));
+  writing.jobs = jobs;
+  return anim::write(fallen.clip, writing, file);
+}
+
+Status Run::write_one() {
+  const Plan& plan = plans_.front();
+  auto fallen = make_fall(subject_, plan.fall);
+  if (!fallen) return std::move(fallen).error().in_file(given().input);
+  if (fallen->fall.rest < 0) {
+    context_.warn("ragdoll-moving", "the body still moves where the motion ends",
+                  "a longer --duration lets it come to rest");
+  }
+  OutputSet outputs(context_);
+  Status status = outputs.add(plan.output, [&](OutputFile& file) {
+    return write(plan, context_.provenance(), context_.jobs, *fallen, file);
   });
   if (!status) return status;
-  return outputs.finish();
+  status = outputs.add(given().save_bodies, [&](OutputFile& file) {
+    return file.write(
+        ragdoll_file::write({subject_.bodies, plan.fall.rules}, subject_.clip.skeleton));
+  });
+  if (status) status = outputs.finish();
+  if (!status) return status;
+  context_.report.result = report_of(subject_, *fallen);
+  context_.log(fmt::format("{}: {}", plan.output, summary_of(subject_, plan.fall, *fallen)));
+  return {};
+}
+
+Status Run::write_all() {
+  std::vector<std::string> paths;
+  for (const Plan& plan : plans_) paths.push_back(plan.output);
+  std::vector<Json> rows(plans_.size());
+  std::vector<int> at_rest(plans_.size());
+  const Provenance provenance = context_.provenance();
+  OutputSet outputs(context_);
+  Status status = outputs.add_all(paths, context_.jobs, [&](std::size_t i, OutputFile& file) {
+    const Plan& plan = plans_[i];
+    auto fallen = make_fall(subject_, plan.fall);
+    if (!fallen) {
+      Error error = std::move(fallen).error();
+      error.message = fmt::format("the fall '{}': {}", shown(plan.name), error.message);
+      return Status(std::move(error).in_file(given().push_table));
+    }
+    at_rest[i] = fallen->fall.rest >= 0 ? 1 : 0;
+    rows[i] = {{"name", plan.name}, {"output", plan.output}, {"at", plan.fall.at}};
+    rows[i].update(report_of(subject_, *fallen));
+    return write(plan, provenance, 1, *fallen, file);
+  });
+  if (status) status = outputs.finish();
+  if (!status) return status;
+  const auto moving = std::ranges::count(at_rest, 0);
+  if (moving > 0) {
+    context_.warn(
+        "ragdoll-moving",
+        fmt::format("{} of {} bodies still move where the motion ends", moving, plans_.size()),
+        "a longer --duration lets them come to rest");
+  }
+  context_.report.result["falls"] = std::move(rows);
+  context_.log(fmt::format("{}: {} falls, {} at rest", given().push_table, plans_.size(),
+                           plans_.size() - static_cast<std::size_t>(moving)));
+  return {};
 }
 
 Result<int> Run::run() {
   if (Status status = check_output_kind(context_.output, "-o", registry::Kind::anim); !status) {
     return status.error();
   }
-  for (const auto step : {&Run::read_motion, &Run::read_limits, &Run::read_bodies, &Run::add_pushes,
-                          &Run::read_ground}) {
+  for (const auto step : {&Run::read_motion, &Run::read_limits, &Run::read_bodies, &Run::read_rises,
+                          &Run::plan_falls}) {
     if (Status status = (this->*step)(); !status) return status.error();
   }
-  auto fall = krok::ragdoll::simulate_fall(clip_, roles_, bodies_, limits_, fall_);
-  if (!fall) return std::move(fall).error().in_file(given().input);
-  if (fall->rest < 0) {
-    context_.warn("ragdoll-moving", "the body still moves where the motion ends",
-                  "a longer --duration lets it come to rest");
-  }
-  const std::string summary = fmt::format(
-      "a fall from {:.2f} s, {}", fall_.at,
-      fall->rest < 0 ? "not at rest" : fmt::format("at rest after {:.2f} s", fall->rest));
-  fall->clip.provenance = context_.provenance();
-  fall->clip.provenance.conversions = clip_.provenance.conversions;
-  fall->clip.provenance.conversions.push_back("ragdoll: " + summary);
-  if (Status status = write(fall->clip); !status) return status.error();
-  context_.report.result = report(*fall);
-  context_.log(fmt::format("{}: {}", context_.output, summary));
+  const Status status = given().push_table.empty() ? write_one() : write_all();
+  if (!status) return status.error();
   return kExitDone;
 }
 

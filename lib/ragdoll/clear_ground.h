@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "motion/local_motion.h"
+#include "ragdoll/bodies.h"
+#include "scene/skeleton.h"
+
+namespace krok::ragdoll {
+
+// The height of the ground at (x, z), metres; nothing where there is none.
+using GroundHeight = std::function<std::optional<double>(double x, double z)>;
+
+// How deep a body is in the ground in a pose (joint_to_world, shape [joints]), metres; negative
+// above it, by the corners of boxes and the lowest points of round shapes.
+double depth_in_ground(const Body& body, std::span<const Transform> pose,
+                       const GroundHeight& ground);
+
+// The deepest body of a pose.
+double depth_in_ground(const std::vector<Body>& bodies, std::span<const Transform> pose,
+                       const GroundHeight& ground);
+
+// Lifts what is in the ground out of it, from the frame `begin` on: the root upwards, other bodies
+// by turns about their joints, each smoothed over time (a Gaussian of `smoothing` seconds), so that
+// nothing jerks. What is there in the first frames of `begin` fades in. Parts stay where they are
+// that are less than 2 mm in the ground. `rate` is frames per second.
+void clear_ground(const Skeleton& skeleton, const std::vector<Body>& bodies,
+                  const GroundHeight& ground, int begin, double rate, double smoothing,
+                  LocalMotion& motion);
+
+}  // namespace krok::ragdoll

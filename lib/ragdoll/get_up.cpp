@@ -1,0 +1,293 @@
+#include "ragdoll/get_up.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "math/euler.h"
+#include "math/quaternion.h"
+#include "motion/local_motion.h"
+#include "motion/mirror.h"
+#include "motion/place.h"
+#include "motion/sample.h"
+
+namespace krok::ragdoll {
+
+namespace {
+
+constexpr double kOverlap = 0.5;         // seconds in which the motion begins, at most
+constexpr double kShortest = 0.35;       // seconds of the way there
+constexpr double kLongestWay = 12;       // seconds
+constexpr double kTravel = 0.6;          // metres/s of the root, at most
+constexpr double kQuinticPeak = 5.7735;  // of its acceleration, for a way and time of 1
+constexpr int kTries = 24;
+
+// The same joints, and bones of the same lengths below the hips, as join() has it.
+Status check_skeleton(const Skeleton& skeleton, const Clip& motion) {
+  const Skeleton& other = motion.skeleton;
+  const auto wrong = [](std::string message) {
+    return Error("motion-skeleton", std::move(message),
+                 "krok-retarget brings the motion to the other skeleton");
+  };
+  if (other.names != skeleton.names || other.parents != skeleton.parents) {
+    return wrong("the motion has other joints than the one that falls");
+  }
+  const double extent = std::max(reference_height(skeleton), 1e-3);
+  for (int j = 1; j < skeleton.joint_count(); ++j) {
+    const double own = skeleton.reference_local(j).position.norm();
+    const double others = other.reference_local(j).position.norm();
+    if (skeleton.parents[at(j)] > 0 && std::abs(own - others) > 0.01 * extent) {
+      return wrong(fmt::format("the bone above '{}' is {:.1f} cm long, not {:.1f} cm",
+                               skeleton.names[at(j)], 100 * others, 100 * own));
+    }
+  }
+  return {};
+}
+
+// Turn about the vertical and shift along the ground that bring `from` nearest to `to`.
+struct OnGround {
+  Transform move;
+  double distance = 0;
+};
+
+OnGround nearest_on_ground(std::span<const Transform> from, std::span<const Transform> to) {
+  const auto count = static_cast<double>(from.size());
+  Vec3 mean_from = Vec3::Zero(), mean_to = Vec3::Zero();
+  for (std::size_t j = 0; j < from.size(); ++j) {
+    mean_from += from[j].position / count;
+    mean_to += to[j].position / count;
+  }
+  double across = 0, along = 0;
+  for (std::size_t j = 0; j < from.size(); ++j) {
+    const Vec3 a = from[j].position - mean_from, b = to[j].position - mean_to;
+    along += a.x() * b.x() + a.z() * b.z();
+    across += a.z() * b.x() - a.x() * b.z();
+  }
+  OnGround found;
+  found.move.orientation = axis_rotation(Axis::y, std::atan2(across, along));
+  found.move.position = mean_to - found.move.orientation * mean_from;
+  found.move.position.y() = 0;
+  double sum = 0;
+  for (std::size_t j = 0; j < from.size(); ++j) {
+    sum += (found.move * from[j].position - to[j].position).squaredNorm();
+  }
+  found.distance = std::sqrt(sum / count);
+  return found;
+}
+
+std::vector<Transform> pose_of(const Clip& clip, int frame) {
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  clip.get_pose(frame, pose);
+  return pose;
+}
+
+// Angular accelerations of the joints relative to their parents, of frames [begin, end).
+std::vector<double> accelerations(const LocalMotion& motion, int begin, int end, double rate) {
+  std::vector<double> found;
+  for (int j = 0; j < motion.joints; ++j) {
+    const auto turns = motion.joint_orientations(j);
+    const auto step = [&](int f) {
+      return rotation_vector(turns[at(f)].conjugate() * turns[at(f + 1)]);
+    };
+    for (int f = std::max(begin, 1); f < std::min(end, motion.frames - 1); ++f) {
+      found.push_back((step(f) - step(f - 1)).norm() * rate * rate);
+    }
+  }
+  return found;
+}
+
+double percentile_99(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto place = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[static_cast<std::size_t>(place)];
+}
+
+// From 0 to 1 at rest at both ends, and its integral from 0.
+double quintic_ease(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * u * (10 + u * (6 * u - 15));
+}
+double eased_time(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * u * u * (2.5 + u * (u - 3));
+}
+
+class Riser {
+ public:
+  Riser(const Clip& fall, int frame, Clip motion, const std::vector<Body>& bodies,
+        const GetUpOptions& options)
+      : fall_(fall), frame_(frame), motion_(std::move(motion)), bodies_(bodies), options_(options) {
+    if (!options_.ground) {
+      options_.ground = [](double, double) { return std::optional<double>(0.0); };
+    }
+  }
+
+  void place();
+  void run(RisenClip& risen);
+
+ private:
+  double first_duration() const;
+  LocalMotion way(int frames, int overlap) const;
+
+  const Clip& fall_;
+  int frame_;
+  Clip motion_;
+  const std::vector<Body>& bodies_;
+  GetUpOptions options_;
+  std::vector<Transform> lying_, locals_;  // joint_to_world, joint_to_parent
+  LocalMotion local_;                      // of the motion
+  double limit_ = 0;
+};
+
+void Riser::place() {
+  lying_ = pose_of(fall_, frame_);
+  locals_ = lying_;
+  for (int j = 1; j < fall_.joint_count(); ++j) {
+    locals_[at(j)] = lying_[at(fall_.skeleton.parents[at(j)])].inverse() * lying_[at(j)];
+  }
+  Transform move = nearest_on_ground(pose_of(motion_, 0), lying_).move;
+  const Vec3 root = lying_[at(bodies_.front().joint)].position;
+  move.position.y() = options_.ground(root.x(), root.z()).value_or(0);
+  move_clip(move, motion_);
+  local_ = local_motion(motion_);
+}
+
+// Seconds for the way there, from the largest turn and the root's way.
+double Riser::first_duration() const {
+  double turn = 0;
+  for (int j = 0; j < local_.joints; ++j) {
+    turn = std::max(turn, angle_between(locals_[at(j)].orientation, local_.at(j, 0).orientation));
+  }
+  const double travel = (locals_[0].position - local_.at(0, 0).position).norm();
+  const double speed = 1.875 * travel / kTravel;
+  return std::clamp(std::max(std::sqrt(kQuinticPeak * turn / limit_), speed), kShortest,
+                    kLongestWay);
+}
+
+// `frames` from the lying pose to the motion's frame overlap / 2, then the rest of the motion.
+LocalMotion Riser::way(int frames, int overlap) const {
+  LocalMotion way;
+  way.joints = local_.joints;
+  way.frames = frames + local_.frames - overlap / 2;
+  const std::size_t count = at(way.joints) * at(way.frames);
+  way.orientations.resize(count);
+  way.positions.resize(count);
+  std::vector<Transform> moving(at(way.joints)), scratch(3 * moving.size()), local(moving.size());
+  for (int f = 0; f < way.frames; ++f) {
+    const double u = static_cast<double>(f) / frames;
+    const double since = static_cast<double>(f - frames + overlap) / std::max(1, overlap);
+    const double time = f >= frames ? f - frames + overlap / 2 : overlap * eased_time(since);
+    sample(motion_, time / motion_.rate, moving, scratch);
+    const double left = 1 - quintic_ease(u);
+    for (int j = 0; j < way.joints; ++j) {
+      const int parent = fall_.skeleton.parents[at(j)];
+      Transform now = parent < 0 ? moving[at(j)] : moving[at(parent)].inverse() * moving[at(j)];
+      if (left > 0) {
+        const Transform first = local_.at(j, 0);
+        const Quat off = first.orientation.conjugate() * locals_[at(j)].orientation;
+        now.position += left * (locals_[at(j)].position - first.position);
+        now.orientation = now.orientation * from_rotation_vector(left * rotation_vector(off));
+      }
+      way.set(j, f, now);
+    }
+  }
+  return way;
+}
+
+void Riser::run(RisenClip& risen) {
+  const double rate = fall_.rate;
+  const double typical = percentile_99(accelerations(local_, 0, local_.frames, rate));
+  // A motion that stands still gives no measure.
+  risen.motion_acceleration = std::max(typical, 1.0);
+  limit_ = options_.max_acceleration * risen.motion_acceleration;
+  double duration = first_duration();
+  LocalMotion motion;
+  int frames = 0;
+  for (int attempt = 0; attempt < kTries; ++attempt, duration *= 1.12) {
+    frames = std::max(2, static_cast<int>(std::ceil(duration * rate)));
+    int overlap = std::min(static_cast<int>(kOverlap * rate), frames / 2);
+    overlap = std::min(overlap, local_.frames - 1);
+    overlap -= overlap % 2;
+    motion = way(frames, overlap);
+    clear_ground(fall_.skeleton, bodies_, options_.ground, 0, rate, 0.08 * duration + 0.05, motion);
+    const auto found = accelerations(motion, 0, frames + 1, rate);
+    risen.acceleration = found.empty() ? 0 : *std::ranges::max_element(found);
+    if (risen.acceleration <= limit_ || duration > kLongestWay) break;
+  }
+  risen.first_frame = frame_;
+  risen.handover = frame_ + frames;
+  Clip after;
+  after.skeleton = fall_.skeleton;
+  after.rate = rate;
+  set_local_motion(motion, after);
+  risen.clip.skeleton = fall_.skeleton;
+  risen.clip.rate = rate;
+  risen.clip.provenance = fall_.provenance;
+  risen.clip.resize(frame_ + after.frame_count());
+  for (int f = 0; f < risen.clip.frame_count(); ++f) {
+    const Clip& from = f < frame_ ? fall_ : after;
+    const int own = f < frame_ ? f : f - frame_;
+    std::ranges::copy(from.frame_positions(own), risen.clip.frame_positions(f).begin());
+    std::ranges::copy(from.frame_orientations(own), risen.clip.frame_orientations(f).begin());
+    if (f < frame_) continue;
+    const double depth = depth_in_ground(bodies_, pose_of(after, own), options_.ground);
+    risen.depth = f == frame_ ? depth : std::max(risen.depth, depth);
+  }
+}
+
+}  // namespace
+
+Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
+                                            std::span<const Clip> motions, const RoleMap& roles,
+                                            bool mirror) {
+  if (motions.empty()) return Error("ragdoll-rise", "there is no motion to get up with");
+  const std::vector<Transform> lying = pose_of(fall, frame);
+  const MirrorPairs pairs = find_mirror_pairs(fall.skeleton, roles);
+  std::vector<RiseChoice> choices;
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    const Clip& motion = motions[m];
+    if (Status status = check_skeleton(fall.skeleton, motion); !status) {
+      return std::move(status).error();
+    }
+    if (motion.frame_count() < 2) {
+      return Error("ragdoll-rise", "a motion to get up with has fewer than two frames");
+    }
+    Clip first = motion;
+    first.resize(1);
+    RiseChoice choice;
+    choice.motion = static_cast<int>(m);
+    choice.distance = nearest_on_ground(pose_of(first, 0), lying).distance;
+    if (mirror) {
+      const double other =
+          nearest_on_ground(pose_of(krok::mirror(first, pairs), 0), lying).distance;
+      if (other < choice.distance) {
+        choice.distance = other;
+        choice.mirrored = true;
+      }
+    }
+    choices.push_back(choice);
+  }
+  return choices;
+}
+
+Result<RisenClip> get_up(const Clip& fall, int frame, std::span<const Clip> motions,
+                         const RoleMap& roles, const std::vector<Body>& bodies,
+                         const GetUpOptions& options) {
+  auto tried = choose_rise(fall, frame, motions, roles, options.mirror);
+  if (!tried) return tried.error();
+  RisenClip risen;
+  risen.tried = std::move(*tried);
+  risen.choice = *std::ranges::min_element(risen.tried, {}, &RiseChoice::distance);
+  auto motion = resample(motions[at(risen.choice.motion)], fall.rate);
+  if (!motion) return motion.error();
+  if (risen.choice.mirrored) *motion = mirror(*motion, find_mirror_pairs(fall.skeleton, roles));
+  Riser riser(fall, frame, std::move(*motion), bodies, options);
+  riser.place();
+  riser.run(risen);
+  return risen;
+}
+
+}  // namespace krok::ragdoll

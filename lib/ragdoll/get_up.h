@@ -1,0 +1,61 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/result.h"
+#include "ragdoll/bodies.h"
+#include "ragdoll/clear_ground.h"
+#include "roles/roles.h"
+#include "scene/clip.h"
+
+// From lying still into a motion of getting up.
+
+namespace krok::ragdoll {
+
+// How near the first frame of a motion is to a lying pose: the root mean square distance of the
+// joints after the motion is turned about the vertical and moved along the ground to where that is
+// least (Kovar et al., "Motion graphs", 2002), metres.
+struct RiseChoice {
+  int motion = -1;        // of those given
+  bool mirrored = false;  // left and right exchanged
+  double distance = 0;
+};
+
+struct GetUpOptions {
+  bool mirror = true;              // try the motions' mirror images too
+  GroundHeight ground;             // empty: level, at height 0
+  double max_acceleration = 1.25;  // of the way there, in units of RisenClip::motion_acceleration
+};
+
+struct RisenClip {
+  Clip clip;            // the fall up to `first_frame`, the way there, then the motion
+  int first_frame = 0;  // of the way there: what lies begins to move
+  int handover = 0;     // the first frame that is the motion's alone
+  RiseChoice choice;
+  std::vector<RiseChoice> tried;  // the best of each motion
+  // Radians/s^2: the largest angular acceleration of a joint relative to its parent on the way to
+  // the motion, and the motion's 99th percentile.
+  double acceleration = 0, motion_acceleration = 0;
+  double depth = 0;  // metres: the deepest that a body is in the ground from `first_frame` on
+};
+
+// What of `motions` is nearest to the pose of `fall` at a frame. The motions have the skeleton's
+// joints. Codes: motion-skeleton, ragdoll-rise for a motion without frames or no motion.
+Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
+                                            std::span<const Clip> motions, const RoleMap& roles,
+                                            bool mirror);
+
+// Lets a character that lies still at `frame` of `fall` get up with the nearest of `motions`, which
+// begin lying and stand on y = 0. The motion is placed where its first pose is nearest; what then
+// differs is taken away joint by joint along a quintic in time (the smoothest way from rest to
+// rest, Flash and Hogan 1985), while the motion begins slowly, so that neither speeds nor
+// accelerations jump. How long that takes follows from how far it is and how fast the motion moves.
+// Bodies that come into the ground are lifted out of it (clear_ground()).
+//
+// Codes: those of choose_rise().
+Result<RisenClip> get_up(const Clip& fall, int frame, std::span<const Clip> motions,
+                         const RoleMap& roles, const std::vector<Body>& bodies,
+                         const GetUpOptions& options);
+
+}  // namespace krok::ragdoll

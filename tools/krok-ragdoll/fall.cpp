@@ -1,0 +1,102 @@
+#include "tools/krok-ragdoll/fall.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/hash.h"
+#include "core/index.h"
+
+namespace krok::cli::ragdoll {
+
+namespace {
+
+constexpr double kLying = 0.5;  // seconds from rest to where all is still
+
+Json json_of(const krok::ragdoll::WorldMeasures& of) {
+  return Json{{"joint_gap", of.joint_gap},
+              {"limit_excess", of.limit_excess},
+              {"penetration", of.penetration}};
+}
+
+krok::ragdoll::GroundHeight heights_of(const Terrain* terrain) {
+  if (terrain == nullptr) return {};
+  return [terrain](double x, double z) {
+    const auto point = terrain->at(x, z);
+    return point ? std::optional<double>(point->height) : std::nullopt;
+  };
+}
+
+}  // namespace
+
+Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOptions& options) {
+  auto fall = krok::ragdoll::simulate_fall(subject.clip, subject.roles, subject.bodies,
+                                           subject.limits, options);
+  if (!fall) return fall.error();
+  Fallen fallen;
+  fallen.clip = std::move(fall->clip);
+  fallen.fall = std::move(*fall);
+  if (subject.rises.empty()) return fallen;
+  if (fallen.fall.rest < 0) {
+    return Error("ragdoll-moving", "the body does not come to rest, so that it cannot get up",
+                 "give a longer --duration");
+  }
+  const double still = (options.at + fallen.fall.rest + kLying) * fallen.clip.rate;
+  const int frame = std::min(fallen.clip.frame_count() - 1, static_cast<int>(std::ceil(still)) + 1);
+  krok::ragdoll::GetUpOptions how;
+  how.ground = heights_of(subject.terrain.get());
+  auto risen =
+      krok::ragdoll::get_up(fallen.clip, frame, subject.rises, subject.roles, subject.bodies, how);
+  if (!risen) return risen.error();
+  fallen.clip = std::move(risen->clip);
+  fallen.risen = std::move(*risen);
+  return fallen;
+}
+
+Json report_of(const Subject& subject, const Fallen& fallen) {
+  Xxh3Stream hash;
+  hash.update(std::as_bytes(std::span(fallen.clip.positions)));
+  hash.update(std::as_bytes(std::span(fallen.clip.orientations)));
+  Json json;
+  json["frames"] = fallen.clip.frame_count();
+  json["first_simulated_frame"] = fallen.fall.first_frame;
+  json["bodies"] = subject.bodies.size();
+  json["hash"] = hex(hash.digest());
+  json["rest"] = fallen.fall.rest < 0 ? Json() : Json(fallen.fall.rest);
+  json["largest"] = json_of(fallen.fall.largest);
+  json["settling"] = json_of(fallen.fall.settling);
+  if (!fallen.risen) return json;
+  const krok::ragdoll::RisenClip& risen = *fallen.risen;
+  Json tried = Json::array();
+  for (const krok::ragdoll::RiseChoice& choice : risen.tried) {
+    tried.push_back({{"motion", subject.rise_names[at(choice.motion)]},
+                     {"mirrored", choice.mirrored},
+                     {"distance", choice.distance}});
+  }
+  json["get_up"] = {{"motion", subject.rise_names[at(risen.choice.motion)]},
+                    {"mirrored", risen.choice.mirrored},
+                    {"distance", risen.choice.distance},
+                    {"first_frame", risen.first_frame},
+                    {"handover_frame", risen.handover},
+                    {"acceleration", risen.acceleration},
+                    {"motion_acceleration", risen.motion_acceleration},
+                    {"penetration", std::max(0.0, risen.depth)},
+                    {"tried", std::move(tried)}};
+  return json;
+}
+
+std::string summary_of(const Subject& subject, const krok::ragdoll::FallOptions& options,
+                       const Fallen& fallen) {
+  std::string text = fmt::format("a fall from {:.2f} s, ", options.at);
+  if (fallen.fall.rest < 0) return text + "not at rest";
+  text += fmt::format("at rest after {:.2f} s", fallen.fall.rest);
+  if (!fallen.risen) return text;
+  return text + fmt::format(", gets up with {}{} until {:.2f} s",
+                            subject.rise_names[at(fallen.risen->choice.motion)],
+                            fallen.risen->choice.mirrored ? ", mirrored," : "",
+                            fallen.clip.duration());
+}
+
+}  // namespace krok::cli::ragdoll

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ik/limits.h"
+#include "ragdoll/get_up.h"
+#include "ragdoll/simulate.h"
+#include "terrain/terrain.h"
+#include "tools/cli/json.h"
+
+// One fall of a motion, as far as standing again.
+
+namespace krok::cli::ragdoll {
+
+// What all falls of a run have in common.
+struct Subject {
+  Clip clip;
+  RoleMap roles;
+  krok::ik::Limits limits;
+  std::vector<krok::ragdoll::Body> bodies;
+  // Motions to get up with, and their names; none: what falls stays there.
+  std::vector<Clip> rises;
+  std::vector<std::string> rise_names;
+  std::shared_ptr<const Terrain> terrain;  // to get up from; may be null
+};
+
+struct Fallen {
+  Clip clip;
+  krok::ragdoll::Fall fall;                       // without its clip
+  std::optional<krok::ragdoll::RisenClip> risen;  // without its clip
+};
+
+// Thread-safe. Code ragdoll-moving if it is to get up but does not come to rest, and those of
+// lib/ragdoll.
+Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOptions& options);
+
+// The measures for the report.
+Json report_of(const Subject& subject, const Fallen& fallen);
+
+// "a fall from 1.20 s, at rest after 2.34 s, up again at 6.10 s".
+std::string summary_of(const Subject& subject, const krok::ragdoll::FallOptions& options,
+                       const Fallen& fallen);
+
+}  // namespace krok::cli::ragdoll
