@@ -12,9 +12,9 @@ namespace krok::ragdoll {
 
 namespace {
 
-constexpr double kLeft = 0.002;  // metres that may stay in the ground
-constexpr double kFadeIn = 0.4;  // seconds
-constexpr int kRounds = 60;
+constexpr double kLeft = 0.005, kDone = 0.008;  // metres that may stay in the ground
+constexpr double kFadeIn = 0.4;                 // seconds
+constexpr int kRounds = 30;
 constexpr double kGain = 1.3;      // of a round: smoothing takes some of it away
 constexpr double kMaxTurn = 0.35;  // radians in a round
 
@@ -194,7 +194,7 @@ void clear_ground(const Skeleton& skeleton, const std::vector<Body>& bodies,
                   LocalMotion& motion) {
   if (begin >= motion.frames) return;
   GroundClearer clearer(skeleton, bodies, ground, begin, rate, motion);
-  for (int round = 0; round < kRounds && clearer.find_turns() > 2 * kLeft; ++round) {
+  for (int round = 0; round < kRounds && clearer.find_turns() > kDone; ++round) {
     clearer.apply(smoothing);
   }
 }

@@ -25,8 +25,8 @@ double depth_in_ground(const std::vector<Body>& bodies, std::span<const Transfor
 
 // Lifts what is in the ground out of it, from the frame `begin` on: the root upwards, other bodies
 // by turns about their joints, each smoothed over time (a Gaussian of `smoothing` seconds), so that
-// nothing jerks. What is there in the first frames of `begin` fades in. Parts stay where they are
-// that are less than 2 mm in the ground. `rate` is frames per second.
+// nothing jerks. What is there in the first frames of `begin` fades in. A motion with
+// nothing deeper than 8 mm stays as it is. `rate` is frames per second.
 void clear_ground(const Skeleton& skeleton, const std::vector<Body>& bodies,
                   const GroundHeight& ground, int begin, double rate, double smoothing,
                   LocalMotion& motion);

@@ -52,28 +52,56 @@ struct OnGround {
   double distance = 0;
 };
 
-OnGround nearest_on_ground(std::span<const Transform> from, std::span<const Transform> to) {
-  const auto count = static_cast<double>(from.size());
+// Points on the bodies, which tell a front from a back and a side, and what each weighs.
+struct Cloud {
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+};
+
+Cloud cloud_of(const std::vector<Body>& bodies, std::span<const Transform> pose) {
+  Cloud cloud;
+  double mass = 0;
+  for (const Body& body : bodies) mass += body.mass;
+  for (const Body& body : bodies) {
+    const Shape& shape = body.shape;
+    const double half = shape.kind == Shape::Kind::capsule ? shape.half_length : 0;
+    const Vec3 reach = shape.kind == Shape::Kind::box
+                           ? shape.half
+                           : Vec3(Vec3::Constant(shape.radius) + half * Vec3::UnitY());
+    const Transform to_world = pose[at(body.joint)] * body.to_joint;
+    for (int i = 0; i < 6; ++i) {
+      const double side = i < 3 ? 1 : -1;
+      cloud.points.push_back(to_world * Vec3(side * reach[i % 3] * Vec3::Unit(i % 3)));
+      cloud.weights.push_back(body.mass / mass / 6);
+    }
+  }
+  return cloud;
+}
+
+OnGround nearest_on_ground(const Cloud& from, const Cloud& to) {
   Vec3 mean_from = Vec3::Zero(), mean_to = Vec3::Zero();
-  for (std::size_t j = 0; j < from.size(); ++j) {
-    mean_from += from[j].position / count;
-    mean_to += to[j].position / count;
+  for (std::size_t i = 0; i < from.points.size(); ++i) {
+    mean_from += from.weights[i] * from.points[i];
+    mean_to += from.weights[i] * to.points[i];
   }
   double across = 0, along = 0;
-  for (std::size_t j = 0; j < from.size(); ++j) {
-    const Vec3 a = from[j].position - mean_from, b = to[j].position - mean_to;
-    along += a.x() * b.x() + a.z() * b.z();
-    across += a.z() * b.x() - a.x() * b.z();
+  for (std::size_t i = 0; i < from.points.size(); ++i) {
+    const Vec3 a = from.points[i] - mean_from, b = to.points[i] - mean_to;
+    along += from.weights[i] * (a.x() * b.x() + a.z() * b.z());
+    across += from.weights[i] * (a.z() * b.x() - a.x() * b.z());
   }
   OnGround found;
   found.move.orientation = axis_rotation(Axis::y, std::atan2(across, along));
   found.move.position = mean_to - found.move.orientation * mean_from;
   found.move.position.y() = 0;
   double sum = 0;
-  for (std::size_t j = 0; j < from.size(); ++j) {
-    sum += (found.move * from[j].position - to[j].position).squaredNorm();
+  for (std::size_t i = 0; i < from.points.size(); ++i) {
+    // The ground's height may be another.
+    Vec3 off = found.move * from.points[i] - to.points[i];
+    off.y() -= mean_from.y() - mean_to.y();
+    sum += from.weights[i] * off.squaredNorm();
   }
-  found.distance = std::sqrt(sum / count);
+  found.distance = std::sqrt(sum);
   return found;
 }
 
@@ -148,7 +176,8 @@ void Riser::place() {
   for (int j = 1; j < fall_.joint_count(); ++j) {
     locals_[at(j)] = lying_[at(fall_.skeleton.parents[at(j)])].inverse() * lying_[at(j)];
   }
-  Transform move = nearest_on_ground(pose_of(motion_, 0), lying_).move;
+  Transform move =
+      nearest_on_ground(cloud_of(bodies_, pose_of(motion_, 0)), cloud_of(bodies_, lying_)).move;
   const Vec3 root = lying_[at(bodies_.front().joint)].position;
   move.position.y() = options_.ground(root.x(), root.z()).value_or(0);
   move_clip(move, motion_);
@@ -242,9 +271,9 @@ void Riser::run(RisenClip& risen) {
 
 Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
                                             std::span<const Clip> motions, const RoleMap& roles,
-                                            bool mirror) {
+                                            const std::vector<Body>& bodies, bool mirror) {
   if (motions.empty()) return Error("ragdoll-rise", "there is no motion to get up with");
-  const std::vector<Transform> lying = pose_of(fall, frame);
+  const Cloud lying = cloud_of(bodies, pose_of(fall, frame));
   const MirrorPairs pairs = find_mirror_pairs(fall.skeleton, roles);
   std::vector<RiseChoice> choices;
   for (std::size_t m = 0; m < motions.size(); ++m) {
@@ -259,10 +288,11 @@ Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
     first.resize(1);
     RiseChoice choice;
     choice.motion = static_cast<int>(m);
-    choice.distance = nearest_on_ground(pose_of(first, 0), lying).distance;
+    choice.distance = nearest_on_ground(cloud_of(bodies, pose_of(first, 0)), lying).distance;
     if (mirror) {
       const double other =
-          nearest_on_ground(pose_of(krok::mirror(first, pairs), 0), lying).distance;
+          nearest_on_ground(cloud_of(bodies, pose_of(krok::mirror(first, pairs), 0)), lying)
+              .distance;
       if (other < choice.distance) {
         choice.distance = other;
         choice.mirrored = true;
@@ -276,7 +306,7 @@ Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
 Result<RisenClip> get_up(const Clip& fall, int frame, std::span<const Clip> motions,
                          const RoleMap& roles, const std::vector<Body>& bodies,
                          const GetUpOptions& options) {
-  auto tried = choose_rise(fall, frame, motions, roles, options.mirror);
+  auto tried = choose_rise(fall, frame, motions, roles, bodies, options.mirror);
   if (!tried) return tried.error();
   RisenClip risen;
   risen.tried = std::move(*tried);

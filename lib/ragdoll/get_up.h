@@ -13,9 +13,9 @@
 
 namespace krok::ragdoll {
 
-// How near the first frame of a motion is to a lying pose: the root mean square distance of the
-// joints after the motion is turned about the vertical and moved along the ground to where that is
-// least (Kovar et al., "Motion graphs", 2002), metres.
+// How near the first frame of a motion is to a lying pose: the root mean square distance of points
+// on the bodies, weighted by mass, after the motion is turned about the vertical and moved along the
+// ground to where that is least (as point clouds in Kovar et al., "Motion graphs", 2002), metres.
 struct RiseChoice {
   int motion = -1;        // of those given
   bool mirrored = false;  // left and right exchanged
@@ -44,7 +44,7 @@ struct RisenClip {
 // joints. Codes: motion-skeleton, ragdoll-rise for a motion without frames or no motion.
 Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
                                             std::span<const Clip> motions, const RoleMap& roles,
-                                            bool mirror);
+                                            const std::vector<Body>& bodies, bool mirror);
 
 // Lets a character that lies still at `frame` of `fall` get up with the nearest of `motions`, which
 // begin lying and stand on y = 0. The motion is placed where its first pose is nearest; what then

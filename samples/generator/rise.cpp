@@ -188,7 +188,7 @@ void RisePoser::pose_leg(Side side, const LimbKey& key, World& world) const {
   const Quat pointed = world[at(leg.lower)].orientation * pitched_by(key.pitch);
   place(world, leg.foot, slerp(on_ground, pointed, hangs));
   // Toes on the ground stay flat while the heel is up.
-  const double bent = (1 - hangs) * std::clamp(key.pitch, 0.0, 60.0);
+  const double bent = (1 - hangs) * std::clamp(key.pitch, 0.0, 90.0);
   place(world, leg.toes, world[at(leg.foot)].orientation * pitched_by(-bent));
 }
 

@@ -129,8 +129,8 @@ Status Run::read_rises() {
     auto clip = io::open_motion(path, context_);
     if (!clip) return clip.error();
     // Checked here, so that the message has the file's name.
-    const auto fits =
-        krok::ragdoll::choose_rise(subject_.clip, 0, {&*clip, 1}, subject_.roles, false);
+    const auto fits = krok::ragdoll::choose_rise(subject_.clip, 0, {&*clip, 1}, subject_.roles,
+                                                 subject_.bodies, false);
     if (!fits) return Error(fits.error()).in_file(path);
     subject_.rises.push_back(std::move(*clip));
     subject_.rise_names.push_back(name_of_input(path));

@@ -1,0 +1,163 @@
+// If these fail, what gets up jumps, goes through the ground, chooses a motion from another side
+// than it lies on, or loses the fall or the motion on the way.
+
+#include "ragdoll/get_up.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/index.h"
+#include "math/euler.h"
+#include "math/quaternion.h"
+#include "motion/cut.h"
+#include "motion/mirror.h"
+#include "motion/place.h"
+#include "samples/generator/rise.h"
+
+namespace krok::ragdoll {
+namespace {
+
+using samples::Lying;
+
+class GetUp : public testing::Test {
+ protected:
+  GetUp() {
+    for (const Lying from : {Lying::front, Lying::back, Lying::side}) {
+      samples::RiseOptions options;
+      options.from = from;
+      motions_.push_back(*samples::make_rise(options));
+    }
+    roles_ = find_roles(motions_[0].skeleton);
+    bodies_ = *make_bodies(motions_[0].skeleton, roles_);
+  }
+
+  // Lies as a motion begins, elsewhere, turned and with limbs put elsewhere; half a second.
+  Clip lying(std::size_t motion, double turn, double bend) const {
+    Clip clip = cut(motions_[motion], 0, 0);
+    LocalMotion local = local_motion(clip);
+    const Skeleton& skeleton = clip.skeleton;
+    for (const char* name : {"LeftArm", "RightForeArm", "LeftLeg", "RightUpLeg"}) {
+      const int joint = skeleton.find(name);
+      Transform now = local.at(joint, 0);
+      now.orientation = now.orientation * axis_rotation(Axis::z, bend);
+      local.set(joint, 0, now);
+    }
+    set_local_motion(local, clip);
+    move_clip({Vec3(3, 0, -2), axis_rotation(Axis::y, turn)}, clip);
+    std::vector<Transform> pose(skeleton.names.size());
+    clip.get_pose(0, pose);
+    clip.resize(31);
+    for (int f = 0; f < 31; ++f) clip.set_pose(f, pose);
+    return clip;
+  }
+
+  RisenClip up(const Clip& fall) const {
+    auto risen = get_up(fall, 20, motions_, roles_, bodies_, {});
+    EXPECT_TRUE(risen.ok());
+    return std::move(*risen);
+  }
+
+  // The largest distance of a joint at frame + 1 from where its speed takes it, over the speed of
+  // the fastest joint there: how much the speed jumps.
+  static double speed_jump(const Clip& clip, int frame) {
+    double jump = 0, speed = 0;
+    for (int j = 0; j < clip.joint_count(); ++j) {
+      const auto place = [&](int f) { return Vec3(clip.frame_positions(f)[at(j)].cast<double>()); };
+      // Third differences: what a jump leaves that a steady acceleration does not.
+      const Vec3 third =
+          place(frame + 2) - 3 * place(frame + 1) + 3 * place(frame) - place(frame - 1);
+      jump = std::max(jump, third.norm());
+      speed = std::max(speed, (place(frame + 1) - place(frame)).norm());
+    }
+    return jump / std::max(speed, 1e-9);
+  }
+
+  std::vector<Clip> motions_;
+  RoleMap roles_;
+  std::vector<Body> bodies_;
+};
+
+TEST_F(GetUp, TheSideThatItLiesOnChooses) {
+  for (std::size_t m = 0; m < motions_.size(); ++m) {
+    for (const double turn : {0.0, 1.9, -2.7}) {
+      const RisenClip risen = up(lying(m, turn, 0.3));
+      EXPECT_EQ(risen.choice.motion, static_cast<int>(m));
+      EXPECT_FALSE(risen.choice.mirrored && m == 2);
+      EXPECT_EQ(risen.tried.size(), 3u);
+    }
+  }
+  // On the other side, the mirror image.
+  const Clip other = mirror(lying(2, 0.5, 0.3), find_mirror_pairs(motions_[0].skeleton, roles_));
+  const RisenClip risen = up(other);
+  EXPECT_EQ(risen.choice.motion, 2);
+  EXPECT_TRUE(risen.choice.mirrored);
+}
+
+TEST_F(GetUp, NothingJumpsOrSinks) {
+  for (std::size_t m = 0; m < motions_.size(); ++m) {
+    for (const double bend : {0.0, 0.5, -0.7}) {
+      const RisenClip risen = up(lying(m, 2.2, bend));
+      EXPECT_LE(risen.acceleration, 1.5 * risen.motion_acceleration) << m << " " << bend;
+      // The bent limbs may begin in the ground; it takes 0.4 s to bring them out of it.
+      std::vector<Transform> pose(risen.clip.skeleton.names.size());
+      for (int f = risen.first_frame + 24; f < risen.clip.frame_count(); ++f) {
+        risen.clip.get_pose(f, pose);
+        const auto level = [](double, double) { return std::optional<double>(0.0); };
+        EXPECT_LT(depth_in_ground(bodies_, pose, level), 0.01) << m << " " << bend << " " << f;
+      }
+      EXPECT_LT(speed_jump(risen.clip, risen.handover), 0.01) << m << " " << bend;
+    }
+  }
+}
+
+// Up to the first frame it is the fall, from the handover on the motion, moved and turned.
+TEST_F(GetUp, FallAndMotionStayWhatTheyAre) {
+  const Clip fall = lying(1, 0.8, 0.2);
+  const RisenClip risen = up(fall);
+  EXPECT_EQ(risen.first_frame, 20);
+  for (int f = 0; f <= 20; ++f) {
+    for (std::size_t j = 0; j < fall.skeleton.names.size(); ++j) {
+      EXPECT_LT((risen.clip.frame_positions(f)[j] - fall.frame_positions(f)[j]).norm(), 1e-5f);
+    }
+  }
+  const Clip& motion = motions_[1];
+  const int last = risen.clip.frame_count() - 1, end = motion.frame_count() - 1;
+  for (int back = 0; back < last - risen.handover; back += 7) {
+    for (int j = 0; j < motion.joint_count(); ++j) {
+      const int parent = motion.skeleton.parents[at(j)];
+      if (parent < 0) continue;
+      const auto turn = [&](const Clip& clip, int f) {
+        return Quat(clip.frame_orientations(f)[at(parent)].cast<double>().conjugate() *
+                    clip.frame_orientations(f)[at(j)].cast<double>());
+      };
+      EXPECT_LT(angle_between(turn(risen.clip, last - back), turn(motion, end - back)), 0.02)
+          << motion.skeleton.names[at(j)] << " " << back;
+    }
+  }
+}
+
+// A turned and moved fall gives the same, turned and moved.
+TEST_F(GetUp, WhereItLiesDoesNotMatter) {
+  const RisenClip here = up(lying(0, 0, 0.4)), there = up(lying(0, 2.5, 0.4));
+  ASSERT_EQ(here.clip.frame_count(), there.clip.frame_count());
+  EXPECT_NEAR(here.choice.distance, there.choice.distance, 1e-5);
+  const int last = here.clip.frame_count() - 1;
+  for (int j = 0; j < here.clip.joint_count(); ++j) {
+    EXPECT_NEAR(here.clip.frame_positions(last)[at(j)].y(),
+                there.clip.frame_positions(last)[at(j)].y(), 1e-3);
+  }
+}
+
+TEST_F(GetUp, OtherSkeletonsAreTold) {
+  samples::RiseOptions small;
+  small.stature = 1.4;
+  const Clip other = *samples::make_rise(small);
+  const auto risen = get_up(lying(0, 0, 0), 20, {&other, 1}, roles_, bodies_, {});
+  ASSERT_FALSE(risen.ok());
+  EXPECT_EQ(risen.error().code, "motion-skeleton");
+  EXPECT_EQ(get_up(lying(0, 0, 0), 20, {}, roles_, bodies_, {}).error().code, "ragdoll-rise");
+}
+
+}  // namespace
+}  // namespace krok::ragdoll
