@@ -22,7 +22,7 @@ constexpr double kShortest = 0.35;       // seconds of the way there
 constexpr double kLongestWay = 12;       // seconds
 constexpr double kTravel = 0.6;          // metres/s of the root, at most
 constexpr double kQuinticPeak = 5.7735;  // of its acceleration, for a way and time of 1
-constexpr int kTries = 24;
+constexpr int kTries = 16;
 
 // The same joints, and bones of the same lengths below the hips, as join() has it.
 Status check_skeleton(const Skeleton& skeleton, const Clip& motion) {
@@ -235,7 +235,7 @@ void Riser::run(RisenClip& risen) {
   double duration = first_duration();
   LocalMotion motion;
   int frames = 0;
-  for (int attempt = 0; attempt < kTries; ++attempt, duration *= 1.12) {
+  for (int attempt = 0; attempt < kTries; ++attempt) {
     frames = std::max(2, static_cast<int>(std::ceil(duration * rate)));
     int overlap = std::min(static_cast<int>(kOverlap * rate), frames / 2);
     overlap = std::min(overlap, local_.frames - 1);
@@ -245,6 +245,8 @@ void Riser::run(RisenClip& risen) {
     const auto found = accelerations(motion, 0, frames + 1, rate);
     risen.acceleration = found.empty() ? 0 : *std::ranges::max_element(found);
     if (risen.acceleration <= limit_ || duration > kLongestWay) break;
+    // Accelerations fall with the square of the time.
+    duration *= std::clamp(std::sqrt(risen.acceleration / limit_), 1.08, 1.4);
   }
   risen.first_frame = frame_;
   risen.handover = frame_ + frames;

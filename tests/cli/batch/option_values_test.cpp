@@ -74,7 +74,10 @@ const std::vector<Value>& values() {
       {"krok-ik", {"--goals", "x.goals", "--reach", "Hand=0m,0m@1s"}, "usage"},
       {"krok-ragdoll", {"--at", "-1s"}, "usage"},
       {"krok-ragdoll", {"--at", "1s", "--push", "Chest=1,2"}, "usage"},
-      {"krok-ragdoll", {"--at", "1s", "--mass", "0kg"}, "usage"}};
+      {"krok-ragdoll", {"--at", "1s", "--mass", "0kg"}, "usage"},
+      {"krok-ragdoll", {"--at", "1s", "--pushes", "x.csv"}, "usage"},
+      {"krok-ragdoll", {"--bodies", "x.ragdoll.json", "--mass", "80kg"}, "usage"},
+      {"krok-ragdoll", {"--save-bodies", "x.txt"}, "usage"}};
   return list;
 }
 

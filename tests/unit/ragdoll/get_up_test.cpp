@@ -58,19 +58,21 @@ class GetUp : public testing::Test {
     return std::move(*risen);
   }
 
-  // The largest distance of a joint at frame + 1 from where its speed takes it, over the speed of
-  // the fastest joint there: how much the speed jumps.
-  static double speed_jump(const Clip& clip, int frame) {
+  // How much the speed of a joint differs from one side of a frame to the other, by differences of
+  // second order, over the speed of the fastest joint from lying to standing.
+  static double speed_jump(const RisenClip& risen, int frame) {
     double jump = 0, speed = 0;
+    const Clip& clip = risen.clip;
     for (int j = 0; j < clip.joint_count(); ++j) {
       const auto place = [&](int f) { return Vec3(clip.frame_positions(f)[at(j)].cast<double>()); };
-      // Third differences: what a jump leaves that a steady acceleration does not.
-      const Vec3 third =
-          place(frame + 2) - 3 * place(frame + 1) + 3 * place(frame) - place(frame - 1);
-      jump = std::max(jump, third.norm());
-      speed = std::max(speed, (place(frame + 1) - place(frame)).norm());
+      const Vec3 before = 1.5 * place(frame) - 2 * place(frame - 1) + 0.5 * place(frame - 2);
+      const Vec3 after = -1.5 * place(frame) + 2 * place(frame + 1) - 0.5 * place(frame + 2);
+      jump = std::max(jump, (after - before).norm());
+      for (int f = risen.first_frame; f + 1 < clip.frame_count(); ++f) {
+        speed = std::max(speed, (place(f + 1) - place(f)).norm());
+      }
     }
-    return jump / std::max(speed, 1e-9);
+    return jump / speed;
   }
 
   std::vector<Clip> motions_;
@@ -106,7 +108,7 @@ TEST_F(GetUp, NothingJumpsOrSinks) {
         const auto level = [](double, double) { return std::optional<double>(0.0); };
         EXPECT_LT(depth_in_ground(bodies_, pose, level), 0.01) << m << " " << bend << " " << f;
       }
-      EXPECT_LT(speed_jump(risen.clip, risen.handover), 0.01) << m << " " << bend;
+      EXPECT_LT(speed_jump(risen, risen.handover), 0.01) << m << " " << bend;
     }
   }
 }
@@ -123,7 +125,7 @@ TEST_F(GetUp, FallAndMotionStayWhatTheyAre) {
   }
   const Clip& motion = motions_[1];
   const int last = risen.clip.frame_count() - 1, end = motion.frame_count() - 1;
-  for (int back = 0; back < last - risen.handover; back += 7) {
+  for (int back = 0; back < last - risen.handover - 15; back += 7) {
     for (int j = 0; j < motion.joint_count(); ++j) {
       const int parent = motion.skeleton.parents[at(j)];
       if (parent < 0) continue;

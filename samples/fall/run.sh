@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# A walker is shoved, falls, gets up and walks on. See README.md.
+#
+#   run.sh [OUTPUT_FOLDER]
+#
+# Without an argument: out/fall. The tools are found through $KROK_BIN or in build/bin, make-walk and
+# make-rise through $SAMPLES_BIN or in build/samples.
+. "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
+
+check_arguments 1 "$@"
+need_tools import ragdoll edit body skin plot view
+need_generators make-walk make-rise
+enter_folder "${1:-out/fall}"
+
+say "1. A walk, one that begins from standing, and three motions of getting up"
+"$generators/make-walk" -q --steps 6 -o walk.bvh
+"$generators/make-walk" -q --steps 4 --from-standing -o on.bvh
+for lying in front back side; do "$generators/make-rise" -q --from $lying -o $lying.bvh; done
+"$bin/krok-import" -q walk.bvh on.bvh front.bvh back.bvh side.bvh --out-dir .
+
+say "2. A shove, and up again over the side that is down"
+"$bin/krok-ragdoll" walk.anim --at 1.2s --push Spine2=40Ns,0,-160Ns --duration 6s \
+  --get-up front.anim --get-up back.anim --get-up side.anim --save-bodies walker.ragdoll.json \
+  -o up.anim --json=up.json
+
+say "3. The walk goes on"
+"$bin/krok-edit" -q up.anim --append on.anim --blend 0s -o fall.anim
+
+say "4. Six shoves from a table"
+cp -- "$story/pushes.csv" .
+"$bin/krok-ragdoll" walk.anim --pushes pushes.csv --duration 5s -o 'falls/{name}.anim' --json=falls.json
+
+say "5. A skinned walker, images and a page"
+"$bin/krok-body" -q fall.anim -o walker.model
+"$bin/krok-skin" -q walker.model fall.anim -o fall.glb --as rig
+"$bin/krok-plot" -q fall.anim --sheet fall.png --moments 16 --sides right --size 200
+"$bin/krok-view" -q fall.anim -o fall.html
+echo "  fall.glb, fall.html, fall.png"

@@ -1,0 +1,57 @@
+// If these fail, the story of the fall no longer holds: its script does not run, the walker does
+// not get up and walk on, or jumps where the parts meet.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/story_test.h"
+#include "core/file.h"
+#include "core/index.h"
+#include "formats/anim/anim.h"
+
+namespace krok::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FallStory : public StoryTest {
+ protected:
+  FallStory() : StoryTest("fall") {}
+};
+
+TEST_F(FallStory, HoldsWhatItsReadmeTells) {
+  const ToolRun made = story("'a folder'");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const fs::path out = folder_ / "a folder";
+  for (const char* name : {"up.anim", "walker.ragdoll.json", "fall.anim", "fall.glb", "fall.html",
+                           "fall.png", "falls/left.anim", "falls/foot.anim"}) {
+    EXPECT_TRUE(fs::exists(out / name)) << name;
+  }
+  const json up = json::parse(get(out / "up.json"));
+  const json& rises = up["result"]["get_up"];
+  EXPECT_TRUE(up["issues"].empty()) << up["issues"].dump();
+  EXPECT_LT(rises["penetration"].get<double>(), 0.01);
+  EXPECT_LT(rises["acceleration"].get<double>(), 1.5 * rises["motion_acceleration"].get<double>());
+  EXPECT_EQ(json::parse(get(out / "falls.json"))["result"]["falls"].size(), 6U);
+
+  const auto file = InputFile::open((out / "fall.anim").string());
+  ASSERT_TRUE(file.ok());
+  const auto clip = anim::read(file->bytes());
+  ASSERT_TRUE(clip.ok());
+  const auto hips = [&](int frame) {
+    return Vec3(clip->frame_positions(frame)[at(clip->skeleton.find("Hips"))].cast<double>());
+  };
+  const int last = clip->frame_count() - 1, lies = rises["first_frame"].get<int>();
+  EXPECT_LT(hips(lies).y(), 0.4);
+  EXPECT_GT(hips(last).y(), 0.8);
+  EXPECT_GT((hips(last) - hips(lies)).norm(), 1.0);
+  // From lying on, the hips move at a person's speed: nothing jumps.
+  for (int f = lies; f < last; ++f) {
+    EXPECT_LT((hips(f + 1) - hips(f)).norm() * clip->rate, 2.5) << f;
+  }
+}
+
+}  // namespace
+}  // namespace krok::test
