@@ -27,6 +27,7 @@ say "3. The walk goes on"
 "$bin/krok-edit" -q up.anim --append on.anim --blend 0s -o fall.anim
 
 say "4. Six shoves from a table"
+mkdir -p falls
 cp -- "$story/pushes.csv" .
 "$bin/krok-ragdoll" walk.anim --pushes pushes.csv --duration 5s -o 'falls/{name}.anim' --json=falls.json
 
