@@ -87,7 +87,8 @@ TEST(LibraryDescription, TurnsAreAngles) {
   for (const char* turn : {"step.turn", "step.path_turn", "step.path_turn@end"}) {
     const std::string text = fmt::format(
         R"({{"schema": "krok.library/1", "examples": [{{"clip": "a.anim"}}],
-            "parameters": [{{"measures": "{}", "tolerance": "0.1deg", "from": "-20deg", "to": 20}}]}})",
+            "parameters": [{{"measures": "{}", "tolerance": "0.1deg", "from": "-20deg",
+              "to": "20deg"}}]}})",
         turn);
     const auto read = library::read(text, "walk.json");
     ASSERT_TRUE(read.ok()) << read.error().message;
