@@ -67,8 +67,8 @@ class MeshGround final : public Terrain {
   // From Embree's own copy.
   std::vector<GroundTriangle> all_triangles() const {
     const RTCGeometry geometry = rtcGetGeometry(solid_scene_, 0);
-    const auto* corners = static_cast<const float*>(
-        rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    const auto* corners =
+        static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
     std::vector<GroundTriangle> all(solid_count_);
     for (GroundTriangle& triangle : all) {
       for (Vec3& corner : triangle) {

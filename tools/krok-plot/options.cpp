@@ -249,16 +249,6 @@ void declare_images(CommandOptions& command, Arguments& a) {
   declare_sheet(command, a.sheet);
 }
 
-// Whether an option that only applies to images was given.
-bool has_image_options(const SheetOptions& options) {
-  const SheetOptions usual;
-  return options.image.moments != usual.image.moments || options.image.sides != usual.image.sides ||
-         options.image.elevation != usual.image.elevation ||
-         options.image.size != usual.image.size || options.front != usual.front ||
-         options.whole_ground != usual.whole_ground || options.body != usual.body ||
-         options.method != usual.method;
-}
-
 }  // namespace
 
 void declare(CommandOptions& command, Arguments& arguments) {

@@ -309,6 +309,15 @@ void declare_sheet(CommandOptions& command, SheetOptions& options) {
                   "volume of twisted joints, or rigid; not for glTF files");
 }
 
+bool has_image_options(const SheetOptions& options) {
+  const SheetOptions usual;
+  return options.image.moments != usual.image.moments || options.image.sides != usual.image.sides ||
+         options.image.elevation != usual.image.elevation ||
+         options.image.size != usual.image.size || options.front != usual.front ||
+         options.whole_ground != usual.whole_ground || options.body != usual.body ||
+         options.method != usual.method;
+}
+
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
                    ToolContext& context) {
   const auto sides = parse_sides(options.image);

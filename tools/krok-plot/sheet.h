@@ -35,6 +35,9 @@ struct SheetOptions {
 // Declares --sheet, --strip and their options, except --from and --to.
 void declare_sheet(CommandOptions& command, SheetOptions& options);
 
+// Whether an option that only applies to images was given.
+bool has_image_options(const SheetOptions& options);
+
 // Renders the characters of all inputs, writes the requested images and adds them to the report.
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
                    ToolContext& context);

@@ -45,7 +45,7 @@ struct Options {
   std::string ground;
   height_field::Placement placement;
   std::string save_prints;
-  std::string view;  // a page to write, or empty
+  std::string view;                               // a page to write, or empty
   std::optional<double> step_length, step_width;  // metres
   FootSide first = FootSide::left;
   double speed = 1, rate = 0;
