@@ -45,8 +45,8 @@ Vec3 moments_of_inertia(const Body& body) {
   const double h = shape.half_length, whole = volume(shape);
   const double tube = m * kPi * square * 2 * h / whole, caps = m - tube;
   const double along = 0.5 * tube * square + 0.4 * caps * square;
-  const double across = tube * (square / 4 + h * h / 3) +
-                        caps * (0.4 * square + h * h + 0.75 * h * r);
+  const double across =
+      tube * (square / 4 + h * h / 3) + caps * (0.4 * square + h * h + 0.75 * h * r);
   return {across, along, across};
 }
 
@@ -124,8 +124,8 @@ void Articulation::add_joint_links(int body, int joint) {
     ties_[at(joint)].slide = link.parent = add(between);
   }
   const bool locked = its.turn.kind == ik::JointLimit::Kind::locked;
-  link.freedom = its.kind == JointKind::revolute    ? Freedom::hinge
-                 : its.kind == JointKind::prismatic ? Freedom::slide
+  link.freedom = its.kind == JointKind::revolute          ? Freedom::hinge
+                 : its.kind == JointKind::prismatic       ? Freedom::slide
                  : its.kind == JointKind::fixed || locked ? Freedom::none
                                                           : Freedom::turn;
   link_of_[at(body)] = add(link);
@@ -134,8 +134,7 @@ void Articulation::add_joint_links(int body, int joint) {
 }
 
 Transform Articulation::parent_frame(const Joint& joint) const {
-  return joint.parent < 0 ? joint.in_parent
-                          : states_[at(joint.parent)].to_world * joint.in_parent;
+  return joint.parent < 0 ? joint.in_parent : states_[at(joint.parent)].to_world * joint.in_parent;
 }
 
 // Where the child is in its joint, and its place from that.

@@ -103,9 +103,10 @@ void Articulation::soft_turn(Link& link, double step, Mat3& damping) const {
   }
   if (joint.turn.kind != ik::JointLimit::Kind::cone) return;
   const Quat child = parent_frame(joint).orientation * ties_[at(link.joint)].turned;
-  each_cone_side(joint.turn, ties_[at(link.joint)].turned, [&](int, const Vec3& axis, double beyond) {
-    spring(link, child * axis, beyond, step, damping);
-  });
+  each_cone_side(joint.turn, ties_[at(link.joint)].turned,
+                 [&](int, const Vec3& axis, double beyond) {
+                   spring(link, child * axis, beyond, step, damping);
+                 });
 }
 
 void Articulation::soft_slide(Link& link, double step, Mat3& damping) const {
@@ -151,15 +152,14 @@ void Articulation::hold_distances(double step) {
                                          parent_arm.cross(axis));
     }
     const double stiffness = std::min(joint.stiffness, 0.5 / (step * step * give));
-    const double impulse = -step * (stiffness * beyond + joint.damping * speed) /
-                           (1 + step * joint.damping * give);
+    const double impulse =
+        -step * (stiffness * beyond + joint.damping * speed) / (1 + step * joint.damping * give);
     if (impulse * beyond > 0) continue;
     child.velocity += impulse / masses_[at(joint.child)] * axis;
     child.spin += inertias_[at(joint.child)].inverse() * (impulse * arm.cross(axis));
     if (parent == nullptr) continue;
     parent->velocity -= impulse / masses_[at(joint.parent)] * axis;
-    parent->spin -=
-        inertias_[at(joint.parent)].inverse() * (impulse * parent_arm.cross(axis));
+    parent->spin -= inertias_[at(joint.parent)].inverse() * (impulse * parent_arm.cross(axis));
   }
 }
 

@@ -31,10 +31,10 @@ inline Vec6 spatial(const Vec3& upper, const Vec3& lower) {
 // forces; it needs no terms of Coriolis, as bodies carry their momenta from pose to pose, and takes
 // dampers and motors into the joints' inertias, which makes them stable for any gain.
 //
-// Bullet 3.24 has trees in reduced coordinates, too (btMultiBody). On the same falls, beside this in
-// the benchmark, it is slower, sinks centimetres into the ground, since it takes penetrations back
-// through speeds, and trembles at rest; its spherical limits are symmetrical. Its joints between
-// free bodies came apart by a millimetre at 3840 steps a second.
+// Bullet 3.24 has trees in reduced coordinates, too (btMultiBody). On the same falls, beside this
+// in the benchmark, it is slower, sinks centimetres into the ground, since it takes penetrations
+// back through speeds, and trembles at rest; its spherical limits are symmetrical. Its joints
+// between free bodies came apart by a millimetre at 3840 steps a second.
 class Articulation {
  public:
   // `joints` without rings, each body a child of at most one that is no distance.
@@ -92,19 +92,19 @@ class Articulation {
     int root = 0;     // link
     Freedom freedom = Freedom::all;
     bool kinematic = false;
-    Mat63 axes = Mat63::Zero();       // S; unused columns are 0
-    Mat6 inertia = Mat6::Zero();      // articulated
-    Vec6 momentum = Vec6::Zero();     // articulated
-    Mat63 coupling = Mat63::Zero();   // U = I S
-    Mat3 inverse = Mat3::Zero();      // (S^T U + dampers)^-1
-    Mat36 gain = Mat36::Zero();       // inverse U^T
-    Vec3 impulse = Vec3::Zero();      // on the joint's coordinates, of springs and motors
+    Mat63 axes = Mat63::Zero();      // S; unused columns are 0
+    Mat6 inertia = Mat6::Zero();     // articulated
+    Vec6 momentum = Vec6::Zero();    // articulated
+    Mat63 coupling = Mat63::Zero();  // U = I S
+    Mat3 inverse = Mat3::Zero();     // (S^T U + dampers)^-1
+    Mat36 gain = Mat36::Zero();      // inverse U^T
+    Vec3 impulse = Vec3::Zero();     // on the joint's coordinates, of springs and motors
     Vec6 twist = Vec6::Zero();
   };
-  struct Ties {  // of a joint
-    int turn = -1, slide = -1;           // links
-    Quat turned = Quat::Identity();      // the child's frame in the parent's
-    Vec3 slid = Vec3::Zero();            // in the parent's frame
+  struct Ties {                      // of a joint
+    int turn = -1, slide = -1;       // links
+    Quat turned = Quat::Identity();  // the child's frame in the parent's
+    Vec3 slid = Vec3::Zero();        // in the parent's frame
   };
 
   void add_links(int body, std::span<const int> joint_of, std::vector<bool>& added);
@@ -131,11 +131,11 @@ class Articulation {
   std::vector<Mat3> inertias_;  // world
   std::vector<BodyState> states_;
   std::vector<Joint> joints_;
-  std::vector<Ties> ties_;     // shape [joints]
-  std::vector<Link> links_;    // parents first
-  std::vector<int> link_of_;   // shape [bodies]
-  std::vector<Vec6> twists_;   // shape [bodies]
-  std::vector<Mat6> responses_;  // shape [links, links]
+  std::vector<Ties> ties_;         // shape [joints]
+  std::vector<Link> links_;        // parents first
+  std::vector<int> link_of_;       // shape [bodies]
+  std::vector<Vec6> twists_;       // shape [bodies]
+  std::vector<Mat6> responses_;    // shape [links, links]
   std::vector<BodyState> before_;  // the last move()
   std::vector<Mat3> inertias_before_;
   std::vector<Ties> ties_before_;

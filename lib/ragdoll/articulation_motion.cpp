@@ -35,13 +35,13 @@ void Articulation::place(double step, std::span<const Vec6> moving) {
       ties.turned = (from_rotation_vector(step * turn) * ties.turned).normalized();
     }
     if (ties.slide >= 0) {
-      const Transform parent{
-          joint.parent < 0 ? Vec3(joint.in_parent.position)
-                           : before_[at(joint.parent)].to_world * joint.in_parent.position,
-          old};
+      const Transform parent{joint.parent < 0
+                                 ? Vec3(joint.in_parent.position)
+                                 : before_[at(joint.parent)].to_world * joint.in_parent.position,
+                             old};
       const Vec3 anchor = parent * ties.slid;
-      const Vec3 speed = old.conjugate() * Vec3(relative.tail<3>() +
-                                                Vec3(relative.head<3>()).cross(anchor));
+      const Vec3 speed =
+          old.conjugate() * Vec3(relative.tail<3>() + Vec3(relative.head<3>()).cross(anchor));
       for (int i = 0; i < 3; ++i) {
         if (!links_[at(ties.slide)].axes.col(i).isZero()) ties.slid[i] += step * speed[i];
       }
@@ -154,7 +154,8 @@ double Articulation::excess(int joint) const {
   }
   if (its.kind != JointKind::spherical && its.kind != JointKind::six_dof) return 0;
   const Frames now = frames(joint);
-  return ik::excess(its.turn, (now.parent.orientation.conjugate() * now.child.orientation).normalized());
+  return ik::excess(its.turn,
+                    (now.parent.orientation.conjugate() * now.child.orientation).normalized());
 }
 
 }  // namespace krok::ragdoll

@@ -74,7 +74,7 @@ struct Collision::Inside {
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   std::vector<std::unique_ptr<btCollisionObject>> bodies;
   std::vector<std::unique_ptr<btCollisionObject>> grounds;
-  std::vector<Feelers> feelers;                        // shape [bodies]
+  std::vector<Feelers> feelers;                           // shape [bodies]
   std::vector<std::vector<std::array<float, 3>>> memory;  // shape [bodies, feelers]
   std::vector<Contact> contacts;
 
@@ -187,12 +187,13 @@ void Collision::Inside::take_manifolds(std::span<const BodyState> states) {
 
 Collision::Collision(const Surroundings& surroundings) : inside_(std::make_unique<Inside>()) {
   // Bullet has one callback and one reach for all worlds; these are the same for all.
-  static const bool set = (gContactAddedCallback = smooth_edges,
-                           gContactBreakingThreshold = kReach, true);
+  static const bool set =
+      (gContactAddedCallback = smooth_edges, gContactBreakingThreshold = kReach, true);
   (void)set;
   Inside& in = *inside_;
-  in.dispatcher.setDispatcherFlags(in.dispatcher.getDispatcherFlags() &
-                                   ~btCollisionDispatcher::CD_USE_RELATIVE_CONTACT_BREAKING_THRESHOLD);
+  in.dispatcher.setDispatcherFlags(
+      in.dispatcher.getDispatcherFlags() &
+      ~btCollisionDispatcher::CD_USE_RELATIVE_CONTACT_BREAKING_THRESHOLD);
   in.world.setForceUpdateAllAabbs(false);
   in.world.getDispatchInfo().m_deterministicOverlappingPairs = true;
   in.level = surroundings.level;

@@ -7,9 +7,9 @@
 
 namespace krok::ragdoll {
 
-// Calls side(number, axis, beyond) for each side of a cone that limits: the axis in the child's frame,
-// unit, about which turning leads out of the range, and how far it is out, in radians (to the first
-// order; below 0 within).
+// Calls side(number, axis, beyond) for each side of a cone that limits: the axis in the child's
+// frame, unit, about which turning leads out of the range, and how far it is out, in radians (to
+// the first order; below 0 within).
 template <typename Side>
 void each_cone_side(const ik::JointLimit& limit, const Quat& turn, const Side& side) {
   const ik::LimitAngles angles = ik::measure(limit, turn);

@@ -10,10 +10,10 @@ namespace krok::ragdoll {
 
 // A point at which a body touches another, or is about to.
 struct Contact {
-  int a = 0, b = -1;                // bodies; -1: the surroundings
-  Vec3 on_a = Vec3::Zero();         // in a's frame
-  Vec3 on_b = Vec3::Zero();         // in b's frame, or the world
-  Vec3 normal = Vec3::UnitY();      // world, from b to a
+  int a = 0, b = -1;                 // bodies; -1: the surroundings
+  Vec3 on_a = Vec3::Zero();          // in a's frame
+  Vec3 on_b = Vec3::Zero();          // in b's frame, or the world
+  Vec3 normal = Vec3::UnitY();       // world, from b to a
   std::array<float*, 3> impulses{};  // of the last step, along the normal and across it
 };
 
@@ -48,13 +48,13 @@ class ImpulseSolver {
 
  private:
   struct Row {
-    Vec6 wrench = Vec6::Zero();  // on the group's first body; the other has the negative
-    double target = 0, kept = 0;  // least relative speeds: while moving, and afterwards
+    Vec6 wrench = Vec6::Zero();     // on the group's first body; the other has the negative
+    double target = 0, kept = 0;    // least relative speeds: while moving, and afterwards
     float impulse = 0, pushed = 0;  // the latter with the target
-    bool both = false;           // pulls, too
-    int joint = -1, side = 0;    // of a limit
+    bool both = false;              // pulls, too
+    int joint = -1, side = 0;       // of a limit
     int contact = -1;
-    double gap = 0, asked = 0;   // metres or radians, now and where the step may end
+    double gap = 0, asked = 0;  // metres or radians, now and where the step may end
     float* cache = nullptr;
   };
   // Contacts of two bodies in about one plane have one friction: across at the middle of their
@@ -64,15 +64,15 @@ class ImpulseSolver {
     float friction = 0;
     std::vector<float> arms;
   };
-  struct Swept {  // of a row
+  struct Swept {           // of a row
     Vec8f wrench, answer;  // the relative twist's answer to an impulse of 1
     float inverse = 0;     // 1 / (wrench . answer)
     float target = 0;
   };
   struct Group {
     int a = 0, b = -1;
-    std::size_t first = 0, end = 0;  // rows
-    int patch = -1;                  // all rows are of it
+    std::size_t first = 0, end = 0;     // rows
+    int patch = -1;                     // all rows are of it
     int touched_a = 0, touched_b = -1;  // of touched_
   };
 
@@ -104,7 +104,7 @@ class ImpulseSolver {
   std::vector<Row> rows_;
   std::vector<Group> groups_;
   std::vector<Patch> patches_;
-  std::vector<int> touched_;   // bodies that have rows
+  std::vector<int> touched_;    // bodies that have rows
   std::vector<Mat8f> answers_;  // shape [groups, touched]
   std::vector<Vec6> moving_, left_;
   std::vector<Swept> swept_;

@@ -48,12 +48,12 @@ struct Joint {
   bool soft = false;
   double stiffness = 100, damping = 0;  // >= 0
 
-  double friction = 0;  // N m s/rad, >= 0: slows all turning within the joint
+  double friction = 0;      // N m s/rad, >= 0: slows all turning within the joint
   double dry_friction = 0;  // N m, >= 0: the same at any speed
 
-  // A motor turns the child towards `target` (in the parent's frame) and its speed to `target_speed`
-  // (radians/s, in the parent's frame), as a spring (N m/rad) and a damper (N m s/rad) would, with
-  // about this torque at most (N m); 0: none. Spherical, revolute and six_dof.
+  // A motor turns the child towards `target` (in the parent's frame) and its speed to
+  // `target_speed` (radians/s, in the parent's frame), as a spring (N m/rad) and a damper (N m
+  // s/rad) would, with about this torque at most (N m); 0: none. Spherical, revolute and six_dof.
   double motor = 0, motor_stiffness = 0, motor_damping = 0;  // >= 0
   Quat target = Quat::Identity();
   Vec3 target_speed = Vec3::Zero();

@@ -12,9 +12,9 @@ namespace krok::ragdoll {
 
 namespace {
 
-constexpr double kLongest = 600;              // seconds
+constexpr double kLongest = 600;                // seconds
 constexpr double kStill = 0.025, kTurn = 0.15;  // metres, radians
-constexpr double kRest = 0.5;                  // seconds
+constexpr double kRest = 0.5;                   // seconds
 
 constexpr double kSettling = 0.2;  // seconds
 

@@ -13,7 +13,7 @@ namespace krok::ragdoll {
 namespace {
 // How often a step is aimed again, and then divided.
 constexpr int kAgain = 1, kDivided = 6;
-}
+}  // namespace
 
 struct World::Inside {
   Inside(const WorldOptions& its, const Surroundings& surroundings)
@@ -84,7 +84,8 @@ Status World::add(std::span<const Body> bodies, std::span<const BodyState> state
   for (const Joint& joint : joints) {
     if (joint.child < 0 || joint.child >= count || joint.parent >= count ||
         joint.parent == joint.child || joint.range.min > joint.range.max ||
-        !(joint.stiffness >= 0) || !(joint.damping >= 0) || !(joint.friction >= 0) || !(joint.dry_friction >= 0)) {
+        !(joint.stiffness >= 0) || !(joint.damping >= 0) || !(joint.friction >= 0) ||
+        !(joint.dry_friction >= 0)) {
       return Error("ragdoll-value", "a joint ties bodies that do not exist, or has wrong limits");
     }
   }

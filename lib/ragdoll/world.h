@@ -24,7 +24,7 @@ struct WorldOptions {
   Vec3 gravity = Vec3(0, -9.81, 0);  // m/s^2
   double friction = 0.7;             // Coulomb's, between bodies and surroundings, >= 0
   double restitution = 0;            // 0 to 1
-  int substeps = 1;    // parts of a step, >= 1; contacts are looked for once in each step
+  int substeps = 1;     // parts of a step, >= 1; contacts are looked for once in each step
   int iterations = 12;  // most sweeps over contacts and limits in each part, >= 1
 };
 

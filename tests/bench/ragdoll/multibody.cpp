@@ -78,9 +78,9 @@ Multibody::Multibody(std::span<const Body> bodies, std::span<const BodyState> st
                                           false, false);
   btMultiBody& tree = *in.body;
   for (const Joint& joint : joints) {
-    const auto c = static_cast<std::size_t>(joint.child), p = static_cast<std::size_t>(joint.parent);
-    const Quat turn =
-        states[c].to_world.orientation.conjugate() * states[p].to_world.orientation;
+    const auto c = static_cast<std::size_t>(joint.child),
+               p = static_cast<std::size_t>(joint.parent);
+    const Quat turn = states[c].to_world.orientation.conjugate() * states[p].to_world.orientation;
     const int link = joint.child - 1;
     const auto mass = static_cast<btScalar>(bodies[c].mass);
     const btVector3 to_pivot = to_bt(joint.in_parent.position);
@@ -102,7 +102,8 @@ Multibody::Multibody(std::span<const Body> bodies, std::span<const BodyState> st
   tree.setLinearDamping(0);
   tree.setAngularDamping(0);
   for (const Joint& joint : joints) {
-    const auto c = static_cast<std::size_t>(joint.child), p = static_cast<std::size_t>(joint.parent);
+    const auto c = static_cast<std::size_t>(joint.child),
+               p = static_cast<std::size_t>(joint.parent);
     // In the child's frame.
     const Vec3 spin =
         states[c].to_world.orientation.conjugate() * (states[c].spin - states[p].spin);
@@ -159,7 +160,8 @@ double Multibody::penetration() const {
   double deepest = 0;
   for (int m = 0; m < inside_->dispatcher.getNumManifolds(); ++m) {
     const auto& manifold = *inside_->dispatcher.getManifoldByIndexInternal(m);
-    if (manifold.getBody0() != inside_->ground.get() && manifold.getBody1() != inside_->ground.get())
+    if (manifold.getBody0() != inside_->ground.get() &&
+        manifold.getBody1() != inside_->ground.get())
       continue;
     for (int p = 0; p < manifold.getNumContacts(); ++p) {
       deepest = std::max(deepest, -static_cast<double>(manifold.getContactPoint(p).getDistance()));

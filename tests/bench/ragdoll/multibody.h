@@ -15,10 +15,10 @@ class Multibody {
             std::span<const krok::ragdoll::Joint> joints, int iterations);
   ~Multibody();
 
-  void step();                           // krok::ragdoll::World::kStep
-  double penetration() const;            // metres
-  krok::Vec3 position(int body) const;   // centre of mass
-  double fastest() const;                // m/s, of all bodies
+  void step();                          // krok::ragdoll::World::kStep
+  double penetration() const;           // metres
+  krok::Vec3 position(int body) const;  // centre of mass
+  double fastest() const;               // m/s, of all bodies
 
  private:
   struct Inside;

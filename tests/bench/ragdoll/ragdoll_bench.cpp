@@ -30,7 +30,6 @@ double seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-
 struct Walker {
   Clip clip;
   RoleMap roles;
@@ -88,7 +87,8 @@ void run_falls(const std::vector<Walker>& walkers, int count) {
     const Walker& walker = walkers[at(i) % walkers.size()];
     const FallOptions options = random_fall(walker, random);
     const double begin = seconds();
-    const auto fall = simulate_fall(walker.clip, walker.roles, walker.bodies, walker.limits, options);
+    const auto fall =
+        simulate_fall(walker.clip, walker.roles, walker.bodies, walker.limits, options);
     time += seconds() - begin;
     if (!fall.ok() || !check(fall->clip).ok()) {
       ++bad;
@@ -118,12 +118,13 @@ void run_falls(const std::vector<Walker>& walkers, int count) {
     hash.update(std::as_bytes(std::span(fall->clip.positions)));
     hash.update(std::as_bytes(std::span(fall->clip.orientations)));
   }
-  std::printf("%d falls of 5 s, %zu bodies: %d not finite, %d (%.1f %%) at rest, the latest after %.2f s\n",
-              count, walkers[0].bodies.size(), bad, at_rest, 100.0 * at_rest / count, latest);
+  std::printf(
+      "%d falls of 5 s, %zu bodies: %d not finite, %d (%.1f %%) at rest, the latest after %.2f s\n",
+      count, walkers[0].bodies.size(), bad, at_rest, 100.0 * at_rest / count, latest);
   const auto print = [](const char* what, const WorldMeasures& of) {
-    std::printf("  %s: joints apart by %.2g mm, limits exceeded by %.2f degrees, ground by %.2f mm\n",
-                what, of.joint_gap * 1e3, of.limit_excess / kRadiansPerDegree,
-                of.penetration * 1e3);
+    std::printf(
+        "  %s: joints apart by %.2g mm, limits exceeded by %.2f degrees, ground by %.2f mm\n", what,
+        of.joint_gap * 1e3, of.limit_excess / kRadiansPerDegree, of.penetration * 1e3);
   };
   print("first 0.2 s", settling);
   print("after that ", worst);
@@ -158,8 +159,8 @@ void run_bullet(const Walker& walker, int count) {
                         rate * rotation_vector(b.orientation * a.orientation.conjugate())});
     }
     states[0].velocity += strength * Vec3(std::cos(angle), 0.2, std::sin(angle));
-    const auto joints = make_joints(walker.clip.skeleton, walker.roles, walker.bodies,
-                                    walker.limits, pose, {});
+    const auto joints =
+        make_joints(walker.clip.skeleton, walker.roles, walker.bodies, walker.limits, pose, {});
     Multibody world(walker.bodies, states, joints, 10);
     const double start = seconds();
     for (int step = 0; step < 1200; ++step, ++steps) {
@@ -169,9 +170,10 @@ void run_bullet(const Walker& walker, int count) {
     time += seconds() - start;
     moving += world.fastest() > 0.3 ? 1 : 0;
   }
-  std::printf("btMultiBody alone, %d falls: %.1f x real time (%.1f us a step), ground by %.1f mm, "
-              "%d not at rest after 5 s\n",
-              count, steps * World::kStep / time, time / steps * 1e6, deepest * 1e3, moving);
+  std::printf(
+      "btMultiBody alone, %d falls: %.1f x real time (%.1f us a step), ground by %.1f mm, "
+      "%d not at rest after 5 s\n",
+      count, steps * World::kStep / time, time / steps * 1e6, deepest * 1e3, moving);
 }
 
 }  // namespace

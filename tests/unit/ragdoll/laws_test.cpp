@@ -208,6 +208,28 @@ TEST(RagdollLaws, ABoxSlidesAboveTheAngleOfFrictionAlone) {
   }
 }
 
+// A motor's spring gives way until it holds the weight: k (target - angle) = m g l sin(angle).
+// Gains far beyond what an explicit step could follow must not shake it.
+TEST(RagdollLaws, AMotorHoldsAWeightWhateverItsGains) {
+  for (const double stiffness : {100.0, 1e3, 1e6}) {
+    World world(WorldOptions{}, Surroundings{});
+    const Body body = box({0.05, 0.2, 0.05}, 4);
+    Joint joint = hinge_in_origin(0.3);
+    joint.motor = 1e4;
+    joint.motor_stiffness = stiffness;
+    joint.motor_damping = 0.1 * stiffness;
+    const double wanted = 1;
+    joint.target = from_rotation_vector(Vec3(wanted, 0, 0));
+    ASSERT_TRUE(
+        world.add(std::vector{body}, std::vector{hanging(0.3, 0, 0)}, std::vector{joint}).ok());
+    for (int step = 0; step < 240 * 4; ++step) world.step();
+    const double angle = angle_of(world);
+    const double weight = body.mass * kGravity * 0.3 * std::sin(angle);
+    EXPECT_NEAR(stiffness * (wanted - angle), weight, 0.01 * weight) << stiffness;
+    EXPECT_LT(world.state(0).spin.norm(), 1e-4) << stiffness;
+  }
+}
+
 // Four links of unlike masses, tied by joints of three kinds, thrown and turning.
 struct Chain {
   std::vector<Body> bodies;
