@@ -13,9 +13,9 @@ namespace krok::ragdoll {
 namespace {
 
 constexpr double kLeft = 0.005, kDone = 0.008;  // metres that may stay in the ground
-constexpr double kFadeIn = 0.4;                 // seconds
-constexpr int kRounds = 30;
-constexpr double kGain = 1.3;      // of a round: smoothing takes some of it away
+constexpr double kFadeIn = 0.25;                // seconds
+constexpr int kRounds = 50;
+constexpr double kGain = 1.5;      // of a round: smoothing takes some of it away
 constexpr double kMaxTurn = 0.35;  // radians in a round
 
 // The points of a shape that may be its lowest, world.

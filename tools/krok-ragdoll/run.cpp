@@ -10,6 +10,7 @@
 #include "core/nearest_name.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
+#include "formats/gltf/gltf_writer.h"
 #include "formats/goals/goals.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_terrain.h"
@@ -17,6 +18,7 @@
 #include "formats/model/model_format.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "ik/anatomical_limits.h"
+#include "ragdoll/body_meshes.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
@@ -56,6 +58,7 @@ class Run {
   Status read_ground(Plan& plan);
   Status write(const Plan& plan, Provenance provenance, int jobs, Fallen& fallen,
                OutputFile& file) const;
+  Status write_meshes(OutputFile& file) const;
   Status write_one();
   Status write_all();
 
@@ -271,6 +274,17 @@ Status Run::write(const Plan& plan, Provenance provenance, int jobs, Fallen& fal
   return anim::write(fallen.clip, writing, file);
 }
 
+// The bodies as meshes on the skeleton's nodes.
+Status Run::write_meshes(OutputFile& file) const {
+  Clip still;
+  still.skeleton = subject_.clip.skeleton;
+  gltf::WriteOptions writing;
+  writing.provenance = context_.provenance();
+  writing.name = "bodies";
+  return gltf::write_rig(krok::ragdoll::body_meshes(still.skeleton, subject_.bodies), still,
+                         writing, file);
+}
+
 Status Run::write_one() {
   const Plan& plan = plans_.front();
   auto fallen = make_fall(subject_, plan.fall);
@@ -285,6 +299,7 @@ Status Run::write_one() {
   });
   if (!status) return status;
   status = outputs.add(given().save_bodies, [&](OutputFile& file) {
+    if (extension(given().save_bodies) == ".glb") return write_meshes(file);
     return file.write(
         ragdoll_file::write({subject_.bodies, plan.fall.rules}, subject_.clip.skeleton));
   });

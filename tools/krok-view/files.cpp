@@ -16,6 +16,7 @@
 #include "formats/registry/registry.h"
 #include "tools/cli/file_name.h"
 #include "tools/krok-view/goals.h"
+#include "tools/krok-view/ragdoll_bodies.h"
 #include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::view {
@@ -182,6 +183,9 @@ Result<Files> read_files(const Options& options, ToolContext& context) {
     }
   }
   share_models(files);
+  if (Status status = show_ragdoll_bodies(options.bodies, context, files); !status) {
+    return status.error();
+  }
   if (Status status = build_bodies(options, context, files); !status) return status.error();
   if (Status status = add_goals(options, context, files); !status) return status.error();
   return files;

@@ -21,6 +21,7 @@ struct Options {
   std::string goals;   // a goal file, or empty
   std::string ground;  // what io::open_terrain() takes; empty: none
   std::string prints;  // a file of footprints, or empty
+  std::string bodies;  // rigid bodies to show, or empty
   std::string title;
 };
 

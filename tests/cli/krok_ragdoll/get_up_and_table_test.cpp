@@ -103,7 +103,7 @@ TEST_F(RagdollFiles, MistakesInATableAreToldWithTheirPlace) {
   const std::string head = "name,at,joint,x,y,z\n";
   wrong("", "", "csv-empty", "");
   wrong("name,at,joint,x,y\na,1,Hips,1,2\n", "1:1", "pushes-column", "'z'");
-  wrong("name,at,joint,x,y,z,w\na,1,Hips,1,2,3,4\n", "1:23", "pushes-column", "'w'");
+  wrong("name,at,joint,x,y,z,w\na,1,Hips,1,2,3,4\n", "1:21", "pushes-column", "'w'");
   wrong("name,at [kg],joint,x,y,z\na,1,Hips,1,2,3\n", "1:6", "pushes-column", "kg");
   wrong(head + "a,1,Hips,1,nan,3\n", "2:12", "pushes-value", "nan");
   wrong(head + "a,1,Hips,1,2,1e99\n", "2:14", "pushes-value", "10000");
@@ -124,6 +124,13 @@ TEST_F(RagdollFiles, SavedBodiesGiveTheSameFall) {
   const json read = result({"walk.anim", "--at", "1s", "--duration", "1s", "--push",
                             "Spine2=90,0,20", "--bodies", "x.ragdoll.json", "-o", "b.anim"});
   EXPECT_EQ(made["hash"], read["hash"]);
+  // As meshes they are a valid glTF.
+  result({"walk.anim", "--at", "1s", "--duration", "1s", "--save-bodies", "bodies.glb", "-o",
+          "a.anim"});
+  const auto judged =
+      test::run({"/usr/bin/env", "node", KROK_SOURCE_DIR "/tests/golden/validate_gltf.mjs",
+                 path("bodies.glb")});
+  EXPECT_EQ(judged.exit_code, 0) << judged.out << judged.err;
   refused({"walk.anim", "--bodies", "x.ragdoll.json", "--mass", "80kg", "-o", "c.anim"}, "--mass",
           "usage", "edit the file");
   put("bad.ragdoll.json", "{\"schema\": \"krok.ragdoll/1\",\n \"bodies\": []}");
