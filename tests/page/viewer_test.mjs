@@ -311,6 +311,16 @@ await check(80, async () => {
   await goalsAgree(goals, made('reach.anim'), JSON.parse(readFileSync(made('reach.json'), 'utf8')), 60);
   await look(goals, 'goals');
 
+  // Rigid bodies on the motion that they were made for: translucent, and gone without the body.
+  run('krok-ragdoll', made('walk.anim'), '--duration', '0.5s', '--save-bodies', made('walk.ragdoll.json'), '-o', made('fall.anim'));
+  run('krok-view', made('fall.anim'), '--bodies', made('walk.ragdoll.json'), '-o', made('bodies.html'));
+  const bodies = await open('bodies.html');
+  await jointsAgree(bodies, made('fall.anim'), 60);
+  const shown = await look(bodies, 'bodies');
+  await drawn(bodies, () => bodies.keyboard.press('b'));
+  const hidden = await look(bodies, 'without_bodies');
+  expect(shown.colours > hidden.colours + 200, `bodies show ${shown.colours} colours, ${hidden.colours} without them`);
+
   const frozen = join(source, 'tests/golden/v1');
   run('krok-view', join(frozen, 'motion.anim'), join(frozen, 'camera.cam'), '-o', made('camera.html'));
   const flown = await open('camera.html');
