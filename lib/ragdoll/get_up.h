@@ -14,8 +14,9 @@
 namespace krok::ragdoll {
 
 // How near the first frame of a motion is to a lying pose: the root mean square distance of points
-// on the bodies, weighted by mass, after the motion is turned about the vertical and moved along the
-// ground to where that is least (as point clouds in Kovar et al., "Motion graphs", 2002), metres.
+// on the bodies, weighted by mass, after the motion is turned about the vertical and moved along
+// the ground to where that is least (as point clouds in Kovar et al., "Motion graphs", 2002),
+// metres.
 struct RiseChoice {
   int motion = -1;        // of those given
   bool mirrored = false;  // left and right exchanged

@@ -47,8 +47,8 @@ std::vector<Transform> pose_at(const Clip& clip, double time);
 // are differences over one frame to either side. The frames after `at` come from the bodies: the
 // root body gives the position and orientation of its joint, each simulated joint has its body's
 // orientation, all others keep their turn relative to their parent, and positions follow down the
-// tree from the offsets that the pose has, but for bodies that slide. Joints above the root body stand still. Between steps
-// poses are interpolated. The same input gives the same bytes.
+// tree from the offsets that the pose has, but for bodies that slide. Joints above the root body
+// stand still. Between steps poses are interpolated. The same input gives the same bytes.
 //
 // `bodies` are make_bodies()', `limits` as for make_joints(). Codes: ragdoll-time for times outside
 // the motion or the ranges, ragdoll-value for pushes at bodies that are not there or not finite,
