@@ -1,10 +1,12 @@
 #include "ragdoll/collision_internal.h"
 
 #include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <btBulletCollisionCommon.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/index.h"
 
@@ -14,6 +16,13 @@ namespace {
 
 // Bullet keeps contacts up to this distance, metres: what falls 10 m/s comes that far in a step.
 constexpr float kReach = 0.04F;
+constexpr double kThick = 0.03;  // metres: what is deeper below a face is on its other side
+constexpr double kDrift =
+    5e-3;                       // metres by which a kept contact's points may drift along a surface
+constexpr double kWall = 1e-3;  // of a face's normal, upwards
+constexpr std::size_t kTouches = 2;  // of a feeler, as in the corner below a step
+constexpr double kSamePlace = 0.02;  // metres between points of one contact
+constexpr double kSameWay = 0.98;    // cosine between normals of one contact
 
 btVector3 to_bullet(const Vec3& v) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
@@ -75,13 +84,15 @@ struct Collision::Inside {
   std::vector<std::unique_ptr<btCollisionObject>> bodies;
   std::vector<std::unique_ptr<btCollisionObject>> grounds;
   std::vector<Feelers> feelers;                           // shape [bodies]
-  std::vector<std::vector<std::array<float, 3>>> memory;  // shape [bodies, feelers]
+  std::vector<std::vector<std::array<float, 3>>> memory;  // shape [bodies, kTouches * feelers]
   std::vector<Contact> contacts;
 
   ~Inside();
   void add_mesh(const Surroundings& surroundings);
   void part_overlapping();
   void touch_plane(std::span<const BodyState> states, double step);
+  void touch_faces(std::span<const BodyState> states, double step);
+  bool is_on_face(const Contact& of) const;
   void take_manifolds(std::span<const BodyState> states);
 };
 
@@ -146,7 +157,7 @@ void Collision::Inside::touch_plane(std::span<const BodyState> states, double st
     for (std::size_t k = 0; k < feelers[b].points.size(); ++k) {
       const Vec3 point = pose * feelers[b].points[k];
       const double gap = point.y() - feelers[b].radius - height;
-      std::array<float, 3>& impulses = memory[b][k];
+      std::array<float, 3>& impulses = memory[b][kTouches * k];
       if (gap > 0.01 + 2 * fall) {
         impulses.fill(0);
         continue;
@@ -160,6 +171,126 @@ void Collision::Inside::touch_plane(std::span<const BodyState> states, double st
       contacts.push_back(contact);
     }
   }
+}
+
+// Faces of the ground near a body.
+class Faces final : public btTriangleCallback {
+ public:
+  struct Face {
+    Vec3 normal;
+    std::array<Vec3, 3> corners, inward;
+    bool wall = false;
+
+    bool is_beside(const Vec3& point) const {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (inward[k].dot(point - corners[k]) < 0) return false;
+      }
+      return true;
+    }
+  };
+
+  const std::vector<Face>& faces() const { return faces_; }
+  void clear() { faces_.clear(); }
+
+  void processTriangle(btVector3* corners, int, int) override {
+    Face face;
+    for (std::size_t k = 0; k < 3; ++k) face.corners[k] = from_bullet(corners[k]);
+    const auto& [a, b, c] = face.corners;
+    face.normal = (b - a).cross(c - a);
+    const double size = face.normal.norm();
+    if (!(size > 1e-12)) return;
+    face.normal /= size;
+    face.inward = {face.normal.cross(b - a), face.normal.cross(c - b), face.normal.cross(a - c)};
+    face.wall = std::abs(face.normal.y()) < kWall;
+    if (face.normal.y() < 0) face.normal = -face.normal;  // ground is solid below
+    faces_.push_back(face);
+  }
+
+ private:
+  std::vector<Face> faces_;
+};
+
+struct Touch {
+  double gap = 0;
+  Vec3 normal, on_body;
+};
+
+// Where a ball of `radius` about `point` touches faces, the shallowest first, at most two. `free`
+// is on the free side of walls. What is behind a shallower face and no more behind a deeper one
+// when it has come out of the first, as at the edge of a step, does not touch the deeper one.
+void touch(const Vec3& point, double radius, const Vec3& free, double reach,
+           std::span<const Faces::Face> faces, std::vector<Touch>& touches) {
+  touches.clear();
+  for (const Faces::Face& face : faces) {
+    const double side = face.wall && face.normal.dot(free - face.corners[0]) < 0 ? -1 : 1;
+    const Vec3 normal = side * face.normal;
+    const Vec3 on_body = point - radius * normal;
+    const double gap = normal.dot(on_body - face.corners[0]);
+    if (gap < -kThick || gap > reach || !face.is_beside(on_body)) continue;
+    touches.push_back({gap, normal, on_body});
+  }
+  std::ranges::stable_sort(touches, std::greater(), &Touch::gap);
+  std::size_t kept = 0;
+  Vec3 out = Vec3::Zero();
+  for (const Touch& candidate : touches) {
+    if (kept == kTouches) break;
+    const auto behind = [&](const Faces::Face& face) {
+      return std::abs(face.normal.dot(candidate.normal)) > kSameWay &&
+             face.is_beside(candidate.on_body + out);
+    };
+    if (kept > 0 && (touches[0].normal.dot(candidate.normal) > kSameWay ||
+                     !std::ranges::any_of(faces, behind))) {
+      continue;
+    }
+    touches[kept++] = candidate;
+    if (candidate.gap < 0) out -= 1.01 * candidate.gap * candidate.normal;
+  }
+  touches.resize(kept);
+}
+
+// Bullet keeps points on a mesh from step to step, and one set for all its triangles, while a body
+// rolls over them; on faces, points are therefore found anew in each step, in double precision.
+void Collision::Inside::touch_faces(std::span<const BodyState> states, double step) {
+  const auto* shape = static_cast<const btBvhTriangleMeshShape*>(grounds[0]->getCollisionShape());
+  Faces faces;
+  std::vector<Touch> touches;
+  for (std::size_t b = 0; b < feelers.size(); ++b) {
+    const Transform& pose = states[b].to_world;
+    const double fall = step * (states[b].velocity.norm() + states[b].spin.norm());
+    const auto around = static_cast<btScalar>(kThick + 2 * fall);
+    btVector3 low, high;
+    bodies[b]->getCollisionShape()->getAabb(bodies[b]->getWorldTransform(), low, high);
+    const btVector3 margin(around, around, around);
+    faces.clear();
+    shape->processAllTriangles(&faces, low - margin, high + margin);
+    const double radius = feelers[b].radius;
+    for (std::size_t k = 0; k < feelers[b].points.size(); ++k) {
+      const Vec3 point = pose * feelers[b].points[k];
+      touch(point, radius, radius > 0 ? point : pose.position, 0.01 + 2 * fall, faces.faces(),
+            touches);
+      for (std::size_t i = 0; i < kTouches; ++i) {
+        std::array<float, 3>& impulses = memory[b][kTouches * k + i];
+        if (i >= touches.size()) {
+          impulses.fill(0);
+          continue;
+        }
+        Contact contact;
+        contact.a = static_cast<int>(b);
+        contact.normal = touches[i].normal;
+        contact.on_a = pose.inverse() * touches[i].on_body;
+        contact.on_b = touches[i].on_body - touches[i].gap * touches[i].normal;
+        contact.impulses = {&impulses[0], &impulses[1], &impulses[2]};
+        contacts.push_back(contact);
+      }
+    }
+  }
+}
+
+bool Collision::Inside::is_on_face(const Contact& of) const {
+  return std::ranges::any_of(contacts, [&](const Contact& contact) {
+    return contact.b < 0 && contact.a == of.a && contact.normal.dot(of.normal) > kSameWay &&
+           (contact.on_a - of.on_a).norm() < kSamePlace;
+  });
 }
 
 void Collision::Inside::take_manifolds(std::span<const BodyState> states) {
@@ -180,6 +311,11 @@ void Collision::Inside::take_manifolds(std::span<const BodyState> states) {
       contact.on_b = contact.b < 0 ? on_b : states[at(contact.b)].to_world.inverse() * on_b;
       contact.impulses = {&point.m_appliedImpulse, &point.m_appliedImpulseLateral1,
                           &point.m_appliedImpulseLateral2};
+      if (contact.b < 0) {  // an edge or a corner of the mesh
+        const Vec3 apart = from_bullet(point.m_positionWorldOnA - point.m_positionWorldOnB);
+        const Vec3 along = apart - contact.normal.dot(apart) * contact.normal;
+        if (along.norm() > kDrift || is_on_face(contact)) continue;
+      }
       contacts.push_back(contact);
     }
   }
@@ -217,7 +353,7 @@ void Collision::add(std::span<const Body> bodies, std::span<const BodyState> sta
     in.world.addCollisionObject(object.get());
     in.bodies.push_back(std::move(object));
     in.feelers.push_back(Inside::feelers_of(bodies[b].shape));
-    in.memory.emplace_back(in.feelers.back().points.size());
+    in.memory.emplace_back(kTouches * in.feelers.back().points.size());
   }
   // After the bodies: that puts the ground last in each pair, as smooth_edges() needs it.
   for (const auto& ground : in.grounds) in.world.addCollisionObject(ground.get());
@@ -238,6 +374,7 @@ std::span<const Contact> Collision::find(std::span<const BodyState> states, doub
     for (std::size_t b = 0; b < states.size(); ++b) {
       in.bodies[b]->setWorldTransform(placed(states[b].to_world));
     }
+    if (!in.grounds.empty()) in.touch_faces(states, step);
     in.world.performDiscreteCollisionDetection();
     in.take_manifolds(states);
   }

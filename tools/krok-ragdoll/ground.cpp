@@ -1,40 +1,30 @@
 #include "tools/krok-ragdoll/ground.h"
 
 #include <cmath>
-#include <optional>
 
 #include "formats/io/open_terrain.h"
+#include "terrain/surface.h"
 
 namespace krok::cli::ragdoll {
 
 namespace {
 
-constexpr double kSpacing = 0.02, kReach = 4;  // metres
-constexpr int kCells = static_cast<int>(2 * kReach / kSpacing);
+constexpr double kReach = 10;         // metres around the fall
+constexpr double kTolerance = 0.001;  // metres
 
-std::vector<std::array<Vec3, 3>> triangles_of(const Terrain& terrain, const Vec3& centre) {
-  // On a lattice of its own, so that the same ground has the same triangles wherever one falls.
-  const double x = (std::round(centre.x() / kSpacing) - kCells / 2) * kSpacing;
-  const double z = (std::round(centre.z() / kSpacing) - kCells / 2) * kSpacing;
-  const auto row = [&](int j) {
-    std::vector<std::optional<Vec3>> points;
-    for (int i = 0; i <= kCells; ++i) {
-      const double px = x + i * kSpacing, pz = z + j * kSpacing;
-      const auto point = terrain.at(px, pz);
-      points.push_back(point ? std::optional<Vec3>(Vec3(px, point->height, pz)) : std::nullopt);
-    }
-    return points;
-  };
+Result<std::vector<std::array<Vec3, 3>>> triangles_of(const Terrain& terrain, const Vec3& centre) {
+  // Around whole metres, so that the same ground has the same triangles wherever one falls there.
+  const Vec2 middle(std::round(centre.x()), std::round(centre.z()));
+  const Vec2 reach(kReach, kReach);
+  const auto surface = terrain::surface_of(terrain, {middle - reach, middle + reach, kTolerance});
+  if (!surface) return surface.error();
   std::vector<std::array<Vec3, 3>> triangles;
-  std::vector<std::optional<Vec3>> before = row(0);
-  for (int j = 1; j <= kCells; ++j) {
-    std::vector<std::optional<Vec3>> after = row(j);
-    for (std::size_t i = 0; i + 1 < after.size(); ++i) {
-      const auto &a = before[i], &b = before[i + 1], &c = after[i], &d = after[i + 1];
-      if (a && c && b) triangles.push_back({*a, *c, *b});
-      if (b && c && d) triangles.push_back({*b, *c, *d});
+  for (const auto& corners : surface->triangles) {
+    std::array<Vec3, 3> triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] = surface->positions[corners[k]].cast<double>();
     }
-    before = std::move(after);
+    triangles.push_back(triangle);
   }
   return triangles;
 }
@@ -52,12 +42,13 @@ Result<krok::ragdoll::Surroundings> open_surroundings(const std::string& ground,
     surroundings.height = point ? point->height : 0;
     return surroundings;
   }
-  surroundings.triangles = triangles_of(**terrain, centre);
-  if (surroundings.triangles.empty()) {
-    return Error("ragdoll-ground", "there is no ground within 4 m of where the fall begins",
+  auto triangles = triangles_of(**terrain, centre);
+  if (!triangles) {
+    return Error("ragdoll-ground", "there is no ground within 10 m of where the fall begins",
                  "krok-edit moves motions")
         .in_file(ground);
   }
+  surroundings.triangles = *std::move(triangles);
   return surroundings;
 }
 
