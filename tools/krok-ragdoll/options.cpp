@@ -21,85 +21,56 @@ Error usage(std::string message, std::string hint = {}) {
 }
 
 void declare_fall(CommandOptions& command, Arguments& a) {
-  const char* group = "Fall";
-  command.add_option("--at", a.at, "Time at which the body takes over from the motion")
-      .type_name("TIME")
-      .default_str("0s")
-      .group(group);
+  command.group("Fall");
+  command.add_option("--at TIME", a.at, "Time at which the body takes over from the motion")
+      .default_str("0s");
   command
-      .add_option("--push", a.pushes,
+      .add_option("--push JOINT=X,Y,Z", a.pushes,
                   "Push at a joint, given by name or role: Spine2=120Ns,0,40Ns at --at, or later: "
                   "head=0,0,-30Ns@2s; repeatable")
-      .type_name("JOINT=X,Y,Z")
-      .one_each_time()
-      .group(group);
+      .one_each_time();
+  command.add_option("--pushes IN.csv", a.push_table,
+                     "A fall for each row of a table with the columns name, at, joint, x, y, z and "
+                     "maybe time; {name} in the output's name is the row's");
   command
-      .add_option("--pushes", a.push_table,
-                  "A fall for each row of a table with the columns name, at, joint, x, y, z and "
-                  "maybe time; {name} in the output's name is the row's")
-      .type_name("IN.csv")
-      .group(group);
-  command
-      .add_option("--get-up", a.rises,
+      .add_option("--get-up IN.anim", a.rises,
                   "Get up once at rest, with the motion whose first pose, or its mirror image, is "
                   "nearest; repeatable")
-      .type_name("IN.anim")
-      .one_each_time()
-      .group(group);
-  command.add_option("--duration", a.duration, "Length of the fall")
-      .type_name("TIME")
-      .default_str("3s")
-      .group(group);
+      .one_each_time();
+  command.add_option("--duration TIME", a.duration, "Length of the fall").default_str("3s");
 }
 
 void declare_body(CommandOptions& command, Arguments& a) {
-  const char* group = "Body";
-  command.add_option("--model", a.model, "Fit the bodies to this model's vertices by their weights")
-      .type_name("IN.model")
-      .group(group);
+  command.group("Body");
+  command.add_option("--model IN.model", a.model,
+                     "Fit the bodies to this model's vertices by their weights");
+  command.add_option(
+      "--bodies IN.ragdoll.json", a.bodies,
+      "Bodies and joints from a file (formats/ragdoll/SPEC.md) instead of made ones");
+  command.add_option(
+      "--save-bodies OUT.ragdoll.json|OUT.glb", a.save_bodies,
+      "Also save the bodies and joints: to be edited and given to --bodies, or as meshes (.glb)");
+  command.add_option("--mass MASS", a.mass, "Mass of the body").default_str("75kg");
   command
-      .add_option("--bodies", a.bodies,
-                  "Bodies and joints from a file (formats/ragdoll/SPEC.md) instead of made ones")
-      .type_name("IN.ragdoll.json")
-      .group(group);
-  command
-      .add_option("--save-bodies", a.save_bodies,
-                  "Also save the bodies and joints: to be edited and given to --bodies, or as "
-                  "meshes (.glb)")
-      .type_name("OUT.ragdoll.json|OUT.glb")
-      .group(group);
-  command.add_option("--mass", a.mass, "Mass of the body")
-      .type_name("MASS")
-      .default_str("75kg")
-      .group(group);
-  command
-      .add_option("--limits", a.limits,
+      .add_option("--limits IN.json|auto|none", a.limits,
                   "Ranges of motion: a file (formats/limits/SPEC.md), auto for published ranges of "
                   "adults, or none")
-      .type_name("IN.json|auto|none")
-      .default_str("auto")
-      .group(group);
-  command.add_flag("--soft", a.soft, "Limits push back as springs instead of stopping")
-      .group(group);
-  add_map_option(command, a.map).group(group);
+      .default_str("auto");
+  command.add_flag("--soft", a.soft, "Limits push back as springs instead of stopping");
+  add_map_option(command, a.map);
 }
 
 void declare_surroundings(CommandOptions& command, Arguments& a) {
-  const char* group = "Surroundings";
+  command.group("Surroundings");
   command
-      .add_option(
-          "--ground", a.ground,
-          "Ground: level[:height=H], stairs, slope:ANGLE, rough, or a file (glTF, GLB, OBJ, "
-          "EXR, PNG)")
-      .type_name("IN|KIND")
-      .default_str("level")
-      .group(group);
+      .add_option("--ground IN|KIND", a.ground,
+                  "Ground: level[:height=H], stairs, slope:ANGLE, rough, or a file (glTF, GLB, "
+                  "OBJ, EXR, PNG)")
+      .default_str("level");
   add_number(command, "--friction", a.friction, "Coefficient of friction, 0 to 10")
-      .default_str("0.7")
-      .group(group);
+      .default_str("0.7");
   add_number(command, "--restitution", a.restitution, "Share of speed kept in a bounce, 0 to 1")
-      .default_str("0")
-      .group(group);
+      .default_str("0");
 }
 
 // A number with an optional unit.
@@ -142,9 +113,8 @@ Result<PushAt> parse_push(const std::string& text) {
 
 void declare(CommandOptions& command, Arguments& arguments) {
   command
-      .add_option("input", arguments.input,
+      .add_option("input IN.anim", arguments.input,
                   "Motion, or a capture read as by krok-import (- is standard input)")
-      .type_name("IN.anim")
       .required();
   declare_fall(command, arguments);
   declare_body(command, arguments);
