@@ -8,8 +8,8 @@
 
 namespace krok::ragdoll {
 
-// Finds where bodies touch: by Bullet, but for an endless plane and faces of a mesh, whose distances
-// from a shape's corners or ends are exact and quick.
+// Finds where bodies touch: by Bullet, but for an endless plane and faces of a mesh, whose
+// distances from a shape's corners or ends are exact and quick.
 class Collision {
  public:
   explicit Collision(const Surroundings& surroundings);

@@ -38,13 +38,12 @@ void declare_place(CommandOptions& command, Arguments& a) {
                      "The same as an angle: 0 sees the character's front, 90deg its left side");
   command.add_option("--elevation ANGLE", a.elevation,
                      "Camera elevation; 90deg looks straight down [10deg]");
-  add_choice<AzimuthFrom>(command, "--facing", a.facing,
-                          {{"start", AzimuthFrom::start},
-                           {"actor", AzimuthFrom::actor},
-                           {"world", AzimuthFrom::world}},
-                          "What counts as the front: the facing at the start, the facing in each "
-                          "frame (actor), or +Z (world)",
-                          "WHAT", "start");
+  add_choice<AzimuthFrom>(
+      command, "--facing", a.facing,
+      {{"start", AzimuthFrom::start}, {"actor", AzimuthFrom::actor}, {"world", AzimuthFrom::world}},
+      "What counts as the front: the facing at the start, the facing in each "
+      "frame (actor), or +Z (world)",
+      "WHAT", "start");
   command.add_flag("--clockwise", a.clockwise, "Orbit clockwise, seen from above");
   command.add_flag("--fixed-centre", a.fixed_centre,
                    "Orbit around the middle of the whole motion; by default, the centre moves with "

@@ -101,8 +101,9 @@ void declare_timing(CommandOptions& command, Options& options) {
 
 void declare_faults(CommandOptions& command, Options& options) {
   command.group("Errors in the file");
-  const CommandOption strict = command.add_flag("--strict", options.strict,
-                     "Fail on any error in the file; by default incomplete rows are dropped with a warning");
+  const CommandOption strict = command.add_flag(
+      "--strict", options.strict,
+      "Fail on any error in the file; by default incomplete rows are dropped with a warning");
   command
       .add_flag("--repair", options.repair,
                 "Fill damaged frames from their neighbours; each repair is listed")

@@ -42,7 +42,8 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
       "is " + std::string(registry::describe_content(file.bytes())) +
           ", which krok-info cannot read",
       "supported are .anim, .model, .cam, .steps, .material, .character, .ragdoll.json, .bvh, "
-      ".asf, .amc, .glb and .gltf files, and characters in .fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and "
+      ".asf, .amc, .glb and .gltf files, and characters in .fbx, .dae, .smd, .ms3d, .3ds, .ase, "
+      ".md5mesh and "
       ".md5anim files");
 }
 

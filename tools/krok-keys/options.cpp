@@ -98,7 +98,8 @@ void declare(CommandOptions& command, Options& options) {
   list("--add-contact JOINT=TIME..TIME", options.add_contact,
        "Add a contact of a joint, replacing those it overlaps; its position is that of the joint "
        "during that time");
-  list("--remove-contact JOINT@TIME", options.remove_contact, "Remove a joint's contact at that time");
+  list("--remove-contact JOINT@TIME", options.remove_contact,
+       "Remove a joint's contact at that time");
 }
 
 Result<Changes> changes_of(const Options& options) {

@@ -51,9 +51,10 @@ void declare(CommandOptions& command, Options& options) {
   add_prints_option(command, options.prints,
                     "Show footprints (formats/prints/SPEC.md) on the ground, as krok-walk "
                     "--save-prints writes them; those that a foot stands on are marked");
-  command.add_option("--bodies IN.ragdoll.json", options.bodies,
-                     "Show the rigid bodies of a krok-ragdoll file (formats/ragdoll/SPEC.md) on all "
-                     "motions, translucent");
+  command.add_option(
+      "--bodies IN.ragdoll.json", options.bodies,
+      "Show the rigid bodies of a krok-ragdoll file (formats/ragdoll/SPEC.md) on all "
+      "motions, translucent");
   command.add_option("--title WORDS", options.title,
                      "The page's title; default: the first file's name");
 }

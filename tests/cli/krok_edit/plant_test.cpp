@@ -64,8 +64,8 @@ TEST_F(KrokEditPlant, ContactsOfTheSidecarAreTaken) {
     EXPECT_EQ(stay["last_frame"], 72);
   }
   EXPECT_EQ(balls, 1);
-  const auto found =
-      run_here("krok-edit", {"walk.anim", "--plant", "--contacts", "find", "-o", "b.anim", "--json"});
+  const auto found = run_here(
+      "krok-edit", {"walk.anim", "--plant", "--contacts", "find", "-o", "b.anim", "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err;
   EXPECT_EQ(nlohmann::json::parse(found.out)["result"]["steps"][0]["contacts"], "found");
   put("mine.json", get(path("walk.keys.json")));
@@ -79,7 +79,8 @@ TEST_F(KrokEditPlant, ContactsOfTheSidecarAreTaken) {
 TEST_F(KrokEditPlant, IsDoneBeforeTheCut) {
   ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--plant", "-o", "whole.anim"}).exit_code, 0);
   ASSERT_EQ(
-      run_here("krok-edit", {"walk.anim", "--from", "60f", "--plant", "-o", "part.anim"}).exit_code, 0);
+      run_here("krok-edit", {"walk.anim", "--from", "60f", "--plant", "-o", "part.anim"}).exit_code,
+      0);
   const Clip whole = read("whole.anim"), part = read("part.anim");
   ASSERT_EQ(part.frame_count(), whole.frame_count() - 60);
   for (std::size_t j = 0; j < whole.skeleton.names.size(); ++j) {

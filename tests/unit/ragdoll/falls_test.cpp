@@ -1,5 +1,5 @@
-// If these fail, characters explode, come apart, sink into the ground or never lie still; or the same
-// fall is another one the next time.
+// If these fail, characters explode, come apart, sink into the ground or never lie still; or the
+// same fall is another one the next time.
 
 #include <gtest/gtest.h>
 
