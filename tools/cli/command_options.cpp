@@ -113,7 +113,7 @@ CommandOption CommandOptions::add_option_function(const std::string& name,
                                                   std::function<void(const std::string&)> take,
                                                   const std::string& help) {
   return add_named(name, [&](const std::string& bare) {
-    return app_.add_option_function<std::string>(bare, std::move(take), help);
+    return app_.add_option_function<std::string>(bare, take, help);
   });
 }
 CommandOption CommandOptions::add_flag_callback(const std::string& name, std::function<void()> take,
